@@ -223,9 +223,9 @@ class Outcome:
 
 def campaign(seed: int, folder: Path) -> Outcome:
     """Draw a campaign, ask hersey what ends its units, and set it beside the truth."""
-    from hersey.life.ending.endings import endings
     from hersey.life.film.through_life import film_life
     from hersey.life.indicators.of_campaign import indicators_of
+    from hersey.life.time_to_failure.estimate import time_to_failure
     from hersey.machine.machine import read_machine
 
     world, random = draw(seed), np.random.default_rng([seed, 77])
@@ -236,7 +236,7 @@ def campaign(seed: int, folder: Path) -> Outcome:
     begin = time.process_time()
     found = indicators_of(kept, machine)
     found = film_life(kept, machine).with_starvation(found)
-    told = endings(found)
+    told = time_to_failure(found)
     seconds = time.process_time() - begin
     last = {name: max(log.age for log in logs if log.unit == name) for name in {log.unit for log in logs}}
 

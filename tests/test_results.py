@@ -25,7 +25,6 @@ from hersey.parts import (
     DesignPart,
     DriftPart,
     DrivePart,
-    EndingsPart,
     FilmLifePart,
     FilmPart,
     FitPart,
@@ -46,6 +45,8 @@ from hersey.parts import (
     RegimePart,
     RestPart,
     StickSlipPart,
+    StudyPart,
+    TimeToFailurePart,
     TrajectoryPart,
     VerdictPart,
     WarmUpPart,
@@ -162,11 +163,11 @@ def growth() -> hersey.Growth:
 
 
 @cache
-def ends() -> hersey.Endings:
+def ends() -> hersey.TimeToFailure:
     runs = hersey.Runs(tuple(range(6)), ("A",) * 3 + ("B",) * 3, np.array([0.0, 1.0, 2.0] * 2), "h")
     torque = np.array([1, 1.2, 1.4, 1, 1.3, 1.6])
     indicator = hersey.Indicator("torque", "motor torque", "N m", 2.0, torque, np.full(6, 0.01))
-    return hersey.endings(hersey.Indicators(runs, (indicator,)))
+    return hersey.time_to_failure(hersey.Indicators(runs, (indicator,)))
 
 
 #: How each result is made, and the part of the document that holds it.
@@ -185,6 +186,7 @@ RESULTS: dict[str, tuple[Callable[[], Any], type[Part]]] = {
     "HysteresisBand": (lambda: hersey.hysteresis(TRAIN, DRAG), BandPart),
     "OperatingMap": (map_, MapPart),
     "Plan": (plan, PlanPart),
+    "Study": (lambda: hersey.study(points()), StudyPart),
     "Posterior": (lambda: hersey.posterior(points(), machine(), draws=200), PosteriorPart),
     "WarmUp": (warm_up, WarmUpPart),
     "FilmLife": (lambda: shipped.film(1), FilmLifePart),
@@ -198,7 +200,7 @@ RESULTS: dict[str, tuple[Callable[[], Any], type[Part]]] = {
     "Drift": (lambda: hersey.fit_drift(table(other("lubricant", 1, units=2, logs=3))), DriftPart),
     "Growth": (growth, GrowthPart),
     "AgesAtLimit": (lambda: growth().reaches(2.0), AgesPart),
-    "Endings": (ends, EndingsPart),
+    "TimeToFailure": (ends, TimeToFailurePart),
     "ModelComparison": (models, ModelsPart),
     "LogComparison": (lambda: hersey.compare(points(), points()), ComparisonPart),
     "TestDesign": (lambda: hersey.design(models(), count=1), DesignPart),

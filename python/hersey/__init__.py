@@ -63,7 +63,6 @@ if TYPE_CHECKING:
     from hersey.life.ageing_maps import AgeingMaps
     from hersey.life.campaign import Campaign
     from hersey.life.drift.result import Drift, fit_drift
-    from hersey.life.ending.endings import Endings, endings
     from hersey.life.fatigue import (
         RainflowCycles,
         SNCurve,
@@ -81,6 +80,7 @@ if TYPE_CHECKING:
     from hersey.life.indicators.of_campaign import indicators_of
     from hersey.life.other_uses import OtherUses, other_uses
     from hersey.life.population import BLife, Population, weibull
+    from hersey.life.time_to_failure.estimate import TimeToFailure, time_to_failure
     from hersey.log import TorqueLog, memory_limit, read
     from hersey.log.many import ManyLogs, read_many
     from hersey.log.mapping import read_with_mapping
@@ -192,7 +192,7 @@ _HOMES = {
     "life.growth.fit": "Growth fit_growth",
     "life.growth.limit_ages": "AgesAtLimit",
     "life.indicator": "Indicator Indicators Runs",
-    "life.ending.endings": "Endings endings",
+    "life.time_to_failure.estimate": "TimeToFailure time_to_failure",
     "life.indicators.of_campaign": "indicators_of",
     "life.following": "LifeTest follow",
     "life.ageing_maps": "AgeingMaps",
@@ -222,7 +222,6 @@ __all__ = [
     "Drift",
     "Drivetrain",
     "ElasticLayer",
-    "Endings",
     "Estimate",
     "ExportedUnit",
     "Film",
@@ -271,6 +270,7 @@ __all__ = [
     "SweepFolder",
     "TestDesign",
     "ThickeningFluid",
+    "TimeToFailure",
     "TorqueLog",
     "Trajectory",
     "Transition",
@@ -286,7 +286,6 @@ __all__ = [
     "design",
     "disturbance",
     "drag_torque",
-    "endings",
     "export_fmu",
     "film_life",
     "film_thickness",
@@ -327,6 +326,7 @@ __all__ = [
     "stick_slip_damage_rate",
     "study",
     "sweep",
+    "time_to_failure",
     "viscosity_laws",
     "warm_up",
     "weibull",

@@ -160,7 +160,7 @@ MADE: dict[str, Callable[[], Any]] = {
     "FilmLife": lambda: shipped.film(1),
     "Growth": lambda: test_results.growth(),
     "AgesAtLimit": lambda: test_results.growth().reaches(2.0),
-    "Endings": lambda: test_results.ends(),
+    "TimeToFailure": lambda: test_results.ends(),
     "OtherUses": test_other_uses.by_hand,
     "AgeingMaps": test_ageing_maps.maps,
     "LifeTest": lambda: shipped.followed(2),

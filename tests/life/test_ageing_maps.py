@@ -22,7 +22,7 @@ from tests.life import shipped
 
 
 def told(unit: str, age: float, passed: float = 0.0) -> Any:
-    """What `Endings` says of one unit, no growth of its torque among it."""
+    """What `TimeToFailure` says of one unit, no growth of its torque among it."""
     end = SimpleNamespace(
         unit=unit, age=AgeAtLimit(unit, Interval(age, 0.9 * age, 1.1 * age), 0.0, 170e3, passed)
     )

@@ -19,7 +19,7 @@ def answer() -> hersey.LifeTest:
 
 def test_the_answer_holds_all_parts() -> None:
     found = answer()
-    kinds = {mode.kind for mode in found.endings.modes}
+    kinds = {mode.kind for mode in found.time_to_failure.modes}
     assert {"motor torque", "stick-slip", "starvation"} <= kinds
     assert found.drift is not None
     assert found.film is not None
@@ -32,7 +32,7 @@ def test_the_answer_holds_all_parts() -> None:
 
 def test_both_units_end_by_the_torque_of_the_motor() -> None:
     """Truth: 239,000 and 305,000 pages, cold and fast; starvation follows 14 % later."""
-    for end, truth in zip(answer().endings.units, (239e3, 305e3), strict=True):
+    for end, truth in zip(answer().time_to_failure.units, (239e3, 305e3), strict=True):
         assert "motor torque, cold and fast" in end.named
         assert end.age.age.value == pytest.approx(truth, rel=0.15)
 

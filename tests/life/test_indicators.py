@@ -1,4 +1,4 @@
-"""What the runs of a campaign say of each way to fail: against the truth of units that age."""
+"""What the runs of a campaign say of each failure mode: against the truth of units that age."""
 
 from __future__ import annotations
 

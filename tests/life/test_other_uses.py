@@ -25,13 +25,13 @@ def machine() -> Machine:
 
 
 @pytest.fixture(scope="module")
-def told() -> tuple[OtherUses, hersey.Endings]:
+def told() -> tuple[OtherUses, hersey.TimeToFailure]:
     with pytest.MonkeyPatch.context() as patch:
         shipped.fewer(patch)
         patch.setattr(module, "_LIMITS", (1.0, 1.25))
         patch.setattr(module, "_COLDER", (-10.0, 0.0))
         found = hersey.indicators_of(shipped.opened(2), machine(), signs=False)
-        return other_uses(shipped.opened(2), machine(), found), hersey.endings(found)
+        return other_uses(shipped.opened(2), machine(), found), hersey.time_to_failure(found)
 
 
 def by_hand() -> OtherUses:
@@ -53,7 +53,7 @@ def half(use: Use) -> float:
 
 
 def test_the_stated_use_is_told_with_the_numbers_of_the_report(
-    told: tuple[OtherUses, hersey.Endings],
+    told: tuple[OtherUses, hersey.TimeToFailure],
 ) -> None:
     uses, found = told
     (stated,) = [use for use in uses.uses if use.stated]
@@ -65,7 +65,7 @@ def test_the_stated_use_is_told_with_the_numbers_of_the_report(
     assert [end.ways for end in stated.ends[:2]] == [each.ways for each in found.units]
 
 
-def test_more_torque_is_later_and_a_colder_start_sooner(told: tuple[OtherUses, hersey.Endings]) -> None:
+def test_more_torque_is_later_and_a_colder_start_sooner(told: tuple[OtherUses, hersey.TimeToFailure]) -> None:
     uses, _ = told
     assert len(uses.uses) == 2 * 2 * (1 + len(machine().points))
     at = {(use.torque_limit, use.coldest, use.duty): half(use) for use in uses.uses}
@@ -80,7 +80,7 @@ def test_more_torque_is_later_and_a_colder_start_sooner(told: tuple[OtherUses, h
     assert at[1.0, cold, AS_STATED] < 0.9 * at[1.25, warm, AS_STATED]
 
 
-def test_a_duty_moves_what_sums_over_the_points(told: tuple[OtherUses, hersey.Endings]) -> None:
+def test_a_duty_moves_what_sums_over_the_points(told: tuple[OtherUses, hersey.TimeToFailure]) -> None:
     uses, _ = told
     assert uses.duties == (AS_STATED, *(point.name for point in machine().points))
     at = {

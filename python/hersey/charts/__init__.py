@@ -1,38 +1,38 @@
 """One chart per result.
 
-=============  ==========================================================================
-style          sizes, colours, the smallest pieces
-labels         where texts stand, so that none covers another
-vega           drawing and bundling, in a process of their own (`vega_script` runs there)
-runtime        the Vega runtime, inlined in every page
-page           what every page is made of, and what it may do
-render         from a chart to the content of a file
-analysis       the charts of the analysis document
-log            speed, torque and temperature over time
-inspection     the channels of a log, and their faults
-damping        dwells, surface, candidates, two logs, the next dwells
-regime         exponents against what each regime predicts
-film           the regime chart, over the Stribeck curve
-friction       the Stribeck curve: dwells, model, regimes, stall
-mixed          torque of film and asperities against speed
-transition     transition speed against temperature
-stick_speed    V* against the stick speed
-torque_budget  what film, contact and rest of the drive take, stacked
-motion         a trajectory, and the lap to which it settles
-cycles         trace, cycles and fitted motion
-hysteresis     what the belt does at which drive speed
-operating_map  the operating map
-plan           a drive profile and the motion
-warm_up        speed, drag and temperatures of a warm-up
-weibull        share failed against age
-ageing_maps    the operating map of a unit when new, now and at its end
-life           the charts of a life test, in the order of its page
-drift          what moved with age, a panel per quantity
-film_life      the film of units that age, and the layer of oil that feeds it
-growth         growth with age, and the ages at a limit
-endings        ways to fail against age
-other_uses     the ages in other uses of the machine
-=============  ==========================================================================
+===============  ==========================================================================
+style            sizes, colours, the smallest pieces
+labels           where texts stand, so that none covers another
+vega             drawing and bundling, in a process of their own (`vega_script` runs there)
+runtime          the Vega runtime, inlined in every page
+page             what every page is made of, and what it may do
+render           from a chart to the content of a file
+analysis         the charts of the analysis document
+log              speed, torque and temperature over time
+inspection       the channels of a log, and their faults
+damping          dwells, surface, candidates, two logs, the next dwells
+regime           exponents against what each regime predicts
+film             the regime chart, over the Stribeck curve
+friction         the Stribeck curve: dwells, model, regimes, stall
+mixed            torque of film and asperities against speed
+transition       transition speed against temperature
+stick_speed      V* against the stick speed
+torque_budget    what film, contact and rest of the drive take, stacked
+motion           a trajectory, and the lap to which it settles
+cycles           trace, cycles and fitted motion
+hysteresis       what the belt does at which drive speed
+operating_map    the operating map
+plan             a drive profile and the motion
+warm_up          speed, drag and temperatures of a warm-up
+weibull          share failed against age
+ageing_maps      the operating map of a unit when new, now and at its end
+life             the charts of a life test, in the order of its page
+drift            what moved with age, a panel per quantity
+film_life        the film of units that age, and the layer of oil that feeds it
+growth           growth with age, and the ages at a limit
+time_to_failure  failure modes against age
+other_uses       the ages in other uses of the machine
+===============  ==========================================================================
 """
 
 from __future__ import annotations
@@ -78,7 +78,7 @@ CHARTS = {
     "FilmLife": ("film_life", "film_life_chart"),
     "Growth": ("growth", "growth_chart"),
     "AgesAtLimit": ("growth", "ages_chart"),
-    "Endings": ("endings", "endings_chart"),
+    "TimeToFailure": ("time_to_failure", "time_to_failure_chart"),
 }
 
 

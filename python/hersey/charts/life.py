@@ -12,13 +12,13 @@ from hersey.charts.style import Chart, unchecked
 if TYPE_CHECKING:
     from hersey.life.following import LifeTest
 
-#: Ways to fail whose growth is drawn, the likeliest first.
+#: Failure modes whose growth is drawn, the likeliest first.
 _GROWN = 3
 
 
 def life_charts(answer: LifeTest) -> dict[str, Chart]:
     """Return the charts of a life test."""
-    found = answer.endings
+    found = answer.time_to_failure
     likely = sorted(
         found.modes, key=lambda mode: -found.shares[mode.name].value if mode.name in found.shares else 1.0
     )
@@ -35,7 +35,7 @@ def life_charts(answer: LifeTest) -> dict[str, Chart]:
 
 def life_chart(answer: LifeTest) -> Chart:
     """Return the chart of what ends each unit."""
-    return chart_of(answer.endings)
+    return chart_of(answer.time_to_failure)
 
 
 def write_life_figures(answer: LifeTest, folder: Path, *, overwrite: bool = True) -> list[Path]:

@@ -1,18 +1,18 @@
 """How a drive ages, and what ends it.
 
-===========  ==================================================================
-age          an age with its unit: pages, hours, cycles
-campaign     the file of a life test: units, ages, their steady points and fits
-indicator    one way to fail: a number of each run against a limit
-indicators   from the runs of a campaign to each way to fail
-fatigue      cycles of torque counted, and the damage that they do to a part
-population   ages at failure over many units: Weibull law, B10 and B50
-growth       how indicators grow, and the ages at their limits
-drift        what moved with age, and what it points to
-film         the film through life, the oil that is left, and when it starves
-ending       what ends each unit, and when
-other_uses   the same where limit, coldest start or duty is another one
-ageing_maps  the operating map of a unit when new, now and at its end
-following    a life test followed, in one answer
-===========  ==================================================================
+===============  ==================================================================
+age              an age with its unit: pages, hours, cycles
+campaign         the file of a life test: units, ages, their steady points and fits
+indicator        one failure mode: a number of each run against a limit
+indicators       from the runs of a campaign to each failure mode
+fatigue          cycles of torque counted, and the damage that they do to a part
+population       ages at failure over many units: Weibull law, B10 and B50
+growth           how indicators grow, and the ages at their limits
+drift            what moved with age, and what it points to
+film             the film through life, the oil that is left, and when it starves
+time_to_failure  what ends each unit, and when
+other_uses       the same where limit, coldest start or duty is another one
+ageing_maps      the operating map of a unit when new, now and at its end
+following        a life test followed, in one answer
+===============  ==================================================================
 """

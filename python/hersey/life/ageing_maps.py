@@ -26,8 +26,8 @@ if TYPE_CHECKING:
     import polars as pl
 
     from hersey.life.campaign import Campaign
-    from hersey.life.ending.endings import Endings
-    from hersey.life.ending.first import UnitEnd
+    from hersey.life.time_to_failure.estimate import TimeToFailure
+    from hersey.life.time_to_failure.first import UnitEnd
     from hersey.machine.limits import OperatingPoint
     from hersey.machine.machine import Machine
 
@@ -130,7 +130,7 @@ def carried_on(log_torque: FloatArray, clock: FloatArray, to: float) -> FloatArr
 
 
 @one_thread()
-def ageing_maps(campaign: Campaign, machine: Machine, found: Endings, *, unit: str = "") -> AgeingMaps:
+def ageing_maps(campaign: Campaign, machine: Machine, found: TimeToFailure, *, unit: str = "") -> AgeingMaps:
     """Return the maps of a unit when new, as last seen and, if it has not ended yet, at its end.
 
     Parameters
@@ -198,7 +198,7 @@ def ageing_maps(campaign: Campaign, machine: Machine, found: Endings, *, unit: s
     )
 
 
-def _chosen(found: Endings, unit: str) -> UnitEnd:
+def _chosen(found: TimeToFailure, unit: str) -> UnitEnd:
     """The unit of that name; else the one that ends next, or first if all have ended."""
     if unit:
         for each in found.units:
@@ -211,7 +211,7 @@ def _chosen(found: Endings, unit: str) -> UnitEnd:
     return min(coming or found.units, key=lambda each: each.age.age.value)
 
 
-def _clock(found: Endings, unit: str, ages: FloatArray) -> FloatArray:
+def _clock(found: TimeToFailure, unit: str, ages: FloatArray) -> FloatArray:
     """How far a unit has aged at ages: ln of the growth of its torque, or the ages where none is told."""
     for mode in found.modes:
         if mode.kind == CLOCK and unit in mode.growth.units:

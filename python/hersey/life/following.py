@@ -10,11 +10,11 @@ from hersey.arrays import one_thread
 from hersey.errors import HerseyError
 from hersey.life.ageing_maps import AgeingMaps, ageing_maps
 from hersey.life.drift.result import Drift, fit_drift
-from hersey.life.ending.endings import Endings, endings
 from hersey.life.film.through_life import FilmLife, film_life
 from hersey.life.indicator import Indicators
 from hersey.life.indicators.of_campaign import indicators_of
 from hersey.life.other_uses import OtherUses, other_uses
+from hersey.life.time_to_failure.estimate import TimeToFailure, time_to_failure
 from hersey.result import Result
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ class LifeTest(Result):
 
     name: str
     indicators: Indicators
-    endings: Endings
+    time_to_failure: TimeToFailure
     drift: Drift | None
     film: FilmLife | None
     maps: AgeingMaps | None
@@ -43,11 +43,11 @@ class LifeTest(Result):
 
     def headline(self) -> str:
         """Return what ends the units, and when."""
-        return self.endings.headline()
+        return self.time_to_failure.headline()
 
     def summary(self) -> str:
         """Return the answer as text: what ends the units, what moved, the film, what is not told."""
-        parts = [self.endings.summary()]
+        parts = [self.time_to_failure.summary()]
         parts += [each.summary() for each in (self.drift, self.film, self.maps) if each is not None]
         parts += [f"- {line}" for line in self.unsaid]
         return "\n".join(parts)
@@ -58,15 +58,15 @@ class LifeTest(Result):
         told = {name: None if part is None else part.to_dict() for name, part in parts.items()}
         return {
             "file": self.name,
-            "endings": self.endings.to_dict(),
+            "time_to_failure": self.time_to_failure.to_dict(),
             **told,
             "unsaid": list(self.unsaid),
             "seed": self.seed,
         }
 
     def to_frame(self) -> pl.DataFrame:
-        """Return the ages of `Endings`."""
-        return self.endings.to_frame()
+        """Return the ages of `TimeToFailure`."""
+        return self.time_to_failure.to_frame()
 
 
 @one_thread()
@@ -120,7 +120,7 @@ def follow(
     if film is not None:
         indicators = film.with_starvation(indicators)
     said("growth and what ends the units")
-    found = endings(indicators, seed=seed)
+    found = time_to_failure(indicators, seed=seed)
     drift = tried("drift", lambda: fit_drift(campaign.dwells()))
     maps = tried(
         "maps at new, now and the end",

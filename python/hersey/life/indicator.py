@@ -1,4 +1,4 @@
-"""An indicator: one way to fail, as a positive number of each run that grows toward a limit."""
+"""An indicator: one failure mode, as a positive number of each run that grows toward a limit."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class OwnAges:
 
 @dataclass(frozen=True, repr=False)
 class Indicator:
-    """One way to fail.
+    """One failure mode.
 
     ``value`` is positive, NaN where a run does not tell it, and grows toward ``limit``, both in ``si``; one
     that ``accumulates`` is a rate per age, and the limit is that of its integral from age 0. ``error`` is its
@@ -85,7 +85,7 @@ class Indicator:
 
 @dataclass(frozen=True, repr=False)
 class Indicators:
-    """Runs and the ways to fail that they tell; ``unsaid``: those that they cannot, and why."""
+    """Runs and the failure modes that they tell; ``unsaid``: those that they cannot, and why."""
 
     runs: Runs
     each: tuple[Indicator, ...]

@@ -12,13 +12,13 @@ import numpy as np
 
 from hersey.arrays import one_thread
 from hersey.errors import HerseyError, ParameterError
-from hersey.life.ending.first import ages_of_new, ends_of_units
-from hersey.life.ending.joined import correlations
-from hersey.life.ending.way import FittedWay, fitted_way, last_ages
 from hersey.life.growth.limit_ages import Interval, share_of_units
 from hersey.life.indicators.load_cases import load_cases
 from hersey.life.indicators.of_campaign import indicators_of
 from hersey.life.indicators.run_dwells import read_runs_of
+from hersey.life.time_to_failure.first import ages_of_new, ends_of_units
+from hersey.life.time_to_failure.joined import correlations
+from hersey.life.time_to_failure.way import FittedWay, fitted_way, last_ages
 from hersey.result import Result, json_record
 from hersey.units import celsius
 
@@ -124,7 +124,7 @@ def other_uses(
         Of the use that the machine's file states; ways that hang on none of limit, cold and duty (the film's)
         are taken from here.
     seed
-        Of the draws, that of `endings`: the stated use is then told with the same numbers.
+        Of the draws, that of `time_to_failure`: the stated use is then told with the same numbers.
     progress
         Called with uses done and uses in all.
 
@@ -156,7 +156,7 @@ def other_uses(
 
 
 class _Ways:
-    """The ways to fail of all uses, each growth fitted once, each limit reached once."""
+    """The failure modes of all uses, each growth fitted once, each limit reached once."""
 
     def __init__(self, places: dict[str, int], seed: int) -> None:
         self._places, self._seed = places, seed
@@ -164,7 +164,7 @@ class _Ways:
         self._known: dict[tuple[str, bytes, float], FittedWay | None] = {}
 
     def ends(self, indicators: Indicators, torque: float | None) -> tuple[UseEnd, ...]:
-        """The first ends, drawn as `endings` does; none where no way can be followed."""
+        """The first ends, drawn as `time_to_failure` does; none where no way can be followed."""
         chosen = sorted(_limited(indicators, torque), key=lambda each: self._place(each.name))
         ways = [way for each in chosen if (way := self._followed(indicators, each)) is not None]
         if not ways:
@@ -195,7 +195,7 @@ class _Ways:
 
 
 def _coldest(campaign: Campaign, machine: Machine) -> float | None:
-    """The coldest start as the ways to fail take it, K."""
+    """The coldest start as the failure modes take it, K."""
     ends = load_cases(machine, read_runs_of(campaign, machine.rest))
     return None if ends is None else ends[0].temperature
 
@@ -210,7 +210,7 @@ def _words(use: Use) -> str:
 
 
 def _hangs_on_duty(machine: Machine) -> bool:
-    """Whether a way to fail sums over the points, and there is more than one."""
+    """Whether a failure mode sums over the points, and there is more than one."""
     sums = machine.gear is not None or any(
         value is not None for value in (machine.life.continuous_torque, machine.life.energy)
     )

@@ -1,30 +1,31 @@
 """One part per result: what the document and every ``--json`` hold, validated.
 
-=============  ===============================================
-part           what every part is
-rest           the rest of the drive
-log            logs and dwells
-fit            the damping surface and the regime
-film           the film of a nip
-mixed          film and asperities that share its load
-torque_budget  what carries the torque of the drive
-motion         trajectories, cycles, sweeps
-stability      bands, maps, plans, warm-ups
-life           ages at failure
-drift          what moved with age
-film_life      the film of units that age
-ending         growth of indicators, and what ends units
-ageing_maps    the maps of a unit through its life
-other_uses     the ages in other uses
-life_test      a life test followed: all of these
-models         candidates, comparisons of logs, designs
-inspection     what a log holds
-campaign       runs of many units at many ages
-cycles         cycles of a trace and the drive behind them
-exchange       a unit for other tools
-decision       what to do, first of all
-posterior      what dwells, starts and stick-slip say together
-=============  ===============================================
+===============  ===============================================
+part             what every part is
+rest             the rest of the drive
+log              logs and dwells
+fit              the damping surface and the regime
+film             the film of a nip
+mixed            film and asperities that share its load
+torque_budget    what carries the torque of the drive
+motion           trajectories, cycles, sweeps
+stability        bands, maps, plans, warm-ups
+life             ages at failure
+drift            what moved with age
+film_life        the film of units that age
+time_to_failure  growth of indicators, and what ends units
+ageing_maps      the maps of a unit through its life
+other_uses       the ages in other uses
+life_test        a life test followed: all of these
+models           candidates, comparisons of logs, designs
+inspection       what a log holds
+campaign         runs of many units at many ages
+cycles           cycles of a trace and the drive behind them
+exchange         a unit for other tools
+decision         what to do, first of all
+posterior        what dwells, starts and stick-slip say together
+study            what a log and its machine tell together
+===============  ===============================================
 """
 
 from hersey.parts.ageing_maps import AgeingMapsPart
@@ -32,7 +33,6 @@ from hersey.parts.campaign import CampaignPart
 from hersey.parts.cycles import CyclesPart, DrivePart
 from hersey.parts.decision import DecisionPart, FlagPart, MissingPart, PointDecisionPart
 from hersey.parts.drift import DriftPart
-from hersey.parts.ending import AgesPart, EndingsPart, GrowthPart
 from hersey.parts.exchange import TrialPart, UnitPart, UnitVariablePart
 from hersey.parts.film import (
     FilmPart,
@@ -86,6 +86,8 @@ from hersey.parts.stability import (
     StickSpeedPart,
     WarmUpPart,
 )
+from hersey.parts.study import StudyPart
+from hersey.parts.time_to_failure import AgesPart, GrowthPart, TimeToFailurePart
 from hersey.parts.torque_budget import TorqueBudgetPart
 
 __all__ = [
@@ -106,7 +108,6 @@ __all__ = [
     "DisturbancePart",
     "DriftPart",
     "DrivePart",
-    "EndingsPart",
     "FilmLifePart",
     "FilmPart",
     "FilmPoint",
@@ -146,7 +147,9 @@ __all__ = [
     "StepPart",
     "StickSlipPart",
     "StickSpeedPart",
+    "StudyPart",
     "SweepPart",
+    "TimeToFailurePart",
     "Timeline",
     "TorqueBudgetPart",
     "TrajectoryPart",

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from hersey.parts.ending import AgesPart, SpanPart
 from hersey.parts.part import Holed, Numbers, Part
+from hersey.parts.time_to_failure import AgesPart, SpanPart
 
 
 class RunsPart(Part):

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from hersey.parts.ending import SpanPart
 from hersey.parts.part import Numbers, Part
+from hersey.parts.time_to_failure import SpanPart
 
 
 class UseEndPart(Part):

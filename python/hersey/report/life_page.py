@@ -14,8 +14,8 @@ from hersey.report.page import drawn
 if TYPE_CHECKING:
     import polars as pl
 
-    from hersey.life.ending.endings import Endings
     from hersey.life.following import LifeTest
+    from hersey.life.time_to_failure.estimate import TimeToFailure
     from hersey.result import Result
 
 #: Units whose ages are in the table; more are in the chart and in `--json`.
@@ -37,7 +37,7 @@ def render_life(answer: LifeTest, runs: pl.DataFrame, command: str) -> str:
         As it could be typed again.
     """
     charts = life_charts(answer)
-    found = answer.endings
+    found = answer.time_to_failure
     last = Age(float(max(answer.indicators.runs.age)), found.age_unit)
     document = {
         "schema_version": SCHEMA_VERSION,
@@ -53,7 +53,7 @@ def render_life(answer: LifeTest, runs: pl.DataFrame, command: str) -> str:
     return drawn(("life.css", "uses.js", "life.js"), "hersey life", document, charts)
 
 
-def _verdict(found: Endings) -> list[str]:
+def _verdict(found: TimeToFailure) -> list[str]:
     """The answer: the population, the units that have ended, the next to end, what to measure."""
     heading = found.headline()
     lines = [f"{heading[0].upper()}{heading[1:]}."]
@@ -91,7 +91,7 @@ def _section(
 
 
 def _sections(answer: LifeTest, drawn_charts: list[str]) -> list[dict[str, Any]]:
-    found, drift, film, maps = answer.endings, answer.drift, answer.film, answer.maps
+    found, drift, film, maps = answer.time_to_failure, answer.drift, answer.film, answer.maps
 
     def named(name: str) -> list[str]:
         return [each for each in drawn_charts if each.split("_")[0] == name]
@@ -114,7 +114,7 @@ def _sections(answer: LifeTest, drawn_charts: list[str]) -> list[dict[str, Any]]
     ]
 
 
-def _first(found: Endings) -> dict[str, Any]:
+def _first(found: TimeToFailure) -> dict[str, Any]:
     """The first end of each unit."""
     unit = f" ({found.age_unit})" if found.age_unit else ""
     rows = [
@@ -124,11 +124,11 @@ def _first(found: Endings) -> dict[str, Any]:
     return {"title": "", "heads": heads, "rows": rows, "numeric": [1]}
 
 
-def _each(found: Endings) -> dict[str, Any]:
+def _each(found: TimeToFailure) -> dict[str, Any]:
     """The age of each way by itself, of each unit and of the population."""
     unit = f" ({found.age_unit})" if found.age_unit else ""
     rows = [
-        [mode.name + (" (an early sign)" if mode.sign else ""), each.unit, str(each.age), f"{each.never:.0%}"]
+        [mode.name + (" (a precursor)" if mode.sign else ""), each.unit, str(each.age), f"{each.never:.0%}"]
         for mode in found.modes
         for each in (*mode.ages.units[:_SHOWN], mode.ages.b10, mode.ages.b50)
     ]

@@ -292,7 +292,7 @@ def film_life(
 
 @one_thread()
 def starvation_indicator(campaign: Campaign, machine: Machine) -> Indicator:
-    """Return starvation as a way to fail: flooded film over layer at the fastest operating point, limit 1.
+    """Return starvation as a failure mode: flooded film over layer at the fastest operating point, limit 1.
 
     It needs a machine with contact and lubricant, and dwells at several speeds and temperatures: the layer is
     seen where it is thinner than a flooded film or near it, cold and fast. A run all of whose dwells are

@@ -1,4 +1,4 @@
-"""From the runs of a campaign to indicators: what each run says of each way to fail.
+"""From the runs of a campaign to indicators: what each run says of each failure mode.
 
 ==============  ========================================================================
 run_dwells      the runs of a campaign with their dwells, as a torque surface takes them
@@ -7,6 +7,6 @@ load_cases      the states at which a drive that ages fails first
 at_states       what the runs say of some states: torque, and its curve
 sticking        speeds of stick-slip against those of the points
 gear_fatigue    the damage of a gear per age
-of_campaign     `indicators_of`: all ways to fail whose limits the machine states
+of_campaign     `indicators_of`: all failure modes whose limits the machine states
 ==============  ========================================================================
 """

@@ -1,4 +1,4 @@
-"""From the runs of a campaign to the indicators of failure: what each run says of each way to fail.
+"""From the runs of a campaign to the indicators of failure: what each run says of each failure mode.
 
 A run is asked by its torque surface, without a law (`torque_surface`); what it says holds at the state that
 the note names, and its error grows where the dwells do not enclose that state.
@@ -36,9 +36,9 @@ _Found = tuple[list[Indicator], list[str]]
 
 @one_thread()
 def indicators_of(campaign: Campaign, machine: Machine, *, signs: bool = True) -> Indicators:
-    """Return what the runs of a campaign say of each way to fail whose limit the machine states.
+    """Return what the runs of a campaign say of each failure mode whose limit the machine states.
 
-    Without ``signs`` V*, an early sign that takes longest, is left out.
+    Without ``signs`` V*, a precursor that takes longest, is left out.
 
     Raises
     ------

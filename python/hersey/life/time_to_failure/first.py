@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from hersey.arrays import FloatArray, IntArray
-from hersey.life.ending.joined import correlations, order_by, ranks_of
-from hersey.life.ending.way import FittedWay
 from hersey.life.growth.limit_ages import AgeAtLimit, age_at_limit
+from hersey.life.time_to_failure.joined import correlations, order_by, ranks_of
+from hersey.life.time_to_failure.way import FittedWay
 
 #: Ways are named until they hold so much of the probability of being first.
 NAMED = 0.9

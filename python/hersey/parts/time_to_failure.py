@@ -56,13 +56,13 @@ class GrowthPart(Part):
 
 
 class ModePart(Part):
-    """One way to fail."""
+    """One failure mode."""
 
     name: str
     kind: str
     si: str
     limit: float
-    sign: bool = Field(description="an early sign, which ends no unit")
+    sign: bool = Field(description="a precursor, which ends no unit")
     notes: list[str]
     growth: GrowthPart
     ages: AgesPart
@@ -97,7 +97,7 @@ class ShareEndedPart(Part):
     high: Numbers
 
 
-class EndingsPart(Part):
+class TimeToFailurePart(Part):
     """What ends each unit and the population, and when; ages in ``age_unit``."""
 
     age_unit: str

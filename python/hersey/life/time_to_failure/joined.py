@@ -1,4 +1,4 @@
-"""Draws of several ways to fail set side by side, so that those whose runs scatter together move together."""
+"""Draws of several failure modes side by side: those whose runs scatter together move together."""
 
 from __future__ import annotations
 

@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 
 from hersey.errors import InsufficientDataError, ParameterError
-from hersey.life.ending import joined, next_run
-from hersey.life.ending.endings import Endings, endings
 from hersey.life.growth import fit as growth_module
 from hersey.life.growth import posterior as growth_posterior
 from hersey.life.growth.fit import fit_growth
 from hersey.life.indicator import Indicator, Indicators, OwnAges, Runs
+from hersey.life.time_to_failure import joined, next_run
+from hersey.life.time_to_failure.estimate import TimeToFailure, time_to_failure
 from tests.life.shipped import fewer
 
 UNITS, AGES = 6, np.linspace(0.0, 600.0, 7)
@@ -45,7 +45,7 @@ def fewer_draws(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @cache
-def told() -> Endings:
+def told() -> TimeToFailure:
     """Torque reaches 2 at 1 / rate, film 3 at 2.2 / rate, in F1 at 1 / rate too; a sign at 0.3 / rate."""
     film = RATE / 1.1
     film[0] = 2.0 * RATE[0]
@@ -54,7 +54,7 @@ def told() -> Endings:
     early = indicator("noise", linear(RATE), 1.3, seed=3)
     untold = indicator("grip", np.where(AGE == 0.0, 1.0, np.nan), 2.0)
     object.__setattr__(early, "sign", True)
-    return endings(of(torque, other, early, untold, unsaid=("heat: no table [motor]",)))
+    return time_to_failure(of(torque, other, early, untold, unsaid=("heat: no table [motor]",)))
 
 
 def test_the_first_end_is_found_with_its_way() -> None:
@@ -77,7 +77,7 @@ def test_an_early_sign_ends_no_unit() -> None:
     assert [mode.name for mode in told().modes] == ["torque", "film", "noise"]
     assert [mode.name for mode in told().ending] == ["torque", "film"]
     assert all("noise" not in end.first for end in told().units)
-    assert "noise (an early sign: it ends no unit)" in told().summary()
+    assert "noise (a precursor: it ends no unit)" in told().summary()
 
 
 def test_what_has_passed_is_said_and_fails_in_the_weibull_plot() -> None:
@@ -94,7 +94,7 @@ def test_what_cannot_be_judged_keeps_its_reason() -> None:
     assert told().unsaid[0] == "heat: no table [motor]"
     assert told().unsaid[1].startswith("grip: no unit was seen at two ages")
     with pytest.raises(InsufficientDataError, match="grip: no run tells it"):
-        endings(of(indicator("grip", np.full(AGE.size, np.nan), 2.0)))
+        time_to_failure(of(indicator("grip", np.full(AGE.size, np.nan), 2.0)))
 
 
 def test_the_result_is_whole_and_the_same_again() -> None:
@@ -113,8 +113,8 @@ def test_the_result_is_whole_and_the_same_again() -> None:
 def test_the_same_data_and_seed_give_the_same_ends() -> None:
     few = of(indicator("torque", linear(RATE[:2]), 2.0), names=NAMES[:14], age=AGE[:14])
     calls: list[tuple[int, int]] = []
-    once = endings(few, seed=4, progress=lambda done, every: calls.append((done, every)))
-    assert once.to_dict() == endings(few, seed=4).to_dict()
+    once = time_to_failure(few, seed=4, progress=lambda done, every: calls.append((done, every)))
+    assert once.to_dict() == time_to_failure(few, seed=4).to_dict()
     assert calls == [(1, 1)]
     assert "2 units tell little of how units differ" in " ".join(once.notes)
 
@@ -122,7 +122,7 @@ def test_the_same_data_and_seed_give_the_same_ends() -> None:
 def test_a_unit_that_tells_nothing_is_one_of_the_others() -> None:
     value = linear(RATE[:4])
     value[-7:] = np.nan
-    found = endings(of(indicator("torque", value, 2.0), names=NAMES[:28], age=AGE[:28]))
+    found = time_to_failure(of(indicator("torque", value, 2.0), names=NAMES[:28], age=AGE[:28]))
     assert "no run of F4 tells it: taken as any new unit" in found.summary()
     wide, narrow = (found.units[i].age.age for i in (3, 0))
     assert wide.high / wide.low > 1.5 * narrow.high / narrow.low
@@ -132,7 +132,7 @@ def test_far_and_wide_ends_are_said() -> None:
     """Two units that have hardly begun to grow: neither law nor spread nor age is told."""
     names, age = ("A",) * 4 + ("B",) * 4, np.tile([0.0, 10.0, 20.0, 30.0], 2)
     value = linear(np.array([0.002, 0.003]), age[:4])
-    notes = " ".join(endings(of(indicator("torque", value, 2.0), names=names, age=age)).notes)
+    notes = " ".join(time_to_failure(of(indicator("torque", value, 2.0), names=names, age=age)).notes)
     assert "which law of growth holds is not told for torque" in notes
     assert "the end of A, B is not told within a factor of 2" in notes
     assert "beyond 3 times the age followed" in notes
@@ -244,6 +244,6 @@ def test_what_to_measure_next_is_said() -> None:
 
 def test_ages_by_a_law_of_its_own_stand_in_the_place_of_growth() -> None:
     own = OwnAges(np.full((50, len(RATE)), 123.0), np.full((50, 20), 456.0))
-    found = endings(of(indicator("torque", linear(RATE), 2.0, own_ages=own)))
+    found = time_to_failure(of(indicator("torque", linear(RATE), 2.0, own_ages=own)))
     assert {each.age.age.value for each in found.units} == {123.0}
     assert found.b50.age.value == 456.0

@@ -12,17 +12,6 @@ import numpy as np
 
 from hersey.arrays import FloatArray, IntArray, one_thread
 from hersey.errors import HerseyError, InsufficientDataError
-from hersey.life.ending.first import UnitEnd, ages_of_new, ends_of_units
-from hersey.life.ending.joined import correlations
-from hersey.life.ending.next_run import (
-    HORIZON,
-    NextRun,
-    candidate_ages,
-    width,
-    width_after_unit,
-    widths_after,
-)
-from hersey.life.ending.way import FittedWay, Mode, fitted_way, last_ages, listed
 from hersey.life.growth.limit_ages import (
     CONFIDENCE,
     AgeAtLimit,
@@ -32,6 +21,17 @@ from hersey.life.growth.limit_ages import (
 )
 from hersey.life.indicator import Indicators
 from hersey.life.population import Population, weibull
+from hersey.life.time_to_failure.first import UnitEnd, ages_of_new, ends_of_units
+from hersey.life.time_to_failure.joined import correlations
+from hersey.life.time_to_failure.next_run import (
+    HORIZON,
+    NextRun,
+    candidate_ages,
+    width,
+    width_after_unit,
+    widths_after,
+)
+from hersey.life.time_to_failure.way import FittedWay, Mode, fitted_way, last_ages, listed
 from hersey.result import Result, json_record, json_value
 
 if TYPE_CHECKING:
@@ -63,7 +63,7 @@ class ShareEnded:
 
 
 @dataclass(frozen=True, repr=False)
-class Endings(Result):
+class TimeToFailure(Result):
     """What ends each unit and the population, and when; ages in ``age_unit``."""
 
     age_unit: str
@@ -87,7 +87,7 @@ class Endings(Result):
 
     @property
     def ending(self) -> tuple[Mode, ...]:
-        """The ways that end a unit: all but the early signs."""
+        """The ways that end a unit: all but the precursors."""
         return tuple(mode for mode in self.modes if not mode.sign)
 
     @cached_property
@@ -115,7 +115,7 @@ class Endings(Result):
         soon = FAR * max(each.age.last for each in self.units)
         far = [mode.name for mode in self.modes if mode.ages.b50.age.low > soon]
         for mode in self.modes:
-            sign = " (an early sign: it ends no unit)" if mode.sign else ""
+            sign = " (a precursor: it ends no unit)" if mode.sign else ""
             if mode.name not in far:
                 lines.append(f"  {mode.name}{sign}: {mode.ages.b50}")
         if far:
@@ -183,13 +183,13 @@ class Endings(Result):
 
 
 @one_thread()
-def endings(
+def time_to_failure(
     indicators: Indicators, *, seed: int = 0, progress: Callable[[int, int], None] | None = None
-) -> Endings:
+) -> TimeToFailure:
     """Return what ends each unit, and when, from the indicators of the runs.
 
     The growth of each indicator is fitted over all units (`fit_growth`), and its draws give the ages at its
-    limit. Ways to fail are independent, given their growth, save where the runs of two scatter together:
+    limit. Failure modes are independent, given their growth, save where the runs of two scatter together:
     there the draws of a unit move together by the correlation of the runs, and new units by that of the ages
     of units.
 
@@ -229,7 +229,7 @@ def endings(
     b10, b50 = (share_of_units(first, share) for share in (0.1, 0.5))
     runs = [*_again(ending, units, picks, of_runs, greatest, random), *_one_more(first, greatest, random)]
     modes = tuple(each.mode for each in fitted)
-    return Endings(
+    return TimeToFailure(
         age_unit=indicators.runs.age_unit,
         modes=modes,
         units=units,

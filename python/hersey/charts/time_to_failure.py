@@ -1,4 +1,4 @@
-"""Ways to fail against age: what ends each unit, and the share of units that has ended."""
+"""Failure modes against age: what ends each unit, and the share of units that has ended."""
 
 from __future__ import annotations
 
@@ -8,52 +8,50 @@ import altair as alt
 
 from hersey.charts.growth import age_axis, axis_end
 from hersey.charts.style import BLUE, INK, SHAPES, WIDTH, Chart, Row, plot, ramp, rows_of, tip
-from hersey.life.ending.endings import Endings
+from hersey.life.time_to_failure.estimate import TimeToFailure
 
 #: Units shown; pixels of each way in the row of a unit, and of the share ended.
 _SHOWN, _STEP, _GAP, _SHARES = 24, 9, 14, 200
 
 
-def endings_chart(endings: Endings) -> Chart:
+def time_to_failure_chart(found: TimeToFailure) -> Chart:
     """Return what ends each unit, a row each, above the share of new units that has ended.
 
     A mark with its 90 % interval for each way, that which is most probably first filled; of many units those
     that end first are shown.
     """
-    greatest = max(each.age.last for each in endings.units)
-    shown = sorted(endings.units, key=lambda each: each.age.age.value)[:_SHOWN]
+    greatest = max(each.age.last for each in found.units)
+    shown = sorted(found.units, key=lambda each: each.age.age.value)[:_SHOWN]
     names = {each.unit for each in shown}
-    order = [each.unit for each in endings.units if each.unit in names]
+    order = [each.unit for each in found.units if each.unit in names]
     medians = [each.age.age.value for each in shown]
-    end = axis_end(greatest, [*medians, endings.b50.age.value])
+    end = axis_end(greatest, [*medians, found.b50.age.value])
     scale = alt.Scale(domain=[0.0, end], nice=False)
     return alt.vconcat(
-        _units(endings, order, end, scale),
-        _share(endings, scale),
-        title=alt.Title("Ways to fail against age", subtitle=_heading(endings, end)),
+        _units(found, order, end, scale),
+        _share(found, scale),
+        title=alt.Title("Failure modes against age", subtitle=_heading(found, end)),
         spacing=16,
     )
 
 
-def _heading(endings: Endings, end: float) -> list[str]:
+def _heading(found: TimeToFailure, end: float) -> list[str]:
     words = [
-        endings.headline(),
+        found.headline(),
         "marks: medians with 90 % intervals, filled: most probably the first; upright ticks: age last seen",
     ]
-    far = [mode.name for mode in endings.modes if all(each.age.low >= end for each in mode.ages.units)]
+    far = [mode.name for mode in found.modes if all(each.age.low >= end for each in mode.ages.units)]
     if far:
         words.append(f"beyond the axis in all units: {'; '.join(far)}")
-    if len(endings.units) > _SHOWN:
-        words.append(f"{_SHOWN} of {len(endings.units)} units are shown, those that end first")
+    if len(found.units) > _SHOWN:
+        words.append(f"{_SHOWN} of {len(found.units)} units are shown, those that end first")
     return words
 
 
-def _units(endings: Endings, order: list[str], end: float, scale: alt.Scale) -> Chart:
-    seen = [
-        mode for mode in endings.modes if any(a.unit in order and a.age.low < end for a in mode.ages.units)
-    ]
-    named = [mode.name + (" (early sign)" if mode.sign else "") for mode in seen]
-    likely = {each.unit: max(each.first, key=lambda name: each.first[name]) for each in endings.units}
+def _units(found: TimeToFailure, order: list[str], end: float, scale: alt.Scale) -> Chart:
+    seen = [mode for mode in found.modes if any(a.unit in order and a.age.low < end for a in mode.ages.units)]
+    named = [mode.name + (" (precursor)" if mode.sign else "") for mode in seen]
+    likely = {each.unit: max(each.first, key=lambda name: each.first[name]) for each in found.units}
     rows: list[Row] = []
     for name, mode in zip(named, seen, strict=True):
         for told in mode.ages.units:
@@ -71,7 +69,7 @@ def _units(endings: Endings, order: list[str], end: float, scale: alt.Scale) -> 
                         "first": name if first and inside else None,
                     }
                 )
-    last = [{"unit": each.unit, "last": each.age.last} for each in endings.units if each.unit in order]
+    last = [{"unit": each.unit, "last": each.age.last} for each in found.units if each.unit in order]
     y = alt.Y("unit:N", title=None, sort=order, scale=alt.Scale(domain=order))
     apart = alt.YOffset("way:N", sort=named, scale=alt.Scale(domain=named, paddingOuter=0.5))
     legend = alt.Legend(title=None, orient="top", columns=3, labelLimit=400, symbolOpacity=1)
@@ -82,7 +80,7 @@ def _units(endings: Endings, order: list[str], end: float, scale: alt.Scale) -> 
         alt.Shape("way:N", scale=shapes, legend=legend),
     )
     tips = ["unit:N", "way:N", tip("age", "age"), tip("low", "from"), tip("to", "to")]
-    unit = endings.age_unit
+    unit = found.age_unit
     base = plot(rows).encode(y=y, yOffset=apart)
     x = age_axis("age", unit, scale)
     layers = [
@@ -107,9 +105,9 @@ def _row(ways: int) -> int:
     return _STEP * ways + _GAP
 
 
-def _share(endings: Endings, scale: alt.Scale) -> Chart:
+def _share(found: TimeToFailure, scale: alt.Scale) -> Chart:
     """Share ended of new units as foretold, and the units that have ended at their median ranks."""
-    curve, unit = endings.curve, endings.age_unit
+    curve, unit = found.curve, found.age_unit
     rows = rows_of(age=curve.age, median=100 * curve.median, low=100 * curve.low, high=100 * curve.high)
     shares = alt.Scale(domain=[0, 100])
     y = alt.Y("median:Q", title="Share ended (%)", scale=shares)
@@ -120,7 +118,7 @@ def _share(endings: Endings, scale: alt.Scale) -> Chart:
         band.encode(x=x, y=alt.Y("low:Q", title="Share ended (%)", scale=shares), y2="high:Q"),
         plot(rows).mark_line(color=BLUE, strokeWidth=2, clip=True).encode(x=x, y=y, tooltip=tips),
     ]
-    population = endings.population
+    population = found.population
     ages, ranks = population.median_ranks
     if len(ages):
         points = plot(rows_of(age=ages, share=100 * ranks)).mark_point(

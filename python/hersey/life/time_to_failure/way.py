@@ -1,4 +1,4 @@
-"""One way to fail, followed: the growth of its indicator, and the ages at which it reaches its limit."""
+"""One failure mode, followed: the growth of its indicator, and the ages at which it reaches its limit."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ from hersey.result import json_record
 
 @dataclass(frozen=True, repr=False)
 class Mode:
-    """One way to fail: the growth of its indicator and the ages at its limit, of all units."""
+    """One failure mode: the growth of its indicator and the ages at its limit, of all units."""
 
     name: str
     kind: str
     si: str
     limit: float
-    sign: bool  #: an early sign, which ends no unit
+    sign: bool  #: a precursor, which ends no unit
     growth: Growth
     ages: AgesAtLimit
     notes: tuple[str, ...]
