@@ -3,8 +3,7 @@
 Rooms, in the order in which data passes through them; each says in its own header what it holds.
 
 ==============  ==============================================================================
-spelling        text of a stranger as it may be shown
-errors          the closed table of what can go wrong
+errors          the closed table of what can go wrong, and what to do in the words of the way in
 units           the one door for units
 arrays          numbers or arrays as arguments
 result          what every result can do

@@ -11,8 +11,7 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hersey.errors import ParameterError
-from hersey.spelling import meant, printable
+from hersey.errors import ParameterError, meant, printable
 
 R = TypeVar("R")
 FloatArray = NDArray[np.float64]

@@ -37,7 +37,7 @@ def loaded(*typed: str, cwd: Path) -> set[str]:
 def rooms(modules: set[str]) -> set[str]:
     """Rooms of the package of which something is loaded, but for the command line's own and light ones."""
     opened = {name for name in modules if name.startswith("hersey.")} - {"hersey.charts"}  # a header alone
-    return {name.split(".")[1] for name in opened} - {"cli", "errors", "files", "spelling", "_core"}
+    return {name.split(".")[1] for name in opened} - {"cli", "errors", "files", "_core"}
 
 
 def test_the_version_loads_no_program() -> None:

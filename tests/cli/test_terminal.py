@@ -14,7 +14,7 @@ import pytest
 
 from hersey.cli.application import VERBS
 from hersey.cli.terminal import say, spelled, warnings_said
-from hersey.spelling import printable
+from hersey.errors import printable
 from tests.cli.command import HERSEY, run
 from tests.cli.test_bad_input import staircase
 from tests.conftest import ROOT

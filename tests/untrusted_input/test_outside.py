@@ -13,9 +13,8 @@ import numpy as np
 import pytest
 
 import hersey
-from hersey.errors import HerseyError, MissingFileError
+from hersey.errors import HerseyError, MissingFileError, printable
 from hersey.log import list_channels
-from hersey.spelling import printable
 from tests.untrusted_input.other_blocks import tdms
 from tests.untrusted_input.seeds import COLUMNS, ROWS, SEEDS, SPEED, TORQUE
 from tests.untrusted_input.watching import linux

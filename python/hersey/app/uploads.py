@@ -8,7 +8,7 @@ from collections.abc import AsyncIterator, Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from hersey.spelling import printable
+from hersey.errors import printable
 
 #: Characters of a name at the most.
 _LONGEST_NAME = 120

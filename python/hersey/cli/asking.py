@@ -7,8 +7,7 @@ from collections.abc import Callable, Sequence
 from typing import TypeVar
 
 from hersey.cli.terminal import say
-from hersey.errors import HerseyError, ParameterError
-from hersey.spelling import printable
+from hersey.errors import HerseyError, ParameterError, printable
 
 Answer = TypeVar("Answer")
 #: What leaves out that for which there is a proposal.

@@ -15,8 +15,7 @@ import typer
 from hersey.charts import PICTURES
 from hersey.cli.progress import working
 from hersey.cli.terminal import say
-from hersey.errors import ExistingFileError, OutputError
-from hersey.spelling import printable
+from hersey.errors import ExistingFileError, OutputError, printable
 
 if TYPE_CHECKING:
     from pydantic import BaseModel

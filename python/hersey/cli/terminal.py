@@ -8,8 +8,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any, TextIO
 
-from hersey.errors import SandboxWarning
-from hersey.spelling import printable
+from hersey.errors import SandboxWarning, printable
 
 #: What stands for a sign that a terminal lacks.
 _PLAIN = str.maketrans(

@@ -14,7 +14,7 @@ from typing import Any
 
 from hersey import _core
 from hersey.damping.fitted_law import FittedLaw
-from hersey.errors import ParameterError
+from hersey.errors import ParameterError, printable
 from hersey.exchange.description import Model, description
 from hersey.exchange.documentation import LICENSE_TEXT, page
 from hersey.exchange.drive_file import drive_text, drive_values
@@ -26,7 +26,6 @@ from hersey.motion.belt import Drivetrain
 from hersey.motion.drag import AnyDrag, Wire
 from hersey.motion.simulation import TOLERANCE, simulate
 from hersey.result import json_record
-from hersey.spelling import printable
 from hersey.units import celsius, rpm, takes_si
 
 #: Versions of the Functional Mock-up Interface that the library speaks.

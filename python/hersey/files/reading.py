@@ -14,8 +14,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import BinaryIO
 
-from hersey.errors import HerseyError, MissingFileError, UnreadableLogError
-from hersey.spelling import meant, printable
+from hersey.errors import HerseyError, MissingFileError, UnreadableLogError, meant, printable
 
 _WAY_OUT = "wait until the logger has closed it, or copy it first"
 _CHUNK = 1 << 20

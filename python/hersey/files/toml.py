@@ -31,9 +31,8 @@ from pydantic import (
 from pydantic.dataclasses import dataclass
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
-from hersey.errors import HerseyError, ParameterError, UnitError
+from hersey.errors import HerseyError, ParameterError, UnitError, meant
 from hersey.files.text import read_text, shown
-from hersey.spelling import meant
 from hersey.units import KINDS, parse
 
 Tables = TypeVar("Tables")

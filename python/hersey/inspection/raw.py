@@ -9,7 +9,7 @@ import numpy as np
 import polars as pl
 
 from hersey.arrays import FloatArray
-from hersey.errors import ChannelError, HerseyError, UnitError
+from hersey.errors import ChannelError, HerseyError, UnitError, printable
 from hersey.log.channels import ROLES, ChannelChoice, Stated, find_channel, is_dead
 from hersey.log.formats import format_of, opened
 from hersey.log.friction import Chosen, beside
@@ -17,7 +17,6 @@ from hersey.log.text.delimited import open_delimited
 from hersey.log.text.layout import BLANKS, Column, Layout, refuse_ragged, split, tabbed
 from hersey.log.text.numbers import MISSING, NumberStyle
 from hersey.log.text.stamps import Stamps, counted_since
-from hersey.spelling import printable
 
 _NULLS = sorted({s for word in MISSING for s in (word, word.upper(), word.capitalize())} | {"NaN"})
 

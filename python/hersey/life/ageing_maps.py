@@ -13,13 +13,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hersey.arrays import FloatArray, one_thread
-from hersey.errors import InsufficientDataError, ParameterError
+from hersey.errors import InsufficientDataError, ParameterError, meant
 from hersey.life.age import Age
 from hersey.life.indicators.run_dwells import read_runs_of
 from hersey.life.indicators.sticking import belt_drag, edges
 from hersey.life.indicators.torque_surface import RunDwells, TorqueSurface, shared_kernel
 from hersey.result import Result, json_record
-from hersey.spelling import meant
 from hersey.units import celsius
 
 if TYPE_CHECKING:

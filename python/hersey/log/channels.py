@@ -10,9 +10,17 @@ from typing import Any
 import numpy as np
 
 from hersey.arrays import FloatArray
-from hersey.errors import ISOTHERMAL, ChannelError, ParameterError, Setting, UnitError, WrongKindError
+from hersey.errors import (
+    ISOTHERMAL,
+    ChannelError,
+    ParameterError,
+    Setting,
+    UnitError,
+    WrongKindError,
+    meant,
+    printable,
+)
 from hersey.log.text.layout import Column
-from hersey.spelling import meant, printable
 from hersey.units import KINDS, Conversion, conversion, nearest_unit
 
 #: Roles of a log's columns, in the order in which they are asked for.

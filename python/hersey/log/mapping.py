@@ -18,7 +18,16 @@ import numpy as np
 from pydantic import BeforeValidator, ValidationInfo
 from pydantic.dataclasses import dataclass
 
-from hersey.errors import MAPPING, ChannelError, HerseyError, ParameterError, Setting, UnitError, turned
+from hersey.errors import (
+    MAPPING,
+    ChannelError,
+    HerseyError,
+    ParameterError,
+    Setting,
+    UnitError,
+    printable,
+    turned,
+)
 from hersey.files.toml import Quantity, Table, Text, naming, quoted, read_tables, read_toml
 from hersey.log import corrections
 from hersey.log.channels import (
@@ -42,7 +51,6 @@ from hersey.log.stating import proposed
 from hersey.log.text.delimited import Progress
 from hersey.log.text.layout import Column
 from hersey.log.torque_log import LogFile
-from hersey.spelling import printable
 from hersey.units import Conversion, registry, takes_si
 
 #: A mapping for every log in its directory; one for a single log is called after it, ``bench.hersey.toml``.

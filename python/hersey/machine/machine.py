@@ -14,7 +14,7 @@ from pydantic.dataclasses import dataclass
 
 from hersey.damping.rest import RestOfDrive, with_rest
 from hersey.damping.surface import WITH_TRANSITION
-from hersey.errors import MAPPING, ParameterError
+from hersey.errors import MAPPING, ParameterError, printable
 from hersey.files.toml import Quantity, Table, naming, read_tables, read_toml
 from hersey.log.sensor_tables import SensorTables, sensors_of
 from hersey.log.sensors import Sensors
@@ -31,7 +31,6 @@ from hersey.machine.sharing import NEEDED, AsperitiesTable, BoundaryTable
 from hersey.machine.uncertainty import Uncertainty, read_uncertainty
 from hersey.motion.belt import Drivetrain
 from hersey.motion.heat import HeatBalance
-from hersey.spelling import printable
 from hersey.units import fields_in_si, takes_si
 
 #: Belt speed (m/s) whose film says which law holds, where the machine states no points.

@@ -12,9 +12,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hersey import _core
-from hersey.errors import ParameterError
+from hersey.errors import ParameterError, printable
 from hersey.result import json_value
-from hersey.spelling import printable
 from hersey.testbench.ageing import AgedTruth, Unit
 from hersey.testbench.stand import PREAMBLE, Stand
 from hersey.testbench.truth import RPM

@@ -11,10 +11,9 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from hersey.errors import FORCE, ParameterError
+from hersey.errors import FORCE, ParameterError, printable
 from hersey.life.age import Age
 from hersey.life.campaign.entry import COLUMNS, Entry
-from hersey.spelling import printable
 
 if TYPE_CHECKING:
     import polars as pl

@@ -9,14 +9,13 @@ from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
-from hersey.errors import OutputError, ParameterError
+from hersey.errors import OutputError, ParameterError, meant
 from hersey.life.age import Age
 from hersey.life.campaign.adding import Added, add_entry, age_unit, is_there, lies_at
 from hersey.life.campaign.checks import Findings, check
 from hersey.life.campaign.content import damaged, refuse_unsound_dwells, refuse_unsound_runs
 from hersey.life.campaign.entry import COLUMNS, Entry
 from hersey.life.campaign.store import PATIENCE, open_store, refuse_no_place, told, transaction
-from hersey.spelling import meant
 
 if TYPE_CHECKING:
     import polars as pl

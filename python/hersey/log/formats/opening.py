@@ -22,14 +22,21 @@ import numpy as np
 
 from hersey import errors
 from hersey.arrays import FloatArray
-from hersey.errors import HerseyError, ParameterError, SandboxWarning, Setting, UnreadableLogError, way_in
+from hersey.errors import (
+    HerseyError,
+    ParameterError,
+    SandboxWarning,
+    Setting,
+    UnreadableLogError,
+    printable,
+    way_in,
+)
 from hersey.files.reading import OpenFile, open_file, unchanged
 from hersey.log.formats.hdf5 import MAGIC as HDF5
 from hersey.log.recording import LONGEST_CELL, Cells, Recording, Signal, Source
 from hersey.processes.child import Child, FailedError, LostError
 from hersey.processes.forks import refuse_after_fork
 from hersey.processes.limits import FROM_OUTSIDE
-from hersey.spelling import printable
 
 #: What a file may take while it is read, bytes, where the user does not say otherwise, and now.
 _USUAL_MEMORY = 2e9

@@ -19,7 +19,7 @@ import numpy as np
 import polars as pl
 
 from hersey.arrays import BoolArray, FloatArray, IntArray
-from hersey.errors import ChannelError, Setting, UnreadableLogError
+from hersey.errors import ChannelError, Setting, UnreadableLogError, printable
 from hersey.files.reading import OpenFile, appended
 from hersey.log.believed import in_si
 from hersey.log.channels import (
@@ -41,7 +41,6 @@ from hersey.log.text.numbers import MISSING, is_missing, looks_numeric
 from hersey.log.text.repeated_header import refuse_another_header
 from hersey.log.text.stamps import Stamps
 from hersey.log.torque_log import NO_CLOCK, Channel, LogFile, Run
-from hersey.spelling import printable
 from hersey.units import Conversion
 
 BLOCK = 1 << 22

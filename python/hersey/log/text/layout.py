@@ -9,11 +9,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from hersey.errors import MAPPING, Setting, UnitError, UnreadableLogError, WrongKindError
+from hersey.errors import MAPPING, Setting, UnitError, UnreadableLogError, WrongKindError, printable
 from hersey.log.text.numbers import NumberStyle, is_missing, looks_numeric, style_of
 from hersey.log.text.stamps import StampStyle, counted_since, is_stamp, stamp_style
 from hersey.log.text.unit_pairs import of_one_kind, same_unit
-from hersey.spelling import printable
 from hersey.units import KINDS, conversion
 
 #: Bytes looked at; preambles of data loggers are far shorter.
