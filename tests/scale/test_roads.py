@@ -17,6 +17,7 @@ from hersey.errors import HerseyError, InsufficientDataError, ParameterError
 from hersey.life.campaign import Entry
 from hersey.scale.tasks import done, in_order
 from tests.life.test_campaign import means
+from tests.machines import map_of
 
 ISOTHERMAL = Reading(isothermal=True)
 TRAIN = hersey.Drivetrain(1000.0, 1.0, grip=200.0)
@@ -67,7 +68,7 @@ def test_a_value_out_of_range_has_its_place_among_all(client: Any) -> None:
 
 def test_the_intervals_of_a_map_are_those_of_one_process(client: Any, surface: hersey.DampingSurface) -> None:
     ask = partial(
-        hersey.operating_map,
+        map_of,
         surface,
         hersey.Drivetrain(11e3, 11.0),
         roll_radius=0.015,

@@ -270,7 +270,7 @@ def test_the_command_writes_a_campaign(tmp_path: Path) -> None:
             "--out is of a single log",
         ),
         (("--units", "2", "--ages", "5, 2 kpages", "--out-dir", "x"), "do not ascend"),
-        (("--units", "2", "--ages", "0, 5 h", "--out-dir", "x"), "'0' of --ages is no number of pages"),
+        (("--units", "2", "--ages", "0, 5 h", "--out-dir", "x"), "'0' is no number of pages"),
     ],
 )
 def test_what_the_command_refuses(typed: tuple[str, ...], said: str, tmp_path: Path) -> None:

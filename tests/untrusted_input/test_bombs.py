@@ -317,7 +317,7 @@ def test_a_bomb(bomb: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
         assert len(told) < 3000
         if call is hersey.read:
             assert path.name in told
-            assert not by_memory or "--max-memory" in told
+            assert not by_memory or "memory_limit" in told
     peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss * 1024.0
     assert peak == ended or peak < LIMIT + BESIDE
     for reader in opening._Reader._waiting:
@@ -337,7 +337,7 @@ def test_the_limit_may_be_raised_and_lowered(tmp_path: Path) -> None:
     rows = 30_000_000
     path = tmp_path / "log.mat"
     path.write_bytes(squeezed(matrix_head(rows, 8 * rows + 56), 8 * rows))
-    with hersey.memory_limit("300 MB"), pytest.raises(HerseyError, match=r"0\.3 GB of memory.*--max-memory"):
+    with hersey.memory_limit("300 MB"), pytest.raises(HerseyError, match=r"0\.3 GB of memory.*memory_limit"):
         list_channels(path)
     assert list_channels(path) == [("torque", "")]
     with hersey.memory_limit("8 GB"):
@@ -349,7 +349,7 @@ def test_what_exceeds_the_limit_is_read_with_a_higher_one(tmp_path: Path) -> Non
     rows = 130_000_000
     path = tmp_path / "log.mat"
     path.write_bytes(squeezed(matrix_head(rows, 8 * rows + 56), 8 * rows))
-    with pytest.raises(HerseyError, match=r"2 GB of memory.*--max-memory '8 GB'"):
+    with pytest.raises(HerseyError, match=r"2 GB of memory.*memory_limit\('8 GB'\)"):
         list_channels(path)
     with hersey.memory_limit("8 GB"):
         assert list_channels(path) == [("torque", "")]

@@ -287,7 +287,7 @@ def test_a_process_that_ran_out_of_memory_reads_no_other_file(
         for name in ("time_s", "torque_Nm", "speed_rpm", "temp_degC"):
             file.create_dataset(name, shape=(8, 10_000_000), dtype="f8", chunks=(1, 1_000_000), fillvalue=1.0)
     (tmp_path / "log.parquet").write_bytes(SEEDS["run.parquet"]())
-    with hersey.memory_limit("300 MB"), pytest.raises(hersey.HerseyError, match="--max-memory"):
+    with hersey.memory_limit("300 MB"), pytest.raises(hersey.HerseyError, match="memory_limit"):
         hersey.read(tmp_path / "many.h5", channels=first)
     assert [child.running for child in waiting] == [False]
     assert hersey.read(tmp_path / "log.parquet").rows > 0
