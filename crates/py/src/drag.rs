@@ -1,14 +1,12 @@
 //! The drag law as an object that Python holds.
 
-use std::collections::HashMap;
-
 use hersey_core::Error;
 use hersey_core::drag::form::{CHOICES, LISTS, NUMBERS, Shape};
 use hersey_core::drag::{Closure, ClosureKind, Drag, DragForm, Rest};
 use hersey_core::wire::Values;
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyFloat, PySequence, PyString};
 
 use crate::errors::{raised, refused, unreadable};
 use crate::interrupt::{copied, interruptible};
@@ -35,44 +33,65 @@ pub fn closure_from((name, stiffness, damping): ClosureArguments) -> PyResult<Cl
 }
 
 /// One value of the wire form.
-#[derive(FromPyObject)]
 enum Value {
     Word(String),
     Number(f64),
     Numbers(Vec<f64>),
 }
 
+impl Value {
+    /// Words first: what is no word and no sequence is a number.
+    fn of(value: &Bound<'_, PyAny>) -> PyResult<Self> {
+        if let Ok(word) = value.cast::<PyString>() {
+            return Ok(Self::Word(word.to_str()?.to_owned()));
+        }
+        if value.is_instance_of::<PyFloat>() || value.cast::<PySequence>().is_err() {
+            return value.extract().map(Self::Number);
+        }
+        value.extract().map(Self::Numbers)
+    }
+}
+
 /// Values by name, all of them fields of a drag.
-struct Given(HashMap<&'static str, Value>);
+struct Given(Vec<(&'static str, Value)>);
+
+fn fields() -> impl Iterator<Item = &'static str> {
+    CHOICES.into_iter().chain(NUMBERS).chain(LISTS)
+}
 
 impl Given {
     fn new(values: &Bound<'_, PyDict>) -> PyResult<Self> {
-        let mut given = HashMap::new();
+        let mut given = Vec::with_capacity(values.len());
         for (name, value) in values {
-            let name: String = name.extract()?;
-            let fields = || [&CHOICES[..], &NUMBERS, &LISTS].concat();
-            let field = fields().into_iter().find(|field| *field == name).ok_or_else(|| {
-                refused("drag", format!("'{name}' is no value of a drag: {}", fields().join(", ")))
+            let name = name.cast_into::<PyString>()?;
+            let name = name.to_str()?;
+            let field = fields().find(|field| *field == name).ok_or_else(|| {
+                let known = fields().collect::<Vec<_>>().join(", ");
+                refused("drag", format!("'{name}' is no value of a drag: {known}"))
             })?;
             if !value.is_none() {
-                given.insert(field, value.extract()?);
+                given.push((field, Value::of(&value)?));
             }
         }
         Ok(Self(given))
+    }
+
+    fn get(&self, field: &str) -> Option<&Value> {
+        self.0.iter().find(|(name, _)| *name == field).map(|(_, value)| value)
     }
 }
 
 impl Values for Given {
     fn word(&self, field: &str) -> Option<&str> {
-        if let Some(Value::Word(word)) = self.0.get(field) { Some(word) } else { None }
+        if let Some(Value::Word(word)) = self.get(field) { Some(word) } else { None }
     }
 
     fn number(&self, field: &str) -> Option<f64> {
-        if let Some(Value::Number(number)) = self.0.get(field) { Some(*number) } else { None }
+        if let Some(Value::Number(number)) = self.get(field) { Some(*number) } else { None }
     }
 
     fn numbers(&self, field: &str) -> Option<&[f64]> {
-        if let Some(Value::Numbers(numbers)) = self.0.get(field) { Some(numbers) } else { None }
+        if let Some(Value::Numbers(numbers)) = self.get(field) { Some(numbers) } else { None }
     }
 }
 
