@@ -62,7 +62,8 @@ demo-life: build ## follow the shipped life test of eight units to what ends the
 	$(BIN)/hersey life build/demo-life/life.hersey --machine examples/machine.toml \
 	  --out build/demo-life/life.html --figures build/demo-life/figures --force
 
-# What keeps one core busy goes beside what else does; then the tests of the package take all cores.
+# What keeps one core busy goes beside what else does; then the tests of the package take all cores. Cargo does not share
+# jobs with make: it would warn that it cannot.
 test: build ## everything: lint, types, Rust and Python tests, the page in a browser
 	$(MAKE) --no-print-directory --jobs=2 --output-sync=target lint typecheck test-rust
 	$(MAKE) --no-print-directory test-python
@@ -71,7 +72,7 @@ lint: build ## check format and style
 	$(BIN)/ruff format --check --quiet .
 	$(BIN)/ruff check --quiet .
 	cargo fmt --check
-	cargo clippy --quiet --workspace --all-targets -- -D warnings
+	env -u MAKEFLAGS cargo clippy --quiet --workspace --all-targets -- -D warnings
 
 format: build ## put format and style right
 	$(BIN)/ruff format .
@@ -83,7 +84,7 @@ typecheck: build ## check types, and the stub against the bindings
 	$(BIN)/python -m mypy.stubtest hersey._core
 
 test-rust: ## tests of the core, and of it for C
-	cargo test --release --quiet --package hersey-core --package hersey-c
+	env -u MAKEFLAGS cargo test --release --quiet --package hersey-core --package hersey-c
 
 # Each worker begins with its part of the tests in their order, so that few files are shared, and then takes from others.
 TESTED := PYTHONDONTWRITEBYTECODE= OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n auto --dist worksteal

@@ -23,7 +23,7 @@ import xarray as xr
 import hersey
 from hersey import _core
 from hersey.errors import MissingFileError, OutputError, ParameterError
-from hersey.motion import following, kept
+from hersey.motion import checkpoint, following
 from hersey.motion.scenario import read_scenario, rows, summary
 from hersey.motion.sets import Later, Piece, Sets
 from hersey.scale import store
@@ -157,8 +157,8 @@ def test_only_what_is_lacking_is_done_again(
         (out / "0000003.parquet").write_bytes(b"torn")
     followed = []
     rules_follow = following.Rules.follow
-    monkeypatch.setattr(kept, "trial", lambda _rules, sets: following.Trial(sets.sample(1), "", 1.0))
-    monkeypatch.setattr(kept, "refuse_early", lambda _rules, _sets: None)
+    monkeypatch.setattr(checkpoint, "trial", lambda _rules, sets: following.Trial(sets.sample(1), "", 1.0))
+    monkeypatch.setattr(checkpoint, "refuse_early", lambda _rules, _sets: None)
 
     def follow(rules: following.Rules, sets: Sets, *more: Any) -> Any:
         followed.append(sets.shape)
@@ -368,7 +368,7 @@ def test_a_worker_that_does_not_see_the_folder_is_told(client: Client, tmp_path:
     tried = following.Trial(sets, "", 1.0)
     seen = (tmp_path / "none.zarr", kind_of(Path("a.zarr")), "0" * 64)
     with pytest.raises(OutputError, match=r"none.zarr is not seen on "):
-        kept._probed(client, rules, tried, seen)
+        checkpoint._probed(client, rules, tried, seen)
 
 
 def test_other_last_bits_are_told() -> None:
