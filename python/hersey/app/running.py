@@ -44,8 +44,9 @@ def run(request: Mapping[str, Any], step: Step) -> dict[str, Any]:
         earlier = _points({**request, "logs": [request["against"]]}, machine, lambda _name, _share: None)
     found = study(
         points,
-        request["machine"],
+        machine,
         against=earlier,
+        machine_file=None if machine is None else Path(request["machine"]),
         step=_shared(step, 0 if machine is None else len(machine.points)),
     )
     document = document_of(

@@ -249,12 +249,6 @@ class Recipe:
         """Return what is no default as JSON, in SI."""
         return json_record({name: _plain(value) for name, value in self.stated().items()})
 
-    def anywhere(self) -> Recipe:
-        """Return the same with whole paths: a worker may have been started in another folder."""
-        given = {name: getattr(self, name) for name in ("mapping", "no_load")}
-        whole: dict[str, Any] = {name: path.absolute() for name, path in given.items() if path is not None}
-        return replace(self, logs=tuple(path.absolute() for path in self.logs), **whole)
-
     def _trace(self, progress: Progress | None) -> TorqueLog:
         done = read_with_mapping(
             self.logs,
