@@ -29,7 +29,7 @@ ROOMS = (
     "units",
     "arrays",
     "result",
-    "parts",
+    "schema",
     "files",
     "processes",
     "scale",
@@ -55,11 +55,12 @@ ROOMS = (
     "cli",
 )
 #: The arrows that point backwards, taken only when a user asks: a log reduces itself to its dwells,
-#: and a result finds its chart and draws it.
+#: a result finds its chart and draws it, and the schema that it has.
 LAZY = {
     ("hersey.log.torque_log", "hersey.damping.dwells"),
     ("hersey.result", "hersey.charts"),
     ("hersey.result", "hersey.charts.render"),
+    ("hersey.result", "hersey.schema.record"),
 }
 
 

@@ -16,43 +16,35 @@ from benchmarks.drift import other, table
 
 import hersey
 from hersey import testbench
-from hersey.parts import (
-    AgeingMapsPart,
-    AgesPart,
-    BandPart,
-    ComparisonPart,
-    CyclesPart,
-    DesignPart,
-    DriftPart,
-    DrivePart,
-    FilmLifePart,
-    FilmPart,
-    FitPart,
-    GrowthPart,
-    InspectionPart,
-    LifeTestPart,
-    LogPart,
-    MapPart,
-    MeasuredFilmPart,
-    MixedPart,
-    ModelsPart,
-    OtherUsesPart,
-    Part,
-    PlanPart,
-    PointsPart,
-    PopulationPart,
-    PosteriorPart,
-    RegimePart,
-    RestPart,
-    StickSlipPart,
-    StudyPart,
-    TimeToFailurePart,
-    TrajectoryPart,
-    VerdictPart,
-    WarmUpPart,
-)
+from hersey.damping.compare import LogComparison
+from hersey.damping.rest import RestOfDrive
+from hersey.document.parts.ageing_maps import AgeingMapsPart
+from hersey.document.parts.cycles import CyclesPart
+from hersey.document.parts.drift import DriftPart
+from hersey.document.parts.film_life import FilmLifePart
+from hersey.document.parts.fit import FitPart
+from hersey.document.parts.life import PopulationPart
+from hersey.document.parts.life_test import LifeTestPart
+from hersey.document.parts.log import LogPart, PointsPart
+from hersey.document.parts.models import ModelsPart
+from hersey.document.parts.motion import StickSlipPart
+from hersey.document.parts.other_uses import OtherUsesPart
+from hersey.document.parts.posterior import PosteriorPart
+from hersey.document.parts.stability import BandPart
+from hersey.document.parts.study import StudyPart
+from hersey.document.parts.time_to_failure import AgesPart, GrowthPart, TimeToFailurePart
+from hersey.identification.identified_drive import IdentifiedDrive
+from hersey.inspection.inspecting import Inspection
+from hersey.motion.simulation import Trajectory
 from hersey.result import LINE, Result, json_value, table_of
+from hersey.schema.record import part_of
+from hersey.stability.operating_map.result import OperatingMap
+from hersey.stability.plan.result import Plan
+from hersey.stability.warm_up import WarmUp
+from hersey.study.first_screen.result import DesignPart
+from hersey.study.nip_film import FilmPart, MeasuredFilmPart, MixedPart, VerdictPart
 from hersey.verdict.evidence import verdict
+from hersey.verdict.regime import Regime
 from tests.conftest import ROOT
 from tests.life import shipped, test_ageing_maps, test_other_uses
 from tests.machines import machine_of, map_of
@@ -171,24 +163,24 @@ def ends() -> hersey.TimeToFailure:
 
 
 #: How each result is made, and the part of the document that holds it.
-RESULTS: dict[str, tuple[Callable[[], Any], type[Part]]] = {
+RESULTS: dict[str, tuple[Callable[[], Any], type]] = {
     "TorqueLog": (log, LogPart),
     "SteadyPoints": (points, PointsPart),
     "DampingSurface": (surface, FitPart),
-    "RestOfDrive": (lambda: hersey.RestOfDrive.stated(constant=0.02, uncertainty=0.1), RestPart),
-    "Regime": (lambda: hersey.regime(points(), surface()), RegimePart),
+    "RestOfDrive": (lambda: hersey.RestOfDrive.stated(constant=0.02, uncertainty=0.1), RestOfDrive),
+    "Regime": (lambda: hersey.regime(points(), surface()), Regime),
     "Film": (film, FilmPart),
     "MixedFilm": (mixed, MixedPart),
     "MeasuredFilm": (measured, MeasuredFilmPart),
     "Verdict": (judged, VerdictPart),
-    "Trajectory": (run, TrajectoryPart),
+    "Trajectory": (run, Trajectory),
     "StickSlipCycle": (lambda: hersey.stick_slip(TRAIN, DRAG, drive_speed=1.0), StickSlipPart),
     "HysteresisBand": (lambda: hersey.hysteresis(TRAIN, DRAG), BandPart),
-    "OperatingMap": (map_, MapPart),
-    "Plan": (plan, PlanPart),
+    "OperatingMap": (map_, OperatingMap),
+    "Plan": (plan, Plan),
     "Study": (lambda: hersey.study(points()), StudyPart),
     "Posterior": (lambda: hersey.posterior(points(), machine(), draws=200), PosteriorPart),
-    "WarmUp": (warm_up, WarmUpPart),
+    "WarmUp": (warm_up, WarmUp),
     "FilmLife": (lambda: shipped.film(1), FilmLifePart),
     "OtherUses": (test_other_uses.by_hand, OtherUsesPart),
     "AgeingMaps": (test_ageing_maps.maps, AgeingMapsPart),
@@ -202,13 +194,13 @@ RESULTS: dict[str, tuple[Callable[[], Any], type[Part]]] = {
     "AgesAtLimit": (lambda: growth().reaches(2.0), AgesPart),
     "TimeToFailure": (ends, TimeToFailurePart),
     "ModelComparison": (models, ModelsPart),
-    "LogComparison": (lambda: hersey.compare(points(), points()), ComparisonPart),
+    "LogComparison": (lambda: hersey.compare(points(), points()), LogComparison),
     "TestDesign": (lambda: hersey.design(models(), count=1), DesignPart),
-    "Inspection": (lambda: hersey.inspect(BENCH), InspectionPart),
+    "Inspection": (lambda: hersey.inspect(BENCH), Inspection),
     "CycleRecord": (record, CyclesPart),
     "IdentifiedDrive": (
         lambda: hersey.identify(record(), known={"mass": 1.0}, closures=("retained",)),
-        DrivePart,
+        IdentifiedDrive,
     ),
 }
 
@@ -222,7 +214,8 @@ def drawn_simply(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.parametrize("name", RESULTS)
 def test_a_result_answers(name: str) -> None:
-    make, part = RESULTS[name]
+    make, kind = RESULTS[name]
+    part = part_of(kind)
     result = make()
     assert isinstance(result, Result)
     assert type(result).__name__ == name
@@ -233,7 +226,7 @@ def test_a_result_answers(name: str) -> None:
     assert len(line) < 160
     plain = result.to_dict()
     assert json.loads(json.dumps(plain, allow_nan=False)) == plain
-    document = part.model_validate(plain)
+    document: Any = part.model_validate(plain)
     assert part.model_validate_json(document.model_dump_json()) == document
     assert set(plain) <= set(document.model_dump())
     check_units(result.to_frame())

@@ -7,7 +7,7 @@ errors          the closed table of what can go wrong, and what to do in the wor
 units           the one door for units
 arrays          numbers or arrays as arguments
 result          what every result can do
-parts           what the document and every ``--json`` hold, one part per result
+schema          the schema of what the document and every ``--json`` hold, from the fields of the results
 files           text, TOML with units, writing whole or not at all
 processes       processes of our own for libraries that may break down
 scale           work cut into tasks: for threads, or for the workers of a cluster

@@ -8,8 +8,8 @@ import shlex
 import subprocess
 import sys
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import polars as pl
@@ -20,8 +20,6 @@ from hersey.document.analysis import Analysis
 from hersey.motion.belt import Drivetrain
 from hersey.motion.drag import DragTable
 from hersey.motion.simulation import StickSlipCycle, stick_slip
-from hersey.parts.motion import DragTablePart, TrainPart
-from hersey.parts.stability import MapPart
 from hersey.report.page import render
 from hersey.stability.disturbance import disturbance
 from hersey.stability.hysteresis import hysteresis
@@ -38,33 +36,42 @@ WORDS = {
 }
 
 
+class OwnEdges(OperatingMap):
+    """A map whose edges are those of its drag curve, not of a posterior."""
+
+    given = False
+
+
 @pytest.fixture(scope="module")
-def part(document: Analysis) -> MapPart:
+def native(document: Analysis) -> OperatingMap:
     """The map of a drive that starts its belt: a roll that grips, no limit of torque."""
-    given = document.map
-    assert given is not None
-    assert given.temperature is not None
-    assert isinstance(given.drag, DragTablePart)
-    drag = given.drag.model_copy(update={"closure": "retained", "static_force": None})
-    train = Drivetrain(given.train.stiffness, given.train.mass)
-    table = DragTable(**drag.model_dump())
-    bands = [hysteresis(train, table.at(t), sensitivity=False) for t in given.temperature]
+    found = document.map
+    assert found is not None
+    assert found.temperature is not None
+    assert isinstance(found.drag, DragTable)
+    table = replace(found.drag, closure="retained", static_force=None)
+    train = Drivetrain(found.train.stiffness, found.train.mass)
+    bands = [hysteresis(train, table.at(t), sensitivity=False) for t in found.temperature.tolist()]
     edges = {
         name: np.array([getattr(band, name) for band in bands]) for name in ("lower", "transition", "upper")
     }
-    many = len(given.temperature)
-    told = {name: values.tolist() for name, values in edges.items()}
     intervals = {
-        f"{name}_interval": [(f * edges[name]).tolist() for f in (0.8, 1.3)]
+        f"{name}_interval": np.array([f * edges[name] for f in (0.8, 1.3)])
         for name in ("transition", "upper")
     }
-    limits = {"torque_limit": None, "stall_below": [0.0] * many, "stall_above": [None] * many}
-    drive = {"given": False, "drag": drag, "train": TrainPart(stiffness=train.stiffness, mass=train.mass)}
-    return given.model_copy(update={**drive, **told, **intervals, **limits})
+    never = np.full(found.temperature.size, np.inf)
+    limits = {"torque_limit": None, "stall_below": 0.0 * found.temperature, "stall_above": never}
+    return replace(found, drag=table, train=train, **edges, **intervals, **limits)
 
 
 @pytest.fixture(scope="module")
-def report(document: Analysis, part: MapPart, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def part(native: OperatingMap) -> OperatingMap:
+    """The same as the document holds it."""
+    return OwnEdges(**vars(native))
+
+
+@pytest.fixture(scope="module")
+def report(document: Analysis, part: OperatingMap, tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("panel") / "report.html"
     path.write_text(render(document.model_copy(update={"map": part})), encoding="utf-8")
     return path
@@ -85,23 +92,6 @@ def page(opened: Opened) -> Iterator[Page]:
     rested(opened.page)
     yield opened.page
     quiet(opened)
-
-
-@pytest.fixture(scope="module")
-def native(part: MapPart) -> OperatingMap:
-    """The map of the document, as Python has it."""
-    fields = part.model_dump(exclude={"train", "drag", "temperature", "points", "given"})
-    arrays: dict[str, Any] = {
-        k: np.asarray(v, float) if isinstance(v, list) and k not in ("uncertain", "warnings") else v
-        for k, v in fields.items()
-    }
-    return OperatingMap(
-        **arrays,
-        temperature=np.asarray(part.temperature),
-        points=(),
-        train=Drivetrain(**part.train.model_dump()),
-        drag=DragTable(**part.drag.model_dump()),
-    )
 
 
 def quiet(opened: Opened) -> None:
@@ -147,7 +137,7 @@ def cycle_of(native: OperatingMap, speed: float, kelvin: float, **changed: float
     return stick_slip(train, native.drag, drive_speed=speed, temperature=kelvin)
 
 
-def test_the_map_is_drawn_with_its_words(page: Page, part: MapPart) -> None:
+def test_the_map_is_drawn_with_its_words(page: Page, part: OperatingMap) -> None:
     words = page.locator("#map .word").all_text_contents()
     assert {"smooth", "sticks"} <= set(words)
     assert page.locator("#map .point").count() == len(part.points)
@@ -201,7 +191,7 @@ def test_arrows_move_the_ring(page: Page) -> None:
     assert page.evaluate("document.activeElement.classList.contains('ring')")
 
 
-def test_a_drag_moves_the_ring_and_crosses_the_zones(page: Page, part: MapPart) -> None:
+def test_a_drag_moves_the_ring_and_crosses_the_zones(page: Page, part: OperatingMap) -> None:
     box = page.locator("#map .ring .round").bounding_box()
     frame = page.locator("#map .box").bounding_box()
     assert box is not None
@@ -421,7 +411,7 @@ def test_torques_have_one_unit(page: Page, document: Analysis) -> None:
     assert said is not None
     on_map = " ".join(page.locator("#map .torque-name").all_text_contents())
     assert {said[2], *re.findall(r"m?N·m", on_map)} == {unit}
-    drag = DragTable(**document.map.drag.model_dump())  # type: ignore[union-attr]
+    drag = document.map.drag  # type: ignore[union-attr]
     kelvin = float(page.input_value("#try-temperature")) + 273.15
     radius = document.map.roll_radius  # type: ignore[union-attr]
     assert float(said[1]) == pytest.approx(per * radius * drag.force(0.04, kelvin), rel=0.006)
@@ -481,7 +471,7 @@ def test_nothing_is_cut_on_a_phone(page: Page) -> None:
     page.set_viewport_size({"width": 1280, "height": 800})
 
 
-def test_without_webassembly_the_page_stays_whole(browser: Browser, report: Path, part: MapPart) -> None:
+def test_without_webassembly_the_page_stays_whole(browser: Browser, report: Path, part: OperatingMap) -> None:
     page = browser.new_page(viewport={"width": 1280, "height": 800})
     errors: list[str] = []
     page.on("pageerror", lambda e: errors.append(str(e)))

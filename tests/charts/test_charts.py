@@ -179,7 +179,7 @@ def test_exponents_stand_against_what_each_regime_predicts(document: Analysis) -
     }
     axis = min([-1.3, *(low for _, low, _ in expected)]) - 0.05  # where open ones end
     for hypothesis in document.regime.hypotheses:
-        low = axis if hypothesis.low is None else hypothesis.low
+        low = axis if np.isinf(hypothesis.low) else hypothesis.low
         assert named[hypothesis.name] == (low, hypothesis.high)
 
 

@@ -15,10 +15,12 @@ from hersey.decision.behaviour import Behaviour, Working
 from hersey.decision.judge import judge
 from hersey.machine.limits import Limits, OperatingPoint
 from hersey.machine.machine import Machine, read_machine
-from hersey.parts import DecisionPart, FilmPart, RegimePart, TorqueBudgetPart
 from hersey.stability.operating_map import OperatingMap
 from hersey.study.first_screen import decision
-from hersey.verdict.regime import regime
+from hersey.study.first_screen.result import DecisionPart
+from hersey.study.nip_film import FilmPart
+from hersey.study.torque_budget import TorqueBudgetPart
+from hersey.verdict.regime import Regime, regime
 from tests.conftest import ROOT
 
 HOT = 453.15
@@ -27,8 +29,8 @@ SLOW, BETWEEN, FAST = 0.02, 0.045, 0.36
 
 
 @pytest.fixture(scope="module")
-def seen(points: hersey.SteadyPoints, surface: DampingSurface) -> RegimePart:
-    return RegimePart.model_validate(regime(points, surface).to_dict())
+def seen(points: hersey.SteadyPoints, surface: DampingSurface) -> Regime:
+    return regime(points, surface)
 
 
 def _machine() -> Machine:
@@ -73,9 +75,7 @@ Decide = Callable[..., DecisionPart]
 
 
 @pytest.fixture(scope="module")
-def decide(
-    points: hersey.SteadyPoints, surface: DampingSurface, seen: RegimePart, machine: Machine
-) -> Decide:
+def decide(points: hersey.SteadyPoints, surface: DampingSurface, seen: Regime, machine: Machine) -> Decide:
     known = replace(points, rest=RestOfDrive.stated(constant=1e-9))
 
     def decided(

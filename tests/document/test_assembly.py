@@ -17,7 +17,7 @@ from hersey.testbench.truth import Truth
 
 
 def test_it_survives_json(document: Analysis) -> None:
-    assert load(document.model_dump_json()) == document
+    assert load(document.model_dump_json()).model_dump_json() == document.model_dump_json()
 
 
 def test_no_number_is_nan(document: Analysis) -> None:

@@ -18,11 +18,12 @@ from hersey.decision.edges import Edge, Edges, edges_of
 from hersey.decision.judge import judge
 from hersey.machine.limits import Limits, OperatingPoint
 from hersey.machine.machine import Machine
-from hersey.parts import RegimePart, TorqueBudgetPart
 from hersey.stability.operating_map import OperatingMap
 from hersey.study.first_screen.flags import flags
 from hersey.study.first_screen.instruction import of_log
 from hersey.study.first_screen.points import points_of_log
+from hersey.study.torque_budget import TorqueBudgetPart
+from hersey.verdict.regime import Regime
 from tests.document.conftest import HOT, Decide
 
 
@@ -116,13 +117,13 @@ def test_an_interval_of_the_transition_that_is_not_told_gives_no_speed(
     assert said.interval.endswith("interval not told")
 
 
-def test_warnings_of_the_log(points: hersey.SteadyPoints, surface: DampingSurface, seen: RegimePart) -> None:
+def test_warnings_of_the_log(points: hersey.SteadyPoints, surface: DampingSurface, seen: Regime) -> None:
     """Few dwells, loads that differ, scatter, a regime that is not told: each where it is, and only there."""
 
     def told(
         dwells: hersey.SteadyPoints = points, fit: DampingSurface = surface, **of: str
     ) -> dict[str, str]:
-        log = seen.model_copy(update=of)
+        log = replace(seen, **of)
         return {flag.title: flag.text for flag in flags(dwells, fit, log, None, None, None)}
 
     calm = told(named="soft EHL")
@@ -131,7 +132,7 @@ def test_warnings_of_the_log(points: hersey.SteadyPoints, surface: DampingSurfac
     noisy = replace(surface, statistics=replace(surface.statistics, scatter=0.06))
     shown = told(fit=noisy, named="soft EHL")
     assert shown["Points scatter 6 % about the fit."].startswith("More than sensor noise explains.")
-    unnamed = seen.model_copy(update={"named": None, "why_unnamed": "two explain it"})
+    unnamed = replace(seen, named=None, why_unnamed="two explain it")
     [flag] = [f for f in flags(points, surface, unnamed, None, None, None) if f.section == "regime"]
     assert (flag.title, flag.text) == ("No regime is told.", "Two explain it.")
     assert surface.transition is not None

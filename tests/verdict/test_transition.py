@@ -103,7 +103,7 @@ def test_the_film_part_holds_both() -> None:
     assert part.mixed.points.torque == pytest.approx(mixed().at(speed=[3.0, 8.0], temperature=453.15).torque)
     assert part.transition is not None
     turn = part.transition
-    chart = transition_chart(turn.temperature, turn.speed, turn.measured, turn.low, turn.high).to_dict()
+    chart = transition_chart(turn).to_dict()
     dots = chart["layer"][2]["data"]["values"]
     assert [row["speed"] for row in dots] == pytest.approx([hersey.units.rpm(v) for v in turn.measured])
     assert shared_load(replace(machine(), asperities=None, boundary=None), film, None) is None

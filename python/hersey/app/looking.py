@@ -39,7 +39,7 @@ def look(path: Path) -> dict[str, Any]:
     names = _names(log)
     units = _units(log)
     means = is_means_table(path, {}, {})
-    without = {role: why for role, why in report.without.items() if not (means and role == "time")}
+    without = {role: why for role, why in report.lacking.items() if not (means and role == "time")}
     found = {channel.role: name for channel, name in zip(report.channels, names, strict=True) if channel.role}
     return {
         "name": log.name,
@@ -56,7 +56,7 @@ def look(path: Path) -> dict[str, Any]:
             )
             for i in range(len(names))
         ],
-        "without": {role: str(why) for role, why in without.items()},
+        "without": {role: why.text for role, why in without.items()},
         "claims": {role: _claims(role, log, names, why) for role, why in without.items()},
         "problem": {} if without or means else _problem(path),
         "found": found,

@@ -43,8 +43,9 @@ from hersey.charts.style import (
 from hersey.charts.torque_budget import torque_budget_chart
 from hersey.charts.transition import transition_chart
 from hersey.document.analysis import Analysis
-from hersey.parts import PlanPart, Point, Series
-from hersey.parts.decision import StartPart
+from hersey.document.parts.log import Point, Series
+from hersey.stability.plan.result import Plan
+from hersey.study.first_screen.result import StartPart
 from hersey.units import celsius, rpm
 
 #: Cells of a surface overlap a little: seams would shine through otherwise.
@@ -83,7 +84,9 @@ def charts(document: Analysis, *, but: tuple[str, ...] = ()) -> dict[str, Chart]
     }
     with unchecked():
         made = {name: make(document) for name, make in makers.items() if not name.startswith(but)}
-        made |= {f"plan_{i}": profile_chart(*each) for i, each in enumerate(_plans(document)) if each[0].rows}
+        made |= {
+            f"plan_{i}": profile_chart(*each) for i, each in enumerate(_plans(document)) if each[0].rows()
+        }
     return {name: chart for name, chart in made.items() if chart is not None}
 
 
@@ -219,7 +222,7 @@ def transition(document: Analysis) -> Chart | None:
     part = None if document.film is None else document.film.transition
     if part is None:
         return None
-    return transition_chart(part.temperature, part.speed, part.measured, part.low, part.high)
+    return transition_chart(part)
 
 
 def torque_budget(document: Analysis) -> Chart | None:
@@ -386,7 +389,7 @@ def _bends(document: Analysis, quantity: str, scale: float, x: alt.X, y: alt.Y) 
     return [mark.encode(x=x, y=y)] if rows else []
 
 
-def _plans(document: Analysis) -> list[tuple[PlanPart, StartPart | None]]:
+def _plans(document: Analysis) -> list[tuple[Plan, StartPart | None]]:
     """Plans that are drawn, with the motion they make if the document has it."""
     if document.decision is not None:
         planned = [(p.plan, p.motion) for p in document.decision.points if p.plan]

@@ -32,7 +32,6 @@ from hersey.damping.design import TestDesign
 from hersey.damping.dwells import SteadyPoints, groups_of_temperature
 from hersey.damping.rest import RestOfDrive
 from hersey.damping.surface import DampingSurface
-from hersey.parts import ComparisonPart
 from hersey.units import celsius, rpm
 
 #: Speeds at which a law is drawn, temperatures at which a surface is, and candidates that are listed.
@@ -165,9 +164,9 @@ def _ranking(comparison: ModelComparison) -> Chart:
     return alt.layer(bars, text, title=title, width=WIDTH, height=22 * len(rows))
 
 
-def logs_chart(comparison: LogComparison | ComparisonPart) -> Chart:
+def logs_chart(comparison: LogComparison) -> Chart:
     """Return damping of the second log over that of the first against speed, with simultaneous limits."""
-    a, b = (comparison.a, comparison.b) if isinstance(comparison, ComparisonPart) else comparison.names
+    a, b = comparison.names
     temperatures, speeds = np.asarray(comparison.temperatures), np.asarray(comparison.speeds)
     hot: list[float | None] = list(temperatures) if temperatures.size else [None]
     rows: list[Row] = []

@@ -15,8 +15,8 @@ from hersey.charts.style import BLUE, INK, RIM, WIDTH, Chart, Row, logarithmic_a
 from hersey.charts.transition import transition_chart
 from hersey.lubrication.film import REGIMES, Film
 from hersey.lubrication.mixed import MixedContact
-from hersey.parts import FilmPoint
 from hersey.study.nip import film_points
+from hersey.study.nip_film import FilmPoint
 from hersey.units import celsius, rpm
 from hersey.verdict.evidence import MeasuredFilm
 from hersey.verdict.transition import ContactTransition
@@ -68,8 +68,7 @@ def film_chart(
     if measured is not None:
         charts.append(friction_chart(measured, mixed, grip=measured.grip))
     if transition is not None:
-        numbers = (getattr(transition, name) for name in ("temperature", "speed", "measured", "low", "high"))
-        charts.append(transition_chart(*(each.tolist() for each in numbers)))
+        charts.append(transition_chart(transition))
     if len(charts) == 1:
         return charts[0]
     stacked: Chart = alt.vconcat(*charts, spacing=24).resolve_scale(color="independent", shape="independent")

@@ -8,9 +8,8 @@ import numpy as np
 from hersey.charts.style import BLUE, EDGE, INK, ORANGE, RIM, WIDTH, Chart, Row, level, levels, plot, tip
 from hersey.errors import InsufficientDataError
 from hersey.motion.schedule import Schedule
-from hersey.parts import PlanPart
-from hersey.parts.decision import StartPart
 from hersey.stability.plan.result import Plan
+from hersey.study.first_screen.result import StartPart
 from hersey.units import celsius
 
 #: Height of the panel of speeds.
@@ -46,14 +45,15 @@ def plan_chart(plan: Plan, *, temperature: Schedule | None = None) -> Chart:
     return stacked
 
 
-def profile_chart(plan: PlanPart, motion: StartPart | None) -> Chart:
+def profile_chart(plan: Plan, motion: StartPart | None) -> Chart:
     """Return the profile of a plan of the document, with the motion it makes if that is known.
 
     The first slip does not set the scale: it is cut, and its peak written.
     """
-    end = plan.duration or (plan.rows[-1].time if plan.rows else 1.0)
-    last = max(1.6 * end, plan.rows[-1].time if plan.rows else 0.0)
-    drive = [(row.time, row.drive_speed) for row in plan.rows]
+    rows = plan.rows()
+    end = plan.duration or (rows[-1].time if rows else 1.0)
+    last = max(1.6 * end, rows[-1].time if rows else 0.0)
+    drive = [(row.time, row.drive_speed) for row in rows]
     if drive:
         drive.append((last, drive[-1][1]))
     lines: list[tuple[str, list[tuple[float, float]]]] = [("drive", drive)]
@@ -70,7 +70,7 @@ def profile_chart(plan: PlanPart, motion: StartPart | None) -> Chart:
         marks.append((plan.fold_speed, "V*"))
     top = 1e3 * max([plan.peak_speed or 0.0, plan.target_speed, *(v for v, _ in marks)]) * 2.2
     domain = (0.0, top)
-    rows: list[Row] = [
+    samples: list[Row] = [
         {"time": t, "value": round(1e3 * v, 2), "line": name} for name, line in lines for t, v in line
     ]
     names = [name for name, _ in lines]
@@ -85,7 +85,7 @@ def profile_chart(plan: PlanPart, motion: StartPart | None) -> Chart:
         axis=alt.Axis(tickCount=6),
     )
     y = alt.Y("value:Q", title="Speed (mm/s)", scale=alt.Scale(domain=list(domain), nice=False))
-    drawn = plot(rows).mark_line(strokeWidth=1.7, clip=True)
+    drawn = plot(samples).mark_line(strokeWidth=1.7, clip=True)
     layers: list[alt.Chart] = [
         *levels([(1e3 * v, name) for v, name in marks], domain, _HEIGHT),
         drawn.encode(
@@ -99,7 +99,7 @@ def profile_chart(plan: PlanPart, motion: StartPart | None) -> Chart:
                 tip("value", "speed (mm/s)"),
             ],
         ),
-        *_peaks(rows, top, x),
+        *_peaks(samples, top, x),
     ]
     if plan.duration is not None:
         mark = plot([{"time": plan.duration, "name": f"slides by {plan.duration:.2g} s at the latest"}])

@@ -8,7 +8,6 @@ from collections.abc import Sequence
 import altair as alt
 
 from hersey.charts.style import BLUE, INK, RED, RIM, SECONDARY, SHADE, WIDTH, Chart, Row, plot, tip
-from hersey.parts import BranchPart
 from hersey.units import celsius, rpm
 from hersey.verdict.regime import BranchExponent, Regime
 
@@ -42,7 +41,7 @@ def regime_chart(result: Regime) -> Chart:
     return exponent_chart(rows, [(h.name, h.low, h.high) for h in result.hypotheses])
 
 
-def exponent_row(branch: BranchExponent | BranchPart) -> Row:
+def exponent_row(branch: BranchExponent | BranchExponent) -> Row:
     """Return the row of an exponent at one temperature on one branch."""
     return {
         "where": "all" if branch.temperature is None else f"{celsius(branch.temperature):.0f} °C",

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
+
 import altair as alt
 import numpy as np
 
 from hersey.charts.style import INK, RIM, WIDTH, Chart, Row, logarithmic_axis, plot, rows_of, tip
+from hersey.decision.behaviour import StickSpeeds
 from hersey.document.analysis import Analysis
-from hersey.parts.stability import StickSpeedPart
 from hersey.units import celsius
 
 _HEIGHT = 260
@@ -21,7 +23,7 @@ def stick_speed_chart(document: Analysis) -> Chart:
     assert sweep is not None
     stick = [1e3 * v for v in sweep.stick_speed]
     transition = [1e3 * v for v in sweep.transition]
-    upper = [None if v is None else 1e3 * v for v in sweep.upper]
+    upper = [1e3 * v if math.isfinite(v) else None for v in sweep.upper]
     known = [v for v in upper if v is not None] or transition
     top = 1.25 * max(*known, *transition)
     rows = rows_of(
@@ -91,9 +93,9 @@ def _points(document: Analysis, top: float, scale: alt.Scale) -> list[alt.Chart]
     return [base.mark_rule(color=INK, strokeDash=[9, 3, 2, 3]), text.mark_text(color=INK, **look)]
 
 
-def _stated(sweep: StickSpeedPart, x: alt.X, y: alt.Y) -> list[alt.Chart]:
+def _stated(sweep: StickSpeeds, x: alt.X, y: alt.Y) -> list[alt.Chart]:
     """V* at the stick speed of the machine's file."""
-    known = [(v, u) for v, u in zip(sweep.stick_speed, sweep.upper, strict=True) if u is not None]
+    known = [(v, u) for v, u in zip(sweep.stick_speed, sweep.upper, strict=True) if math.isfinite(u)]
     if len(known) < 2 or not known[0][0] <= sweep.stated <= known[-1][0]:
         return []
     upper = 1e3 * float(np.interp(sweep.stated, [v for v, _ in known], [u for _, u in known]))

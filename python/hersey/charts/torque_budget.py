@@ -16,7 +16,7 @@ from hersey.charts.style import (
     tip,
     torque_unit,
 )
-from hersey.parts import TorqueBudgetPart
+from hersey.study.torque_budget import TorqueBudgetPart
 from hersey.units import celsius, rpm
 
 #: Parts from below, with their names and shades that stay apart in grey.

@@ -2,25 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import altair as alt
 import numpy as np
 
 from hersey.charts.style import BLUE, INK, WIDTH, Chart, logarithmic_axis, plot, rows_of, span, tip
 from hersey.units import celsius, rpm
+from hersey.verdict.transition import ContactTransition
 
 
-def transition_chart(
-    temperature: Sequence[float],
-    speed: Sequence[float | None],
-    measured: Sequence[float | None],
-    low: Sequence[float | None],
-    high: Sequence[float | None],
-) -> Chart:
-    """Return speeds (rad/s) of the contact and of the log with its interval, at temperatures (K)."""
-    hot = [celsius(kelvin) for kelvin in temperature]
-    model, seen, below, above = (_rpm(values) for values in (speed, measured, low, high))
+def transition_chart(transition: ContactTransition) -> Chart:
+    """Return the speeds of the contact, and those of the log with their interval, against temperature."""
+    hot = [celsius(kelvin) for kelvin in transition.temperature.tolist()]
+    speeds = (transition.speed, transition.measured, transition.low, transition.high)
+    model, seen, below, above = ([float(rpm(value)) for value in each.tolist()] for each in speeds)
     x = alt.X("hot:Q", title="Temperature (°C)", scale=alt.Scale(zero=False, padding=12))
     seen_speeds = [v for v in (*model, *seen, *below, *above) if np.isfinite(v)] or [1.0]
     y = alt.Y("speed:Q", title="Transition speed (rpm)", **logarithmic_axis(span(seen_speeds)))
@@ -43,7 +37,3 @@ def transition_chart(
         + ("; dots: the fitted surface, with 95 %" if dots else ""),
     )
     return alt.layer(*layers, title=title, width=WIDTH, height=240)
-
-
-def _rpm(values: Sequence[float | None]) -> list[float]:
-    return [float("nan") if value is None else float(rpm(value)) for value in values]

@@ -38,9 +38,10 @@ def print_json(name: str, result: object) -> None:
     """Print what a command of that name found: its part of the document, with versions and command."""
     from hersey import _core
     from hersey.document.printed import PRINTED
-    from hersey.parts import SCHEMA_VERSION
+    from hersey.schema.part import SCHEMA_VERSION
+    from hersey.schema.record import part_of
 
-    part = PRINTED[name].model_validate(result)
+    part = part_of(PRINTED[name]).model_validate(result)
     header = {"schema_version": SCHEMA_VERSION, "hersey_version": _core.VERSION, "command": command()}
     print(json.dumps(header | part.model_dump(mode="json"), indent=1, allow_nan=False))
 

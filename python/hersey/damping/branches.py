@@ -10,6 +10,7 @@ curve through the points.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Annotated
 
 import numpy as np
 from scipy import optimize
@@ -24,6 +25,7 @@ from hersey.damping.dwells import SAME_SPEED, distinct_speeds
 from hersey.damping.estimate import Estimate, quantile
 from hersey.damping.gradual import Closure, closure_at, least_around, trend_left
 from hersey.damping.scaled import law_of, move_of, powers_of, scaled_speed, temperatures_of
+from hersey.result import Means, Record
 from hersey.units import rpm
 
 #: Widths of a bend, in the logarithm of speed, that a corner is compared with.
@@ -49,17 +51,22 @@ class Branches:
 
 
 @dataclass(frozen=True)
-class Transition:
+class Transition(Record):
     """Where torque is least, between the falling (mixed) and the rising (EHL) branch."""
 
     speed: Estimate  #: rad/s, at the reference temperature of the surface
-    meeting_speed: float  #: rad/s, there too, where the lines of the branches meet; the same in a corner
+    meeting_speed: Annotated[float, Means("where the lines of the branches meet; speed if in a corner")]
     mixed_exponent: Estimate  #: exponent of damping in speed below it, of the trend line if gradual
     temperature_exponent: float  #: transition speed varies as T to this power
-    evidence: float  #: AICc of the single power law minus that of the two branches
-    closure: Closure | None = None  #: what motion is given in the place of a gradual bend
+    evidence: Annotated[float, Means("gain in AICc over a single power law")]
+    closure: Annotated[
+        Closure | None,
+        Means("what motion is given of a gradual bend, its branches trend lines; null for a corner"),
+    ] = None
     #: AICc of a transition at one Hersey number minus that of this one, where it moves by itself
-    freed: float | None = None
+    freed: Annotated[
+        float | None, Means("where one Hersey number does not hold: by how much its AICc is worse")
+    ] = None
 
     @property
     def gradual(self) -> bool:

@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
@@ -27,7 +27,7 @@ from hersey.damping.distributions import ratio_quantile, student_above, student_
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.estimate import CONFIDENCE, Estimate
 from hersey.errors import ISOTHERMAL, HerseyError, InsufficientDataError
-from hersey.result import Result, json_record
+from hersey.result import Means, Record, Result
 from hersey.units import convert, rpm
 
 if TYPE_CHECKING:
@@ -41,12 +41,14 @@ _QUOTED = ("b", "c", "c below the transition", "transition speed", "Stribeck spe
 
 
 @dataclass(frozen=True)
-class Change:
+class Change(Record):
     """How a quantity differs: B minus A, or B over A for a speed.
 
     ``p_value`` is that of no difference, corrected for all the quantities compared (Holm, Scand. J. Stat. 6
     (1979) 65); the interval of the change is its own.
     """
+
+    also_stated = ("real",)
 
     name: str
     of_a: float
@@ -65,17 +67,30 @@ class Change:
 class LogComparison(Result):
     """Damping of B over that of A, and what else differs; arrays of shape (temperatures, speeds)."""
 
+    also_stated = ("a", "b")
+    not_stated = ("names",)
+
     candidate: str
-    speeds: FloatArray  #: rad/s
-    temperatures: FloatArray  #: K; empty if the law has none
-    ratio: FloatArray
-    low: FloatArray  #: simultaneous 95 % limits
-    high: FloatArray
-    mean_ratio: Estimate  #: geometric mean over the range
+    speeds: Annotated[FloatArray, Means(unit="rad/s")]
+    temperatures: Annotated[FloatArray, Means("empty if the law has none", "K")]
+    ratio: Annotated[FloatArray, Means("of B to A", shape="(n, m)")]
+    low: Annotated[FloatArray, Means("simultaneous 95 % limit", shape="(n, m)")]
+    high: Annotated[FloatArray, Means("simultaneous 95 % limit", shape="(n, m)")]
+    mean_ratio: Annotated[Estimate, Means("geometric mean over the range")]
     changes: tuple[Change, ...]
     verdict: str
     notes: tuple[str, ...]
     names: tuple[str, str]
+
+    @property
+    def a(self) -> str:
+        """The name of the first log."""
+        return self.names[0]
+
+    @property
+    def b(self) -> str:
+        """The name of the second log."""
+        return self.names[1]
 
     def summary(self) -> str:
         """Return the comparison as text."""
@@ -100,25 +115,6 @@ class LogComparison(Result):
     def headline(self) -> str:
         """Return the mean ratio of damping."""
         return f"damping of {self.names[1]} over {self.names[0]}: {self.mean_ratio}"
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return the comparison in SI."""
-        return json_record(
-            {
-                "a": self.names[0],
-                "b": self.names[1],
-                "candidate": self.candidate,
-                "verdict": self.verdict,
-                "notes": self.notes,
-                "mean_ratio": self.mean_ratio,
-                "speeds": self.speeds,
-                "temperatures": self.temperatures,
-                "ratio": self.ratio,
-                "low": self.low,
-                "high": self.high,
-                "changes": [{**vars(change), "real": change.real} for change in self.changes],
-            }
-        )
 
     def to_frame(self) -> pl.DataFrame:
         """Return the ratio with its limits at each temperature (null if none) and speed."""

@@ -10,7 +10,7 @@ as a visit of its own.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
@@ -20,7 +20,7 @@ from hersey.damping.candidates.intervals import Quantity, of_one_dwell, quantiti
 from hersey.damping.candidates.model_comparison import ModelComparison
 from hersey.damping.candidates.observations import Inputs
 from hersey.errors import InsufficientDataError, ParameterError
-from hersey.result import Result, json_record
+from hersey.result import Means, Record, Result
 from hersey.units import convert, rpm, takes_si
 
 if TYPE_CHECKING:
@@ -31,13 +31,13 @@ SPEEDS, DRAWS = 25, 40
 
 
 @dataclass(frozen=True)
-class DesignPoint:
+class DesignPoint(Record):
     """A dwell to record, and what is known of the quantity after it and those before it."""
 
-    speed: float  #: rad/s
-    kelvin: float | None  #: K
-    error: float | None  #: standard error of the quantity asked for; None for all parameters
-    volume: float  #: of the confidence region of all parameters, over that of today
+    speed: Annotated[float, Means(unit="rad/s")]
+    kelvin: Annotated[float | None, Means(unit="K")]
+    error: Annotated[float | None, Means("of the quantity, in its unit")]
+    volume: Annotated[float, Means("of the confidence region over that of today", open=True)]
 
 
 @dataclass(frozen=True, repr=False)
@@ -68,10 +68,6 @@ class TestDesign(Result):
             )
             lines.append(f"  {number}. {rpm(point.speed):.3g} rpm{hot}: then {then}")
         return "\n".join(lines)
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return the points in SI."""
-        return json_record(vars(self))
 
     def to_frame(self) -> pl.DataFrame:
         """Return one row per dwell, in their order."""

@@ -3,28 +3,30 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Annotated
 
 import numpy as np
 
 from hersey.damping.distributions import student_quantile
+from hersey.result import OPEN, Record
 
 #: Confidence of every interval.
 CONFIDENCE = 0.95
 
 
 @dataclass(frozen=True)
-class Estimate:
+class Estimate(Record):
     """A number with its standard error and its 95 % interval, which is unbounded where it is not told.
 
     ``systematic`` is the half width that errors of the sensors may add, at 95 %, beyond that interval.
     """
 
-    value: float
-    error: float
-    low: float
-    high: float
-    freedom: float = np.inf  #: degrees of freedom of the error
-    systematic: float = 0.0
+    value: Annotated[float, OPEN]
+    error: Annotated[float, OPEN]
+    low: Annotated[float, OPEN]
+    high: Annotated[float, OPEN]
+    freedom: Annotated[float, OPEN] = np.inf  #: degrees of freedom of the error
+    systematic: Annotated[float, OPEN] = 0.0
 
     @property
     def told(self) -> bool:

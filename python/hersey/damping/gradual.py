@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
@@ -13,13 +14,14 @@ from hersey.damping.candidates.observations import Observations
 from hersey.damping.estimate import quantile
 from hersey.damping.scaled import law_of, powers_of, scaled_speed, scaled_torque, temperatures_of
 from hersey.damping.smoothing import MOST_GROUPS, Curve, Least, parabola
+from hersey.result import Means, Record
 
 #: Relative error below which dwells count as exact.
 EXACT = 1e-6
 
 
 @dataclass(frozen=True)
-class Closure:
+class Closure(Record):
     """The law with a corner at a gradual bend: least speed and torque there, exponents of the branches.
 
     ``values`` and ``covariance`` are of the variables of the surface. It leaves the transition at the torque
@@ -27,7 +29,7 @@ class Closure:
     """
 
     values: FloatArray
-    covariance: FloatArray
+    covariance: Annotated[FloatArray, Means(shape="(n, m)")]
 
 
 def least_around(data: Observations, trend: LawFit) -> tuple[Least | None, FloatArray]:

@@ -9,7 +9,7 @@ at the roll, against the rotation. It is stated, or fitted to a log that was rec
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -18,7 +18,7 @@ from hersey.arrays import FloatArray
 from hersey.damping.estimate import Estimate, estimate, quantile
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.motion.drag import AnyDrag, DragTable
-from hersey.result import Result, json_record, table_of
+from hersey.result import Means, Result, table_of
 from hersey.units import celsius, rpm, takes_si
 
 if TYPE_CHECKING:
@@ -48,13 +48,13 @@ class RestOfDrive(Result):
     per_speed: Estimate
     temperature_slope: Estimate
     reference_temperature: float | None
-    covariance: FloatArray
-    freedom: float
+    covariance: Annotated[FloatArray, Means("of the three", shape="(n, m)")]
+    freedom: Annotated[float, Means("degrees of freedom; null if it was stated", open=True)]
     source: str
     sha256: tuple[str, ...] = ()
-    speed_range: tuple[float, float] | None = None
-    temperature_range: tuple[float, float] | None = None
-    notes: tuple[str, ...] = ()
+    speed_range: Annotated[tuple[float, float] | None, Means("of the no-load log", "rad/s")] = None
+    temperature_range: Annotated[tuple[float, float] | None, Means("of the no-load log", "K")] = None
+    notes: Annotated[tuple[str, ...], Means("what is not told")] = ()
 
     @classmethod
     @takes_si(constant="torque", per_speed="rotational damping", reference_temperature="temperature")
@@ -231,10 +231,6 @@ class RestOfDrive(Result):
             slope = 100.0 * self.temperature_slope.value
             text += f", {slope:+.2g} %/K from {celsius(self.reference_temperature):.0f} degC"
         return f"{text} ({self.source})"
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return numbers, covariance, source and notes, in SI."""
-        return json_record(vars(self))
 
     def to_frame(self) -> pl.DataFrame:
         """Return the three numbers with their units."""

@@ -6,7 +6,7 @@ import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, replace
-from typing import Any, TypeVar
+from typing import Annotated, Any, TypeVar
 
 import numpy as np
 
@@ -32,6 +32,7 @@ from hersey.posterior.priors import CLOSURES, NUMBERS
 from hersey.posterior.result import SAFE
 from hersey.posterior.sampling import DRAWS
 from hersey.posterior.typical import typical_drag, typical_draw
+from hersey.result import Means, Record
 from hersey.stability.disturbance import Disturbance, SafeStep, disturbance, safe_step
 from hersey.stability.hysteresis import HysteresisBand, hysteresis
 from hersey.stability.operating_map import OperatingMap
@@ -65,18 +66,21 @@ class PointBehaviour:
 
 
 @dataclass(frozen=True)
-class StickSpeeds:
+class StickSpeeds(Record):
     """V* against the stick speed at the temperature of a band: speeds in m/s, other numbers typical.
 
     ``stiction`` is V* of a belt that stops abruptly, at the stick speed stated; None where it does not start.
     """
 
-    stated: float
-    known: tuple[float, float] | None
-    stick_speed: list[float]
-    transition: list[float]
-    upper: list[float]
-    stiction: float | None = None
+    temperature: Annotated[float | None, Means("null if isothermal", "K")]
+    stated: Annotated[float, Means("stick speed of the machine's file, there", "m/s")]
+    known: Annotated[tuple[float, float] | None, Means("range that the file states, 95 %, there", "m/s")]
+    stick_speed: Annotated[list[float], Means(unit="m/s")]
+    transition: Annotated[list[float], Means(unit="m/s")]
+    upper: Annotated[list[float], Means("V*; null beyond the search", "m/s", open=True)]
+    stiction: Annotated[
+        float | None, Means("V* at the stated stick speed of a belt that stops dead", "m/s")
+    ] = None
 
 
 @dataclass(frozen=True)
@@ -293,6 +297,7 @@ def _against_stick_speed(found: Posterior, machine: Machine) -> StickSpeeds:
     upper = np.where(starts, folds.upper, np.nan)
     stated = machine.uncertainty.get("stick_speed")
     return StickSpeeds(
+        kelvin,
         float(speeds[-1]),
         None if stated is None else (low * float(shift[0]), high * float(shift[0])),
         speeds[:-1][within].tolist(),

@@ -10,13 +10,14 @@ import numpy as np
 from hersey.decision.judge import drive_limit
 from hersey.posterior import Posterior
 from hersey.posterior.result import quantiles
+from hersey.result import Record
 
 #: V* is not determined where its interval reaches so many times the fastest dwell.
 _DETERMINED = 30.0
 
 
 @dataclass(frozen=True)
-class Edge:
+class Edge(Record):
     """A value with the ends of its 95 % interval, the upper one infinite if it is not determined."""
 
     value: float

@@ -3,7 +3,7 @@
 ===============  ========================================================
 analysis         the document as a whole
 assembly         from a study to the document
-behaviour_parts  what a machine does
+parts            what is laid out otherwise than the results it tells of
 printed          what each command prints with ``--json``
 saved_fit        a fit read back from its JSON
 consistency      whether the numbers of a saved fit agree with each other

@@ -9,21 +9,28 @@ from typing import Literal
 
 from pydantic import Field
 
-from hersey.parts.campaign import CampaignPart
-from hersey.parts.cycles import CyclesPart
-from hersey.parts.decision import DecisionPart
-from hersey.parts.exchange import UnitPart
-from hersey.parts.film import FilmPart
-from hersey.parts.fit import FitPart, RegimePart
-from hersey.parts.inspection import InspectionPart
-from hersey.parts.life_test import LifeTestPart
-from hersey.parts.log import InputFile, MachineFilePart, Point, Quality, Timeline
-from hersey.parts.models import ComparisonPart, DesignPart, ModelsPart
-from hersey.parts.motion import SimulationPart, StickSlipPart, SweepPart
-from hersey.parts.part import SCHEMA_VERSION, Part
-from hersey.parts.posterior import PosteriorPart
-from hersey.parts.stability import BandPart, MapPart, PlanPart, StickSpeedPart, WarmUpPart
-from hersey.parts.torque_budget import TorqueBudgetPart
+from hersey.damping.compare import LogComparison
+from hersey.decision.behaviour import StickSpeeds
+from hersey.document.parts.campaign import CampaignPart
+from hersey.document.parts.cycles import CyclesPart
+from hersey.document.parts.exchange import UnitPart
+from hersey.document.parts.fit import FitPart
+from hersey.document.parts.life_test import LifeTestPart
+from hersey.document.parts.log import InputFile, MachineFilePart, Point, Quality, Timeline
+from hersey.document.parts.models import ModelsPart
+from hersey.document.parts.motion import StickSlipPart, SweepPart
+from hersey.document.parts.posterior import PosteriorPart
+from hersey.inspection.inspecting import Inspection
+from hersey.schema.part import SCHEMA_VERSION, Part
+from hersey.stability.hysteresis import HysteresisBand
+from hersey.stability.operating_map.result import OperatingMap
+from hersey.stability.plan.result import Plan
+from hersey.stability.warm_up import WarmUp
+from hersey.study.first_screen.result import DecisionPart, DesignPart
+from hersey.study.nip_film import FilmPart
+from hersey.study.simulation import SimulationPart
+from hersey.study.torque_budget import TorqueBudgetPart
+from hersey.verdict.regime import Regime
 
 
 class Analysis(Part):
@@ -46,16 +53,16 @@ class Analysis(Part):
     quality: Quality
     points: list[Point]
     fit: FitPart
-    regime: RegimePart
+    regime: Regime
     film: FilmPart | None = None
     torque_budget: TorqueBudgetPart | None = None
     simulation: SimulationPart | None = Field(
         default=None, description="below the transition; null without a machine or a transition"
     )
     timeline: Timeline
-    inspection: InspectionPart | None = None
+    inspection: Inspection | None = None
     models: ModelsPart | None = None
-    compare: ComparisonPart | None = Field(default=None, description="this log (B) over another (A)")
+    compare: LogComparison | None = Field(default=None, description="this log (B) over another (A)")
     against: list[InputFile] | None = Field(default=None, description="files of the log compared with")
     campaign: CampaignPart | None = None
     life: LifeTestPart | None = None
@@ -63,15 +70,15 @@ class Analysis(Part):
     cycles: CyclesPart | None = None
     motion: StickSlipPart | None = None
     sweep: SweepPart | None = None
-    band: BandPart | None = None
-    map: MapPart | None = None
+    band: HysteresisBand | None = None
+    map: OperatingMap | None = None
     uncertainty: dict[str, tuple[float, float]] = Field(
         default={}, description="95 % ranges of stiffness, mass and stick_speed by the machine's file, SI"
     )
-    stick_speed_sweep: StickSpeedPart | None = None
+    stick_speed_sweep: StickSpeeds | None = None
     posterior: PosteriorPart | None = Field(
         default=None, description="what dwells, starts and stick-slip say together"
     )
-    plan: PlanPart | None = None
-    warm_up: WarmUpPart | None = None
+    plan: Plan | None = None
+    warm_up: WarmUp | None = None
     unit: UnitPart | None = None

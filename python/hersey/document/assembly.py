@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import warnings
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -15,30 +16,24 @@ from hersey.damping.curves import CurveMixture, fit_curves
 from hersey.damping.dwells import SteadyPoints, groups_of_temperature
 from hersey.damping.surface import DampingSurface
 from hersey.damping.trend import trend_of
-from hersey.decision.behaviour import ranges
+from hersey.decision.behaviour import Behaviour, ranges
 from hersey.document.analysis import Analysis
-from hersey.document.behaviour_parts import behaviour_parts
-from hersey.errors import ExtrapolationWarning, ParameterError
-from hersey.files.reading import hash_of
-from hersey.log import TorqueLog
-from hersey.log.means import MeansTable
-from hersey.parts import (
-    Cell,
-    ChannelUse,
-    ComparisonPart,
-    Curve,
-    FitDocument,
-    FitPart,
+from hersey.document.parts.fit import Cell, Curve, FitDocument, FitPart, TransitionAt
+from hersey.document.parts.log import (
     InputFile,
     MachineFilePart,
     Point,
     Quality,
-    RegimePart,
     RejectedStretch,
     Series,
     Timeline,
-    TransitionAt,
 )
+from hersey.document.parts.posterior import PosteriorPart
+from hersey.errors import ExtrapolationWarning, ParameterError
+from hersey.files.reading import hash_of
+from hersey.log import TorqueLog
+from hersey.log.means import MeansTable
+from hersey.log.torque_log import Channel
 from hersey.study import Study
 from hersey.study.thinning import kept
 from hersey.verdict.cautions import cautions
@@ -76,16 +71,28 @@ def document_of(study: Study, *, command: str = "", made: str | None = None) -> 
         quality=_quality(log, points),
         points=_points(points, study.surface),
         fit=_fit_part(points, study.surface, study.curves),
-        regime=RegimePart.model_validate(study.regime.to_dict()),
+        regime=study.regime,
         film=study.nip,
         torque_budget=study.torque_budget,
         simulation=study.simulation,
         timeline=_timeline(log),
         uncertainty={} if machine is None else ranges(machine),
-        compare=None if compared is None else ComparisonPart.model_validate(compared.to_dict()),
+        compare=compared,
         against=None if against is None else _files(against.log),
-        **behaviour_parts(found),
+        **_of_the_machine(found),
     )
+
+
+def _of_the_machine(found: Behaviour | None) -> dict[str, Any]:
+    """Map, band, posterior and V* against the stick speed, by the names of their fields."""
+    if found is None:
+        return {}
+    return {
+        "map": found.map,
+        "band": found.band,
+        "posterior": PosteriorPart.model_validate(found.posterior.to_dict()),
+        "stick_speed_sweep": found.stick_speeds,
+    }
 
 
 def _machine_file(path: Path) -> MachineFilePart:
@@ -104,7 +111,7 @@ def fit_document(
         files=_files(log),
         points=_points(points, surface),
         fit=_fit_part(points, surface, curves or fit_curves(points, surface)),
-        regime=RegimePart.model_validate(regime(points, surface).to_dict()),
+        regime=regime(points, surface),
     )
 
 
@@ -124,7 +131,7 @@ def _file(log: TorqueLog | MeansTable, index: int) -> InputFile:
         duration=0.0 if run is None else float(run.time[-1] - run.time[0]),
         sampling_interval=0.0 if run is None else run.sampling_interval,
         gaps=0 if run is None else run.gaps(),
-        channels=[ChannelUse(role=c.role, name=c.name, unit=c.unit) for c in file.channels],
+        channels=[Channel(role=c.role, name=c.name, unit=c.unit) for c in file.channels],
         comments=list(file.comments),
     )
 

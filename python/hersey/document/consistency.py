@@ -24,7 +24,8 @@ from hersey.damping.soundness import (
     faults_of_rest,
 )
 from hersey.damping.surface import DampingSurface
-from hersey.parts import FitPart, Point
+from hersey.document.parts.fit import FitPart
+from hersey.document.parts.log import Point
 
 #: No relative scatter or error of a dwell is greater.
 _MOST_SCATTER = 10.0

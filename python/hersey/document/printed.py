@@ -2,36 +2,32 @@
 
 from __future__ import annotations
 
+from hersey.damping.compare import LogComparison
 from hersey.document.analysis import Analysis
-from hersey.parts import (
-    BandPart,
-    CampaignPart,
-    ComparisonPart,
-    CyclesPart,
-    DesignPart,
-    FilmPart,
-    FitDocument,
-    InspectionPart,
-    LifeTestPart,
-    MapPart,
-    ModelsPart,
-    Part,
-    PlanPart,
-    PosteriorPart,
-    StickSlipPart,
-    SweepPart,
-    UnitPart,
-    WarmUpPart,
-)
+from hersey.document.parts.campaign import CampaignPart
+from hersey.document.parts.cycles import CyclesPart
+from hersey.document.parts.exchange import UnitPart
+from hersey.document.parts.fit import FitDocument
+from hersey.document.parts.life_test import LifeTestPart
+from hersey.document.parts.models import ModelsPart
+from hersey.document.parts.motion import StickSlipPart, SweepPart
+from hersey.document.parts.posterior import PosteriorPart
+from hersey.document.parts.stability import BandPart
+from hersey.inspection.inspecting import Inspection
+from hersey.stability.operating_map.result import OperatingMap
+from hersey.stability.plan.result import Plan
+from hersey.stability.warm_up import WarmUp
+from hersey.study.first_screen.result import DesignPart
+from hersey.study.nip_film import FilmPart
 
 #: By command, beside version and command.
-PRINTED: dict[str, type[Part]] = {
-    "inspect": InspectionPart,
+PRINTED: dict[str, type] = {
+    "inspect": Inspection,
     "report": Analysis,
     "fit": FitDocument,
     "models": ModelsPart,
     "design": DesignPart,
-    "compare": ComparisonPart,
+    "compare": LogComparison,
     "campaign": CampaignPart,
     "life": LifeTestPart,
     "cycles": CyclesPart,
@@ -39,9 +35,9 @@ PRINTED: dict[str, type[Part]] = {
     "simulate": StickSlipPart,
     "sweep": SweepPart,
     "hysteresis": BandPart,
-    "map": MapPart,
+    "map": OperatingMap,
     "posterior": PosteriorPart,
-    "plan": PlanPart,
-    "warmup": WarmUpPart,
+    "plan": Plan,
+    "warmup": WarmUp,
     "export": UnitPart,
 }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -17,9 +18,11 @@ from hersey.damping.rest import RestOfDrive
 from hersey.damping.soundness import LARGEST
 from hersey.damping.surface import DampingSurface
 from hersey.document.consistency import faults_of_fit
+from hersey.document.parts.fit import FitPart
+from hersey.document.parts.log import InputFile, Point
 from hersey.errors import ParameterError, way_in
 from hersey.files.text import read_text
-from hersey.parts import ClosurePart, FitPart, InputFile, Interval, Point, RestPart, TransitionPart
+from hersey.schema.part import Interval
 
 #: How far a number may be from the one it follows from, relative: JSON keeps all digits.
 _ROUNDING = 1e-9
@@ -74,6 +77,9 @@ def _broken(path: Path, field: str, reason: str) -> ParameterError:
 def _check(path: Path, document: _FitFile) -> None:
     """Refuse what the schema allows and no fit can be."""
     fit = document.fit
+    for field, part in _estimates(fit):
+        if None in (part.value, part.error, part.systematic):
+            raise _broken(path, f"fit.{field}", "value, error and systematic must be numbers")
     thermal = "b" in fit.coefficients
     freed = fit.transition is not None and fit.transition.freed is not None
     size = 2 + thermal + 2 * (fit.transition is not None) + freed
@@ -129,6 +135,16 @@ def _check(path: Path, document: _FitFile) -> None:
             raise _broken(path, f"fit.{field}", "it differs from fit.values, so one of them was changed")
 
 
+def _estimates(fit: FitPart) -> Iterator[tuple[str, Estimate]]:
+    """Numbers with an interval whose schema lets them be missing, by the field of the fit."""
+    if fit.transition is not None:
+        for name in ("speed", "mixed_exponent"):
+            yield f"transition.{name}", getattr(fit.transition, name)
+    if fit.rest is not None:
+        for name in ("constant", "per_speed", "temperature_slope"):
+            yield f"rest.{name}", getattr(fit.rest, name)
+
+
 def _check_dwells(path: Path, document: _FitFile) -> None:
     """Refuse dwells and files with numbers that none has; nothing else in the document follows from them."""
     for place, point in enumerate(document.points):
@@ -151,7 +167,7 @@ def _check_dwells(path: Path, document: _FitFile) -> None:
             raise _broken(path, f"files.{place}", f"its numbers must be from 0 to {LARGEST:g}")
 
 
-def _check_closure(path: Path, closure: ClosurePart, size: int) -> None:
+def _check_closure(path: Path, closure: Closure, size: int) -> None:
     rows = {len(row) for row in closure.covariance}
     if len(closure.values) != size or len(closure.covariance) != size or rows != {size}:
         raise _broken(path, "fit.transition.closure", f"not {size} values and {size} rows of {size} numbers")
@@ -159,7 +175,7 @@ def _check_closure(path: Path, closure: ClosurePart, size: int) -> None:
         raise _broken(path, "fit.transition.closure", "it is not symmetric with no negative variance")
 
 
-def _check_rest(path: Path, rest: RestPart) -> None:
+def _check_rest(path: Path, rest: RestOfDrive) -> None:
     shape = [len(row) for row in rest.covariance]
     if shape != [3, 3, 3] or not _is_covariance(np.array(rest.covariance)):
         raise _broken(path, "fit.rest.covariance", "it is no covariance of three numbers")
@@ -169,7 +185,7 @@ def _check_rest(path: Path, rest: RestPart) -> None:
             raise _broken(path, f"fit.rest.{name}", "it must be ascending, greater than 0")
 
 
-def _rest(part: RestPart | None) -> RestOfDrive | None:
+def _rest(part: RestOfDrive | None) -> RestOfDrive | None:
     if part is None:
         return None
     numbers = {
@@ -222,7 +238,7 @@ def _is_covariance(matrix: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) ->
     return symmetric and float(np.linalg.eigvalsh(matrix).min()) >= -_ROUNDING * top
 
 
-def _estimate(part: Interval) -> Estimate:
+def _estimate(part: Interval | Estimate) -> Estimate:
     low, high, freedom = (
         none if end is None else end
         for end, none in ((part.low, -np.inf), (part.high, np.inf), (part.freedom, np.inf))
@@ -230,7 +246,7 @@ def _estimate(part: Interval) -> Estimate:
     return Estimate(part.value, part.error, low, high, freedom, part.systematic)
 
 
-def _transition(part: TransitionPart) -> Transition:
+def _transition(part: Transition) -> Transition:
     return Transition(
         speed=_estimate(part.speed),
         meeting_speed=part.meeting_speed,

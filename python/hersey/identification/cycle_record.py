@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -22,7 +22,7 @@ from hersey.identification.motion_kind import Motion, is_regular, motion_of
 from hersey.identification.sampling import Samples, even_samples
 from hersey.identification.slip_figures import slip_figures
 from hersey.identification.turning_points import least_turn
-from hersey.result import Result, json_record
+from hersey.result import OPEN, Means, Record, Result, json_record
 from hersey.units import takes_si
 
 if TYPE_CHECKING:
@@ -40,13 +40,14 @@ _GREATEST_UNCERTAINTY = 0.5
 _FEW_SAMPLES = 6
 
 
-class Scatter(NamedTuple):
+@dataclass(frozen=True)
+class Scatter(Record):
     """A figure that each cycle has: median, mean, standard deviation, and standard error of the mean."""
 
-    median: float
-    mean: float
-    deviation: float
-    error: float
+    median: Annotated[float, OPEN]
+    mean: Annotated[float, OPEN]
+    deviation: Annotated[float, OPEN]
+    error: Annotated[float, Means("of the mean", open=True)]
 
     @classmethod
     def of(cls, values: FloatArray) -> Scatter:
@@ -174,7 +175,7 @@ class CycleRecord(Result):
             "slip_time": self.slip_time,
             "notes": list(self.notes),
         }
-        typical = {name: Scatter.of(values)._asdict() for name, values in per_cycle.items()}
+        typical = {name: Scatter.of(values) for name, values in per_cycle.items()}
         return json_record(figures | typical)
 
     def to_frame(self) -> pl.DataFrame:

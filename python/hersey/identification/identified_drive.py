@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 
@@ -19,7 +19,7 @@ from hersey.identification.waveform import FEWEST_LAPS, Waveform, mean_waveform
 from hersey.motion.belt import Drivetrain
 from hersey.motion.drag import Drag
 from hersey.motion.parameters import KINDS, OF_THE_BELT
-from hersey.result import Result, json_record
+from hersey.result import OPEN, Means, Record, Result
 from hersey.units import argument
 
 if TYPE_CHECKING:
@@ -43,12 +43,12 @@ _TOLD_BETTER = 0.5
 
 
 @dataclass(frozen=True)
-class ClosureFit:
+class ClosureFit(Record):
     """The best drive with one closure: chi-square of its mean cycle, and misfit as a share of the drop."""
 
     closure: str
-    chi_square: float
-    misfit: float
+    chi_square: Annotated[float, OPEN]
+    misfit: Annotated[float, OPEN]
 
 
 @dataclass(frozen=True, repr=False)
@@ -63,21 +63,36 @@ class IdentifiedDrive(Result):
     chance. ``not_told`` says in words what the record leaves open.
     """
 
+    also_stated = ("closure_decided", "best_fit")
+    not_stated = ("decided", "values", "waveform", "fitted")
+
     closure: str
     decided: bool
-    estimates: Mapping[str, Estimate]
+    estimates: Annotated[Mapping[str, Estimate], Means("what the record tells")]
     values: Mapping[str, float]
     known: Mapping[str, float]
     derived: Mapping[str, Estimate]
-    systematic: Mapping[str, float]
+    systematic: Annotated[
+        Mapping[str, float], Means("half width that the uncertainty of the drive speed adds to an interval")
+    ]
     not_told: tuple[str, ...]
     closures: tuple[ClosureFit, ...]
     misfit: float
-    drive_speed: float
-    drive_speed_uncertainty: float
+    drive_speed: Annotated[float, Means(unit="m/s")]
+    drive_speed_uncertainty: Annotated[float, Means("share, half of its 95 % interval", open=True)]
     waveform: Waveform
     fitted: FloatArray
     notes: tuple[str, ...]
+
+    @property
+    def closure_decided(self) -> bool:
+        """Whether the other closures are worse by more than chance."""
+        return self.decided
+
+    @property
+    def best_fit(self) -> Annotated[Mapping[str, float], OPEN]:
+        """Every parameter of the best fit, told or not."""
+        return self.values
 
     @property
     def train(self) -> Drivetrain:
@@ -89,26 +104,6 @@ class IdentifiedDrive(Result):
         """Drag of the best fit."""
         names = OF_THE_BELT[2:]
         return Drag(**{name: self.values[name] for name in names}, closure=self.closure)
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return closure, estimates and what is not told; in SI if the trace was in newtons."""
-        return json_record(
-            {
-                "closure": self.closure,
-                "closure_decided": self.decided,
-                "closures": self.closures,
-                "estimates": self.estimates,
-                "known": self.known,
-                "best_fit": self.values,
-                "derived": self.derived,
-                "systematic": self.systematic,
-                "not_told": self.not_told,
-                "misfit": self.misfit,
-                "drive_speed": self.drive_speed,
-                "drive_speed_uncertainty": self.drive_speed_uncertainty,
-                "notes": self.notes,
-            }
-        )
 
     def to_frame(self) -> pl.DataFrame:
         """Return what the record tells with its 95 % interval; the units hold for a trace in newtons."""

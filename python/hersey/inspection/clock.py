@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
 from hersey.arrays import FloatArray
+from hersey.result import OPEN, Means, Record
 
 #: Rows are missing where an interval is longer than so many usual ones (of an uneven clock: more).
 GAP, GAP_OF_UNEVEN = 1.5, 5.0
@@ -18,7 +20,7 @@ _FEW = 12
 
 
 @dataclass(frozen=True)
-class Clock:
+class Clock(Record):
     """The times of a log's rows, in s.
 
     Attributes
@@ -39,16 +41,18 @@ class Clock:
         Rows with the time of the row before.
     """
 
+    also_stated = ("findings",)
+
     name: str
     rows: int
     missing: int
-    duration: float
-    interval: float
+    duration: Annotated[float, OPEN]
+    interval: Annotated[float, OPEN]
     resolution: float | None
-    uneven: float
+    uneven: Annotated[float, Means("share of the intervals off the usual one", open=True)]
     gaps: int
-    longest_gap: float
-    lost: float
+    longest_gap: Annotated[float, OPEN]
+    lost: Annotated[float, OPEN]
     back: int
     first_back: int | None
     repeated: int

@@ -7,12 +7,14 @@ show in passing is not called a fault: a held set point is no plateau, a drive t
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hersey.arrays import FloatArray
 from hersey.damping.dwells.resolution import quantisation_step
+from hersey.result import OPEN, Record
 
 IndexArray = NDArray[np.intp]
 
@@ -47,18 +49,18 @@ _MEDIAN = 0.6745
 
 
 @dataclass(frozen=True)
-class Fault:
+class Fault(Record):
     """One kind of fault: rows concerned, the first of them (from 0), the value it stands at, and places."""
 
     kind: str
     rows: int
     first: int
-    value: float
+    value: Annotated[float, OPEN]
     places: int = 1
 
 
 @dataclass(frozen=True)
-class Traits:
+class Traits(Record):
     """What a channel looks like, in its own unit; ``step`` and ``noise`` are None where they cannot be told.
 
     ``noise`` is the standard deviation from row to row, ``refresh`` the rows for which values are held.
@@ -66,9 +68,9 @@ class Traits:
 
     rows: int
     missing: int
-    low: float
-    high: float
-    median: float
+    low: Annotated[float, OPEN]
+    high: Annotated[float, OPEN]
+    median: Annotated[float, OPEN]
     step: float | None
     noise: float | None
     refresh: int

@@ -7,7 +7,7 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypedDict, Unpack
+from typing import TYPE_CHECKING, Annotated, TypedDict, Unpack
 
 import numpy as np
 
@@ -28,7 +28,7 @@ from hersey.log.mapping import LogMapping, as_stated, mapping_of, read_with_mapp
 from hersey.log.means import MeansTable, read_means
 from hersey.log.sensors import Sensors
 from hersey.log.torque_log import NO_CLOCK, Correction, LogFile
-from hersey.result import Result, json_record
+from hersey.result import Means, Record, Result
 from hersey.units import conversion, takes_si
 
 if TYPE_CHECKING:
@@ -61,7 +61,7 @@ class Reading(TypedDict, total=False):
 
 
 @dataclass(frozen=True)
-class ChannelReport:
+class ChannelReport(Record):
     """One channel: its name, the role it plays (empty if none), its traits, and findings in words."""
 
     name: str
@@ -73,17 +73,25 @@ class ChannelReport:
 
 
 @dataclass(frozen=True)
-class FileReport:
+class FileReport(Record):
     """One file: clocks, channels, and for each role without a channel the reason."""
+
+    also_stated = ("without",)
+    not_stated = ("lacking",)
 
     name: str
     format: str
     rows: int
     clocks: tuple[Clock, ...]
     channels: tuple[ChannelReport, ...]
-    without: Mapping[str, Lacking]
+    lacking: Mapping[str, Lacking]
     notes: tuple[str, ...]
     cut_off: bool
+
+    @property
+    def without(self) -> dict[str, str]:
+        """Why there is no channel, by role."""
+        return {role: why.text for role, why in self.lacking.items()}
 
 
 @dataclass(frozen=True, repr=False)
@@ -111,19 +119,10 @@ class Inspection(Result):
     files: tuple[FileReport, ...]
     problem: str
     needed: tuple[str, ...]
-    dropped: Mapping[str, int]
+    dropped: Annotated[Mapping[str, int], Means("rows left out, by file")]
     corrections: tuple[Correction, ...]
     support: Support | None
-    cautions: tuple[str, ...] = ()
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return everything; traits of a channel in its own unit, all else in SI."""
-        document = json_record(vars(self))
-        for file, report in zip(document["files"], self.files, strict=True):
-            file["without"] = {role: str(why) for role, why in report.without.items()}
-            for clock, of in zip(file["clocks"], report.clocks, strict=True):
-                clock["findings"] = of.findings()
-        return document
+    cautions: Annotated[tuple[str, ...], Means("units, tare and order that are doubtful")] = ()
 
     def to_frame(self) -> pl.DataFrame:
         """Return one row per channel; its numbers in its own ``unit``."""
@@ -179,7 +178,7 @@ class Inspection(Result):
         bare = [
             file.name
             for file in self.files
-            if file.channels and "torque" in file.without and file.without["torque"].absent
+            if file.channels and "torque" in file.without and file.lacking["torque"].absent
         ]
         if not bare:
             return self.problem
@@ -314,7 +313,7 @@ def _of_means(
         replace(
             report,
             format=f"{report.format}, {MEANS}",
-            without={},
+            lacking={},
         )
         for report in reports
     )

@@ -20,6 +20,7 @@ from hersey.damping.rising import Rising, rising
 from hersey.damping.surface import DampingSurface
 from hersey.errors import InsufficientDataError, Setting
 from hersey.log.means import MeansTable
+from hersey.result import Record
 from hersey.units import convert, rpm
 
 #: Speeds that span less than this factor, and temperatures that span less than so many kelvin, give an
@@ -32,7 +33,7 @@ TOGETHER = 0.95
 
 
 @dataclass(frozen=True)
-class Support:
+class Support(Record):
     """Dwells of a log and what they support.
 
     Attributes

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from enum import StrEnum
+from typing import Annotated
 
 import numpy as np
 
@@ -20,6 +21,7 @@ from hersey.log.believed import BELIEVED, Believed, as_written, is_code, is_wrap
 from hersey.log.channels import role_conversion
 from hersey.log.stray_times import stray_times
 from hersey.log.text.layout import Column
+from hersey.result import Means, Record
 from hersey.units import Conversion
 
 #: Fewer rows than this show no ordinary range.
@@ -87,7 +89,7 @@ _WORDS = {
 
 
 @dataclass(frozen=True)
-class Impossible:
+class Impossible(Record):
     """Readings of one channel that were left out for one reason.
 
     ``values`` are the most frequent ones with their counts, in ``unit`` as written; ``low`` and ``high`` the
@@ -98,13 +100,15 @@ class Impossible:
     role: str
     channel: str
     unit: str
-    reason: Reason
+    reason: Annotated[Reason, Means("range, code, outlier, sign, drop-out, jump, clock or marked")]
     rows: int
-    values: tuple[tuple[float, int], ...]
-    low: float | None
+    values: Annotated[
+        tuple[tuple[float, int], ...], Means("the most frequent ones, and how often they occur")
+    ]
+    low: Annotated[float | None, Means("null where the file itself marks them as invalid")]
     high: float | None
-    where: str
-    limits: str = ""
+    where: Annotated[str, Means("the first of them, in words")]
+    limits: Annotated[str, Means("what is believed, in words; empty unless the reason is range")] = ""
 
     def __str__(self) -> str:
         """Return what was read, how often, where first, and why it is not believed."""

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.log.impossible import Impossible
 from hersey.log.sensors import Sensors
-from hersey.result import Result, json_record
+from hersey.result import Means, Record, Result
 from hersey.units import celsius, rpm, takes_si
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ STANDING = 0.002
 
 
 @dataclass(frozen=True)
-class Channel:
+class Channel(Record):
     """One column that was used: its role, its name and unit as written."""
 
     role: str
@@ -39,7 +39,7 @@ class Channel:
 
 
 @dataclass(frozen=True)
-class LogFile:
+class LogFile(Record):
     """One file that was read."""
 
     name: str
@@ -48,14 +48,14 @@ class LogFile:
     rows: int
     missing_rows: int  #: left out: a number is missing, or cannot be right
     channels: tuple[Channel, ...]
-    comments: tuple[str, ...]  #: comment lines above the header
-    cut_off: bool = False  #: the file ends before its time
+    comments: Annotated[tuple[str, ...], Means("comment lines above the header")]
+    cut_off: Annotated[bool, Means("the file ends before its time")] = False
     notes: tuple[str, ...] = ()  #: what was done to read it: clocks aligned, time stamps, lines left out
-    impossible: tuple[Impossible, ...] = ()  #: readings that cannot be right; their rows are left out
+    impossible: Annotated[tuple[Impossible, ...], Means("readings that cannot be right")] = ()
 
 
 @dataclass(frozen=True)
-class Run:
+class Run(Record):
     """What was recorded in one go: arrays of shape (rows,) in s, N m, rad/s, K and N."""
 
     name: str
@@ -64,6 +64,17 @@ class Run:
     speed: FloatArray
     temperature: FloatArray | None
     load: FloatArray | None = None  #: normal load, N, where it is known
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the size of the run and the range of each channel, in SI."""
+        channels = {name: getattr(self, name) for name in _COLUMNS}
+        return {
+            "name": self.name,
+            "rows": self.time.size,
+            "sampling_interval": self.sampling_interval,
+            "gaps": self.gaps(),
+            **{name: None if values is None else list(_ends(values)) for name, values in channels.items()},
+        }
 
     @cached_property
     def sampling_interval(self) -> float:
@@ -77,7 +88,7 @@ class Run:
 
 
 @dataclass(frozen=True)
-class Effect:
+class Effect(Record):
     """How far a correction moved a role: its largest and root mean square change, SI, and the latter's share.
 
     ``share`` is of the median of the absolute values before, or None where that is zero.
@@ -85,7 +96,7 @@ class Effect:
 
     role: str
     largest: float
-    typical: float
+    typical: Annotated[float, Means("root mean square")]
     share: float | None
 
     def __str__(self) -> str:
@@ -100,7 +111,7 @@ class Effect:
 
 
 @dataclass(frozen=True)
-class Correction:
+class Correction(Record):
     """Record of one correction: its parameters as written with units, its effects, and what it left alone."""
 
     name: str
@@ -119,6 +130,9 @@ class Correction:
 @dataclass(frozen=True, repr=False)
 class TorqueLog(Result):
     """One or more runs on the same machine; `hersey.read` makes it."""
+
+    also_stated = ("rows",)
+    not_stated = ("sensors",)
 
     runs: tuple[Run, ...]
     files: tuple[LogFile, ...]
@@ -147,17 +161,6 @@ class TorqueLog(Result):
         for file, run in zip(self.files, self.runs, strict=True):
             lines.append(f"{file.name}: {_ranges(run)}")
         return "\n".join([*lines, *(f"corrected: {correction}" for correction in self.corrections)])
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return files, runs with their ranges in SI, and corrections; the rows are in `to_frame`."""
-        return json_record(
-            {
-                "rows": self.rows,
-                "files": [asdict(file) for file in self.files],
-                "runs": [_run_record(run) for run in self.runs],
-                "corrections": [asdict(correction) for correction in self.corrections],
-            }
-        )
 
     def to_frame(self) -> pl.DataFrame:
         """Return every row: index of the run, time, torque, speed and, where recorded, temperature."""
@@ -199,17 +202,6 @@ def _ranges(run: Run) -> str:
         return text
     cold, hot = (celsius(end) for end in _ends(run.temperature))
     return f"{text}, {cold:.4g} to {hot:.4g} degC"
-
-
-def _run_record(run: Run) -> dict[str, Any]:
-    channels = {name: getattr(run, name) for name in _COLUMNS}
-    return {
-        "name": run.name,
-        "rows": run.time.size,
-        "sampling_interval": run.sampling_interval,
-        "gaps": run.gaps(),
-        **{name: None if values is None else _ends(values) for name, values in channels.items()},
-    }
 
 
 def _run_frame(index: int, run: Run) -> pl.DataFrame:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,6 +14,7 @@ from hersey import _core
 from hersey.arrays import FloatArray, pointwise
 from hersey.errors import ParameterError
 from hersey.lubrication import paper
+from hersey.result import Means, Record
 from hersey.units import fields_in_si, takes_si
 
 #: Rules for the width of a nip.
@@ -33,18 +35,22 @@ _RIGID = (math.inf, 0.5)
 
 
 @dataclass(frozen=True)
-class Nip:
+class Nip(Record):
     """The contact of the roll, dry: rigid heater on a bonded elastic layer, plane strain."""
 
-    width: float  #: m
-    pressure_mean: float  #: Pa, load over width and length
-    pressure_max: float  #: Pa, at the centre
-    edge: float  #: slope of pressure at the edge over that of a half-space contact of the same width
-    curvature: float  #: c in the pressure K sqrt(x) (1 + c x/a) at the edge; -1/4 on a half-space
-    width_over_hertz: float  #: width over that of the half-space contact of the same load
-    paper_width: float  #: m, Eq. 8 of the paper
-    paper_in_range: bool  #: whether Eq. 8 holds here
-    strain: float  #: a^2/(2 R h), a nominal strain of the rubber
+    also_stated = ("layer_factor",)
+
+    width: Annotated[float, Means(unit="m")]
+    pressure_mean: Annotated[float, Means("load over width and length", "Pa")]
+    pressure_max: Annotated[float, Means("at the centre", "Pa")]
+    edge: Annotated[float, Means("slope of pressure there over that of a half-space contact as wide")]
+    curvature: Annotated[
+        float, Means("c in the pressure K sqrt(x) (1 + c x/a) at the edge; -1/4 on a half-space")
+    ]
+    width_over_hertz: Annotated[float, Means("width over that of the half-space contact of the same load")]
+    paper_width: Annotated[float, Means("Eq. 8 of the paper", "m")]
+    paper_in_range: Annotated[bool, Means("whether Eq. 8 holds here")]
+    strain: Annotated[float, Means("a^2/(2 R h), a nominal strain of the rubber")]
 
     @property
     def half_width(self) -> float:
@@ -58,7 +64,7 @@ class Nip:
 
 
 @dataclass(frozen=True)
-class Contact:
+class Contact(Record):
     """A belt between a rubber-covered roll and a heater, in SI.
 
     Parameters
@@ -90,18 +96,20 @@ class Contact:
         If a value is impossible.
     """
 
-    roll_radius: float
-    rubber_thickness: float
-    modulus: float
+    also_stated = ("effective_modulus", "reduced_radius")
+
+    roll_radius: Annotated[float, Means(unit="m")]
+    rubber_thickness: Annotated[float, Means(unit="m")]
+    modulus: Annotated[float, Means("Young's modulus of the rubber", "Pa")]
     poisson_ratio: float
-    length: float
-    load: float
-    heater_radius: float = math.inf
-    roughness: float | None = None
+    length: Annotated[float, Means(unit="m")]
+    load: Annotated[float, Means(unit="N")]
+    heater_radius: Annotated[float, Means(unit="m", open=True)] = math.inf
+    roughness: Annotated[float | None, Means("rms", "m")] = None
     nip_uncertainty: float | None = None
-    supply: float | None = None
-    heat_flow: float | None = None
-    sensor_side: str | None = None
+    supply: Annotated[float | None, Means("layer on the inlet side", "m")] = None
+    heat_flow: Annotated[float | None, Means("through the film", "W")] = None
+    sensor_side: Annotated[str | None, Means("wall of the film that the sensor reads")] = None
 
     def __post_init__(self) -> None:
         """Bring the values to SI if they come with units, and check them."""

@@ -19,7 +19,7 @@ from hersey.errors import ParameterError
 from hersey.lubrication import paper
 from hersey.lubrication.contact import RULES, Contact, Nip, nip_width
 from hersey.lubrication.lubricant import Lubricant
-from hersey.result import Result, json_record
+from hersey.result import Record, Result, json_record
 from hersey.units import celsius, takes_si
 
 if TYPE_CHECKING:
@@ -76,7 +76,7 @@ CONSTANTS: tuple[Constant, ...] = (
 
 
 @dataclass(frozen=True)
-class Correction:
+class Correction(Record):
     """A factor on the film, and where the rule behind it holds; arrays of the shape of the film."""
 
     factor: FloatArray
@@ -168,22 +168,12 @@ class Film(Result):
 
     def to_dict(self) -> dict[str, Any]:
         """Return contact, lubricant, nip, laws and the states, in SI."""
-        contact, lubricant = self.contact, self.lubricant
+        nip = {rule: float(nip_width(self.contact, rule=rule)) for rule in RULES}
         return json_record(
             {
-                "contact": vars(contact)
-                | {"effective_modulus": contact.effective_modulus, "reduced_radius": contact.reduced_radius},
-                "lubricant": {
-                    "name": lubricant.name,
-                    "model": lubricant.model,
-                    "source": lubricant.source,
-                    "points": lubricant.points,
-                    "pressure_viscosity": lubricant.pressure_viscosity,
-                    "coefficients": lubricant.coefficients(),
-                },
-                "nip": vars(self.nip)
-                | {"layer_factor": self.nip.layer_factor}
-                | {rule: float(nip_width(contact, rule=rule)) for rule in RULES},
+                "contact": self.contact,
+                "lubricant": self.lubricant,
+                "nip": self.nip.to_dict() | nip,
                 "laws": CONSTANTS,
                 "film": self.states(),
             }

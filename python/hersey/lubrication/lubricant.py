@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from hersey import _core
 from hersey.arrays import FloatArray, pointwise
 from hersey.errors import ParameterError
+from hersey.result import Record
 from hersey.units import ZERO_CELSIUS, argument, fields_in_si, takes_si
 
 #: Laws of viscosity against temperature, and how many points each takes.
@@ -41,7 +42,7 @@ class ShearThinning:
 
 
 @dataclass(frozen=True)
-class Lubricant:
+class Lubricant(Record):
     """A lubricant through the points of its data sheet.
 
     Parameters
@@ -70,6 +71,9 @@ class Lubricant:
     ParameterError
         If the points do not fit the law, or a value is impossible.
     """
+
+    also_stated = ("coefficients",)
+    not_stated = ("density", "thinning", "conductivity", "uncertainty", "_law")
 
     model: str
     points: tuple[tuple[float, float], ...]

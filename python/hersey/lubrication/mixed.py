@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -21,7 +21,7 @@ from hersey.errors import ParameterError
 from hersey.lubrication.contact import Contact
 from hersey.lubrication.film import REGIMES, film_thickness, soft_force_beyond
 from hersey.lubrication.lubricant import Lubricant
-from hersey.result import Result, json_record
+from hersey.result import OPEN, Means, Record, Result, json_record
 from hersey.units import celsius, fields_in_si, takes_si
 
 if TYPE_CHECKING:
@@ -44,7 +44,7 @@ _BETWEEN = (5.0, 20.0)
 
 
 @dataclass(frozen=True)
-class Asperities:
+class Asperities(Record):
     """The summits of two hard faces as Greenwood and Tripp (1970) have them.
 
     Parameters
@@ -63,7 +63,7 @@ class Asperities:
         If a value is not positive.
     """
 
-    modulus: float
+    modulus: Annotated[float, Means("contact modulus of the faces", "Pa")]
     sigma_beta_density: float = 0.05
     sigma_over_beta: float = 0.01
 
@@ -82,7 +82,7 @@ class Asperities:
 
 
 @dataclass(frozen=True)
-class BoundaryFriction:
+class BoundaryFriction(Record):
     """Friction where asperities carry all: coefficient + slope (T - temperature).
 
     ``coefficient`` has no unit, ``slope`` is in 1/K, ``temperature`` (K) is that of the coefficient, needed
@@ -90,8 +90,8 @@ class BoundaryFriction:
     """
 
     coefficient: float
-    slope: float = 0.0
-    temperature: float | None = None
+    slope: Annotated[float, Means("1/K")] = 0.0
+    temperature: Annotated[float | None, Means("of the coefficient", "K")] = None
 
     def __post_init__(self) -> None:
         """Bring the temperature to K if it comes with a unit, and check the values."""
@@ -123,7 +123,7 @@ class BoundaryFriction:
 
 
 @dataclass(frozen=True)
-class MixedTransition:
+class MixedTransition(Record):
     """Where the drag, falling with speed, begins to rise; arrays, not a number where it never falls.
 
     ``temperature`` (K), ``product`` of viscosity and belt speed (Pa m), ``speed`` of the roll (rad/s),
@@ -132,18 +132,22 @@ class MixedTransition:
     summits of one shape; by boundary friction it is ``sensitivity["boundary"]``, by viscosity -1.
     """
 
+    not_stated = ("temperature",)
+
     temperature: FloatArray
-    product: FloatArray
-    speed: FloatArray
-    belt_speed: FloatArray
-    lambda_ratio: FloatArray
-    torque: FloatArray
-    sensitivity: Mapping[str, FloatArray]
-    by_roughness: FloatArray
+    product: Annotated[FloatArray, Means("eta U, Pa m", open=True)]
+    speed: Annotated[FloatArray, Means(unit="rad/s", open=True)]
+    belt_speed: Annotated[FloatArray, Means(unit="m/s", open=True)]
+    lambda_ratio: Annotated[FloatArray, OPEN]
+    torque: Annotated[FloatArray, Means(unit="N m", open=True)]
+    sensitivity: Annotated[
+        Mapping[str, FloatArray], Means("d ln eta U by the logarithm of each number of the law", open=True)
+    ]
+    by_roughness: Annotated[FloatArray, Means("d ln speed by the logarithm of roughness", open=True)]
 
 
 @dataclass(frozen=True)
-class MixedContact:
+class MixedContact(Record):
     """A contact whose load film and asperities share; made by `mixed_contact`.
 
     ``regime`` is the law of the film, ``reference`` (Pa m) the product of viscosity and belt speed at which
@@ -155,19 +159,21 @@ class MixedContact:
     the nip, ``rolling`` (N) what inlet and pressure add to it, as eta U to the ``rolling_exponent``.
     """
 
+    not_stated = ("contact", "lubricant")
+
     contact: Contact
     lubricant: Lubricant
     asperities: Asperities
     friction: BoundaryFriction
     regime: str
-    reference: float
+    reference: Annotated[float, Means("eta U at which the film alone is as thick as the roughness, Pa m")]
     film_exponent: float
     load_exponent: float
-    edge: float
-    roundness: float
+    edge: Annotated[float, Means("mean pressure over K sqrt(l) of a soft nip at the reference; 0: none")]
+    roundness: Annotated[float, Means("K^2 a/(2 p_max^2) of the dry pressure of a soft nip")]
     stiffness: float
-    shear: float
-    rolling: float
+    shear: Annotated[float, Means("of a film of lambda = 1 over the nip", "N")]
+    rolling: Annotated[float, Means("what inlet and pressure add, at the reference", "N")]
     rolling_exponent: float
 
     def numbers(self, temperature: FloatArray) -> list[Any]:
@@ -276,15 +282,20 @@ class MixedFilm(Result):
     nip and of what its inlet and its pressure add (all that `Film` has beyond eta U/h_c).
     """
 
-    speed: FloatArray
-    temperature: FloatArray
-    viscosity: FloatArray
+    also_stated = ("torque", "beyond_checked_range")
+    not_stated = ("mixed",)
+
+    speed: Annotated[FloatArray, Means(unit="rad/s")]
+    temperature: Annotated[FloatArray, Means(unit="K")]
+    viscosity: Annotated[FloatArray, Means(unit="Pa s")]
     lambda_ratio: FloatArray
-    minimum_ratio: FloatArray
-    share: FloatArray
-    boundary_torque: FloatArray
-    shear_torque: FloatArray
-    rolling_torque: FloatArray
+    minimum_ratio: Annotated[
+        FloatArray, Means("least film over roughness; null where no law of it is known", open=True)
+    ]
+    share: Annotated[FloatArray, Means("of the load that asperities carry")]
+    boundary_torque: Annotated[FloatArray, Means(unit="N m")]
+    shear_torque: Annotated[FloatArray, Means(unit="N m")]
+    rolling_torque: Annotated[FloatArray, Means(unit="N m")]
     mixed: MixedContact = field(compare=False)
 
     @property

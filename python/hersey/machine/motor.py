@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
 from hersey.errors import ParameterError
 from hersey.motion.simulation import Trajectory
+from hersey.result import Means, Record
 from hersey.units import takes_si
 
 
 @dataclass(frozen=True)
-class MotorUse:
+class MotorUse(Record):
     """The greatest ``torque`` (N m) of a motion, at which ``time`` (s), and the ``limit`` of the motor.
 
     ``exceeded_from`` is the time at which the limit is first passed (s; None if it never is), and
@@ -21,7 +23,7 @@ class MotorUse:
     """
 
     torque: float
-    time: float
+    time: Annotated[float, Means(unit="s")]
     limit: float
     exceeded_from: float | None
     exceeded: float

@@ -4,28 +4,29 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any, Protocol, TypeAlias, TypeVar, cast
+from typing import Annotated, Any, Protocol, TypeAlias, TypeVar, cast
 
 import numpy as np
 
 from hersey.errors import ParameterError
 from hersey.motion.drag import AnyDrag
+from hersey.result import Means, Record
 from hersey.units import fields_in_si, takes_si
 
 T = TypeVar("T")
 
 
 @dataclass(frozen=True)
-class Drivetrain:
+class Drivetrain(Record):
     """Spring (gear train, roll core and rubber) of ``stiffness`` and moving ``mass``.
 
     ``grip`` is the force up to which the roll grips the belt, its friction times the load; beyond, it
     slips. If it is not given the roll never slips, as Eq. 11 assumes.
     """
 
-    stiffness: float
-    mass: float
-    grip: float | None = None
+    stiffness: Annotated[float, Means(unit="N/m")]
+    mass: Annotated[float, Means(unit="kg")]
+    grip: Annotated[float | None, Means("force up to which the roll grips the belt", "N")] = None
 
     def __post_init__(self) -> None:
         """Bring the values to SI if they come with units."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import KW_ONLY, dataclass, replace
-from typing import Any, Self
+from typing import Annotated, Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from hersey import _core
 from hersey.arrays import FloatArray
 from hersey.errors import ParameterError
+from hersey.result import Means, Record
 from hersey.units import fields_in_si, takes_si
 
 #: What the belt does near zero speed; see docs/closures.md.
@@ -87,15 +88,15 @@ class AnyDrag:
 
 
 @dataclass(frozen=True, kw_only=True)
-class BesideShape(AnyDrag):
+class BesideShape(AnyDrag, Record):
     """What drag laws take besides their shape: near rest, and the rest of the drive; all as of `Drag`."""
 
     closure: str = "retained"
-    bristle_stiffness: float | None = None
-    bristle_damping: float | None = None
-    static_force: float | None = None
-    rest_force: float = 0.0
-    rest_damping: float = 0.0
+    bristle_stiffness: Annotated[float | None, Means(unit="N/m")] = None
+    bristle_damping: Annotated[float | None, Means(unit="N s/m")] = None
+    static_force: Annotated[float | None, Means("what the contact bears at rest", "N")] = None
+    rest_force: Annotated[float, Means("of the rest of the drive", "N")] = 0.0
+    rest_damping: Annotated[float, Means("of the rest of the drive", "N s/m")] = 0.0
 
     def _shape(self) -> dict[str, Wire]:
         """The law and how it varies with temperature, in the wire form."""
@@ -139,11 +140,11 @@ class PowersOfTemperature(BesideShape):
     drive takes without the contact changes by ``rest_temperature_slope`` (relative, per K).
     """
 
-    reference_temperature: float | None = None
+    reference_temperature: Annotated[float | None, Means(unit="K")] = None
     force_temperature_exponent: float = 0.0
     speed_temperature_exponent: float = 0.0
-    temperature_zero: float = 0.0
-    rest_temperature_slope: float = 0.0
+    temperature_zero: Annotated[float, Means(unit="K")] = 0.0
+    rest_temperature_slope: Annotated[float, Means("relative", "1/K")] = 0.0
 
     @property
     def varies_with_temperature(self) -> bool:
@@ -215,14 +216,14 @@ class Drag(PowersOfTemperature):
         If a force or speed is not positive, or the stick speed is not below the transition speed.
     """
 
-    transition_force: float
-    transition_speed: float
+    transition_force: Annotated[float, Means(unit="N")]
+    transition_speed: Annotated[float, Means(unit="m/s")]
     ehl_exponent: float
     mixed_exponent: float
-    stick_speed: float
+    stick_speed: Annotated[float, Means(unit="m/s")]
     _: KW_ONLY
-    static_growth: float = 0.0
-    static_growth_time: float | None = None
+    static_growth: Annotated[float, Means("of the static force, for each e-fold of time")] = 0.0
+    static_growth_time: Annotated[float | None, Means(unit="s")] = None
 
     def __post_init__(self) -> None:
         """Bring the values to SI if they come with units, and let the core check them."""
@@ -295,9 +296,9 @@ class DragTable(PowersOfTemperature):
     50.0
     """
 
-    speeds: tuple[float, ...]
-    forces: tuple[float, ...]
-    stick_speed: float
+    speeds: Annotated[tuple[float, ...], Means("ascending", "m/s")]
+    forces: Annotated[tuple[float, ...], Means(unit="N")]
+    stick_speed: Annotated[float, Means(unit="m/s")]
 
     def __post_init__(self) -> None:
         """Bring the values to SI if they come with units, and let the core check them."""

@@ -8,10 +8,10 @@ for stiffness, angular speed for belt speed.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
 from operator import attrgetter
-from typing import TYPE_CHECKING, Any, NamedTuple, TypedDict, Unpack
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, TypedDict, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,7 +24,7 @@ from hersey.motion.drag import AnyDrag
 from hersey.motion.heat import HeatBalance
 from hersey.motion.parameters import MOST_STEPS, whole
 from hersey.motion.schedule import Schedule
-from hersey.result import Result, json_record, table_of
+from hersey.result import Means, Record, Result
 from hersey.units import celsius, takes_si
 
 if TYPE_CHECKING:
@@ -63,19 +63,19 @@ class Numerics(TypedDict, total=False):
 class Event(NamedTuple):
     """A change of mode: when, from and to which, the condition crossed, and the state there."""
 
-    time: float
+    time: Annotated[float, Means(unit="s")]
     from_mode: str
     to_mode: str
     guard: str
-    stretch: float
-    belt_speed: float
+    stretch: Annotated[float, Means(unit="m")]
+    belt_speed: Annotated[float, Means(unit="m/s")]
 
 
 _event_columns = attrgetter(*Event._fields)
 
 
 @dataclass(frozen=True)
-class Energy:
+class Energy(Record):
     """Where the work of the drive went over a run: each figure is its own integral.
 
     ``slipped`` was lost where the roll slipped on the belt; ``residual`` is what is missing (work less
@@ -91,12 +91,12 @@ class Energy:
     dissipated: float
     slipped: float
     stored: float
-    owed: float
+    owed: Annotated[float, Means("given by a contact that holds a belt, and not got back")]
     residual: float
 
 
 @dataclass(frozen=True)
-class SelfCheck:
+class SelfCheck(Record):
     """The same run by another integrator.
 
     ``speed_difference`` and ``stretch_difference`` are the greatest differences at the samples, as a share of
@@ -130,18 +130,21 @@ class Trajectory(Result):
     on the belt. ``film_temperature`` and ``roll_temperature`` (K) are there if they are states.
     """
 
-    time: FloatArray
-    belt_speed: FloatArray
-    stretch: FloatArray
-    spring_force: FloatArray
+    also_stated = ("mode",)
+    not_stated = ("mode_index",)
+
+    time: Annotated[FloatArray, Means(unit="s")]
+    belt_speed: Annotated[FloatArray, Means(unit="m/s")]
+    stretch: Annotated[FloatArray, Means(unit="m")]
+    spring_force: Annotated[FloatArray, Means(unit="N")]
     mode_index: NDArray[np.uint8]
     slipping: NDArray[np.bool_]
     events: tuple[Event, ...]
     energy: Energy
     steps: int
     check: SelfCheck | None = None
-    film_temperature: FloatArray | None = None
-    roll_temperature: FloatArray | None = None
+    film_temperature: Annotated[FloatArray | None, Means("if it is a state", "K")] = None
+    roll_temperature: Annotated[FloatArray | None, Means("if it is a state", "K")] = None
 
     @cached_property
     def mode(self) -> NDArray[np.str_]:
@@ -193,21 +196,6 @@ class Trajectory(Result):
             if t is not None
         ]
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return samples, events, energies and check; in SI if the arguments were."""
-        arrays = ("time", "belt_speed", "stretch", "spring_force", "mode", "slipping")
-        return json_record(
-            {
-                **{name: getattr(self, name) for name in arrays},
-                "events": [event._asdict() for event in self.events],
-                "energy": self.energy,
-                "steps": self.steps,
-                "check": self.check,
-                "film_temperature": self.film_temperature,
-                "roll_temperature": self.roll_temperature,
-            }
-        )
-
     def to_frame(self) -> pl.DataFrame:
         """Return one row per sample; the units named are SI, and stand for those given."""
         import polars as pl
@@ -246,16 +234,18 @@ class StickSlipCycle(Result):
     it creeps below the stick speed.
     """
 
+    also_stated = ("stuck_fraction",)
+
     kind: str
-    frequency: float
-    slip_duration: float
-    stick_duration: float
-    speed_min: float
-    speed_max: float
-    stretch_min: float
-    stretch_max: float
-    grip_slip_duration: float
-    drag_work: float
+    frequency: Annotated[float, Means("laps per unit of time", "Hz")]
+    slip_duration: Annotated[float, Means(unit="s")]
+    stick_duration: Annotated[float, Means(unit="s")]
+    speed_min: Annotated[float, Means(unit="m/s")]
+    speed_max: Annotated[float, Means(unit="m/s")]
+    stretch_min: Annotated[float, Means(unit="m")]
+    stretch_max: Annotated[float, Means(unit="m")]
+    grip_slip_duration: Annotated[float, Means("a lap", "s")]
+    drag_work: Annotated[float, Means("a lap", "J")]
     laps_per_period: int
     laps: int
 
@@ -283,32 +273,6 @@ class StickSlipCycle(Result):
         return (
             f"{self.kind.replace('_', ' ')}, frequency {self.frequency:.6g}, stuck {self.stuck_fraction:.3g}"
         )
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return every number; in SI if the arguments were."""
-        return json_record({**vars(self), "stuck_fraction": self.stuck_fraction})
-
-    def to_frame(self) -> pl.DataFrame:
-        """Return the numbers with their units; the units named are SI, and stand for those given."""
-        values = {**vars(self), "stuck_fraction": self.stuck_fraction}
-        return table_of((name, values[name], unit) for name, unit in _CYCLE_UNITS.items())
-
-
-#: Units of a cycle, where the arguments are in SI.
-_CYCLE_UNITS = {
-    "frequency": "Hz",
-    "slip_duration": "s",
-    "stick_duration": "s",
-    "stuck_fraction": "",
-    "speed_min": "m/s",
-    "speed_max": "m/s",
-    "stretch_min": "m",
-    "stretch_max": "m",
-    "grip_slip_duration": "s",
-    "drag_work": "J",
-    "laps_per_period": "",
-    "laps": "",
-}
 
 
 @takes_si(
@@ -509,7 +473,7 @@ def stick_slip(
     state = start_state(train, law, Schedule.of(drive_speed), None, start, is_torque=False, nudged=True)
     steps = whole("most_steps", most_steps)
     cycle = _core.stick_slip(train._arguments, law, float(drive_speed), state, None, float(tolerance), steps)
-    return StickSlipCycle(**{name: getattr(cycle, name) for name in StickSlipCycle.__dataclass_fields__})
+    return StickSlipCycle(*attrgetter(*(field.name for field in fields(StickSlipCycle)))(cycle))
 
 
 def steady_start(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +17,7 @@ from hersey.errors import ParameterError
 from hersey.posterior.drives import DriveModel, Drives
 from hersey.posterior.evidence import Evidence
 from hersey.posterior.priors import CLOSURES, NUMBERS
-from hersey.result import Result, json_record
+from hersey.result import Means, Record, Result, json_record
 from hersey.stability.operating_map.edges import GivenEdges
 from hersey.units import celsius
 
@@ -75,7 +75,7 @@ class PointProbability:
 
 
 @dataclass(frozen=True)
-class Convergence:
+class Convergence(Record):
     """How two populations that know nothing of each other compare.
 
     ``ratio`` is the greatest ratio of their quantiles of V* (5, 50 and 95 %), ``width`` that of the outer
@@ -84,13 +84,15 @@ class Convergence:
     which the evidence is in, 1 where all of it is.
     """
 
-    ratio: float
-    width: float
-    accepted: float
-    distinct: float
+    also_stated = ("converged",)
+
+    ratio: Annotated[float, Means("greatest ratio of their quantiles of V*")]
+    width: Annotated[float, Means("ratio of the outer quantiles of all")]
+    accepted: Annotated[float, Means("share of moves accepted in the last stage")]
+    distinct: Annotated[float, Means("share of draws that no other equals")]
     stages: int
     log_evidence: tuple[float, ...]
-    counted: float
+    counted: Annotated[float, Means("degree to which the evidence is in, 1 where all of it is")]
 
     @property
     def converged(self) -> bool:

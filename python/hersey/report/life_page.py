@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 from hersey import _core
 from hersey.charts.life import life_charts
 from hersey.life.age import Age
-from hersey.parts.part import SCHEMA_VERSION
 from hersey.report.page import drawn
+from hersey.schema.part import SCHEMA_VERSION
 
 if TYPE_CHECKING:
     import polars as pl

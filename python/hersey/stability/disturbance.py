@@ -9,12 +9,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import inf, pi, sqrt
+from typing import Annotated
 
 from hersey.errors import ParameterError
 from hersey.motion.belt import Drivetrain
 from hersey.motion.drag import AnyDrag
 from hersey.motion.schedule import Schedule
 from hersey.motion.simulation import StickSlipCycle, simulate, steady_start, stick_slip
+from hersey.result import OPEN, Means, Record
 from hersey.stability.hysteresis import hysteresis
 from hersey.units import takes_si
 
@@ -27,7 +29,7 @@ _WATCHED = 10
 
 
 @dataclass(frozen=True)
-class SafeStep:
+class SafeStep(Record):
     """A change of drive speed from steady sliding.
 
     ``sticks`` tells whether the belt sticks after a sudden step, ``slowest`` its least speed then.
@@ -39,11 +41,11 @@ class SafeStep:
     to_speed: float
     sticks: bool
     slowest: float
-    ramp_time: float
+    ramp_time: Annotated[float, OPEN]
 
 
 @dataclass(frozen=True)
-class Disturbance:
+class Disturbance(Record):
     """What throws a belt that slides at ``drive_speed`` into stick-slip.
 
     ``kick`` is the greatest sudden loss of belt speed that it bears, ``step`` the greatest sudden fall of the
@@ -52,8 +54,10 @@ class Disturbance:
     """
 
     drive_speed: float
-    kick: float
-    step: float
+    kick: Annotated[float, Means("sudden loss of belt speed", "m/s", open=True)]
+    step: Annotated[
+        float, Means("sudden fall of the drive from so much faster to this speed", "m/s", open=True)
+    ]
 
 
 @takes_si(from_speed="belt speed", to_speed="belt speed", temperature="temperature")

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -21,7 +21,7 @@ from hersey.errors import ParameterError
 from hersey.motion.belt import BeltDrag, Drivetrain, Train, belt_of
 from hersey.motion.drag import Drag
 from hersey.motion.parameters import MOST_STEPS, OF_THE_BELT, whole
-from hersey.result import Result, json_record, table_of
+from hersey.result import OPEN, Means, Result, table_of
 from hersey.stability.hysteresis_sweep import PARAMETER_KINDS, TOLERANCE, BandRules
 from hersey.units import argument, takes_si
 
@@ -45,21 +45,25 @@ class HysteresisBand(Result):
     that have a band. ``upper`` is infinite beyond 10,000 transition speeds.
     """
 
-    lower: float
+    also_stated = ("bistable", "verdict")
+
+    lower: Annotated[float, OPEN]
     transition: float
-    upper: float
-    stalls: bool
+    upper: Annotated[float, Means("zero, as lower, where no belt sticks and slips in turn", open=True)]
+    stalls: Annotated[bool, Means("the roll's grip does not start a belt at rest")]
     closure: str
-    method: str
-    lower_accuracy: float
-    upper_accuracy: float
+    method: Annotated[str, Means("half laps, or simulation")]
+    lower_accuracy: Annotated[float, Means("relative", open=True)]
+    upper_accuracy: Annotated[float, Means("relative", open=True)]
     deeper: bool
     speed_max: float | None
     laps: int
-    sensitivity: Mapping[str, float] = field(default_factory=dict)
-    lower_sensitivity: Mapping[str, float] = field(default_factory=dict)
-    interval: tuple[float, float] | None = None
-    lower_interval: tuple[float, float] | None = None
+    sensitivity: Annotated[
+        Mapping[str, float], Means("relative change of upper per that of each", open=True)
+    ] = field(default_factory=dict)
+    lower_sensitivity: Annotated[Mapping[str, float], OPEN] = field(default_factory=dict)
+    interval: Annotated[tuple[float, float] | None, Means("of upper, 95 %", open=True)] = None
+    lower_interval: Annotated[tuple[float, float] | None, OPEN] = None
     share_bistable: float | None = None
 
     @property
@@ -133,10 +137,6 @@ class HysteresisBand(Result):
             for name, share in self.sensitivity.items()
         ]
         return [head, *rows]
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return every field, and what they mean; in SI if the arguments were."""
-        return json_record({**vars(self), "bistable": self.bistable, "verdict": self.verdict()})
 
     def to_frame(self) -> pl.DataFrame:
         """Return the edges and their accuracies; the units named are SI, and stand for those given."""

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
@@ -21,7 +21,7 @@ from hersey.motion.drag import AnyDrag
 from hersey.motion.heat import HeatBalance
 from hersey.motion.schedule import Schedule
 from hersey.motion.simulation import Trajectory, simulate
-from hersey.result import Result, json_record
+from hersey.result import Means, Result
 from hersey.stability.hysteresis import hysteresis
 from hersey.units import celsius, takes_si
 
@@ -57,22 +57,25 @@ class WarmUp(Result):
     ``full_speed_standing`` (s). ``rounds`` were needed.
     """
 
+    also_stated = ("verdict", "beside")
+    not_stated = ("response",)
+
     target_speed: float
     force_limit: float
-    margin: float
-    acceleration: float
+    margin: Annotated[float, Means("share of the limit kept to spare")]
+    acceleration: Annotated[float, Means(unit="m/s^2")]
     time: FloatArray
-    drive_speed: FloatArray
+    drive_speed: Annotated[FloatArray, Means("straight lines between", shape="(n,)")]
     film_temperature: FloatArray
     roll_temperature: FloatArray
-    drag: FloatArray
-    start: float
-    full_speed: float
-    slides_from: float
-    peak_force: float
-    drag_at_once: float
-    within_at_once: float
-    full_speed_standing: float
+    drag: Annotated[FloatArray, Means("of sliding steadily; null at standstill", shape="(n,)", open=True)]
+    start: Annotated[float, Means("of the drive; null if it cannot start", open=True)]
+    full_speed: Annotated[float, Means("from when on; null if not within the time looked at", open=True)]
+    slides_from: Annotated[float, Means("from when on the belt slides for good; null if never", open=True)]
+    peak_force: Annotated[float, Means("of the spring, in the motion")]
+    drag_at_once: Annotated[float, Means("greatest, at full speed from the start on")]
+    within_at_once: Annotated[float, Means("when that keeps the limit; null if not in time", open=True)]
+    full_speed_standing: Annotated[float, Means("by standing until warm; null if not in time", open=True)]
     rounds: int
     warnings: tuple[str, ...]
     response: Trajectory
@@ -165,11 +168,6 @@ class WarmUp(Result):
         """Return target and time."""
         target = f"warm-up to {_speed(self.target_speed)}"
         return f"{target}, {self.full_speed:.4g} s" if self.found else f"{target}: not reached"
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return all but the response, in SI; None for what is infinite or missing."""
-        plain = {name: value for name, value in vars(self).items() if name != "response"}
-        return json_record({"verdict": self.verdict(), "beside": self.beside(), **plain})
 
     def to_frame(self) -> pl.DataFrame:
         """Return the course, a row per point."""

@@ -17,14 +17,15 @@ from hersey.decision.behaviour import Behaviour, Step, Working
 from hersey.errors import HerseyError, ParameterError
 from hersey.log import TorqueLog
 from hersey.machine.machine import Machine, read_machine
-from hersey.parts import ComparisonPart, DecisionPart, FilmPart, RegimePart, SimulationPart, TorqueBudgetPart
 from hersey.result import Result
 from hersey.study.display_units import display_units
 from hersey.study.first_screen import decision
 from hersey.study.first_screen.reasons import in_words
+from hersey.study.first_screen.result import DecisionPart
 from hersey.study.nip import film_part
-from hersey.study.simulation import simulation
-from hersey.study.torque_budget import torque_budget
+from hersey.study.nip_film import FilmPart
+from hersey.study.simulation import SimulationPart, simulation
+from hersey.study.torque_budget import TorqueBudgetPart, torque_budget
 from hersey.verdict.cautions import cautions
 from hersey.verdict.regime import Regime, regime
 
@@ -181,10 +182,10 @@ def study(
             points,
             surface,
             machine,
-            seen=RegimePart.model_validate(seen.to_dict()),
+            seen=seen,
             film=film,
             torque_budget=budget,
-            compared=None if comparison is None else ComparisonPart.model_validate(comparison.to_dict()),
+            compared=comparison,
             found=found,
             why=why,
             machine_file="" if machine_file is None else machine_file.name,

@@ -13,7 +13,7 @@ from hersey.lubrication.film import REGIMES, Film, film_thickness
 from hersey.lubrication.film_temperature import film_temperature
 from hersey.lubrication.mixed import MixedFilm
 from hersey.machine.machine import Machine
-from hersey.parts import FilmPart, FilmPoint
+from hersey.study.nip_film import FilmPart, FilmPoint
 from hersey.verdict.checks import Misfit, misfits, remarks
 from hersey.verdict.evidence import MeasuredFilm, Verdict, measured_film, verdict
 from hersey.verdict.regime import Regime
@@ -108,7 +108,7 @@ def film_document(
             "verdict": "" if says is None else says.text,
             "contradicted": says is not None and says.contradicted,
             "mixed": None if shared is None else shared.film.to_dict(),
-            "transition": None if shared is None else shared.transition.to_dict(),
+            "transition": None if shared is None else shared.transition,
             "misfits": [
                 {"signal": "act" if each.grave else "watch", "text": each.text, "size": each.size}
                 for each in off

@@ -2,16 +2,37 @@
 
 from __future__ import annotations
 
+from pydantic import Field
+
 from hersey.decision.behaviour import Behaviour, typical
 from hersey.motion.belt import Drivetrain
 from hersey.motion.drag import DragTable
 from hersey.motion.simulation import simulate, stick_slip
-from hersey.parts import SimulationPart
+from hersey.schema.part import Part
 from hersey.study.thinning import kept
 from hersey.units import celsius, rpm
 
 #: Drive speed of the simulation, as a share of the transition speed.
 SIMULATED_SPEED = 0.8
+
+
+class SimulationPart(Part):
+    """A simulation from rest at a low drive speed."""
+
+    title: str
+    units: str
+    speed_unit: str
+    force_unit: str
+    parameters: dict[str, float | str]
+    kind: str
+    frequency: float = Field(description="Hz")
+    stuck_fraction: float
+    speed_max: float
+    time: list[float]
+    belt_speed: list[float]
+    spring_force: list[float]
+    transition_speed: float
+    drive_speed: float
 
 
 def simulation(found: Behaviour) -> SimulationPart:

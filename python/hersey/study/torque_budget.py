@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from pydantic import Field
 
 from hersey.arrays import FloatArray
 from hersey.damping.dwells import SteadyPoints, groups_of_temperature
@@ -11,13 +12,30 @@ from hersey.lubrication import paper
 from hersey.lubrication.film_temperature import film_temperature
 from hersey.lubrication.mixed import MixedContact, MixedFilm
 from hersey.machine.machine import Machine
-from hersey.parts.torque_budget import TorqueBudgetPart
+from hersey.schema.part import Numbers, Part
 from hersey.units import celsius, rpm
 
 #: Speeds at which the parts are drawn.
 _SPEEDS = 60
 #: A prediction within this factor of what was measured agrees with it.
 _AGREES = 2.0
+
+
+class TorqueBudgetPart(Part):
+    """Parts of the torque, N m at rad/s, at one temperature by the machine's file; and the dwells."""
+
+    temperature: float = Field(description="K, of the hottest dwells")
+    speed: Numbers = Field(description="shape (speeds,)")
+    rest: Numbers = Field(description="what the drive takes besides, shape (speeds,)")
+    contact: Numbers = Field(description="asperities, shape (speeds,)")
+    shear: Numbers = Field(description="film sheared over the nip, shape (speeds,)")
+    inlet: Numbers = Field(description="inlet and pressure of the film, shape (speeds,)")
+    measured_speed: Numbers = Field(description="of the dwells there")
+    measured_torque: Numbers = Field(description="whole torque of the dwells there")
+    ratio: tuple[float, float, float] = Field(
+        description="measured over predicted torque of all dwells: least, geometric mean, largest"
+    )
+    text: list[str] = Field(description="in sentences")
 
 
 def torque_budget(

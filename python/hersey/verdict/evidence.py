@@ -10,7 +10,7 @@ U = omega R; the friction coefficient is torque/(R N).
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 
@@ -26,7 +26,7 @@ from hersey.lubrication.film import REGIMES, Film, film_thickness
 from hersey.lubrication.film_temperature import film_temperature
 from hersey.lubrication.lubricant import Lubricant
 from hersey.lubrication.reynolds import ElasticLayer, ThickeningFluid, exponent, solve_line_contact
-from hersey.result import Result, json_record, table_of
+from hersey.result import Means, Result, json_record, table_of
 from hersey.units import celsius, takes_si
 from hersey.verdict.contact_regimes import (
     contact_regimes,
@@ -52,21 +52,21 @@ class MeasuredFilm(Result):
     ``grip`` is the friction at which the belt slips on the roll, if known.
     """
 
-    speed: FloatArray
-    temperature: FloatArray
-    torque: FloatArray
-    thickness: FloatArray
-    low: FloatArray
-    high: FloatArray
-    systematic: float
+    speed: Annotated[FloatArray, Means(unit="rad/s")]
+    temperature: Annotated[FloatArray, Means(unit="K")]
+    torque: Annotated[FloatArray, Means(unit="N m")]
+    thickness: Annotated[FloatArray, Means(unit="m")]
+    low: Annotated[FloatArray, Means("95 %", "m")]
+    high: Annotated[FloatArray, Means("95 %", "m")]
+    systematic: Annotated[float, Means("factor common to all dwells")]
     friction: FloatArray
-    hersey_number: FloatArray
+    hersey_number: Annotated[FloatArray, Means("eta U/p", "m")]
     sommerfeld_number: FloatArray
     lambda_ratio: FloatArray | None
     predicted: Film
-    predicted_torque: FloatArray
-    calibration: Estimate  #: measured over predicted torque, geometric mean
-    on_film: FloatArray  #: 1 where the dwell is on the rising branch, 0 on the falling one
+    predicted_torque: Annotated[FloatArray, Means(unit="N m")]
+    calibration: Annotated[Estimate, Means("measured over predicted torque")]
+    on_film: Annotated[FloatArray, Means("1 on the rising branch, 0 on the falling one", open=True)]
     grip: float | None
 
     def summary(self) -> str:

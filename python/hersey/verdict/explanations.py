@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 
@@ -29,6 +29,7 @@ from hersey.damping.dwells import SteadyPoints
 from hersey.damping.estimate import CONFIDENCE
 from hersey.damping.rising import Rising, rising
 from hersey.damping.surface import DampingSurface
+from hersey.result import OPEN, Means, Record
 from hersey.verdict.regimes import COULOMB, FALLING, Hypothesis
 
 #: Share of the torque from which a constant part, or the film beside it, counts.
@@ -54,7 +55,7 @@ _WORDS = {
 
 
 @dataclass(frozen=True)
-class Explanation:
+class Explanation(Record):
     """What the data do not exclude.
 
     ``constant_share`` is that of a constant torque at the middle speed, None where there is none;
@@ -63,12 +64,14 @@ class Explanation:
 
     key: str
     name: str
-    constant_share: float | None = None
+    constant_share: Annotated[float | None, Means("of torque at the middle speed; null if there is none")] = (
+        None
+    )
     p_value: float | None = None
 
 
 @dataclass(frozen=True)
-class Tried:
+class Tried(Record):
     """A law that was fitted to the dwells of the rising branch.
 
     ``parameters`` are in the coordinates of the fit, ``constant_share`` as in `Explanation`; ``curvature`` is
@@ -76,10 +79,10 @@ class Tried:
     """
 
     name: str
-    parameters: dict[str, float]
-    constant_share: float | None
+    parameters: Annotated[dict[str, float], OPEN]
+    constant_share: Annotated[float | None, Means("of torque at the middle speed; null if there is none")]
     aicc: float
-    curvature: float | None
+    curvature: Annotated[float | None, Means("p-value of the law's bend with speed")]
     verdict: str = ""
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from hersey.damping.surface import DampingSurface
 from hersey.damping.trend import Trend, trend_of
 from hersey.lubrication.contact import Contact
 from hersey.lubrication.lubricant import Lubricant
-from hersey.result import Result, json_record
+from hersey.result import Means, Record, Result
 from hersey.units import celsius, rpm
 from hersey.verdict.contact_regimes import film_law, log_regimes
 from hersey.verdict.explanations import Explained, Explanation, Tried, explained
@@ -30,7 +30,7 @@ STEEP = -1.5
 
 
 @dataclass(frozen=True)
-class BranchExponent:
+class BranchExponent(Record):
     """Exponent of damping in speed at one temperature (K; None if not recorded) on one branch."""
 
     temperature: float | None
@@ -56,7 +56,7 @@ class Regime(Result):
     why_unnamed: str
     lack_of_fit: LackOfFit | None  #: of one exponent; None where too few dwells can say
     verdict: str
-    tried: tuple[Tried, ...] = ()  #: laws fitted to the rising branch, the likeliest first
+    tried: Annotated[tuple[Tried, ...], Means("the likeliest first")] = ()
 
     def summary(self) -> str:
         """Return the verdict, the hypotheses and the exponents as text."""
@@ -82,10 +82,6 @@ class Regime(Result):
         if not self.explanations:
             return "no regime named: the exponent is that of none"
         return "no regime named; not excluded: " + listed([e.name for e in self.explanations])
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return evidence and verdict in SI."""
-        return json_record({**vars(self), "hypotheses": [h.to_dict() for h in self.hypotheses]})
 
     def to_frame(self) -> pl.DataFrame:
         """Return one row per exponent: temperature, branch and the exponent with its 95 % interval."""

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 
 from hersey.damping.distributions import student_above
 from hersey.damping.estimate import CONFIDENCE, Estimate
-from hersey.result import json_record
+from hersey.result import OPEN, Means, Record
 
 
 class RegimeRow(NamedTuple):
@@ -61,25 +61,25 @@ REGIMES: tuple[RegimeRow, ...] = (
 
 
 @dataclass(frozen=True)
-class Hypothesis:
+class Hypothesis(Record):
     """A named value (or range) of the exponent, and how probable a deviation like the measured one is."""
 
+    also_stated = ("consistent",)
+
     name: str
-    low: float
+    low: Annotated[float, OPEN]
     high: float
-    film: str
+    film: Annotated[str, Means("regime of film theory that predicts it, or empty")]
     meaning: str
     p_value: float
-    holds_here: bool | None = None  #: whether film theory puts this contact there; None without a contact
+    holds_here: Annotated[
+        bool | None, Means("whether film theory puts this contact there; null without a contact")
+    ] = None
 
     @property
     def consistent(self) -> bool:
         """Whether it survives at the 5 % level."""
         return self.p_value > 1.0 - CONFIDENCE
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return it as JSON can hold it; None for an end without bound."""
-        return json_record({**vars(self), "consistent": self.consistent})
 
 
 def judged(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated
 
 import numpy as np
 
@@ -11,12 +11,12 @@ from hersey.arrays import FloatArray
 from hersey.damping.surface import DampingSurface
 from hersey.lubrication.film_temperature import film_temperature
 from hersey.lubrication.mixed import MixedContact
-from hersey.result import json_record
+from hersey.result import Means, Record
 from hersey.units import celsius, rpm
 
 
 @dataclass(frozen=True)
-class ContactTransition:
+class ContactTransition(Record):
     """Transition speed against temperature; arrays of shape (temperatures,), NaN where there is none.
 
     ``temperature`` (K) is the one read, ``speed`` (rad/s) that of the contact, ``measured`` (rad/s) that of
@@ -25,13 +25,19 @@ class ContactTransition:
     viscosity it is -1.
     """
 
-    temperature: FloatArray
-    speed: FloatArray
-    measured: FloatArray
-    low: FloatArray
-    high: FloatArray
-    by_roughness: FloatArray
-    by_boundary: FloatArray
+    also_stated = ("ratio",)
+
+    temperature: Annotated[FloatArray, Means("as read", "K")]
+    speed: Annotated[FloatArray, Means("by the contact, rad/s; null where drag falls nowhere", open=True)]
+    measured: Annotated[
+        FloatArray, Means("of the fitted surface, rad/s; null where it shows none", open=True)
+    ]
+    low: Annotated[FloatArray, Means("of measured, rad/s, 95 %", open=True)]
+    high: Annotated[FloatArray, Means("of measured, rad/s, 95 %", open=True)]
+    by_roughness: Annotated[FloatArray, Means("d ln speed/d ln roughness", open=True)]
+    by_boundary: Annotated[
+        FloatArray, Means("d ln speed/d ln boundary friction; by viscosity it is -1", open=True)
+    ]
 
     @property
     def ratio(self) -> FloatArray:
@@ -73,10 +79,6 @@ class ContactTransition:
                 f"to {self.by_boundary[i]:.2f}, as the inverse of viscosity."
             )
         return out
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return the numbers, in SI."""
-        return json_record({**vars(self), "ratio": self.ratio})
 
     def _seen(self, i: int) -> str:
         if np.isnan(self.measured[i]):

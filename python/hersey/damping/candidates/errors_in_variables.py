@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import dataclass, replace
+from typing import Annotated
 
 import numpy as np
 import odrpack
@@ -16,6 +17,7 @@ from hersey.arrays import FloatArray
 from hersey.damping.candidates.fitting import LawFit
 from hersey.damping.candidates.observations import Inputs, Observations
 from hersey.damping.candidates.shared_load import SharedLoadLaw
+from hersey.result import OPEN, Record
 
 #: Least relative error of an input: ODRPACK divides by it.
 _LEAST = 1e-9
@@ -24,12 +26,15 @@ _NOTICEABLE = 0.5
 
 
 @dataclass(frozen=True)
-class OrthogonalFit:
+class OrthogonalFit(Record):
     """The values by orthogonal distance regression, beside those by effective variance."""
 
+    also_stated = ("verdict",)
+    not_stated = ("values",)
+
     values: FloatArray
-    largest_shift: float  #: of any parameter, in its standard error
-    share: float  #: of the variance of a dwell that comes from speed and temperature
+    largest_shift: Annotated[float, OPEN]  #: of any parameter, in its standard error
+    share: Annotated[float, OPEN]  #: of the variance of a dwell that comes from speed and temperature
     converged: bool
 
     @property

@@ -16,6 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Annotated
 
 import numpy as np
 
@@ -30,6 +31,7 @@ from hersey.damping.candidates.stribeck import StribeckLaw
 from hersey.damping.candidates.thermal import ARRHENIUS, VFT
 from hersey.damping.distributions import normal_quantile, ratio_above
 from hersey.damping.estimate import CONFIDENCE, quantile
+from hersey.result import OPEN, Record
 from hersey.units import convert
 
 Ends = tuple[float, float]
@@ -50,12 +52,12 @@ class Quantity:
 
 
 @dataclass(frozen=True)
-class ParameterEstimate:
+class ParameterEstimate(Record):
     """A quantity with its intervals at 95 %, by method; neither error nor interval if not identified."""
 
     name: str
     unit: str
-    value: float
+    value: Annotated[float, OPEN]
     error: float | None
     intervals: dict[str, Ends] = field(default_factory=dict)
     not_identified: str = ""

@@ -8,6 +8,7 @@ by F against what is left when they are there. The errors are those of the fit, 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from hersey.damping.candidates.fitting import LawFit
 from hersey.damping.candidates.observations import Observations
 from hersey.damping.distributions import ratio_above
 from hersey.damping.dwells import distinct_speeds
+from hersey.result import Means, Record
 
 #: Speeds and temperatures that a curvature needs.
 SPEEDS_OF_CURVATURE, TEMPERATURES_OF_CURVATURE = 4, 3
@@ -24,7 +26,7 @@ DOES_NOT_HOLD = 0.002
 
 
 @dataclass(frozen=True)
-class LackOfFit:
+class LackOfFit(Record):
     """p-values of a law that holds, None where too few speeds or temperatures can say.
 
     ``local_exponents`` are those of damping at the slow and the fast end, ``by_temperature`` at the coldest
@@ -34,8 +36,8 @@ class LackOfFit:
     curvature: float | None
     exponent_with_temperature: float | None
     temperature: float | None
-    local_exponents: tuple[float, float]
-    by_temperature: tuple[float, float]
+    local_exponents: Annotated[tuple[float, float], Means("of damping, at the slow and the fast end")]
+    by_temperature: Annotated[tuple[float, float], Means("at the coldest and the hottest temperature")]
 
     @property
     def in_speed(self) -> bool:

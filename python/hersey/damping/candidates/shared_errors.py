@@ -12,6 +12,7 @@ mixed models Giesbrecht and Burns, Biometrics 41 (1985) 477).
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Annotated
 
 import numpy as np
 from scipy import optimize
@@ -19,6 +20,7 @@ from scipy import optimize
 from hersey.arrays import FloatArray, IntArray
 from hersey.damping.candidates.observations import Observations
 from hersey.damping.distributions import ratio_above
+from hersey.result import Means, Record
 
 #: Groups that tell how far groups scatter, where a law of temperature is fitted to them too: two may lie
 #: close by chance, and would show none.
@@ -58,7 +60,7 @@ def _indicator(label: IntArray) -> FloatArray:
 
 
 @dataclass(frozen=True)
-class SharedScatter:
+class SharedScatter(Record):
     """Relative standard deviation of an error that the dwells of a group share.
 
     ``p_value`` is that of none at all, by an F test of the groups' residuals. ``told`` is False where the law
@@ -67,8 +69,8 @@ class SharedScatter:
 
     name: str
     deviation: float
-    p_value: float
-    told: bool
+    p_value: Annotated[float, Means("of none, by an F test")]
+    told: Annotated[bool, Means("whether the dwells say anything of it")]
 
 
 def shared_variance(scatter: tuple[SharedScatter, ...]) -> float:

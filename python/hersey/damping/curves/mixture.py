@@ -6,6 +6,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Annotated
 
 import numpy as np
 
@@ -20,6 +21,7 @@ from hersey.damping.distributions import square_above
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.surface import DampingSurface
 from hersey.errors import ParameterError
+from hersey.result import Means, Record
 
 #: A law whose misfit is as large by chance in fewer logs than this is rejected. The chances are a little too
 #: small: of 40 logs of true laws two had less than a hundred times this.
@@ -35,14 +37,14 @@ _USUAL, _STEEPEST = 2.0, 6.0
 
 
 @dataclass(frozen=True)
-class LawWeight:
+class LawWeight(Record):
     """A law: its weight, the AICc behind it, and the probability of so large a misfit by chance."""
 
     name: str
     words: str
     weight: float
     delta_aicc: float
-    p_value: float
+    p_value: Annotated[float, Means("probability of so large a misfit by chance")]
     rejected: bool
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,7 +13,7 @@ from hersey.arrays import FloatArray, numbers_of
 from hersey.errors import ParameterError
 from hersey.motion.belt import Drivetrain
 from hersey.motion.drag import DragTable, PowerDrag
-from hersey.result import Result, json_record
+from hersey.result import OPEN, Means, Result
 from hersey.stability.operating_map.edges import check_temperatures, contour, edges_at, shown_laws
 from hersey.stability.operating_map.state import MapState, PlacedPoint
 from hersey.units import convert, takes_si
@@ -43,27 +43,29 @@ class OperatingMap(Result):
     temperatures; ``drag`` is that of its typical draw.
     """
 
+    also_stated = ("given",)
+
     temperature: FloatArray | None
-    speed: FloatArray
-    lower: FloatArray
-    transition: FloatArray
-    upper: FloatArray
-    transition_interval: FloatArray
-    upper_interval: FloatArray
-    stall_below: FloatArray
-    stall_above: FloatArray
-    torque: FloatArray
-    holding: FloatArray
-    holding_interval: FloatArray
-    torque_limit: float | None
+    speed: Annotated[FloatArray, Means(unit="m/s", shape="(m,)")]
+    lower: Annotated[FloatArray, OPEN]
+    transition: Annotated[FloatArray, OPEN]
+    upper: Annotated[FloatArray, OPEN]
+    transition_interval: Annotated[FloatArray, Means("95 %", shape="(2, n)", open=True)]
+    upper_interval: Annotated[FloatArray, Means("95 %", shape="(2, n)", open=True)]
+    stall_below: Annotated[FloatArray, OPEN]
+    stall_above: Annotated[FloatArray, OPEN]
+    torque: Annotated[FloatArray, Means("of steady sliding", "N m", shape="(n, m)")]
+    holding: Annotated[FloatArray, Means("what a belt at rest bears", "N m")]
+    holding_interval: Annotated[FloatArray, Means("95 %", "N m", shape="(2, n)", open=True)]
+    torque_limit: Annotated[float | None, Means(unit="N m")]
     limited_by: str
-    speed_limit: float | None
-    measured_temperature: tuple[float, float] | None
-    measured_speed: tuple[float, float]
+    speed_limit: Annotated[float | None, Means(unit="m/s")]
+    measured_temperature: Annotated[tuple[float, float] | None, Means(unit="K")]
+    measured_speed: Annotated[tuple[float, float], Means(unit="m/s")]
     points: tuple[PlacedPoint, ...]
     uncertain: tuple[str, ...]
     warnings: tuple[str, ...]
-    roll_radius: float
+    roll_radius: Annotated[float, Means(unit="m")]
     train: Drivetrain
     drag: PowerDrag
     stick_speed_rule: str
@@ -138,10 +140,6 @@ class OperatingMap(Result):
         speed where torque is never so small.
         """
         return contour(self._laws(self.temperature), torque / self.roll_radius)
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return the whole map in SI; None stands for a speed beyond all that was searched."""
-        return json_record({**vars(self), "given": self.given})
 
     def to_frame(self) -> pl.DataFrame:
         """Return the dividing speeds at each temperature (one row if isothermal)."""

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
+
+from hersey.result import OPEN, Means, Record
 
 #: States, from the slow side up. ``creep``: below the stick speed the closure ``retained`` takes the belt
 #: along at the speed of the drive. ``swing``: a small swing without sticking survives, a stuck belt sticks
@@ -33,7 +36,7 @@ _MAY_NOT_START = "The drive may not start a belt at rest. If it does:"
 
 
 @dataclass(frozen=True)
-class MapState:
+class MapState(Record):
     """What the belt does at one temperature and drive speed; speeds in m/s, torque in N m.
 
     ``state`` is one of `STATES`. ``torque`` is that of steady sliding, with which the drive must cope, and
@@ -46,17 +49,17 @@ class MapState:
     """
 
     state: str
-    moving: str
+    moving: Annotated[str, Means("state of a belt that moves already")]
     torque: float
-    holding: float
-    starts: bool
-    doubtful: bool
-    lower: float
+    holding: Annotated[float, Means("what a belt at rest bears before it starts")]
+    starts: Annotated[bool, Means("whether the drive starts a belt at rest")]
+    doubtful: Annotated[bool, Means("whether the 95 % interval of holding says otherwise")]
+    lower: Annotated[float, OPEN]
     transition: float
-    upper: float
-    stick_speed: float
+    upper: Annotated[float, OPEN]
+    stick_speed: Annotated[float, Means("at this temperature")]
     extrapolated: bool
-    slipping: bool = False
+    slipping: Annotated[bool, Means("the roll may slip for a part of the laps")] = False
 
     def verdict(self) -> str:
         """Return what the state means, in one sentence."""
@@ -82,7 +85,7 @@ _OF_DRAWS = {
 
 
 @dataclass(frozen=True)
-class PlacedPoint:
+class PlacedPoint(Record):
     """An operating point of the user's and what the map says there: speed in m/s, temperature in K.
 
     ``judged`` is the verdict of the posterior that the edges are from; empty where there is none.
@@ -92,7 +95,7 @@ class PlacedPoint:
     speed: float
     temperature: float
     at: MapState
-    judged: str = ""
+    judged: Annotated[str, Means("verdict of the posterior that the edges are from")] = ""
 
     def verdict(self) -> str:
         """Return what happens there, in one sentence."""

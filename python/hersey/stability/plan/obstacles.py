@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import Annotated
 
 import numpy as np
 
 from hersey.errors import ParameterError
 from hersey.machine.limits import Limits
+from hersey.result import OPEN, Record
 from hersey.stability.plan.draws import Trials
 from hersey.stability.plan.search import PROBES, Room, Search
 from hersey.stability.plan.trial import MachineSample, Shape
@@ -36,7 +38,7 @@ _BROKEN = {
 
 
 @dataclass(frozen=True)
-class Obstacle:
+class Obstacle(Record):
     """A limit that forbids every profile.
 
     ``limit`` is its name, ``given`` its value (SI), ``needed`` one that would do if no other changed (None if
@@ -44,7 +46,7 @@ class Obstacle:
     """
 
     limit: str
-    given: float
+    given: Annotated[float, OPEN]
     needed: float | None
     text: str
 

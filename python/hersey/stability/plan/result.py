@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import numpy as np
 
 from hersey.motion.schedule import Schedule
 from hersey.motion.simulation import Trajectory
-from hersey.result import Result, json_record
+from hersey.result import OPEN, Means, Record, Result
 from hersey.stability.plan.obstacles import Obstacle, speed_text
 from hersey.units import celsius
 
@@ -34,13 +34,20 @@ NOTHING: Mapping[str, Any] = {
 }
 
 
+class ProfileRow(NamedTuple):
+    """A point of a drive profile."""
+
+    time: Annotated[float, Means(unit="s")]
+    drive_speed: Annotated[float, Means(unit="m/s")]
+
+
 @dataclass(frozen=True)
-class LimitUse:
+class LimitUse(Record):
     """A limit and what the profile takes of it (SI): the most that a share ``confidence`` of draws takes."""
 
     name: str
     limit: float
-    used: float
+    used: Annotated[float, OPEN]
 
 
 @dataclass(frozen=True, repr=False)
@@ -60,30 +67,33 @@ class Plan(Result):
     plan made with heat makes, from the moment at which the drive could start.
     """
 
+    also_stated = ("verdict", "rows")
+    not_stated = ("schedule", "response", "course")
+
     kind: str
     target_speed: float
     confidence: float
     seed: int
     schedule: Schedule | None
-    duration: float
-    wait: float
-    rise: float
-    peak_speed: float
-    hold: float
-    fall: float
-    share: float
-    share_low: float
+    duration: Annotated[float, OPEN]
+    wait: Annotated[float, OPEN]
+    rise: Annotated[float, OPEN]
+    peak_speed: Annotated[float, OPEN]
+    hold: Annotated[float, OPEN]
+    fall: Annotated[float, OPEN]
+    share: Annotated[float, Means("of fresh draws that are smooth")]
+    share_low: Annotated[float, Means("exceeded by the true share with 95 %")]
     draws: int
     failures: Mapping[str, int]
     uses: tuple[LimitUse, ...]
     warnings: tuple[str, ...]
     obstacles: tuple[Obstacle, ...]
-    fold_speed: float
+    fold_speed: Annotated[float, OPEN]
     transition_speed: float
     stick_speed: float
-    temperature: float | None
-    greatest_speed: float
-    peak_force: float
+    temperature: Annotated[float | None, Means(unit="K")]
+    greatest_speed: Annotated[float, OPEN]
+    peak_force: Annotated[float, OPEN]
     tried: int
     response: Trajectory | None
     course: Schedule | None = None
@@ -93,12 +103,12 @@ class Plan(Result):
         """Whether there is a profile."""
         return self.schedule is not None
 
-    def rows(self) -> list[tuple[float, float]]:
+    def rows(self) -> list[ProfileRow]:
         """Return times (s) and drive speeds (m/s), joined by straight lines; equal times make a jump."""
         if self.schedule is None:
             return []
         times, speeds = np.asarray(self.schedule.times), np.asarray(self.schedule.values)
-        return list(zip(times.tolist(), speeds.tolist(), strict=True))
+        return list(map(ProfileRow, times.tolist(), speeds.tolist()))
 
     def verdict(self) -> str:
         """Return the decision in a sentence or two."""
@@ -157,16 +167,6 @@ class Plan(Result):
         """Return the kind, the target and how long it takes."""
         target = f"{self.kind}, target {speed_text(self.target_speed)}"
         return f"{target}, {self.duration:.4g} s" if self.found else target
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return all but response and course, in SI; None for what is infinite or missing."""
-        plain = {
-            f.name: getattr(self, f.name)
-            for f in fields(self)
-            if f.name not in ("response", "schedule", "course")
-        }
-        rows = [{"time": t, "drive_speed": v} for t, v in self.rows()]
-        return json_record({"verdict": self.verdict(), "rows": rows, **plain})
 
     def to_frame(self) -> pl.DataFrame:
         """Return the profile; no rows if there is none."""

@@ -3,6 +3,7 @@
 =========== ==================================================================
 module      what it holds
 =========== ==================================================================
+result      what the first screen holds
 words       numbers as the first screen writes them
 reasons     why something cannot be computed
 instruction the sentence, its interval, and what happens otherwise

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from hersey.decision.behaviour import Behaviour
+from hersey.decision.edges import Edge
 from hersey.decision.measurement import WORTH, Measurement
-from hersey.parts.decision import MeasurementPart, SpeedPart
-from hersey.parts.models import DesignPart
 from hersey.posterior import Posterior
+from hersey.study.first_screen.result import DesignPart, MeasurementPart
 from hersey.study.first_screen.words import at, between, listed, mm
 
 
@@ -37,7 +37,7 @@ def design_part(found: Posterior, ranked: Sequence[Measurement]) -> DesignPart:
         points=[],
         law=max(found.laws, key=lambda law: law.weight).words,
         seed=found.seed,
-        fold=SpeedPart(value=value, low=low, high=high),
+        fold=Edge(value=value, low=low, high=high),
         measurements=[_part(each) for each in ranked],
     )
 

@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 from hersey.damping.candidates.observations import Observations
+from hersey.damping.compare import LogComparison
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.surface import DampingSurface
 from hersey.damping.trend import trend_of
@@ -13,14 +14,16 @@ from hersey.decision.behaviour import Behaviour
 from hersey.decision.edges import edges_of
 from hersey.decision.plausibility import asked
 from hersey.machine.machine import Machine
-from hersey.parts import ComparisonPart, DecisionPart, FilmPart, RegimePart, TorqueBudgetPart
-from hersey.parts.decision import Signal, SpeedPart
 from hersey.study.first_screen.advice import advised
 from hersey.study.first_screen.flags import flags
 from hersey.study.first_screen.instruction import of_log, of_machine
 from hersey.study.first_screen.missing import missing
 from hersey.study.first_screen.points import point_decision, points_of_log, unjudged, worst
 from hersey.study.first_screen.questions import unanswered
+from hersey.study.first_screen.result import DecisionPart, Signal
+from hersey.study.nip_film import FilmPart
+from hersey.study.torque_budget import TorqueBudgetPart
+from hersey.verdict.regime import Regime
 
 
 def decision(
@@ -28,11 +31,11 @@ def decision(
     surface: DampingSurface,
     machine: Machine | None,
     *,
-    seen: RegimePart,
+    seen: Regime,
     film: FilmPart | None,
     torque_budget: TorqueBudgetPart | None,
     found: Behaviour | None,
-    compared: ComparisonPart | None = None,
+    compared: LogComparison | None = None,
     why: str = "",
     machine_file: str = "",
     unit: str = "N·m",
@@ -84,7 +87,7 @@ def _speeds(found: Behaviour | None) -> dict[str, Any]:
     return {
         "temperature": found.temperature,
         "safe_speed": edges.safe if math.isfinite(edges.safe) else None,
-        "fold": SpeedPart(value=fold.value, low=fold.low, high=fold.high) if fold.told else None,
+        "fold": fold if fold.told else None,
         "closures": found.posterior.closures(),
         "measurement": advised(found),
     }

@@ -4,18 +4,21 @@ from __future__ import annotations
 
 import numpy as np
 
+from hersey.damping.compare import LogComparison
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.dwells.doubtful import doubtful_order, doubtful_tare
 from hersey.damping.surface import DampingSurface
 from hersey.decision.behaviour import Behaviour
 from hersey.decision.edges import edges_of
 from hersey.log.doubtful import doubtful_units
-from hersey.parts import ComparisonPart, FilmPart, RegimePart, TorqueBudgetPart
-from hersey.parts.decision import FlagPart, Signal
 from hersey.posterior.result import SAFE
 from hersey.stability.operating_map import OperatingMap
 from hersey.study.first_screen.reasons import in_words
+from hersey.study.first_screen.result import FlagPart, Signal
 from hersey.study.first_screen.words import at, figures, listed, mm, signed, starting
+from hersey.study.nip_film import FilmPart
+from hersey.study.torque_budget import TorqueBudgetPart
+from hersey.verdict.regime import Regime
 
 #: How many the first screen has room for.
 MOST = 3
@@ -32,12 +35,12 @@ _SCATTER = 0.05
 def flags(
     points: SteadyPoints,
     surface: DampingSurface,
-    seen: RegimePart,
+    seen: Regime,
     film: FilmPart | None,
     torque_budget: TorqueBudgetPart | None,
     found: Behaviour | None,
     why: str = "",
-    compared: ComparisonPart | None = None,
+    compared: LogComparison | None = None,
     unit: str = "N·m",
 ) -> list[FlagPart]:
     """Return the gravest warnings, each with the section of the page that holds its evidence.
@@ -66,7 +69,7 @@ def flags(
     return sorted([*asked, *kept], key=lambda flag: grave[flag.signal])
 
 
-def _compared(found: ComparisonPart) -> FlagPart:
+def _compared(found: LogComparison) -> FlagPart:
     """What really changed since an earlier log."""
     differs = [each for each in found.changes if each.real]
     drags = any(low is not None and low > 1.0 for row in found.low for low in row)
@@ -216,7 +219,7 @@ def _below(points: SteadyPoints, surface: DampingSurface) -> int:
     return int(np.count_nonzero(speed < np.array(at)))
 
 
-def _left_open(points: SteadyPoints, seen: RegimePart, scatter: float) -> list[FlagPart]:
+def _left_open(points: SteadyPoints, seen: Regime, scatter: float) -> list[FlagPart]:
     out = []
     for each in doubtful_order(points)[:1]:
         text = _sentence(each.advice)

@@ -11,9 +11,9 @@ from hersey.damping.surface import DampingSurface
 from hersey.damping.trend import Trend
 from hersey.decision.behaviour import Behaviour, PointBehaviour
 from hersey.decision.edges import Edge, Edges, edges_of
-from hersey.parts.decision import Signal
 from hersey.posterior.result import SAFE
 from hersey.stability.operating_map import OperatingMap
+from hersey.study.first_screen.result import Signal
 from hersey.study.first_screen.words import (
     at,
     between,

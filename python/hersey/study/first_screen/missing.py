@@ -7,7 +7,7 @@ import math
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.surface import DampingSurface
 from hersey.machine.machine import Machine
-from hersey.parts.decision import MissingPart
+from hersey.study.first_screen.result import MissingPart
 from hersey.units import celsius, rpm
 
 _MACHINE = "machine.toml"

@@ -11,13 +11,11 @@ from hersey.decision.behaviour import PointBehaviour
 from hersey.decision.edges import Edges, edges_of
 from hersey.decision.judge import Unjudged, Verdict
 from hersey.machine.machine import Machine
-from hersey.parts.decision import PointDecisionPart, Signal, StartPart
-from hersey.parts.stability import DisturbancePart, PlanPart, StepPart
 from hersey.posterior import Posterior
 from hersey.posterior.result import SAFE
-from hersey.result import json_record
 from hersey.stability.operating_map import OperatingMap
 from hersey.study.first_screen.reasons import in_words
+from hersey.study.first_screen.result import PointDecisionPart, Signal, StartPart
 from hersey.study.first_screen.words import between, mm, per_cent, starting, torque
 from hersey.study.thinning import kept
 
@@ -46,7 +44,7 @@ def point_decision(
         signal, words = "watch", f"{words}, if all torque is the film's"
     if map_.state_at(kelvin, point.speed).extrapolated:
         signal, words = worst([signal, "watch"]), f"{words}; extrapolated"
-    withstands, plan, chances = found.disturbance, found.plan, verdict.probability
+    chances = verdict.probability
     return PointDecisionPart(
         name=point.name,
         speed=point.speed,
@@ -57,9 +55,9 @@ def point_decision(
         smooth=chances.smooth,
         from_above=chances.from_above,
         sticks=chances.sticks,
-        disturbance=None if withstands is None else DisturbancePart(**json_record(vars(withstands))),
-        steps=[StepPart(**json_record(vars(step))) for step in found.steps],
-        plan=None if plan is None else PlanPart(**plan.to_dict()),
+        disturbance=found.disturbance,
+        steps=list(found.steps),
+        plan=found.plan,
         motion=_motion(found),
         reason="; ".join(in_words(error) for error in found.errors),
     )

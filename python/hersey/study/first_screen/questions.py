@@ -7,8 +7,8 @@ from hersey.damping.surface import DampingSurface
 from hersey.decision.plausibility import Question
 from hersey.errors import Setting
 from hersey.machine.machine import Machine
-from hersey.parts.decision import DecisionPart, PointDecisionPart
 from hersey.study.first_screen.missing import missing
+from hersey.study.first_screen.result import DecisionPart, PointDecisionPart
 from hersey.study.first_screen.words import figures, mm
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from hersey.parts.part import Holed, Numbers, Part
-from hersey.parts.time_to_failure import AgesPart, SpanPart
+from hersey.document.parts.time_to_failure import AgesPart, SpanPart
+from hersey.schema.part import Holed, Numbers, Part
 
 
 class RunsPart(Part):

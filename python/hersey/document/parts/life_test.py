@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from hersey.parts.ageing_maps import AgeingMapsPart
-from hersey.parts.drift import DriftPart
-from hersey.parts.film_life import FilmLifePart
-from hersey.parts.other_uses import OtherUsesPart
-from hersey.parts.part import Part
-from hersey.parts.time_to_failure import TimeToFailurePart
+from hersey.document.parts.ageing_maps import AgeingMapsPart
+from hersey.document.parts.drift import DriftPart
+from hersey.document.parts.film_life import FilmLifePart
+from hersey.document.parts.other_uses import OtherUsesPart
+from hersey.document.parts.time_to_failure import TimeToFailurePart
+from hersey.schema.part import Part
 
 
 class LifeTestPart(Part):

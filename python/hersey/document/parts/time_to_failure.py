@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from hersey.parts.life import PopulationPart
-from hersey.parts.part import Numbers, Part
+from hersey.document.parts.life import PopulationPart
+from hersey.schema.part import Numbers, Part
 
 
 class SpanPart(Part):

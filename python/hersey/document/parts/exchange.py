@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from hersey.parts.part import Part
+from hersey.schema.part import Part
 
 
 class UnitVariablePart(Part):

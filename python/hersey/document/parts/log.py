@@ -6,16 +6,10 @@ from typing import Literal
 
 from pydantic import Field
 
-from hersey.parts.part import Part
-from hersey.parts.rest import RestPart
-
-
-class ChannelUse(Part):
-    """A column used for a role, name and unit as written in the file."""
-
-    role: str
-    name: str
-    unit: str
+from hersey.damping.rest import RestOfDrive
+from hersey.log.torque_log import Channel, TorqueLog
+from hersey.schema.part import Part
+from hersey.schema.record import part_of
 
 
 class MachineFilePart(Part):
@@ -36,7 +30,7 @@ class InputFile(Part):
     duration: float = Field(description="s")
     sampling_interval: float = Field(description="s")
     gaps: int = Field(description="times that rows are missing")
-    channels: list[ChannelUse]
+    channels: list[Channel]
     comments: list[str] = Field(description="comment lines above the header")
 
 
@@ -104,38 +98,10 @@ class PointsPart(Part):
     tare_errors: list[list[float]] = Field(description="N m, shape (points, disturbances)")
     notes: list[str]
     standing_torque: float | None
-    rest: RestPart | None = Field(default=None, description="taken off, so that torque is that of the film")
+    rest: RestOfDrive | None = Field(
+        default=None, description="taken off, so that torque is that of the film"
+    )
     rest_errors: list[list[float]] = Field(default=[], description="N m, shape (points, errors)")
-
-
-class ImpossiblePart(Part):
-    """Readings of a channel that cannot be right, for one reason; values in its unit as written."""
-
-    role: str
-    channel: str
-    unit: str
-    reason: str = Field(description="range, code, outlier, sign, drop-out, jump, clock or marked")
-    rows: int
-    values: list[tuple[float, int]] = Field(description="the most frequent ones, and how often they occur")
-    low: float | None = Field(description="null where the file itself marks them as invalid")
-    high: float | None
-    where: str = Field(description="the first of them, in words")
-    limits: str = Field(description="what is believed, in words; empty unless the reason is range")
-
-
-class LogFilePart(Part):
-    """A file that was read."""
-
-    name: str
-    sha256: str
-    bytes: int
-    rows: int
-    missing_rows: int
-    channels: list[ChannelUse]
-    comments: list[str] = Field(description="comment lines above the header")
-    cut_off: bool = Field(description="the file ends before its time")
-    notes: list[str]
-    impossible: list[ImpossiblePart] = Field(default=[], description="readings that cannot be right")
 
 
 class RunPart(Part):
@@ -152,33 +118,6 @@ class RunPart(Part):
     load: tuple[float, float] | None = Field(description="N")
 
 
-class EffectPart(Part):
-    """How far a correction moved a role, SI; the share is of the median of the absolute values before."""
-
-    role: str
-    largest: float
-    typical: float = Field(description="root mean square")
-    share: float | None
-
-
-class CorrectionPart(Part):
-    """A correction: its parameters as written with units, and its effects."""
-
-    name: str
-    parameters: list[tuple[str, str]]
-    effects: list[EffectPart]
-    note: str
-
-
-class LogPart(Part):
-    """A log of torque without its rows."""
-
-    rows: int
-    files: list[LogFilePart]
-    runs: list[RunPart]
-    corrections: list[CorrectionPart]
-
-
 class Series(Part):
     """Samples for display: time in s, values in the unit of the chart."""
 
@@ -193,3 +132,9 @@ class Timeline(Part):
     torque: Series
     temperature: Series | None
     starts: list[float] = Field(description="s, start of each run")
+
+
+class LogPart(part_of(TorqueLog)):  # type: ignore[misc]  # made as it runs
+    """Logs read as one: files, runs and corrections; the rows themselves are in the files."""
+
+    runs: list[RunPart]

@@ -28,14 +28,3 @@ class Interval(Part):
     high: float | None
     freedom: float | None = None
     systematic: float = 0.0
-
-
-class OpenInterval(Part):
-    """A number with standard error and 95 % interval; null where there is no bound."""
-
-    value: float | None
-    error: float | None
-    low: float | None
-    high: float | None
-    freedom: float | None = None
-    systematic: float | None = 0.0

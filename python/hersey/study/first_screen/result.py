@@ -6,8 +6,12 @@ from typing import Literal
 
 from pydantic import Field
 
-from hersey.parts.part import Numbers, Part
-from hersey.parts.stability import DisturbancePart, PlanPart, StepPart
+from hersey.damping.design import TestDesign
+from hersey.decision.edges import Edge
+from hersey.schema.part import Numbers, Part
+from hersey.schema.record import part_of
+from hersey.stability.disturbance import Disturbance, SafeStep
+from hersey.stability.plan.result import Plan
 
 #: Good: nothing to do. Watch: it depends, or a number is not sure. Act: something does not work as it is.
 Signal = Literal["good", "watch", "act"]
@@ -38,9 +42,9 @@ class PointDecisionPart(Part):
         default=None, description="probability: smooth only if it slides already, or starts by the profile"
     )
     sticks: float | None = Field(default=None, description="probability: sticks from any start")
-    disturbance: DisturbancePart | None = Field(default=None, description="what sliding there bears")
-    steps: list[StepPart] = Field(default=[], description="from the other points to this one")
-    plan: PlanPart | None = Field(default=None, description="where the belt does not slide from every start")
+    disturbance: Disturbance | None = Field(default=None, description="what sliding there bears")
+    steps: list[SafeStep] = Field(default=[], description="from the other points to this one")
+    plan: Plan | None = Field(default=None, description="where the belt does not slide from every start")
     motion: StartPart | None = Field(default=None, description="the plan's motion at the nominal parameters")
     reason: str = Field(default="", description="why there is no plan, or no figure, where one is wanted")
 
@@ -60,14 +64,6 @@ class MissingPart(Part):
     purpose: str = Field(description="what the report would then say")
     file: str
     lines: str = Field(description="TOML, to be copied; values of the user's are named in comments")
-
-
-class SpeedPart(Part):
-    """A speed (m/s) with its 95 % interval."""
-
-    value: float
-    low: float
-    high: float
 
 
 class MeasurementPart(Part):
@@ -93,9 +89,16 @@ class DecisionPart(Part):
     safe_speed: float | None = Field(
         default=None, description="m/s, above which the belt is smooth from any start with 97.5 % probability"
     )
-    fold: SpeedPart | None = Field(default=None, description="V*")
+    fold: Edge | None = Field(default=None, description="V*")
     closures: dict[str, float] = Field(default={}, description="probability of each closure")
     measurement: MeasurementPart | None = None
     points: list[PointDecisionPart]
     flags: list[FlagPart] = Field(description="three at the most, the gravest first")
     missing: list[MissingPart]
+
+
+class DesignPart(part_of(TestDesign)):  # type: ignore[misc]  # made as it runs
+    """The next dwells, or measurements that narrow V*, in the order of their worth."""
+
+    fold: Edge | None = Field(default=None, description="V* of the machine that was named, m/s")
+    measurements: list[MeasurementPart] = Field(default=[], description="what would narrow it")

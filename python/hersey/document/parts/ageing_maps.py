@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from hersey.parts.part import Holed, Numbers, Part
+from hersey.schema.part import Holed, Numbers, Part
 
 
 class MapPoint(Part):

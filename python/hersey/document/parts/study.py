@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from hersey.parts.decision import DecisionPart
-from hersey.parts.film import FilmPart
-from hersey.parts.fit import FitPart, RegimePart
-from hersey.parts.models import ComparisonPart
-from hersey.parts.part import Part
-from hersey.parts.torque_budget import TorqueBudgetPart
+from hersey.damping.compare import LogComparison
+from hersey.document.parts.fit import FitPart
+from hersey.schema.part import Part
+from hersey.study.first_screen.result import DecisionPart
+from hersey.study.nip_film import FilmPart
+from hersey.study.torque_budget import TorqueBudgetPart
+from hersey.verdict.regime import Regime
 
 
 class StudyPart(Part):
@@ -19,7 +20,7 @@ class StudyPart(Part):
     verdict: list[str] = Field(description="in paragraphs; a contradiction first")
     warnings: list[str]
     fit: FitPart
-    regime: RegimePart
+    regime: Regime
     nip: FilmPart | None = None
     torque_budget: TorqueBudgetPart | None = None
-    comparison: ComparisonPart | None = Field(default=None, description="this log (B) over another (A)")
+    comparison: LogComparison | None = Field(default=None, description="this log (B) over another (A)")

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from hersey.parts.part import Numbers, Part
-from hersey.parts.time_to_failure import SpanPart
+from hersey.document.parts.time_to_failure import SpanPart
+from hersey.schema.part import Numbers, Part
 
 
 class UseEndPart(Part):

@@ -1,0 +1,22 @@
+"""Parts of the document that are laid out otherwise than the results that they tell of.
+
+===============  ===============================================
+log              logs and dwells
+fit              the damping surface and the regime
+motion           trajectories, cycles, sweeps
+stability        bands
+models           candidates, comparisons of logs, designs
+campaign         runs of many units at many ages
+cycles           cycles of a trace
+exchange         a unit for other tools
+posterior        what dwells, starts and stick-slip say together
+study            what a log and its machine tell together
+life             ages at failure
+drift            what moved with age
+film_life        the film of units that age
+time_to_failure  growth of indicators, and what ends units
+ageing_maps      the maps of a unit through its life
+other_uses       the ages in other uses
+life_test        a life test followed: all of these
+===============  ===============================================
+"""

@@ -1,0 +1,102 @@
+"""The damping surface and the regime in the document."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field
+
+from hersey.damping.branches import Transition
+from hersey.damping.candidates.shared_errors import SharedScatter
+from hersey.damping.curves.mixture import LawWeight
+from hersey.damping.rest import RestOfDrive
+from hersey.document.parts.log import InputFile, Point
+from hersey.schema.part import Interval, Part
+from hersey.verdict.regime import Regime
+
+
+class TrendPart(Part):
+    """What torque does as speed rises, tested on the dwells themselves."""
+
+    rises: bool
+    falls: bool
+    least: float = Field(description="speed of least mean torque, rad/s")
+    spread: float = Field(description="half the range of mean torques at one temperature, relative")
+
+
+class Curve(Part):
+    """Drag curves by weight at a temperature (K; null if none): speeds in rad/s, damping in N m s/rad."""
+
+    temperature: float | None
+    speed: list[float]
+    damping: list[float]
+
+
+class Cell(Part):
+    """The fitted law at the middle of a cell of speed (rad/s) and temperature (K)."""
+
+    speed_low: float
+    speed_high: float
+    temperature_low: float | None
+    temperature_high: float | None
+    damping: float
+
+
+class TransitionAt(Part):
+    """Transition speed (rad/s) at a temperature (K)."""
+
+    temperature: float
+    speed: float
+
+
+class FitPart(Part):
+    """B = a T^b w^c: B in N m s/rad, w in rad/s, T in the scale named."""
+
+    law: str
+    temperature_scale: Literal["degC", "K"]
+    reference_speed: float = Field(description="rad/s")
+    reference_temperature: float | None = Field(description="K")
+    coefficients: dict[str, Interval]
+    torque_space: dict[str, Interval]
+    transition: Transition | None
+    no_transition: str
+    variables: list[str]
+    values: list[float]
+    covariance: list[list[float]]
+    variance_parts: list[list[list[float]]] = Field(
+        default=[], description="how the covariance rises with each variance that was estimated"
+    )
+    variance_uncertainty: list[list[float]] = Field(
+        default=[], description="covariance of these variances: of dwells, then as in shared"
+    )
+    points: int
+    chi_square: float
+    reduced_chi_square: float
+    scatter: float = Field(description="relative, between dwells, beyond their errors")
+    shared: list[SharedScatter] = Field(default=[])
+    dwell_error: float = Field(description="relative, median of the errors of the dwells")
+    aicc: float
+    r_squared_damping: float
+    r_squared_torque: float
+    speed_range: tuple[float, float] = Field(description="rad/s")
+    temperature_range: tuple[float, float] | None = Field(description="K")
+    sensors: str = Field(default="", description="errors that the systematic parts stand for, in words")
+    rest: RestOfDrive | None = Field(
+        default=None, description="taken off the torque before the fit, which is that of the film"
+    )
+    summary: str
+    laws: list[LawWeight] = Field(default=[], description="drag curves, of which decisions are made")
+    trend: TrendPart | None = None
+    curves: list[Curve] = Field(default=[], description="those by weight at the temperatures measured")
+    cells: list[Cell] = Field(default=[], description="the law over the range measured")
+    transition_curve: list[TransitionAt] = Field(default=[], description="over the range measured")
+
+
+class FitDocument(Part):
+    """What ``hersey fit --json`` prints: all that a fit needs to be read back."""
+
+    warnings: list[str]
+    files: list[InputFile]
+    points: list[Point]
+    fit: FitPart
+    regime: Regime
