@@ -19,7 +19,7 @@ from hersey.log import TorqueLog
 from hersey.machine.machine import Machine, read_machine
 from hersey.result import Result
 from hersey.study.display_units import display_units
-from hersey.study.first_screen import decision
+from hersey.study.first_screen.decision import decision
 from hersey.study.first_screen.reasons import in_words
 from hersey.study.first_screen.result import DecisionPart
 from hersey.study.nip import film_part
