@@ -1,6 +1,6 @@
-"""What hersey says of logs that strangers record: intervals, verdicts, transitions.
+"""What hersey says of logs of an independent generator: intervals, verdicts, transitions.
 
-Every log is written by the generator in ``benchmarks/strangers``, which shares no code with the virtual test
+Every log is written by the generator in ``benchmarks/independent``, which shares no code with the virtual test
 stand, and read as a user's would be. The parts and what counts as true stand in its modules. The same seed
 gives the same logs, whoever works and whichever settings are chosen.
 
@@ -18,7 +18,7 @@ from fnmatch import fnmatch
 from functools import partial
 from typing import Any, NamedTuple
 
-from benchmarks.strangers import intervals, own, transitions, verdicts
+from benchmarks.independent import intervals, own, transitions, verdicts
 from benchmarks.working import takes_workers, worked
 
 #: Results between two lines of progress.

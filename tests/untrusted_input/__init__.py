@@ -1,4 +1,4 @@
-"""Files of strangers: what they may do, attacked with files made here from the formats' own pages.
+"""Untrusted files: what they may do, attacked with files made here from the formats' own pages.
 
 ==============  ===================================================================================
 mdf_blocks      writes MF4 and MDF 3 block by block, with any conversion

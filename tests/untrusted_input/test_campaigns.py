@@ -1,4 +1,4 @@
-"""Campaign files from strangers: each is read, or refused with one error that names file and fault."""
+"""Untrusted campaign files: each is read, or refused with one error that names file and fault."""
 
 from __future__ import annotations
 

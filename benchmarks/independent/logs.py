@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import lfilter
 
-from benchmarks.strangers.laws import RPM, Array, TorqueLaw
+from benchmarks.independent.laws import RPM, Array, TorqueLaw
 
 Counts = NDArray[np.intp]
 

@@ -1,4 +1,4 @@
-"""Torque logs as a stranger would record them, and what hersey says of them.
+"""Torque logs of a generator of its own, and what hersey says of them.
 
 The generator (``laws``, ``logs``, ``known``) is written from physics alone and imports nothing of hersey; the
 parts that judge (``intervals``, ``verdicts``, ``transitions``) use its public names only.

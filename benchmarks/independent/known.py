@@ -11,8 +11,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from benchmarks.strangers.laws import Array, PowerLaw, TwoBranches
-from benchmarks.strangers.logs import REST_NOISE, SETTLING, SPEED_NOISE, TEMPERATURE_NOISE, Errors, Log, Plan
+from benchmarks.independent.laws import Array, PowerLaw, TwoBranches
+from benchmarks.independent.logs import (
+    REST_NOISE,
+    SETTLING,
+    SPEED_NOISE,
+    TEMPERATURE_NOISE,
+    Errors,
+    Log,
+    Plan,
+)
 
 #: Steps of the derivatives, in each parameter.
 _STEP = 1e-4

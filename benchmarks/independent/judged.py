@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 import hersey
-from benchmarks.strangers.logs import Log
+from benchmarks.independent.logs import Log
 
 #: Beside a log whose film is declared to be heated by up to so much.
 SENSORS = '[temperature]\nfilm_heating = "{heating:g} K"\n'

@@ -1,4 +1,4 @@
-"""Logs of strangers, by a generator that shares no code with the virtual test stand: a sample.
+"""Independent logs, by a generator that shares no code with the virtual test stand: a sample.
 
 `python -m benchmarks.coverage` judges thousands; here a few of each kind keep the claim from slipping.
 """
@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 import pytest
-from benchmarks.strangers import intervals, transitions, verdicts
+from benchmarks.independent import intervals, transitions, verdicts
 
 from tests.conftest import mostly_nightly
 

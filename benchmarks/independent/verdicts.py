@@ -23,8 +23,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from benchmarks.strangers.judged import generator, judged
-from benchmarks.strangers.laws import (
+from benchmarks.independent.judged import generator, judged
+from benchmarks.independent.laws import (
     MIDDLE,
     RPM,
     Carreau,
@@ -36,7 +36,7 @@ from benchmarks.strangers.laws import (
     Vogel,
     VogelPower,
 )
-from benchmarks.strangers.logs import Errors, Plan, record
+from benchmarks.independent.logs import Errors, Plan, record
 
 LOGS = 20
 DRY, FALLING = "dry Coulomb friction or a rigid film", "falling branch"

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from benchmarks.strangers.judged import generator, judged
-from benchmarks.strangers.laws import RPM, DriftingExponent, TorqueLaw, TwoBranches
-from benchmarks.strangers.logs import Errors, Plan, record
+from benchmarks.independent.judged import generator, judged
+from benchmarks.independent.laws import RPM, DriftingExponent, TorqueLaw, TwoBranches
+from benchmarks.independent.logs import Errors, Plan, record
 
 SPEEDS = tuple(np.geomspace(8.0, 160.0, 12).round(2).tolist())
 PLAN = Plan(SPEEDS, (110.0, 123.0, 137.0, 150.0))

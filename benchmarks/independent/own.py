@@ -11,11 +11,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from benchmarks.strangers import intervals
-from benchmarks.strangers.judged import generator
-from benchmarks.strangers.known import slopes, true_covariance, zero_given_rest
-from benchmarks.strangers.laws import MIDDLE, Array, PowerLaw, TwoBranches
-from benchmarks.strangers.logs import SETTLING, Log, record
+from benchmarks.independent import intervals
+from benchmarks.independent.judged import generator
+from benchmarks.independent.known import slopes, true_covariance, zero_given_rest
+from benchmarks.independent.laws import MIDDLE, Array, PowerLaw, TwoBranches
+from benchmarks.independent.logs import SETTLING, Log, record
 
 NAMES = intervals.NAMES
 LOGS = 100

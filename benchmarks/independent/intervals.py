@@ -14,10 +14,10 @@ from dataclasses import dataclass
 import numpy as np
 
 import hersey
-from benchmarks.strangers.judged import generator, judged
-from benchmarks.strangers.known import least_errors, variance_of_means
-from benchmarks.strangers.laws import MIDDLE, PowerLaw, TwoBranches
-from benchmarks.strangers.logs import Errors, Log, Plan, record
+from benchmarks.independent.judged import generator, judged
+from benchmarks.independent.known import least_errors, variance_of_means
+from benchmarks.independent.laws import MIDDLE, PowerLaw, TwoBranches
+from benchmarks.independent.logs import Errors, Log, Plan, record
 
 SPEEDS = tuple(float(s) for s in np.geomspace(8.0, 160.0, 10).round(2))
 FIVE, TWO = (80.0, 105.0, 130.0, 155.0, 180.0), (80.0, 180.0)
