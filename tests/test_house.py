@@ -28,8 +28,8 @@ ROOMS = (
     "errors",
     "units",
     "arrays",
-    "result",
     "schema",
+    "result",
     "files",
     "processes",
     "scale",
@@ -55,12 +55,11 @@ ROOMS = (
     "cli",
 )
 #: The arrows that point backwards, taken only when a user asks: a log reduces itself to its dwells,
-#: a result finds its chart and draws it, and the schema that it has.
+#: and a result finds its chart and draws it.
 LAZY = {
     ("hersey.log.torque_log", "hersey.damping.dwells"),
     ("hersey.result", "hersey.charts"),
     ("hersey.result", "hersey.charts.render"),
-    ("hersey.result", "hersey.schema.record"),
 }
 
 

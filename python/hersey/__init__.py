@@ -6,8 +6,8 @@ Rooms, in the order in which data passes through them; each says in its own head
 errors          the closed table of what can go wrong, and what to do in the words of the way in
 units           the one door for units
 arrays          numbers or arrays as arguments
-result          what every result can do
 schema          the schema of what the document and every ``--json`` hold, from the fields of the results
+result          what every result can do
 files           text, TOML with units, writing whole or not at all
 processes       processes of our own for libraries that may break down
 scale           work cut into tasks: for threads, or for the workers of a cluster

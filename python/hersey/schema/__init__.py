@@ -2,6 +2,6 @@
 
 ======  =====================================================================
 part    `Part`, a frozen piece of the document that refuses what it does not know
-record  the part that holds a record, from the fields of the record itself
+record  `Record`, a data class that describes itself, and the part that holds it
 ======  =====================================================================
 """
