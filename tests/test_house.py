@@ -296,8 +296,6 @@ MORE_PARAMETERS = {
     # inputs of a unit and their start values, each of which the unit has as a variable
     "hersey.exchange.unit.export_fmu",
     # the parts of a document, put together in one place
-    "hersey.study.first_screen.decision.decision",
-    "hersey.study.first_screen.flags.flags",
 }
 
 

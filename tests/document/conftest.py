@@ -16,7 +16,8 @@ from hersey.decision.judge import judge
 from hersey.machine.limits import Limits, OperatingPoint
 from hersey.machine.machine import Machine, read_machine
 from hersey.stability.operating_map import OperatingMap
-from hersey.study.first_screen import decision
+from hersey.study.findings import Findings
+from hersey.study.first_screen.decision import decision
 from hersey.study.first_screen.result import DecisionPart
 from hersey.study.nip_film import FilmPart
 from hersey.study.torque_budget import TorqueBudgetPart
@@ -81,15 +82,24 @@ def decide(points: hersey.SteadyPoints, surface: DampingSurface, seen: Regime, m
     def decided(
         found: Behaviour,
         film: FilmPart | None = None,
-        unit: str = "N·m",
+        unit: str = "",
         dwells: hersey.SteadyPoints = known,
         surface: DampingSurface = surface,
         torque_budget: TorqueBudgetPart | None = None,
         **changed: object,
     ) -> DecisionPart:
         of = replace(machine, **changed)  # type: ignore[arg-type]
-        return decision(
-            dwells, surface, of, seen=seen, film=film, torque_budget=torque_budget, found=found, unit=unit
+        findings = Findings(
+            points=dwells,
+            surface=surface,
+            machine=of,
+            regime=seen,
+            nip=film,
+            torque_budget=torque_budget,
+            behaviour=found,
         )
+        if unit:
+            vars(findings)["units"] = findings.units | {"torque": unit}
+        return decision(findings)
 
     return decided

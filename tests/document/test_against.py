@@ -18,6 +18,7 @@ from hersey.errors import InsufficientDataError, ParameterError
 from hersey.log.means import read_means
 from hersey.result import json_value
 from hersey.study import study
+from hersey.study.findings import Findings
 from hersey.study.first_screen.flags import MOST, flags
 from hersey.verdict.regime import regime
 from tests.cli.command import run
@@ -83,13 +84,13 @@ def test_what_did_not_change_has_its_place_too(folder: Path) -> None:
     surface = hersey.fit(now)
     seen = regime(now, surface)
     unnamed = replace(seen, named=None)
-    told = flags(now, surface, unnamed, None, None, None, "no band", found)
+    told = flags(Findings(points=now, surface=surface, regime=unnamed, why="no band", comparison=found))
     assert len(told) == MOST
     assert (told[-1].signal, told[-1].title) == ("good", "Nothing really changed since again.csv.")
     # nothing of the drag, but an exponent
     moved = replace(found.changes[0], p_value=0.01)
     other = replace(found, changes=(moved,))
-    told = flags(now, surface, seen, None, None, None, "", other)
+    told = flags(Findings(points=now, surface=surface, regime=seen, comparison=other))
     assert [flag.signal for flag in told if flag.section == "compare"] == ["watch"]
     assert any(flag.title == "The law has changed since again.csv." for flag in told)
 

@@ -27,10 +27,11 @@ from hersey.machine.limits import Limits, OperatingPoint
 from hersey.machine.machine import Machine, read_machine
 from hersey.stability.operating_map import OperatingMap
 from hersey.study import study
-from hersey.study.display_units import display_units
+from hersey.study.findings import Findings
 from hersey.study.first_screen.reasons import in_words
 from hersey.study.first_screen.words import figures, within
 from hersey.study.nip_film import MisfitPart
+from hersey.verdict.regime import Regime
 from tests.conftest import ROOT
 from tests.document.conftest import BETWEEN, HOT, POINTS, ROOMY, Decide, with_draws
 
@@ -410,8 +411,17 @@ def test_a_torque_that_does_not_change_asks_for_slower_and_faster_dwells() -> No
 
 
 def test_torque_has_one_unit(
-    decide: Decide, found: Behaviour, map_: OperatingMap, points: hersey.SteadyPoints
+    decide: Decide,
+    found: Behaviour,
+    points: hersey.SteadyPoints,
+    surface: DampingSurface,
+    seen: Regime,
 ) -> None:
+    def unit_of(dwells: hersey.SteadyPoints, told: OperatingMap | None = None) -> str:
+        behaviour = None if told is None else replace(found, map=told)
+        return Findings(points=dwells, surface=surface, regime=seen, behaviour=behaviour).units["torque"]
+
+    assert found.map is not None
     weak = _with_motor(found, -0.2)
     for unit, factor in (("N·m", 1.0), ("mN·m", 1e3)):
         said = decide(weak, unit=unit)
@@ -420,17 +430,17 @@ def test_torque_has_one_unit(
         assert f" {unit}, the motor gives {gives}" in said.points[-1].words
     large = float(np.abs(points.column("torque")).max())
     assert large > 1.0
-    assert display_units(points, None)["torque"] == "N·m"
+    assert unit_of(points) == "N·m"
     few = replace(points, table=points.table.with_columns(torque=points.table["torque"] * 0.9 / large))
-    assert display_units(few, None)["torque"] == "mN·m"
+    assert unit_of(few) == "mN·m"
     for holding, limit, unit in (
         (0.5, None, "mN·m"),
         (1.0, None, "N·m"),
         (0.5, 1.2, "N·m"),
         (0.5, 0.9, "mN·m"),
     ):
-        told = replace(map_, holding=np.array([holding]), torque_limit=limit)
-        assert display_units(few, told)["torque"] == unit
+        told = replace(found.map, holding=np.array([holding]), torque_limit=limit)
+        assert unit_of(few, told) == unit
 
 
 def test_what_of_the_nip_cannot_be_is_a_warning(decide: Decide, found: Behaviour, document: Analysis) -> None:

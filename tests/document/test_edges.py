@@ -19,6 +19,7 @@ from hersey.decision.judge import judge
 from hersey.machine.limits import Limits, OperatingPoint
 from hersey.machine.machine import Machine
 from hersey.stability.operating_map import OperatingMap
+from hersey.study.findings import Findings
 from hersey.study.first_screen.flags import flags
 from hersey.study.first_screen.instruction import of_log
 from hersey.study.first_screen.points import points_of_log
@@ -124,7 +125,7 @@ def test_warnings_of_the_log(points: hersey.SteadyPoints, surface: DampingSurfac
         dwells: hersey.SteadyPoints = points, fit: DampingSurface = surface, **of: str
     ) -> dict[str, str]:
         log = replace(seen, **of)
-        return {flag.title: flag.text for flag in flags(dwells, fit, log, None, None, None)}
+        return {flag.title: flag.text for flag in flags(Findings(points=dwells, surface=fit, regime=log))}
 
     calm = told(named="soft EHL")
     titles = ("Few dwells hold the falling branch.", "The load differs.", "No regime is told.")
@@ -133,7 +134,8 @@ def test_warnings_of_the_log(points: hersey.SteadyPoints, surface: DampingSurfac
     shown = told(fit=noisy, named="soft EHL")
     assert shown["Points scatter 6 % about the fit."].startswith("More than sensor noise explains.")
     unnamed = replace(seen, named=None, why_unnamed="two explain it")
-    [flag] = [f for f in flags(points, surface, unnamed, None, None, None) if f.section == "regime"]
+    known = Findings(points=points, surface=surface, regime=unnamed)
+    [flag] = [f for f in flags(known) if f.section == "regime"]
     assert (flag.title, flag.text) == ("No regime is told.", "Two explain it.")
     assert surface.transition is not None
     by_itself = replace(surface, transition=replace(surface.transition, freed=24.0))

@@ -60,6 +60,20 @@ class _Asked:
     def lap(self) -> float:
         return self.found.model.machine.train.free_period
 
+    def facts(self) -> dict[str, Any]:
+        """Return what a plan says of the machine, whatever it finds."""
+        found, kelvin = self.found, self.kelvin
+        return {
+            "target_speed": self.target,
+            "confidence": self.confidence,
+            "seed": found.seed,
+            "fold_speed": found.fold_interval(kelvin)[0],
+            "transition_speed": float(np.median(found.edges(kelvin).transition)),
+            "stick_speed": float(np.median(found.model.stick_speed(found.drives, kelvin))),
+            "temperature": kelvin,
+            "greatest_speed": self.limits.speed or max(_PEAKS) * found.safe_speed(kelvin),
+        }
+
     def tried(self, drives: Drives, shape: Shape) -> tuple[np.ndarray, FloatArray]:
         """Return which draws slide soon after the last ramp, within the force, and their peaks (N)."""
         corners = list(zip(*shape.points(), strict=True))
@@ -162,27 +176,14 @@ def _plan(
     below_transition: float = 0.0,
 ) -> Plan:
     found, kelvin, target = asked.found, asked.kelvin, asked.target
-    edges = found.edges(kelvin)
-    fold, _, _ = found.fold_interval(kelvin)
-    facts: dict[str, Any] = {
-        "target_speed": target,
-        "confidence": asked.confidence,
-        "seed": found.seed,
-        "fold_speed": fold,
-        "transition_speed": float(np.median(edges.transition)),
-        "stick_speed": float(np.median(found.model.stick_speed(found.drives, kelvin))),
-        "temperature": kelvin,
-        "greatest_speed": asked.limits.speed or max(_PEAKS) * found.safe_speed(kelvin),
-        "tried": tried,
-        "warnings": (),
-    }
-    share, peaks = 0.0, np.zeros(1)
-    if shape is not None and fresh is not None:
-        slides, peaks = asked.tried(fresh, shape)
-        share = float(np.mean(slides))
-    if shape is None or fresh is None or share < asked.confidence:
+    facts = {**asked.facts(), "tried": tried, "warnings": ()}
+    if shape is None or fresh is None:
         return Plan(**facts, **NOTHING, obstacles=(_obstacle(asked, below_transition),))
-    good = round(share * len(fresh))
+    slides, peaks = asked.tried(fresh, shape)
+    share = float(np.mean(slides))
+    if share < asked.confidence:
+        return Plan(**facts, **NOTHING, obstacles=(_obstacle(asked, below_transition),))
+    good, peak_force = round(share * len(fresh)), float(np.quantile(peaks, asked.confidence))
     return Plan(
         **facts,
         kind="direct" if shape.peak <= target else "overshoot",
@@ -197,9 +198,9 @@ def _plan(
         share_low=lower_bound(good, len(fresh), _LEVEL),
         draws=len(fresh),
         failures=_failures(len(fresh) - good),
-        uses=_uses(asked, shape, float(np.quantile(peaks, asked.confidence))),
+        uses=_uses(asked, shape, peak_force),
         obstacles=(),
-        peak_force=float(np.quantile(peaks, asked.confidence)),
+        peak_force=peak_force,
         response=response(found, kelvin, shape.schedule(), shape.end + 12.0 * asked.lap),
     )
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import TypedDict, Unpack
+from typing import NamedTuple, TypedDict, Unpack
 
 import numpy as np
 
@@ -116,20 +116,49 @@ def posterior(
     found = surface or fit(points)
     curves = curves or fit_curves(points, found, machine.mixed)
     seen = _given(evidence, found) if evidence is not None else _seen(points, curves, found, machine, traces)
-    counted, unused = (*seen.evidence, *_stated(machine, found)), seen.unused
     kelvin = temperature if temperature is not None else decision_temperature(found, machine)
+    headline = kelvin if found.b is not None else None
+    agreed = _agreeing(curves, found, machine, (*seen.evidence, *_stated(machine, found)), sampling)
+    edges = edges_at(agreed.model, agreed.drives, headline, threads=threads)
+    drawn = Posterior(
+        model=agreed.model,
+        drives=agreed.drives,
+        temperature=headline,
+        laws=agreed.model.curves.table,
+        evidence=agreed.evidence,
+        unused=(*seen.unused, *agreed.contradicting),
+        convergence=_convergence(agreed.populations, edges.fold),
+        seed=seed,
+        chains=CHAINS,
+    )
+    drawn.keep(headline, edges)
+    return drawn
 
-    def populations_of(model: DriveModel, evidence: Sequence[Evidence]) -> list[Population]:
-        told = [_part(sampling.get("progress"), chain) for chain in range(CHAINS)]
-        return [
-            _population(model, evidence, draws // CHAINS, seed, chain, told[chain], threads)
-            for chain in range(CHAINS)
-        ]
 
+class _Agreed(NamedTuple):
+    """Draws and the evidence that agrees with them, and in words what does not."""
+
+    model: DriveModel
+    populations: list[Population]
+    drives: Drives
+    evidence: tuple[Evidence, ...]
+    contradicting: tuple[str, ...]
+
+
+def _agreeing(
+    curves: CurveMixture,
+    surface: DampingSurface,
+    machine: Machine,
+    evidence: tuple[Evidence, ...],
+    sampling: Sampling,
+) -> _Agreed:
+    """Draw, leave out the evidence that contradicts the rest, and draw again."""
+    counted: tuple[Evidence, ...] = evidence
+    unused: tuple[str, ...] = ()
     for left in range(_ROUNDS, -1, -1):
         priors = DrivePriors.of(machine, break_away_known=any(map(_tells_break_away, counted)))
-        model = DriveModel(curves, found, machine, priors)
-        populations = populations_of(model, counted)
+        model = DriveModel(curves, surface, machine, priors)
+        populations = _populations(model, counted, sampling)
         drives = _joined([p.drives for p in populations])
         off = np.array([misfit(model, drives, e) / _most_misfit(e) for e in counted])
         # what is half as wrong as the worst may be so because of the worst
@@ -138,21 +167,17 @@ def posterior(
             break
         unused += tuple(_contradicting(e) for e, is_wrong in zip(counted, wrong, strict=True) if is_wrong)
         counted = tuple(e for e, is_wrong in zip(counted, wrong, strict=True) if not is_wrong)
-    headline = kelvin if found.b is not None else None
-    edges = edges_at(model, drives, headline, threads=threads)
-    drawn = Posterior(
-        model=model,
-        drives=drives,
-        temperature=headline,
-        laws=model.curves.table,
-        evidence=counted,
-        unused=unused,
-        convergence=_convergence(populations, edges.fold),
-        seed=seed,
-        chains=CHAINS,
-    )
-    drawn.keep(headline, edges)
-    return drawn
+    return _Agreed(model, populations, drives, counted, unused)
+
+
+def _populations(model: DriveModel, evidence: Sequence[Evidence], sampling: Sampling) -> list[Population]:
+    """The chains, each of as many draws."""
+    draws, seed, threads = sampling.get("draws", DRAWS), sampling.get("seed", 1), sampling.get("threads", 1)
+    said = [_part(sampling.get("progress"), chain) for chain in range(CHAINS)]
+    return [
+        _population(model, evidence, draws // CHAINS, seed, chain, said[chain], threads)
+        for chain in range(CHAINS)
+    ]
 
 
 def decision_temperature(surface: DampingSurface, machine: Machine) -> float | None:

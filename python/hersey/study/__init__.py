@@ -7,7 +7,7 @@ nip_film         what the document holds of both
 torque_budget    what film, contact and the rest of the drive take of the torque
 simulation       the typical belt of the machine below its transition speed
 first_screen     what to do: the decision in words
-display_units    one unit for each quantity
+findings         what was found of both, before anything is decided
 thinning         fewer samples to show, the extremes among them
 ===============  ====================================================================
 """

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,68 +13,43 @@ from hersey.damping.compare import LogComparison, compare
 from hersey.damping.curves import CurveMixture, fit_curves
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.fit import fit
-from hersey.damping.surface import DampingSurface
-from hersey.decision.behaviour import Behaviour, Step, Working
+from hersey.decision.behaviour import Step, Working
 from hersey.errors import HerseyError, ParameterError
 from hersey.log import TorqueLog
 from hersey.machine.machine import Machine, read_machine
 from hersey.result import Result
-from hersey.study.display_units import display_units
+from hersey.study.findings import Findings
 from hersey.study.first_screen.decision import decision
 from hersey.study.first_screen.reasons import in_words
 from hersey.study.first_screen.result import DecisionPart
 from hersey.study.nip import film_part
-from hersey.study.nip_film import FilmPart
-from hersey.study.simulation import SimulationPart, simulation
-from hersey.study.torque_budget import TorqueBudgetPart, torque_budget
+from hersey.study.simulation import simulation
+from hersey.study.torque_budget import torque_budget
 from hersey.verdict.cautions import cautions
-from hersey.verdict.regime import Regime, regime
+from hersey.verdict.regime import regime
 
 if TYPE_CHECKING:
     import polars as pl
 
 
-@dataclass(frozen=True, repr=False)
-class Study(Result):
-    """What a log and its machine tell together.
+@dataclass(frozen=True, repr=False, kw_only=True)
+class Study(Findings, Result):
+    """What a log and its machine tell together: what was found (`Findings`), and what to do.
 
-    Attributes
-    ----------
-    points, surface, curves, regime
-        Dwells, the fitted law, the drag curves of all laws by weight, and what the exponents alone say.
-    machine, machine_file
-        None without a machine, or where it was not read from a file.
-    nip, torque_budget
-        Film theory of the nip, and what film, contact and the rest of the drive take; None where the machine
-        does not state them.
-    behaviour, simulation
-        What the machine does, and its typical belt below the transition; None without a machine or where
-        nothing can be computed.
-    comparison, against
-        This log over an earlier one, and the dwells of that one; None unless asked for.
-    decision
-        What to do, why, and what stands against it.
-    warnings
-        What is doubtful of dwells and fit.
-    units
-        The unit in which each quantity is shown.
+    ``curves`` are the drag curves of all laws by weight.
     """
 
-    points: SteadyPoints
-    surface: DampingSurface
     curves: CurveMixture
-    regime: Regime
-    machine: Machine | None
-    machine_file: Path | None
-    nip: FilmPart | None
-    torque_budget: TorqueBudgetPart | None
-    behaviour: Behaviour | None
-    simulation: SimulationPart | None
-    comparison: LogComparison | None
-    against: SteadyPoints | None
-    decision: DecisionPart
-    warnings: tuple[str, ...]
-    units: dict[str, str]
+
+    @cached_property
+    def decision(self) -> DecisionPart:
+        """What to do, why, and what stands against it."""
+        return decision(self)
+
+    @cached_property
+    def warnings(self) -> tuple[str, ...]:
+        """What is doubtful of dwells and fit."""
+        return tuple(cautions(self.points, self.surface))
 
     @property
     def verdict(self) -> list[str]:
@@ -169,45 +145,33 @@ def study(
         nip = (machine.contact, machine.lubricant) if machine is not None else (None, None)
         seen = regime(points, surface, contact=nip[0], lubricant=nip[1])
         film, budget = film_part(points, surface, machine, seen), torque_budget(points, surface, machine)
-        warnings = tuple(cautions(points, surface))
-        found, simulated, why = None, None, ""
-        try:
-            if working is not None:
-                found = working.result(step)
-                simulated = simulation(found)
-        except HerseyError as error:  # a stick speed above the transition, say: the log still counts
-            why = in_words(error)
-        units = display_units(points, None if found is None else found.map)
-        decided = decision(
-            points,
-            surface,
-            machine,
-            seen=seen,
-            film=film,
+        found = {} if working is None else _behaviour(working, step)
+        studied = Study(
+            points=points,
+            surface=surface,
+            curves=curves,
+            regime=seen,
+            machine=machine,
+            machine_file=machine_file,
+            nip=film,
             torque_budget=budget,
-            compared=comparison,
-            found=found,
-            why=why,
-            machine_file="" if machine_file is None else machine_file.name,
-            unit=units["torque"],
+            comparison=comparison,
+            against=against,
+            **found,
         )
-    return Study(
-        points=points,
-        surface=surface,
-        curves=curves,
-        regime=seen,
-        machine=machine,
-        machine_file=machine_file,
-        nip=film,
-        torque_budget=budget,
-        behaviour=found,
-        simulation=simulated,
-        comparison=comparison,
-        against=against,
-        decision=decided,
-        warnings=warnings,
-        units=units,
-    )
+        _ = studied.decision  # while the threads of the machine are there
+    return studied
+
+
+def _behaviour(working: Working, step: Step) -> dict[str, Any]:
+    """What the machine does and its simulation, or why that cannot be computed; by fields of `Findings`."""
+    found: dict[str, Any] = {}
+    try:
+        found["behaviour"] = working.result(step)
+        found["simulation"] = simulation(found["behaviour"])
+    except HerseyError as error:  # a stick speed above the transition, say: the log still counts
+        found["why"] = in_words(error)
+    return found
 
 
 def _compared(points: SteadyPoints, against: SteadyPoints) -> LogComparison:

@@ -6,76 +6,62 @@ import math
 from typing import Any
 
 from hersey.damping.candidates.observations import Observations
-from hersey.damping.compare import LogComparison
-from hersey.damping.dwells import SteadyPoints
-from hersey.damping.surface import DampingSurface
 from hersey.damping.trend import trend_of
 from hersey.decision.behaviour import Behaviour
 from hersey.decision.edges import edges_of
 from hersey.decision.plausibility import asked
-from hersey.machine.machine import Machine
+from hersey.study.findings import Findings
 from hersey.study.first_screen.advice import advised
 from hersey.study.first_screen.flags import flags
 from hersey.study.first_screen.instruction import of_log, of_machine
 from hersey.study.first_screen.missing import missing
 from hersey.study.first_screen.points import point_decision, points_of_log, unjudged, worst
 from hersey.study.first_screen.questions import unanswered
-from hersey.study.first_screen.result import DecisionPart, Signal
-from hersey.study.nip_film import FilmPart
-from hersey.study.torque_budget import TorqueBudgetPart
-from hersey.verdict.regime import Regime
+from hersey.study.first_screen.result import DecisionPart, PointDecisionPart, Signal
 
 
-def decision(
-    points: SteadyPoints,
-    surface: DampingSurface,
-    machine: Machine | None,
-    *,
-    seen: Regime,
-    film: FilmPart | None,
-    torque_budget: TorqueBudgetPart | None,
-    found: Behaviour | None,
-    compared: LogComparison | None = None,
-    why: str = "",
-    machine_file: str = "",
-    unit: str = "N·m",
-) -> DecisionPart:
-    """Return what to do, why, and what stands against it.
-
-    ``found`` is None without a machine, or where nothing can be computed, for the reason ``why``;
-    ``compared`` is this log over an earlier one, ``unit`` that of torques in words.
-    """
-    map_ = None if found is None else found.map
-    trend = trend_of(Observations.of(points))
+def decision(known: Findings) -> DecisionPart:
+    """Return what to do, why, and what stands against it."""
+    points, surface, machine, map_ = known.points, known.surface, known.machine, known.map
     question = asked(points, surface, machine)
     if question is not None:
-        return unanswered(question, points, surface, machine, machine_file)
-    said = of_log(surface, trend) if found is None or map_ is None else of_machine(found, map_, unit)
-    if found is not None and map_ is not None:
-        film_alone = points.rest is not None
-        of_points = [
-            point_decision(each, found.posterior, map_, unit, film_alone=film_alone) for each in found.points
-        ]
-        of_points += [unjudged(point) for point in found.unjudged]
-    elif machine is not None:
-        of_points = points_of_log(surface, machine, rises=trend.rises and not trend.falls)
+        return unanswered(question, known)
+    trend = trend_of(Observations.of(points))
+    if known.behaviour is None or map_ is None:
+        said = of_log(surface, trend)
     else:
-        of_points = []
-    against = flags(points, surface, seen, film, torque_budget, found, why, compared, unit)
+        said = of_machine(known.behaviour, map_, known.units["torque"])
+    of_points = _of_points(known, rises=trend.rises and not trend.falls)
+    against = flags(known)
     signals: list[Signal] = [said.signal, *(point.signal for point in of_points)]
     signals += [flag.signal for flag in against if flag.signal == "act" or flag.section == "compare"]
-    if found is not None and map_ is not None and (points.rest is None or not found.points):
+    if (
+        map_ is not None
+        and known.behaviour is not None
+        and (points.rest is None or not known.behaviour.points)
+    ):
         signals.append("watch")  # torque of more than the film draws V* down; or nothing is asked for
     return DecisionPart(
         signal=worst(signals),
         instruction=said.instruction,
         interval=said.interval,
         otherwise=said.otherwise,
-        **_speeds(found),
+        **_speeds(known.behaviour),
         points=of_points,
         flags=against,
-        missing=missing(points, surface, machine, machine_file),
+        missing=missing(known),
     )
+
+
+def _of_points(known: Findings, *, rises: bool) -> list[PointDecisionPart]:
+    """What is said of each operating point."""
+    found, map_ = known.behaviour, known.map
+    if found is not None and map_ is not None:
+        alone, unit = known.points.rest is not None, known.units["torque"]
+        drawn = found.posterior
+        judged = [point_decision(each, drawn, map_, unit, film_alone=alone) for each in found.points]
+        return judged + [unjudged(point) for point in found.unjudged]
+    return [] if known.machine is None else points_of_log(known.surface, known.machine, rises=rises)
 
 
 def _speeds(found: Behaviour | None) -> dict[str, Any]:

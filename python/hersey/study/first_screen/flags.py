@@ -13,6 +13,7 @@ from hersey.decision.edges import edges_of
 from hersey.log.doubtful import doubtful_units
 from hersey.posterior.result import SAFE
 from hersey.stability.operating_map import OperatingMap
+from hersey.study.findings import Findings
 from hersey.study.first_screen.reasons import in_words
 from hersey.study.first_screen.result import FlagPart, Signal
 from hersey.study.first_screen.words import at, figures, listed, mm, signed, starting
@@ -32,41 +33,35 @@ _DECIDED, _APART = 0.95, 1.25
 _SCATTER = 0.05
 
 
-def flags(
-    points: SteadyPoints,
-    surface: DampingSurface,
-    seen: Regime,
-    film: FilmPart | None,
-    torque_budget: TorqueBudgetPart | None,
-    found: Behaviour | None,
-    why: str = "",
-    compared: LogComparison | None = None,
-    unit: str = "N·m",
-) -> list[FlagPart]:
+def flags(known: Findings) -> list[FlagPart]:
     """Return the gravest warnings, each with the section of the page that holds its evidence.
 
     What a comparison says was asked for, and stands among them whatever it is, first of its kind.
     """
-    map_ = None if found is None else found.map
+    points, surface, found, map_ = known.points, known.surface, known.behaviour, known.map
     out = [] if found is None else _unused(found)
-    out += [*_contradictions(film, torque_budget), *_of_log(points, surface)]
-    if why:
-        out.append(FlagPart(signal="act", title="No band.", text=f"{_sentence(why)}.", section="band"))
+    out += [*_contradictions(known.nip, known.torque_budget), *_of_log(points, surface)]
+    if known.why:
+        out.append(FlagPart(signal="act", title="No band.", text=f"{_sentence(known.why)}.", section="band"))
     if found is not None and map_ is not None:
-        out += [*_whole(points), *_of_machine(found, map_, unit)]
+        out += [*_whole(points), *_of_machine(found, map_, known.units["torque"])]
     if found is not None:
-        out += [
-            FlagPart(signal="watch", title=title, text=f"{_sentence(in_words(error))}.", section="band")
-            for title, errors in (("No band.", found.no_band), ("No map.", found.no_map))
-            for error in errors
-        ]
-        out += _plans(found)
+        out += [*_not_computed(found), *_plans(found)]
     scatter = surface.statistics.scatter if found is None else found.posterior.model.curves.scatter
-    out += _left_open(points, seen, scatter)
+    out += _left_open(points, known.regime, scatter)
     grave = {"act": 0, "watch": 1, "good": 2}
-    asked = [] if compared is None else [_compared(compared)]
+    asked = [] if known.comparison is None else [_compared(known.comparison)]
     kept = sorted(out, key=lambda flag: grave[flag.signal])[: MOST - len(asked)]
     return sorted([*asked, *kept], key=lambda flag: grave[flag.signal])
+
+
+def _not_computed(found: Behaviour) -> list[FlagPart]:
+    """Why there is no band or no map."""
+    return [
+        FlagPart(signal="watch", title=title, text=f"{_sentence(in_words(error))}.", section="band")
+        for title, errors in (("No band.", found.no_band), ("No map.", found.no_map))
+        for error in errors
+    ]
 
 
 def _compared(found: LogComparison) -> FlagPart:

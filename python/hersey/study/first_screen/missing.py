@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 
-from hersey.damping.dwells import SteadyPoints
 from hersey.damping.surface import DampingSurface
 from hersey.machine.machine import Machine
+from hersey.study.findings import Findings
 from hersey.study.first_screen.result import MissingPart
 from hersey.units import celsius, rpm
 
@@ -14,11 +14,10 @@ _MACHINE = "machine.toml"
 _MAPPING = "hersey.toml"
 
 
-def missing(
-    points: SteadyPoints, surface: DampingSurface, machine: Machine | None, machine_file: str = ""
-) -> list[MissingPart]:
+def missing(known: Findings) -> list[MissingPart]:
     """Return what is not stated, what most is missing first."""
-    file = machine_file or _MACHINE
+    points, surface, machine = known.points, known.surface, known.machine
+    file = _MACHINE if known.machine_file is None else known.machine_file.name
     out = []
     if machine is None:
         out.append(_drivetrain(file))

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from hersey.damping.dwells import SteadyPoints
-from hersey.damping.surface import DampingSurface
 from hersey.decision.plausibility import Question
 from hersey.errors import Setting
-from hersey.machine.machine import Machine
+from hersey.study.findings import Findings
 from hersey.study.first_screen.missing import missing
 from hersey.study.first_screen.result import DecisionPart, PointDecisionPart
 from hersey.study.first_screen.words import figures, mm
@@ -14,10 +12,7 @@ from hersey.study.first_screen.words import figures, mm
 
 def unanswered(
     question: Question,
-    points: SteadyPoints,
-    surface: DampingSurface,
-    machine: Machine | None,
-    machine_file: str,
+    known: Findings,
 ) -> DecisionPart:
     """Return the first screen of a log whose numbers cannot be what they are called."""
     text, remedy = in_words(question)
@@ -34,10 +29,10 @@ def unanswered(
                 signal="watch",
                 words="not judged until the question is answered",
             )
-            for point in (machine.points if machine is not None else ())
+            for point in (known.machine.points if known.machine is not None else ())
         ],
         flags=[],
-        missing=missing(points, surface, machine, machine_file),
+        missing=missing(known),
     )
 
 
