@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import fields
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, ValidationError
@@ -80,43 +82,9 @@ def _check(path: Path, document: _FitFile) -> None:
     for field, part in _estimates(fit):
         if None in (part.value, part.error, part.systematic):
             raise _broken(path, f"fit.{field}", "value, error and systematic must be numbers")
-    thermal = "b" in fit.coefficients
     freed = fit.transition is not None and fit.transition.freed is not None
-    size = 2 + thermal + 2 * (fit.transition is not None) + freed
-    covariance = np.array(fit.covariance) if {len(row) for row in fit.covariance} == {size} else np.zeros(0)
-    speed = None if fit.transition is None else fit.transition.speed
-    ranges = [("speed_range", fit.speed_range), ("temperature_range", fit.temperature_range)]
-    rules = [
-        ("coefficients", {"a", "c"} <= set(fit.coefficients) <= {"a", "b", "c"}, "a, c and, if thermal, b"),
-        ("torque_space", set(fit.torque_space) == set(fit.coefficients), "the names of the coefficients"),
-        ("reference_speed", fit.reference_speed > 0, "greater than 0"),
-        ("reference_temperature", (fit.reference_temperature is not None) == thermal, "there if b is"),
-        (
-            "reference_temperature",
-            fit.reference_temperature is None or fit.reference_temperature > 0,
-            "greater than 0",
-        ),
-        ("temperature_range", (fit.temperature_range is not None) == thermal, "there if b is"),
-        *((name, r is None or 0 < r[0] <= r[1], "ascending, greater than 0") for name, r in ranges),
-        ("values", len(fit.values) == size, f"{size} numbers"),
-        ("variables", len(fit.variables) == size, f"{size} names"),
-        ("covariance", covariance.shape == (size, size), f"{size} rows of {size} numbers"),
-        ("points", fit.points > size, f"more than the {size} variables"),
-        (
-            "transition.speed",
-            speed is None
-            or speed.low is None
-            or speed.high is None
-            or 0 < speed.low <= speed.value <= speed.high,
-            "within its interval",
-        ),
-        (
-            "no_transition",
-            (fit.transition is None) == bool(fit.no_transition),
-            "the reason, if there is none",
-        ),
-    ]
-    for field, holds, asked in rules:
+    size = 2 + ("b" in fit.coefficients) + 2 * (fit.transition is not None) + freed
+    for field, holds, asked in _rules(fit, size):
         if not holds:
             raise _broken(path, f"fit.{field}", f"it must be {asked}")
     parts, uncertainty = fit.variance_parts, np.array(fit.variance_uncertainty)
@@ -124,7 +92,7 @@ def _check(path: Path, document: _FitFile) -> None:
         (len(parts), len(parts)) if parts else (0,)
     ):
         raise _broken(path, "fit.variance_parts", f"not {size} rows of {size} numbers for each variance")
-    if not _is_covariance(covariance):
+    if not _is_covariance(np.array(fit.covariance)):
         raise _broken(path, "fit.covariance", "it is not symmetric with no negative variance")
     if fit.transition is not None and fit.transition.closure is not None:
         _check_closure(path, fit.transition.closure, size)
@@ -133,6 +101,32 @@ def _check(path: Path, document: _FitFile) -> None:
     for field, value, expected in _derived(fit):
         if not np.isclose(value, expected, rtol=_ROUNDING):
             raise _broken(path, f"fit.{field}", "it differs from fit.values, so one of them was changed")
+
+
+def _rules(fit: FitPart, size: int) -> Iterator[tuple[str, bool, str]]:
+    """What each field of a fit of so many variables must be, and whether it is."""
+    thermal = "b" in fit.coefficients
+    names, kelvin = set(fit.coefficients), fit.reference_temperature
+    yield "coefficients", {"a", "c"} <= names <= {"a", "b", "c"}, "a, c and, if thermal, b"
+    yield "torque_space", set(fit.torque_space) == names, "the names of the coefficients"
+    yield "reference_speed", fit.reference_speed > 0, "greater than 0"
+    yield "reference_temperature", (kelvin is not None) == thermal, "there if b is"
+    yield "reference_temperature", kelvin is None or kelvin > 0, "greater than 0"
+    yield "temperature_range", (fit.temperature_range is not None) == thermal, "there if b is"
+    for name, ends in (("speed_range", fit.speed_range), ("temperature_range", fit.temperature_range)):
+        yield name, ends is None or 0 < ends[0] <= ends[1], "ascending, greater than 0"
+    yield "values", len(fit.values) == size, f"{size} numbers"
+    yield "variables", len(fit.variables) == size, f"{size} names"
+    square = [len(row) for row in fit.covariance] == [size] * size
+    yield "covariance", square, f"{size} rows of {size} numbers"
+    yield "points", fit.points > size, f"more than the {size} variables"
+    if fit.transition is not None:
+        speed = fit.transition.speed
+        open_ended = speed.low is None or speed.high is None
+        within = open_ended or 0 < speed.low <= speed.value <= speed.high
+        yield "transition.speed", within, "within its interval"
+    said = (fit.transition is None) == bool(fit.no_transition)
+    yield "no_transition", said, "the reason, if there is none"
 
 
 def _estimates(fit: FitPart) -> Iterator[tuple[str, Estimate]]:
@@ -281,18 +275,7 @@ def _surface(document: _FitFile) -> DampingSurface:
             np.array(fit.variance_uncertainty),
         ),
         torque_space={name: _estimate(part) for name, part in fit.torque_space.items()},
-        statistics=FitStatistics(
-            points=fit.points,
-            variables=len(fit.values),
-            chi_square=fit.chi_square,
-            reduced_chi_square=fit.reduced_chi_square,
-            scatter=fit.scatter,
-            shared=tuple(SharedScatter(**vars(part)) for part in fit.shared),
-            dwell_error=fit.dwell_error,
-            aicc=fit.aicc,
-            r_squared_damping=fit.r_squared_damping,
-            r_squared_torque=fit.r_squared_torque,
-        ),
+        statistics=_statistics(fit),
         speed_range=fit.speed_range,
         temperature_range=fit.temperature_range,
         residuals=np.array([point.residual for point in document.points]),
@@ -302,3 +285,9 @@ def _surface(document: _FitFile) -> DampingSurface:
         rest=_rest(fit.rest),
         version=document.hersey_version,
     )
+
+
+def _statistics(fit: FitPart) -> FitStatistics:
+    same: dict[str, Any] = {field.name: getattr(fit, field.name, None) for field in fields(FitStatistics)}
+    shared = tuple(SharedScatter(**vars(part)) for part in fit.shared)
+    return FitStatistics(**same | {"variables": len(fit.values), "shared": shared})
