@@ -324,3 +324,16 @@ def test_a_log_that_is_dropped_anew_is_the_one_that_counts(tmp_path: Path) -> No
     for name in ("first", "second"):
         file_faults(machine, tmp_path, {"idle.csv": tmp_path / name})
         assert (tmp_path / "idle.csv").readlink() == tmp_path / name
+
+
+def test_all_files_together_are_no_longer_than_the_bound(tmp_path: Path) -> None:
+    """Two of 20 bytes, each allowed alone, where 30 are in all."""
+    asked = Asked(tmp_path, Bounds(file=25, all_files=30))
+    path = f"/api/analyses/{asked.first}/files"
+
+    async def dropped() -> list[int]:
+        answers = [await asked.asked("POST", path, [b"x" * 20], x_name=f"{name}.csv") for name in "ab"]
+        await asked.session.close()  # what is taken would be looked at
+        return [answer.status for answer in answers]
+
+    assert run(dropped()) == [200, 413]

@@ -6,6 +6,7 @@ import itertools
 import json
 import re
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from functools import cache
 from typing import Any
 
@@ -466,3 +467,12 @@ def test_drift_shows_each_unit_as_far_as_it_was_followed() -> None:
     assert [row["value"] for row in level] == pytest.approx(1e3 * drift.quantities[0].curves[1])
     band = next(rows for rows in layers("Drift") if "low" in rows[0])
     assert all(row["low"] < row["value"] < row["high"] for row in band)
+
+
+@pytest.mark.parametrize(("at_once", "shown"), [(185.0, False), (195.0, True), (205.0, True)])
+def test_drag_at_once_has_a_level_where_it_is_beyond_what_the_warm_up_keeps(
+    at_once: float, shown: bool
+) -> None:
+    warm = replace(result_of("WarmUp"), force_limit=200.0, margin=0.05, drag_at_once=at_once)
+    assert warm.kept_below == pytest.approx(190.0)
+    assert ('"at once"' in json.dumps(chart_of(warm).to_dict())) == shown

@@ -312,3 +312,11 @@ def test_draws_of_the_rest_have_its_errors() -> None:
         1,
     )[0][0]
     assert vars(machine.drag)["rest_force"] in drawn["rest_force"]
+
+
+def test_errors_have_the_sense_of_rotation() -> None:
+    """A rest known to 10 % (95 %): 0.02 + 0.001 w is off by ln 1.1 over 1.96, backwards the other way."""
+    rest = RestOfDrive.stated(constant=0.02, per_speed=0.001, uncertainty=0.1)
+    forward, backward = rest.errors(np.array([5.0, -5.0]))
+    np.testing.assert_allclose(backward, -forward, rtol=1e-12)
+    assert np.linalg.norm(forward) == pytest.approx(np.log(1.1) * 0.025 / 1.96, rel=1e-4)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 
@@ -143,3 +145,10 @@ def test_a_drive_that_stands_may_read_one_number_all_the_time() -> None:
     points = log_of(speed, torque).steady(tare="standing")
     assert points.tare == pytest.approx(0.25)
     assert points.tare_error < 1e-4
+
+
+def test_the_chance_of_one_zero_is_that_of_one_freedom_less_than_stretches() -> None:
+    """Chi-square in closed form: erfc(sqrt(x/2)) of one freedom, exp(-x/2) of two."""
+    stretches = tuple(Standing(0, 60.0 * i, 0.10 + 0.01 * i, 0.01) for i in range(3))
+    assert Zero(stretches[:2], 60.0).p_value == pytest.approx(math.erfc(math.sqrt(0.5 / 2)), rel=1e-12)
+    assert Zero(stretches, 120.0).p_value == pytest.approx(math.exp(-1.0), rel=1e-12)

@@ -11,10 +11,12 @@ import hersey
 from hersey.decision import judge, next_measurement
 from hersey.decision.judge import drive_limit
 from hersey.decision.measurement import measurements
-from hersey.decision.start_up import plan_start_up
+from hersey.decision.start_up import _Asked, plan_start_up
 from hersey.machine.limits import Limits
 from hersey.posterior import Posterior
+from hersey.posterior.likelihood import break_away_force
 from hersey.posterior.sampling import posterior
+from hersey.stability.plan.trial import Shape
 from hersey.study.first_screen.advice import design_part, ranking
 from tests.conftest import ROOT
 
@@ -144,3 +146,18 @@ def test_design_ranks_what_would_narrow_v_star(found: Posterior) -> None:
     assert part.fold is not None
     assert part.fold.low < part.fold.value < part.fold.high
     assert ranking(found, ())[-1] == "No measurement would narrow it much."
+
+
+def test_a_belt_let_go_later_than_two_laps_after_the_ramp_does_not_count(found: Posterior) -> None:
+    """Of belts that stop abruptly by hand: the spring is pulled up at stiffness times drive speed."""
+    drives = found.drives.take(np.flatnonzero(found.drives.closure == 1))
+    light = replace(found.model, machine=replace(found.model.machine, mass=0.01))  # of a lap of 6 ms
+    shape = Shape(0.12, 0.12, 1e-3)
+    asked = _Asked(replace(found, model=light), HOT, 0.12, Limits(), np.inf)
+    slides, _ = asked.tried(drives, shape)
+    stiffness = found.model.numbers(drives)[:, 1]
+    let_go = 0.5e-3 + break_away_force(found.model, drives, HOT) / (stiffness * 0.12)
+    soon = let_go <= 1e-3 + 2.0 * 2.0 * np.pi * np.sqrt(0.01 / 11e3)
+    ever = np.asarray(found.model.start_ups(drives, HOT, [(0.0, 0.0), (1e-3, 0.12)]).slides)
+    assert np.count_nonzero(ever & ~soon) > 5
+    np.testing.assert_array_equal(slides, ever & soon)

@@ -10,8 +10,9 @@ import pytest
 
 import hersey
 from hersey.document.analysis import Analysis
-from hersey.document.assembly import document_of, load
+from hersey.document.assembly import _timeline, document_of, load
 from hersey.errors import ParameterError
+from hersey.log.torque_log import LogFile, Run
 from hersey.study import study
 from hersey.testbench.truth import Truth
 
@@ -113,3 +114,16 @@ def test_what_does_not_fit_is_told_once_and_the_farthest_off_first(document: Ana
     off = document.film.misfits
     assert [each.size for each in off] == sorted((each.size for each in off), reverse=True)
     assert not {each.text for each in off} & set(document.film.notes)
+
+
+def test_runs_of_the_timeline_follow_a_sample_apart() -> None:
+    """Runs of 0.1 s steps: from 5 to 65 s, 0 to 60 s and 2 to 62 s, each one step after the one before."""
+    time = 0.1 * np.arange(601)
+    rows = {"torque": np.ones(601), "speed": np.full(601, 5.0), "temperature": None}
+    runs = tuple(Run(f"{i}.csv", time + begin, **rows) for i, begin in enumerate((5.0, 0.0, 2.0)))
+    files = tuple(LogFile(run.name, "0" * 64, 1, 601, 0, (), ()) for run in runs)
+    timeline = _timeline(hersey.TorqueLog(runs, files))
+    assert timeline.starts == pytest.approx([-5.0, 60.1, 118.2], abs=1e-9)
+    first = [t for t in timeline.torque.time if t <= 60.05]
+    assert (first[0], first[-1]) == pytest.approx((0.0, 60.0), abs=1e-9)
+    assert timeline.torque.time[len(first)] == pytest.approx(60.1, abs=1e-9)

@@ -392,3 +392,12 @@ def test_a_doubtful_unit_is_told_of_logs_and_of_tables_of_means(tmp_path: Path) 
     assert seen.cautions[0].startswith("Rows come every 50 s")
     log.write_text("speed [rpm],torque [N*m],temp [degC]\n10,1,420\n20,1.1,421\n30,1.3,422\n")
     assert inspect(log, means=True).cautions[0].startswith("Temperature reaches 422 degC")
+
+
+@pytest.mark.parametrize(("rows", "found"), [(2, ["drop-outs"]), (5, ["drop-outs"]), (6, []), (12, [])])
+def test_a_speed_lost_for_a_few_rows_is_a_drop_out_and_a_longer_one_a_stand(
+    rows: int, found: list[str]
+) -> None:
+    speed = 50.0 + 0.1 * np.random.default_rng(1).standard_normal(1000)
+    speed[400 : 400 + rows] = 0.0
+    assert kinds(speed, stands=True) == found

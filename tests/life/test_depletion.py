@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import polars as pl
@@ -11,6 +12,7 @@ import pytest
 
 from hersey.arrays import FloatArray
 from hersey.errors import InsufficientDataError, ParameterError
+from hersey.life.film import layer as layer_module
 from hersey.life.film import through_life
 from hersey.life.film.depletion_law import Rates, log_layer
 from hersey.life.film.filled_dwells import FilledDwells, filled_dwells
@@ -258,3 +260,28 @@ def test_what_the_law_itself_may_be_off_moves_all_ages(monkeypatch: pytest.Monke
     bare = film_life(shipped.campaign(1), shipped.machine()).starves[0].units[0].age
     assert told.high - told.low > 1.05 * (bare.high - bare.low)
     assert told.value == pytest.approx(bare.value, rel=0.02)
+
+
+@pytest.mark.parametrize(("stated", "share"), [(0.02, 0.02), (0.3, 0.3), (None, 0.2)])
+def test_how_well_the_viscosity_is_known_beforehand(
+    stated: float | None, share: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Between two points each within a share (95 %): sqrt(2) ln(1 + share)/1.96, a fifth if not stated."""
+
+    class ToldError(Exception):
+        pass
+
+    def told(_searches: object, _about: FloatArray, beforehand: Any) -> None:
+        raise ToldError(beforehand.covariance)
+
+    monkeypatch.setattr(layer_module, "_told", told)
+    bare, _ = example_drive()
+    assert bare.lubricant is not None
+    machine = replace(bare, lubricant=replace(bare.lubricant, uncertainty=stated))
+    speed, kelvin = (each[None] for each in grid())
+    torque = 0.1 * np.ones_like(speed)
+    dwells = FilledDwells(speed, kelvin, torque, 0.01 * torque, np.ones(speed.shape, dtype=bool))
+    with pytest.raises(ToldError) as known:
+        layers(dwells, machine, speed=COLD[0], kelvin=COLD[1])
+    deviation = np.sqrt(known.value.args[0][0, 0])
+    assert deviation == pytest.approx(np.sqrt(2.0) * np.log(1.0 + share) / 1.96, rel=1e-9)

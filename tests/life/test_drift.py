@@ -11,6 +11,7 @@ from benchmarks.drift import other, said, stand, table
 
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.life.drift.aged_torque import OWN, Scales, expected, parts
+from hersey.life.drift.quantities import _kinds
 from hersey.life.drift.result import Drift, fit_drift
 from hersey.testbench import Ageing, population
 from hersey.testbench.drive import example_drive
@@ -120,3 +121,13 @@ def test_too_few_dwells_tell_no_drift() -> None:
     few = table(other("lubricant", 1, units=2, logs=3)).group_by("run_id", maintain_order=True).head(2)
     with pytest.raises(InsufficientDataError, match="fewer than 4 dwells"):
         fit_drift(few)
+
+
+def test_the_energy_of_torque_is_that_of_a_film_alone() -> None:
+    """Film to the power 0.4 of a viscosity that falls by exp(2) from 400 to 450 K, in J/mol."""
+    scales = Scales.of(np.array([1.0, 10.0]), np.array([400.0, 450.0]), np.array([0.2, 0.2]))
+    shared = np.array([0.0, 0.6, 2.0, 0.0, 0.0, 0.0, 0.0])  # level, exponent, slope of viscosity
+    own = np.array([0.0, 0.0, 0.0, -30.0, -30.0, 0.0])  # neither starved nor in contact
+    [energy] = [kind for kind in _kinds(scales, shared) if kind.name == "temperature law"]
+    by_hand = 8.314462618 * 0.4 * 2.0 / (1.0 / 400.0 - 1.0 / 450.0)
+    assert energy.value(own[None])[0] == pytest.approx(by_hand, rel=1e-6)

@@ -270,3 +270,24 @@ def test_the_ends_of_an_age_hold_nine_draws_in_ten() -> None:
     low, median, high = quantiles(np.append(np.arange(1.0, 1000.0), np.inf))
     assert (low, median, high) == (50.0, 500.0, 950.0)
     assert np.isinf(quantiles(np.full(10, np.inf))).all()
+
+
+def test_growth_of_new_units_is_doubted_beyond_the_greatest_last_age(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Units followed to 8 and to 40: twice the time, for new ones beyond 40, for each beyond its own."""
+    age = np.concatenate([np.linspace(0.0, 8.0, 9), np.linspace(0.0, 40.0, 9)])
+    value = (1.0 + 0.02 * age) * np.exp(0.01 * np.random.default_rng(2).standard_normal(18))
+    growth = fit_growth(["F1"] * 9 + ["F2"] * 9, age, value, 0.01)
+    last, found = np.array([8.0, 40.0]), []
+    for factor in (1.0, 2.0):
+
+        def beyond(_random: object, _share: float, draws: int, *widths: int, by: float = factor) -> Any:
+            return tuple(np.full((draws, width), by) for width in widths)
+
+        monkeypatch.setattr(growth_module, "beyond", beyond)
+        found.append(growth.drawn_ages(1.6))
+    (units, new), (later_units, later_new) = found
+    assert 0.1 < np.mean(new < 40.0) < 0.9
+    np.testing.assert_allclose(later_new, np.where(new > 40.0, 2.0 * new - 40.0, new), rtol=1e-12)
+    np.testing.assert_allclose(later_units, np.where(units > last, 2.0 * units - last, units), rtol=1e-12)

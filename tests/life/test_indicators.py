@@ -18,7 +18,9 @@ from hersey.life.campaign.conversion import entry_of
 from hersey.life.indicator import Indicator, Indicators
 from hersey.life.indicators import sticking
 from hersey.life.indicators.of_campaign import indicators_of
+from hersey.life.indicators.sticking import stick_speed_at
 from hersey.life.indicators.torque_surface import RunDwells
+from hersey.lubrication.lubricant import Lubricant
 from hersey.machine import Limits, Machine
 from hersey.machine.duty import GearTable, LifeTable
 from hersey.testbench import population
@@ -220,6 +222,7 @@ def test_damage_of_starts_by_hand_and_of_stick_slip(campaign: Campaign) -> None:
     last = np.array([age == 170e3 for _, age in truths()])
     assert found.value[~worn & ~last] == pytest.approx(by_hand[~worn & ~last], rel=0.25)
     assert found.error[0] == pytest.approx(7.0 * 0.008, rel=0.2)
+    assert found.limit_error == pytest.approx(7.0 * 0.01 / 1.96)  # a torque 1 % off at 95 %, to the slope
     assert np.all(found.value[worn & last] > 10.0 * by_hand[worn & last])
     assert any("stick-slip at thick paper in" in note for note in found.notes)
 
@@ -306,3 +309,12 @@ def test_an_empty_campaign_is_refused(tmp_path: Path) -> None:
         pytest.raises(InsufficientDataError, match="no run with dwells"),
     ):
         indicators_of(opened, machine(motor_torque=1.0))
+
+
+def test_the_stick_speed_moves_as_one_over_the_viscosity() -> None:
+    """2 mm/s where the oil has 20 mPa s, 4 mm/s where it has 10 mPa s."""
+    oil = Lubricant("arrhenius", ((423.15, 0.02), (453.15, 0.01)))
+    stated = replace(machine(), stick_speed=2e-3, stick_speed_temperature=423.15, lubricant=oil)
+    assert stick_speed_at(stated, 453.15) == pytest.approx(4e-3, rel=1e-9)
+    assert stick_speed_at(stated, 423.15) == pytest.approx(2e-3, rel=1e-9)
+    assert stick_speed_at(replace(stated, stick_speed_rule="fixed"), 453.15) == 2e-3

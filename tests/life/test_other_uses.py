@@ -12,6 +12,7 @@ import hersey
 from hersey.errors import ParameterError
 from hersey.life import other_uses as module
 from hersey.life.growth.limit_ages import Interval
+from hersey.life.indicator import Indicator
 from hersey.life.other_uses import AS_STATED, OtherUses, Use, UseEnd, other_uses
 from hersey.machine.duty import LifeTable
 from hersey.machine.machine import Machine
@@ -96,3 +97,18 @@ def test_nothing_to_change_is_said() -> None:
     found = hersey.Indicators(hersey.Runs((1,), ("U1",), np.zeros(1), "pages"), ())
     with pytest.raises(ParameterError, match=r"\[limits\] motor_torque"):
         other_uses(shipped.opened(2), bare, found)
+
+
+def test_each_limit_of_the_torque_has_an_age_of_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Torque of 1 N m when new grows by 1 mN m a page: it is at 1.3 N m after 300 pages, at 1.6 after 600."""
+    shipped.fewer(monkeypatch)
+    ages = np.tile(np.linspace(0.0, 800.0, 9), 4)
+    noise = np.random.default_rng(1).normal(0.0, 0.003, ages.size)
+    runs = hersey.Runs(tuple(range(36)), tuple(f"F{i // 9}" for i in range(36)), ages, "pages")
+    torque = (1.0 + 1e-3 * ages) * np.exp(noise)
+    motor = Indicator("motor torque, cold", "motor torque", "N m", 1.0, torque, np.full(36, 0.003))
+    ways = module._Ways({motor.name: 0}, 0)
+    for limit, age in ((1.3, 300.0), (1.6, 600.0), (1.3, 300.0)):
+        ends = ways.ends(hersey.Indicators(runs, (motor,)), limit)
+        assert [end.age.value for end in ends[:4]] == pytest.approx([age] * 4, rel=0.03)
+        assert ends[-1].age.value == pytest.approx(age, rel=0.05)

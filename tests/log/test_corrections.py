@@ -304,3 +304,10 @@ def test_a_corrected_log_is_fitted_to_the_truth() -> None:
     for name in ("speed", "torque", "torque_error"):
         np.testing.assert_allclose(done.log.steady().column(name), good.steady().column(name), rtol=1e-9)
     assert replace(done.log.runs[0], name="x").name == "x"
+
+
+def test_no_load_torque_where_the_roll_drives_the_motor() -> None:
+    """The rest of the drive brakes the motion, whichever way torque acts."""
+    speed = staircase(-4.0, 4.0)
+    after = torque_of(corrections.no_load(log_of(-0.5 * np.sign(speed), speed), torque=0.1))
+    np.testing.assert_allclose(after, -0.6 * np.sign(speed), atol=1e-12)

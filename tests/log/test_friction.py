@@ -201,6 +201,9 @@ def test_a_load_and_a_radius_for_each_run(tmp_path: Path) -> None:
     log = hersey.read(cof, isothermal=True, radius=0.025, load=[10.0, 20.0])
     np.testing.assert_allclose([run.torque[0] for run in log.runs], [0.025, 0.05], rtol=1e-12)
     assert "the load is one of 2 for each run" in log.files[0].notes
+    log = hersey.read(cof, isothermal=True, radius=[0.025, 0.05], load=[10.0, 20.0])
+    np.testing.assert_allclose([run.torque[0] for run in log.runs], [0.025, 0.1], rtol=1e-12)
+    np.testing.assert_allclose([run.speed[0] for run in log.runs], [0.8, 0.4], rtol=1e-12)
     with pytest.raises(ParameterError, match="load has 3 values for 2 runs: give one for each"):
         hersey.read(cof, isothermal=True, radius=0.025, load=[10.0, 20.0, 30.0])
     with pytest.raises(ParameterError, match="load is -5"):

@@ -10,6 +10,7 @@ import pytest
 
 import hersey
 from hersey.errors import UnreadableLogError
+from hersey.log.slow_channels import SlowChannel
 
 RATE, LASTS, EVERY = 50, 60, 50
 TIME = np.arange(RATE * LASTS) / RATE
@@ -120,3 +121,14 @@ def test_values_few_and_far_between_tell_nothing_of_what_lies_between(every: int
     for source in sources(long.with_columns(heat), tmp_path):
         with pytest.raises(UnreadableLogError, match=r"such rows of 12000.*: too few rows are left"):
             hersey.read(source, drop_missing=True)
+
+
+def test_both_values_beside_a_long_gap_are_kept() -> None:
+    """A value every 10 s: the gap from 20 to 60 s is beyond three of them, and loses what lies between."""
+    time = np.arange(101.0)
+    heat = np.where((time % 10.0 == 0.0) & ~((time > 20.0) & (time < 60.0)), 300.0 + time, np.nan)
+    channel = SlowChannel.of("temperature", "Temp", time, np.isfinite(heat))
+    filled = channel.filled(time, heat, "row {}".format)
+    expected = np.where((time > 20.0) & (time < 60.0), np.nan, 300.0 + time)
+    np.testing.assert_allclose(filled, expected, rtol=1e-14)
+    assert (channel.in_gaps, channel.outside) == (39, 0)

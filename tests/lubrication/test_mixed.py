@@ -239,3 +239,13 @@ def test_what_cannot_be_is_refused(make: Any, words: str) -> None:
 
 
 STEEL = Asperities(modulus=1e11)
+
+
+def test_what_warming_does_to_viscosity_and_boundary_friction() -> None:
+    """Slopes of logarithms: of the oil by differences, of 0.1 + 2e-4/K (T - 373.15 K) by hand."""
+    law = mixed(BoundaryFriction(0.1, 2e-4, WARM))
+    of_viscosity, of_friction = law.warming(np.array([WARM, WARM + 20.0]))
+    for kelvin, found in zip((WARM, WARM + 20.0), of_viscosity, strict=True):
+        warm, cold = (float(OIL.viscosity(kelvin + step)) for step in (0.01, -0.01))
+        assert found == pytest.approx(np.log(warm / cold) / 0.02, rel=1e-6)
+    assert of_friction == pytest.approx([2e-4 / 0.1, 2e-4 / 0.104], rel=1e-12)

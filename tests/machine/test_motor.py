@@ -56,3 +56,10 @@ def test_limits_give_a_roll_its_grip() -> None:
     assert limits.gripping(TRAIN).grip == 180.0
     assert limits.gripping(replace(TRAIN, grip=50.0)).grip == 50.0
     assert Limits().gripping(TRAIN).grip is None
+
+
+def test_a_drive_backwards_asks_as_much() -> None:
+    run = hersey.simulate(TRAIN, DRAG, drive_speed=-1.0, duration=0.3, samples=301)
+    use = motor_use(run, motor_torque=4.0, roll_radius=0.02)
+    assert (use.torque, use.time) == (pytest.approx(6.0), 0.3)
+    assert use.exceeded_from == pytest.approx(0.2, rel=1e-9)

@@ -55,3 +55,12 @@ def test_a_stall_is_told_from_slipping_and_from_an_unsettled_motion(closure: str
     assert swept.kind.values.tolist() == ["stalled"]
     heavy = hersey.sweep(hersey.Drivetrain(11e3, 2.0, grip=10.5), drag, drive_speed=[0.5], start="steady")
     assert heavy.kind.values.tolist() == ["grip_slip"]
+
+
+def test_a_roll_that_slips_from_the_start_on_slips_as_long() -> None:
+    """At its grip, 11 N, a drive of 60 mm/s slips on a belt that comes to 36 mm/s, and never grips again."""
+    train = hersey.Drivetrain(11e3, 2.0, grip=11.0)
+    drag = hersey.Drag(**{**vars(_DRAG), "rest_force": 0.0})
+    run = hersey.simulate(train, drag, drive_speed=0.06, duration=2.0, start=(0.04, 1e-3))
+    assert run.roll_slips == [(0.0, 2.0)]
+    assert run.belt_speed[-1] == pytest.approx(0.03 * 1.1 ** (1 / 0.3), rel=1e-3)

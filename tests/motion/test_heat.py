@@ -132,3 +132,13 @@ def test_what_is_refused() -> None:
         hersey.simulate(
             _TRAIN, _DRAG, drive_speed=0.0, temperature=replace(_HEAT, film_load=1e4), duration=100.0
         )
+
+
+def test_a_heater_without_a_gain_gives_full_power_until_a_tenth_of_a_kelvin_is_missing() -> None:
+    """2 kW over 0.1 K: 20 kW/K times what is missing makes up what leaves the film's body."""
+    heat = replace(_HEAT, setpoint=400.0, heater_power=2000.0)
+    run = hersey.simulate(_TRAIN, _DRAG, drive_speed=0.0, temperature=heat, duration=400.0, samples=3)
+    assert run.film_temperature is not None
+    assert run.roll_temperature is not None
+    film, roll = run.film_temperature[-1], run.roll_temperature[-1]
+    assert 20e3 * (400.0 - film) == pytest.approx(5.0 * (film - roll) + 0.3 * (film - 295.0), rel=1e-3)

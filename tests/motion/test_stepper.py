@@ -229,3 +229,21 @@ def test_units_are_read_at_the_door():
     assert stepper.advance("500 ms") == same.advance(0.5)
     assert stepper.set_inputs(drive="50 mm/s") == same.set_inputs(drive=0.05)
     assert follow(stepper, 1.0) == follow(same, 1.0)
+
+
+def test_the_drag_of_a_belt_braked_below_the_stick_speed_is_the_pull_less_its_inertia():
+    """After a slip, for some microseconds until it holds: m dv/dt by differences, m = 1 kg."""
+    stepper = Stepper(TRAIN, BASELINE, drive_speed=0.3)
+    while (event := (state := stepper.advance(3.0)).event) and event.from_mode != "mixed":
+        pass
+    assert (event.from_mode, event.to_mode) == ("mixed", "ehl")
+    while (event := (state := stepper.advance(3.0)).event) and event.to_mode != "microslip":
+        pass
+    assert event.from_mode == "mixed"
+    step = 1e-7
+    states = [stepper.advance(state.time + i * step) for i in range(1, 41)]
+    assert {each.mode for each in states} == {"microslip"}
+    speed, pull, drag = np.array([(s.belt_speed, s.spring_force, s.drag) for s in states]).T
+    slowing = (speed[2:] - speed[:-2]) / (2 * step)
+    assert slowing.max() < -100.0
+    np.testing.assert_allclose(drag[1:-1], pull[1:-1] - 1.0 * slowing, rtol=1e-5)

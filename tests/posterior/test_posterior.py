@@ -9,14 +9,16 @@ import numpy as np
 import pytest
 
 import hersey
+from hersey.damping.rest import RestOfDrive
 from hersey.log import TorqueLog
 from hersey.log.torque_log import Run
+from hersey.machine.uncertainty import Uncertainty
 from hersey.posterior import BreakAway, Posterior, Start, StickSlip
 from hersey.posterior.evidence import CycleFigures
 from hersey.posterior.likelihood import break_away_force, misfit
 from hersey.posterior.priors import CLOSURES, DrivePriors
 from hersey.posterior.result import edges_at
-from hersey.posterior.sampling import posterior
+from hersey.posterior.sampling import decision_temperature, posterior
 from hersey.posterior.traces import _stretches, evidence_of_log, evidence_of_trace
 from hersey.posterior.typical import typical_drag, typical_draw, typical_of_all_temperatures
 from tests.conftest import ROOT
@@ -347,3 +349,34 @@ def test_a_wide_v_star_converges_by_its_own_width(alone: Posterior) -> None:
     assert not replace(state, ratio=1.2, width=2.0).converged  # 2^0.08 is 1.06
     assert replace(state, ratio=1.19, width=10.0).converged  # 10^0.08 is 1.20
     assert not replace(state, ratio=1.22, width=10.0).converged
+
+
+def test_a_belt_at_rest_bears_the_no_load_drag_too(alone: Posterior) -> None:
+    """A constant torque of 30 mN m at a roll of 15 mm is 2 N more on every draw."""
+    few = alone.drives.take(np.arange(0, 400, 40))
+    forces = [
+        break_away_force(replace(alone.model, surface=replace(alone.model.surface, rest=rest)), few, HOT)
+        for rest in (None, RestOfDrive.stated(constant=0.03))
+    ]
+    assert forces[1] - forces[0] == pytest.approx(np.full(10, 0.03 / 0.015), rel=1e-9)
+
+
+def test_each_number_of_the_drive_has_its_own_range(machine: hersey.Machine) -> None:
+    stated = {"stiffness": Uncertainty(share=0.1), "mass": Uncertainty(share=0.5)}
+    priors = DrivePriors.of(replace(machine, uncertainty=stated))
+    assert priors.range_of("stiffness") == pytest.approx((11e3 / 1.1, 11e3 * 1.1), rel=1e-6)
+    assert priors.range_of("mass") == pytest.approx((11.0 / 1.5, 11.0 * 1.5), rel=1e-6)
+    stick = machine.stick_speed  # of which nothing is stated: from a third to three times, evenly in ln
+    assert priors.range_of("stick_speed") == pytest.approx(
+        (stick / 3 * 9**0.025, stick / 3 * 9**0.975), rel=1e-3
+    )
+
+
+def test_the_decision_is_at_the_hottest_point_or_the_hottest_of_the_log(
+    surface: hersey.DampingSurface, machine: hersey.Machine
+) -> None:
+    points = tuple(replace(machine.points[0], temperature=kelvin) for kelvin in (420.0, 450.0, 430.0))
+    assert decision_temperature(surface, replace(machine, points=points)) == 450.0
+    assert surface.temperature_range is not None
+    bare = replace(machine, points=())
+    assert decision_temperature(surface, bare) == max(surface.temperature_range)

@@ -565,3 +565,14 @@ def test_many_bands_know_the_grip_and_one_that_always_holds_changes_no_bit() -> 
     draws = hersey.hysteresis(train, DRAG, samples={"transition_force": forces})
     assert draws.interval is not None
     assert draws.interval[0] == 0.0
+
+
+def test_a_sweep_over_temperature_takes_the_rest_of_the_drive() -> None:
+    """A rest of 10 N + 4 N s/m that falls by 1 % per kelvin: 6 N + 2.4 N s/m when 40 K warmer."""
+    cold = replace(DRAG, rest_force=10.0, rest_damping=4.0)
+    warm = replace(cold, reference_temperature=400.0, rest_temperature_slope=-0.01)
+    swept = hersey.hysteresis_sweep(TRAIN, warm, temperature=[400.0, 440.0])
+    for i, rest in enumerate((cold, replace(DRAG, rest_force=6.0, rest_damping=2.4))):
+        band = hersey.hysteresis(TRAIN, rest, sensitivity=False)
+        assert float(swept.upper[i]) == pytest.approx(band.upper, rel=1e-9)
+    assert float(swept.upper[1]) != pytest.approx(float(swept.upper[0]), rel=0.01)

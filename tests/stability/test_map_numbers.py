@@ -591,3 +591,9 @@ def test_labels_stand_at_what_they_name(few: OperatingMap) -> None:
     assert texts["greatest drive speed"][1] == pytest.approx(0.4, rel=0.2)
     for point in few.points:
         assert texts[point.name][1] == pytest.approx(point.speed, rel=0.5)
+
+
+def test_an_edge_at_a_temperature_of_the_map_is_its_own(few: OperatingMap) -> None:
+    """Whether or not the edge has an end at the temperatures beside it."""
+    for row in ([0.1, np.inf, 0.3], [np.inf, 0.2, np.inf], [np.inf, np.inf, 0.3], [0.1, np.inf, np.inf]):
+        assert [few.at(np.array(row), kelvin) for kelvin in KELVIN] == row

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import polars as pl
 import pytest
 from scipy import stats
 
@@ -517,3 +518,42 @@ def test_the_regime_chart_in_numbers(contact: Contact, oil: Lubricant, measured:
     )
     assert hidden["layer"][2]["data"]["values"] == []
     assert hidden["title"]["subtitle"][0].endswith(" No point is shown: alpha is not known, g_V = 0.")
+
+
+@pytest.mark.parametrize(("thickness", "load"), [(9e-3, 60.0), (0.9e-3, 300.0)])
+def test_how_far_the_paper_s_nip_is_beyond_its_range(
+    machine: Machine, contact: Contact, oil: Lubricant, thickness: float, load: float
+) -> None:
+    """So many times the bound, 1 below and 4 above."""
+    other = replace(contact, rubber_thickness=thickness, load=load)
+    ratio = other.nip.paper_width / thickness
+    [found] = [m for m in misfits(replace(machine, contact=other), film_at(other, oil)) if "Eq. 8" in m.text]
+    assert not 1.0 < ratio < 4.0
+    assert found.size == pytest.approx(1.0 / ratio if ratio < 1.0 else ratio / 4.0, rel=1e-12)
+
+
+def test_the_thinnest_of_several_films_names_the_band(
+    machine: Machine, contact: Contact, oil: Lubricant
+) -> None:
+    film = film_at(contact, oil, kelvin=[330.0, 420.0])
+    cold, hot = film.lambda_ratio(1.0)
+    rough = replace(contact, roughness=float(hot) / 0.25)
+    assert cold / hot > 4.0  # more than 1 where it is cold
+    thin = "predicted lambda ratio down to 0.25 (minimum film over composite rms roughness)"
+    notes = check_film(replace(machine, contact=rough), film_at(rough, oil, kelvin=[330.0, 420.0]))
+    assert f"{thin}: by convention boundary lubrication below 1" in notes
+
+
+def test_a_recorded_load_is_that_of_the_dwells(
+    points: hersey.SteadyPoints, surface: DampingSurface, contact: Contact, oil: Lubricant
+) -> None:
+    """At twice the load of the file, by hand from the wider nip."""
+    pressed = replace(points, table=points.table.with_columns(pl.lit(600.0).alias("load")))
+    found = measured_film(pressed, surface, contact, oil)
+    w, torque = np.abs(points.column("speed")), np.abs(points.column("torque"))
+    belt, eta = w * 15e-3, np.asarray(oil.viscosity(points.column("temperature")))
+    width = replace(contact, load=600.0).nip.width
+    assert width > 1.1 * contact.nip.width
+    np.testing.assert_allclose(found.friction, torque / (15e-3 * 600.0), rtol=1e-12)
+    np.testing.assert_allclose(found.hersey_number, eta * belt * width * 0.22 / 600.0, rtol=1e-12)
+    np.testing.assert_allclose(found.sommerfeld_number, eta * belt * 0.22 / 600.0, rtol=1e-12)

@@ -107,3 +107,24 @@ def test_the_film_part_holds_both() -> None:
     dots = chart["layer"][2]["data"]["values"]
     assert [row["speed"] for row in dots] == pytest.approx([hersey.units.rpm(v) for v in turn.measured])
     assert shared_load(replace(machine(), asperities=None, boundary=None), film, None) is None
+
+
+def test_the_error_of_the_transition_speed_is_that_of_numerical_derivatives() -> None:
+    """At one Hersey number ln v = at - b/(1 + c) ln(T/T_ref), T in the scale of the law."""
+    found = surface()
+    assert found.transition is not None
+    assert found.transition.freed is None
+    values, covariance = found._closure
+    zero, reference = found.temperature_zero, found.reference_temperature
+    assert reference is not None
+    b, c, at = 1, 2, found._law.index("at")
+    for kelvin in WARM.tolist():
+        x = np.log((kelvin - zero) / (reference - zero))
+
+        def log_speed(v: np.ndarray, x: float = x) -> float:
+            return float(v[at] - v[b] / (1.0 + v[c]) * x)
+
+        steps = 1e-6 * np.eye(values.size)
+        slopes = np.array([(log_speed(values + s) - log_speed(values - s)) / 2e-6 for s in steps])
+        error = found.transition_estimate(kelvin).error / found.transition_speed(kelvin)
+        assert error == pytest.approx(np.sqrt(slopes @ covariance @ slopes), rel=1e-6)
