@@ -17,7 +17,7 @@ from hersey.log.channels import OTHER_ROLES, ROLES, ChannelChoice, Stated, find_
 from hersey.log.mapping import LogMapping, read_with_mapping
 from hersey.log.means import is_means_table
 from hersey.log.stating import proposed
-from hersey.log.text.layout import Column
+from hersey.log.text.column import Column
 
 #: Columns of a preview: each shows the least and the greatest of its rows.
 _COLUMNS = 75

@@ -20,7 +20,7 @@ from hersey.errors import DROP_MISSING, ISOTHERMAL, Setting, UnreadableLogError
 from hersey.log.believed import BELIEVED, Believed, as_written, is_code, is_wrapped
 from hersey.log.channels import role_conversion
 from hersey.log.stray_times import stray_times
-from hersey.log.text.layout import Column
+from hersey.log.text.column import Column
 from hersey.result import Means, Record
 from hersey.units import Conversion
 

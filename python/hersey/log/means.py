@@ -31,9 +31,10 @@ from hersey.log.formats.frame import is_frame
 from hersey.log.friction import beside, in_rotation, notes_on, unused
 from hersey.log.recording import Cells, Signal, split_unit
 from hersey.log.sensors import Sensors
+from hersey.log.text.column import Column
 from hersey.log.text.delimited import open_delimited
-from hersey.log.text.layout import Column, split
 from hersey.log.text.repeated_header import refuse_another_header
+from hersey.log.text.separators import split
 from hersey.log.torque_log import LARGEST, Channel, LogFile
 from hersey.result import Result, json_record
 from hersey.units import Conversion, takes_si
