@@ -11,7 +11,7 @@ import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.errors import HerseyError, UnreadableLogError
-from hersey.inspection.inspecting import ChannelReport, file_report
+from hersey.inspection.file_report import ChannelReport, file_report
 from hersey.inspection.raw import Lacking, RawLog, raw_channels
 from hersey.log.channels import OTHER_ROLES, ROLES, ChannelChoice, Stated, find_channel, is_called, is_dead
 from hersey.log.mapping import LogMapping, read_with_mapping
