@@ -13,7 +13,7 @@ import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import lru_cache, wraps
+from functools import cache, lru_cache, wraps
 from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar, cast
 
 from hersey.errors import UnitError, WrongKindError
@@ -36,7 +36,7 @@ class _OnFirstUse:
         return getattr(_full_registry(), name)
 
 
-@lru_cache(maxsize=1)
+@cache
 def _full_registry() -> pint.UnitRegistry[float]:
     import pint
 
@@ -46,143 +46,91 @@ def _full_registry() -> pint.UnitRegistry[float]:
 
 
 registry = cast("pint.UnitRegistry[float]", _OnFirstUse())
-
 #: One number, or an array of them.
 Number = TypeVar("Number", float, "NDArray[np.float64]")
 #: 0 degC, K.
 ZERO_CELSIUS = 273.15
-#: SI unit and an example of each kind of quantity that a log or a command carries.
-KINDS: dict[str, tuple[str, str]] = {
-    "time": ("s", "s"),
-    "torque": ("N*m", "N*m"),
-    "speed": ("rad/s", "rpm"),
-    "temperature": ("K", "degC"),
-    "stiffness": ("N/m", "N/m"),
-    "mass": ("kg", "kg"),
-    "length": ("m", "mm"),
-    "belt speed": ("m/s", "mm/s"),
-    "force": ("N", "N"),
-    "acceleration": ("m/s^2", "mm/s^2"),
-    "translational damping": ("N*s/m", "N*s/m"),
-    "rotational damping": ("N*m*s/rad", "mN*m*s/rad"),
-    "pressure": ("Pa", "MPa"),
-    "viscosity": ("Pa*s", "mPa*s"),
-    "kinematic viscosity": ("m^2/s", "mm^2/s"),
-    "density": ("kg/m^3", "g/cm^3"),
-    "pressure-viscosity coefficient": ("Pa^-1", "GPa^-1"),
-    "thermal conductivity": ("W/m/K", "W/m/K"),
-    "power": ("W", "W"),
-    "energy": ("J", "J"),
-    "heat capacity": ("J/K", "J/K"),
-    "thermal conductance": ("W/K", "W/K"),
-    "torsional stiffness": ("N*m/rad", "N*m/rad"),
-    "moment of inertia": ("kg*m^2", "kg*m^2"),
-    "load per length": ("N/m", "N/m"),
-    "stiffness per weight": ("m^-1", "m^-1"),
-    "mass per weight": ("s^2/m", "s^2/m"),
-    "friction coefficient": ("1", "1"),
+#: Of each kind of quantity that a log or a command carries: the SI unit, an example, and units as people
+#: write them, which one that cannot be read may have been meant for.
+_QUANTITIES: dict[str, tuple[str, str, str]] = {
+    "time": ("s", "s", "s ms us min h"),
+    "torque": ("N*m", "N*m", "N*m mN*m N*mm N*cm kN*m Nm mNm Nmm Ncm ozf*in lbf*in lbf*ft kgf*cm gf*cm"),
+    "speed": ("rad/s", "rpm", "rpm rad/s rev/s rev/min deg/s"),
+    "temperature": ("K", "degC", "degC degF K"),
+    "stiffness": ("N/m", "N/m", "N/m N/mm kN/m N/um lbf/in ozf/in"),
+    "mass": ("kg", "kg", "kg g mg lb oz slug"),
+    "length": ("m", "mm", "m mm cm um nm inch ft mil"),
+    "belt speed": ("m/s", "mm/s", "m/s mm/s cm/s um/s in/s m/min mm/min ft/min"),
+    "force": ("N", "N", "N mN kN lbf ozf kgf gf"),
+    "acceleration": ("m/s^2", "mm/s^2", "m/s^2 mm/s^2 in/s^2"),
+    "translational damping": ("N*s/m", "N*s/m", "N*s/m N*s/mm lbf*s/in"),
+    "rotational damping": ("N*m*s/rad", "mN*m*s/rad", "N*m*s/rad mN*m*s/rad mN*m/rpm"),
+    "pressure": ("Pa", "MPa", "Pa kPa MPa GPa bar mbar psi N/mm^2"),
+    "viscosity": ("Pa*s", "mPa*s", "Pa*s mPa*s cP P reyn"),
+    "kinematic viscosity": ("m^2/s", "mm^2/s", "m^2/s mm^2/s cSt St"),
+    "density": ("kg/m^3", "g/cm^3", "kg/m^3 g/cm^3"),
+    "pressure-viscosity coefficient": ("Pa^-1", "GPa^-1", "Pa^-1 GPa^-1 1/GPa"),
+    "thermal conductivity": ("W/m/K", "W/m/K", "W/m/K mW/m/K"),
+    "power": ("W", "W", "W kW mW"),
+    "energy": ("J", "J", "J kJ mJ Wh"),
+    "heat capacity": ("J/K", "J/K", "J/K kJ/K"),
+    "thermal conductance": ("W/K", "W/K", "W/K mW/K"),
+    "torsional stiffness": ("N*m/rad", "N*m/rad", "N*m/rad N*m/deg mN*m/rad"),
+    "moment of inertia": ("kg*m^2", "kg*m^2", "kg*m^2 g*cm^2 kg*cm^2"),
+    "load per length": ("N/m", "N/m", "N/m N/mm kN/m lbf/in"),
+    "stiffness per weight": ("m^-1", "m^-1", "m^-1 mm^-1 in^-1"),
+    "mass per weight": ("s^2/m", "s^2/m", "s^2/m s^2/mm s^2/in"),
+    "friction coefficient": ("1", "1", "1"),
 }
-
-#: Units of each kind as people write them: what a unit that cannot be read may have been meant for.
-_USUAL: dict[str, str] = {
-    "time": "s ms us min h",
-    "torque": "N*m mN*m N*mm N*cm kN*m Nm mNm Nmm Ncm ozf*in lbf*in lbf*ft kgf*cm gf*cm",
-    "speed": "rpm rad/s rev/s rev/min deg/s",
-    "temperature": "degC degF K",
-    "stiffness": "N/m N/mm kN/m N/um lbf/in ozf/in",
-    "mass": "kg g mg lb oz slug",
-    "length": "m mm cm um nm inch ft mil",
-    "belt speed": "m/s mm/s cm/s um/s in/s m/min mm/min ft/min",
-    "force": "N mN kN lbf ozf kgf gf",
-    "acceleration": "m/s^2 mm/s^2 in/s^2",
-    "translational damping": "N*s/m N*s/mm lbf*s/in",
-    "rotational damping": "N*m*s/rad mN*m*s/rad mN*m/rpm",
-    "pressure": "Pa kPa MPa GPa bar mbar psi N/mm^2",
-    "viscosity": "Pa*s mPa*s cP P reyn",
-    "kinematic viscosity": "m^2/s mm^2/s cSt St",
-    "density": "kg/m^3 g/cm^3",
-    "pressure-viscosity coefficient": "Pa^-1 GPa^-1 1/GPa",
-    "thermal conductivity": "W/m/K mW/m/K",
-    "power": "W kW mW",
-    "energy": "J kJ mJ Wh",
-    "heat capacity": "J/K kJ/K",
-    "thermal conductance": "W/K mW/K",
-    "torsional stiffness": "N*m/rad N*m/deg mN*m/rad",
-    "moment of inertia": "kg*m^2 g*cm^2 kg*cm^2",
-    "load per length": "N/m N/mm kN/m lbf/in",
-    "stiffness per weight": "m^-1 mm^-1 in^-1",
-    "mass per weight": "s^2/m s^2/mm s^2/in",
-    "friction coefficient": "1",
-}
+#: SI unit and an example of each kind.
+KINDS = {kind: (si, example) for kind, (si, example, _) in _QUANTITIES.items()}
+_USUAL = {kind: usual for kind, (_, _, usual) in _QUANTITIES.items()}
 #: How alike (`difflib`) a usual unit must be to an unknown one, and to one of another kind, to be proposed.
 _ALIKE, _ALIKE_OF_ANOTHER_KIND = 0.6, 0.8
 
 #: Exponents of m, kg, s, K and rad. The angle counts here, so that 1/s is no speed of a drive.
 _Dimension = tuple[int, int, int, int, int]
 _NONE: _Dimension = (0, 0, 0, 0, 0)
-_LENGTH, _MASS, _TIME, _TEMPERATURE, _ANGLE = (
-    (1, 0, 0, 0, 0),
-    (0, 1, 0, 0, 0),
-    (0, 0, 1, 0, 0),
-    (0, 0, 0, 1, 0),
-    (0, 0, 0, 0, 1),
-)
+_LENGTH, _MASS, _TIME = (1, 0, 0, 0, 0), (0, 1, 0, 0, 0), (0, 0, 1, 0, 0)
+_TEMPERATURE, _ANGLE = (0, 0, 0, 1, 0), (0, 0, 0, 0, 1)
 _FORCE, _PRESSURE, _VISCOSITY = (1, 1, -2, 0, 0), (-1, 1, -2, 0, 0), (-1, 1, -1, 0, 0)
 _POUND, _INCH, _GRAVITY = Fraction("0.45359237"), Fraction("0.0254"), Fraction("9.80665")
 _PSI, _TURN = _POUND * _GRAVITY / _INCH**2, 2 * Fraction(math.pi)
 
-#: Units of drives that take SI prefixes, and those that take none: value in SI, exact, and dimension.
-_PREFIXED: dict[str, tuple[Fraction, _Dimension]] = {
-    "m": (Fraction(1), _LENGTH),
-    "g": (Fraction(1, 1000), _MASS),
-    "s": (Fraction(1), _TIME),
-    "rad": (Fraction(1), _ANGLE),
-    "N": (Fraction(1), _FORCE),
-    "Pa": (Fraction(1), _PRESSURE),
-    "bar": (Fraction(100_000), _PRESSURE),
-    "P": (Fraction(1, 10), _VISCOSITY),
-    "St": (Fraction(1, 10_000), (2, 0, -1, 0, 0)),
-}
+#: Units of one dimension: value in SI, exact, by name.
+_Units = dict[_Dimension, dict[str, Fraction | int]]
+#: Units of drives that take SI prefixes, and those that take none.
+_PREFIXED: _Units = {
+    _LENGTH: {"m": 1}, _MASS: {"g": Fraction(1, 1000)}, _TIME: {"s": 1}, _ANGLE: {"rad": 1}, _FORCE: {"N": 1},
+    _PRESSURE: {"Pa": 1, "bar": 100_000}, _VISCOSITY: {"P": Fraction(1, 10)},
+    (2, 0, -1, 0, 0): {"St": Fraction(1, 10_000)},
+}  # fmt: skip
 #: Units of energy, known only where an energy is asked for: none is one of torque.
-_OF_ENERGY: dict[str, tuple[Fraction, _Dimension]] = {
-    "J": (Fraction(1), (2, 1, -2, 0, 0)),
-    "W": (Fraction(1), (2, 1, -3, 0, 0)),
-}
+_OF_ENERGY: _Units = {(2, 1, -2, 0, 0): {"J": 1}, (2, 1, -3, 0, 0): {"W": 1}}
 _ENERGY_KINDS = frozenset(("power", "energy", "heat capacity", "thermal conductance", "thermal conductivity"))
-_UNPREFIXED: dict[str, tuple[Fraction, _Dimension]] = {
-    "min": (Fraction(60), _TIME),
-    "h": (Fraction(3600), _TIME),
-    "deg": (_TURN / 360, _ANGLE),
-    "rev": (_TURN, _ANGLE),
-    "rpm": (_TURN / 60, (0, 0, -1, 0, 1)),
-    "K": (Fraction(1), _TEMPERATURE),
-    "inch": (_INCH, _LENGTH),
-    "in": (_INCH, _LENGTH),
-    "ft": (12 * _INCH, _LENGTH),
-    "thou": (_INCH / 1000, _LENGTH),
-    "lb": (_POUND, _MASS),
-    "oz": (_POUND / 16, _MASS),
-    "slug": (_POUND * _GRAVITY / (12 * _INCH), _MASS),
-    "lbf": (_POUND * _GRAVITY, _FORCE),
-    "ozf": (_POUND / 16 * _GRAVITY, _FORCE),
-    "kgf": (_GRAVITY, _FORCE),
-    "gf": (_GRAVITY / 1000, _FORCE),
-    "psi": (_PSI, _PRESSURE),
-    "reyn": (_PSI, _VISCOSITY),
-}
+_UNPREFIXED: _Units = {
+    _TIME: {"min": 60, "h": 3600}, _ANGLE: {"deg": _TURN / 360, "rev": _TURN},
+    (0, 0, -1, 0, 1): {"rpm": _TURN / 60}, _TEMPERATURE: {"K": 1},
+    _LENGTH: {"inch": _INCH, "in": _INCH, "ft": 12 * _INCH, "thou": _INCH / 1000},
+    _MASS: {"lb": _POUND, "oz": _POUND / 16, "slug": _POUND * _GRAVITY / (12 * _INCH)},
+    _FORCE: {"lbf": _POUND * _GRAVITY, "ozf": _POUND / 16 * _GRAVITY, "kgf": _GRAVITY, "gf": _GRAVITY / 1000},
+    _PRESSURE: {"psi": _PSI}, _VISCOSITY: {"reyn": _PSI},
+}  # fmt: skip
 _PREFIXES = {"G": 9, "M": 6, "k": 3, "": 0, "d": -1, "c": -2, "m": -3, "u": -6, "µ": -6, "μ": -6, "n": -9}
 
 
-def _with_prefixes(units: dict[str, tuple[Fraction, _Dimension]]) -> dict[str, tuple[Fraction, _Dimension]]:
+def _table(units: _Units, prefixes: Mapping[str, int]) -> dict[str, tuple[Fraction, _Dimension]]:
+    """Value and dimension of each unit with each prefix."""
     return {
         prefix + name: (Fraction(10) ** power * value, dimension)
-        for prefix, power in _PREFIXES.items()
-        for name, (value, dimension) in units.items()
+        for prefix, power in prefixes.items()
+        for dimension, values in units.items()
+        for name, value in values.items()
     }
 
 
-_TABLE = _with_prefixes(_PREFIXED) | _UNPREFIXED
-_TABLE_WITH_ENERGY = _TABLE | _with_prefixes(_OF_ENERGY)
+_TABLE = _table(_PREFIXED, _PREFIXES) | _table(_UNPREFIXED, {"": 0})
+_TABLE_WITH_ENERGY = _TABLE | _table(_OF_ENERGY, _PREFIXES)
 #: Scales of temperature that do not start at absolute zero: K = scale * value + offset.
 _OFFSETS = {
     "degC": (1.0, ZERO_CELSIUS, _TEMPERATURE),
@@ -235,10 +183,8 @@ def conversion(kind: str, unit: str) -> Conversion:
 
     Raises
     ------
-    WrongKindError
-        If the unit is one of another kind.
-    UnitError
-        If the unit is unknown, or could be read in two ways.
+    WrongKindError, UnitError
+        If the unit is one of another kind; if it is unknown, or could be read in two ways.
     """
     si, example = KINDS[kind]
     if len(unit) > _LONGEST_UNIT:
@@ -279,13 +225,7 @@ def _from_table(text: str, *, energy: bool = False) -> tuple[float, float, _Dime
 
 
 def _from_registry(kind: str, text: str, unit: str) -> tuple[float, float]:
-    """Scale and offset of any unit that pint knows.
-
-    Raises
-    ------
-    UnitError
-        If the unit is unknown, of another kind, or could be read in two ways.
-    """
+    """Scale and offset of any unit that pint knows."""
     si = KINDS[kind][0]
     parsed = _parsed(text)
     if parsed is None:
@@ -397,8 +337,8 @@ def si(kind: str, value: Any) -> Any:
     kind
         A key of `KINDS`.
     value
-        A number or array in SI, which is returned as it is; a string with its unit (``"400 rpm"``); a pint
-        quantity; or a list or tuple of strings or quantities, which becomes an array.
+        Number or array in SI, returned as it is; string with its unit (``"400 rpm"``); pint quantity; or a
+        list or tuple of strings or quantities, which becomes an array.
 
     Raises
     ------
@@ -431,14 +371,12 @@ def argument(name: str, kind: Kind, value: Any) -> Any:
         With the name of the argument.
     """
     kinds = (kind,) if isinstance(kind, str) else kind
-    for number, each in enumerate(kinds, 1):
+    for each in kinds:
         try:
             return si(each, value)
-        except WrongKindError as error:
-            if number == len(kinds):
-                raise WrongKindError(f"{name}: {error}") from None
         except UnitError as error:
-            raise UnitError(f"{name}: {error}") from None
+            if each == kinds[-1] or not isinstance(error, WrongKindError):
+                raise type(error)(f"{name}: {error}") from None
     return value
 
 

@@ -139,7 +139,8 @@ def test_names_stay_readable(folder: Path) -> None:
 
 
 def test_the_proposed_mapping_can_be_read_back(folder: Path) -> None:
-    from hersey.log.mapping import propose_mapping, read_mapping
+    from hersey.log.mapping import read_mapping
+    from hersey.log.proposal import propose_mapping
     from hersey.log.reading import list_channels
 
     kept = folder / "kept.toml"

@@ -15,7 +15,8 @@ from hersey.damping.candidates.observations import Observations
 from hersey.damping.candidates.shared_errors import disturbances
 from hersey.damping.candidates.thermal import KELVIN, Thermal
 from hersey.damping.systematic import sensor_shifts
-from hersey.log.mapping import LogMapping, SpeedMapping, TemperatureMapping, TorqueMapping
+from hersey.log.mapping import LogMapping
+from hersey.log.role_tables import SpeedMapping, TemperatureMapping, TorqueMapping
 from hersey.log.sensors import Sensors
 from hersey.machine import read_machine
 from tests.conftest import ROOT

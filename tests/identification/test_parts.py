@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import asdict, astuple, replace
 from typing import Any
 
 import numpy as np
@@ -182,15 +182,15 @@ def test_figures_in_words() -> None:
     document = record.to_dict()
     assert document["slips"] == 40
     assert document["slip_time"] == record.slip_time.tolist()
-    assert document["drop"] == pytest.approx(vars(drop))
+    assert document["drop"] == pytest.approx(asdict(drop))
     assert document["period"]["error"] == pytest.approx(period.deviation / np.sqrt(39))
     assert document["stiffness"] == record.stiffness
 
 
 def test_scatter_by_hand() -> None:
     found = Scatter.of(np.array([1.0, 2.0, 6.0]))
-    assert list(vars(found).values()) == pytest.approx([2.0, 3.0, np.sqrt(7.0), np.sqrt(7.0 / 3)])
-    assert np.isnan(list(vars(Scatter.of(np.array([]))).values())).all()
+    assert astuple(found) == pytest.approx((2.0, 3.0, np.sqrt(7.0), np.sqrt(7.0 / 3)))
+    assert np.isnan(astuple(Scatter.of(np.array([])))).all()
     assert np.isnan(Scatter.of(np.array([4.0])).deviation)
 
 

@@ -16,7 +16,7 @@ import hersey
 from hersey.errors import ChannelError, UnitError, UnreadableLogError
 from hersey.log import list_channels
 from hersey.log.formats import READERS, format_of, opened
-from hersey.log.formats.opening import FILES
+from hersey.log.formats.recognition import FILES
 from hersey.log.recording import library
 from hersey.log.torque_log import LogFile, Run
 from tests.conftest import shared

@@ -20,7 +20,7 @@ from hersey.errors import (
     UnstatedRoleError,
 )
 from hersey.log import list_channels
-from hersey.log.text import delimited
+from hersey.log.text import blocks
 from tests.conftest import shared
 
 ROWS = 200
@@ -330,8 +330,8 @@ def test_rows_without_a_clock_and_their_interval(tmp_path: Path, monkeypatch: py
         with pytest.raises(ParameterError, match="name no column of the time beside it"):
             hersey.read(source, isothermal=True, every="2 ms", channels={"time": "Speed"})
     bad = write(tmp_path / "b.csv", path.read_text().replace("5.03,", "ERR,", 1))
-    for block in (delimited.BLOCK, 100):
-        monkeypatch.setattr(delimited, "BLOCK", block)
+    for block in (blocks.BLOCK, 100):
+        monkeypatch.setattr(blocks, "BLOCK", block)
         time = hersey.read(bad, isothermal=True, every=1.0).runs[0].time
         np.testing.assert_allclose(time, np.delete(np.arange(float(ROWS)), 3))  # a gap, not a shift
 

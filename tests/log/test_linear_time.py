@@ -16,7 +16,7 @@ from hersey.errors import HerseyError, UnitError
 from hersey.files.toml import read_toml
 from hersey.inspection import inspect
 from hersey.log.reading import read
-from hersey.log.text.layout import LONGEST_NAME, MOST_COLUMNS, NAME_WITH_UNIT
+from hersey.log.text.column import LONGEST_NAME, MOST_COLUMNS, NAME_WITH_UNIT
 from hersey.units import conversion, parse
 
 HEADER = "Time [s],Torque [N*m],Speed [rpm],Temperature [degC]\n"

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 import hersey
 from hersey.errors import ChannelError, UnitError, UnreadableLogError
-from hersey.log.text import delimited
+from hersey.log.text import blocks
 
 ROWS = [(0.0, 0.5, 60.0, 150.0), (0.1, 0.625, 61.5, 151.25), (0.2, 0.75, 63.0, 149.5)]
 
@@ -75,7 +75,7 @@ def test_encoding(encoding: str, tmp_path: Path) -> None:
 def test_blocks_change_nothing(
     size: int, shape: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(delimited, "BLOCK", size)
+    monkeypatch.setattr(blocks, "BLOCK", size)
     path = tmp_path / "log.csv"
     path.write_bytes(SHAPES[shape].encode())
     assert_same(hersey.read(path))
@@ -283,7 +283,7 @@ QUIRKS = {
 )
 @pytest.mark.parametrize("quirk", QUIRKS)
 def test_quirk(quirk: str, encoding: str, size: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(delimited, "BLOCK", size)
+    monkeypatch.setattr(blocks, "BLOCK", size)
     path = tmp_path / "log.csv"
     path.write_bytes(QUIRKS[quirk].encode(encoding))
     log = hersey.read(path)

@@ -11,7 +11,9 @@ import pytest
 import hersey
 from hersey.errors import ChannelError, MissingFileError, ParameterError, UnitError
 from hersey.log import mapping as log_mapping
-from hersey.log.mapping import FILE_NAME, find_mapping, propose_mapping, read_mapping, read_with_mapping
+from hersey.log import proposal
+from hersey.log.mapping import FILE_NAME, find_mapping, read_mapping, read_with_mapping
+from hersey.log.proposal import propose_mapping
 from tests.conftest import shared
 
 TIME = np.arange(0.0, 20.0, 0.05)
@@ -261,6 +263,6 @@ def test_a_screw_drive_by_its_mapping(tmp_path: Path) -> None:
 
 def test_examples(monkeypatch: pytest.MonkeyPatch, root: Path) -> None:
     monkeypatch.chdir(root)
-    result = doctest.testmod(log_mapping)
-    assert result.attempted > 1
-    assert result.failed == 0
+    results = [doctest.testmod(module) for module in (log_mapping, proposal)]
+    assert sum(result.attempted for result in results) > 1
+    assert all(result.failed == 0 for result in results)

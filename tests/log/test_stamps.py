@@ -16,7 +16,7 @@ def stamps_of(*cells: str) -> Stamps:
 
 
 def seconds(stamps: Stamps, *cells: str | None) -> list[float]:
-    found = stamps.seconds(pl.Series(cells, dtype=pl.String))
+    found = stamps.values(pl.Series(cells, dtype=pl.String))
     assert found is not None
     return found.tolist()
 
@@ -97,7 +97,7 @@ def test_what_is_no_stamp() -> None:
     assert not is_stamp("12.5")
     assert stamp_style(["12:00:00", "12:00:01", "x"]) is not None
     assert stamp_style(["12:00:00", "x"]) is None
-    assert stamps_of("12:00:00").seconds(pl.Series(["12:00:00", "late"])) is None
+    assert stamps_of("12:00:00").values(pl.Series(["12:00:00", "late"])) is None
 
 
 def test_counts_since_1970_show_by_their_size() -> None:

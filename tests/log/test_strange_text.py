@@ -17,7 +17,7 @@ from hersey.files.toml import read_toml
 from hersey.inspection import inspect
 from hersey.inspection.raw import raw_channels
 from hersey.log.mapping import find_mapping, read_mapping
-from hersey.log.text import delimited
+from hersey.log.text import blocks
 from hersey.log.text.delimited import open_delimited
 from hersey.log.text.footer import end_of_table
 from hersey.log.text.layout import find_layout
@@ -160,7 +160,7 @@ def read_while(log: Path, happens: Callable[[Path], object]) -> hersey.TorqueLog
 def test_a_log_that_changes_is_refused(
     happens: Callable[[Path], object], block: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(delimited, "BLOCK", block)
+    monkeypatch.setattr(blocks, "BLOCK", block)
     with pytest.raises(UnreadableLogError, match=r"log\.csv changed while it was read"):
         read_while(tmp_path / "log.csv", happens)
 
@@ -169,7 +169,7 @@ def test_a_log_that_changes_is_refused(
 def test_a_log_that_grows_is_read_as_it_was(
     block: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(delimited, "BLOCK", block)
+    monkeypatch.setattr(blocks, "BLOCK", block)
     log = read_while(tmp_path / "log.csv", appended)
     (file,) = log.files
     assert log.rows == 40

@@ -127,6 +127,20 @@ def test_an_item_that_ends_every_worker_is_named(client: Client, monkeypatch: py
     assert caught.value.index == 1
 
 
+def test_that_no_worker_is_left_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Deserted:
+        status = "running"
+
+        def scheduler_info(self, n_workers: int) -> dict[str, Any]:  # noqa: ARG002
+            return {"workers": {}}
+
+    monkeypatch.setattr(tasks, "_PATIENCE", 0.01)
+    monkeypatch.setattr(tasks, "WITHOUT_WORKERS", 0.05)
+    window = tasks._Window(math.factorial, [1], Deserted(), "tcp://somewhere:1")  # type: ignore[arg-type]
+    with pytest.raises(UnfinishedError, match="no worker of tcp://somewhere:1 is left"):
+        window._ended()
+
+
 def test_a_worker_of_another_version_is_refused(client: Client, monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(ParameterError, match=f"hersey {_core.VERSION}, not 9.9.9"):
         tasks._checked("9.9.9", math.sqrt, 4.0)

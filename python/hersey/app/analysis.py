@@ -29,7 +29,7 @@ from hersey.app.machine import (
 from hersey.errors import HerseyError
 from hersey.files.text import read_text
 from hersey.log.channels import OTHER_ROLES, ROLES, called
-from hersey.log.text.layout import Column
+from hersey.log.text.column import Column
 from hersey.machine.questions import BY_KEY, MAPPING
 from hersey.machine.writing import answers_of
 

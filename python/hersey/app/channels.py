@@ -12,7 +12,7 @@ from hersey.log.channels import ROLES, role_conversion
 from hersey.log.doubtful import RARE, TOO_HOT
 from hersey.log.slow_channels import is_slow
 from hersey.log.stating import proposed
-from hersey.log.text.layout import Column
+from hersey.log.text.column import Column
 from hersey.units import KINDS, ZERO_CELSIUS, nearest_unit
 
 #: Units to choose from, by role; any other can be written.

@@ -11,13 +11,13 @@ import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.errors import HerseyError, UnreadableLogError
-from hersey.inspection.inspecting import ChannelReport, file_report
+from hersey.inspection.file_report import ChannelReport, file_report
 from hersey.inspection.raw import Lacking, RawLog, raw_channels
 from hersey.log.channels import OTHER_ROLES, ROLES, ChannelChoice, Stated, find_channel, is_called, is_dead
 from hersey.log.mapping import LogMapping, read_with_mapping
 from hersey.log.means import is_means_table
 from hersey.log.stating import proposed
-from hersey.log.text.layout import Column
+from hersey.log.text.column import Column
 
 #: Columns of a preview: each shows the least and the greatest of its rows.
 _COLUMNS = 75

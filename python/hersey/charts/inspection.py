@@ -11,7 +11,8 @@ import numpy as np
 from hersey.arrays import FloatArray
 from hersey.charts.style import BLUE, INK, ORANGE, WIDTH, Chart, Row, plot
 from hersey.errors import InsufficientDataError
-from hersey.inspection.inspecting import ChannelReport, FileReport, Inspection
+from hersey.inspection.file_report import ChannelReport, FileReport
+from hersey.inspection.inspecting import Inspection
 from hersey.inspection.raw import raw_channels
 from hersey.study.thinning import kept
 

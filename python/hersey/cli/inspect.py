@@ -52,7 +52,7 @@ def inspect(
     from hersey.files.writing import write_atomically
     from hersey.inspection import inspect as inspected
     from hersey.log import memory_limit
-    from hersey.log.mapping import propose_mapping
+    from hersey.log.proposal import propose_mapping
 
     recipe = reading.recipe(logs)
     with working("looking at the channels"), memory_limit(reading.max_memory):

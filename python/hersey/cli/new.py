@@ -106,7 +106,7 @@ def _mapping(log: Path, asking: Asking) -> tuple[str, list[str]]:
     from hersey.app.looking import look
     from hersey.log.channels import ChannelChoice, find_channel, role_conversion
     from hersey.log.reading import list_channels
-    from hersey.log.text.layout import Column
+    from hersey.log.text.column import Column
     from hersey.machine.writing import mapping_text
 
     seen = look(log)

@@ -87,7 +87,7 @@ def _part_of(path: Path, overwrite: bool) -> Iterator[Path]:
         raise OutputError(f"{path} is a directory: name a file in it")
     if path.exists() and not overwrite:
         raise _exists(path)
-    part = _part(path)
+    part = unfinished(path)
     _unfinished.add(part)  # before it is there, so that no moment is without it
     try:
         yield part
@@ -136,7 +136,7 @@ def remove_unfinished() -> None:
             part.unlink(missing_ok=True)
 
 
-def _part(path: Path) -> Path:
-    """A new name beside a path; one has 255 bytes at the most, so the last of a long one are left out."""
+def unfinished(path: Path) -> Path:
+    """Return a new name beside a path; of a long one the last are left out, for it has 255 bytes at most."""
     name = os.fsencode(path.name)[:_NAME_BYTES].decode(errors="ignore")
     return path.with_name(f".{name}.{secrets.token_hex(8)}{SUFFIX}")

@@ -7,6 +7,8 @@ detection         slips: falls beyond noise, and how long they last
 slip_shape        the slip between two sticks as half a free oscillation
 slip_figures      figures of each slip
 motion_kind       what kind of motion the falls make
+drive_speed       the speed of the drive behind a trace, and how far it may be off
+cycle_notes       what to know of the slips that were found
 cycle_record      cycles of a trace, their figures and kind
 waveform          the mean cycle of a trace, and of the model
 independence      which parameters a trace tells apart, in words

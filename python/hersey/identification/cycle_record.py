@@ -2,26 +2,27 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from hersey.arrays import FloatArray
-from hersey.damping.estimate import quantile
 from hersey.errors import ParameterError
+from hersey.identification.cycle_notes import notes_on
 from hersey.identification.detection import (
     FEWEST_OF_RHYTHM,
     FEWEST_SLIPS,
+    Found,
     beyond_noise,
     of_at_least,
     of_one_rhythm,
 )
+from hersey.identification.drive_speed import driven
 from hersey.identification.motion_kind import Motion, is_regular, motion_of
 from hersey.identification.sampling import Samples, even_samples
-from hersey.identification.slip_figures import slip_figures
-from hersey.identification.turning_points import least_turn
+from hersey.identification.slip_figures import SlipFigures, slip_figures
 from hersey.result import OPEN, Means, Record, Result, json_record
 from hersey.units import takes_si
 
@@ -30,14 +31,14 @@ if TYPE_CHECKING:
 
 #: What a trace may hold.
 QUANTITIES = ("force", "speed")
-#: Half width of the 95 % interval of a drive speed of which nothing is stated, as a share of it.
-DRIVE_SPEED_UNCERTAINTY = 1e-3
-#: A channel of the drive speed is known to what the means of so many parts of it differ.
-_PARTS = 10
-#: A greater one would tell no drive.
-_GREATEST_UNCERTAINTY = 0.5
-#: Samples that a fall must last for its duration to be trusted.
-_FEW_SAMPLES = 6
+#: Figures of a record as JSON has them, some of its samples, and those of which each cycle has one.
+_FIGURES = (
+    *("kind", "quantity", "slips", "falls", "drive_speed", "drive_speed_uncertainty", "loading_slope"),
+    *("stiffness", "free_period", "stuck_fraction", "least_drop", "noise", "drift", "spikes", "missing"),
+    "slip_time",
+)
+_OF_SAMPLES = ("noise", "spikes", "missing")
+_PER_CYCLE = ("period", "drop", "force_max", "force_min", "fall_duration")
 
 
 @dataclass(frozen=True)
@@ -55,12 +56,8 @@ class Scatter(Record):
         if values.size == 0:
             return cls(*[float("nan")] * 4)
         deviation = float(np.std(values, ddof=1)) if values.size > 1 else float("nan")
-        return cls(
-            float(np.median(values)),
-            float(np.mean(values)),
-            deviation,
-            deviation / float(np.sqrt(values.size)),
-        )
+        error = deviation / float(np.sqrt(values.size))
+        return cls(float(np.median(values)), float(np.mean(values)), deviation, error)
 
 
 @dataclass(frozen=True, repr=False)
@@ -149,34 +146,9 @@ class CycleRecord(Result):
 
     def to_dict(self) -> dict[str, Any]:
         """Return the figures, time in s and force in the unit of the trace."""
-        per_cycle = {
-            "period": self.period,
-            "drop": self.drop,
-            "force_max": self.force_max,
-            "force_min": self.force_min,
-            "fall_duration": self.fall_duration,
-        }
-        figures: dict[str, Any] = {
-            "kind": self.kind,
-            "quantity": self.quantity,
-            "slips": self.slips,
-            "falls": self.falls,
-            "drive_speed": self.drive_speed,
-            "drive_speed_uncertainty": self.drive_speed_uncertainty,
-            "loading_slope": self.loading_slope,
-            "stiffness": self.stiffness,
-            "free_period": self.free_period,
-            "stuck_fraction": self.stuck_fraction,
-            "least_drop": self.least_drop,
-            "noise": self.samples.noise,
-            "drift": self.drift,
-            "spikes": self.samples.spikes,
-            "missing": self.samples.missing,
-            "slip_time": self.slip_time,
-            "notes": list(self.notes),
-        }
-        typical = {name: Scatter.of(values) for name, values in per_cycle.items()}
-        return json_record(figures | typical)
+        figures = {name: getattr(self.samples if name in _OF_SAMPLES else self, name) for name in _FIGURES}
+        typical = {name: Scatter.of(getattr(self, name)) for name in _PER_CYCLE}
+        return json_record({**figures, "notes": list(self.notes), **typical})
 
     def to_frame(self) -> pl.DataFrame:
         """Return one row per slip; force in the unit of the trace."""
@@ -284,110 +256,13 @@ def cycles(
     """
     if quantity not in QUANTITIES:
         raise ParameterError(f"quantity '{quantity}' is not known: {', '.join(QUANTITIES)}")
-    speed, uncertainty = _driven(drive_speed, drive_speed_uncertainty, np.shape(time))
-    for name, given in (("drive_speed", speed), ("least_drop", least_drop)):
-        if given is not None and not (np.isfinite(given) and given > 0):
-            raise ParameterError(f"{name} is {given}: it must be greater than 0")
-    if not 0 < uncertainty <= _GREATEST_UNCERTAINTY:
-        raise ParameterError(
-            f"drive_speed_uncertainty is {uncertainty:.4g}: it must be greater than 0, and at most "
-            f"{_GREATEST_UNCERTAINTY} of the drive speed"
-        )
+    speed, uncertainty = driven(drive_speed, drive_speed_uncertainty, np.shape(time))
+    if least_drop is not None and not (np.isfinite(least_drop) and least_drop > 0):
+        raise ParameterError(f"least_drop is {least_drop}: it must be greater than 0")
     samples = even_samples(time, value, name=quantity)
     if quantity == "speed":
         samples = _stretch(samples, speed)
     return _record(samples, quantity, speed, uncertainty, least_drop)
-
-
-def _driven(
-    given: ArrayLike | None, stated: float | None, shape: tuple[int, ...]
-) -> tuple[float | None, float]:
-    """The drive speed and its uncertainty; of a channel from the means of its parts."""
-    speed = np.asarray(given, dtype=float) if given is not None else None
-    if speed is None or speed.ndim == 0:
-        stated = DRIVE_SPEED_UNCERTAINTY if stated is None else stated
-        return None if speed is None else float(speed), stated
-    if speed.shape != shape or speed.size < _PARTS:
-        raise ParameterError(
-            f"drive_speed has the shape {speed.shape} and time {shape}: give a number or equal lengths"
-        )
-    held = speed[np.isfinite(speed)]
-    if held.size < _PARTS:
-        raise ParameterError(f"drive_speed holds {held.size} numbers: give a number, or a channel of it")
-    means = np.array([np.mean(part) for part in np.array_split(held, _PARTS)])
-    mean = float(np.mean(means))
-    if stated is None and mean:
-        error = float(np.std(means, ddof=1)) / float(np.sqrt(_PARTS))
-        stated = DRIVE_SPEED_UNCERTAINTY + quantile(_PARTS - 1) * error / abs(mean)
-    return mean, DRIVE_SPEED_UNCERTAINTY if stated is None else stated
-
-
-def _stretch(samples: Samples, drive_speed: float | None) -> Samples:
-    """The stretch of the spring from the belt speed: what the drive gains on the belt."""
-    speed = float(np.mean(samples.value)) if drive_speed is None else drive_speed
-    gained = np.concatenate([[0.0], np.cumsum(speed - 0.5 * (samples.value[1:] + samples.value[:-1]))])
-    noise = samples.noise * samples.interval
-    return Samples(
-        samples.start,
-        samples.interval,
-        gained * samples.interval,
-        samples.bridged,
-        noise,
-        samples.spikes,
-        samples.missing,
-    )
-
-
-def _record(
-    samples: Samples,
-    quantity: str,
-    drive_speed: float | None,
-    uncertainty: float,
-    least_drop: float | None,
-) -> CycleRecord:
-    found = beyond_noise(samples)
-    figures = slip_figures(samples, found)
-    motion = motion_of(samples, figures, found.least)
-    notes = list(motion.notes)
-    if motion.kind == "steady_sliding" and (greater := of_one_rhythm(samples, found, is_regular)):
-        slower = slip_figures(samples, greater)
-        if slower.period.size >= FEWEST_OF_RHYTHM - 1 and is_regular(slower.period):
-            jitter = _jitter(motion.falls, greater.least)
-            found, figures = greater, slower
-            motion = motion_of(samples, figures, found.least)
-            notes = [*motion.notes, jitter]
-    if least_drop is not None and least_drop > found.least:
-        found = of_at_least(samples, found, least_drop)
-        figures = slip_figures(samples, found)
-    middle, drop = figures.middle, figures.drop
-    level = 0.5 * (figures.high + figures.low)
-    drift = _slope(middle, level) if middle.size >= FEWEST_SLIPS else 0.0
-    lasts = figures.steep / samples.interval
-    notes += _notes(samples, found.least, least_drop, lasts, figures.period, drift, drop)
-    return CycleRecord(
-        motion,
-        quantity,
-        samples,
-        drive_speed,
-        uncertainty,
-        found.least,
-        samples.start + middle,
-        figures.high,
-        figures.low,
-        figures.duration,
-        figures.steep,
-        figures.period,
-        figures.slope,
-        drift,
-        tuple(notes),
-    )
-
-
-def _jitter(falls: int, least: float) -> str:
-    return (
-        f"{falls} falls are beyond the noise from sample to sample, without a rhythm; those of {least:.3g} "
-        f"or more have one: the rest is taken for a slower noise"
-    )
 
 
 def _amount(amount: float, unit: str) -> str:
@@ -397,44 +272,63 @@ def _amount(amount: float, unit: str) -> str:
     return f"{amount:.3g} {unit}".strip()
 
 
+def _stretch(samples: Samples, drive_speed: float | None) -> Samples:
+    """The stretch of the spring from the belt speed: what the drive gains on the belt."""
+    speed = float(np.mean(samples.value)) if drive_speed is None else drive_speed
+    gained = np.concatenate([[0.0], np.cumsum(speed - 0.5 * (samples.value[1:] + samples.value[:-1]))])
+    interval = samples.interval
+    return replace(samples, value=gained * interval, noise=samples.noise * interval)
+
+
+def _record(
+    samples: Samples,
+    quantity: str,
+    drive_speed: float | None,
+    uncertainty: float,
+    least_drop: float | None,
+) -> CycleRecord:
+    found, figures, motion, notes = _motion(samples)
+    if least_drop is not None and least_drop > found.least:
+        found = of_at_least(samples, found, least_drop)
+        figures = slip_figures(samples, found)
+    middle = figures.middle
+    drift = _slope(middle, 0.5 * (figures.high + figures.low)) if middle.size >= FEWEST_SLIPS else 0.0
+    return CycleRecord(
+        motion=motion,
+        quantity=quantity,
+        samples=samples,
+        drive_speed=drive_speed,
+        drive_speed_uncertainty=uncertainty,
+        least_drop=found.least,
+        slip_time=samples.start + middle,
+        force_max=figures.high,
+        force_min=figures.low,
+        fall_duration=figures.duration,
+        steep_duration=figures.steep,
+        period=figures.period,
+        rise_slope=figures.slope,
+        drift=drift,
+        notes=(*notes, *notes_on(samples, figures, found.least, least_drop, drift)),
+    )
+
+
+def _motion(samples: Samples) -> tuple[Found, SlipFigures, Motion, tuple[str, ...]]:
+    """The falls beyond the noise, or those with a rhythm where the others have none; figures and motion."""
+    found = beyond_noise(samples)
+    figures = slip_figures(samples, found)
+    motion = motion_of(samples, figures, found.least)
+    if motion.kind == "steady_sliding" and (greater := of_one_rhythm(samples, found, is_regular)):
+        slower = slip_figures(samples, greater)
+        if slower.period.size >= FEWEST_OF_RHYTHM - 1 and is_regular(slower.period):
+            jitter = (
+                f"{motion.falls} falls are beyond the noise from sample to sample, without a rhythm; those "
+                f"of {greater.least:.3g} or more have one: the rest is taken for a slower noise"
+            )
+            motion = motion_of(samples, slower, greater.least)
+            return greater, slower, motion, (*motion.notes, jitter)
+    return found, figures, motion, motion.notes
+
+
 def _slope(x: FloatArray, y: FloatArray) -> float:
     lever = x - np.mean(x)
     return float(lever @ y / (lever @ lever))
-
-
-def _notes(
-    samples: Samples,
-    least: float,
-    least_drop: float | None,
-    lasts: FloatArray,
-    period: FloatArray,
-    drift: float,
-    drop: FloatArray,
-) -> list[str]:
-    notes: list[str] = []
-    if drop.size < FEWEST_SLIPS:
-        return notes
-    if float(np.median(lasts)) < _FEW_SAMPLES:
-        notes.append(f"a fall lasts {np.median(lasts):.1f} samples: sample faster to see the slip")
-    floor = least_turn(samples.noise, samples.value.size, 1)
-    if least_drop is not None and least > least_drop:
-        notes.append(f"least_drop {least_drop:g} is within the noise: {least:.3g} was taken")
-    small = int(np.sum(drop < 0.5 * np.median(drop)))
-    if least_drop is None and small > 0.05 * drop.size:
-        notes.append(
-            f"{small} of {drop.size} slips fall by less than half the median: their number depends "
-            f"on the least fall counted, {least:.3g} here (samples scatter by {floor:.3g}); give least_drop"
-        )
-    if samples.missing:
-        notes.append(
-            f"{samples.missing} samples are missing; no cycle across a gap that hides part of it is used"
-        )
-    if samples.spikes:
-        notes.append(f"{samples.spikes} spikes of one or two samples were removed")
-    rise = float(np.median(period) if period.size else 0.0) - float(np.median(lasts)) * samples.interval
-    if period.size and rise < 0.5 * float(np.median(lasts)) * samples.interval:
-        notes.append("the force rises faster than it falls: is its sign turned?")
-    swing = abs(drift) * samples.interval * samples.value.size
-    if swing > 0.5 * float(np.median(drop)):
-        notes.append(f"the level drifts by {swing:.3g} over the trace")
-    return notes

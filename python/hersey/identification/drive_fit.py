@@ -7,7 +7,6 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import optimize
 
 from hersey.arrays import FloatArray
@@ -15,6 +14,7 @@ from hersey.errors import ParameterError
 from hersey.identification.cycle_record import CycleRecord
 from hersey.identification.independence import TOLD
 from hersey.identification.waveform import FEWEST_LAPS, ModelLap, Waveform, model_lap
+from hersey.log.neighbours import runs_of_true
 from hersey.motion.belt import Drivetrain
 from hersey.motion.drag import Drag
 from hersey.motion.parameters import OF_THE_BELT, PARAMETERS
@@ -272,7 +272,8 @@ class DriveFit:
         """Return the slope of the force of a held belt; None if too few points of the mean lap see it."""
         curve, offset = self.curve(self.values), self.wave.offset
         steep = np.gradient(curve, offset)
-        held = _longest(steep > _HELD * float(np.max(steep)))
+        runs = runs_of_true(steep > _HELD * float(np.max(steep)))
+        held = slice(*max(runs, key=lambda run: run[1] - run[0]))
         laps = self.wave.laps[:, held]
         laps = laps[np.all(np.isfinite(laps), axis=1)]
         if laps.shape[1] < _FEWEST_POINTS or laps.shape[0] < FEWEST_LAPS:
@@ -343,11 +344,3 @@ class DriveFit:
             start[:-1] += covariance[:, index] / variance * step
         start[index] = target
         return start
-
-
-def _longest(held: NDArray[np.bool_]) -> slice:
-    """The longest run of points that are held."""
-    ends = np.flatnonzero(np.diff(np.concatenate([[False], held, [False]]).astype(np.int8)))
-    first, last = ends[::2], ends[1::2]
-    longest = int(np.argmax(last - first))
-    return slice(int(first[longest]), int(last[longest]))

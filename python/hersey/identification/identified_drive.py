@@ -145,28 +145,18 @@ class IdentifiedDrive(Result):
 
 #: Units of what is identified from a force, and from a torque.
 _UNITS = {
-    "N": {
-        "stiffness": " N/m",
-        "mass": " kg",
-        "transition_force": " N",
-        "transition_speed": " m/s",
-        "stick_speed": " m/s",
+    force: {
+        "stiffness": f" {stiffness}",
+        "mass": f" {mass}",
+        "transition_force": f" {force}",
+        "transition_speed": f" {speed}",
+        "stick_speed": f" {speed}",
         "free_period": " s",
-        "release_force": " N",
-        "drag_at_drive_speed": " N",
-        "drive_speed": " m/s",
-    },
-    "N m": {
-        "stiffness": " N m/rad",
-        "mass": " kg m^2",
-        "transition_force": " N m",
-        "transition_speed": " rad/s",
-        "stick_speed": " rad/s",
-        "free_period": " s",
-        "release_force": " N m",
-        "drag_at_drive_speed": " N m",
-        "drive_speed": " rad/s",
-    },
+        "release_force": f" {force}",
+        "drag_at_drive_speed": f" {force}",
+        "drive_speed": f" {speed}",
+    }
+    for force, stiffness, mass, speed in (("N", "N/m", "kg", "m/s"), ("N m", "N m/rad", "kg m^2", "rad/s"))
 }
 
 
@@ -200,35 +190,26 @@ def identify(
     _check(record, given, closures)
     assert record.drive_speed is not None
     wave = mean_waveform(record)
-    fits: list[DriveFit] = []
-    for closure in closures:
-        start = fits[-1].values if closure == "stribeck" and fits else None
-        fits.append(DriveFit(wave, record, given, closure, start))
-    fits.sort(key=lambda fit: fit.chi_square)
+    fits = _fits(wave, record, given, closures)
     best = fits[0]
-    if best.lap is None:
-        raise InsufficientDataError(
-            "no drive of the model makes such a cycle: give known parameters, or check the units"
-        )
     freedom = max(wave.offset.size + 2 - len(best.names), 1)
     scale = max(1.0, best.chi_square / freedom)
     near = [fit for fit in fits if (fit.chi_square - best.chi_square) / scale <= UNDECIDED]
-    decided = len(near) == 1
     covariances = [fit.covariance(scale) for fit in near]
     intervals, systematic = _intervals(near, covariances, scale, wave.number)
     notes = _implausible(record, best, intervals)
     not_told = in_words(best.names[:-1], covariances[0][:-1, :-1])
     not_told += _lost(best, covariances[0], intervals)
-    misfit = best.misfit
-    if misfit > POOR:
-        notes.append(f"the model misses the mean cycle by {misfit:.0%} of the drop: take parameters as rough")
+    if best.misfit > POOR:
+        missed = f"the model misses the mean cycle by {best.misfit:.0%} of the drop"
+        notes.append(f"{missed}: take parameters as rough")
     notes += _contradiction(record, best, intervals)
-    if not decided:
+    if len(near) > 1:
         alike = " and ".join(fit.closure for fit in near)
         notes.append(f"the closures {alike} fit alike: the record does not decide between them")
     return IdentifiedDrive(
         closure=best.closure,
-        decided=decided,
+        decided=len(near) == 1,
         estimates={name: each for name, each in intervals.items() if name in OF_THE_BELT},
         values=best.parameters(best.values),
         known=given,
@@ -236,13 +217,29 @@ def identify(
         systematic={name: systematic[name] for name in intervals},
         not_told=tuple(not_told),
         closures=tuple(ClosureFit(f.closure, f.chi_square, f.misfit) for f in fits),
-        misfit=misfit,
+        misfit=best.misfit,
         drive_speed=record.drive_speed,
         drive_speed_uncertainty=record.drive_speed_uncertainty,
         waveform=wave,
         fitted=best.curve(best.values),
         notes=tuple(notes),
     )
+
+
+def _fits(
+    wave: Waveform, record: CycleRecord, given: Mapping[str, float], closures: tuple[str, ...]
+) -> list[DriveFit]:
+    """A fit with each closure, the best first."""
+    fits: list[DriveFit] = []
+    for closure in closures:
+        start = fits[-1].values if closure == "stribeck" and fits else None
+        fits.append(DriveFit(wave, record, given, closure, start))
+    fits.sort(key=lambda fit: fit.chi_square)
+    if fits[0].lap is None:
+        raise InsufficientDataError(
+            "no drive of the model makes such a cycle: give known parameters, or check the units"
+        )
+    return fits
 
 
 def _in_si(name: str, value: Any) -> Any:

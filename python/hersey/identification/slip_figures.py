@@ -12,6 +12,7 @@ from hersey.identification.detection import Found, steep_lasts
 from hersey.identification.sampling import Samples
 from hersey.identification.slip_shape import SHARE
 from hersey.identification.turning_points import Falls, crossing, curved, smoothed
+from hersey.log.neighbours import runs_of_true
 
 #: Rises of which the slope is taken, at most, spread over the trace.
 _RISES = 4000
@@ -62,9 +63,8 @@ def slip_figures(samples: Samples, found: Found) -> SlipFigures:
 
 def _long(bridged: NDArray[np.bool_], window: int) -> NDArray[np.bool_]:
     """Gaps longer than what resolves a fall; a straight line across a shorter one does no harm."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], bridged, [False]]).astype(np.int8)))
     long_gaps = np.zeros(bridged.size, dtype=bool)
-    for first, last in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):
+    for first, last in runs_of_true(bridged):
         long_gaps[first:last] = last - first > window
     return long_gaps
 

@@ -11,7 +11,7 @@ from hersey.errors import ChannelError, ParameterError, Setting, UnitError, Unre
 from hersey.log.channels import called
 from hersey.log.columns import OpenColumns, open_columns
 from hersey.log.rows import LeftOut, runs_of
-from hersey.log.text.layout import Column
+from hersey.log.text.column import Column
 from hersey.units import KINDS, conversion
 
 #: What a trace may hold: kind of unit, and the names by which its column is found.

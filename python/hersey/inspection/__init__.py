@@ -1,14 +1,15 @@
 """What a log holds, shown before anything is fitted.
 
-==========  ================================================================
-module      what it holds
-==========  ================================================================
-raw         every channel of a log as written
-clock       rate, gaps and unevenness of a clock
-faults      step, noise and faults of a channel
-support     what the dwells can tell, in words
-inspecting  all of it: `inspect`
-==========  ================================================================
+===========  ================================================================
+module       what it holds
+===========  ================================================================
+raw          every channel of a log as written
+clock        rate, gaps and unevenness of a clock
+faults       step, noise and faults of a channel
+file_report  one file: clocks, channels with their roles, findings
+support      what the dwells can tell, in words
+inspecting   all of it: `inspect`
+===========  ================================================================
 """
 
 from hersey.inspection.inspecting import Inspection, inspect

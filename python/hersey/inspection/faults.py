@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from hersey.arrays import FloatArray
 from hersey.damping.dwells.resolution import quantisation_step
+from hersey.log.neighbours import runs_of_true
 from hersey.result import OPEN, Record
 
 IndexArray = NDArray[np.intp]
@@ -134,11 +135,12 @@ def spikes(values: FloatArray) -> list[Fault]:
     out = (values < low - SPIKE * span) | (values > high + SPIKE * span)
     if not out.any() or (span == 0.0 and np.mean(out) > FLAT_SHARE):
         return []
-    starts, lengths = _runs_of(out)
     inside = np.pad(~out, 2, constant_values=False)
-    before, after = starts + 1, starts + lengths + 2
-    alone = (lengths <= 2) & inside[before] & inside[before - 1] & inside[after] & inside[after + 1]
-    single = [np.arange(s, s + n) for s, n in zip(starts[alone], lengths[alone], strict=True)]
+    single = [
+        np.arange(start, end)
+        for start, end in runs_of_true(out)
+        if end - start <= 2 and inside[[start, start + 1, end + 2, end + 3]].all()
+    ]
     rows = np.concatenate([np.empty(0, dtype=np.intp), *single])
     far = ABSURD * max(span, abs(low), abs(high))
     absurd = np.flatnonzero(np.abs(values) > far) if far > 0 else rows
@@ -150,13 +152,6 @@ def spikes(values: FloatArray) -> list[Fault]:
     return [Fault("spikes", rows.size, int(rows[0]), float(values[worst]), places)]
 
 
-def _runs_of(mask: NDArray[np.bool_]) -> tuple[IndexArray, IndexArray]:
-    """Start and length of each run of true."""
-    edges = np.diff(mask.astype(np.int8), prepend=0, append=0)
-    starts = np.flatnonzero(edges > 0)
-    return starts, np.flatnonzero(edges < 0) - starts
-
-
 def dropouts(values: FloatArray, *, stands: bool = False) -> list[Fault]:
     """Return zeros between values far from zero, or at an end of a channel that never comes near it."""
     zero = values == 0.0
@@ -164,11 +159,10 @@ def dropouts(values: FloatArray, *, stands: bool = False) -> list[Fault]:
         return []
     others = np.abs(values[~zero])
     never = not stands and float(np.quantile(others, 0.002)) > DROPOUT_VOID * float(np.median(others))
-    starts, lengths = _runs_of(zero)
     lost = []
-    for first, rows in zip(starts.tolist(), lengths.tolist(), strict=True):
-        before = values[max(0, first - BESIDE) : first]
-        after = values[first + rows : first + rows + BESIDE]
+    for first, end in runs_of_true(zero):
+        rows = end - first
+        before, after = values[max(0, first - BESIDE) : first], values[end : end + BESIDE]
         if not before.size or not after.size:
             abrupt = never and rows > 1  # one row alone is a sensor that was not read yet
         else:

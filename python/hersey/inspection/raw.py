@@ -13,12 +13,12 @@ from hersey.errors import ChannelError, HerseyError, UnitError, printable
 from hersey.log.channels import ROLES, ChannelChoice, Stated, find_channel, is_dead
 from hersey.log.formats import format_of, opened
 from hersey.log.friction import Chosen, beside
+from hersey.log.text.column import Column, refuse_ragged
 from hersey.log.text.delimited import open_delimited
-from hersey.log.text.layout import BLANKS, Column, Layout, refuse_ragged, split, tabbed
-from hersey.log.text.numbers import MISSING, NumberStyle
-from hersey.log.text.stamps import Stamps, counted_since
-
-_NULLS = sorted({s for word in MISSING for s in (word, word.upper(), word.capitalize())} | {"NaN"})
+from hersey.log.text.layout import Layout
+from hersey.log.text.numbers import NULLS
+from hersey.log.text.separators import BLANKS, split, tabbed
+from hersey.log.text.stamps import Stamps, counted_since, numbers_in
 
 
 @dataclass(frozen=True)
@@ -168,7 +168,7 @@ def _frame(text: bytes, layout: Layout) -> pl.DataFrame:
             comment_prefix=layout.comment,
             infer_schema=False,
             schema_overrides=types,
-            null_values=_NULLS if types else None,
+            null_values=NULLS if types else None,
             encoding="utf8-lossy",
             truncate_ragged_lines=True,
             new_columns=[f"{column.index}" for column in layout.columns],
@@ -204,12 +204,6 @@ def _text_channel(layout: Layout, column: Column, cells: pl.Series) -> RawChanne
     if cells.dtype == pl.Float64:
         numbers = cells.fill_null(np.nan).to_numpy()
         return RawChannel(column, np.where(np.isfinite(numbers), numbers, np.nan), tick="rows")
-    cells = cells.fill_null("")
     style = layout.stamps.get(column.index)
-
-    written: Stamps | NumberStyle = layout.style if style is None else Stamps(style)
-    odd = ~written.readable(cells)
-    cells = cells.set(odd, "")
-    values = written.seconds(cells) if isinstance(written, Stamps) else written.values(cells)
-    assert values is not None
+    values, odd = numbers_in(cells.fill_null(""), layout.style if style is None else Stamps(style))
     return RawChannel(column, values, odd=int(odd.sum()), tick="rows")

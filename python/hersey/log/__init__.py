@@ -13,17 +13,23 @@ slow_channels  a temperature or a load that is slower than the rows: interpolate
 rows           which rows can be used, and where one run ends and the next begins
 believed       what a channel of a drive can read at all, and codes for no reading
 impossible     readings that cannot be right: found, named, left out
+neighbours     rows that their neighbours rule out
 stray_times    rows whose time lies off the clock around them
+wanted         what the user wants of a log, checked
 columns        columns as they stand, for readers with roles of their own
 assembly       from a recording to a run on the clock of the torque
 reading        `read`: from files to a log
 many           many files, each a log of its own: in turn, in threads, or by workers
 corrections    what lies between sensor and film, taken off with a record
+cell_table     a table as it stands: cells of text or numbers
+mean_roles     which column of a table of means plays which role
 means          a table of means: a row per dwell, no clock
 doubtful       numbers that would be ordinary in another unit
 quantities     quantities that no log holds
 sensor_tables  what a file says of the errors of the sensors
+role_tables    the tables of a mapping: what it says of each role
 mapping        which channel plays which role, kept beside the data
+proposal       a mapping proposed for a log
 =============  =======================================================================
 
 A further format is one more context manager that yields a `Recording`, entered in `formats.READERS`.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -14,22 +15,20 @@ from hersey.log.channels import (
     EVERY,
     OTHER_ROLES,
     ROLES,
-    ChannelChoice,
-    Stated,
     find_channel,
     is_dead,
     no_channel,
-    refuse_two_clocks,
-    refuse_two_temperatures,
+    refuse_two_roles,
     role_conversion,
 )
-from hersey.log.friction import beside, in_rotation, notes_on, slow_roles, unused
+from hersey.log.friction import Chosen, beside, in_rotation, notes_on, slow_roles, unused
 from hersey.log.impossible import Impossible, Reading, impossible_rows, marked_rows
 from hersey.log.recording import INVALID, INVALID_TIME, Recording, Signal
 from hersey.log.rows import LeftOut, runs_with_records
-from hersey.log.text.layout import Column
+from hersey.log.text.column import Column
 from hersey.log.text.stamps import counted_since, is_clock_name
 from hersey.log.torque_log import NO_CLOCK, Channel, LogFile, Run
+from hersey.log.wanted import Wanted
 from hersey.units import Conversion
 
 
@@ -64,33 +63,26 @@ class Assembly:
         If the numbers of a channel cannot be read.
     """
 
-    def __init__(
-        self,
-        recording: Recording,
-        choices: dict[str, ChannelChoice],
-        *,
-        isothermal: bool,
-        stated: Stated = Stated(),  # noqa: B008 # frozen
-    ) -> None:
-        self.recording, self.source, self.stated = recording, recording.source, stated
-        refuse_two_clocks(choices, stated)
-        refuse_two_temperatures(choices, isothermal)
+    def __init__(self, recording: Recording, wanted: Wanted) -> None:
+        self.recording, self.source = recording, recording.source
+        self.choices, self.stated, self.drop_missing = wanted.choices, wanted.stated, wanted.drop_missing
         if not recording.signals:
             raise nothing_to_read(recording)
         self.columns = columns(recording)
         self._lacking: dict[str, LeftOut] = {}  # rows of the torque that lack a role that may be slow
         self._clocks: dict[str, tuple[FloatArray, str, Channel]] = {}
         self._dead: dict[int, str] = {}
-        self.chosen = {"torque": self._channel("torque", choices, None)}
+        self.chosen: Chosen = {}
+        for role in wanted.roles:
+            if role != "time":  # which is that of the channel
+                self.chosen[role] = self._channel(role)
         torque = self.chosen["torque"][0]
-        for role in ("speed",) if isothermal else ("speed", "temperature"):
-            self.chosen[role] = self._channel(role, choices, torque)
         near = tuple(c for c in self.columns if c.group == torque.group)
-        self.chosen |= beside(near, choices, stated, self.chosen, self.source.name)
-        self._unused = unused(near, self.chosen, stated)
-        self.parts = {role: self._part(role, choices) for role in self.chosen}
+        self.chosen |= beside(near, self.choices, self.stated, self.chosen, self.source.name)
+        self._unused = unused(near, self.chosen, self.stated)
+        self.parts = {role: self._part(role) for role in self.chosen}
 
-    def runs(self, *, drop_missing: bool) -> list[tuple[Run, LogFile]]:
+    def runs(self) -> list[tuple[Run, LogFile]]:
         """Return the runs on the clock of the torque, and what was done to get there.
 
         Raises
@@ -100,35 +92,13 @@ class Assembly:
         """
         left_out, torque = LeftOut(), self.parts["torque"]
         notes = list(self.recording.notes)
-        marked, rows_marked = self._leave_out_marked(drop_missing)
-        self._leave_out_missing(left_out, drop_missing)
-        impossible, rows_impossible = self._leave_out_impossible(drop_missing)
+        marked, rows_marked = self._leave_out(self._marked)
+        self._leave_out_missing(left_out)
+        impossible, rows_impossible = self._leave_out(self._impossible)
         impossible = (*marked, *impossible)
         notes += [each.note() for each in impossible]
-        kept = np.ones(torque.time.size, dtype=bool)
-        for part in self.parts.values():
-            if part.tick != torque.tick:
-                self._check_time(torque)
-                self._check_time(part)
-                kept &= (torque.time >= part.time[0]) & (torque.time <= part.time[-1])
-        if not kept.all() and kept.sum() < 2:
-            raise UnreadableLogError(
-                f"{self.source.name}: {self._spans()}: they share fewer than two samples of the torque"
-            )
-        arrays = {"time": torque.time[kept]}
-        for role, part in self.parts.items():
-            if part.tick == torque.tick:
-                arrays[role] = part.values[kept]
-            else:
-                arrays[role] = np.interp(arrays["time"], part.time, part.values)
-                notes.append(_aligned(part, torque))
-        if not kept.all():
-            notes.append(
-                f"{int((~kept).sum())} of {kept.size} samples of the torque lie outside the time of another "
-                f"channel and were left out ({self._spans()})"
-            )
+        arrays, rows = self._on_one_clock(notes)
         arrays = in_rotation(arrays, self.chosen, self.stated)
-        rows = torque.rows[kept]
         needed = [values for role, values in arrays.items() if role not in self._lacking]
         usable = np.logical_and.reduce([np.isfinite(values) for values in needed])
         if not usable.all():
@@ -139,14 +109,36 @@ class Assembly:
         notes += [*notes_on(self.chosen, self.stated), *self._dead.values(), *self._unused]
         log = self._record(tuple(note for note in notes if note))
         log = replace(log, missing_rows=rows_marked + rows_impossible, impossible=impossible)
-        return runs_with_records(
-            log,
-            arrays,
-            lambda row: self._place(torque, int(rows[row])),
-            left_out,
-            self._lacking,
-            drop_missing=drop_missing,
-        )
+
+        def place(row: int) -> str:
+            return self._place(torque, int(rows[row]))
+
+        return runs_with_records(log, arrays, place, left_out, self._lacking, drop_missing=self.drop_missing)
+
+    def _on_one_clock(self, notes: list[str]) -> tuple[dict[str, FloatArray], IntArray]:
+        """Every channel at the times of the torque that all clocks span, and the rows of these times."""
+        torque = self.parts["torque"]
+        kept = np.ones(torque.time.size, dtype=bool)
+        others = [part for part in self.parts.values() if part.tick != torque.tick]
+        for part in others:
+            self._check_time(torque)
+            self._check_time(part)
+            kept &= (torque.time >= part.time[0]) & (torque.time <= part.time[-1])
+        if not kept.all() and kept.sum() < 2:
+            raise UnreadableLogError(
+                f"{self.source.name}: {self._spans()}: they share fewer than two samples of the torque"
+            )
+        arrays = {"time": torque.time[kept]}
+        for role, part in self.parts.items():
+            same = part.tick == torque.tick
+            arrays[role] = part.values[kept] if same else np.interp(arrays["time"], part.time, part.values)
+        notes += [_aligned(part, torque) for part in others]
+        if not kept.all():
+            notes.append(
+                f"{int((~kept).sum())} of {kept.size} samples of the torque lie outside the time of another "
+                f"channel and were left out ({self._spans()})"
+            )
+        return arrays, torque.rows[kept]
 
     def _record(self, notes: tuple[str, ...]) -> LogFile:
         used = {"time": self._clocks[self.parts["torque"].tick][2]} | {
@@ -169,29 +161,25 @@ class Assembly:
         line = self.recording.signals[part.column.index].line
         return f"row {line + row}" if line else f"sample {row + 1}"
 
-    def _channel(
-        self, role: str, choices: dict[str, ChannelChoice], torque: Column | None
-    ) -> tuple[Column, Conversion]:
+    def _channel(self, role: str) -> tuple[Column, Conversion]:
         """The channel of a role; the part of the file that holds the torque is looked at first."""
-        file, channel, dead = self.source.name, None, self._says_nothing
-        if torque is not None and not choices[role].name:
+        file, choice, channel = self.source.name, self.choices[role], None
+        if role != "torque" and not choice.name:
+            torque = self.chosen["torque"][0]
             near = tuple(c for c in self.columns if c.group == torque.group and c != torque)
-            channel = find_channel(role, near, choices[role], file, dead)
+            channel = find_channel(role, near, choice, file, self._says_nothing)
         if channel is None:
-            among = self._beside_a_speed(role, choices)
-            channel = find_channel(role, among, choices[role], file, dead)
+            channel = find_channel(role, self._beside_a_speed(role), choice, file, self._says_nothing)
         if channel is None:
             raise no_channel(role, self.columns, file)
-        for other, (column, _) in getattr(self, "chosen", {}).items():
-            if channel[0] == column:
-                raise ChannelError(f"{file}: column '{column}' cannot be both {other} and {role}")
+        refuse_two_roles(role, channel[0], self.chosen, file)
         return channel
 
-    def _part(self, role: str, choices: dict[str, ChannelChoice]) -> _Part:
+    def _part(self, role: str) -> _Part:
         """A channel with its numbers and its clock."""
         column, unit = self.chosen[role]
         signal = self.recording.signals[column.index]
-        time, tick, _ = self._clock(signal, column, choices["time"])
+        time, tick, _ = self._clock(signal, column)
         values = signal.load()
         if values.size != time.size:
             raise UnreadableLogError(
@@ -209,21 +197,25 @@ class Assembly:
             self._dead[column.index] = note if dead else ""
         return bool(self._dead[column.index])
 
-    def _beside_a_speed(self, role: str, choices: dict[str, ChannelChoice]) -> tuple[Column, ...]:
+    def _beside_a_speed(self, role: str) -> tuple[Column, ...]:
         """Channels among which to look for a role: for a torque those of the only part with a speed."""
         groups = dict.fromkeys(column.group for column in self.columns)
-        if role != "torque" or choices[role].name or len(groups) < 2:
+        if role != "torque" or self.choices[role].name or len(groups) < 2:
             return self.columns
         parts = [tuple(c for c in self.columns if c.group == group) for group in groups]
-        both = [
-            p for p in parts if all(_has(r, p, choices[r], self.source.name) for r in ("torque", "speed"))
-        ]
+        both = [p for p in parts if all(self._has(role, p) for role in ("torque", "speed"))]
         return both[0] if len(both) == 1 else self.columns
 
-    def _clock(
-        self, signal: Signal, column: Column, choice: ChannelChoice
-    ) -> tuple[FloatArray, str, Channel]:
+    def _has(self, role: str, part: tuple[Column, ...]) -> bool:
+        """Whether a part of the file has a channel of a role, or several."""
+        try:
+            return find_channel(role, part, self.choices[role], self.source.name) is not None
+        except HerseyError:
+            return True
+
+    def _clock(self, signal: Signal, column: Column) -> tuple[FloatArray, str, Channel]:
         """Time of each sample in s, the name of the clock, and the channel it came from."""
+        choice = self.choices["time"]
         if (every := self.stated.every) is not None:
             tick = f"every {signal.rows}"
             if tick not in self._clocks:
@@ -272,20 +264,25 @@ class Assembly:
                 self.recording.notes.append(note)
         return Column(column.index, column.name, unit, column.group)
 
-    def _leave_out_missing(self, left_out: LeftOut, drop_missing: bool) -> None:
-        """Leave out samples without a number or a time, the same ones of every channel on one clock."""
-        torque = self.parts["torque"]
+    def _by_clock(self) -> Iterator[list[_Part]]:
+        """The channels on each clock, which lose the same samples."""
         for tick in dict.fromkeys(part.tick for part in self.parts.values()):
-            parts = [part for part in self.parts.values() if part.tick == tick]
-            slow = [p for p in parts if tick == torque.tick and p.role in slow_roles(self.chosen)]
+            yield [part for part in self.parts.values() if part.tick == tick]
+
+    def _leave_out_missing(self, left_out: LeftOut) -> None:
+        """Leave out samples without a number or a time."""
+        torque = self.parts["torque"]
+        for parts in self._by_clock():
+            own = parts[0].tick == torque.tick
+            slow = [p for p in parts if own and p.role in slow_roles(self.chosen)]
             needed = [p for p in parts if p not in slow]
             gone = ~np.logical_and.reduce([np.isfinite(p.time) & np.isfinite(p.values) for p in needed])
             for part in slow:
                 self._set_apart(part, gone)
-            here = left_out if tick == torque.tick else LeftOut()
+            here = left_out if own else LeftOut()
             here.add(int(gone.sum()), (self._fault(needed, int(row)) for row in np.flatnonzero(gone)))
-            here.refuse_many(self.source.name, gone.size, allowed=drop_missing)
-            if here is not left_out:
+            here.refuse_many(self.source.name, gone.size, allowed=self.drop_missing)
+            if not own:
                 left_out.add(here.rows, here.words)
             for part in parts:
                 part.keep(~gone)
@@ -304,41 +301,38 @@ class Assembly:
         self._lacking[part.role] = lacking
         part.values = np.where(known, part.values, np.nan)
 
-    def _leave_out_marked(self, allowed: bool) -> tuple[tuple[Impossible, ...], int]:
-        """Leave out samples that the file itself marks as invalid, of every channel on one clock."""
+    def _leave_out(
+        self, judged: Callable[[list[_Part]], tuple[BoolArray, tuple[Impossible, ...]]]
+    ) -> tuple[tuple[Impossible, ...], int]:
+        """Leave out samples that are judged to be no readings; what they were, and how many."""
         found: tuple[Impossible, ...] = ()
         rows = 0
-        for tick in dict.fromkeys(part.tick for part in self.parts.values()):
-            parts = [part for part in self.parts.values() if part.tick == tick]
-            judged = [(part, part.marked) for part in parts if part.marked is not None]
-            if not judged:
-                continue
-            clock = self._clocks[tick][2]
-            marks = [("time", Column(-1, clock.name, clock.unit), clock.unit, judged[0][1] == INVALID_TIME)]
-            marks += [(part.role, part.column, part.unit.unit, marked == INVALID) for part, marked in judged]
-            gone, here = marked_rows(marks, self.source.name, partial(self._where, parts[0]), allowed=allowed)
+        for parts in self._by_clock():
+            gone, here = judged(parts)
             for part in parts if gone.any() else ():
                 part.keep(~gone)
             found, rows = (*found, *here), rows + int(gone.sum())
         return found, rows
 
-    def _leave_out_impossible(self, allowed: bool) -> tuple[tuple[Impossible, ...], int]:
-        """Leave out samples that cannot be right, of every channel on one clock; what they were, how many."""
-        found: tuple[Impossible, ...] = ()
-        rows = 0
-        for tick in dict.fromkeys(part.tick for part in self.parts.values()):
-            parts = [part for part in self.parts.values() if part.tick == tick]
-            readings = [Reading(part.role, part.column, part.unit, part.values) for part in parts]
-            if (clock := self._clocks[tick][2]).name != NO_CLOCK:
-                unit = role_conversion("time", clock.unit)[1]
-                readings.insert(0, Reading("time", Column(-1, clock.name, clock.unit), unit, parts[0].time))
-            gone, here = impossible_rows(
-                readings, self.source.name, partial(self._where, parts[0]), allowed=allowed
-            )
-            for part in parts if gone.any() else ():
-                part.keep(~gone)
-            found, rows = (*found, *here), rows + int(gone.sum())
-        return found, rows
+    def _marked(self, parts: list[_Part]) -> tuple[BoolArray, tuple[Impossible, ...]]:
+        """Samples that the file itself marks as invalid."""
+        judged = [(part, part.marked) for part in parts if part.marked is not None]
+        if not judged:
+            return np.zeros(parts[0].time.size, dtype=bool), ()
+        clock = self._clocks[parts[0].tick][2]
+        marks = [("time", Column(-1, clock.name, clock.unit), clock.unit, judged[0][1] == INVALID_TIME)]
+        marks += [(part.role, part.column, part.unit.unit, marked == INVALID) for part, marked in judged]
+        return marked_rows(marks, self.source.name, partial(self._where, parts[0]), allowed=self.drop_missing)
+
+    def _impossible(self, parts: list[_Part]) -> tuple[BoolArray, tuple[Impossible, ...]]:
+        """Samples that cannot be right."""
+        readings = [Reading(part.role, part.column, part.unit, part.values) for part in parts]
+        if (clock := self._clocks[parts[0].tick][2]).name != NO_CLOCK:
+            unit = role_conversion("time", clock.unit)[1]
+            readings.insert(0, Reading("time", Column(-1, clock.name, clock.unit), unit, parts[0].time))
+        return impossible_rows(
+            readings, self.source.name, partial(self._where, parts[0]), allowed=self.drop_missing
+        )
 
     def _where(self, part: _Part, row: int, column: Column) -> str:
         """A channel and one of its samples that are left, in words."""
@@ -363,14 +357,6 @@ class Assembly:
 
     def _spans(self) -> str:
         return ", ".join(f"{p.role} from {p.time[0]:.6g} to {p.time[-1]:.6g} s" for p in self.parts.values())
-
-
-def _has(role: str, part: tuple[Column, ...], choice: ChannelChoice, file: str) -> bool:
-    """Whether a part of a file has a channel of a role, or several."""
-    try:
-        return find_channel(role, part, choice, file) is not None
-    except HerseyError:
-        return True
 
 
 def columns(recording: Recording) -> tuple[Column, ...]:

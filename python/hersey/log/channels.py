@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,14 +13,13 @@ from hersey.arrays import FloatArray
 from hersey.errors import (
     ISOTHERMAL,
     ChannelError,
-    ParameterError,
     Setting,
     UnitError,
     WrongKindError,
     meant,
     printable,
 )
-from hersey.log.text.layout import Column
+from hersey.log.text.column import Column
 from hersey.units import KINDS, Conversion, conversion, nearest_unit
 
 #: Roles of a log's columns, in the order in which they are asked for.
@@ -166,31 +165,6 @@ def is_dead(values: FloatArray) -> bool:
     return not known.size or (known.size >= _TELLING and float(known.min()) == float(known.max()))
 
 
-def refuse_two_clocks(choices: dict[str, ChannelChoice], stated: Stated) -> None:
-    """Raise if both a column of the time and the time between rows are given.
-
-    Raises
-    ------
-    ParameterError
-        It names both.
-    """
-    if stated.every is not None and choices["time"] != ChannelChoice():
-        raise ParameterError(f"{EVERY.to()} is the time between rows: name no column of the time beside it")
-
-
-def refuse_two_temperatures(choices: dict[str, ChannelChoice], isothermal: bool) -> None:
-    """Raise if temperature is excluded and its column named.
-
-    Raises
-    ------
-    ChannelError
-        It names both.
-    """
-    if isothermal and choices["temperature"] != ChannelChoice():
-        said = f"{ISOTHERMAL.to()} excludes temperature"
-        raise ChannelError(said, remedy="name no column of the temperature beside it")
-
-
 def role_conversion(role: str, unit: str) -> tuple[str, Conversion]:
     """Return the kind of what a column of a role holds, and its conversion to SI.
 
@@ -227,6 +201,19 @@ def no_channel(role: str, columns: tuple[Column, ...], file: str) -> ChannelErro
         way_out += f", or use {ISOTHERMAL.to()} to exclude temperature"
     said = f"{file}: no {role} column among {_listed(columns)}"
     return ChannelError(said, remedy=way_out, setting=channel)
+
+
+def refuse_two_roles(role: str, column: Column, chosen: Mapping[str, tuple[Column, Any]], file: str) -> None:
+    """Raise if a column plays another role already.
+
+    Raises
+    ------
+    ChannelError
+        It names both roles.
+    """
+    for other, (taken, _) in chosen.items():
+        if column == taken:
+            raise ChannelError(f"{file}: column '{column}' cannot be both {other} and {role}")
 
 
 def called(name: str, columns: tuple[Column, ...]) -> list[Column]:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -51,10 +52,9 @@ def torque_from_current(log: TorqueLog | Corrected, *, motor_constant: float) ->
         return replace(run, torque=run.torque * motor_constant)
 
     done = _corrected(log, "torque from current", turned, ("motor_constant", f"{motor_constant:g} N m/A"))
-    *before, last = done.corrections
     typical = float(np.median(np.abs(np.concatenate([run.torque for run in done.log.runs]))))
     note = f"the torque channel was a current in A; the median torque is now {typical:.3g} N m"
-    return Corrected(done.log, (*before, replace(last, effects=(), note=note)))
+    return _noted(done, note, effects=())
 
 
 def sign(log: TorqueLog | Corrected, *, torque: int = 1, speed: int = 1) -> Corrected:
@@ -131,11 +131,8 @@ def no_load(log: TorqueLog | Corrected, *, torque: float | TorqueLog | Corrected
         return replace(run, torque=run.torque - np.sign(run.speed) * level)
 
     done = _corrected(log, "no-load torque", freed, source)
-    if not beyond:
-        return done
-    *before, last = done.corrections
     held = f"{beyond} rows move slower or faster than its dwells: the nearest was used"
-    return Corrected(done.log, (*before, replace(last, note=held)))
+    return _noted(done, held if beyond else "")
 
 
 def at_roll(
@@ -173,18 +170,10 @@ def at_roll(
         passed = np.where(driven, 1.0 / efficiency, efficiency)
         return replace(run, torque=run.torque * torque_ratio * passed, speed=run.speed / speed_ratio)
 
-    done = _corrected(
-        log,
-        "gears",
-        geared,
-        ("torque_ratio", f"{torque_ratio:g}"),
-        ("speed_ratio", f"{speed_ratio:g}"),
-        ("efficiency", f"{efficiency:.4g}"),
-    )
-    if not back or efficiency == 1.0:
-        return done
-    *before, last = done.corrections
-    return Corrected(done.log, (*before, replace(last, note=f"in {back} rows the roll drives the motor")))
+    ratios = (("torque_ratio", f"{torque_ratio:g}"), ("speed_ratio", f"{speed_ratio:g}"))
+    done = _corrected(log, "gears", geared, *ratios, ("efficiency", f"{efficiency:.4g}"))
+    backwards = back and efficiency != 1.0
+    return _noted(done, f"in {back} rows the roll drives the motor" if backwards else "")
 
 
 def inertia(
@@ -218,7 +207,8 @@ def inertia(
         return replace(run, torque=run.torque - moment_of_inertia * np.nan_to_num(rate))
 
     stated = (("moment_of_inertia", f"{moment_of_inertia:g} kg m^2"), ("window", f"{window:g} s"))
-    return _with_note(_corrected(log, "inertia", freed, *stated), left)
+    done = _corrected(log, "inertia", freed, *stated)  # counts what is left
+    return _noted(done, _stand_alone(left))
 
 
 def thermal_lag(
@@ -253,7 +243,8 @@ def thermal_lag(
         return replace(run, temperature=temperature + time_constant * np.nan_to_num(rate))
 
     stated = (("time_constant", f"{time_constant:g} s"), ("window", f"{over:g} s"))
-    return _with_note(_corrected(log, "thermal lag", hurried, *stated), left)
+    done = _corrected(log, "thermal lag", hurried, *stated)  # counts what is left
+    return _noted(done, _stand_alone(left))
 
 
 def temperature_offset(log: TorqueLog | Corrected, *, offset: float) -> Corrected:
@@ -300,12 +291,15 @@ def _effect(role: str, before: tuple[Run, ...], after: tuple[Run, ...]) -> Effec
     return Effect(role, largest, typical, typical / level if level > 0 else None)
 
 
-def _with_note(done: Corrected, left: int) -> Corrected:
-    if not left:
-        return done
+def _noted(done: Corrected, note: str, **changed: Any) -> Corrected:
+    """The same with a note, if there is one, and other changes to the last record."""
     *before, last = done.corrections
-    note = f"{left} rows stand alone between gaps, where no derivative can be had: left as they were"
-    return Corrected(done.log, (*before, replace(last, note=note)))
+    return Corrected(done.log, (*before, replace(last, note=note, **changed))) if note else done
+
+
+def _stand_alone(left: int) -> str:
+    text = f"{left} rows stand alone between gaps, where no derivative can be had: left as they were"
+    return text if left else ""
 
 
 def _derivative(run: Run, values: FloatArray, window: float) -> FloatArray:

@@ -15,7 +15,7 @@ from hersey.arrays import FloatArray
 from hersey.errors import ParameterError
 from hersey.log.channels import ChannelChoice, Stated, find_channel, role_conversion
 from hersey.log.stating import proposals, unstated
-from hersey.log.text.layout import Column
+from hersey.log.text.column import Column
 from hersey.log.torque_log import LogFile, Run
 from hersey.units import Conversion
 

@@ -19,8 +19,9 @@ from hersey.arrays import BoolArray, FloatArray, IntArray
 from hersey.errors import DROP_MISSING, ISOTHERMAL, Setting, UnreadableLogError
 from hersey.log.believed import BELIEVED, Believed, as_written, is_code, is_wrapped
 from hersey.log.channels import role_conversion
+from hersey.log.neighbours import bursts, drop_outs, flips, on_its_way, pulses
 from hersey.log.stray_times import stray_times
-from hersey.log.text.layout import Column
+from hersey.log.text.column import Column
 from hersey.result import Means, Record
 from hersey.units import Conversion
 
@@ -37,23 +38,10 @@ _LEAST_SPAN = 20.0
 #: A code counts if it lies so many sizes (span, or greatest value) beyond the ordinary range, a reading that
 #: may be a wrapped counter so many.
 _CODE, _WRAP = 1.0, 3.0
-#: Any other reading if it lies so many sizes beyond, for so many rows at the most.
-_BURSTS = ((5.0, 2), (20.0, 20), (1000.0, 1_000_000_000))
-#: Rows beside what is impossible go with it where they lie beyond the ordinary range by more than this many
-#: sizes and change by more than this many from one to the next: a reading on its way there.
-_BESIDE, _ON_ITS_WAY = 0.25, 0.1
-#: Rows at the most in which a reading drops out or changes its sign, and steady rows on either side.
-_SHORT, _AROUND = 2, 5
-#: Rows are steady if they span at most this share of their median, and opposite to it within the second.
-_STEADY_FLIP, _STEADY_DROP = 0.5, 0.3
 #: A temperature is no drop-out to zero within so many kelvin of zero.
 _NEAR_ZERO = 20.0
-#: No temperature jumps by so many kelvin from row to row, and back again, with rows at most so many s apart.
-_JUMP, _ROWS_APART = 100.0, 10.0
 #: Rows that only neighbours speak against are few, this share at the most: more are the signal.
 _FEW = 0.05
-#: Short runs are looked at one by one unless they start in more than this share of the rows.
-_MOST_STARTS = 0.3
 #: Share of the rows of a channel that may be impossible; with leave to drop rows.
 MOST, MOST_ALLOWED = 0.2, 0.5
 #: Distinct values that are named, at the most.
@@ -261,14 +249,15 @@ def _of_channel(
         wrapped = is_wrapped(values[far], reading.unit) & (beyond > _WRAP)
         take(Reason.CODE, _at(far[is_code(values[far], reading.unit, kind) | wrapped], values.size))
     if size > 0:
-        take(Reason.OUTLIER, _few(_bursts(values, low, high, size) & ~taken))
-    take(Reason.DROP_OUT, _few(_drop_outs(values, reading, kind) & ~taken))
+        take(Reason.OUTLIER, _few(bursts(values, low, high, size) & ~taken))
+    least = _NEAR_ZERO if kind == "temperature" else 0.0
+    take(Reason.DROP_OUT, _few(drop_outs(values, reading.unit.offset, least) & ~taken))
     if kind == "temperature" and time is not None:
-        take(Reason.JUMP, _pulses(values, time[known], max(_JUMP, high - low)))
+        take(Reason.JUMP, pulses(values, time[known], high - low, MOST))
     if taken.any() and size > 0:
-        take(Reason.OUTLIER, _on_its_way(values, taken, low, high, size) & ~taken)
+        take(Reason.OUTLIER, on_its_way(values, taken, low, high, size) & ~taken)
     if kind in ("torque", "force", "friction coefficient", "speed", "belt speed"):
-        take(Reason.SIGN, _few(_flips(values) & ~taken))
+        take(Reason.SIGN, _few(flips(values) & ~taken))
     return masks
 
 
@@ -284,115 +273,9 @@ def _ordinary(reading: Reading, kind: str, believed: Believed) -> tuple[float, f
     return low, high, size
 
 
-def _bursts(values: FloatArray, low: float, high: float, size: float) -> BoolArray:
-    """Runs of rows so far beyond the ordinary range as no drive goes for so short a time, and comes back."""
-    found = np.zeros(values.size, dtype=bool)
-    for far, longest in _BURSTS:
-        beyond = (values > high + far * size) | (values < low - far * size)
-        for start, end in _runs(beyond):
-            if end - start <= longest and start > 0 and end < values.size:
-                found[start:end] = True
-    return found
-
-
-def _on_its_way(values: FloatArray, seeds: BoolArray, low: float, high: float, size: float) -> BoolArray:
-    """Rows beside impossible ones that lead there: beyond the ordinary range, and changing fast."""
-    near = (values > high + _BESIDE * size) | (values < low - _BESIDE * size)
-    found = np.zeros(values.size, dtype=bool)
-    for start, end in _runs(seeds):
-        for row, step in ((start - 1, -1), (end, 1)):
-            while 0 <= row < values.size and near[row] and not seeds[row]:
-                if abs(values[row] - values[row - step]) < _ON_ITS_WAY * size:
-                    break
-                found[row] = True
-                row += step  # walks on
-    return found
-
-
-def _pulses(values: FloatArray, time: FloatArray, jump: float) -> BoolArray:
-    """Rows between a jump and the one that leads back to the level before it."""
-    steps = np.diff(values)
-    jumps = np.flatnonzero((np.abs(steps) > jump) & (np.diff(time) <= _ROWS_APART)) + 1
-    found = np.zeros(values.size, dtype=bool)
-    longest, i = MOST * values.size, 0
-    while i < jumps.size:
-        start = jumps[i]
-        level = values[start - 1]
-        back = next(
-            (
-                k
-                for k in range(i + 1, jumps.size)
-                if abs(values[jumps[k]] - level) < 0.3 * jump or jumps[k] - start > longest
-            ),
-            None,
-        )
-        if back is None or jumps[back] - start > longest:
-            i += 1
-            continue
-        found[start : jumps[back]] = True
-        i = back + 1
-    return found
-
-
-def _flips(values: FloatArray) -> BoolArray:
-    """Rows of the sign opposite to that of steady rows before and after, and about as large."""
-    negative = values < 0.0
-    starts = np.flatnonzero(negative[1:] != negative[:-1]) + 1
-
-    def opposite(inside: FloatArray, level: FloatArray) -> BoolArray:
-        return np.asarray(np.abs(inside + level[:, None]) <= _STEADY_FLIP * np.abs(level)[:, None])
-
-    return _between_steady(values, starts, _STEADY_FLIP, 0.0, opposite)
-
-
-def _drop_outs(values: FloatArray, reading: Reading, kind: str) -> BoolArray:
-    """Rows that read zero, as written, between steady rows far from it."""
-    zero = reading.unit.offset
-    none_read = values == zero if zero == 0.0 else np.abs(values - zero) <= 1e-12 * abs(zero)
-    starts = np.flatnonzero(none_read[1:] & ~none_read[:-1]) + 1
-    from_zero = np.where(none_read, 0.0, values - zero) if starts.size else values
-    least = _NEAR_ZERO if kind == "temperature" else 0.0
-
-    def none(inside: FloatArray, _level: FloatArray) -> BoolArray:
-        return np.asarray(inside == 0.0)
-
-    return _between_steady(from_zero, starts, _STEADY_DROP, least, none)
-
-
-def _between_steady(
-    values: FloatArray,
-    starts: IntArray,
-    steady: float,
-    least: float,
-    odd: Callable[[FloatArray, FloatArray], BoolArray],
-) -> BoolArray:
-    """Rows of short runs that are odd between rows that are steady, and larger than the least."""
-    found = np.zeros(values.size, dtype=bool)
-    if not starts.size or starts.size > _MOST_STARTS * values.size:
-        return found
-    for length in range(1, _SHORT + 1):
-        at = starts[(starts >= _AROUND) & (starts + length + _AROUND <= values.size)]
-        before = values[at[:, None] - 1 - np.arange(_AROUND)]
-        after = values[at[:, None] + length + np.arange(_AROUND)]
-        around = np.hstack([before, after])
-        level = np.median(around, axis=1)
-        inside = values[at[:, None] + np.arange(length)]
-        calm = np.ptp(around, axis=1) <= steady * np.abs(level)
-        hit = at[calm & (np.abs(level) > least) & odd(inside, level).all(axis=1)]
-        for row in range(length):
-            found[hit + row] = True
-    return found
-
-
 def _few(mask: BoolArray) -> BoolArray:
     """Rows if they are few, else none: what is frequent is the signal."""
     return mask if mask.sum() <= _FEW * mask.size else np.zeros_like(mask)
-
-
-def _runs(mask: BoolArray) -> list[tuple[int, int]]:
-    """First row and row behind the last of each run of true."""
-    edges = np.flatnonzero(np.diff(mask.astype(np.int8), prepend=0, append=0))
-    return [(int(start), int(end)) for start, end in edges.reshape(-1, 2)]
 
 
 def _at(rows: IntArray, size: int) -> BoolArray:

@@ -12,138 +12,52 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import field, fields, replace
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Any
 
 import numpy as np
-from pydantic import BeforeValidator, ValidationInfo
 from pydantic.dataclasses import dataclass
 
 from hersey.errors import (
     MAPPING,
     ChannelError,
-    HerseyError,
     ParameterError,
     Setting,
     UnitError,
     printable,
     turned,
 )
-from hersey.files.toml import Quantity, Table, Text, naming, quoted, read_tables, read_toml
+from hersey.files.toml import Table, naming, read_tables, read_toml
 from hersey.log import corrections
 from hersey.log.channels import (
     OTHER_ROLES,
     ROLE_KINDS,
     ROLES,
-    ChannelChoice,
     Stated,
-    called,
-    find_channel,
-    is_dead,
     role_conversion,
 )
-from hersey.log.columns import open_columns
 from hersey.log.corrections import Corrected
-from hersey.log.quantities import Amount, amount
-from hersey.log.reading import list_channels, read
-from hersey.log.sensor_tables import SpeedErrors, TemperatureErrors, TorqueErrors, sensors_of
+from hersey.log.reading import read
+from hersey.log.role_tables import (
+    LoadMapping,
+    RadiusMapping,
+    RoleMapping,
+    SpeedMapping,
+    TemperatureMapping,
+    TimeMapping,
+    TorqueMapping,
+)
+from hersey.log.sensor_tables import sensors_of
 from hersey.log.sensors import Sensors
-from hersey.log.stating import proposed
 from hersey.log.text.delimited import Progress
-from hersey.log.text.layout import Column
 from hersey.log.torque_log import LogFile
-from hersey.units import Conversion, registry, takes_si
+from hersey.units import registry, takes_si
 
 #: A mapping for every log in its directory; one for a single log is called after it, ``bench.hersey.toml``.
 FILE_NAME = "hersey.toml"
 _SUFFIX = ".hersey.toml"
 _ALL_ROLES = (*ROLES, *OTHER_ROLES)
-
-
-class _NoLoad(Quantity):
-    """A torque, or a log of it beside the mapping, unless its path is absolute."""
-
-    def checked(self, given: Any, info: ValidationInfo[Any]) -> Any:
-        """Return the torque in SI or the path."""
-        if info.context is None or not isinstance(given, str) or amount(given):
-            return super().checked(given, info)
-        named = info.context.path.parent / given
-        if not os.path.isfile(named):  # noqa: PTH113 - a name too long for the system is none
-            raise ParameterError(f"is '{given}': write a torque such as \"4 mN*m\", or a log that is there")
-        return named
-
-
-def _sign(given: object) -> object:
-    if isinstance(given, bool) or given not in (1, -1):
-        raise ParameterError(f"is {given!r}: write 1 or -1")
-    return given
-
-
-_Sign = Annotated[int, BeforeValidator(_sign)]
-_GearRatio = Annotated[float, Quantity(None, 1e-4, 1e4, "12.5")]
-
-
 #: Keys of a role that state no correction.
 _NO_CORRECTIONS = ("channel", "unit", "gain_error", "zero_error", "film_heating")
-
-
-@dataclass(frozen=True)
-class RoleMapping(Table):
-    """What a mapping says of one role; ``channel`` and ``unit`` are empty where the log is to tell."""
-
-    channel: Text = ""
-    unit: Text = ""
-
-
-@dataclass(frozen=True)
-class TimeMapping(RoleMapping):
-    """What it says of the time; ``every`` is that between rows, s, where no channel is a clock."""
-
-    every: Annotated[float, Quantity("time", 1e-9, 1e6, "2 ms")] | None = None
-
-
-@dataclass(frozen=True)
-class LoadMapping(RoleMapping):
-    """What it says of the normal load, N: a channel, a ``value``, or ``values``, one for each run."""
-
-    value: Annotated[float, Quantity("force", 1e-9, 1e9, "50 N")] | None = None
-    values: tuple[Annotated[float, Quantity("force", 1e-9, 1e9, "50 N")], ...] = ()
-
-
-@dataclass(frozen=True)
-class RadiusMapping(RoleMapping):
-    """What it says of the radius of a friction force, m: as `LoadMapping`."""
-
-    value: Annotated[float, Quantity("length", 1e-6, 1e3, "25 mm")] | None = None
-    values: tuple[Annotated[float, Quantity("length", 1e-6, 1e3, "25 mm")], ...] = ()
-
-
-@dataclass(frozen=True)
-class TorqueMapping(TorqueErrors, RoleMapping):
-    """What it says of the torque, in SI; ``no_load`` is a torque or a log."""
-
-    sign: _Sign = 1
-    motor_constant: Annotated[float, Amount("motor constant", 1e-6, 1e3, "35 mN*m/A")] | None = None
-    tare: Annotated[float, Quantity("torque", -1e6, 1e6, "4 mN*m")] = 0.0
-    no_load: Annotated[float | Path, _NoLoad("torque", 0.0, 1e6, "4 mN*m")] = 0.0
-    gear_ratio: _GearRatio = 1.0
-    efficiency: Annotated[float, Quantity(None, 0.05, 1.0, "0.9")] = 1.0
-    inertia: Annotated[float, Amount("moment of inertia", 1e-12, 1e6, "2e-4 kg*m^2")] = 0.0
-
-
-@dataclass(frozen=True)
-class SpeedMapping(SpeedErrors, RoleMapping):
-    """What it says of the speed."""
-
-    sign: _Sign = 1
-    gear_ratio: _GearRatio = 1.0
-
-
-@dataclass(frozen=True)
-class TemperatureMapping(TemperatureErrors, RoleMapping):
-    """What it says of the temperature, in SI: film minus reading, the lag of the sensor, their bounds."""
-
-    offset: Annotated[float, Amount("temperature difference", -100.0, 100.0, "-1.5 K")] = 0.0
-    time_constant: Annotated[float, Quantity("time", 1e-3, 1e4, "4 s")] = 0.0
 
 
 @dataclass(frozen=True)
@@ -230,15 +144,10 @@ class LogMapping(_Roles):
         done = self._at_the_sensor(log)
         torque, speed, heat = self.torque, self.speed, self.temperature
         if isinstance(torque.no_load, Path):
-            free = replace(self, torque=replace(torque, no_load=0.0))
-            other = read(
-                torque.no_load,
-                channels=_without_temperature(self.channels),
-                units=_without_temperature(self.units),
-                isothermal=True,
-                **vars(self.stated),
-            )
-            done = corrections.no_load(done, torque=free._at_the_sensor(other))
+            channels, units = map(_without_temperature, (self.channels, self.units))
+            given = vars(self.stated)
+            other = read(torque.no_load, channels=channels, units=units, isothermal=True, **given)
+            done = corrections.no_load(done, torque=self._at_the_sensor(other))
         elif torque.no_load:
             done = corrections.no_load(done, torque=torque.no_load)
         if (torque.gear_ratio, speed.gear_ratio, torque.efficiency) != (1.0, 1.0, 1.0):
@@ -370,115 +279,6 @@ def read_with_mapping(
         raise type(error)(f"{error} (channels and units are those of {chosen.source.name})") from None
     logged = tuple(_as_written(file, chosen) for file in log.files)
     return Corrected(replace(done.log, files=logged, sensors=chosen.sensors), done.corrections)
-
-
-def propose_mapping(
-    path: str | Path,
-    *,
-    channels: Mapping[str, str] | None = None,
-    units: Mapping[str, str] | None = None,
-) -> str:
-    """Return a mapping for the channels of a log as TOML, to be looked at, mended and kept.
-
-    What cannot be told is left out, with a line that says why; what could be corrected is a comment.
-    ``channels`` and ``units`` by role are taken as for `hersey.read`.
-
-    Raises
-    ------
-    HerseyError
-        If the file cannot be read.
-
-    Examples
-    --------
-    >>> print(propose_mapping("examples/bench.csv").splitlines()[1])
-    [torque]
-    """
-    path = Path(path)
-    columns = tuple(Column(index, name, unit) for index, (name, unit) in enumerate(list_channels(path)))
-    lines = [f"# Channels of {printable(path.name)}, proposed by hersey inspect: look at it and mend it."]
-    for role in ("torque", "speed", "temperature", "time"):
-        choice = ChannelChoice((channels or {}).get(role, ""), (units or {}).get(role, ""))
-        lines += [*_proposed(role, columns, choice, path), ""]
-    return "\n".join(lines)
-
-
-_EXAMPLES: dict[str, tuple[str, ...]] = {
-    "torque": (
-        "# sign = -1                     # turns it",
-        '# tare = "4 mN*m"               # what the sensor shows without load',
-        '# no_load = "4 mN*m"            # torque of the drive without the film, or a log of it: "free.csv"',
-        "# gear_ratio = 12.5             # turns of the shaft of the sensor for each turn of the roll",
-        "# efficiency = 0.9              # of those gears",
-        '# inertia = "2e-4 kg*m^2"       # seen at the roll, between sensor and film: matters in ramps',
-        '# motor_constant = "35 mN*m/A"  # if the channel is the motor\'s current',
-        '# gain_error = "1 %"            # of the sensor, at 95 %',
-        '# zero_error = "2 mN*m"',
-    ),
-    "speed": (
-        "# sign = -1",
-        "# gear_ratio = 12.5             # turns of its shaft for each turn of the roll",
-        '# gain_error = "0.1 %"          # of the sensor, at 95 %',
-    ),
-    "temperature": (
-        '# offset = "-1.5 K"             # film minus reading',
-        '# time_constant = "4 s"         # lag of the sensor',
-        '# zero_error = "2 K"            # by how much the film may differ from the reading, at 95 %',
-        '# film_heating = "3 K"          # by how much friction may heat it at the greatest power',
-    ),
-    "time": (),
-}
-#: What a friction force needs beside it: meaning and an amount of each role.
-_BESIDE = {
-    "radius": ("at which the friction force acts", "25 mm"),
-    "load": ("normal load: a friction coefficient needs it", "50 N"),
-}
-
-
-def _proposed(role: str, columns: tuple[Column, ...], choice: ChannelChoice, path: Path) -> list[str]:
-    channel: tuple[Column, Conversion] | None = None
-    try:
-        channel = find_channel(role, columns, choice, path.name, lambda column: _says_nothing(path, column))
-        said = "no channel of the log is called so or has such a unit"
-    except HerseyError as error:
-        said = str(error).removeprefix(f"{path.name}: ")
-    if channel is not None and not choice.name and _says_nothing(path, channel[0], zero=True):
-        said = f"'{channel[0]}' is zero throughout, or empty: it is dead"
-        channel = None
-    if channel is None:
-        return [f"# [{role}]", f"# {printable(said)}", '# channel = ""', '# unit = ""']
-    column, unit = channel
-    stated = [f"channel = {quoted(column.path)}", f"unit = {quoted(unit.unit)}"]
-    kind = role_conversion(role, unit.unit)[0]
-    others = _beside(columns, needed=kind in ("force", "friction coefficient")) if role == "torque" else []
-    return [f"[{role}]", *stated, *_EXAMPLES[role], *others]
-
-
-def _beside(columns: tuple[Column, ...], *, needed: bool) -> list[str]:
-    """Radius and load, commented out: where a friction force needs them, or a column is called like one."""
-    lines: list[str] = []
-    for role, (meaning, amount_of) in _BESIDE.items():
-        named = proposed(role, columns)
-        if not (needed or named):
-            continue
-        lines += ["", f"# [{role}]".ljust(32) + f"# {meaning}", f'# value = "{amount_of}"']
-        if named:
-            said = f"column {printable(str(named[0]))} may be it: in the place of a value,"
-            lines += [
-                f"# # {said}",
-                f"# channel = {quoted(named[0].path)}",
-                f"# unit = {quoted(named[0].unit)}",
-            ]
-    return lines
-
-
-def _says_nothing(path: Path, column: Column, *, zero: bool = False) -> bool:
-    """Whether a channel of a log holds one value throughout, or none; ``zero``: only whether that is zero."""
-    try:
-        with open_columns(path) as opened:
-            (values,) = opened.numbers(called(column.name, opened.columns)[0])
-    except (HerseyError, IndexError):
-        return False
-    return is_dead(values) and not (zero and np.any(values[np.isfinite(values)]))
 
 
 def mapping_of(files: Sequence[str | Path], stated: str | Path | None = None) -> LogMapping:

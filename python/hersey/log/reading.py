@@ -17,6 +17,7 @@ from hersey.log.formats.frame import frame_recording, is_frame
 from hersey.log.friction import of_each_run
 from hersey.log.text.delimited import Progress, delimited_columns, read_delimited
 from hersey.log.torque_log import LARGEST, LogFile, Run, TorqueLog
+from hersey.log.wanted import Wanted
 from hersey.units import takes_si
 
 
@@ -84,31 +85,27 @@ def read(
             raise ParameterError(f"'{role}' is no role of a channel: they are {', '.join(known)}")
     choices = {r: ChannelChoice((channels or {}).get(r, ""), (units or {}).get(r, "")) for r in known}
     stated = _stated(every=every, radius=radius, load=load)
+    wanted = Wanted(choices, stated, isothermal, drop_missing)
     done: list[tuple[Run, LogFile]] = []
     for number, file in enumerate(files, start=1):
-        if is_frame(file):
-            recording = frame_recording(file, "frame" if len(files) == 1 else f"frame {number}")
-            assembly = Assembly(recording, choices, isothermal=isothermal, stated=stated)
-            read_here = assembly.runs(drop_missing=drop_missing)
-        elif kind := format_of(path := Path(file)):
-            with opened(path, kind) as recording:
-                assembly = Assembly(recording, choices, isothermal=isothermal, stated=stated)
-            read_here = assembly.runs(drop_missing=drop_missing)
-        else:
-            read_here = read_delimited(
-                path,
-                choices,
-                isothermal=isothermal,
-                drop_missing=drop_missing,
-                stated=stated,
-                progress=progress,
-            )
+        read_here = _runs(file, wanted, "frame" if len(files) == 1 else f"frame {number}", progress)
         if any(read_here[0][1].sha256 == other.sha256 for _, other in done):
             name = read_here[0][1].name
             raise ParameterError(f"{name} holds the same bytes as a file before it: name each file once")
         done += read_here
     done = of_each_run(done, stated)
     return TorqueLog(tuple(run for run, _ in done), tuple(log for _, log in done))
+
+
+def _runs(file: Any, wanted: Wanted, frame: str, progress: Progress | None) -> list[tuple[Run, LogFile]]:
+    """The runs in a file, or in a frame of that name."""
+    if is_frame(file):
+        return Assembly(frame_recording(file, frame), wanted).runs()
+    if kind := format_of(path := Path(file)):
+        with opened(path, kind) as recording:
+            assembly = Assembly(recording, wanted)
+        return assembly.runs()
+    return read_delimited(path, wanted, progress)
 
 
 def _stated(*, every: Any, radius: Any, load: Any) -> Stated:

@@ -18,6 +18,7 @@ import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.errors import UnreadableLogError
+from hersey.log.text.column import name_and_unit
 
 #: Characters of a cell of text at the most: what it says beyond is no name.
 LONGEST_CELL = 300
@@ -153,11 +154,8 @@ def listening(name: str) -> Iterator[list[str]]:
 
 def split_unit(name: str) -> tuple[str, str]:
     """Return name and unit of a channel called ``Torque [N*m]``, ``Torque (N*m)`` or ``torque_Nm``."""
-    from hersey.log.text.layout import NAME_WITH_UNIT
-
-    match = NAME_WITH_UNIT.fullmatch(name)
-    if match:
-        return match[1].strip(), (match[2] if match[2] is not None else match[3]).strip()
+    if named := name_and_unit(name):
+        return named
     for ending, unit in sorted(_ENDINGS.items(), key=lambda e: -len(e[0])):
         if len(name) > len(ending) + 1 and name.endswith(f"_{ending}"):
             return name.removesuffix(f"_{ending}"), unit

@@ -165,45 +165,34 @@ def runs_with_records(
     for channel in slow:
         gaps = LeftOut(channel.in_gaps, [f"{channel.first_gap}: {channel.role} '{channel.name}' has a gap"])
         gaps.refuse_many(file.name, rows, allowed=drop_missing)
+    begins = [place(_first(part)) for part in parts]
     long = [i for i, run in enumerate(runs) if run["time"].size > 1 and run["time"][-1] > run["time"][0]]
+    notes = [note for channel in slow for note in channel.notes()]
     if not long:
-        why = "; ".join(note for channel in slow for note in channel.notes())
-        raise UnreadableLogError(f"{file.name}: {why or 'all rows carry the same time'}")
+        raise UnreadableLogError(f"{file.name}: {'; '.join(notes) or 'all rows carry the same time'}")
     for i in set(range(len(runs))) - set(long):
-        count = runs[i]["time"].size
-        if not count:  # lost to a slow channel, which counts them
-            continue
-        left_out.add(
-            count, [f"{place(_first(parts[i]))}: {count} row(s) of one time between two runs"] * count
-        )
-    records = []
-    for number, i in enumerate(long, start=1):
-        name = file.name if len(long) == 1 else f"{file.name}, run {number} of {len(long)}"
-        run = runs[i]
-        of_slow = [note for channel in slow for note in channel.notes()]
-        notes = (*file.notes, *of_slow, *left_out.notes()) if number == 1 else ()
-        if len(long) > 1:
-            notes = (
-                *notes,
-                f"run {number} of {len(long)} in {file.name} begins at {place(_first(parts[i]))}",
-            )
-        optional = {role: run.get(role) for role in ("temperature", "load")}
-        records.append(
-            (
-                Run(name, run["time"], run["torque"], run["speed"], **optional),
-                replace(
-                    file,
-                    name=name,
-                    rows=run["time"].size,
-                    missing_rows=file.missing_rows + left_out.rows + sum(c.lost for c in slow)
-                    if number == 1
-                    else 0,
-                    impossible=file.impossible if number == 1 else (),
-                    notes=notes,
-                ),
-            )
-        )
-    return records
+        if count := runs[i]["time"].size:  # what is lost to a slow channel, that counts
+            left_out.add(count, [f"{begins[i]}: {count} row(s) of one time between two runs"] * count)
+    lost = file.missing_rows + left_out.rows + sum(channel.lost for channel in slow)
+    first = replace(file, missing_rows=lost, notes=(*file.notes, *notes, *left_out.notes()))
+    other = replace(file, missing_rows=0, impossible=(), notes=())
+    return [
+        _recorded(runs[i], other if number else first, number + 1, len(long), begins[i])
+        for number, i in enumerate(long)
+    ]
+
+
+def _recorded(
+    run: dict[str, FloatArray], file: LogFile, number: int, runs: int, begins: str
+) -> tuple[Run, LogFile]:
+    """One of the runs in a file, with the record of that file as its own."""
+    name, notes = file.name, file.notes
+    if runs > 1:
+        name = f"{file.name}, run {number} of {runs}"
+        notes = (*notes, f"run {number} of {runs} in {file.name} begins at {begins}")
+    optional = {role: run.get(role) for role in ("temperature", "load")}
+    record = replace(file, name=name, rows=run["time"].size, notes=notes)
+    return Run(name, run["time"], run["torque"], run["speed"], **optional), record
 
 
 def _slow(

@@ -10,7 +10,7 @@ from typing import Final
 
 from hersey.errors import Setting, UnstatedRoleError, way_in
 from hersey.log.channels import is_called, is_of_kind
-from hersey.log.text.layout import Column
+from hersey.log.text.column import Column
 
 #: What each role is called, and an amount of it.
 _ROLES: Final = {"radius": ("radius", "25 mm"), "load": ("normal load", "50 N")}

@@ -147,8 +147,7 @@ class TorqueLog(Result):
     @property
     def title(self) -> str:
         """Name of the first file, and how many more there are."""
-        first = self.files[0].name
-        return first if len(self.files) == 1 else f"{first} and {len(self.files) - 1} more"
+        return title_of(self.files)
 
     @property
     def has_temperature(self) -> bool:
@@ -174,6 +173,12 @@ class TorqueLog(Result):
         from hersey.damping.dwells import steady_points
 
         return steady_points(self, min_dwell=min_dwell, tare=tare, rotation=rotation)
+
+
+def title_of(files: tuple[LogFile, ...]) -> str:
+    """Return the name of the first file, and how many more there are."""
+    first = files[0].name
+    return first if len(files) == 1 else f"{first} and {len(files) - 1} more"
 
 
 #: Channels of a run and their columns in a table.

@@ -14,7 +14,7 @@ from typing import Any
 
 from hersey.errors import ParameterError, UnitError
 from hersey.files.toml import naming, refuse_value
-from hersey.log import mapping
+from hersey.log import role_tables
 from hersey.lubrication.lubricant import MODELS
 from hersey.machine.limits import Limits, OperatingPoint
 from hersey.machine.machine import DrivetrainTable
@@ -32,12 +32,12 @@ _TABLES: dict[str, type] = {
     "lubricant": LubricantTable,
     "rest": RestTable,
     "points": OperatingPoint,
-    "torque": mapping.TorqueMapping,
-    "speed": mapping.SpeedMapping,
-    "temperature": mapping.TemperatureMapping,
-    "time": mapping.TimeMapping,
-    "radius": mapping.RadiusMapping,
-    "load": mapping.LoadMapping,
+    "torque": role_tables.TorqueMapping,
+    "speed": role_tables.SpeedMapping,
+    "temperature": role_tables.TemperatureMapping,
+    "time": role_tables.TimeMapping,
+    "radius": role_tables.RadiusMapping,
+    "load": role_tables.LoadMapping,
 }
 #: What is known of an answer beside its value, written behind it.
 _SHARE = re.compile(r"(.*?)\s*(?:±|\+/?-)\s*([0-9.]+\s*%)\s*")

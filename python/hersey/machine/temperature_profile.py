@@ -9,7 +9,7 @@ from hersey.arrays import FloatArray
 from hersey.errors import ChannelError, ParameterError, UnitError, UnreadableLogError
 from hersey.log.columns import OpenColumns, open_columns
 from hersey.log.formats import format_of
-from hersey.log.text.layout import Column
+from hersey.log.text.column import Column
 from hersey.motion.schedule import Schedule
 from hersey.units import conversion
 

@@ -39,7 +39,8 @@ def serve(answer: _Answer, requests: BinaryIO, replies: BinaryIO, files: int = -
             reply, content = answer(request, payload)
             head = json.dumps({"reply": reply}).encode()
         except BaseException as error:  # a panic of a compiled library is no Exception
-            head, content = json.dumps({"failed": type(error).__name__, "message": str(error)}).encode(), b""
+            kind = MemoryError if isinstance(error, MemoryError) else type(error)  # NumPy has one of its own
+            head, content = json.dumps({"failed": kind.__name__, "message": str(error)}).encode(), b""
         replies.write(_LENGTHS.pack(len(head), len(content)) + head)
         replies.write(content)
         replies.flush()

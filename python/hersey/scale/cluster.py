@@ -21,13 +21,8 @@ if TYPE_CHECKING:
 #: Time within which a scheduler answers, s.
 _ANSWER = 8.0
 #: Time that the first worker has to come, and one after all are lost, s.
-_FIRST, _WORKERS = 20.0, 60.0
+_FIRST, WITHOUT_WORKERS = 20.0, 60.0
 _WAY_OUT = "pip install 'hersey[scale]'"
-
-
-def without_workers() -> float:
-    """Return the time after which nobody is waited for any longer, s."""
-    return _WORKERS
 
 
 def needs_dask() -> None:

@@ -9,19 +9,18 @@ from __future__ import annotations
 
 import hashlib
 import json
-import secrets
 import shutil
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field, replace
 from math import prod
 from pathlib import Path
-from typing import Any, BinaryIO, Protocol
+from typing import Any, Protocol
 
 from numpy.typing import NDArray
 
 from hersey.errors import OVERWRITE, OutputError, Setting, way_in
-from hersey.files.writing import SUFFIX
+from hersey.files.writing import SUFFIX, unfinished, write_atomically
 from hersey.scale.cutting import Cut
 
 #: What is written of a chunk, or of all: columns of one length by their names.
@@ -174,25 +173,23 @@ def opened(
     path = out.absolute
     try:
         with _taken(kind, out, scenario) as begun:
-            if begun is None:
-                new = layout(planned())
-                _create(kind, path, new, _manifest(kind, scenario, new))
-                cut = new.cut
-            else:
+            if begun is not None:
                 _refuse_older(path, kind, begun)
-                cut = _cut_of(path, begun, shape)
-                if _manifest(kind, scenario, layout(cut)) != {**begun, "about": None}:
-                    raise _damaged(path)
+            cut = planned() if begun is None else _cut_of(path, begun, shape)
+            whole = layout(cut)
+            manifest = _manifest(kind, scenario, whole)
+            if begun is None:
+                _create(kind, path, whole, manifest)
+            elif manifest != {**begun, "about": None}:
+                raise _damaged(path)
             with _locked(path / kind.lock, path):
                 if asked is not None and asked != cut:
                     raise OutputError(
                         f"{path} is cut into chunks of {prod(cut.chunk)} sets, and {prod(asked.chunk)} are "
                         f"asked for: leave the chunk out to go on, or start anew with {_anew()}"
                     )
-                mended: tuple[str, ...] = ()
-                if begun is not None:
-                    mended = kind.mend(path, layout(cut), _manifest(kind, scenario, layout(cut)))
-                yield replace(kind.open(path, cut, layout(cut).variables), mended=mended)  # type: ignore[type-var]
+                mended = () if begun is None else kind.mend(path, whole, manifest)
+                yield replace(kind.open(path, cut, whole.variables), mended=mended)  # type: ignore[type-var]
     except OSError as error:
         if isinstance(error, OutputError):
             raise
@@ -272,7 +269,7 @@ def _taken(kind: Kind, out: SweepFolder, scenario: Scenario) -> Iterator[Scenari
             f"{_NO_RESUME.to(python='False')} to go on with it"
         )
     with _locked(path / kind.lock, path):
-        gone = path.with_name(f".{path.name[:200]}.{secrets.token_hex(8)}{SUFFIX}")
+        gone = unfinished(path)
         path.rename(gone)
     shutil.rmtree(gone, ignore_errors=True)
     yield None
@@ -280,7 +277,7 @@ def _taken(kind: Kind, out: SweepFolder, scenario: Scenario) -> Iterator[Scenari
 
 def _create(kind: Kind, path: Path, layout: Layout, manifest: Scenario) -> None:
     """Make the folder beside, and give it its name when it is whole."""
-    part = path.with_name(f".{path.name[:200]}.{secrets.token_hex(8)}{SUFFIX}")
+    part = unfinished(path)
     try:
         kind.create(part, layout, manifest)
         (part / kind.lock).touch()
@@ -300,17 +297,15 @@ def _locked(lock: Path, path: Path) -> Iterator[None]:
         yield
         return
     with lock.open("ab") as file:
-        _lock(file, path, fcntl)
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise OutputError(
+                f"{path}: another process is at work on it: wait for it, or name another"
+            ) from None
+        except OSError:  # a file system without locks: two at work write the same bytes
+            pass
         yield
-
-
-def _lock(file: BinaryIO, path: Path, fcntl: Any) -> None:
-    try:
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        raise OutputError(f"{path}: another process is at work on it: wait for it, or name another") from None
-    except OSError:  # a file system without locks: two at work write the same bytes
-        pass
 
 
 def refuse_another(path: Path, manifest: Scenario, scenario: Scenario) -> None:
@@ -370,8 +365,6 @@ def write_file(path: Path, content: bytes) -> None:
     OutputError
         If it cannot be written.
     """
-    from hersey.files.writing import write_atomically
-
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
     except OSError as error:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from hersey import _core
 from hersey.errors import ParameterError, UnfinishedError
-from hersey.scale.cluster import connected, refuse_others, threads_of, without_workers
+from hersey.scale.cluster import WITHOUT_WORKERS, connected, refuse_others, threads_of
 from hersey.scale.local import LocalWorkers
 
 if TYPE_CHECKING:
@@ -132,12 +132,8 @@ class _Window:
     """The items that a scheduler has now."""
 
     def __init__(self, task: Callable[[Any], Any], items: Sequence[Any], client: Client, name: str) -> None:
-        self.task, self.items, self.client, self.name = (
-            partial(_checked, _core.VERSION, task),
-            items,
-            client,
-            name,
-        )
+        self.task, self.items = partial(_checked, _core.VERSION, task), items
+        self.client, self.name = client, name
         self.ended: queue.SimpleQueue[Future[Any]] = queue.SimpleQueue()
         self.begun: dict[Future[Any], tuple[int, int]] = {}
         self.next = 0
@@ -157,9 +153,7 @@ class _Window:
                     self.client.cancel(list(self.begun))
 
     def _fill(self) -> None:
-        if (
-            time.monotonic() - self.asked > _PATIENCE
-        ):  # an answer takes as long as a task of some milliseconds
+        if time.monotonic() - self.asked > _PATIENCE:  # an answer takes as long as a short task
             self.threads, self.asked = threads_of(self.client), time.monotonic()
         most = max(_AHEAD * self.threads, 1)
         while self.next < len(self.items) and len(self.begun) < most:
@@ -186,8 +180,8 @@ class _Window:
             except queue.Empty:
                 if self.client.status != "running":
                     raise self._lost() from None
-                    unseen = 0 if threads_of(self.client) else unseen + 1
-                if unseen * _PATIENCE > without_workers():
+                unseen = 0 if threads_of(self.client) else unseen + 1
+                if unseen * _PATIENCE > WITHOUT_WORKERS:
                     raise UnfinishedError(
                         f"no worker of {self.name} is left: start some, and give the same command again"
                     ) from None

@@ -1,9 +1,11 @@
 """A Zarr store (v3), one array per quantity, one file per chunk of each.
 
 The library makes the store and reads it. A chunk of an array is a file that a task writes by itself, as the
-specification has it (C order, little end first, Blosc, then the CRC-32C of it all): by way of the library it
-takes ten times as long. ``status`` has one element per chunk, 1 where it is finished: of a chunk that holds
-nothing but the fill value one could not tell whether it was ever written.
+specification has it (C order, little end first, Blosc, then the CRC-32C of it all). By way of the library, or
+of region writes of xarray, the same bytes take twelve times as long (82 ms instead of 7 ms for 12 quantities
+of 1,000 sets), and would have to be read again for their checksums. ``status`` has one element per chunk, 1
+where it is finished: of a chunk that holds nothing but the fill value one could not tell whether it was ever
+written.
 
 The note of a chunk holds the checksum of its file in each array, and one of its own. A chunk is finished only
 if all its files are those: none damaged, cut off, deleted or put in the place of another.
@@ -28,6 +30,12 @@ from hersey.scale.store import Columns, Layout, Note, Scenario, Variable, write_
 #: Compression of values: bytes of one weight together, then LZ4 (a tenth of a millisecond per 1,000 sets).
 _NAME: Literal["lz4"] = "lz4"
 _LEVEL = 1
+#: What is said of `status`, as the CF conventions have it.
+_STATUS: dict[str, Any] = {
+    "long_name": "chunks in C order: which are finished",
+    "flag_values": [0, 1],
+    "flag_meanings": "missing finished",
+}
 #: Where what is told of each chunk lies, in the folder of `status`: no part of the store.
 _NOTES = "notes"
 
@@ -60,19 +68,16 @@ class ZarrKind:
         about = {**layout.attributes, "hersey": manifest, "coordinates": named}
         group = zarr.create_group(path, zarr_format=3, attributes=about)
         for name, each in layout.coordinates.items():
-            array = group.create_array(
+            group.create_array(
                 name,
-                shape=each.values.shape,
-                dtype=each.values.dtype,
+                data=each.values,
                 dimension_names=each.axes,
                 compressors=(ZstdCodec(), Crc32cCodec()),
                 attributes=dict(each.attributes),
             )
-            array[...] = each.values
         for variable in layout.variables:
-            codec = BloscCodec(
-                typesize=np.dtype(variable.dtype).itemsize, cname=_NAME, clevel=_LEVEL, shuffle="shuffle"
-            )
+            size = np.dtype(variable.dtype).itemsize
+            codec = BloscCodec(typesize=size, cname=_NAME, clevel=_LEVEL, shuffle="shuffle")
             group.create_array(
                 variable.name,
                 shape=layout.cut.shape,
@@ -91,14 +96,9 @@ class ZarrKind:
             dimension_names=("chunk",),
             fill_value=0,
             compressors=None,
-            attributes={
-                "long_name": "chunks in C order: which are finished",
-                "flag_values": [0, 1],
-                "flag_meanings": "missing finished",
-            },
+            attributes=_STATUS,
         )
-        with warnings.catch_warnings():  # all metadata in one place are an extension that xarray asks for
-            warnings.simplefilter("ignore")
+        with warnings.catch_warnings(action="ignore"):  # of an extension that xarray asks for
             zarr.consolidate_metadata(path)
 
     def read_manifest(self, path: Path) -> Scenario | None:

@@ -1,7 +1,8 @@
 """Files of every format but text: one reader each.
 
 ============  =================================================================
-opening       which format a file has, and opening it in a process of its own
+recognition   which format a file has
+opening       opening a file in a process of its own
 answering     what that process does: a reader opens the file, numbers are sent
 lvm           LabVIEW measurement files
 tdms          LabVIEW TDMS
@@ -18,6 +19,7 @@ frame         polars and pandas frames in memory
 ============  =================================================================
 """
 
-from hersey.log.formats.opening import READERS, format_of, memory_limit, opened
+from hersey.log.formats.opening import memory_limit, opened
+from hersey.log.formats.recognition import READERS, format_of
 
 __all__ = ["READERS", "format_of", "memory_limit", "opened"]

@@ -54,16 +54,8 @@ class _Open:
             "comments": recording.comments,
             "nothing": recording.nothing,
             "signals": [
-                {
-                    "name": signal.name,
-                    "unit": signal.unit,
-                    "rows": signal.rows,
-                    "clock": signal.clock is not None,
-                    "tick": signal.tick,
-                    "group": signal.group,
-                    "line": signal.line,
-                    "marked": signal.marked is not None,
-                }
+                {name: getattr(signal, name) for name in ("name", "unit", "rows", "tick", "group", "line")}
+                | {"clock": signal.clock is not None, "marked": signal.marked is not None}
                 for signal in recording.signals
             ],
             "cells": [

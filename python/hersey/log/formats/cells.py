@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import partial
 from typing import Any
 
 import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.log.formats.matrices import array_signals
-from hersey.log.recording import Signal, floats
+from hersey.log.recording import Signal
 
 
 def cell_signals(name: str, cells: Any, group: str, signals: list[Signal]) -> bool:
@@ -25,14 +24,12 @@ def cell_signals(name: str, cells: Any, group: str, signals: list[Signal]) -> bo
     for rows in (cells, cells.T):
         vectors = _list_of(rows)
         if vectors is not None:
-            for channel, unit, numbers in vectors:
-                load = partial(_same, numbers)
-                signals.extend(array_signals(channel, numbers.shape, load, unit, path))
-            return True
-    columns = _table(cells)
-    for channel, unit, values in columns:
-        signals.extend(array_signals(channel, values.shape, partial(_same, values), unit, path))
-    return bool(columns)
+            break
+    else:
+        vectors = _table(cells)
+    for channel, unit, numbers in vectors:
+        signals.extend(array_signals(channel, numbers.shape, numbers.view, unit, path))
+    return bool(vectors)
 
 
 def _list_of(rows: Any) -> list[tuple[str, str, Any]] | None:
@@ -78,7 +75,3 @@ def _word(cell: Any) -> str | None:
     if isinstance(cell, np.ndarray) and cell.dtype.kind == "U" and cell.size <= 1:
         return str(cell.reshape(-1)[0]) if cell.size else ""
     return None
-
-
-def _same(values: Any) -> FloatArray:
-    return floats(values)

@@ -14,10 +14,11 @@ import polars as pl
 from hersey.arrays import FloatArray
 from hersey.errors import HerseyError
 from hersey.log.recording import LONGEST_CELL, Cells, Recording, Signal, library
+from hersey.log.text.column import Column
 from hersey.log.text.footer import summary_lines
-from hersey.log.text.layout import SNIFFED, Column, Layout, find_layout
+from hersey.log.text.layout import SNIFFED, Layout, find_layout
 from hersey.log.text.repeated_header import refuse_another_header
-from hersey.log.text.stamps import Stamps
+from hersey.log.text.stamps import Stamps, numbers_in
 
 #: What stands between the cells of a row where the table is looked for: no cell holds one then.
 _TAB = "\t"
@@ -138,7 +139,7 @@ def _load(recording: Recording, place: str, cells: pl.Series, layout: Layout, co
     style = layout.stamps.get(column.index)
     written = layout.style if style is None else Stamps(style)
     text = cells.fill_null("")
-    odd = ~written.readable(text)
+    values, odd = numbers_in(text, written)
     for row in odd.arg_true() if style is None else ():
         where = f"{recording.source.name}, {place}row {layout.first_line + row}"
         refuse_another_header(where, column, text[row][:LONGEST_CELL], layout.columns)
@@ -146,9 +147,6 @@ def _load(recording: Recording, place: str, cells: pl.Series, layout: Layout, co
         more = f", and {int(odd.sum()) - 1} more in this column" if odd.sum() > 1 else ""
         note = f"'{text[row][:40]}' is no {'number' if style is None else 'time'}"
         recording.notes.append(f"{place}row {layout.first_line + row}, column '{column.name}': {note}{more}")
-    text = text.set(odd, "")
-    values = written.seconds(text) if isinstance(written, Stamps) else written.values(text)
-    assert values is not None
     if isinstance(written, Stamps):
         recording.notes.append(written.note(column.name))
     return values

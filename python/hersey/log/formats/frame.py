@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -45,9 +44,7 @@ def frame_recording(frame: Any, name: str = "frame") -> Recording:
         numbers = np.ascontiguousarray(series.to_physical().to_numpy())
         digest.update(column.encode() + numbers.tobytes())
         size += numbers.nbytes
-        signals.append(
-            column_signal(column, kind, len(series), partial(_same, series), str(units.get(column, "")))
-        )
+        signals.append(column_signal(column, kind, len(series), series.clone, str(units.get(column, ""))))
     source = Source(name, digest.hexdigest(), size)
     return Recording("frame", tuple(signals), tuple(others), source=source)
 
@@ -69,10 +66,6 @@ def column_signal(
         return floats(series.cast(pl.Float64).fill_null(np.nan).to_numpy())
 
     return Signal(plain, "s" if kind.is_temporal() else stated, rows, numbers)
-
-
-def _same(series: pl.Series) -> pl.Series:
-    return series
 
 
 def _tick(kind: pl.DataType) -> float:

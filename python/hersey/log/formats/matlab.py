@@ -61,7 +61,7 @@ def _walk(name: str, value: Any, group: str, signals: list[Signal], others: list
     elif value.dtype.names and value.size == 1 and depth < _DEPTH:
         _walk_struct(name, value.reshape(-1)[0], group, signals, others, depth)
     elif value.dtype.kind in "iufb":
-        vectors = array_signals(name, value.shape, lambda: value, group=group)
+        vectors = array_signals(name, value.shape, value.view, group=group)
         signals.extend(vectors)
         if not vectors:
             others.append(f"{place} ({'x'.join(map(str, value.shape))})")
@@ -86,7 +86,7 @@ def _walk_struct(
     if data is not None and unit is not None:
         if unit.size != 1:
             raise UnreadableLogError(f"the unit of '{path}' is no word")
-        signals.extend(array_signals(name, data.shape, lambda: data, str(unit.reshape(-1)[0]), group))
+        signals.extend(array_signals(name, data.shape, data.view, str(unit.reshape(-1)[0]), group))
         return
     for field, value in fields.items():
         _walk(field, value, path, signals, others, depth + 1)

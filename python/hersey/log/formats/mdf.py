@@ -153,18 +153,15 @@ def _signal(
     def part(which: int) -> FloatArray:
         return get()[which]
 
-    clock = f"group {group}"
-    marked = partial(part, 2) if _may_be_marked(mdf, group, index) else None
     return Signal(
         name,
         ending,
         rows,
         partial(part, 0),
         partial(part, 1),
-        clock,
-        str(group) if several else "",
-        0,
-        marked,
+        tick=f"group {group}",
+        group=str(group) if several else "",
+        marked=partial(part, 2) if _may_be_marked(mdf, group, index) else None,
     )
 
 

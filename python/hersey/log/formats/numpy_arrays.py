@@ -5,7 +5,6 @@ from __future__ import annotations
 import zipfile
 from collections.abc import Iterator
 from contextlib import contextmanager
-from functools import partial
 from typing import Any, BinaryIO
 
 import numpy as np
@@ -52,13 +51,9 @@ def _add(name: str, content: Any, signals: list[Signal], others: list[str]) -> N
     for path, numbers in fields.items():
         group, _, plain = path.rpartition("/")
         if numbers.dtype.kind in _NUMBERS:
-            vectors = array_signals(plain, numbers.shape, partial(_same, numbers), group=group)
+            vectors = array_signals(plain, numbers.shape, numbers.view, group=group)
             signals.extend(vectors)
         else:
             vectors = []
         if not vectors:
             others.append(f"'{path}' ({'x'.join(map(str, numbers.shape)) or 'one value'})")
-
-
-def _same(numbers: Any) -> Any:
-    return numbers

@@ -3,10 +3,15 @@
 ===============  ================================================
 numbers          how a text file writes numbers
 stamps           how it writes times
+column           a column: name and unit
+separators       what stands between cells, and the rows of numbers that it makes
+header           names and units of the columns, from the lines above
 layout           where the table starts, and what its columns are
 footer           where it ends
 repeated_header  a header that stands again among the rows
 unit_pairs       two units given for one column
-delimited        the table, read in blocks
+blocks           its lines, a block at a time
+cells            the cells of a block as numbers
+delimited        the table of a file: its channels, and the rows that can be used
 ===============  ================================================
 """

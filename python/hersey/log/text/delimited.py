@@ -1,63 +1,39 @@
-"""Reading delimited text (CSV and its relatives) in blocks, so that memory holds only the numbers used.
-
-A block goes through polars; where that stumbles, or the count of rows does not match the lines, the block is
-read again cell by cell, which either succeeds (padded cells, odd quotes) or names line and column.
-"""
+"""Reading delimited text (CSV and its relatives) in blocks, so that memory holds only the numbers used."""
 
 from __future__ import annotations
 
-import codecs
 import hashlib
 from bisect import bisect_right
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
-from typing import BinaryIO
 
 import numpy as np
-import polars as pl
 
 from hersey.arrays import BoolArray, FloatArray, IntArray
-from hersey.errors import ChannelError, Setting, UnreadableLogError, printable
+from hersey.errors import Setting, UnreadableLogError, printable
 from hersey.files.reading import OpenFile, appended
 from hersey.log.believed import in_si
-from hersey.log.channels import (
-    ROLES,
-    ChannelChoice,
-    Stated,
-    find_channel,
-    is_dead,
-    no_channel,
-    refuse_two_clocks,
-    refuse_two_temperatures,
-)
+from hersey.log.channels import Stated, find_channel, is_dead, no_channel, refuse_two_roles
 from hersey.log.friction import beside, in_rotation, notes_on, slow_roles, unused
 from hersey.log.impossible import Impossible, Reading, impossible_rows
 from hersey.log.rows import LeftOut, runs_with_records
+from hersey.log.text.blocks import Block, blocks
+from hersey.log.text.cells import CellReader
+from hersey.log.text.column import Column
 from hersey.log.text.footer import end_of_table
-from hersey.log.text.layout import BLANKS, SNIFFED, Column, Layout, find_layout, split, tabbed
-from hersey.log.text.numbers import MISSING, is_missing, looks_numeric
-from hersey.log.text.repeated_header import refuse_another_header
-from hersey.log.text.stamps import Stamps
+from hersey.log.text.layout import SNIFFED, Layout, find_layout
+from hersey.log.text.numbers import is_missing
 from hersey.log.torque_log import NO_CLOCK, Channel, LogFile, Run
+from hersey.log.wanted import Wanted
 from hersey.units import Conversion
 
-BLOCK = 1 << 22
-#: Bytes of a line at the most.
-LONGEST_LINE = 1 << 25
-
 Progress = Callable[[int, int], None]
-_NULLS = sorted({s for word in MISSING for s in (word, word.upper(), word.capitalize())} | {"NaN"})
 
 
 def read_delimited(
     path: Path,
-    choices: dict[str, ChannelChoice],
-    *,
-    isothermal: bool,
-    drop_missing: bool,
-    stated: Stated = Stated(),  # noqa: B008 # frozen
+    wanted: Wanted,
     progress: Progress | None = None,
 ) -> list[tuple[Run, LogFile]]:
     """Read the runs in one file; ``progress`` is called with bytes done and bytes in all.
@@ -67,12 +43,12 @@ def read_delimited(
     MissingFileError, UnreadableLogError, ChannelError, UnitError
         Each names the file, and the line and column where that applies.
     """
-    name = printable(path.name)
+    name, stated = printable(path.name), wanted.stated
     with open_delimited(path) as file:
         layout, end, size = file.layout, file.end, file.opened.size
         dead = _Dead(file)
-        channels = _channels(layout, choices, isothermal, name, stated, dead)
-        table = _Table(name, layout, channels, drop_missing, stated)
+        channels = _channels(layout, wanted, name, dead)
+        table = _Table(name, layout, channels, wanted.drop_missing, stated)
         table.slow = slow_roles(channels)
         table.read(file.opened, end.byte, progress)
         growth = file.opened.growth(table.digest.hexdigest())
@@ -91,7 +67,7 @@ def read_delimited(
         end.cut_off,
         (
             *layout.notes,
-            *table.notes(),
+            *table.reader.notes(),
             *notes_on(channels, stated),
             *dead.notes,
             *unused(layout.named, channels, stated),
@@ -102,7 +78,7 @@ def read_delimited(
         impossible,
     )
     return runs_with_records(
-        log, arrays, table.place, table.left_out, table.lacking, drop_missing=drop_missing
+        log, arrays, table.place, table.left_out, table.lacking, drop_missing=wanted.drop_missing
     )
 
 
@@ -153,8 +129,8 @@ class DelimitedFile:
             file is no longer what it was, unless it has only grown.
         """
         as_written = {str(i): (column, Conversion(column.unit, 1.0, 0.0)) for i, column in enumerate(chosen)}
-        table = _Table(self.opened.path.name, self.layout, as_written, drop_missing=not complete)
-        table.strict = not odd_as_missing
+        name, strict = self.opened.path.name, not odd_as_missing
+        table = _Table(name, self.layout, as_written, drop_missing=not complete, strict=strict)
         numbers = table.numbers(self.opened, self.end.byte)
         self.opened.growth(table.digest.hexdigest())
         return numbers
@@ -188,7 +164,7 @@ class _Dead:
         return self._known[column.index]
 
 
-def _by_number(layout: Layout, lacking: list[str], used: list[str]) -> str:
+def _by_number(layout: Layout, lacking: list[str], used: Sequence[str]) -> str:
     """Why columns must be named, and the options that name those that are not, as an example."""
     if len(layout.columns) < len(used):
         needed = f"{', '.join(used[:-1])} and {used[-1]}"
@@ -201,17 +177,9 @@ def _by_number(layout: Layout, lacking: list[str], used: list[str]) -> str:
 
 
 def _channels(
-    layout: Layout,
-    choices: dict[str, ChannelChoice],
-    isothermal: bool,
-    name: str,
-    stated: Stated,
-    dead: Callable[[Column], bool],
+    layout: Layout, wanted: Wanted, name: str, dead: Callable[[Column], bool]
 ) -> dict[str, tuple[Column, Conversion]]:
-    refuse_two_temperatures(choices, isothermal)
-    refuse_two_clocks(choices, stated)
-    left = {"temperature"} if isothermal else set()
-    used = [role for role in ROLES if role not in (left | {"time"} if stated.every is not None else left)]
+    choices, used = wanted.choices, wanted.roles
     if layout.headless and not all(choices[role].name for role in used):
         raise UnreadableLogError(_by_number(layout, [role for role in used if not choices[role].name], used))
     chosen: dict[str, tuple[Column, Conversion]] = {}
@@ -219,23 +187,10 @@ def _channels(
         channel = find_channel(role, layout.named, choices[role], name, dead)
         if channel is None:
             raise no_channel(role, layout.named, name)
-        other = next((r for r, (column, _) in chosen.items() if column == channel[0]), None)
-        if other:
-            raise ChannelError(f"{name}: column '{channel[0]}' cannot be both {other} and {role}")
+        refuse_two_roles(role, channel[0], chosen, name)
         chosen[role] = channel
-    others = beside(layout.named, choices, stated, chosen, name)
+    others = beside(layout.named, choices, wanted.stated, chosen, name)
     return {role: chosen[role] for role in used} | others
-
-
-@dataclass
-class _Block:
-    """Lines of the table as UTF-8, and the number of each in the file."""
-
-    text: bytes
-    lines: Sequence[int]
-
-    def cells(self, row: int, separator: str) -> list[str]:
-        return split(self.text.split(b"\n")[row].decode("utf-8", errors="replace").rstrip("\r"), separator)
 
 
 class _Table:
@@ -248,29 +203,25 @@ class _Table:
         channels: dict[str, tuple[Column, Conversion]],
         drop_missing: bool,
         stated: Stated = Stated(),  # noqa: B008 # frozen
+        strict: bool = False,
     ) -> None:
         self.name, self.layout, self.channels, self.drop_missing = name, layout, channels, drop_missing
-        self.stated, self.strict = stated, False
+        self.columns, self.stated = [column for column, _ in channels.values()], stated
+        self.reader = CellReader(name, layout, self.columns, strict=strict)
         self.slow: frozenset[str] = frozenset()  # roles that a row may lack until the whole is known
         self.lacking: dict[str, LeftOut] = {}  # rows that lack such a role alone
         self.parts: dict[str, list[FloatArray]] = {}
         self.digest = hashlib.sha256()
         self.left_out = LeftOut()
         self.rows = 0  # so far, those that were left out among them
-        self.stamps = {i: Stamps(style) for i, style in layout.stamps.items()}
         self._kept_last = 0
         self._believed: IntArray | None = None  # rows that were kept and believed, None for all
         self._lines: list[tuple[int, Sequence[int], IntArray | None]] = []  # first row, lines, those kept
 
-    @property
-    def columns(self) -> list[Column]:
-        return [column for column, _ in self.channels.values()]
-
     def read(self, opened: OpenFile, end: int, progress: Progress | None) -> None:
         """Read the table, which ends at byte ``end``."""
         for block, done in self._blocks(opened, end):
-            if block.lines:
-                self._add(block)
+            self._add(block)
             if progress:
                 progress(done, opened.size)
 
@@ -278,34 +229,20 @@ class _Table:
         """The columns as written, NaN where a number is missing and may be."""
         parts: list[list[FloatArray]] = [[] for _ in self.columns]
         for block, _ in self._blocks(opened, end):
-            if block.lines:
-                self._keep(block, parts)
+            self._keep(block, parts)
         return [np.concatenate(values) if values else np.empty(0) for values in parts]
 
-    def _blocks(self, opened: OpenFile, end: int) -> Iterator[tuple[_Block, int]]:
-        """Lines of the table, and bytes read so far; what follows the table is hashed with it."""
-        opened.file.seek(0)
-        for text, line, done in _blocks(opened.file, end, self.layout, self.name, self.digest.update):
-            text = tabbed(text) if self.layout.separator == BLANKS else text
-            yield self._cleaned(text, line), done
-        left = opened.size - end
-        while left and (chunk := opened.file.read(min(left, BLOCK))):
-            self.digest.update(chunk)
-            left -= len(chunk)
+    def _blocks(self, opened: OpenFile, end: int) -> Iterator[tuple[Block, int]]:
+        return blocks(opened, end, self.layout, self.name, self.digest.update)
 
-    def _keep(self, block: _Block, parts: list[list[FloatArray]]) -> None:
-        values = self._parsed(block)
+    def _keep(self, block: Block, parts: list[list[FloatArray]]) -> None:
+        values = self.reader.numbers(block)
         gone = ~np.logical_and.reduce([np.isfinite(column) for column in values])
         if gone.any() and not self.drop_missing:
             row = int(np.argmax(gone))
             raise UnreadableLogError(f"{self.name}, {self._fault(block, values, row)}; mend the file")
         for part, column in zip(parts, values, strict=True):
             part.append(np.where(np.isfinite(column), column, np.nan))
-
-    def notes(self) -> list[str]:
-        """What was done to time stamps."""
-        columns = [column for column in self.columns if column.index in self.stamps]
-        return [self.stamps[column.index].note(column.name) for column in columns]
 
     def arrays(self) -> tuple[dict[str, FloatArray], tuple[Impossible, ...]]:
         """What the rows hold, by role, as a log has it, and readings that cannot be right, left out."""
@@ -340,32 +277,8 @@ class _Table:
         first, lines, kept = self._lines[bisect_right(self._lines, row, key=lambda block: block[0]) - 1]
         return f"line {lines[row - first if kept is None else int(kept[row - first])]}"
 
-    def _cleaned(self, text: bytes, line: int) -> _Block:
-        """The block without blank lines and comments."""
-        comment = self.layout.comment.encode()
-        count = text.count(b"\n") + (not text.endswith(b"\n"))
-        blank = text.startswith((b"\n", b"\r\n")) or b"\n\n" in text or b"\n\r\n" in text
-        if not blank and not text.startswith(comment) and b"\n" + comment not in text:
-            return _Block(text, range(line, line + count))
-        kept, numbers = [], []
-        for number, row in enumerate(text.split(b"\n"), start=line):
-            if row.lstrip().startswith(comment):
-                cells = split(row.decode("utf-8", errors="replace"), self.layout.between)
-                if len(cells) == len(self.layout.columns) and is_missing(cells[0]):  # an error of Excel: #N/A
-                    kept.append(row)
-                    numbers.append(number)
-                elif len(cells) == len(self.layout.columns):
-                    raise UnreadableLogError(
-                        f"{self.name}, line {number} starts with '{self.layout.comment}' like a comment but "
-                        "has as many cells as a row: mend or remove it"
-                    )
-            elif row.strip():
-                kept.append(row)
-                numbers.append(number)
-        return _Block(b"\n".join(kept), numbers)
-
-    def _add(self, block: _Block) -> None:
-        values = self._parsed(block)
+    def _add(self, block: Block) -> None:
+        values = self.reader.numbers(block)
         by_role = self._in_si(values)
         needed = [numbers for role, numbers in by_role.items() if role not in self.slow]
         gone = ~np.logical_and.reduce([np.isfinite(numbers) for numbers in needed])
@@ -402,9 +315,9 @@ class _Table:
         rotated = in_rotation(dict(by_role), self.channels, self.stated)
         return ~(np.isnan(rotated["torque"]) | np.isnan(rotated["speed"]))
 
-    def _fault(self, block: _Block, values: list[FloatArray], row: int) -> str:
+    def _fault(self, block: Block, values: list[FloatArray], row: int) -> str:
         """Line and column of the first cell of a row that is of no use, and what is wrong with it."""
-        cells = block.cells(row, self.layout.between)
+        cells = next(block.cells(self.layout.between, slice(row, None)))
         place = f"line {block.lines[row]}"
         for (column, _), numbers in zip(self.channels.values(), values, strict=True):
             cell = cells[column.index] if column.index < len(cells) else ""
@@ -413,120 +326,7 @@ class _Table:
                 if is_missing(cell):
                     what = f"'{cell[:40]}' stands" if cell else "nothing stands"
                     return f"{told}{what} where a number is needed"
-                return f"{told}'{cell[:40]}' is not a {self._what(column)}"
+                return f"{told}'{cell[:40]}' is not a {self.reader.what(column)}"
         return (
             f"{place}: torque and speed cannot be had from what stands there: a radius that is not positive?"
         )
-
-    def _what(self, column: Column) -> str:
-        return "time stamp" if column.index in self.stamps else "number"
-
-    def _parsed(self, block: _Block) -> list[FloatArray]:
-        """The wanted columns as numbers, NaN where a cell stands for a missing value."""
-        wanted = sorted(column.index for column in self.columns)
-        plain = self.layout.style.is_plain and not self.stamps
-        comma = self.layout.style.decimal_comma and not self.layout.style.thousands
-        fast = plain or (
-            comma and not self.stamps and self.layout.separator != "," and b"." not in block.text
-        )  # a point beside decimal commas is a cell that could be read in two ways
-        try:
-            frame = pl.read_csv(
-                block.text,
-                has_header=False,
-                columns=wanted,
-                separator=self.layout.between,
-                decimal_comma=fast and comma,
-                schema_overrides=[pl.Float64 if fast else pl.String] * len(self.layout.columns),
-                null_values=_NULLS,
-                encoding="utf8-lossy",
-            )
-        except pl.exceptions.PolarsError:
-            return self._parsed_slowly(block)
-        if frame.height != len(block.lines) or frame.width != len(wanted):
-            return self._parsed_slowly(block)
-        by_index = dict(zip(wanted, frame.get_columns(), strict=True))
-        if fast:
-            return [by_index[c.index].cast(pl.Float64).fill_null(np.nan).to_numpy() for c in self.columns]
-        values: dict[int, FloatArray] = {}
-        for column in sorted(
-            self.columns, key=lambda c: c.index in self.stamps
-        ):  # stamps remember what they read
-            numbers = self._values(column, by_index[column.index].fill_null(""))
-            if numbers is None:
-                return self._parsed_slowly(block)
-            values[column.index] = numbers
-        return [values[column.index] for column in self.columns]
-
-    def _values(self, column: Column, cells: pl.Series) -> FloatArray | None:
-        """Cells of text as numbers or as time stamps in s; None if one of them is neither."""
-        stamps = self.stamps.get(column.index)
-        return stamps.seconds(cells) if stamps else self.layout.style.values(cells)
-
-    def _parsed_slowly(self, block: _Block) -> list[FloatArray]:
-        width = len(self.layout.columns)
-        table: list[list[str]] = []
-        for row, text in enumerate(block.text.split(b"\n")[: len(block.lines)]):
-            cells = split(text.decode("utf-8", errors="replace").rstrip("\r"), self.layout.between)
-            if any(cells[width:]):
-                raise UnreadableLogError(
-                    f"{self.name}, line {block.lines[row]}: {len(cells)} cells where the header has {width}"
-                )
-            table.append(cells + [""] * (width - len(cells)))
-        return [
-            self._readable(block, column, [row[column.index] for row in table]) for column in self.columns
-        ]
-
-    def _readable(self, block: _Block, column: Column, cells: list[str]) -> FloatArray:
-        """The numbers of a column, NaN also where a cell is none, unless it could be one in another style."""
-        text = pl.Series(cells, dtype=pl.String)
-        stamps = self.stamps.get(column.index)
-        odd = ~(stamps or self.layout.style).readable(text)
-        for row in odd.arg_true():
-            if stamps is None:
-                place = f"{self.name}, line {block.lines[row]}"
-                refuse_another_header(place, column, cells[row], self.layout.columns)
-            if self.strict or (stamps is None and looks_numeric(cells[row])):
-                raise UnreadableLogError(
-                    f"{self.name}, line {block.lines[row]}, column '{column.name}': "
-                    f"'{cells[row][:40]}' is not a {self._what(column)}"
-                )
-        values = self._values(column, text.set(odd, ""))
-        assert values is not None
-        return values
-
-
-def _blocks(
-    file: BinaryIO, end: int, layout: Layout, name: str, hashed: Callable[[bytes], None]
-) -> Iterator[tuple[bytes, int, int]]:
-    """Yield whole lines of UTF-8 text, the line number of the first, and bytes read so far."""
-    plain = layout.encoding == "utf-8-sig"
-    decoder = None if plain else codecs.getincrementaldecoder(layout.encoding)(errors="replace")
-    skip, line, rest, done, more = layout.first_line - 1, 1, b"", 0, True
-    while more:
-        chunk = file.read(min(BLOCK, end - done))
-        more = bool(chunk)
-        hashed(chunk)
-        done += len(chunk)
-        text = rest + (decoder.decode(chunk, final=not more).encode() if decoder else chunk)
-        last = text.rfind(b"\n") + 1 if more else len(text)
-        if more and not last and len(text) > LONGEST_LINE:
-            raise UnreadableLogError(f"{name}: a line has over {LONGEST_LINE} bytes: no log has such")
-        block, rest = text[:last], text[last:]
-        if skip:
-            above = _end_of_lines(block, skip)
-            passed = block.count(b"\n", 0, above)
-            skip, line, block = skip - passed, line + passed, block[above:]
-        if block and not block.isspace():
-            yield block, line, done
-        line += block.count(b"\n")
-
-
-def _end_of_lines(text: bytes, count: int) -> int:
-    """Byte behind the first ``count`` lines, or behind the last one if there are fewer."""
-    end = 0
-    for _ in range(count):
-        following = text.find(b"\n", end) + 1
-        if not following:
-            return len(text)
-        end = following
-    return end

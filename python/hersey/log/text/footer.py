@@ -8,8 +8,9 @@ from typing import BinaryIO
 
 import numpy as np
 
-from hersey.log.text.layout import Layout, split
+from hersey.log.text.layout import Layout
 from hersey.log.text.numbers import is_missing, looks_numeric
+from hersey.log.text.separators import split
 from hersey.log.text.stamps import is_stamp
 
 #: Bytes looked at from the end, and lines below a table at the most.

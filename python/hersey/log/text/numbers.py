@@ -19,6 +19,8 @@ MISSING = (
     *("ovl", "overload", "over", "ol", "#n/a", "#value!", "#div/0!", "#num!", "#ref!"),
     *("1.#qnan", "-1.#qnan", "1.#ind", "-1.#ind", "1.#inf", "-1.#inf", "nan(ind)", "-nan(ind)"),
 )
+#: The same, as polars takes them.
+NULLS = sorted({s for word in MISSING for s in (word, word.upper(), word.capitalize())} | {"NaN"})
 #: Thousands marks: no-break, narrow and thin spaces are written for a blank.
 BLANKS = " \u00a0\u202f\u2009"
 _EXPONENT = r"([eE][-+]?[0-9]+)?"  # \d would take the digits of every script

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from hersey.errors import UnreadableLogError
-from hersey.log.text.layout import NAME_WITH_UNIT, Column
+from hersey.log.text.column import Column, name_and_unit
 from hersey.log.text.unit_pairs import of_one_kind, same_unit
 
 
@@ -17,7 +17,7 @@ def refuse_another_header(place: str, column: Column, cell: str, columns: tuple[
     UnreadableLogError
         It names the row, the column and both units, or both names.
     """
-    name, unit = _header(cell)
+    name, unit = name_and_unit(cell) or (cell.strip(), "")
     if _is(name, column):
         other = unit
     elif any(_is(name, each) for each in columns):
@@ -34,14 +34,6 @@ def refuse_another_header(place: str, column: Column, cell: str, columns: tuple[
             f"{place}, column '{column.name}': the unit is {other} from here on, and above it is "
             f"{column.unit or 'not given'}: cut the file above this header into two files, and give both"
         )
-
-
-def _header(cell: str) -> tuple[str, str]:
-    """Name and unit of a cell as one of a header."""
-    match = NAME_WITH_UNIT.fullmatch(cell)
-    if match is None:
-        return cell.strip(), ""
-    return match[1].strip(), (match[2] if match[2] is not None else match[3]).strip()
 
 
 def _is(name: str, column: Column) -> bool:

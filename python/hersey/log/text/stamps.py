@@ -10,7 +10,7 @@ import numpy as np
 import polars as pl
 
 from hersey.arrays import FloatArray
-from hersey.log.text.numbers import is_missing
+from hersey.log.text.numbers import NumberStyle, is_missing
 
 _CLOCK = r"[0-9]{1,2}:[0-9]{2}:[0-9]{2}([.,][0-9]{1,9})?"
 _HALF = r" ?[AaPp]\.?[Mm]\.?"
@@ -105,7 +105,7 @@ class Stamps:
         self.midnights = 0
         self._last = -np.inf
 
-    def seconds(self, cells: pl.Series) -> FloatArray | None:
+    def values(self, cells: pl.Series) -> FloatArray | None:
         """Return the times, NaN where one is missing, or None if a cell is no time stamp."""
         stamps = self.style.stamps(cells)
         gone = stamps.is_null().to_numpy()
@@ -137,6 +137,14 @@ class Stamps:
             self._last, self.midnights = float(times[known[-1]]), int(nights[-1])
             times[known] += _DAY * nights
         return times
+
+
+def numbers_in(cells: pl.Series, written: NumberStyle | Stamps) -> tuple[FloatArray, pl.Series]:
+    """Return cells of text as numbers, or times in s, and which of them are odd: these become NaN."""
+    odd = ~written.readable(cells)
+    values = written.values(cells.set(odd, ""))
+    assert values is not None
+    return values, odd
 
 
 def _readable(cells: pl.Series, stamps: pl.Series) -> pl.Series:

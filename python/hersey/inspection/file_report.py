@@ -1,0 +1,212 @@
+"""One file before it is read as a log: clocks, channels with roles and faults, roles without a channel."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from hersey.arrays import FloatArray
+from hersey.errors import Setting, way_in
+from hersey.inspection.clock import Clock, clock_of
+from hersey.inspection.faults import DITHER, Fault, Traits, traits
+from hersey.inspection.raw import Lacking, RawChannel, RawLog, roles_of
+from hersey.log.channels import OTHER_ROLES, ChannelChoice, Stated, is_of_kind
+from hersey.log.torque_log import NO_CLOCK
+from hersey.result import Record
+from hersey.units import conversion
+
+#: A step of a role's channel matters if it is this share of its small readings (their lowest tenth).
+COARSE = 0.05
+#: Share of the steps of a time that do not go back, even of one that was put together from parts.
+_RUNS_ON = 0.9
+_TIME_UNIT = re.compile(r"[munµμ]?s|sec(onds?)?|min(utes?)?|h(ours?)?|d(ays?)?")
+_SPEED_NAME = re.compile(r"spe?e?d|velocity|rpm|drehzahl", re.IGNORECASE)
+#: How a table of means is called.
+MEANS = "a table of means"
+
+
+@dataclass(frozen=True)
+class ChannelReport(Record):
+    """One channel: its name, the role it plays (empty if none), its traits, and findings in words."""
+
+    name: str
+    unit: str
+    role: str
+    clock: str
+    traits: Traits
+    findings: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class FileReport(Record):
+    """One file: clocks, channels, and for each role without a channel the reason."""
+
+    also_stated = ("without",)
+    not_stated = ("lacking",)
+
+    name: str
+    format: str
+    rows: int
+    clocks: tuple[Clock, ...]
+    channels: tuple[ChannelReport, ...]
+    lacking: Mapping[str, Lacking]
+    notes: tuple[str, ...]
+    cut_off: bool
+
+    @property
+    def without(self) -> dict[str, str]:
+        """Why there is no channel, by role."""
+        return {role: why.text for role, why in self.lacking.items()}
+
+
+@np.errstate(all="ignore")  # numbers of a damaged file may be beyond all bounds: they are shown
+def file_report(log: RawLog, choices: dict[str, ChannelChoice], stated: Stated) -> FileReport:
+    """Return what one file holds: clocks, channels with their roles and faults, roles without a channel."""
+    columns, without = roles_of(log, choices, stated)
+    role_of = {column.index: role for role, column in columns.items()}
+    clocks, clock_names = _clocks(log, role_of, choices, stated)
+    channels = []
+    for channel in log.channels:
+        column, clock = channel.column, clock_names.get(channel.tick, "")
+        role = role_of.get(column.index, "")
+        shown = traits(channel.values, stands=role in ("torque", "speed") or _is_speed(channel))
+        findings = _findings(channel, shown, role) if role != "time" else ()
+        channels.append(ChannelReport(column.path, column.unit, role, clock, shown, findings))
+    rows = max((channel.values.size for channel in log.channels), default=0)
+    return FileReport(log.name, log.format, rows, clocks, tuple(channels), without, log.notes, log.cut_off)
+
+
+def _clocks(
+    log: RawLog, role_of: dict[int, str], choices: dict[str, ChannelChoice], stated: Stated
+) -> tuple[tuple[Clock, ...], dict[str, str]]:
+    """Each clock of the file once, and its name by tick."""
+    clocks: dict[str, Clock] = {}
+    by_tick: dict[str, list[RawChannel]] = {}
+    for channel in log.channels:
+        by_tick.setdefault(channel.tick, []).append(channel)
+    for beside in by_tick.values():
+        channel = beside[0]
+        if stated.every is not None:
+            seconds = np.arange(channel.values.size, dtype=float) * stated.every
+            clocks[channel.tick] = clock_of(NO_CLOCK, seconds)
+            continue
+        if channel.clock is not None:
+            clocks[channel.tick] = clock_of(f"of {channel.column.path}", channel.clock)
+            continue
+        of_role = [c for c in beside if role_of.get(c.column.index) == "time"]
+        if time := next(iter([*of_role, *filter(_is_time, beside)]), None):
+            unit = choices["time"].unit or time.column.unit
+            seconds = conversion("time", unit).scale * time.values
+            clocks[channel.tick] = clock_of(time.column.path, seconds)
+    return tuple(clocks.values()), {tick: clock.name for tick, clock in clocks.items()}
+
+
+def _is_time(channel: RawChannel) -> bool:
+    """Whether a channel counts a time that runs on."""
+    steps = np.diff(channel.values) if _TIME_UNIT.fullmatch(channel.column.unit) else np.empty(0)
+    return steps.size > 0 and float(np.mean(steps >= 0)) > _RUNS_ON
+
+
+def _is_speed(channel: RawChannel) -> bool:
+    return bool(_SPEED_NAME.search(channel.column.name)) or is_of_kind("speed", channel.column.unit)
+
+
+def _findings(channel: RawChannel, channel_traits: Traits, role: str) -> tuple[str, ...]:
+    steady = "constant" if role in OTHER_ROLES else ""  # a load, or a radius, may stay what it is
+    faults = [fault for fault in channel_traits.faults if fault.kind != steady]
+    said = [_in_words(fault, channel_traits, channel.column.unit, role) for fault in faults]
+    if channel.odd:
+        said.append(f"{channel.odd} cells hold no number")
+    if channel_traits.missing > channel.odd:
+        said.append(f"{channel_traits.missing - channel.odd} rows lack a number")
+    if channel_traits.refresh > 1:
+        said.append(
+            f"each value is held for {channel_traits.refresh} rows: the sensor is slower than the log"
+        )
+    if role in ("torque", "speed"):
+        said += _coarse(channel.values, channel_traits, channel.column.unit)
+    return tuple(said)
+
+
+def _in_words(fault: Fault, channel_traits: Traits, unit: str, role: str) -> str:
+    value = f"{fault.value:.6g} {unit}".strip()
+    at = f"from row {fault.first + 1}" if fault.places == 1 else f"at {fault.places} places"
+    rows = f"{fault.rows} row{'s' if fault.rows > 1 else ''} ({fault.rows / channel_traits.rows:.2g} of all)"
+    if fault.kind == "constant":
+        return f"{value} throughout: a dead channel, or nothing changed"
+    if fault.kind == "stuck":
+        what = "the sensor is stuck" if role else "held"
+        return f"{what} at {value} for {rows} {at}" if fault.places == 1 else f"{what} for {rows} {at}"
+    if fault.kind == "spikes":
+        return f"spikes in {rows} {at}, as far as {value}"
+    if fault.kind == "drop-outs":
+        return f"drops out to 0 in {rows} {at}"
+    return f"{fault.kind} at {value}: {rows} {at}"
+
+
+def _coarse(values: FloatArray, channel_traits: Traits, unit: str) -> list[str]:
+    """A step that the noise does not blur and that is large beside the small readings."""
+    size = np.abs(values[np.isfinite(values) & (values != 0.0)])
+    step = channel_traits.step
+    if step is None or not size.size or (channel_traits.noise or 0.0) > DITHER * step:
+        return []
+    small = float(np.quantile(size, 0.1))
+    if step < COARSE * small:
+        return []
+    return [f"coarse: its step of {step:.3g} {unit} is {step / small:.0%} of its small readings"]
+
+
+#: Width of a name in the table, and findings of other channels shown at the most.
+_WIDTH, _SHOWN = 26, 30
+
+
+def file_lines(file: FileReport, *, table: bool) -> list[str]:
+    """Return a file as a table of its channels, then what was found."""
+    lines = [f"{file.name}: {file.format}, {file.rows} rows{', cut off' if file.cut_off else ''}"]
+    for clock in file.clocks:
+        lines.append(
+            f"  clock '{clock.name}': every {clock.interval:.4g} s ({_rate(clock.interval)}), "
+            f"{clock.duration:.5g} s in all"
+        )
+        lines += [f"  ! {finding}" for finding in clock.findings()]
+    if not file.clocks and MEANS not in file.format:
+        named = Setting("time", "channel").to()
+        lines.append(f"  ! no channel is a clock: rates and gaps are not known; name it with {named}")
+    lines += _table(file) if table else []
+    findings = [(c, finding) for c in file.channels for finding in c.findings]
+    findings.sort(key=lambda pair: not pair[0].role)
+    lines += [f"  {'!' if c.role else '-'} {c.name}: {finding}" for c, finding in findings[:_SHOWN]]
+    if len(findings) > _SHOWN:
+        has_them = "--json has them" if way_in() == "terminal" else "files has them"
+        lines.append(f"  - and {len(findings) - _SHOWN} more ({has_them})")
+    lines += [f"  ! {role}: {why}" for role, why in file.without.items()]
+    lines += [f"  - {note}" for note in file.notes]
+    return lines
+
+
+def _table(file: FileReport) -> list[str]:
+    lines = [f"  {'channel':{_WIDTH}} {'role':12} {'from':>10} {'to':>10} {'step':>9} {'noise':>9} unit"]
+    for channel in file.channels:
+        t = channel.traits
+        noise = None if channel.role == "time" else t.noise
+        numbers = f"{_short(t.low):>10} {_short(t.high):>10} {_short(t.step):>9} {_short(noise):>9}"
+        lines.append(
+            f"  {_end(channel.name):{_WIDTH}} {channel.role or '-':12} {numbers} {channel.unit or '?'}"
+        )
+    return lines
+
+
+def _end(name: str) -> str:
+    """The end of a long name, where channels of one group differ."""
+    return name if len(name) <= _WIDTH else "…" + name[1 - _WIDTH :]
+
+
+def _short(value: float | None) -> str:
+    return "-" if value is None or not np.isfinite(value) else f"{value:.4g}"
+
+
+def _rate(interval: float) -> str:
+    return "no rate" if interval <= 0 else f"{1.0 / interval:.4g} Hz"

@@ -1,0 +1,95 @@
+"""A table as it stands in a file or in memory: cells of text or numbers by column, whatever they mean."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import polars as pl
+
+from hersey.arrays import FloatArray
+from hersey.errors import HerseyError
+from hersey.log.formats import format_of, opened
+from hersey.log.formats.frame import is_frame
+from hersey.log.recording import Cells, Signal, split_unit
+from hersey.log.text.column import Column
+from hersey.log.text.delimited import open_delimited
+from hersey.log.text.repeated_header import refuse_another_header
+from hersey.log.text.separators import split
+
+
+@dataclass(frozen=True)
+class CellTable:
+    """Name, hash and size of what holds a table, its columns, and the cells of each."""
+
+    name: str
+    sha256: str
+    size: int
+    columns: tuple[Column, ...]
+    cells: tuple[Sequence[object], ...]
+    number: Any  #: from a cell of text to a number
+    comments: tuple[str, ...] = ()
+
+    def numbers(self, column: Column) -> FloatArray:
+        """Return a column as written, NaN where a cell is no number."""
+        cells = self.cells[self.columns.index(column)]
+        values = np.array([self._number(cell) for cell in cells], dtype=np.float64)
+        for row in np.flatnonzero(np.isnan(values)):
+            cell = cells[int(row)]
+            if isinstance(cell, str):
+                refuse_another_header(f"{self.name}, row {row + 1}", column, cell, self.columns)
+        return values
+
+    def texts(self, column: Column) -> list[str]:
+        """Return a column as text."""
+        return ["" if cell is None else str(cell).strip() for cell in self.cells[self.columns.index(column)]]
+
+    def _number(self, cell: object) -> float:
+        if isinstance(cell, str):
+            with suppress(ValueError, HerseyError):
+                return float(self.number(cell.strip()))
+            return float("nan")
+        return float("nan") if cell is None else float(cell)  # type: ignore[arg-type]
+
+
+def cells_of(table: Any, name: str) -> CellTable:
+    """Return a table as it stands, from a file or from memory."""
+    if isinstance(table, Mapping):
+        table = pl.DataFrame(dict(table), strict=False)
+    if is_frame(table):
+        return _of_frame(table, name)
+    path = Path(table)
+    if kind := format_of(path):
+        with opened(path, kind) as recording:
+            held: Sequence[Cells | Signal] = recording.cells or recording.signals
+            columns = tuple(Column(i, s.name, s.unit, s.group) for i, s in enumerate(held))
+            loaded: tuple[Sequence[object], ...] = tuple(list(each.load()) for each in held)
+            source, comments = recording.source, recording.comments
+        return CellTable(path.name, source.sha256, source.bytes, columns, loaded, float, comments)
+    with open_delimited(path) as file:
+        layout = file.layout
+        text, _ = file.text()
+    lines = text.decode(layout.encoding, errors="replace").splitlines()[layout.first_line - 1 :]
+    kept = [line for line in lines if line.strip() and not line.startswith(layout.comment)]
+    rows = [split(line, layout.separator) for line in kept]
+    named = tuple(column for column in layout.columns if column.name)
+    cells = tuple([row[c.index] if c.index < len(row) else "" for row in rows] for c in named)
+    return CellTable(path.name, _sha(text), len(text), named, cells, layout.style.value, layout.comments)
+
+
+def _sha(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()
+
+
+def _of_frame(frame: Any, name: str) -> CellTable:
+    if isinstance(frame, pl.LazyFrame):
+        frame = frame.collect()
+    by_name = {str(c): list(frame[c]) for c in frame.columns}
+    columns = tuple(Column(i, *split_unit(title)) for i, title in enumerate(by_name))
+    content = repr(by_name).encode()
+    return CellTable(name, _sha(content), len(content), columns, tuple(by_name.values()), float)

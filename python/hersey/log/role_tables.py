@@ -1,0 +1,98 @@
+"""The tables of a mapping: what it says of each role, values in SI."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Annotated, Any
+
+from pydantic import BeforeValidator, ValidationInfo
+from pydantic.dataclasses import dataclass
+
+from hersey.errors import ParameterError
+from hersey.files.toml import Quantity, Table, Text
+from hersey.log.quantities import Amount, amount
+from hersey.log.sensor_tables import SpeedErrors, TemperatureErrors, TorqueErrors
+
+
+class _NoLoad(Quantity):
+    """A torque, or a log of it beside the mapping, unless its path is absolute."""
+
+    def checked(self, given: Any, info: ValidationInfo[Any]) -> Any:
+        """Return the torque in SI or the path."""
+        if info.context is None or not isinstance(given, str) or amount(given):
+            return super().checked(given, info)
+        named = info.context.path.parent / given
+        if not os.path.isfile(named):  # noqa: PTH113 - a name too long for the system is none
+            raise ParameterError(f"is '{given}': write a torque such as \"4 mN*m\", or a log that is there")
+        return named
+
+
+def _sign(given: object) -> object:
+    if isinstance(given, bool) or given not in (1, -1):
+        raise ParameterError(f"is {given!r}: write 1 or -1")
+    return given
+
+
+_Sign = Annotated[int, BeforeValidator(_sign)]
+_GearRatio = Annotated[float, Quantity(None, 1e-4, 1e4, "12.5")]
+
+
+@dataclass(frozen=True)
+class RoleMapping(Table):
+    """What a mapping says of one role; ``channel`` and ``unit`` are empty where the log is to tell."""
+
+    channel: Text = ""
+    unit: Text = ""
+
+
+@dataclass(frozen=True)
+class TimeMapping(RoleMapping):
+    """What it says of the time; ``every`` is that between rows, s, where no channel is a clock."""
+
+    every: Annotated[float, Quantity("time", 1e-9, 1e6, "2 ms")] | None = None
+
+
+@dataclass(frozen=True)
+class LoadMapping(RoleMapping):
+    """What it says of the normal load, N: a channel, a ``value``, or ``values``, one for each run."""
+
+    value: Annotated[float, Quantity("force", 1e-9, 1e9, "50 N")] | None = None
+    values: tuple[Annotated[float, Quantity("force", 1e-9, 1e9, "50 N")], ...] = ()
+
+
+@dataclass(frozen=True)
+class RadiusMapping(RoleMapping):
+    """What it says of the radius of a friction force, m: as `LoadMapping`."""
+
+    value: Annotated[float, Quantity("length", 1e-6, 1e3, "25 mm")] | None = None
+    values: tuple[Annotated[float, Quantity("length", 1e-6, 1e3, "25 mm")], ...] = ()
+
+
+@dataclass(frozen=True)
+class TorqueMapping(TorqueErrors, RoleMapping):
+    """What it says of the torque, in SI; ``no_load`` is a torque or a log."""
+
+    sign: _Sign = 1
+    motor_constant: Annotated[float, Amount("motor constant", 1e-6, 1e3, "35 mN*m/A")] | None = None
+    tare: Annotated[float, Quantity("torque", -1e6, 1e6, "4 mN*m")] = 0.0
+    no_load: Annotated[float | Path, _NoLoad("torque", 0.0, 1e6, "4 mN*m")] = 0.0
+    gear_ratio: _GearRatio = 1.0
+    efficiency: Annotated[float, Quantity(None, 0.05, 1.0, "0.9")] = 1.0
+    inertia: Annotated[float, Amount("moment of inertia", 1e-12, 1e6, "2e-4 kg*m^2")] = 0.0
+
+
+@dataclass(frozen=True)
+class SpeedMapping(SpeedErrors, RoleMapping):
+    """What it says of the speed."""
+
+    sign: _Sign = 1
+    gear_ratio: _GearRatio = 1.0
+
+
+@dataclass(frozen=True)
+class TemperatureMapping(TemperatureErrors, RoleMapping):
+    """What it says of the temperature, in SI: film minus reading, the lag of the sensor, their bounds."""
+
+    offset: Annotated[float, Amount("temperature difference", -100.0, 100.0, "-1.5 K")] = 0.0
+    time_constant: Annotated[float, Quantity("time", 1e-3, 1e4, "4 s")] = 0.0

@@ -1,0 +1,121 @@
+"""The lines of a table in blocks of UTF-8: memory holds no more text than one of them."""
+
+from __future__ import annotations
+
+import codecs
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import BinaryIO
+
+from hersey.errors import UnreadableLogError
+from hersey.files.reading import OpenFile
+from hersey.log.text.layout import Layout
+from hersey.log.text.numbers import is_missing
+from hersey.log.text.separators import BLANKS, split, tabbed
+
+BLOCK = 1 << 22
+#: Bytes of a line at the most.
+LONGEST_LINE = 1 << 25
+
+
+@dataclass
+class Block:
+    """Lines of the table as UTF-8, and the number of each in the file."""
+
+    text: bytes
+    lines: Sequence[int]
+
+    def cells(self, separator: str, rows: slice = slice(None)) -> Iterator[list[str]]:
+        """Yield the cells of each line, or of some."""
+        for text in self.text.split(b"\n")[: len(self.lines)][rows]:
+            yield split(text.decode("utf-8", errors="replace").rstrip("\r"), separator)
+
+
+def blocks(
+    opened: OpenFile, end: int, layout: Layout, name: str, hashed: Callable[[bytes], None]
+) -> Iterator[tuple[Block, int]]:
+    """Yield the lines of a table that ends at byte ``end``, without comments, and bytes read so far.
+
+    All bytes of the file are ``hashed``, also those that follow the table.
+
+    Raises
+    ------
+    UnreadableLogError
+        If a line is longer than any of a log, or a row looks like a comment.
+    """
+    opened.file.seek(0)
+    for text, line, done in _whole_lines(opened.file, end, layout, name, hashed):
+        block = _cleaned(tabbed(text) if layout.separator == BLANKS else text, line, layout, name)
+        if block.lines:
+            yield block, done
+    left = opened.size - end
+    while left and (chunk := opened.file.read(min(left, BLOCK))):
+        hashed(chunk)
+        left -= len(chunk)
+
+
+def _cleaned(text: bytes, line: int, layout: Layout, name: str) -> Block:
+    """The block without blank lines and comments."""
+    comment = layout.comment.encode()
+    count = text.count(b"\n") + (not text.endswith(b"\n"))
+    blank = text.startswith((b"\n", b"\r\n")) or b"\n\n" in text or b"\n\r\n" in text
+    if not blank and not text.startswith(comment) and b"\n" + comment not in text:
+        return Block(text, range(line, line + count))
+    kept = [
+        (number, row)
+        for number, row in enumerate(text.split(b"\n"), start=line)
+        if row.strip() and not _is_comment(row, number, layout, name)
+    ]
+    return Block(b"\n".join(row for _, row in kept), [number for number, _ in kept])
+
+
+def _is_comment(row: bytes, number: int, layout: Layout, name: str) -> bool:
+    """Whether a line is a comment, and no row that begins like one with an error of Excel (#N/A)."""
+    if not row.lstrip().startswith(layout.comment.encode()):
+        return False
+    cells = split(row.decode("utf-8", errors="replace"), layout.between)
+    if len(cells) != len(layout.columns):
+        return True
+    if is_missing(cells[0]):
+        return False
+    raise UnreadableLogError(
+        f"{name}, line {number} starts with '{layout.comment}' like a comment but has as many cells as a "
+        "row: mend or remove it"
+    )
+
+
+def _whole_lines(
+    file: BinaryIO, end: int, layout: Layout, name: str, hashed: Callable[[bytes], None]
+) -> Iterator[tuple[bytes, int, int]]:
+    """Yield whole lines of UTF-8 text, the line number of the first, and bytes read so far."""
+    plain = layout.encoding == "utf-8-sig"
+    decoder = None if plain else codecs.getincrementaldecoder(layout.encoding)(errors="replace")
+    skip, line, rest, done, more = layout.first_line - 1, 1, b"", 0, True
+    while more:
+        chunk = file.read(min(BLOCK, end - done))
+        more = bool(chunk)
+        hashed(chunk)
+        done += len(chunk)
+        text = rest + (decoder.decode(chunk, final=not more).encode() if decoder else chunk)
+        last = text.rfind(b"\n") + 1 if more else len(text)
+        if more and not last and len(text) > LONGEST_LINE:
+            raise UnreadableLogError(f"{name}: a line has over {LONGEST_LINE} bytes: no log has such")
+        block, rest = text[:last], text[last:]
+        if skip:
+            above = _end_of_lines(block, skip)
+            passed = block.count(b"\n", 0, above)
+            skip, line, block = skip - passed, line + passed, block[above:]
+        if block and not block.isspace():
+            yield block, line, done
+        line += block.count(b"\n")
+
+
+def _end_of_lines(text: bytes, count: int) -> int:
+    """Byte behind the first ``count`` lines, or behind the last one if there are fewer."""
+    end = 0
+    for _ in range(count):
+        following = text.find(b"\n", end) + 1
+        if not following:
+            return len(text)
+        end = following
+    return end

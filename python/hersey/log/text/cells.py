@@ -1,0 +1,110 @@
+"""The cells of a block as numbers.
+
+A block goes through polars; where that stumbles, or the count of rows does not match the lines, it is read
+again cell by cell, which either succeeds (padded cells, odd quotes) or names line and column.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import polars as pl
+
+from hersey.arrays import FloatArray
+from hersey.errors import UnreadableLogError
+from hersey.log.text.blocks import Block
+from hersey.log.text.column import Column
+from hersey.log.text.layout import Layout
+from hersey.log.text.numbers import NULLS, NumberStyle, looks_numeric
+from hersey.log.text.repeated_header import refuse_another_header
+from hersey.log.text.stamps import Stamps, numbers_in
+
+
+class CellReader:
+    """Reads the same columns of one block after another; time stamps remember what they read.
+
+    With ``strict`` a cell that is no number is refused, also where it could be none in any style.
+    """
+
+    def __init__(self, name: str, layout: Layout, columns: list[Column], *, strict: bool) -> None:
+        """Take the file's name, how it is read, and the columns."""
+        self.name, self.layout, self.columns, self.strict = name, layout, columns, strict
+        self.stamps = {i: Stamps(style) for i, style in layout.stamps.items()}
+
+    def notes(self) -> list[str]:
+        """Return what was done to time stamps."""
+        columns = [column for column in self.columns if column.index in self.stamps]
+        return [self.stamps[column.index].note(column.name) for column in columns]
+
+    def what(self, column: Column) -> str:
+        """Return what a cell of a column holds, in words."""
+        return "time stamp" if column.index in self.stamps else "number"
+
+    def numbers(self, block: Block) -> list[FloatArray]:
+        """Return the columns as numbers, NaN where a cell stands for a missing value.
+
+        Raises
+        ------
+        UnreadableLogError
+            If a cell is no number, or a row has more cells than the header; it names the line.
+        """
+        wanted = sorted(column.index for column in self.columns)
+        style = self.layout.style
+        comma = style.decimal_comma and not style.thousands
+        fast = not self.stamps and (
+            style.is_plain or (comma and self.layout.separator != "," and b"." not in block.text)
+        )  # a point beside decimal commas is a cell that could be read in two ways
+        try:
+            frame = pl.read_csv(
+                block.text,
+                has_header=False,
+                columns=wanted,
+                separator=self.layout.between,
+                decimal_comma=fast and comma,
+                schema_overrides=[pl.Float64 if fast else pl.String] * len(self.layout.columns),
+                null_values=NULLS,
+                encoding="utf8-lossy",
+            )
+        except pl.exceptions.PolarsError:
+            return self._cell_by_cell(block)
+        if frame.height != len(block.lines) or frame.width != len(wanted):
+            return self._cell_by_cell(block)
+        by_index = dict(zip(wanted, frame.get_columns(), strict=True))
+        if fast:
+            return [by_index[c.index].cast(pl.Float64).fill_null(np.nan).to_numpy() for c in self.columns]
+        values: dict[int, FloatArray] = {}
+        for column in sorted(self.columns, key=lambda c: c.index in self.stamps):  # which remember, so last
+            numbers = self._written(column).values(by_index[column.index].fill_null(""))
+            if numbers is None:
+                return self._cell_by_cell(block)
+            values[column.index] = numbers
+        return [values[column.index] for column in self.columns]
+
+    def _written(self, column: Column) -> NumberStyle | Stamps:
+        return self.stamps.get(column.index, self.layout.style)
+
+    def _cell_by_cell(self, block: Block) -> list[FloatArray]:
+        width = len(self.layout.columns)
+        table: list[list[str]] = []
+        for row, cells in enumerate(block.cells(self.layout.between)):
+            if any(cells[width:]):
+                raise UnreadableLogError(
+                    f"{self.name}, line {block.lines[row]}: {len(cells)} cells where the header has {width}"
+                )
+            table.append(cells + [""] * (width - len(cells)))
+        return [
+            self._readable(block, column, [row[column.index] for row in table]) for column in self.columns
+        ]
+
+    def _readable(self, block: Block, column: Column, cells: list[str]) -> FloatArray:
+        """The numbers of a column, NaN also where a cell is none, unless it could be one in another style."""
+        values, odd = numbers_in(pl.Series(cells, dtype=pl.String), self._written(column))
+        plain = column.index not in self.stamps
+        for row in odd.arg_true():
+            place = f"{self.name}, line {block.lines[row]}"
+            if plain:
+                refuse_another_header(place, column, cells[row], self.layout.columns)
+            if self.strict or (plain and looks_numeric(cells[row])):
+                raise UnreadableLogError(
+                    f"{place}, column '{column.name}': '{cells[row][:40]}' is not a {self.what(column)}"
+                )
+        return values

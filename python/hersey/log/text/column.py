@@ -1,0 +1,90 @@
+"""A column of a table: its name and unit as written, and what no column of a log has."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from hersey.errors import UnreadableLogError, printable
+
+#: Columns of a table, and characters of a name at the most: no log has as many.
+MOST_COLUMNS = 5000
+LONGEST_NAME = 1000
+#: ``Torque [N*m]`` or ``Torque (N*m)``; no part can match in two ways, so that the time is linear.
+NAME_WITH_UNIT = re.compile(r"(.*?)(?:\[([^\[\]]*)\]|\(([^()]*)\))\s*")
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column of the file: position from 0, name and unit as written (unit empty if none).
+
+    ``group`` is the part of the file in which the column stands, where there are several.
+    """
+
+    index: int
+    name: str
+    unit: str
+    group: str = ""
+
+    def __post_init__(self) -> None:
+        """Spell out what a name may hold and no name needs; it is known by that spelling from here on."""
+        for name in ("name", "unit", "group"):
+            object.__setattr__(self, name, printable(getattr(self, name)))
+
+    @property
+    def path(self) -> str:
+        """Name behind its group."""
+        return f"{self.group}/{self.name}" if self.group else self.name
+
+    def __str__(self) -> str:
+        """Return name and unit as a header would show them."""
+        return f"{self.path} [{self.unit}]" if self.unit else self.path
+
+
+def name_and_unit(text: str) -> tuple[str, str] | None:
+    """Return name and unit of a column called ``Torque [N*m]`` or ``Torque (N*m)``, None of any other."""
+    match = NAME_WITH_UNIT.fullmatch(text)
+    return match and (match[1].strip(), (match[2] if match[2] is not None else match[3]).strip())
+
+
+def refuse_columns(place: str, count: int) -> None:
+    """Raise if a table has more columns than are read.
+
+    Raises
+    ------
+    UnreadableLogError
+        It says how many are.
+    """
+    if count > MOST_COLUMNS:
+        raise UnreadableLogError(
+            f"{place} has {count} columns: {MOST_COLUMNS} at the most are read, export those that matter"
+        )
+
+
+def refuse_long_name(place: str, column: int, name: str) -> None:
+    """Raise if the name of a column, counted from 1, is longer than is read.
+
+    Raises
+    ------
+    UnreadableLogError
+        It says how long a name may be.
+    """
+    if len(name) > LONGEST_NAME:
+        raise UnreadableLogError(
+            f"{place}: the name of column {column} has {len(name)} characters: "
+            f"{LONGEST_NAME} at the most are read"
+        )
+
+
+def refuse_ragged(place: str, rows: int, columns: int, size: int) -> None:
+    """Raise if most rows lack cells: a file of ``size`` bytes would become a table many times as large.
+
+    Raises
+    ------
+    UnreadableLogError
+        It says how many cells the rows should have.
+    """
+    if rows * columns > 8 * size + 1_000_000:
+        raise UnreadableLogError(
+            f"{place}: most of its {rows} rows lack cells, {columns} are named: remove columns that are empty"
+        )

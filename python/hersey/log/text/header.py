@@ -1,0 +1,115 @@
+"""The lines above a table: names and units of its columns."""
+
+from __future__ import annotations
+
+import re
+
+from hersey.errors import UnitError, UnreadableLogError, WrongKindError
+from hersey.log.text.column import Column, name_and_unit, refuse_long_name
+from hersey.log.text.numbers import is_missing, looks_numeric
+from hersey.log.text.separators import BLANKS, NumberRows, split
+from hersey.log.text.unit_pairs import of_one_kind, same_unit
+from hersey.units import KINDS, conversion
+
+#: A line of the text with its number, counted from 1.
+Numbered = tuple[int, str]
+#: A name in a header between blanks, with the unit behind it.
+_NAME = re.compile(r"[^\s\[(]+(?:[ \t]?(?:\[[^\[\]]*\]|\([^()]*\)))?|\S+")
+
+
+def columns_of(table: NumberRows, numbered: list[Numbered], file: str) -> tuple[tuple[Column, ...], str]:
+    """Return the columns of a table, and why they have no names, or nothing.
+
+    Raises
+    ------
+    UnreadableLogError
+        If the header does not fit the rows, or contradicts itself.
+    """
+    if headless := _headless(table, numbered, file):
+        return tuple(Column(index, f"#{index + 1}", "") for index in range(table.width)), headless
+    above = [_names(line, table) for _, line in numbered[: table.first]]
+    line, header = numbered[table.first - 1][0], above[-1]
+    units: list[str] = []
+    if len(above) > 1 and len(above[-2]) == len(header) and _is_units_row(header):
+        line, units, header = numbered[table.first - 2][0], header, above[-2]
+    _require_width(table, numbered, header, line, file)
+    columns = []
+    for index in range(table.width):
+        name = header[index] if index < len(header) and header[index] else f"#{index + 1}"
+        refuse_long_name(f"{file}, line {line}", index + 1, name)
+        unit = units[index].strip("[]() ") if index < len(units) else ""
+        plain, own = name_and_unit(name) or (name, "")
+        if own and unit and of_one_kind(own, unit) and not same_unit(own, unit):
+            raise UnreadableLogError(
+                f"{file}, line {line}, column {index + 1}: the header says '{name}' and the row of units "
+                f"{unit}: mend the one that is wrong"
+            )
+        columns.append(Column(index, name if unit else plain or f"#{index + 1}", unit or own))
+    return tuple(columns), ""
+
+
+def _names(line: str, table: NumberRows) -> list[str]:
+    """The cells of a line above the table; between blanks a name may have a unit, or a blank, of its own."""
+    if table.separator != BLANKS:
+        return split(line, table.separator)
+    splits = (line.split(), _NAME.findall(line), re.split(r"\s{2,}|\t", line.strip()))
+    return next((cells for cells in splits if len(cells) == table.width), splits[0])
+
+
+def _headless(table: NumberRows, numbered: list[Numbered], file: str) -> str:
+    """Why the columns have no names, or nothing if a header stands above the rows."""
+    above = numbered[table.first - 1][1] if table.first else ""
+    cells = re.split(r"[;,|\s]+", above)
+    if table.first and not all(looks_numeric(cell) or is_missing(cell) for cell in cells):
+        return ""
+    return f"{file}, line {numbered[table.first][0]}: no header stands above the numbers"
+
+
+def _require_width(
+    table: NumberRows, numbered: list[Numbered], header: list[str], line: int, file: str
+) -> None:
+    """A header with fewer or more names than the rows have cells would shift every column."""
+    rows = [split(text, table.separator) for _, text in numbered[table.first :]]
+    beyond = any(any(row[len(header) :]) for row in rows if len(row) == table.width)
+    if beyond or any(header[table.width :]):
+        raise UnreadableLogError(
+            f"{file}, line {line}: the header has {len(header)} cells where the rows have {table.width}: "
+            f"{_too_many(table, rows, len(header))}"
+        )
+
+
+def _too_many(table: NumberRows, rows: list[list[str]], named: int) -> str:
+    """What to do where rows have more cells than the header: a comma within the numbers parts them too."""
+    cells = [row for row in rows if len(row) == table.width]
+    whole = cells and all(re.fullmatch(r"[-+]?\d+", cell.strip()) for row in cells for cell in row)
+    if table.width < named:
+        return "leave out the names that have no column"
+    if table.separator != "," or table.width > 2 * named:
+        return "give every column a name"
+    if table.width == 2 * named and whole:
+        return (
+            "its numbers have decimal commas, and commas part its columns too: export it with ';' between "
+            "the columns, or with decimal points"
+        )
+    return "give every column a name, or export it with ';' between the columns if a comma marks thousands"
+
+
+def _is_units_row(row: list[str]) -> bool:
+    """Units of at least half of the cells that are not blank; no number, no name with a unit of its own."""
+    filled = [cell.strip("[]() ") for cell in row if cell.strip()]
+    filled = [cell for cell in filled if cell not in ("1", "-")]  # units of a coefficient
+    named = any(name_and_unit(cell) for cell in row if cell[:1] not in "[(")
+    if named or any(looks_numeric(cell) for cell in filled):
+        return False
+    return bool(filled) and 2 * sum(_is_unit(cell) for cell in filled) >= len(filled)
+
+
+def _is_unit(cell: str) -> bool:
+    for kind in KINDS:
+        try:
+            return bool(conversion(kind, cell))
+        except WrongKindError:
+            return True
+        except UnitError:
+            continue
+    return False

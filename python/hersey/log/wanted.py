@@ -1,0 +1,42 @@
+"""What the user wants of a log, in one piece from `hersey.read` to the readers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from hersey.errors import ISOTHERMAL, ChannelError, ParameterError
+from hersey.log.channels import EVERY, ROLES, ChannelChoice, Stated
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """What the user says of a log: a choice for each role, what a file need not hold, what is left out.
+
+    Raises
+    ------
+    ParameterError
+        If both a column of the time and the time between rows are given.
+    ChannelError
+        If temperature is excluded and its column named.
+    """
+
+    choices: dict[str, ChannelChoice]
+    stated: Stated
+    isothermal: bool = False
+    drop_missing: bool = False
+
+    def __post_init__(self) -> None:
+        """Refuse what contradicts itself."""
+        if self.stated.every is not None and self.choices["time"] != ChannelChoice():
+            raise ParameterError(
+                f"{EVERY.to()} is the time between rows: name no column of the time beside it"
+            )
+        if self.isothermal and self.choices["temperature"] != ChannelChoice():
+            said = f"{ISOTHERMAL.to()} excludes temperature"
+            raise ChannelError(said, remedy="name no column of the temperature beside it")
+
+    @property
+    def roles(self) -> tuple[str, ...]:
+        """Roles that a channel must play."""
+        without = {"temperature": self.isothermal, "time": self.stated.every is not None}
+        return tuple(role for role in ROLES if not without.get(role))
