@@ -10,6 +10,7 @@ render           from a chart to the content of a file
 analysis         the charts of the analysis document
 log              speed, torque and temperature over time
 inspection       the channels of a log, and their faults
+against_speed    dwells and curves against speed, of which most of what follows is made
 damping          dwells, surface, candidates, two logs, the next dwells
 regime           exponents against what each regime predicts
 film             the regime chart, over the Stribeck curve

@@ -5,29 +5,29 @@ Every chart takes the analysis document. Units of people appear here: rpm, degC,
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import altair as alt
 import numpy as np
 
+from hersey.charts.against_speed import against_speed, curve_rows
 from hersey.charts.damping import logs_chart
 from hersey.charts.film import regime_chart
-from hersey.charts.labels import apart
 from hersey.charts.plan import profile_chart
 from hersey.charts.regime import exponent_chart, exponent_row
 from hersey.charts.render import write_pictures
 from hersey.charts.stick_speed import stick_speed_chart
 from hersey.charts.style import (
-    APART,
     BLUE,
     GREEN,
     HEIGHT,
     INK,
+    ROLL_SPEED,
+    TEMPERATURE,
     WIDTH,
     Chart,
     Row,
-    across,
     logarithmic,
     logarithmic_axis,
     plot,
@@ -43,6 +43,7 @@ from hersey.charts.style import (
 from hersey.charts.torque_budget import torque_budget_chart
 from hersey.charts.transition import transition_chart
 from hersey.document.analysis import Analysis
+from hersey.document.parts.fit import Curve
 from hersey.document.parts.log import Point, Series
 from hersey.stability.plan.result import Plan
 from hersey.study.first_screen.result import StartPart
@@ -50,15 +51,8 @@ from hersey.units import celsius, rpm
 
 #: Cells of a surface overlap a little: seams would shine through otherwise.
 _OVERLAP = 1.004
-_ROLL = "Roll speed (rpm)"
-#: Share of a torque down to which its error is surely in the picture.
-_SHORTEST = 0.6
-#: Height of torque and damping.
-_TALL = 290
 #: Width kept for the axis of charts that share a time axis, so that they line up.
 _AXIS = 42
-
-
 #: Ratio of both ends of a curve to its least torque from which that is marked.
 _RISES = 1.01
 
@@ -92,11 +86,11 @@ def charts(document: Analysis, *, but: tuple[str, ...] = ()) -> dict[str, Chart]
 
 def torque(document: Analysis) -> Chart:
     """Torque against speed per temperature, with the drag curves (the paper's Fig. 2)."""
-    scale, unit = _torque_unit(document)
+    _, unit = _torque_unit(document)
     subtitle = "filled: reached from below, open: from above, bars: two standard errors; lines: drag curves"
     subtitle += "" if document.fit.rest is None else "; the rest of the drive is taken off"
     title = alt.Title("Drag torque against speed", subtitle=subtitle)
-    return _against_speed(document, "torque", f"Torque ({unit})", scale, []).properties(title=title)
+    return _against_speed(document, "torque", f"Torque ({unit})", turns=True).properties(title=title)
 
 
 def damping(document: Analysis) -> Chart:
@@ -106,16 +100,47 @@ def damping(document: Analysis) -> Chart:
         "Damping against speed", subtitle="dashed: slope -1, where torque does not depend on speed"
     )
     under = [_slope_of_minus_one(document, scale)]
-    return _against_speed(document, "damping", f"Damping ({unit}·s/rad)", scale, under).properties(
-        title=title
-    )
+    name = f"Damping ({unit}·s/rad)"
+    return _against_speed(document, "damping", name, under=under).properties(title=title)
 
 
 def surface(document: Analysis) -> Chart:
     """The fitted surface over temperature and speed, with the dwells on it (Fig. 4)."""
-    scale, unit = _torque_unit(document)
+    _, unit = _torque_unit(document)
     hot = document.fit.temperature_range is not None
-    cells = [
+    low, high = (rpm(v) for v in document.fit.speed_range)
+    x = _speed("from:Q", [low * 0.93, high * 1.07])
+    y = alt.Y(
+        "low:Q",
+        title=TEMPERATURE if hot else None,
+        scale=alt.Scale(zero=False, nice=False, padding=8),
+        axis=alt.Axis() if hot else None,
+    )
+    shade = alt.Scale(type="log", scheme="viridis", nice=False)
+    color = alt.Color("damping:Q", title=f"B ({unit}·s/rad)", scale=shade)
+    tips = [tip("damping", f"fitted damping ({unit}·s/rad)")]
+    cells = plot(_cells(document)).mark_rect(strokeWidth=0, clip=True)
+    layers = [cells.encode(x=x, x2="to:Q", y=y, y2="high:Q", color=color, tooltip=tips)]
+    line = [{"from": rpm(t.speed), "low": celsius(t.temperature)} for t in document.fit.transition_curve]
+    subtitle = document.fit.law
+    if line:
+        bend = plot(line).mark_line(color="white", strokeDash=[6, 4], strokeWidth=2)
+        layers.append(bend.encode(x=x, y="low:Q", order="low:Q"))
+    if hot:
+        rows = [r | {"from": r["speed"], "low": r["temperature"]} for r in _point_rows(document)]
+        look: Row = {"fill": "white", "stroke": "#222", "strokeWidth": 1, "size": 40, "opacity": 1}
+        dots = plot(rows).mark_point(filled=True, **look)
+        layers.append(dots.encode(x=x, y="low:Q", tooltip=_point_tips(document)))
+        subtitle += "; circles: the dwells"
+    subtitle += "; dashed: transition speed" if line else ""
+    title = alt.Title("Fitted damping surface", subtitle=subtitle)
+    return alt.layer(*layers, title=title, width=WIDTH, height=HEIGHT if hot else 80)
+
+
+def _cells(document: Analysis) -> list[Row]:
+    """Cells of the surface in units of people; without temperature they are as high as the chart."""
+    scale, _ = _torque_unit(document)
+    return [
         {
             "from": rpm(c.speed_low),
             "to": rpm(c.speed_high) * _OVERLAP,
@@ -125,43 +150,6 @@ def surface(document: Analysis) -> Chart:
         }
         for c in document.fit.cells
     ]
-    low, high = (rpm(v) for v in document.fit.speed_range)
-    x = _speed("from:Q", [low * 0.93, high * 1.07])
-    shade = alt.Scale(type="log", scheme="viridis", nice=False)
-    cell = (
-        plot(cells)
-        .mark_rect(strokeWidth=0, clip=True)
-        .encode(
-            x=x,
-            x2="to:Q",
-            y=alt.Y(
-                "low:Q",
-                title="Temperature (°C)" if hot else None,
-                scale=alt.Scale(zero=False, nice=False, padding=8),
-                axis=alt.Axis() if hot else None,
-            ),
-            y2="high:Q",
-            color=alt.Color("damping:Q", title=f"B ({unit}·s/rad)", scale=shade),
-            tooltip=[tip("damping", f"fitted damping ({unit}·s/rad)")],
-        )
-    )
-    line = [{"from": rpm(t.speed), "low": celsius(t.temperature)} for t in document.fit.transition_curve]
-    rows = [r | {"from": r["speed"], "low": r["temperature"]} for r in _point_rows(document)] if hot else []
-    bend = (
-        plot(line)
-        .mark_line(color="white", strokeDash=[6, 4], strokeWidth=2)
-        .encode(x=x, y="low:Q", order="low:Q")
-    )
-    dots = (
-        plot(rows)
-        .mark_point(filled=True, fill="white", stroke="#222", strokeWidth=1, size=40, opacity=1)
-        .encode(x=x, y="low:Q", tooltip=_point_tips(document))
-    )
-    subtitle = document.fit.law + ("; circles: the dwells" if rows else "")
-    subtitle += "; dashed: transition speed" if line else ""
-    title = alt.Title("Fitted damping surface", subtitle=subtitle)
-    layers = [cell, *([bend] if line else []), *([dots] if rows else [])]
-    return alt.layer(*layers).properties(title=title, width=WIDTH, height=HEIGHT if hot else 80)
 
 
 def residuals(document: Analysis) -> Chart:
@@ -309,84 +297,42 @@ def _torque_unit(document: Analysis) -> tuple[float, str]:
 
 
 def _against_speed(
-    document: Analysis, quantity: str, title: str, scale: float, under: list[alt.Chart]
+    document: Analysis, quantity: str, name: str, *, under: Sequence[alt.Chart] = (), turns: bool = False
 ) -> Chart:
-    """Dwells and drag curves, each temperature named at its line's end, over what lies ``under``."""
+    """Dwells and drag curves, and what the page needs to show and hide each temperature."""
+    scale, _ = _torque_unit(document)
     rows = _point_rows(document)
     for row, point in zip(rows, document.points, strict=True):
         value, error = abs(getattr(point, quantity)) * scale, 2 * abs(point.torque_error / point.torque)
         row |= {"y": value, "low": value * (1 - error), "high": value * (1 + error)}
-    curves = [
-        {
-            "speed": rpm(v),
-            "y": scale * b * (v if quantity == "torque" else 1.0),
-            "level": temperature_name(c.temperature),
-        }
-        for c in document.fit.curves
-        for v, b in zip(c.speed, c.damping, strict=True)
-    ]
-    ends = [end for r in rows for end in (max(r["low"], _SHORTEST * r["y"]), r["high"])]
-    domain = span(ends + [r["y"] for r in curves])
-    y = alt.Y("y:Q", title=title, **logarithmic_axis(domain))
-    reach = span([r["speed"] for r in rows])
-    x = alt.X("speed:Q", title=_ROLL, **logarithmic_axis(reach))
+    curves = [_curve(c, quantity, scale) for c in document.fit.curves]
+    chart = against_speed(
+        rows,
+        [row for curve in curves for row in curve],
+        name,
+        tips=_point_tips(document),
+        under=under,
+        turns=[turn for curve in curves for turn in _turns(curve)] if turns else [],
+    )
     levels = sorted({row["level"] for row in rows})
-    shades = alt.Scale(domain=levels, range=ramp(len(levels)))
-    color = alt.Color("level:N", scale=shades, legend=None)
-    shown = {"opacity": alt.condition("indexof(hidden, datum.level) < 0", alt.value(1), alt.value(0.06))}
-    line = plot(curves).mark_line(strokeWidth=1.6).encode(x=x, y=y, color=color, detail="level:N", **shown)
-    base = plot(rows)
-    bars = base.mark_rule(strokeWidth=1.2, clip=True).encode(
-        x=x, y="low:Q", y2="high:Q", color=color, **shown
-    )
-    fill = alt.condition("datum.approach === 'from above'", alt.value("white"), color)
-    dots = base.mark_point(size=30, strokeWidth=1.4).encode(
-        x=x, y=y, stroke=color, fill=fill, tooltip=_point_tips(document), **shown
-    )
-    layers = [*under, *_ends(curves, domain, shades), *_bends(document, quantity, scale, x, y)]
-    hidden = alt.param(name="hidden", value=[])
     series = [
         {"name": f"{level:.0f} °C", "value": level, "color": shade}
         for level, shade in zip(levels, ramp(len(levels)), strict=True)
     ]
-    chart: Chart = alt.layer(*layers, line, bars, dots, width=WIDTH, height=_TALL)
-    return chart.add_params(hidden).properties(usermeta={"series": series})
+    shown: Chart = chart.properties(usermeta={"series": series})
+    return shown
 
 
-def _ends(curves: list[Row], domain: tuple[float, float], shades: alt.Scale) -> list[alt.Chart]:
-    """The temperature at the end of each line, none nearer to the next than can be read."""
-    ends = {row["level"]: row for row in curves}
-    if len(ends) < 2:
-        return []
-    low, high = np.log(domain)
-    ups = [_TALL * (float(np.log(row["y"])) - low) / (high - low) for row in ends.values()]
-    named: list[Row] = [
-        {"level": level, "y": float(np.exp(low + (high - low) * up / _TALL)), "text": f"{level:.0f} °C"}
-        for level, up in zip(ends, apart(ups, APART), strict=True)
-    ]
-    text = plot(named).mark_text(align="left", dx=6, fontSize=11.5, fontWeight="bold")
-    return [
-        text.encode(
-            x=across(),
-            y="y:Q",
-            text="text:N",
-            color=alt.Color("level:N", scale=shades, legend=None),
-        )
-    ]
+def _curve(curve: Curve, quantity: str, scale: float) -> list[Row]:
+    speed, damping = np.array(curve.speed), np.array(curve.damping)
+    return curve_rows(speed, scale * damping * (speed if quantity == "torque" else 1.0), curve.temperature)
 
 
-def _bends(document: Analysis, quantity: str, scale: float, x: alt.X, y: alt.Y) -> list[alt.Chart]:
-    """A tick on each line where it is least, if it rises from there on both sides."""
-    if quantity != "torque":
-        return []
-    rows: list[Row] = []
-    for curve in document.fit.curves:
-        torque = [v * b * scale for v, b in zip(curve.speed, curve.damping, strict=True)]
-        least = int(np.argmin(torque))
-        if min(torque[0], torque[-1]) > _RISES * torque[least]:
-            rows.append({"speed": rpm(curve.speed[least]), "y": torque[least]})
-    mark = plot(rows).mark_tick(orient="vertical", size=13, thickness=1.6, color=INK)
-    return [mark.encode(x=x, y=y)] if rows else []
+def _turns(curve: list[Row]) -> list[Row]:
+    """Where a curve is least, if it rises from there on both sides."""
+    least = min(curve, key=lambda row: float(row["y"]))
+    rises = min(curve[0]["y"], curve[-1]["y"]) > _RISES * least["y"]
+    return [{"speed": least["speed"], "y": least["y"]}] if rises else []
 
 
 def _plans(document: Analysis) -> list[tuple[Plan, StartPart | None]]:
@@ -436,8 +382,8 @@ def _temperature_channels(document: Analysis) -> tuple[alt.Color, alt.Shape]:
 
 def _speed(field: str, domain: list[float] | None = None) -> alt.X:
     if domain is not None:
-        return alt.X(field, title=_ROLL, **logarithmic_axis((domain[0], domain[1])))
-    return alt.X(field, title=_ROLL, scale=logarithmic())
+        return alt.X(field, title=ROLL_SPEED, **logarithmic_axis((domain[0], domain[1])))
+    return alt.X(field, title=ROLL_SPEED, scale=logarithmic())
 
 
 def _point_tips(document: Analysis) -> list[alt.Tooltip]:
