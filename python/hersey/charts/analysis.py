@@ -14,13 +14,13 @@ import numpy as np
 from hersey.charts.against_speed import against_speed, curve_rows
 from hersey.charts.damping import logs_chart
 from hersey.charts.film import regime_chart
+from hersey.charts.log import log_panel
+from hersey.charts.over_time import over_time, time_axis
 from hersey.charts.plan import profile_chart
 from hersey.charts.regime import exponent_chart, exponent_row
 from hersey.charts.render import write_pictures
 from hersey.charts.stick_speed import stick_speed_chart
 from hersey.charts.style import (
-    BLUE,
-    GREEN,
     HEIGHT,
     INK,
     ROLL_SPEED,
@@ -28,10 +28,12 @@ from hersey.charts.style import (
     WIDTH,
     Chart,
     Row,
-    logarithmic,
+    categories,
+    levels,
     logarithmic_axis,
     plot,
     ramp,
+    rows_of,
     span,
     temperature_channels,
     temperature_name,
@@ -51,8 +53,6 @@ from hersey.units import celsius, rpm
 
 #: Cells of a surface overlap a little: seams would shine through otherwise.
 _OVERLAP = 1.004
-#: Width kept for the axis of charts that share a time axis, so that they line up.
-_AXIS = 42
 #: Ratio of both ends of a curve to its least torque from which that is marked.
 _RISES = 1.01
 
@@ -109,7 +109,7 @@ def surface(document: Analysis) -> Chart:
     _, unit = _torque_unit(document)
     hot = document.fit.temperature_range is not None
     low, high = (rpm(v) for v in document.fit.speed_range)
-    x = _speed("from:Q", [low * 0.93, high * 1.07])
+    x = _speed("from:Q", (low * 0.93, high * 1.07))
     y = alt.Y(
         "low:Q",
         title=TEMPERATURE if hot else None,
@@ -156,29 +156,18 @@ def residuals(document: Analysis) -> Chart:
     """Residuals against speed, by direction of approach."""
     rows = _point_rows(document)
     zero = plot([{"y": 0}]).mark_rule(color=INK).encode(y="y:Q")
-    dots = (
-        plot(rows)
-        .mark_point(filled=True, size=55, opacity=0.85)
-        .encode(
-            x=_speed("speed:Q", list(span([row["speed"] for row in rows]))),
-            y=alt.Y("residual:Q", title="Measured / fitted \u2212 1 (%)"),
-            color=_temperature_channels(document)[0],
-            shape=alt.Shape(
-                "approach:N",
-                title="approached",
-                scale=alt.Scale(
-                    domain=["from below", "from above", "start"],
-                    range=["triangle-up", "triangle-down", "circle"],
-                ),
-            ),
-            tooltip=_point_tips(document),
-        )
-        .add_params(zoom())
-    )
-    title = alt.Title(
-        "Residuals", subtitle="up and down triangles apart mean hysteresis; a bend means a wrong law"
-    )
-    return alt.layer(zero, dots).properties(title=title, width=WIDTH, height=220)
+    shapes = {"from below": "triangle-up", "from above": "triangle-down", "start": "circle"}
+    dots = plot(rows).mark_point(filled=True, size=55, opacity=0.85)
+    dots = dots.encode(
+        x=_speed("speed:Q", span([row["speed"] for row in rows])),
+        y=alt.Y("residual:Q", title="Measured / fitted \u2212 1 (%)"),
+        color=_temperature_channels(document)[0],
+        shape=categories(alt.Shape, "approach", shapes, alt.Legend(title="approached")),
+        tooltip=_point_tips(document),
+    ).add_params(zoom())
+    subtitle = "up and down triangles apart mean hysteresis; a bend means a wrong law"
+    title = alt.Title("Residuals", subtitle=subtitle)
+    return alt.layer(zero, dots, title=title, width=WIDTH, height=220)
 
 
 def regime(document: Analysis) -> Chart:
@@ -234,21 +223,14 @@ def simulation_speed(document: Analysis) -> Chart | None:
     if s is None:
         return None
     scale, unit = (1e3, "mm/s") if s.speed_unit == "m/s" else (1.0, s.speed_unit)
-    rows = [{"time": t, "value": v * scale} for t, v in zip(s.time, s.belt_speed, strict=True)]
-    marks = [(s.transition_speed * scale, "transition speed", "width", "right")]
-    marks += (
-        [(s.drive_speed * scale, "drive speed", "4", "left")] if s.drive_speed != s.transition_speed else []
-    )
-    line = _trace(rows, f"Belt speed ({unit})")
-    layers: list[alt.Chart] = []
-    for y, name, at, align in marks:
-        mark = plot([{"y": y, "name": name}])
-        layers.append(mark.mark_rule(color=INK, strokeDash=[4, 3]).encode(y="y:Q"))
-        label = mark.mark_text(align=align, dy=-7, color=INK)  # type: ignore[arg-type]  # left or right
-        layers.append(label.encode(x=alt.value(alt.ExprRef(at)), y="y:Q", text="name:N"))
+    marks = dict.fromkeys([s.transition_speed * scale], "transition speed")
+    marks.setdefault(s.drive_speed * scale, "drive speed")
+    domain = (0.0, 1.05 * scale * max(*s.belt_speed, s.transition_speed))
+    rows = rows_of(time=s.time, value=[scale * v for v in s.belt_speed])
+    line = over_time(rows, f"Belt speed ({unit})", time_axis(), domain=domain)
     what = {"stick_slip": f"stick-slip at {s.frequency:.4g} Hz, stuck {s.stuck_fraction:.1%} of the time"}
     title = alt.Title(s.title, subtitle=what.get(s.kind, s.kind.replace("_", " ")))
-    return alt.layer(line, *layers).properties(title=title, width=WIDTH, height=220)
+    return alt.layer(line, *levels(list(marks.items()), domain, 220), title=title, width=WIDTH, height=220)
 
 
 def simulation_force(document: Analysis) -> Chart | None:
@@ -256,29 +238,26 @@ def simulation_force(document: Analysis) -> Chart | None:
     s = document.simulation
     if s is None:
         return None
-    rows = [{"time": t, "value": f} for t, f in zip(s.time, s.spring_force, strict=True)]
-    return alt.layer(_trace(rows, f"Spring force ({s.force_unit})")).properties(width=WIDTH, height=160)
+    rows = rows_of(time=s.time, value=s.spring_force)
+    line = over_time(rows, f"Spring force ({s.force_unit})", time_axis())
+    return alt.layer(line, width=WIDTH, height=160)
 
 
 def timeline_speed(document: Analysis) -> Chart | None:
     """Speed over the log, dwells shaded; None for a table of means."""
-    if not document.timeline.starts:
-        return None
-    return _timeline(document, document.timeline.speed, "Speed (rpm)", rpm, "The log: dwells used are shaded")
+    chart = _timeline(document, document.timeline.speed, "Speed (rpm)", rpm)
+    return None if chart is None else chart.properties(title="The log: dwells used are shaded")
 
 
 def timeline_torque(document: Analysis) -> Chart | None:
     """Torque over the log, dwells shaded; None for a table of means."""
-    if not document.timeline.starts:
-        return None
     scale, unit = _torque_unit(document)
-    return _timeline(document, document.timeline.torque, f"Torque ({unit})", lambda v: v * scale, None)
+    return _timeline(document, document.timeline.torque, f"Torque ({unit})", lambda v: v * scale)
 
 
 def timeline_temperature(document: Analysis) -> Chart | None:
     """Temperature over the log, dwells shaded; None if not recorded."""
-    series = document.timeline.temperature
-    return None if series is None else _timeline(document, series, "Temperature (°C)", celsius, None)
+    return _timeline(document, document.timeline.temperature, TEMPERATURE, celsius)
 
 
 def write_figures(document: Analysis, folder: Path, *, overwrite: bool = True) -> list[Path]:
@@ -380,10 +359,8 @@ def _temperature_channels(document: Analysis) -> tuple[alt.Color, alt.Shape]:
     return temperature_channels(kelvin, legend=document.fit.temperature_range is not None)
 
 
-def _speed(field: str, domain: list[float] | None = None) -> alt.X:
-    if domain is not None:
-        return alt.X(field, title=ROLL_SPEED, **logarithmic_axis((domain[0], domain[1])))
-    return alt.X(field, title=ROLL_SPEED, scale=logarithmic())
+def _speed(field: str, domain: tuple[float, float]) -> alt.X:
+    return alt.X(field, title=ROLL_SPEED, **logarithmic_axis(domain))
 
 
 def _point_tips(document: Analysis) -> list[alt.Tooltip]:
@@ -400,46 +377,13 @@ def _point_tips(document: Analysis) -> list[alt.Tooltip]:
     ]
 
 
-def _trace(rows: list[Row], title: str) -> alt.Chart:
-    chart: alt.Chart = (
-        plot(rows)
-        .mark_line(color=BLUE, strokeWidth=1.5)
-        .encode(
-            x=alt.X("time:Q", title="Time (s)", scale=alt.Scale(nice=False)),
-            y=alt.Y("value:Q", title=title, axis=alt.Axis(minExtent=_AXIS)),
-            tooltip=[tip("time", "time (s)"), tip("value", title)],
-        )
-        .add_params(zoom())
-    )
-    return chart
-
-
 def _timeline(
-    document: Analysis, series: Series, title: str, in_unit: Callable[[float], float], heading: str | None
-) -> Chart:
-    values = [float(f"{in_unit(v):.5g}") for v in series.value]
-    rows = [{"time": t, "value": v} for t, v in zip(series.time, values, strict=True)]
+    document: Analysis, series: Series | None, name: str, in_unit: Callable[[float], float]
+) -> Chart | None:
     starts = document.timeline.starts
-    dwells = [{"from": starts[p.run] + p.start, "to": starts[p.run] + p.end} for p in document.points]
-    several = len(document.files) > 1
-    shade = (
-        plot(dwells)
-        .mark_rect(color=GREEN, opacity=0.25)
-        .encode(x="from:Q", x2="to:Q", y=alt.value(0), y2=alt.value(110))
-    )
-    line = (
-        plot(rows)
-        .mark_line(color=BLUE, strokeWidth=0.9)
-        .encode(
-            x=alt.X(
-                "time:Q",
-                title="Time (s), files one after another" if several else "Time (s)",
-                scale=alt.Scale(nice=False),
-            ),
-            y=alt.Y("value:Q", title=title, scale=alt.Scale(zero=False), axis=alt.Axis(minExtent=_AXIS)),
-            tooltip=[tip("time", "time (s)"), tip("value", title)],
-        )
-        .add_params(zoom())
-    )
-    chart = alt.layer(shade, line).properties(width=WIDTH, height=110)
-    return chart.properties(title=heading) if heading else chart
+    if series is None or not starts:
+        return None
+    rows = rows_of(time=series.time, value=[in_unit(v) for v in series.value])
+    dwells = [(starts[p.run] + p.start, starts[p.run] + p.end) for p in document.points]
+    several = ", files one after another" if len(document.files) > 1 else ""
+    return log_panel(rows, name, time_axis(title=f"Time (s){several}"), dwells=dwells)
