@@ -250,7 +250,7 @@ def test_a_log_keeps_its_extremes() -> None:
 def test_dwells_and_their_errors() -> None:
     torque = np.abs(points().column("torque"))
     unit = 1.0 if torque.max() >= 1.0 else 1e3
-    assert column("SteadyPoints", "torque", "approach") == pytest.approx(unit * torque)
+    assert column("SteadyPoints", "y", "approach") == pytest.approx(unit * torque)
     assert column("SteadyPoints", "high") == pytest.approx(
         unit * (torque + 2 * points().column("torque_error"))
     )
@@ -261,31 +261,33 @@ def test_a_surface_with_its_limits() -> None:
     span = surface().temperature_range
     assert span is not None
     kelvin = np.linspace(span[0], span[1], 4)
-    rows, _, corners = layers("DampingSurface")
+    rows, _, corners, _ = layers("DampingSurface")
     speed = np.array([row["speed"] for row in rows]) * RPM
     torque = surface().torque(speed, np.repeat(kelvin, speed.size // 4))
     unit = 1.0 if torque.max() >= 1.0 else 1e3
-    assert [row["torque"] for row in rows] == pytest.approx(unit * torque)
-    assert all(row["low"] < row["torque"] < row["high"] for row in rows)
+    assert [row["y"] for row in rows] == pytest.approx(unit * torque)
+    assert all(row["low"] < row["y"] < row["high"] for row in rows)
     bends = [surface().transition_speed(t) for t in kelvin.tolist()]
     low, high = surface().speed_range
     assert [row["speed"] * RPM for row in corners] == pytest.approx([v for v in bends if low < v < high])
 
 
 def test_a_mixed_contact_and_where_it_turns() -> None:
-    part, whole, corners, marks = layers("MixedFilm")
-    assert part[0]["torque"] < 0.1 * whole[0]["torque"]
-    assert part[-1]["torque"] == pytest.approx(whole[-1]["torque"])
+    _, part, corners, whole, marks = layers("MixedFilm")
+    assert part[0]["y"] < 0.1 * whole[0]["y"]
+    assert part[-1]["y"] == pytest.approx(whole[-1]["y"])
     turns = result_of("MixedFilm").transition
     assert [row["speed"] * RPM for row in corners] == pytest.approx(turns.speed[0])
     shown = result_of("MixedFilm").torque[1:].ravel()  # rest has no place on a logarithmic axis
-    unit = marks[0]["torque"] / shown[0]
-    assert [row["torque"] for row in marks] == pytest.approx(unit * shown)
+    unit = marks[0]["y"] / shown[0]
+    assert [row["y"] for row in marks] == pytest.approx(unit * shown)
 
 
 def test_candidates_by_how_much_worse_they_are() -> None:
     assert column("ModelComparison", "worse") == [c.delta_aicc for c in models().candidates[:10]]
-    texts = dict(zip(column("ModelComparison", "name"), column("ModelComparison", "text"), strict=True))
+    texts = dict(
+        zip(column("ModelComparison", "name"), column("ModelComparison", "text", "name"), strict=True)
+    )
     assert [name for name, text in texts.items() if "chosen" in text] == [models().chosen.candidate.key]
 
 
@@ -294,9 +296,9 @@ def test_dwells_beside_the_chosen_law_have_two_standard_errors() -> None:
     rows = next(
         data
         for data in layers("ModelComparison")
-        if {"torque", "low", "high"} <= data[0].keys() and len(data) == len(comparison.data)
+        if {"y", "low", "high"} <= data[0].keys() and len(data) == len(comparison.data)
     )
-    shares = [row["high"] / row["torque"] - 1.0 for row in rows]
+    shares = [row["high"] / row["y"] - 1.0 for row in rows]
     assert shares == pytest.approx((2 * comparison.data.torque_error).tolist(), rel=1e-3)
 
 

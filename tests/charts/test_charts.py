@@ -190,7 +190,7 @@ def test_the_simulation_is_drawn_as_it_ran(document: Analysis) -> None:
     line, *marks = panel(document, "simulation_speed")
     assert [r["time"] for r in rows(line)] == s.time
     np.testing.assert_allclose([r["value"] for r in rows(line)], unit * np.array(s.belt_speed))
-    shown = {r["name"]: r["y"] for layer in marks for r in rows(layer)}
+    shown = {r["name"]: r["value"] for layer in marks for r in rows(layer)}
     assert shown["transition speed"] == pytest.approx(unit * s.transition_speed)
     if s.drive_speed != s.transition_speed:
         assert shown["drive speed"] == pytest.approx(unit * s.drive_speed)

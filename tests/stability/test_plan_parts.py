@@ -536,13 +536,13 @@ def test_the_chart_of_a_plan_in_numbers(plan: Plan) -> None:
         for r in rows(layer)
         if "name" in r and "value" in r
     }
-    assert marks == {"v_t": 1.0, "V*": pytest.approx(plan.fold_speed)}
+    assert marks == {"transition": 1.0, "V*": pytest.approx(plan.fold_speed)}
     ready = [
         r["time"]
         for panel in (speeds, force)
         for layer in panel["layer"]
         for r in rows(layer)
-        if "good" in r.get("name", "")
+        if "slides by" in r.get("name", "")
     ]
     assert set(ready) == {plan.duration}
     spring = next(rows(layer) for layer in force["layer"] if len(rows(layer)) > 100)
@@ -583,7 +583,7 @@ def test_a_chart_with_a_wait_and_a_course(plan: Plan) -> None:
     drive = [(r["time"], r["value"]) for r in data if r["line"] == "drive"]
     assert drive[0] == (pytest.approx(start), 0.0)
     assert drive[-1] == (pytest.approx(end), 500.0)
-    line, rule, _ = heat["layer"]
+    line, rule, *_ = heat["layer"]
     for row in rows(line)[::40]:
         assert row["value"] == pytest.approx(course.at(row["time"]) - 273.15)
     assert (rows(line)[0]["time"], rows(line)[-1]["time"]) == (0.0, 30.0)

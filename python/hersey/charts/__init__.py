@@ -8,8 +8,10 @@ runtime          the Vega runtime, inlined in every page
 page             what every page is made of, and what it may do
 render           from a chart to the content of a file
 analysis         the charts of the analysis document
+over_time        lines, shades and moments over time, of which those of log, motion, plan and warm_up are made
 log              speed, torque and temperature over time
 inspection       the channels of a log, and their faults
+against_speed    dwells and curves against speed, of which most of what follows is made
 damping          dwells, surface, candidates, two logs, the next dwells
 regime           exponents against what each regime predicts
 film             the regime chart, over the Stribeck curve

@@ -5,33 +5,35 @@ Every chart takes the analysis document. Units of people appear here: rpm, degC,
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import altair as alt
 import numpy as np
 
+from hersey.charts.against_speed import against_speed, curve_rows
 from hersey.charts.damping import logs_chart
 from hersey.charts.film import regime_chart
-from hersey.charts.labels import apart
+from hersey.charts.log import log_panel
+from hersey.charts.over_time import over_time, time_axis
 from hersey.charts.plan import profile_chart
 from hersey.charts.regime import exponent_chart, exponent_row
 from hersey.charts.render import write_pictures
 from hersey.charts.stick_speed import stick_speed_chart
 from hersey.charts.style import (
-    APART,
-    BLUE,
-    GREEN,
     HEIGHT,
     INK,
+    ROLL_SPEED,
+    TEMPERATURE,
     WIDTH,
     Chart,
     Row,
-    across,
-    logarithmic,
+    categories,
+    levels,
     logarithmic_axis,
     plot,
     ramp,
+    rows_of,
     span,
     temperature_channels,
     temperature_name,
@@ -43,6 +45,7 @@ from hersey.charts.style import (
 from hersey.charts.torque_budget import torque_budget_chart
 from hersey.charts.transition import transition_chart
 from hersey.document.analysis import Analysis
+from hersey.document.parts.fit import Curve
 from hersey.document.parts.log import Point, Series
 from hersey.stability.plan.result import Plan
 from hersey.study.first_screen.result import StartPart
@@ -50,15 +53,6 @@ from hersey.units import celsius, rpm
 
 #: Cells of a surface overlap a little: seams would shine through otherwise.
 _OVERLAP = 1.004
-_ROLL = "Roll speed (rpm)"
-#: Share of a torque down to which its error is surely in the picture.
-_SHORTEST = 0.6
-#: Height of torque and damping.
-_TALL = 290
-#: Width kept for the axis of charts that share a time axis, so that they line up.
-_AXIS = 42
-
-
 #: Ratio of both ends of a curve to its least torque from which that is marked.
 _RISES = 1.01
 
@@ -92,11 +86,11 @@ def charts(document: Analysis, *, but: tuple[str, ...] = ()) -> dict[str, Chart]
 
 def torque(document: Analysis) -> Chart:
     """Torque against speed per temperature, with the drag curves (the paper's Fig. 2)."""
-    scale, unit = _torque_unit(document)
+    _, unit = _torque_unit(document)
     subtitle = "filled: reached from below, open: from above, bars: two standard errors; lines: drag curves"
     subtitle += "" if document.fit.rest is None else "; the rest of the drive is taken off"
     title = alt.Title("Drag torque against speed", subtitle=subtitle)
-    return _against_speed(document, "torque", f"Torque ({unit})", scale, []).properties(title=title)
+    return _against_speed(document, "torque", f"Torque ({unit})", turns=True).properties(title=title)
 
 
 def damping(document: Analysis) -> Chart:
@@ -106,16 +100,47 @@ def damping(document: Analysis) -> Chart:
         "Damping against speed", subtitle="dashed: slope -1, where torque does not depend on speed"
     )
     under = [_slope_of_minus_one(document, scale)]
-    return _against_speed(document, "damping", f"Damping ({unit}·s/rad)", scale, under).properties(
-        title=title
-    )
+    name = f"Damping ({unit}·s/rad)"
+    return _against_speed(document, "damping", name, under=under).properties(title=title)
 
 
 def surface(document: Analysis) -> Chart:
     """The fitted surface over temperature and speed, with the dwells on it (Fig. 4)."""
-    scale, unit = _torque_unit(document)
+    _, unit = _torque_unit(document)
     hot = document.fit.temperature_range is not None
-    cells = [
+    low, high = (rpm(v) for v in document.fit.speed_range)
+    x = _speed("from:Q", (low * 0.93, high * 1.07))
+    y = alt.Y(
+        "low:Q",
+        title=TEMPERATURE if hot else None,
+        scale=alt.Scale(zero=False, nice=False, padding=8),
+        axis=alt.Axis() if hot else None,
+    )
+    shade = alt.Scale(type="log", scheme="viridis", nice=False)
+    color = alt.Color("damping:Q", title=f"B ({unit}·s/rad)", scale=shade)
+    tips = [tip("damping", f"fitted damping ({unit}·s/rad)")]
+    cells = plot(_cells(document)).mark_rect(strokeWidth=0, clip=True)
+    layers = [cells.encode(x=x, x2="to:Q", y=y, y2="high:Q", color=color, tooltip=tips)]
+    line = [{"from": rpm(t.speed), "low": celsius(t.temperature)} for t in document.fit.transition_curve]
+    subtitle = document.fit.law
+    if line:
+        bend = plot(line).mark_line(color="white", strokeDash=[6, 4], strokeWidth=2)
+        layers.append(bend.encode(x=x, y="low:Q", order="low:Q"))
+    if hot:
+        rows = [r | {"from": r["speed"], "low": r["temperature"]} for r in _point_rows(document)]
+        look: Row = {"fill": "white", "stroke": "#222", "strokeWidth": 1, "size": 40, "opacity": 1}
+        dots = plot(rows).mark_point(filled=True, **look)
+        layers.append(dots.encode(x=x, y="low:Q", tooltip=_point_tips(document)))
+        subtitle += "; circles: the dwells"
+    subtitle += "; dashed: transition speed" if line else ""
+    title = alt.Title("Fitted damping surface", subtitle=subtitle)
+    return alt.layer(*layers, title=title, width=WIDTH, height=HEIGHT if hot else 80)
+
+
+def _cells(document: Analysis) -> list[Row]:
+    """Cells of the surface in units of people; without temperature they are as high as the chart."""
+    scale, _ = _torque_unit(document)
+    return [
         {
             "from": rpm(c.speed_low),
             "to": rpm(c.speed_high) * _OVERLAP,
@@ -125,72 +150,24 @@ def surface(document: Analysis) -> Chart:
         }
         for c in document.fit.cells
     ]
-    low, high = (rpm(v) for v in document.fit.speed_range)
-    x = _speed("from:Q", [low * 0.93, high * 1.07])
-    shade = alt.Scale(type="log", scheme="viridis", nice=False)
-    cell = (
-        plot(cells)
-        .mark_rect(strokeWidth=0, clip=True)
-        .encode(
-            x=x,
-            x2="to:Q",
-            y=alt.Y(
-                "low:Q",
-                title="Temperature (°C)" if hot else None,
-                scale=alt.Scale(zero=False, nice=False, padding=8),
-                axis=alt.Axis() if hot else None,
-            ),
-            y2="high:Q",
-            color=alt.Color("damping:Q", title=f"B ({unit}·s/rad)", scale=shade),
-            tooltip=[tip("damping", f"fitted damping ({unit}·s/rad)")],
-        )
-    )
-    line = [{"from": rpm(t.speed), "low": celsius(t.temperature)} for t in document.fit.transition_curve]
-    rows = [r | {"from": r["speed"], "low": r["temperature"]} for r in _point_rows(document)] if hot else []
-    bend = (
-        plot(line)
-        .mark_line(color="white", strokeDash=[6, 4], strokeWidth=2)
-        .encode(x=x, y="low:Q", order="low:Q")
-    )
-    dots = (
-        plot(rows)
-        .mark_point(filled=True, fill="white", stroke="#222", strokeWidth=1, size=40, opacity=1)
-        .encode(x=x, y="low:Q", tooltip=_point_tips(document))
-    )
-    subtitle = document.fit.law + ("; circles: the dwells" if rows else "")
-    subtitle += "; dashed: transition speed" if line else ""
-    title = alt.Title("Fitted damping surface", subtitle=subtitle)
-    layers = [cell, *([bend] if line else []), *([dots] if rows else [])]
-    return alt.layer(*layers).properties(title=title, width=WIDTH, height=HEIGHT if hot else 80)
 
 
 def residuals(document: Analysis) -> Chart:
     """Residuals against speed, by direction of approach."""
     rows = _point_rows(document)
     zero = plot([{"y": 0}]).mark_rule(color=INK).encode(y="y:Q")
-    dots = (
-        plot(rows)
-        .mark_point(filled=True, size=55, opacity=0.85)
-        .encode(
-            x=_speed("speed:Q", list(span([row["speed"] for row in rows]))),
-            y=alt.Y("residual:Q", title="Measured / fitted \u2212 1 (%)"),
-            color=_temperature_channels(document)[0],
-            shape=alt.Shape(
-                "approach:N",
-                title="approached",
-                scale=alt.Scale(
-                    domain=["from below", "from above", "start"],
-                    range=["triangle-up", "triangle-down", "circle"],
-                ),
-            ),
-            tooltip=_point_tips(document),
-        )
-        .add_params(zoom())
-    )
-    title = alt.Title(
-        "Residuals", subtitle="up and down triangles apart mean hysteresis; a bend means a wrong law"
-    )
-    return alt.layer(zero, dots).properties(title=title, width=WIDTH, height=220)
+    shapes = {"from below": "triangle-up", "from above": "triangle-down", "start": "circle"}
+    dots = plot(rows).mark_point(filled=True, size=55, opacity=0.85)
+    dots = dots.encode(
+        x=_speed("speed:Q", span([row["speed"] for row in rows])),
+        y=alt.Y("residual:Q", title="Measured / fitted \u2212 1 (%)"),
+        color=_temperature_channels(document)[0],
+        shape=categories(alt.Shape, "approach", shapes, alt.Legend(title="approached")),
+        tooltip=_point_tips(document),
+    ).add_params(zoom())
+    subtitle = "up and down triangles apart mean hysteresis; a bend means a wrong law"
+    title = alt.Title("Residuals", subtitle=subtitle)
+    return alt.layer(zero, dots, title=title, width=WIDTH, height=220)
 
 
 def regime(document: Analysis) -> Chart:
@@ -246,21 +223,14 @@ def simulation_speed(document: Analysis) -> Chart | None:
     if s is None:
         return None
     scale, unit = (1e3, "mm/s") if s.speed_unit == "m/s" else (1.0, s.speed_unit)
-    rows = [{"time": t, "value": v * scale} for t, v in zip(s.time, s.belt_speed, strict=True)]
-    marks = [(s.transition_speed * scale, "transition speed", "width", "right")]
-    marks += (
-        [(s.drive_speed * scale, "drive speed", "4", "left")] if s.drive_speed != s.transition_speed else []
-    )
-    line = _trace(rows, f"Belt speed ({unit})")
-    layers: list[alt.Chart] = []
-    for y, name, at, align in marks:
-        mark = plot([{"y": y, "name": name}])
-        layers.append(mark.mark_rule(color=INK, strokeDash=[4, 3]).encode(y="y:Q"))
-        label = mark.mark_text(align=align, dy=-7, color=INK)  # type: ignore[arg-type]  # left or right
-        layers.append(label.encode(x=alt.value(alt.ExprRef(at)), y="y:Q", text="name:N"))
+    marks = dict.fromkeys([s.transition_speed * scale], "transition speed")
+    marks.setdefault(s.drive_speed * scale, "drive speed")
+    domain = (0.0, 1.05 * scale * max(*s.belt_speed, s.transition_speed))
+    rows = rows_of(time=s.time, value=[scale * v for v in s.belt_speed])
+    line = over_time(rows, f"Belt speed ({unit})", time_axis(), domain=domain)
     what = {"stick_slip": f"stick-slip at {s.frequency:.4g} Hz, stuck {s.stuck_fraction:.1%} of the time"}
     title = alt.Title(s.title, subtitle=what.get(s.kind, s.kind.replace("_", " ")))
-    return alt.layer(line, *layers).properties(title=title, width=WIDTH, height=220)
+    return alt.layer(line, *levels(list(marks.items()), domain, 220), title=title, width=WIDTH, height=220)
 
 
 def simulation_force(document: Analysis) -> Chart | None:
@@ -268,29 +238,26 @@ def simulation_force(document: Analysis) -> Chart | None:
     s = document.simulation
     if s is None:
         return None
-    rows = [{"time": t, "value": f} for t, f in zip(s.time, s.spring_force, strict=True)]
-    return alt.layer(_trace(rows, f"Spring force ({s.force_unit})")).properties(width=WIDTH, height=160)
+    rows = rows_of(time=s.time, value=s.spring_force)
+    line = over_time(rows, f"Spring force ({s.force_unit})", time_axis())
+    return alt.layer(line, width=WIDTH, height=160)
 
 
 def timeline_speed(document: Analysis) -> Chart | None:
     """Speed over the log, dwells shaded; None for a table of means."""
-    if not document.timeline.starts:
-        return None
-    return _timeline(document, document.timeline.speed, "Speed (rpm)", rpm, "The log: dwells used are shaded")
+    chart = _timeline(document, document.timeline.speed, "Speed (rpm)", rpm)
+    return None if chart is None else chart.properties(title="The log: dwells used are shaded")
 
 
 def timeline_torque(document: Analysis) -> Chart | None:
     """Torque over the log, dwells shaded; None for a table of means."""
-    if not document.timeline.starts:
-        return None
     scale, unit = _torque_unit(document)
-    return _timeline(document, document.timeline.torque, f"Torque ({unit})", lambda v: v * scale, None)
+    return _timeline(document, document.timeline.torque, f"Torque ({unit})", lambda v: v * scale)
 
 
 def timeline_temperature(document: Analysis) -> Chart | None:
     """Temperature over the log, dwells shaded; None if not recorded."""
-    series = document.timeline.temperature
-    return None if series is None else _timeline(document, series, "Temperature (°C)", celsius, None)
+    return _timeline(document, document.timeline.temperature, TEMPERATURE, celsius)
 
 
 def write_figures(document: Analysis, folder: Path, *, overwrite: bool = True) -> list[Path]:
@@ -309,84 +276,42 @@ def _torque_unit(document: Analysis) -> tuple[float, str]:
 
 
 def _against_speed(
-    document: Analysis, quantity: str, title: str, scale: float, under: list[alt.Chart]
+    document: Analysis, quantity: str, name: str, *, under: Sequence[alt.Chart] = (), turns: bool = False
 ) -> Chart:
-    """Dwells and drag curves, each temperature named at its line's end, over what lies ``under``."""
+    """Dwells and drag curves, and what the page needs to show and hide each temperature."""
+    scale, _ = _torque_unit(document)
     rows = _point_rows(document)
     for row, point in zip(rows, document.points, strict=True):
         value, error = abs(getattr(point, quantity)) * scale, 2 * abs(point.torque_error / point.torque)
         row |= {"y": value, "low": value * (1 - error), "high": value * (1 + error)}
-    curves = [
-        {
-            "speed": rpm(v),
-            "y": scale * b * (v if quantity == "torque" else 1.0),
-            "level": temperature_name(c.temperature),
-        }
-        for c in document.fit.curves
-        for v, b in zip(c.speed, c.damping, strict=True)
-    ]
-    ends = [end for r in rows for end in (max(r["low"], _SHORTEST * r["y"]), r["high"])]
-    domain = span(ends + [r["y"] for r in curves])
-    y = alt.Y("y:Q", title=title, **logarithmic_axis(domain))
-    reach = span([r["speed"] for r in rows])
-    x = alt.X("speed:Q", title=_ROLL, **logarithmic_axis(reach))
+    curves = [_curve(c, quantity, scale) for c in document.fit.curves]
+    chart = against_speed(
+        rows,
+        [row for curve in curves for row in curve],
+        name,
+        tips=_point_tips(document),
+        under=under,
+        turns=[turn for curve in curves for turn in _turns(curve)] if turns else [],
+    )
     levels = sorted({row["level"] for row in rows})
-    shades = alt.Scale(domain=levels, range=ramp(len(levels)))
-    color = alt.Color("level:N", scale=shades, legend=None)
-    shown = {"opacity": alt.condition("indexof(hidden, datum.level) < 0", alt.value(1), alt.value(0.06))}
-    line = plot(curves).mark_line(strokeWidth=1.6).encode(x=x, y=y, color=color, detail="level:N", **shown)
-    base = plot(rows)
-    bars = base.mark_rule(strokeWidth=1.2, clip=True).encode(
-        x=x, y="low:Q", y2="high:Q", color=color, **shown
-    )
-    fill = alt.condition("datum.approach === 'from above'", alt.value("white"), color)
-    dots = base.mark_point(size=30, strokeWidth=1.4).encode(
-        x=x, y=y, stroke=color, fill=fill, tooltip=_point_tips(document), **shown
-    )
-    layers = [*under, *_ends(curves, domain, shades), *_bends(document, quantity, scale, x, y)]
-    hidden = alt.param(name="hidden", value=[])
     series = [
         {"name": f"{level:.0f} °C", "value": level, "color": shade}
         for level, shade in zip(levels, ramp(len(levels)), strict=True)
     ]
-    chart: Chart = alt.layer(*layers, line, bars, dots, width=WIDTH, height=_TALL)
-    return chart.add_params(hidden).properties(usermeta={"series": series})
+    shown: Chart = chart.properties(usermeta={"series": series})
+    return shown
 
 
-def _ends(curves: list[Row], domain: tuple[float, float], shades: alt.Scale) -> list[alt.Chart]:
-    """The temperature at the end of each line, none nearer to the next than can be read."""
-    ends = {row["level"]: row for row in curves}
-    if len(ends) < 2:
-        return []
-    low, high = np.log(domain)
-    ups = [_TALL * (float(np.log(row["y"])) - low) / (high - low) for row in ends.values()]
-    named: list[Row] = [
-        {"level": level, "y": float(np.exp(low + (high - low) * up / _TALL)), "text": f"{level:.0f} °C"}
-        for level, up in zip(ends, apart(ups, APART), strict=True)
-    ]
-    text = plot(named).mark_text(align="left", dx=6, fontSize=11.5, fontWeight="bold")
-    return [
-        text.encode(
-            x=across(),
-            y="y:Q",
-            text="text:N",
-            color=alt.Color("level:N", scale=shades, legend=None),
-        )
-    ]
+def _curve(curve: Curve, quantity: str, scale: float) -> list[Row]:
+    speed, damping = np.array(curve.speed), np.array(curve.damping)
+    return curve_rows(speed, scale * damping * (speed if quantity == "torque" else 1.0), curve.temperature)
 
 
-def _bends(document: Analysis, quantity: str, scale: float, x: alt.X, y: alt.Y) -> list[alt.Chart]:
-    """A tick on each line where it is least, if it rises from there on both sides."""
-    if quantity != "torque":
-        return []
-    rows: list[Row] = []
-    for curve in document.fit.curves:
-        torque = [v * b * scale for v, b in zip(curve.speed, curve.damping, strict=True)]
-        least = int(np.argmin(torque))
-        if min(torque[0], torque[-1]) > _RISES * torque[least]:
-            rows.append({"speed": rpm(curve.speed[least]), "y": torque[least]})
-    mark = plot(rows).mark_tick(orient="vertical", size=13, thickness=1.6, color=INK)
-    return [mark.encode(x=x, y=y)] if rows else []
+def _turns(curve: list[Row]) -> list[Row]:
+    """Where a curve is least, if it rises from there on both sides."""
+    least = min(curve, key=lambda row: float(row["y"]))
+    rises = min(curve[0]["y"], curve[-1]["y"]) > _RISES * least["y"]
+    return [{"speed": least["speed"], "y": least["y"]}] if rises else []
 
 
 def _plans(document: Analysis) -> list[tuple[Plan, StartPart | None]]:
@@ -434,10 +359,8 @@ def _temperature_channels(document: Analysis) -> tuple[alt.Color, alt.Shape]:
     return temperature_channels(kelvin, legend=document.fit.temperature_range is not None)
 
 
-def _speed(field: str, domain: list[float] | None = None) -> alt.X:
-    if domain is not None:
-        return alt.X(field, title=_ROLL, **logarithmic_axis((domain[0], domain[1])))
-    return alt.X(field, title=_ROLL, scale=logarithmic())
+def _speed(field: str, domain: tuple[float, float]) -> alt.X:
+    return alt.X(field, title=ROLL_SPEED, **logarithmic_axis(domain))
 
 
 def _point_tips(document: Analysis) -> list[alt.Tooltip]:
@@ -454,46 +377,13 @@ def _point_tips(document: Analysis) -> list[alt.Tooltip]:
     ]
 
 
-def _trace(rows: list[Row], title: str) -> alt.Chart:
-    chart: alt.Chart = (
-        plot(rows)
-        .mark_line(color=BLUE, strokeWidth=1.5)
-        .encode(
-            x=alt.X("time:Q", title="Time (s)", scale=alt.Scale(nice=False)),
-            y=alt.Y("value:Q", title=title, axis=alt.Axis(minExtent=_AXIS)),
-            tooltip=[tip("time", "time (s)"), tip("value", title)],
-        )
-        .add_params(zoom())
-    )
-    return chart
-
-
 def _timeline(
-    document: Analysis, series: Series, title: str, in_unit: Callable[[float], float], heading: str | None
-) -> Chart:
-    values = [float(f"{in_unit(v):.5g}") for v in series.value]
-    rows = [{"time": t, "value": v} for t, v in zip(series.time, values, strict=True)]
+    document: Analysis, series: Series | None, name: str, in_unit: Callable[[float], float]
+) -> Chart | None:
     starts = document.timeline.starts
-    dwells = [{"from": starts[p.run] + p.start, "to": starts[p.run] + p.end} for p in document.points]
-    several = len(document.files) > 1
-    shade = (
-        plot(dwells)
-        .mark_rect(color=GREEN, opacity=0.25)
-        .encode(x="from:Q", x2="to:Q", y=alt.value(0), y2=alt.value(110))
-    )
-    line = (
-        plot(rows)
-        .mark_line(color=BLUE, strokeWidth=0.9)
-        .encode(
-            x=alt.X(
-                "time:Q",
-                title="Time (s), files one after another" if several else "Time (s)",
-                scale=alt.Scale(nice=False),
-            ),
-            y=alt.Y("value:Q", title=title, scale=alt.Scale(zero=False), axis=alt.Axis(minExtent=_AXIS)),
-            tooltip=[tip("time", "time (s)"), tip("value", title)],
-        )
-        .add_params(zoom())
-    )
-    chart = alt.layer(shade, line).properties(width=WIDTH, height=110)
-    return chart.properties(title=heading) if heading else chart
+    if series is None or not starts:
+        return None
+    rows = rows_of(time=series.time, value=[in_unit(v) for v in series.value])
+    dwells = [(starts[p.run] + p.start, starts[p.run] + p.end) for p in document.points]
+    several = ", files one after another" if len(document.files) > 1 else ""
+    return log_panel(rows, name, time_axis(title=f"Time (s){several}"), dwells=dwells)

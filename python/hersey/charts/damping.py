@@ -9,10 +9,13 @@ import altair as alt
 import numpy as np
 
 from hersey.arrays import FloatArray
+from hersey.charts.against_speed import against_speed, curve_rows
 from hersey.charts.style import (
     BLUE,
     HEIGHT,
     INK,
+    ROLL_SPEED,
+    TEMPERATURE,
     WIDTH,
     Chart,
     Row,
@@ -20,6 +23,7 @@ from hersey.charts.style import (
     logarithmic,
     plot,
     rows_of,
+    stacked,
     temperature_channels,
     temperature_name,
     tip,
@@ -40,21 +44,23 @@ _SPEEDS, _TEMPERATURES, _LISTED = 60, 4, 10
 _STATED = (0.1, 30.0)
 #: Share of the speed by which marks of two temperatures stand apart.
 _APART = 0.045
-_SPEED = "Drive speed (rpm)"
 
 
 def steady_chart(points: SteadyPoints) -> Chart:
     """Return the dwells of a log: torque against speed, two standard errors each, temperatures apart."""
-    speed, torque = np.abs(points.column("speed")), np.abs(points.column("torque"))
+    torque = np.abs(points.column("torque"))
     kelvin = points.column("temperature") if points.log.has_temperature else None
     factor, unit = torque_unit(float(torque.max()))
-    error = points.column("torque_error")
-    levels, rows = _dwells(speed, torque * factor, 2.0 * error * factor, kelvin)
+    shares = points.column("torque_error") / torque
+    rows = _dwells(np.abs(points.column("speed")), factor * torque, shares, kelvin)
     for row, approach in zip(rows, points.table["approach"], strict=True):
         row["approach"] = approach
-    tips = [alt.Tooltip("approach:N", title="approached")]
-    title = alt.Title("Steady points", subtitle=f"{len(points)} dwells, with two standard errors of torque")
-    return alt.layer(*_marks(rows, levels, unit, tips), title=title, width=WIDTH, height=HEIGHT)
+    subtitle = (
+        f"{len(points)} dwells; filled: reached from below, open: from above, bars: two standard errors"
+    )
+    title = alt.Title("Steady points", subtitle=subtitle)
+    tips = [*_tips(unit, hot=kelvin is not None), alt.Tooltip("approach:N", title="approached")]
+    return against_speed(rows, [], f"Torque ({unit})", tips=tips).properties(title=title)
 
 
 def surface_chart(surface: DampingSurface) -> Chart:
@@ -66,28 +72,18 @@ def surface_chart(surface: DampingSurface) -> Chart:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         bands = [surface.predict(speed, None if t is None else np.full_like(speed, t)) for t in hot]
-        bends = [(surface.transition_speed(t), t) for t in hot]
-        marked = [
-            (at, surface.transition_torque(t), t)
-            for at, t in bends
-            if surface.speed_range[0] < at < surface.speed_range[1]
+        factor, unit = torque_unit(max(float(band.torque.max()) for band in bands))
+        low, high = surface.speed_range
+        turns: list[Row] = [
+            {"speed": rpm(at), "y": factor * float(surface.torque(np.array([at]), t)[0])}
+            for at, t in ((surface.transition_speed(t), t) for t in hot)
+            if low < at < high
         ]
-    factor, unit = torque_unit(max(float(band.torque.max()) for band in bands))
+    subtitle = "lines: the law; shaded: its 95 % limits" + ("; ticks: transition speed" if turns else "")
     rows = _band_rows(speed, bands, hot, factor)
-    corners = [
-        {"speed": rpm(at), "torque": torque * factor, "level": temperature_name(t)}
-        for at, torque, t in marked
-    ]
-    color, _ = temperature_channels(hot, legend=len(hot) > 1)
-    x, y = _axes(unit)
-    diamonds = plot(corners).mark_point(shape="diamond", size=90, filled=True, stroke="white", opacity=1)
-    title = alt.Title(
-        "Fitted drag torque",
-        subtitle="lines: the law; shaded: its 95 % limits"
-        + ("; diamonds: transition speed" if corners else ""),
+    return against_speed([], rows, f"Torque ({unit})", turns=turns).properties(
+        title=alt.Title("Fitted drag torque", subtitle=subtitle)
     )
-    layers = [*_lines(rows, color, unit), diamonds.encode(x=x, y=y, color=color)]
-    return alt.layer(*layers, title=title, width=WIDTH, height=HEIGHT)
 
 
 def rest_chart(rest: RestOfDrive) -> Chart:
@@ -99,43 +95,32 @@ def rest_chart(rest: RestOfDrive) -> Chart:
     factor, unit = torque_unit(float(rest.torque(speed[-1:], hot[0]).max()))
     rows: list[Row] = []
     for t in hot:
-        torque = rest.torque(speed, t)
-        reach = 2.0 * np.linalg.norm(rest.errors(speed, t), axis=1)
-        rows += rows_of(
-            speed=rpm(speed),
-            torque=factor * torque,
-            low=factor * np.maximum(torque - reach, 1e-2 * torque),  # a logarithm has no place for nothing
-            high=factor * (torque + reach),
-            level=[temperature_name(t)] * speed.size,
-        )
-    color, _ = temperature_channels(hot, legend=len(hot) > 1)
+        torque = factor * rest.torque(speed, t)
+        reach = 2.0 * factor * np.linalg.norm(rest.errors(speed, t), axis=1)
+        low = np.maximum(torque - reach, 1e-2 * torque)  # a logarithm has no place for nothing
+        rows += curve_rows(speed, torque, t, (low, torque + reach))
     title = alt.Title("Rest of the drive", subtitle="lines: the law; shaded: two standard errors")
-    return alt.layer(*_lines(rows, color, unit), title=title, width=WIDTH, height=HEIGHT)
+    return against_speed([], rows, f"Torque ({unit})").properties(title=title)
 
 
 def models_chart(comparison: ModelComparison) -> Chart:
     """Return the dwells with the law that was chosen, over the candidates by how much worse they are."""
-    panels = alt.vconcat(_chosen(comparison), _ranking(comparison), spacing=20)
-    stacked: Chart = panels.resolve_scale(color="independent", shape="independent")
-    return stacked
+    return stacked(_chosen(comparison), _ranking(comparison), spacing=20)
 
 
 def _chosen(comparison: ModelComparison) -> Chart:
     data = comparison.data
+    kelvin, torque = data.inputs.kelvin, np.exp(data.log_torque)
     measured = data.reference_speed * np.exp(data.inputs.log_speed)
-    torque = np.exp(data.log_torque)
     factor, unit = torque_unit(float(torque.max()))
-    levels, rows = _dwells(
-        measured, torque * factor, 2 * data.torque_error * torque * factor, data.inputs.kelvin
-    )
+    dwells = _dwells(measured, factor * torque, data.torque_error, kelvin)
     speed = np.geomspace(measured.min(), measured.max(), _SPEEDS)
-    hot: list[float | None] = [None] if data.inputs.kelvin is None else list(data.temperatures)
-    bands = [comparison.predict(speed, t) for t in hot]
-    color, _ = temperature_channels(levels, legend=data.inputs.kelvin is not None)
+    hot: list[float | None] = [None] if kelvin is None else list(data.temperatures)
+    curves = _band_rows(speed, [comparison.predict(speed, t) for t in hot], hot, factor)
     name = comparison.chosen.candidate.name
     title = alt.Title("The law chosen", subtitle=f"{name}; shaded: 95 % limits of the law")
-    lines = _lines(_band_rows(speed, bands, hot, factor), color, unit, tips=False)
-    return alt.layer(*lines, *_marks(rows, levels, unit, []), title=title, width=WIDTH, height=HEIGHT)
+    tips = _tips(unit, hot=kelvin is not None)
+    return against_speed(dwells, curves, f"Torque ({unit})", tips=tips).properties(title=title)
 
 
 def _ranking(comparison: ModelComparison) -> Chart:
@@ -181,7 +166,7 @@ def logs_chart(comparison: LogComparison) -> Chart:
             level=[temperature_name(kelvin)] * speeds.size,
         )
     color, shape = temperature_channels(hot, legend=len(hot) > 1)
-    x = alt.X("x:Q", title=_SPEED, scale=logarithmic())
+    x = alt.X("x:Q", title=ROLL_SPEED, scale=logarithmic())
     y = alt.Y("ratio:Q", title="Damping of B over A (no unit)", scale=alt.Scale(zero=False))
     tips = [tip("speed", "speed (rpm)"), tip("ratio", "B over A"), tip("low", "95 % from"), tip("high", "to")]
     bars = plot(rows).mark_rule(strokeWidth=2)
@@ -199,43 +184,30 @@ def logs_chart(comparison: LogComparison) -> Chart:
 
 def design_chart(design: TestDesign) -> Chart:
     """Return the dwells to record next in their order, and what is known after each."""
-    return alt.vconcat(
-        _where(design),
-        _gain(design),
-        spacing=18,
-        title=alt.Title("Dwells to record next", subtitle=_what(design)),
-    )
-
-
-def _what(design: TestDesign) -> str:
     wanted = f"to know the {design.quantity} best" if design.quantity else "to know all parameters best"
-    return f"{wanted}; numbers: their order; law: {design.law}"
+    subtitle = f"{wanted}; numbers: their order; law: {design.law}"
+    title = alt.Title("Dwells to record next", subtitle=subtitle)
+    return stacked(_where(design), _gain(design), title=title, spacing=18)
 
 
 def _where(design: TestDesign) -> Chart:
-    rows: list[Row] = [
-        {
-            "speed": rpm(point.speed),
-            "temperature": 0.0 if point.kelvin is None else celsius(point.kelvin),
-            "number": str(number),
-        }
-        for number, point in enumerate(design.points, 1)
-    ]
     thermal = all(point.kelvin is not None for point in design.points)
+    rows = rows_of(
+        speed=[rpm(point.speed) for point in design.points],
+        temperature=[0.0 if point.kelvin is None else celsius(point.kelvin) for point in design.points],
+        number=[str(number) for number in range(1, len(design.points) + 1)],
+    )
     # Dwells at one place are one mark with all their numbers.
     places: dict[tuple[float, float], list[str]] = {}
     for row in rows:
         places.setdefault((row["speed"], row["temperature"]), []).append(row["number"])
     names = [{"speed": v, "temperature": t, "text": ", ".join(n)} for (v, t), n in places.items()]
-    speeds, heats = [row["speed"] for row in rows], [row["temperature"] for row in rows]
-    x = alt.X(
-        "speed:Q",
-        title=_SPEED,
-        scale=alt.Scale(type="log", domain=[min(speeds) / 1.6, 1.6 * max(speeds)], nice=False),
-    )
+    speeds, heats = zip(*places, strict=True)
+    reach = alt.Scale(type="log", domain=[min(speeds) / 1.6, 1.6 * max(speeds)], nice=False)
+    x = alt.X("speed:Q", title=ROLL_SPEED, scale=reach)
     y = alt.Y(
         "temperature:Q",
-        title="Temperature (°C)" if thermal else None,
+        title=TEMPERATURE if thermal else None,
         scale=alt.Scale(domain=[min(heats) - 15.0, max(heats) + 15.0], nice=False),
         axis=alt.Axis() if thermal else None,
     )
@@ -264,40 +236,27 @@ def _gain(design: TestDesign) -> Chart:
     return alt.layer(line, dots, width=WIDTH, height=170)
 
 
-def _dwells(
-    speed: FloatArray, torque: FloatArray, reach: FloatArray, kelvin: FloatArray | None
-) -> tuple[list[float | None], list[Row]]:
-    """Mean temperature of each group of dwells, K, and one row per dwell in units of people."""
+def _dwells(speed: FloatArray, torque: FloatArray, share: FloatArray, kelvin: FloatArray | None) -> list[Row]:
+    """One row per dwell in units of people, with two of its relative standard errors."""
     group: list[float | None] = [None] * speed.size
     if kelvin is not None:
         for members in groups_of_temperature(kelvin):
             for i in members.tolist():
                 group[i] = float(kelvin[members].mean())
-    rows = rows_of(
+    return rows_of(
         speed=rpm(speed),
-        torque=torque,
-        low=torque - reach,
-        high=torque + reach,
+        y=torque,
+        low=torque * (1.0 - 2.0 * share),
+        high=torque * (1.0 + 2.0 * share),
         level=[temperature_name(t) for t in group],
         temperature=[None] * speed.size if kelvin is None else celsius(kelvin),
     )
-    return group, rows
 
 
-def _marks(
-    rows: list[Row], levels: Sequence[float | None], unit: str, tips: list[alt.Tooltip]
-) -> list[alt.Chart]:
-    """Dwells as points with their errors."""
-    color, shape = temperature_channels(levels, legend=levels[0] is not None)
-    x, y = _axes(unit)
-    hot = [tip("temperature", "temperature (°C)")] if levels[0] is not None else []
-    numbers = [tip("speed", "speed (rpm)"), tip("torque", f"torque ({unit})"), *hot, *tips]
-    bars = plot(rows).mark_rule(strokeWidth=1.5)
-    dots = plot(rows).mark_point(filled=True, size=55, opacity=0.9)
-    return [
-        bars.encode(x=x, y=alt.Y("low:Q"), y2=alt.Y2("high:Q"), color=color),
-        dots.encode(x=x, y=y, color=color, shape=shape, tooltip=numbers),
-    ]
+def _tips(unit: str, *, hot: bool) -> list[alt.Tooltip]:
+    """What a dwell says of itself."""
+    degrees = [tip("temperature", "temperature (°C)")] if hot else []
+    return [tip("speed", "speed (rpm)"), tip("y", f"torque ({unit})"), *degrees]
 
 
 def _band_rows(
@@ -306,28 +265,5 @@ def _band_rows(
     rows: list[Row] = []
     for band, t in zip(bands, kelvin, strict=True):
         low, high = band.confidence
-        rows += rows_of(
-            speed=rpm(speed),
-            torque=factor * band.torque,
-            low=factor * low,
-            high=factor * high,
-            level=[temperature_name(t)] * speed.size,
-        )
+        rows += curve_rows(speed, factor * band.torque, t, (factor * low, factor * high))
     return rows
-
-
-def _lines(rows: list[Row], color: alt.Color, unit: str, *, tips: bool = True) -> list[alt.Chart]:
-    """Laws as lines with their limits shaded."""
-    x, y = _axes(unit)
-    numbers = [tip("speed", "speed (rpm)"), tip("torque", f"torque ({unit})")] if tips else []
-    area = plot(rows).mark_area(opacity=0.18)
-    line = plot(rows).mark_line(strokeWidth=1.8)
-    return [
-        area.encode(x=x, y=alt.Y("low:Q"), y2=alt.Y2("high:Q"), color=color),
-        line.encode(x=x, y=y, color=color, detail=alt.Detail("level:N"), tooltip=numbers),
-    ]
-
-
-def _axes(unit: str) -> tuple[alt.X, alt.Y]:
-    x = alt.X("speed:Q", title=_SPEED, scale=logarithmic())
-    return x, alt.Y("torque:Q", title=f"Torque ({unit})", scale=logarithmic())

@@ -5,19 +5,8 @@ from __future__ import annotations
 import altair as alt
 import numpy as np
 
-from hersey.charts.style import (
-    HEIGHT,
-    WIDTH,
-    Chart,
-    Row,
-    logarithmic,
-    plot,
-    rows_of,
-    temperature_channels,
-    temperature_name,
-    tip,
-    torque_unit,
-)
+from hersey.charts.against_speed import against_speed, curve_rows
+from hersey.charts.style import Chart, Row, rows_of, temperature_name, tip, torque_unit
 from hersey.lubrication.mixed import MixedFilm
 from hersey.units import rpm
 
@@ -35,40 +24,33 @@ def mixed_chart(film: MixedFilm) -> Chart:
     speed = np.geomspace(low / _BEYOND, high * _BEYOND, _SPEEDS)
     lines = film.mixed.at(speed=speed, temperature=hot[:, None])
     factor, unit = torque_unit(float(lines.torque.max()))
-    color, _ = temperature_channels(hot.tolist(), legend=hot.size > 1)
-    x = alt.X("speed:Q", title="Drive speed (rpm)", scale=logarithmic())
-    y = alt.Y("torque:Q", title=f"Torque ({unit})", scale=logarithmic())
-    whole = _rows(lines, factor)
-    alone = factor * np.ravel(lines.shear_torque + lines.rolling_torque)
-    part = [row | {"torque": torque} for row, torque in zip(whole, alone.tolist(), strict=True)]
-    corners = [
-        {"speed": rpm(at), "torque": factor * torque, "level": temperature_name(kelvin)}
-        for at, torque, kelvin in zip(turns.speed, turns.torque, hot, strict=True)
+    alone = factor * (lines.shear_torque + lines.rolling_torque)
+    whole, part = (
+        [row for torque, kelvin in zip(each, hot, strict=True) for row in curve_rows(speed, torque, kelvin)]
+        for each in (factor * lines.torque, alone)
+    )
+    corners: list[Row] = [
+        {"speed": rpm(at), "y": factor * torque}
+        for at, torque in zip(turns.speed.tolist(), turns.torque.tolist(), strict=True)
         if at > 0
     ]
-    tips = [tip("speed", "rpm"), tip("torque", unit), tip("ratio", "lambda"), tip("share", "share, %")]
-    moving = [row for row in _rows(film, factor) if row["speed"] > 0]
-    layers = [
-        plot(part).mark_line(strokeDash=[4, 3], clip=True).encode(x=x, y=y, color=color),
-        plot(whole).mark_line().encode(x=x, y=y, color=color),
-        plot(corners)
-        .mark_point(shape="diamond", size=90, filled=True, opacity=1)
-        .encode(x=x, y=y, color=color),
-        plot(moving).mark_point(filled=True, size=40, opacity=1).encode(x=x, y=y, color=color, tooltip=tips),
-    ]
-    title = alt.Title(
-        "Film and asperities",
-        subtitle="lines: torque; dashed: what the film adds"
-        + ("; diamonds: transition speed" if corners else ""),
-    )
-    return alt.layer(*layers, title=title, width=WIDTH, height=HEIGHT)
+    tips = [tip("speed", "rpm"), tip("y", unit), tip("ratio", "lambda"), tip("share", "share, %")]
+    subtitle = "lines: torque; dashed: what the film adds" + ("; ticks: transition speed" if corners else "")
+    return against_speed(
+        [row for row in _rows(film, factor) if row["speed"] > 0],
+        whole,
+        f"Torque ({unit})",
+        tips=tips,
+        parts=part,
+        turns=corners,
+    ).properties(title=alt.Title("Film and asperities", subtitle=subtitle))
 
 
 def _rows(film: MixedFilm, factor: float) -> list[Row]:
     kelvin = np.ravel(film.temperature).tolist()
     return rows_of(
         speed=rpm(np.ravel(film.speed)),
-        torque=factor * np.ravel(film.torque),
+        y=factor * np.ravel(film.torque),
         ratio=np.ravel(film.lambda_ratio),
         share=100.0 * np.ravel(film.share),
         level=[temperature_name(each) for each in kelvin],

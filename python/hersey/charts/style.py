@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import AbstractContextManager
 from typing import Any, ClassVar, Literal
 
@@ -28,6 +28,16 @@ SHAPES = ("circle", "square", "triangle-up", "diamond", "cross", "triangle-down"
 Row = dict[str, Any]
 #: A pale rim around words, so that lines do not run through them.
 RIM: Row = {"color": "white", "stroke": "white", "strokeWidth": 3.5, "strokeJoin": "round"}
+#: The user's own points.
+DIAMOND: Row = {
+    "shape": "diamond",
+    "fill": "white",
+    "stroke": INK,
+    "strokeWidth": 1.8,
+    "size": 85,
+    "opacity": 1,
+}
+ROLL_SPEED, TEMPERATURE = "Roll speed (rpm)", "Temperature (°C)"
 Chart = alt.LayerChart | alt.FacetChart | alt.VConcatChart | alt.HConcatChart
 
 
@@ -76,14 +86,43 @@ def temperature_name(kelvin: float | None) -> float:
 def temperature_channels(
     kelvin: Sequence[float | None], *, legend: bool = True, orient: Literal["right", "top"] = "right"
 ) -> tuple[alt.Color, alt.Shape]:
+    """Return colour and shape of the field ``level`` for these temperatures (K)."""
+    return level_channels(sorted({temperature_name(t) for t in kelvin}), legend=legend, orient=orient)
+
+
+def level_channels(
+    levels: Sequence[float], *, legend: bool = True, orient: Literal["right", "top"] = "right"
+) -> tuple[alt.Color, alt.Shape]:
     """Return colour by lightness and shape of the field ``level``, so that temperatures survive greyscale."""
-    levels = sorted({temperature_name(t) for t in kelvin})
     named = alt.Legend(title="°C", symbolOpacity=1, orient=orient) if legend else None
     shapes = [SHAPES[i % len(SHAPES)] for i in range(len(levels))]
     return (
-        alt.Color("level:N", scale=alt.Scale(domain=levels, range=ramp(len(levels))), legend=named),
-        alt.Shape("level:N", scale=alt.Scale(domain=levels, range=shapes), legend=named),
+        alt.Color("level:N", scale=alt.Scale(domain=list(levels), range=ramp(len(levels))), legend=named),
+        alt.Shape("level:N", scale=alt.Scale(domain=list(levels), range=shapes), legend=named),
     )
+
+
+def categories(
+    channel: type[alt.Color | alt.Shape | alt.StrokeDash],
+    field: str,
+    looks: Mapping[str, Any],
+    legend: alt.Legend | None,
+) -> Any:
+    """Return a channel in which each name of a field has its look: a colour, a shape or dashes."""
+    scale = alt.Scale(domain=list(looks), range=list(looks.values()))
+    return channel(f"{field}:N", scale=scale, legend=legend)
+
+
+def rimmed(base: alt.Chart, **look: Any) -> list[alt.Chart]:
+    """Return words over a pale rim, so that lines do not run through them."""
+    return [base.mark_text(**(look | RIM)), base.mark_text(**({"color": INK} | look))]
+
+
+def stacked(*panels: alt.Chart | Chart, spacing: float, title: alt.Title | None = None) -> Chart:
+    """Return panels one above another, each with its own colours and shapes."""
+    together = alt.vconcat(*panels, spacing=spacing, **({} if title is None else {"title": title}))
+    chart: Chart = together.resolve_scale(color="independent", shape="independent")
+    return chart
 
 
 def unchecked() -> AbstractContextManager[None]:
