@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -9,10 +10,10 @@ import numpy as np
 import polars as pl
 import pytest
 
-from hersey.arrays import FloatArray
+from hersey import _core
+from hersey.arrays import FloatArray, pointwise
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.life.film import through_life
-from hersey.life.film.depletion_law import Rates, log_layer
 from hersey.life.film.filled_dwells import FilledDwells, filled_dwells
 from hersey.life.film.layer import Layers, layers
 from hersey.life.film.starved_drag import (
@@ -27,6 +28,7 @@ from hersey.life.film.starved_drag import (
 )
 from hersey.life.film.through_life import STARVED, film_life, starvation_indicator
 from hersey.life.indicator import Indicators, Runs
+from hersey.life.oil_layer import USUAL_SHARPNESS, age_of_layer, log_film_share, log_layer
 from hersey.lubrication.film import film_thickness
 from hersey.testbench import population
 from hersey.testbench.ageing import Ageing
@@ -139,20 +141,34 @@ def test_a_wrong_viscosity_of_the_file_is_not_starvation() -> None:
 
 
 def test_the_layer_follows_its_law() -> None:
-    h0, side_flow, evaporation = 2.0, 0.3, 0.7
-    loss = side_flow * h0**2 / 2 + evaporation
-    share = evaporation / loss
-    own = np.array([np.log(h0), np.log(loss), np.log(share / (1 - share)), 0.0, 0.0])
+    new, side_flow, evaporation = np.array(0.25), np.array(0.3), np.array(0.7)
     ages = np.array([0.0, 0.5, 1.0, 2.0])
-    layer = np.exp(log_layer(own, ages, Rates()))
+    layer = np.exp(log_layer(new, side_flow, evaporation, ages))
     assert layer[0] == pytest.approx(2.0)
     for age, here in zip(ages[1:], layer[1:], strict=True):
-        near = np.exp(log_layer(own, np.array([age - 1e-5, age + 1e-5]), Rates()))
+        near = np.exp(log_layer(new, side_flow, evaporation, np.array([age - 1e-5, age + 1e-5])))
         assert (near[1] - near[0]) / 2e-5 == pytest.approx(-0.15 * here**3 - 0.7 * here, rel=1e-6)
-    alone = np.exp(log_layer(own, ages, Rates(side_flow, 0.0)))
+    assert age_of_layer(new, side_flow, evaporation, np.log(layer)) == pytest.approx(ages)
+    nothing = np.zeros(())
+    alone = np.exp(log_layer(new, side_flow, nothing, ages))
     assert alone == pytest.approx((0.25 + 0.3 * ages) ** -0.5)
-    steady = np.exp(log_layer(own, ages, Rates(0.0, evaporation)))
+    steady = np.exp(log_layer(new, nothing, evaporation, ages))
     assert steady == pytest.approx(2.0 * np.exp(-0.7 * ages))
+
+
+@pytest.mark.parametrize("sharpness", [2.0, USUAL_SHARPNESS, 5.0])
+def test_the_share_of_the_film_is_that_of_the_core(sharpness: float) -> None:
+    ratio = np.geomspace(1e-3, 1e3, 25)
+    share, slope = log_film_share(np.log(ratio), sharpness)
+    of_core = pointwise(_core.starvation, ratio, 1.0, sharpness).factor
+    assert np.exp(share) == pytest.approx(np.asarray(of_core), rel=1e-12)
+    up, down = (log_film_share(np.log(ratio) + step, sharpness)[0] for step in (1e-5, -1e-5))
+    assert slope == pytest.approx((up - down) / 2e-5, abs=1e-9)
+
+
+def test_the_usual_sharpness_is_that_of_the_film() -> None:
+    usual = inspect.signature(film_thickness).parameters["starvation_sharpness"].default
+    assert usual == USUAL_SHARPNESS
 
 
 def test_the_shipped_units_starve_when_they_do() -> None:

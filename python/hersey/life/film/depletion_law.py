@@ -1,15 +1,10 @@
-"""How the layer of oil of units thins with age, and how their oil thickens: all units fitted together.
+"""How the layer of oil of specimens thins with age, and how their oil thickens, fitted together.
 
-The layer flows aside out of the track, in proportion to its cube, and evaporates in proportion to itself:
-``dh/dt = -K h^3/2 - e h``. With ``u = h^-2`` that is linear, ``du/dt = K + 2 e u``, so
-
-    h^-2 = h0^-2 exp(2 e t) + K (exp(2 e t) - 1)/(2 e).
-
-K alone is the side flow of van Zoelen, Venner and Lugt (Proc. IMechE J 223 (2009) 541). Viscosity grows as
-``exp(g t)``. Each unit has its own layer when new, rate of loss then (``K h0^2/2 + e``), share of evaporation
-in it, viscosity when new, and g: normal over the units in their logarithms (logit of the share; g itself),
-with unknown means and spreads. What a run tells of layer and viscosity enters as its likelihood, so a run
-that tells but a lower bound says just that.
+The layer thins by side flow and evaporation (`oil_layer`), viscosity grows as ``exp(g t)``. Each specimen has
+its own layer when new, rate of loss then (``K h0^2/2 + e``), share of evaporation in it, viscosity when new,
+and g. Their logarithms (logit of the share; g itself) are normal over the specimens, with unknown means and
+spreads. What a run shows of layer and viscosity enters as its likelihood, so a lower bound enters as just
+that.
 """
 
 from __future__ import annotations
@@ -23,6 +18,7 @@ from scipy import special
 from hersey.arrays import FloatArray, IntArray
 from hersey.life.film.layer import DRY, FLOODED, Layers
 from hersey.life.film.starved_drag import Flooded, cubic
+from hersey.life.oil_layer import log_layer
 
 #: What a unit has, in this order: ln(h0/h), ln of the rate of loss when new times T, logit of the share of
 #: evaporation in it, ln of the factor on viscosity when new, g T; T is the greatest age, h the flooded film
@@ -61,7 +57,7 @@ class Depletion:
         """Return ln of the layer (m) of draws (..., 5) at ages in any unit; shape (..., ages)."""
         own = units[..., None, :]
         scaled = np.asarray(age) / self.greatest_age
-        return _scale(self.reference) + log_layer(own, scaled, self.rates)
+        return _scale(self.reference) + log_layer(_new(own), *self.rates.of(own), scaled)
 
     def rate(self, units: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return K (1/(m^2 age)), e and g (1/age) of draws (..., 5)."""
@@ -111,20 +107,6 @@ class Rates:
         return np.array([k for k in range(_NUMBERS) if k not in fixed])
 
 
-def log_layer(own: FloatArray, age: FloatArray, rates: Rates) -> FloatArray:
-    """Return ln of the layer over h, of what units have (..., 5), at ages over T."""
-    return _thinned(np.exp(-2.0 * own[..., LAYER_NEW]), *rates.of(own), age)
-
-
-def _thinned(new: FloatArray, side_flow: FloatArray, evaporation: FloatArray, age: FloatArray) -> FloatArray:
-    """Ln of the layer, from that of the new unit to the power -2 and the rates."""
-    # Beyond exp(100) of it a layer is gone, whatever the number.
-    lost = np.minimum(2.0 * evaporation * age, 100.0)
-    grown = np.expm1(lost)
-    mean = np.where(lost > 1e-9, grown / np.where(lost > 1e-9, lost, 1.0), 1.0)
-    return np.asarray(-0.5 * np.log(new * (1.0 + grown) + side_flow * age * mean))
-
-
 @dataclass(frozen=True)
 class _Told:
     """What runs tell on an even grid of places; runs of a unit stand together.
@@ -156,8 +138,8 @@ class _Told:
     def log_likelihood(self, own: FloatArray) -> FloatArray:
         """Return that of units, (walkers, units), at what they have, (walkers, units, 5)."""
         side_flow, evaporation = (rate[:, self.unit] for rate in self.rates.of(own))
-        new = np.exp(-2.0 * own[..., LAYER_NEW])[:, self.unit]
-        layer = _thinned(new, side_flow, evaporation, self.age)
+        new = _new(own)[:, self.unit]
+        layer = log_layer(new, side_flow, evaporation, self.age)
         thick = own[:, self.unit, VISCOSITY_NEW] + own[:, self.unit, THICKENING] * self.age
         at = np.clip(thick, -3.0, 5.0) + self.warmth * self.reference.steep.item()
         place = self.scale + layer - cubic(self.reference.film.reshape(4), at)[0]
@@ -189,6 +171,11 @@ def _told(layers: Layers, unit: IntArray, age: FloatArray, warmth: float, rates:
         table[i, :, 2] = np.interp(grid, place, error[i]) ** -2
     reference = layers.reference
     return _Told(table, unit, age, reference, warmth, _scale(reference), rates)
+
+
+def _new(own: FloatArray) -> FloatArray:
+    """The new layer to the power -2, over h."""
+    return np.asarray(np.exp(-2.0 * own[..., LAYER_NEW]))
 
 
 def _scale(reference: Flooded) -> float:

@@ -26,7 +26,6 @@ from hersey.life.film.starved_drag import (
     PER_KELVIN,
     PER_SPEED,
     ROUGHNESS,
-    USUAL_SHARPNESS,
     VISCOSITY,
     WARMTH,
     Flooded,
@@ -35,9 +34,9 @@ from hersey.life.film.starved_drag import (
     StarvedDrag,
     cubic,
     film_of,
-    film_share,
     flooded,
 )
+from hersey.life.oil_layer import USUAL_SHARPNESS, log_film_share
 from hersey.machine.machine import Machine
 
 #: ln of the layer over the flooded film at the reference from which on nothing starves, and the least.
@@ -126,7 +125,7 @@ class Layers:
         full, error = self.film_at(point)
         layer = self.place + self.film_at(self.reference)[0] - full
         sharpness = USUAL_SHARPNESS * float(np.exp(self.common[1]))
-        film = full + np.log(film_share(layer, sharpness))
+        film = full + log_film_share(layer, sharpness)[0]
         best, low, high = self._ends(film - self.place, error, level)
         # However thick the layer, the film is the flooded one.
         most = film[:, -1] + _TO_90 * error[:, -1]

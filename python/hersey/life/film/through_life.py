@@ -15,7 +15,7 @@ from hersey.errors import InsufficientDataError, ParameterError
 from hersey.life.film.depletion_law import Depletion, fit_depletion
 from hersey.life.film.filled_dwells import FilledDwells, filled_dwells
 from hersey.life.film.layer import Layers, layers
-from hersey.life.film.starved_drag import USUAL_SHARPNESS, Flooded, cubic, film_of, film_share, flooded
+from hersey.life.film.starved_drag import Flooded, cubic, film_of, flooded
 from hersey.life.growth.limit_ages import (
     AgesAtLimit,
     Interval,
@@ -24,6 +24,7 @@ from hersey.life.growth.limit_ages import (
     share_of_units,
 )
 from hersey.life.indicator import Indicator, Indicators, OwnAges, Runs
+from hersey.life.oil_layer import USUAL_SHARPNESS, log_film_share
 from hersey.result import Result, json_record
 from hersey.units import celsius, rpm, takes_si
 
@@ -329,7 +330,9 @@ class _Read:
 
     def film(self, point: Flooded) -> Told:
         sharpness = USUAL_SHARPNESS * float(np.exp(self.layers.common[1]))
-        return self.spread(*(film_share(each, sharpness) for each in self.layers.interval(point)))
+        return self.spread(
+            *(np.exp(log_film_share(each, sharpness)[0]) for each in self.layers.interval(point))
+        )
 
     def viscosity(self) -> Told:
         """Factor on viscosity at the middle temperature, with the error that the layer gives it."""
@@ -464,7 +467,9 @@ def _of_units(found: Depletion, of: Any) -> Told:
 
 
 def _curves(found: Depletion, point: Flooded, ages: FloatArray, units: int) -> tuple[Told, FloatArray]:
-    over = _of_units(found, lambda own: np.log(film_share(found.over_flooded(own, ages, point))))
+    over = _of_units(
+        found, lambda own: log_film_share(found.over_flooded(own, ages, point), USUAL_SHARPNESS)[0]
+    )
     needs = np.empty((units, ages.size))
     for k in range(units):
         own = found.units[:, k]

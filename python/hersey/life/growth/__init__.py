@@ -1,7 +1,6 @@
 """How indicators grow with age over units, and when they reach a limit.
 
 =============  ===========================================================
-drying         a layer that side flow and evaporation thin at once
 laws           how an indicator may grow with age
 posterior      how far units, spread and law are known: draws and evidence
 limit_ages     the ages at which units and population reach a limit
