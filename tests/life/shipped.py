@@ -21,6 +21,7 @@ from hersey.life.age import Age
 from hersey.life.campaign import Entry
 from hersey.life.campaign.conversion import entry_of
 from hersey.life.growth import fit as growth_module
+from hersey.life.growth import marginal
 from hersey.life.growth import posterior as growth_posterior
 from hersey.life.indicators import sticking
 from hersey.machine.machine import Machine, read_machine
@@ -118,7 +119,7 @@ def fewer(patch: pytest.MonkeyPatch) -> None:
     """A third of the draws: what they would tell better is the matter of the benchmark."""
     patch.setattr(growth_posterior, "_ROUNDS", (100, 100, 100, 200))
     patch.setattr(growth_posterior, "_MOST", 2.0)
-    patch.setattr(growth_posterior, "_POPULATION", 64)
+    patch.setattr(marginal, "_POPULATION", 64)
     patch.setattr(growth_module, "_DRAWS", 1000)
 
 

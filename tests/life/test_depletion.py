@@ -13,9 +13,10 @@ import pytest
 from hersey import _core
 from hersey.arrays import FloatArray, pointwise
 from hersey.errors import InsufficientDataError, ParameterError
-from hersey.life.film import through_life
+from hersey.life.film import starving
 from hersey.life.film.filled_dwells import FilledDwells, filled_dwells
 from hersey.life.film.layer import Layers, layers
+from hersey.life.film.of_runs import starvation_indicator
 from hersey.life.film.starved_drag import (
     FREE,
     LAYER,
@@ -26,7 +27,7 @@ from hersey.life.film.starved_drag import (
     film_of,
     flooded,
 )
-from hersey.life.film.through_life import STARVED, film_life, starvation_indicator
+from hersey.life.film.through_life import STARVED, film_life
 from hersey.life.indicator import Indicators, Runs
 from hersey.life.oil_layer import USUAL_SHARPNESS, age_of_layer, log_film_share, log_layer
 from hersey.lubrication.film import film_thickness
@@ -270,7 +271,7 @@ def test_a_film_that_is_not_that_of_the_file_is_not_told() -> None:
 def test_what_the_law_itself_may_be_off_moves_all_ages(monkeypatch: pytest.MonkeyPatch) -> None:
     """Without it intervals are those of the dwells alone, and narrower."""
     told = shipped.film(1).starves[0].units[0].age
-    monkeypatch.setattr(through_life, "_LAW", 0.0)
+    monkeypatch.setattr(starving, "_LAW", 0.0)
     bare = film_life(shipped.campaign(1), shipped.machine()).starves[0].units[0].age
     assert told.high - told.low > 1.05 * (bare.high - bare.low)
     assert told.value == pytest.approx(bare.value, rel=0.02)

@@ -14,11 +14,13 @@ from hypothesis import strategies as st
 
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.life.growth import fit as growth_module
+from hersey.life.growth import peaks
 from hersey.life.growth import posterior as growth_posterior
 from hersey.life.growth.fit import Growth, fit_growth
 from hersey.life.growth.laws import LAWS
 from hersey.life.growth.limit_ages import quantiles
-from hersey.life.growth.posterior import Points, _likelihood
+from hersey.life.growth.marginal import likelihood
+from hersey.life.growth.points import Points
 
 LAW = {law.name: law for law in LAWS}
 ZERO = np.zeros(1)
@@ -201,7 +203,7 @@ def test_units_are_integrated_out_exactly() -> None:
     age, value = np.array([[0.0, 0.4, 1.0]]), np.array([[0.02, 0.2, 0.55]])
     points = Points(age, value, np.full((1, 3), 0.02**2), np.ones((1, 3), dtype=bool))
     shared = np.array([[0.05, math.log(0.3), math.log(0.03), -0.6, math.log(0.5)]])
-    found = _likelihood(LAW["linear"], points, shared, np.array([-0.5]))[0]
+    found = likelihood(LAW["linear"], points, shared, np.array([-0.5]))[0]
     level, size = np.linspace(-1.5, 1.6, 1201), np.linspace(-4.0, 3.0, 1401)
     left = value[0] - np.log1p(np.exp(size)[:, None] * age[0])[None] - level[:, None, None]
     variance = 0.02**2 + 0.03**2
@@ -258,10 +260,10 @@ def test_other_refusals() -> None:
 
 def test_priors_are_those_of_the_docstring() -> None:
     text = fit_growth.__doc__ or ""
-    mean, deviation = growth_posterior.RATE_PRIOR
+    mean, deviation = peaks.RATE_PRIOR
     assert f"N({mean:g}, {deviation:g}^2)" in text
-    assert f"half-normal of scale {growth_posterior.RATE_SPREAD:g}" in text
-    assert f"half-normal of scale {growth_posterior.RUN_SCATTER:g}" in text
+    assert f"half-normal of scale {peaks.RATE_SPREAD:g}" in text
+    assert f"half-normal of scale {peaks.RUN_SCATTER:g}" in text
 
 
 def test_the_ends_of_an_age_hold_nine_draws_in_ten() -> None:

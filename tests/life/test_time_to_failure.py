@@ -12,7 +12,7 @@ import pytest
 
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.life.growth import fit as growth_module
-from hersey.life.growth import posterior as growth_posterior
+from hersey.life.growth import marginal
 from hersey.life.growth.fit import fit_growth
 from hersey.life.indicator import Indicator, Indicators, OwnAges, Runs
 from hersey.life.time_to_failure import joined, next_run
@@ -175,7 +175,7 @@ def test_the_integral_of_each_law_is_that_of_its_curve(law: str) -> None:
     """Summed anew by the trapezium rule, also where a layer dries out soon after."""
     found_law = next(each for each in growth_module.LAWS if each.name == law)
     shapes = np.array([[[-0.9], [-0.3], [0.1], [1.0]]] * len(found_law.shapes)).reshape(-1, 4, 1)
-    units = growth_posterior.Units(
+    units = marginal.Units(
         found_law, np.zeros((4, 3)), np.array([[-2.0, 0.0, 1.0]] * 4), shapes, np.ones((4, 1))
     )
     found = growth_module.ages_of_sum(units, np.full((4, 1), math.log(1.7)))

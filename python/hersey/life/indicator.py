@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hersey.arrays import FloatArray
+from hersey.arrays import FloatArray, IntArray
 from hersey.errors import ParameterError
 
 if TYPE_CHECKING:
@@ -34,6 +34,12 @@ class Runs:
     def units(self) -> tuple[str, ...]:
         """The units, each once, in the order of the runs."""
         return tuple(dict.fromkeys(self.unit))
+
+
+def most_ages(place: IntArray, age: FloatArray) -> int:
+    """Return at how many ages the specimen was seen that was seen at most; both of each run."""
+    seen = np.unique(np.stack([place, age]), axis=1)[0]
+    return int(np.unique(seen, return_counts=True)[1].max())
 
 
 @dataclass(frozen=True, repr=False)

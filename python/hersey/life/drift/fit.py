@@ -8,7 +8,8 @@ import numpy as np
 
 from hersey.arrays import BoolArray, FloatArray
 from hersey.life.drift.aged_torque import OWN, Scales, expected, parts, told
-from hersey.life.drift.units_with_age import Solved, Spread, Told, solve
+from hersey.life.drift.dwells import Dwells
+from hersey.life.drift.mixed_effects import Solved, Spread, Told, solve
 
 #: No torque is taken as known better than this, relative.
 _RESOLUTION = 2e-3
@@ -33,19 +34,6 @@ _CHANGE_DEVIATION = np.array([1.0, 1.0, 0.3, 3.0, 2.0, 1.0])
 _OF_START = np.array([0.01, 0.02, 0.01, 0.1, 0.1, 0.02])
 _OF_CHANGE = np.array([0.01, 0.02, 0.01, 0.1, 0.1, 0.02])
 _OF_RUNS = np.array([0.002, 0.005, 0.003, 0.03, 0.03, 0.005])
-
-
-@dataclass(frozen=True, repr=False)
-class Dwells:
-    """Dwells of runs as rows, filled up with dwells that ``given`` marks as none; runs by unit and age."""
-
-    speed: FloatArray
-    temperature: FloatArray
-    torque: FloatArray
-    error: FloatArray
-    given: BoolArray
-    age: FloatArray  #: of each run, over the greatest
-    unit: np.ndarray  #: its place, ascending
 
 
 @dataclass(frozen=True, repr=False)

@@ -43,9 +43,9 @@ _GRID, _SPREADS = 281, 40
 
 @dataclass(frozen=True)
 class Depletion:
-    """Draws of what units have, (draws, units, 5), and of units in general: means and spreads, (draws, 5)."""
+    """Draws of what specimens have, (draws, specimens, 5), and of all: means and spreads, (draws, 5)."""
 
-    units: FloatArray
+    specimens: FloatArray
     mean: FloatArray
     spread: FloatArray
     greatest_age: float
@@ -53,28 +53,27 @@ class Depletion:
     warmth: float
     rates: Rates
 
-    def layer(self, units: FloatArray, age: FloatArray) -> FloatArray:
+    def layer(self, own: FloatArray, age: FloatArray) -> FloatArray:
         """Return ln of the layer (m) of draws (..., 5) at ages in any unit; shape (..., ages)."""
-        own = units[..., None, :]
-        scaled = np.asarray(age) / self.greatest_age
-        return _scale(self.reference) + log_layer(_new(own), *self.rates.of(own), scaled)
+        scaled, each = np.asarray(age) / self.greatest_age, own[..., None, :]
+        return _scale(self.reference) + log_layer(_new(each), *self.rates.of(each), scaled)
 
-    def rate(self, units: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def rate(self, own: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return K (1/(m^2 age)), e and g (1/age) of draws (..., 5)."""
-        side_flow, evaporation = self.rates.of(units)
+        side_flow, evaporation = self.rates.of(own)
         square = np.exp(2.0 * _scale(self.reference))
-        each = (side_flow / square, evaporation, units[..., THICKENING])
+        each = (side_flow / square, evaporation, own[..., THICKENING])
         return tuple(rate / self.greatest_age for rate in each)  # type: ignore[return-value]
 
-    def viscosity(self, units: FloatArray, age: FloatArray) -> FloatArray:
+    def viscosity(self, own: FloatArray, age: FloatArray) -> FloatArray:
         """Return ln of the factor on viscosity of draws (..., 5) at ages; shape (..., ages)."""
         scaled = np.asarray(age) / self.greatest_age
-        return units[..., VISCOSITY_NEW, None] + units[..., THICKENING, None] * scaled
+        return own[..., VISCOSITY_NEW, None] + own[..., THICKENING, None] * scaled
 
-    def over_flooded(self, units: FloatArray, age: FloatArray, point: Flooded) -> FloatArray:
+    def over_flooded(self, own: FloatArray, age: FloatArray, point: Flooded) -> FloatArray:
         """Return ln of the layer over the flooded film at a point, of draws (..., 5) at ages."""
-        at = self.viscosity(units, age) + self.warmth * point.steep.item()
-        return self.layer(units, age) - cubic(point.film.reshape(4), at)[0]
+        at = self.viscosity(own, age) + self.warmth * point.steep.item()
+        return self.layer(own, age) - cubic(point.film.reshape(4), at)[0]
 
 
 @dataclass(frozen=True)

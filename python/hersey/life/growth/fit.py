@@ -16,23 +16,26 @@ from numpy.typing import ArrayLike
 from scipy import special
 
 from hersey.arrays import FloatArray, numbers_of, one_thread
-from hersey.errors import InsufficientDataError, ParameterError
+from hersey.errors import ParameterError
+from hersey.life.growth.importance import systematic
 from hersey.life.growth.laws import LAWS, Law
 from hersey.life.growth.limit_ages import (
     BEYOND,
     BEYOND_SUM,
-    CONFIDENCE,
     AgesAtLimit,
     Interval,
-    age_at_limit,
+    ages_at_limit,
     ages_of,
     ages_of_sum,
     beyond,
     later,
     quantiles,
-    share_of_units,
 )
-from hersey.life.growth.posterior import Points, Posterior, Units, drawn_units, new_units, peaks, posterior
+from hersey.life.growth.marginal import Units, drawn_units, new_units
+from hersey.life.growth.peaks import peaks
+from hersey.life.growth.points import Points, checked_runs, falls, points_of
+from hersey.life.growth.posterior import Posterior, parameters_of, posterior
+from hersey.life.indicator import OwnAges
 from hersey.result import Result, json_record
 
 if TYPE_CHECKING:
@@ -42,8 +45,6 @@ if TYPE_CHECKING:
 NAMED = 0.9
 #: Draws behind every interval; of more than so many units.
 _DRAWS, _OF_MANY, _MANY = 2000, 1000, 100
-#: No value is taken as known better than this, relative.
-_RESOLUTION = 1e-4
 #: Draws, about, behind the middle of a curve.
 _OF_MIDDLE = 100
 #: Up to so many units tell little of how units differ.
@@ -181,12 +182,17 @@ class Growth(Result):
         ParameterError
             If the limit is not positive, or its error negative.
         """
-        ages, new = self.drawn_ages(limit, limit_error=limit_error, accumulates=accumulates)
-        told = tuple(age_at_limit(name, ages[:, i], self.last_age[i]) for i, name in enumerate(self.units))
-        new.sort(axis=1)
-        b10, b50 = (share_of_units(new, share) for share in (0.1, 0.5))
-        quantity = f"the sum of {self.quantity} over age" if accumulates else self.quantity
-        return AgesAtLimit(quantity, self.age_unit, limit, told, b10, b50, self.notes, accumulates)
+        own = OwnAges(*self.drawn_ages(limit, limit_error=limit_error, accumulates=accumulates))
+        return ages_at_limit(
+            self.quantity,
+            self.age_unit,
+            limit,
+            self.units,
+            own,
+            self.last_age,
+            self.notes,
+            accumulates=accumulates,
+        )
 
     def drawn_ages(
         self, limit: float, *, limit_error: float = 0.0, accumulates: bool = False
@@ -310,9 +316,9 @@ def fit_growth(
     [50, 30]
     """
     chosen = _chosen(laws)
-    names, columns = _checked(unit, age, value, error)
+    names, columns = checked_runs(unit, age, value, error)
     units = tuple(dict.fromkeys(names))
-    points, scale = _points(names, units, *columns)
+    points, scale = points_of(names, units, *columns)
     random = np.random.default_rng(seed)
     found = [posterior(peak, points, random) for peak in peaks(chosen, points)]
     before = dict(zip((law.name for law in chosen), _beforehand(chosen), strict=True))
@@ -332,10 +338,10 @@ def fit_growth(
         runs=runs,
         last_age=last,
         weights=by_law,
-        parameters={each.law.name: _parameters(each, scale) for each in found},
+        parameters={each.law.name: parameters_of(each, scale) for each in found},
         effective=min(each.effective for each, w in zip(found, weights, strict=True) if w > 0.05),
         notes=_notes(runs, points),
-        _of_units=tuple(drawn_units(each, points, shared, random) for each, shared in draws),
+        _of_units=tuple(drawn_units(each.law, points, shared, each.sizes, random) for each, shared in draws),
         _of_population=tuple(new_units(each.law, shared) for each, shared in draws),
         _points=points,
         _scale=scale,
@@ -361,71 +367,12 @@ def _beforehand(laws: list[Law]) -> FloatArray:
     return np.array([-math.log(growing) if law.grows else 0.0 for law in laws])
 
 
-def _checked(
-    unit: Sequence[object], age: ArrayLike, value: ArrayLike, error: ArrayLike
-) -> tuple[list[str], list[FloatArray]]:
-    names = [str(each).strip() for each in ([unit] if isinstance(unit, str) else unit)]
-    columns = [np.atleast_1d(numbers_of(*each)) for each in (("age", age), ("value", value))]
-    columns.append(numbers_of("error", error))
-    if columns[2].ndim == 0:
-        columns[2] = np.full(len(names), float(columns[2]))
-    for name, column in zip(("age", "value", "error"), columns, strict=True):
-        if column.shape != (len(names),):
-            raise ParameterError(f"{len(names)} units are named, but {name} has the shape {column.shape}")
-    rules = (("age", "negative"), ("value", "not positive"), ("error", "negative"))
-    for (name, fault), column in zip(rules, columns, strict=True):
-        for i in np.flatnonzero(~np.isfinite(column)):
-            raise ParameterError(f"{name} of run {i + 1} (unit {names[i]!r}) is no number", index=int(i))
-        bad = column <= 0.0 if name == "value" else column < 0.0
-        for i in np.flatnonzero(bad):
-            raise ParameterError(
-                f"{name} of run {i + 1} (unit {names[i]!r}) is {fault}: {column[i]:g}",
-                quantity=name,
-                value=float(column[i]),
-                limit=0.0,
-                index=int(i),
-            )
-    if "" in names:
-        raise ParameterError(f"run {names.index('') + 1} names no unit", index=names.index(""))
-    ages: dict[str, set[float]] = {}
-    for name, t in zip(names, columns[0].tolist(), strict=True):
-        ages.setdefault(name, set()).add(t)
-    if max(len(each) for each in ages.values()) < 2:
-        raise InsufficientDataError(
-            "no unit was seen at two ages, so nothing tells its growth: add runs at another age"
-        )
-    return names, columns
-
-
-def _points(
-    names: list[str], units: tuple[str, ...], age: FloatArray, value: FloatArray, error: FloatArray
-) -> tuple[Points, tuple[float, float]]:
-    """Runs as rows of units, filled up, in scaled ages and logarithms less their mean; and both scales."""
-    of_unit: dict[str, list[int]] = {each: [] for each in units}
-    for i, name in enumerate(names):
-        of_unit[name].append(i)
-    rows = [np.array(each) for each in of_unit.values()]
-    longest = max(row.size for row in rows)
-    given = np.zeros((len(units), longest), dtype=bool)
-    filled = np.zeros((3, len(units), longest))
-    logs, greatest = np.log(value), float(age.max())
-    middle = float(logs.mean())
-    place = np.zeros((2, value.size), dtype=np.intp)
-    for i, row in enumerate(rows):
-        given[i, : row.size] = True
-        ordered = row[np.argsort(age[row], kind="stable")]
-        filled[:, i, : row.size] = age[ordered] / greatest, logs[ordered] - middle, error[ordered] ** 2
-        place[0, ordered], place[1, ordered] = i, np.arange(row.size)
-    return Points(filled[0], filled[1], filled[2] + _RESOLUTION**2, given, place), (greatest, middle)
-
-
 def _resampled(
     found: list[Posterior], weights: FloatArray, count: int, random: np.random.Generator
 ) -> list[tuple[Posterior, FloatArray]]:
     """Equally probable draws over all laws (systematic resampling); laws without any are left out."""
     every = np.concatenate([each.weight * w for each, w in zip(found, weights, strict=True)])
-    steps = (np.arange(count) + random.random()) / count
-    index = np.minimum(np.searchsorted(np.cumsum(every) / every.sum(), steps), every.size - 1)
+    index = systematic(every, count, random)
     ends = np.cumsum([0, *(len(each.shared) for each in found)])
     draws = []
     for each, begin, end in zip(found, ends, ends[1:], strict=False):
@@ -433,33 +380,6 @@ def _resampled(
         if own.size:
             draws.append((each, each.shared[own]))
     return draws
-
-
-def _parameters(found: Posterior, scale: tuple[float, float]) -> dict[str, Interval]:
-    """Medians and 90 % intervals of what all units share, in the units given."""
-    shared, law = found.shared, found.law
-    named = {"level": np.exp(shared[:, 0] + scale[1]), "spread of levels": np.exp(shared[:, 1])}
-    if law.grows:
-        per_age = 1.0 if law.name == "saturating" else scale[0]
-        named["rate"] = np.exp(shared[:, 3]) / per_age
-        named["spread of rates"] = np.exp(shared[:, 4])
-    for i, (name, _, _) in enumerate(law.shapes, 5):
-        own = shared[:, i]
-        if name.startswith("logit "):
-            named[name.removeprefix("logit ")] = special.expit(own)
-        elif name == "ln(tau/T)":
-            named["tau"] = np.exp(own) * scale[0]
-        else:
-            named[name] = own
-    named["scatter of runs"] = np.exp(shared[:, 2])
-    return {name: _weighed(values, found.weight) for name, values in named.items()}
-
-
-def _weighed(values: FloatArray, weight: FloatArray) -> Interval:
-    order = np.argsort(values)
-    steps = np.cumsum(weight[order])
-    ends = np.searchsorted(steps, [0.5, 0.5 - CONFIDENCE / 2, 0.5 + CONFIDENCE / 2])
-    return Interval(*(float(values[order[min(i, values.size - 1)]]) for i in ends))
 
 
 def _notes(runs: tuple[int, ...], points: Points) -> tuple[str, ...]:
@@ -475,20 +395,6 @@ def _notes(runs: tuple[int, ...], points: Points) -> tuple[str, ...]:
     once = sum(np.unique(age[given]).size < 2 for age, given in zip(points.age, points.given, strict=True))
     if once:
         notes.append(f"{once} of the units were seen at one age only: their growth is that of the others")
-    if _falls(points):
+    if falls(points):
         notes.append("values fall with age: no law of growth does; give the reciprocal of what falls")
     return tuple(notes)
-
-
-def _falls(points: Points) -> bool:
-    """Whether straight lines through the units, with one slope, fall by three standard errors."""
-    number = points.given.sum(axis=1, keepdims=True)
-    age, value = (
-        (each - (each * points.given).sum(axis=1, keepdims=True) / number) * points.given
-        for each in (points.age, points.value)
-    )
-    square = (age**2).sum()
-    slope = (age * value).sum() / square
-    left = ((value - slope * age) ** 2 * points.given).sum() / max(number.sum() - len(number) - 1, 1)
-    least = (points.variance * points.given).sum() / number.sum()
-    return bool(slope < -3.0 * math.sqrt(max(left, least) / square))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -10,7 +11,8 @@ import numpy as np
 from scipy import special
 
 from hersey.arrays import FloatArray
-from hersey.life.growth.posterior import Units
+from hersey.life.growth.marginal import Units
+from hersey.life.indicator import OwnAges
 from hersey.result import Result, json_record
 
 if TYPE_CHECKING:
@@ -18,6 +20,8 @@ if TYPE_CHECKING:
 
 #: Confidence of every interval of an age: what life tests are planned for.
 CONFIDENCE = 0.9
+#: Standard deviations of a normal distribution in half of such an interval.
+DEVIATIONS = 1.645
 #: A law is fitted up to the last run. Growth is a sum of processes, and the time from there to a limit was
 #: off by so much (logarithm) in campaigns of a generator of its own (`benchmarks/life.py`), most of it in
 #: common to the units; more for what accumulates, where a rate is a power of what grows.
@@ -113,14 +117,35 @@ class AgesAtLimit(Result):
 
 def age_at_limit(name: str, ages: FloatArray, last: float = math.nan) -> AgeAtLimit:
     """Return what equally probable ages tell of a unit that was last seen at ``last``."""
-    low, median, high = (float(each) for each in quantiles(ages))
     never, passed = float(np.isinf(ages).mean()), float((ages <= last).mean())
-    return AgeAtLimit(name, Interval(median, low, high), never, last, passed)
+    return AgeAtLimit(name, interval(ages), never, last, passed)
 
 
 def share_of_units(ages: FloatArray, share: float) -> AgeAtLimit:
     """Age that a share of new units has reached, ``ages`` being sorted along the units."""
     return age_at_limit(f"B{share * 100:.0f}", ages[:, math.ceil(share * ages.shape[1]) - 1])
+
+
+def ages_at_limit(
+    quantity: str,
+    age_unit: str,
+    limit: float,
+    names: Sequence[str],
+    own: OwnAges,
+    last: Sequence[float] | FloatArray,
+    notes: tuple[str, ...],
+    *,
+    accumulates: bool = False,
+) -> AgesAtLimit:
+    """Return what draws of the ages of specimens, last seen at ``last``, and of new ones show.
+
+    ``accumulates``: the limit is that of the integral of the quantity over age.
+    """
+    quantity = f"the sum of {quantity} over age" if accumulates else quantity
+    known = [age_at_limit(name, own.known[:, i], float(last[i])) for i, name in enumerate(names)]
+    new = np.sort(own.new, axis=1)
+    b10, b50 = (share_of_units(new, share) for share in (0.1, 0.5))
+    return AgesAtLimit(quantity, age_unit, limit, tuple(known), b10, b50, notes, accumulates)
 
 
 def ages_of(units: Units, level: FloatArray) -> FloatArray:
@@ -187,6 +212,12 @@ def quantiles(values: FloatArray) -> FloatArray:
     """Lower end, median and upper end over the draws; infinite numbers are numbers."""
     ends = [0.5 - CONFIDENCE / 2, 0.5, 0.5 + CONFIDENCE / 2]
     return np.asarray(np.quantile(values, ends, axis=0, method="inverted_cdf"))
+
+
+def interval(values: FloatArray) -> Interval:
+    """Return the median of draws with its interval."""
+    low, median, high = (float(each) for each in quantiles(values))
+    return Interval(median, low, high)
 
 
 def _number(value: float) -> str:

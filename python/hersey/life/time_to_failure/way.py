@@ -11,8 +11,8 @@ import numpy as np
 from hersey.arrays import FloatArray
 from hersey.errors import InsufficientDataError
 from hersey.life.growth.fit import Growth, fit_growth
-from hersey.life.growth.limit_ages import AgesAtLimit, age_at_limit, share_of_units
-from hersey.life.indicator import Indicator, Indicators
+from hersey.life.growth.limit_ages import AgesAtLimit, ages_at_limit
+from hersey.life.indicator import Indicator, Indicators, OwnAges
 from hersey.result import json_record
 
 
@@ -92,17 +92,15 @@ def fitted_way(indicators: Indicators, each: Indicator, seed: int, known: Growth
     missing = [name for name in last if name not in row]
     if missing and each.own_ages is None:
         notes.append(f"no run of {listed(missing)} tells it: taken as any new unit")
-    ordered = np.sort(new, axis=1)
-    quantity = f"the sum of {each.name} over age" if each.accumulates else each.name
-    at_limit = AgesAtLimit(
-        quantity,
+    at_limit = ages_at_limit(
+        each.name,
         runs.age_unit,
         each.limit,
-        tuple(age_at_limit(name, ages[:, i], last[name]) for i, name in enumerate(last)),
-        share_of_units(ordered, 0.1),
-        share_of_units(ordered, 0.5),
+        list(last),
+        OwnAges(ages, new),
+        list(last.values()),
         tuple(notes),
-        each.accumulates,
+        accumulates=each.accumulates,
     )
     residuals = np.full(runs.age.size, np.nan)
     residuals[told] = growth.residuals()
