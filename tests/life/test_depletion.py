@@ -1,4 +1,4 @@
-"""The layer of oil of runs, its law over ages, and when units starve: held against known truth."""
+"""The layer of oil of runs, its law over ages, and when specimens starve: held against known truth."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def grid() -> tuple[FloatArray, FloatArray]:
 
 
 def read(ageing: Ageing, seed: int) -> tuple[Layers, FloatArray]:
-    """What runs of fresh units tell, and ln of their layer over the flooded film at the cold corner."""
+    """What runs of fresh specimens tell, and ln of their layer over the flooded film at the cold corner."""
     machine, rest = example_drive()
     speed, kelvin = grid()
     random = np.random.default_rng(seed)
@@ -188,7 +188,7 @@ def test_the_shipped_units_starve_when_they_do() -> None:
     held = (film.film[0].low - 2e-3 <= over) & (over <= film.film[0].high + 2e-3)
     assert held.mean() >= 0.85
     assert [film.runs.unit[i] for i in np.flatnonzero(film.starved())] == ["U4"]
-    assert "1 of 8 units starve" in film.headline()
+    assert "1 of 8 specimens starve" in film.headline()
 
 
 def test_what_a_result_says() -> None:
@@ -248,7 +248,7 @@ def test_given_numbers_of_the_law_are_kept() -> None:
     ("kept", "said"),
     [
         (pl.col("temperature (K)") < 335.0, "one temperature cannot tell"),
-        (pl.col("run_id") == 1, "no unit was seen at two ages"),
+        (pl.col("run_id") == 1, "no specimen was seen at two ages"),
     ],
 )
 def test_what_the_dwells_do_not_tell_is_said(kept: pl.Expr, said: str) -> None:

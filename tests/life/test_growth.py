@@ -29,7 +29,7 @@ ZERO = np.zeros(1)
 def logs(
     name: str, *, units: int = 6, ages: int = 8, noise: float = 0.01, seed: int = 3, reach: float = 1.0
 ) -> tuple[list[str], np.ndarray, np.ndarray, np.ndarray]:
-    """Units, ages to 600, values, and the true age of each unit at the value 2, formulas written out anew."""
+    """Specimens, ages to 600, values, and the true age of each at the value 2, formulas written out anew."""
     random = np.random.default_rng(seed)
     rate = reach * np.exp(random.normal(0.0, 0.2, units)) / 1000.0
     level = np.exp(random.normal(0.0, 0.05, units))
@@ -152,7 +152,7 @@ def test_same_input_same_bits_whatever_the_order() -> None:
 def test_few_units_are_wide_and_say_so(count: int) -> None:
     unit, age, value, _ = logs("linear", units=count, ages=4, reach=1.5)
     few = fit_growth(unit, age, value, 0.002)
-    assert f"{'one unit' if count == 1 else '2 units'} tell" in few.notes[0]
+    assert f"{'one specimen' if count == 1 else '2 specimens'} tell" in few.notes[0]
     b10 = few.reaches(2.0).b10.age
     assert b10.high > 2.0 * b10.low
     assert few.law is None
@@ -199,7 +199,7 @@ def test_a_drying_film_follows_its_equation(logit: float) -> None:
 
 
 def test_units_are_integrated_out_exactly() -> None:
-    """Against a plain sum over level and size of one unit."""
+    """Against a plain sum over level and size of one specimen."""
     age, value = np.array([[0.0, 0.4, 1.0]]), np.array([[0.02, 0.2, 0.55]])
     points = Points(age, value, np.full((1, 3), 0.02**2), np.ones((1, 3), dtype=bool))
     shared = np.array([[0.05, math.log(0.3), math.log(0.03), -0.6, math.log(0.5)]])
@@ -231,12 +231,12 @@ def test_the_result_answers() -> None:
 @pytest.mark.parametrize(
     ("columns", "says"),
     [
-        ((["A", "A"], [0, 1], [1, 0]), r"value of run 2 \(unit 'A'\) is not positive: 0"),
-        ((["A", "A"], [-1, 1], [1, 2]), r"age of run 1 \(unit 'A'\) is negative: -1"),
-        ((["A", "A"], [0, 1], [1, np.nan]), r"value of run 2 \(unit 'A'\) is no number"),
-        ((["A", "A"], [0, 1], [1, 2], [0.1, -0.1]), r"error of run 2 \(unit 'A'\) is negative"),
-        ((["A", "A"], [0, 1, 2], [1, 2]), r"2 units are named, but age has the shape \(3,\)"),
-        ((["A", " "], [0, 1], [1, 2]), "run 2 names no unit"),
+        ((["A", "A"], [0, 1], [1, 0]), r"value of run 2 \(specimen 'A'\) is not positive: 0"),
+        ((["A", "A"], [-1, 1], [1, 2]), r"age of run 1 \(specimen 'A'\) is negative: -1"),
+        ((["A", "A"], [0, 1], [1, np.nan]), r"value of run 2 \(specimen 'A'\) is no number"),
+        ((["A", "A"], [0, 1], [1, 2], [0.1, -0.1]), r"error of run 2 \(specimen 'A'\) is negative"),
+        ((["A", "A"], [0, 1, 2], [1, 2]), r"2 specimens are named, but age has the shape \(3,\)"),
+        ((["A", " "], [0, 1], [1, 2]), "run 2 names no specimen"),
         ((["A", "A"], [0, 1], ["a", "b"]), "value is not a number"),
     ],
 )
@@ -246,7 +246,7 @@ def test_bad_input_is_named(columns: Any, says: str) -> None:
 
 
 def test_other_refusals() -> None:
-    with pytest.raises(InsufficientDataError, match="no unit was seen at two ages"):
+    with pytest.raises(InsufficientDataError, match="no specimen was seen at two ages"):
         fit_growth(["A", "B", "B"], [1.0, 2.0, 2.0], [1.0, 2.0, 2.1])
     with pytest.raises(ParameterError, match="no law of growth is called 'cubic'"):
         fit_growth(["A", "A"], [0, 1], [1, 2], laws=["cubic"])

@@ -35,7 +35,7 @@ class Dwells:
     error: FloatArray
     given: BoolArray
     age: FloatArray  #: of each run, over the greatest
-    unit: IntArray  #: place of its specimen, ascending
+    specimen: IntArray  #: place of its specimen, ascending
 
 
 def dwells_of(table: pl.DataFrame, age_name: str) -> tuple[Dwells, tuple[str, ...], float]:
@@ -57,7 +57,7 @@ def dwells_of(table: pl.DataFrame, age_name: str) -> tuple[Dwells, tuple[str, ..
     place = np.array([places[name] for name in names])
     if most_ages(place, age) < 2:
         raise InsufficientDataError(
-            "no unit was seen at two ages, so nothing tells what moved: add runs at another age"
+            "no specimen was seen at two ages, so nothing tells what moved: add runs at another age"
         )
     oldest = float(age.max())
     speed, torque, error, kelvin = (rows.filled(columns[name]) for name in _NUMBERS)

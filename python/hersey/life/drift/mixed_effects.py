@@ -34,7 +34,7 @@ class Told:
 class Spread:
     """Variances: of specimens in start and change (2 own,), and of runs (own,)."""
 
-    units: FloatArray
+    specimens: FloatArray
     runs: FloatArray
 
 
@@ -48,8 +48,8 @@ class Solved:
 
     common: FloatArray
     common_covariance: FloatArray
-    unit: FloatArray
-    unit_covariance: FloatArray
+    specimen: FloatArray
+    specimen_covariance: FloatArray
     mean: FloatArray  #: of the specimens, and its covariance: of these, not of others like them
     mean_covariance: FloatArray
     run: FloatArray
@@ -59,7 +59,7 @@ class Solved:
 def solve(
     told: Told,
     age: FloatArray,
-    unit: IntArray,
+    specimen: IntArray,
     spread: Spread,
     usual: Spread,
     prior: tuple[FloatArray, FloatArray],
@@ -72,7 +72,7 @@ def solve(
         Of each run.
     age
         Of each run, (runs,).
-    unit
+    specimen
         The place of its specimen from 0, ascending, (runs,).
     spread, usual
         The variances, and those that are usual: worth two specimens, or runs.
@@ -80,11 +80,11 @@ def solve(
         Mean and deviation of population and shared values, (2 own + shared,) each.
     """
     runs = _Runs(told, spread.runs)
-    specimens = _Specimens.of(runs, age, unit, spread.units)
+    specimens = _Specimens.of(runs, age, specimen, spread.specimens)
     common, covariance = specimens.common(prior)
     found, likeliest = specimens.values(common, covariance)
-    values, off_squares = runs.values(age, unit, common, found)
-    renewed = Spread(_pooled(likeliest, usual.units), _pooled(off_squares, usual.runs))
+    values, off_squares = runs.values(age, specimen, common, found)
+    renewed = Spread(_pooled(likeliest, usual.specimens), _pooled(off_squares, usual.runs))
     return Solved(
         common,
         covariance,
@@ -122,17 +122,17 @@ class _Runs:
         self.right_shared = (told.right[:, own:] - _times(back, told.right[:, :own])).sum(axis=0)
 
     def values(
-        self, age: FloatArray, unit: IntArray, common: FloatArray, specimens: _Normal
+        self, age: FloatArray, specimen: IntArray, common: FloatArray, specimens: _Normal
     ) -> tuple[FloatArray, FloatArray]:
         """Values of each run, and the mean squares of their scatter."""
-        own, of = self.own, specimens.mean[unit]
+        own, of = self.own, specimens.mean[specimen]
         lines = of[:, :own] + age[:, None] * of[:, own:]
         rest = self.told.right[:, :own] - _times(self.of_run, lines) - self.cross @ common[2 * own :]
         off = _times(self.scatter, rest)
         by_line = self.scatter @ self.of_run
         reach = np.concatenate([-by_line, -age[:, None, None] * by_line], axis=2)
         # The shared values are known far better than a run: their part in its variance is left out.
-        variance = _diagonal(self.scatter) + _within(reach, specimens.covariance[unit])
+        variance = _diagonal(self.scatter) + _within(reach, specimens.covariance[specimen])
         return lines + off, off**2 + variance
 
 
@@ -140,7 +140,7 @@ class _Runs:
 class _Specimens:
     """Specimens, eliminated: information on starts and changes, with themselves and with what is shared."""
 
-    by_unit: FloatArray
+    by_specimen: FloatArray
     with_shared: FloatArray
     right: FloatArray
     variance: FloatArray
@@ -148,9 +148,9 @@ class _Specimens:
     right_shared: FloatArray
 
     @classmethod
-    def of(cls, runs: _Runs, age: FloatArray, unit: IntArray, variance: FloatArray) -> _Specimens:
+    def of(cls, runs: _Runs, age: FloatArray, specimen: IntArray, variance: FloatArray) -> _Specimens:
         """Sum over the runs of each specimen."""
-        first = np.flatnonzero(np.r_[True, np.diff(unit) > 0])
+        first = np.flatnonzero(np.r_[True, np.diff(specimen) > 0])
         powers = np.stack([np.ones_like(age), age, age**2])
 
         def summed(values: FloatArray, power: int) -> FloatArray:
@@ -170,7 +170,7 @@ class _Specimens:
     @cached_property
     def shrink(self) -> FloatArray:
         """What the spread over specimens leaves of their information."""
-        return np.asarray(np.linalg.inv(np.eye(self.variance.size) + self.by_unit * self.variance))
+        return np.asarray(np.linalg.inv(np.eye(self.variance.size) + self.by_specimen * self.variance))
 
     @cached_property
     def loose(self) -> FloatArray:
@@ -180,7 +180,7 @@ class _Specimens:
     @cached_property
     def pull(self) -> FloatArray:
         """How a specimen's own values follow population and shared ones."""
-        return np.asarray(-self.loose @ np.concatenate([self.by_unit, self.with_shared], axis=2))
+        return np.asarray(-self.loose @ np.concatenate([self.by_specimen, self.with_shared], axis=2))
 
     @cached_property
     def whole(self) -> FloatArray:
@@ -196,12 +196,12 @@ class _Specimens:
         two = self.variance.size
         held = self.with_shared.swapaxes(1, 2) @ self.loose
         matrix = np.zeros((mean.size,) * 2)
-        matrix[:two, :two] = (self.shrink @ self.by_unit).sum(axis=0)
+        matrix[:two, :two] = (self.shrink @ self.by_specimen).sum(axis=0)
         matrix[:two, two:] = (self.shrink @ self.with_shared).sum(axis=0)
         matrix[two:, :two] = matrix[:two, two:].T
         matrix[two:, two:] = self.shared - (held @ self.with_shared).sum(axis=0)
-        of_units = _times(self.shrink, self.right).sum(axis=0)
-        right = np.concatenate([of_units, self.right_shared - _times(held, self.right).sum(axis=0)])
+        of_specimens = _times(self.shrink, self.right).sum(axis=0)
+        right = np.concatenate([of_specimens, self.right_shared - _times(held, self.right).sum(axis=0)])
         # In deviations of the prior the matrix is well scaled.
         scaled = deviation[:, None] * matrix * deviation + np.eye(mean.size)
         inverse = np.linalg.inv(0.5 * (scaled + scaled.T))
@@ -212,9 +212,9 @@ class _Specimens:
         """Values of each specimen, and the mean squares of what sets them apart from the population."""
         two = self.variance.size
         apart = _times(self.loose, self.right) + self.pull @ common
-        of_units = self.loose + self.whole @ covariance @ self.whole.swapaxes(1, 2)
+        of_specimens = self.loose + self.whole @ covariance @ self.whole.swapaxes(1, 2)
         variance = _diagonal(self.loose) + _within(self.pull, covariance)
-        return _Normal(apart + common[:two], of_units), apart**2 + variance
+        return _Normal(apart + common[:two], of_specimens), apart**2 + variance
 
     def covariance_of_mean(self, covariance: FloatArray) -> FloatArray:
         """Covariance of the mean of these specimens."""

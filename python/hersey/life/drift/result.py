@@ -1,8 +1,8 @@
-"""Drift: what of the torque of a drive moved with age, in each unit and over all, and what that points to.
+"""Drift: what moved with age in the torque of a drive, in each specimen and over all, and what it points to.
 
-All runs of all units are fitted together (`fit`): one law of the torque (`aged_torque`), the values
-of each unit when new and their change with age, and how units and runs scatter about that. Quantities that
-anyone can read off a Stribeck curve follow with their intervals; a reading of the change is evidence.
+All runs of all specimens are fitted together (`fit`): one law of the torque (`aged_torque`), the values of
+each specimen when new and their change with age, and how specimens and runs scatter about that. Quantities
+that anyone can read off a Stribeck curve follow with their intervals; a reading of the change is evidence.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from hersey.units import celsius, rpm
 if TYPE_CHECKING:
     import polars as pl
 
-#: Up to so many units tell little of how units differ.
+#: Up to so many specimens tell little of how specimens differ.
 _FEW = 3
 
 
@@ -33,14 +33,14 @@ _FEW = 3
 class Drift(Result):
     """What moved with age, and what it points to.
 
-    ``reading`` is that of the units together, ``readings`` that of each; `Reading.sets` holds more than one
-    where the data cannot tell them apart.
+    ``reading`` is that of the specimens together, ``readings`` that of each; `Reading.sets` holds more than
+    one where the data cannot tell them apart.
     """
 
     units: tuple[str, ...]
     age_unit: str
     oldest: float
-    last_age: tuple[float, ...]  #: of each unit
+    last_age: tuple[float, ...]  #: of each specimen
     runs: int
     dwells: int
     quantities: tuple[Quantity, ...]
@@ -57,7 +57,7 @@ class Drift(Result):
 
     def headline(self) -> str:
         """Return what the drift points to."""
-        return f"{len(self.units)} units up to {self._age(self.oldest)}: {_pointed(self.reading)}"
+        return f"{len(self.units)} specimens up to {self._age(self.oldest)}: {_pointed(self.reading)}"
 
     def summary(self) -> str:
         """Return what moved, and the readings, as text."""
@@ -70,15 +70,15 @@ class Drift(Result):
         if len(self.reading.sets) > 1:
             lines.append("These readings cannot be told apart:")
             lines += [f"  {_listed(each) or 'nothing moved'}" for each in self.reading.sets]
-        lines += self._of_units()
+        lines += self._of_specimens()
         if any(self.reading.sets):
             lines.append(
                 "A reading says what would do this, and is no proof: something else may do the same."
             )
         return "\n".join([*lines, *(f"- {note}" for note in self.notes)])
 
-    def _of_units(self) -> list[str]:
-        """A line for each thing that is said of units."""
+    def _of_specimens(self) -> list[str]:
+        """A line for each thing that is said of specimens."""
         if len(self.units) == 1:
             return []
         told: dict[str, list[str]] = {}
@@ -88,7 +88,7 @@ class Drift(Result):
         for words, units in sorted(told.items(), key=lambda each: -len(each[1])):
             named = ", ".join(units[:_NAMED]) + f" and {len(units) - _NAMED} more" * (len(units) > _NAMED)
             lines.append(f"  {named}: {words}")
-        return ["Unit by unit:", *lines]
+        return ["Unit by specimen:", *lines]
 
     def _age(self, age: float) -> str:
         return f"{age:.6g} {self.age_unit}".strip()
@@ -110,7 +110,7 @@ class Drift(Result):
         )
 
     def to_frame(self) -> pl.DataFrame:
-        """Return the change of each quantity, of all units (empty name) and of each."""
+        """Return the change of each quantity, of all specimens (empty name) and of each."""
         import polars as pl
 
         rows = [
@@ -122,7 +122,7 @@ class Drift(Result):
         return pl.DataFrame(rows, schema=names, orient="row")
 
 
-#: How many units are named in a line.
+#: How many specimens are named in a line.
 _NAMED = 12
 #: What each ageing would do, told beside its reading.
 _WOULD = {
@@ -155,7 +155,7 @@ def _pointed(reading: Reading) -> str:
 
 
 def _of_one(reading: Reading) -> str:
-    """What is said of a unit."""
+    """What is said of a specimen."""
     perhaps = {each.words: None for every in reading.sets for each in every}
     for each in reading.sure:
         perhaps.pop(each.words, None)
@@ -173,7 +173,7 @@ def _evidence(change: Change) -> str:
 
 @one_thread()
 def fit_drift(runs: Campaign | pl.DataFrame) -> Drift:
-    """Fit all runs of all units together and tell what moved with age.
+    """Fit all runs of all specimens together and tell what moved with age.
 
     Parameters
     ----------
@@ -186,7 +186,7 @@ def fit_drift(runs: Campaign | pl.DataFrame) -> Drift:
     ParameterError
         If a column is missing, or a number is not one.
     InsufficientDataError
-        If no unit was seen at two ages.
+        If no specimen was seen at two ages.
     """
     table = runs.dwells() if isinstance(runs, Campaign) else runs
     age_name = next((name for name in table.columns if name.startswith("age (")), "")
@@ -195,12 +195,12 @@ def fit_drift(runs: Campaign | pl.DataFrame) -> Drift:
     quantities, ages = quantities_of(found, oldest)
     solved = found.solved
     together = _readings(found, solved.mean[None], solved.mean_covariance[None])[0]
-    each = _readings(found, solved.unit, solved.unit_covariance)
+    each = _readings(found, solved.specimen, solved.specimen_covariance)
     return Drift(
         units=units,
         age_unit=age_name.removeprefix("age (").removesuffix(")"),
         oldest=oldest,
-        last_age=tuple(float(oldest * dwells.age[dwells.unit == u].max()) for u in range(len(units))),
+        last_age=tuple(float(oldest * dwells.age[dwells.specimen == u].max()) for u in range(len(units))),
         runs=int(dwells.age.size),
         dwells=int(dwells.given.sum()),
         quantities=quantities,
@@ -229,10 +229,14 @@ def _notes(found: Fitted, dwells: Dwells, units: tuple[str, ...]) -> tuple[str, 
             "dwells at several temperatures."
         )
     if len(units) == 1:
-        notes.append("One unit tells nothing of how units differ: the intervals are those of this unit.")
+        notes.append(
+            "One specimen tells nothing of how specimens differ: the intervals are those of this specimen."
+        )
     elif len(units) <= _FEW:
-        notes.append(f"{len(units)} units tell little of how units differ: the intervals over all are wide.")
-    ages = np.unique(np.stack([dwells.unit, dwells.age]), axis=1)[0]
+        notes.append(
+            f"{len(units)} specimens tell little of how specimens differ: the intervals over all are wide."
+        )
+    ages = np.unique(np.stack([dwells.specimen, dwells.age]), axis=1)[0]
     alone = [units[int(u)] for u in np.flatnonzero(np.bincount(ages.astype(int)) < 2)]
     if alone:
         named = ", ".join(alone[:_NAMED]) + " and more" * (len(alone) > _NAMED)

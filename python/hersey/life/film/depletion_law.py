@@ -20,19 +20,20 @@ from hersey.life.film.layer import DRY, FLOODED, Layers
 from hersey.life.film.starved_drag import Flooded, cubic
 from hersey.life.oil_layer import log_layer
 
-#: What a unit has, in this order: ln(h0/h), ln of the rate of loss when new times T, logit of the share of
-#: evaporation in it, ln of the factor on viscosity when new, g T; T is the greatest age, h the flooded film
-#: at the reference.
+#: What a specimen has, in this order: ln(h0/h), ln of the rate of loss when new times T, logit of the share
+#: of evaporation in it, ln of the factor on viscosity when new, g T; T is the greatest age, h the flooded
+#: film at the reference.
 LAYER_NEW, LOSS, EVAPORATED, VISCOSITY_NEW, THICKENING = range(5)
 _NUMBERS = 5
-#: Means over units, beforehand: mean and standard deviation; spreads over units: scale of a half-normal.
+#: Means over specimens, beforehand: mean and standard deviation; spreads over specimens: scale of a
+#: half-normal.
 _MEAN = np.array([0.0, -0.5, 0.0, 0.0, 0.2])
 _MEAN_DEVIATION = np.array([2.0, 1.5, 1.5, 1.0, 0.7])
 _SPREAD = np.array([0.5, 0.7, 0.7, 0.2, 0.5])
 #: Scatter of layer and viscosity of runs about the law, beyond their own errors (ln).
 _SCATTER = 0.02
-#: Walkers, steps of which the first are dropped, and draws kept; for few units, and for so many that they
-#: tell the spread over units by their number.
+#: Walkers, steps of which the first are dropped, and draws kept; for few specimens, and for so many that they
+#: tell the spread over specimens by their number.
 _FEW_UNITS, _MANY_UNITS = (64, 500, 200, 2000), (16, 320, 120, 240)
 _MANY = 60
 #: Steps from one cull of walkers to the next, while they still search.
@@ -78,16 +79,16 @@ class Depletion:
 
 @dataclass(frozen=True)
 class Rates:
-    """The rates of side flow and evaporation in h and T, where known; None where units have their own.
+    """The rates of side flow and evaporation in h and T, where known; None where specimens have their own.
 
-    Where one is known, the loss of a unit is that by the other.
+    Where one is known, the loss of a specimen is that by the other.
     """
 
     side_flow: float | None = None
     evaporation: float | None = None
 
     def of(self, own: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return K T h^2 and e T of what units have, (..., 5)."""
+        """Return K T h^2 and e T of what specimens have, (..., 5)."""
         loss = np.exp(np.minimum(own[..., LOSS], 50.0))
         flows = 2.0 * np.exp(-2.0 * own[..., LAYER_NEW]) * loss
         if self.side_flow is not None:
@@ -100,7 +101,7 @@ class Rates:
 
     @property
     def free(self) -> IntArray:
-        """What units have of their own."""
+        """What specimens have of their own."""
         unknown = (self.side_flow is None) + (self.evaporation is None)
         fixed = {2: (), 1: (EVAPORATED,), 0: (LOSS, EVAPORATED)}[unknown]
         return np.array([k for k in range(_NUMBERS) if k not in fixed])
@@ -108,7 +109,7 @@ class Rates:
 
 @dataclass(frozen=True)
 class _Told:
-    """What runs tell on an even grid of places; runs of a unit stand together.
+    """What runs tell on an even grid of places; runs of a specimen stand together.
 
     ``table`` holds the root of the deviance, ln of the factor on viscosity and its weight, (runs, grid, 3).
     """
@@ -123,7 +124,7 @@ class _Told:
 
     @cached_property
     def first(self) -> IntArray:
-        """First run of each unit."""
+        """First run of each specimen."""
         return np.flatnonzero(np.diff(self.unit, prepend=-1))
 
     @cached_property
@@ -135,7 +136,7 @@ class _Told:
         return np.arange(self.age.size) * _GRID
 
     def log_likelihood(self, own: FloatArray) -> FloatArray:
-        """Return that of units, (walkers, units), at what they have, (walkers, units, 5)."""
+        """Return that of specimens, (walkers, specimens), at what they have, (walkers, specimens, 5)."""
         side_flow, evaporation = (rate[:, self.unit] for rate in self.rates.of(own))
         new = _new(own)[:, self.unit]
         layer = log_layer(new, side_flow, evaporation, self.age)
@@ -191,11 +192,11 @@ def fit_depletion(
     evaporation: float | None = None,
     seed: int = 0,
 ) -> Depletion:
-    """Fit the law to what runs tell, all units together.
+    """Fit the law to what runs tell, all specimens together.
 
     Walkers move by differences of others (ter Braak, Stat. Comput. 16 (2006) 239), means and spreads are
-    drawn given the units. Priors, all weak, in T (the greatest age) and h (the flooded film at the
-    reference): means over units ln(h0/h) N(0, 2^2), ln(K T h^2) N(0, 2^2), ln(e T) N(-1.5, 1.5^2), ln
+    drawn given the specimens. Priors, all weak, in T (the greatest age) and h (the flooded film at the
+    reference): means over specimens ln(h0/h) N(0, 2^2), ln(K T h^2) N(0, 2^2), ln(e T) N(-1.5, 1.5^2), ln
     viscosity factor N(0, 1), g T N(0.2, 0.7^2); spreads half-normal of 0.5, 0.7, 0.7, 0.2, 0.5.
 
     Parameters
@@ -203,9 +204,9 @@ def fit_depletion(
     layers
         What the runs tell.
     unit, age
-        Of each run: number of its unit from 0 on, ascending, and age in any one unit.
+        Of each run: number of its specimen from 0 on, ascending, and age in any one unit.
     side_flow, evaporation
-        K in 1/(m^2 age) and e in 1/age, where they are known: the same for all units. Fitted if left out.
+        K in 1/(m^2 age) and e in 1/age, where they are known: the same for all specimens. Fitted if left out.
     seed
         Of the draws.
     """
@@ -247,7 +248,7 @@ def fit_depletion(
 def _begin(
     layers: Layers, told: _Told, shape: tuple[int, int], random: np.random.Generator
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Walkers spread about what the youngest run of each unit tells."""
+    """Walkers spread about what the youngest run of each specimen tells."""
     best, _, _ = layers.thickness()
     own = np.empty((*shape, _NUMBERS))
     for k, runs in enumerate(np.split(np.arange(told.age.size), told.first[1:])):
@@ -272,7 +273,9 @@ def _tried(
     """What walkers try, and what their prior adds to the odds of taking it."""
     here = own[moved]
     tried = here.copy()
-    if random.random() < 0.25:  # one number anew from those of all units: then the likelihood alone decides
+    if (
+        random.random() < 0.25
+    ):  # one number anew from those of all specimens: then the likelihood alone decides
         k = free[random.integers(free.size)]
         drawn = random.standard_normal(here.shape[:2])
         tried[..., k] = mean[moved, None, k] + spread[moved, None, k] * drawn
@@ -291,7 +294,7 @@ def _tried(
 def _culled(
     own: FloatArray, density: FloatArray, mean: FloatArray, spread: FloatArray, free: IntArray
 ) -> None:
-    """Put the worse half of the walkers of each unit where the better half is, while they still search."""
+    """Put the worse half of the walkers of each specimen where the better half is, while they search."""
     prior = -0.5 * (((own - mean[:, None]) / spread[:, None])[..., free] ** 2).sum(axis=-1)
     order = np.argsort(density + prior, axis=0)
     half = len(own) // 2
@@ -304,7 +307,7 @@ def _culled(
 def _share(
     own: FloatArray, mean: FloatArray, spread: FloatArray, free: IntArray, random: np.random.Generator
 ) -> None:
-    """Draw means and spreads over units, given the units."""
+    """Draw means and spreads over specimens, given the specimens."""
     units = own.shape[1]
     precision = units / spread[:, free] ** 2 + _MEAN_DEVIATION[free] ** -2
     pulled = own[..., free].sum(axis=1) / spread[:, free] ** 2 + _MEAN[free] * _MEAN_DEVIATION[free] ** -2

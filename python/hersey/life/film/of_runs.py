@@ -48,7 +48,7 @@ class FilmPoint:
 
 @dataclass(frozen=True)
 class Told:
-    """Something that runs or units tell, with 90 % intervals; an end is infinite where it is not told."""
+    """Something that runs or specimens tell, with 90 % intervals; an end is infinite where it is not told."""
 
     value: FloatArray
     low: FloatArray
@@ -170,7 +170,7 @@ def _tells(dwells: FilledDwells) -> BoolArray:
 def _points(
     machine: Machine, dwells: FilledDwells, units: list[str], cold: float | None
 ) -> tuple[FilmPoint, FilmPoint]:
-    """The fastest operating point, and its speed at the coldest temperature that all units recorded."""
+    """The fastest operating point, and its speed at the coldest temperature that all specimens recorded."""
     coldest: dict[str, float] = {}
     for unit, kelvin in zip(units, dwells.kelvin.min(axis=1).tolist(), strict=True):
         coldest[unit] = min(kelvin, coldest.get(unit, kelvin))

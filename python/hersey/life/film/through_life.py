@@ -1,4 +1,4 @@
-"""The film through life: how thick against a flooded one, what oil is left, and when a unit starves.
+"""The film through life: how thick against a flooded one, what oil is left, and when a specimen starves.
 
 What the runs show is in `of_runs`, the law over ages and specimens in `depletion_law`, and what follows from
 both in `starving`.
@@ -44,7 +44,7 @@ class FilmLife(Result):
     ``points`` are the fastest operating point and the cold corner. Of each run, (points, runs): ``film`` over
     that of a flooded inlet at the same viscosity and speed, and its ``thickness`` (m); and the ``layer`` of
     oil on the inlet side (m), and ``viscosity`` over that of the lubricant. Lengths are right but for
-    ``systematic``, a factor common to all runs; NaN where a run has no dwells. Of each unit at ``ages``:
+    ``systematic``, a factor common to all runs; NaN where a run has no dwells. Of each specimen at ``ages``:
     ``curves`` of the film over flooded, ``layers``, and what a layer ``needs`` to be; ``starves`` at each
     point.
     """
@@ -62,7 +62,7 @@ class FilmLife(Result):
     layers: Told
     needs: tuple[FloatArray, ...]
     starves: tuple[AgesAtLimit, ...]
-    law: dict[str, Interval]  #: of the median unit: K (1/(m^2 age)), e and g (1/age)
+    law: dict[str, Interval]  #: of the median specimen: K (1/(m^2 age)), e and g (1/age)
     oil: tuple[OilLeft, ...]
     track: float
     notes: tuple[str, ...]
@@ -73,15 +73,15 @@ class FilmLife(Result):
         return np.asarray(self.film[point].high < STARVED)
 
     def headline(self) -> str:
-        """Return how many units starve at the fastest operating point, and when the next ones do."""
+        """Return how many specimens starve at the fastest operating point, and when the next ones do."""
         last = _last_runs(self.runs)
         starved = [self.runs.unit[i] for i in last if self.starved()[i]]
-        text = f"{len(starved)} of {len(last)} units starve of oil at {self.points[0].name}"
+        text = f"{len(starved)} of {len(last)} specimens starve of oil at {self.points[0].name}"
         b50 = self.starves[0].b50.age
-        return f"{text}; half of new units at {b50} {self.runs.age_unit}"
+        return f"{text}; half of new specimens at {b50} {self.runs.age_unit}"
 
     def summary(self) -> str:
-        """Return film, layer and ages of each unit as text."""
+        """Return film, layer and ages of each specimen as text."""
         unit = self.runs.age_unit
         lines = [self.headline()]
         lines += [
@@ -99,7 +99,7 @@ class FilmLife(Result):
         for point, ages in zip(self.points, self.starves, strict=True):
             lines.append(f"age ({unit}) at which the layer is thinner than the flooded film, {point.name}")
             if all(each.age.value == 0.0 for each in ages.units):
-                lines.append("  all units: from the new unit on")
+                lines.append("  all specimens: from the new specimen on")
             else:
                 lines += [f"  {each}" for each in (*ages.units, ages.b10, ages.b50)]
         lines.append(
@@ -108,7 +108,7 @@ class FilmLife(Result):
         )
         lines += [f"  {_volumes(each)}" for each in self.oil]
         lines.append(
-            f"law dh/dt = -K h^3/2 - e h, viscosity exp(g t); median unit, per {unit}: "
+            f"law dh/dt = -K h^3/2 - e h, viscosity exp(g t); median specimen, per {unit}: "
             + ", ".join(f"{name} {each}" for name, each in self.law.items())
         )
         return "\n".join([*lines, *(f"- {note}" for note in self.notes)])
@@ -160,11 +160,11 @@ def film_life(
     evaporation: float | None = None,
     seed: int = 0,
 ) -> FilmLife:
-    """Return the film of the units of a campaign through their life.
+    """Return the film of the specimens of a campaign through their life.
 
     Each run is fitted by the torque of film, asperities and rest of the drive, with viscosity, layer of oil,
     rest, roughness and boundary friction free (`layer`); layer and viscosity of all runs then follow the law
-    of `depletion_law`, units differing.
+    of `depletion_law`, specimens differing.
 
     Parameters
     ----------
@@ -174,7 +174,8 @@ def film_life(
     machine
         Contact and lubricant; asperities and boundary friction if stated; operating points.
     cold
-        Temperature of the cold corner, K; else that of ``[life]``, or the coldest that all units recorded.
+        Temperature of the cold corner, K; else that of ``[life]``, or the coldest that all specimens
+        recorded.
     track
         Length of the track that carries the layer, m, by which it becomes an amount; the roll's circumference
         if left out.
@@ -199,7 +200,7 @@ def film_life(
     place = np.array([names.index(name) for name in of_run])
     if most_ages(place, age) < 2:
         raise InsufficientDataError(
-            "no unit was seen at two ages, so nothing tells how its oil thins: add runs at another age"
+            "no specimen was seen at two ages, so nothing tells how its oil thins: add runs at another age"
         )
     drawn = fit_depletion(read.layers, place, age, side_flow=side_flow, evaporation=evaporation, seed=seed)
     last = np.array([age[place == k].max() for k in range(len(names))])
@@ -251,7 +252,7 @@ def _film_life(
 def _law_notes(age: FloatArray, place: IntArray, machine: Machine) -> list[str]:
     notes = []
     if most_ages(place, age) < 3:
-        notes.append("no unit was seen at three ages: side flow and evaporation cannot be told apart")
+        notes.append("no specimen was seen at three ages: side flow and evaporation cannot be told apart")
     if machine.asperities is None:
         notes.append(
             "the machine's file states no asperities: dwells with a film below four times the roughness are "
@@ -265,7 +266,7 @@ def _law_notes(age: FloatArray, place: IntArray, machine: Machine) -> list[str]:
 
 
 def _last_runs(runs: Runs) -> list[int]:
-    """The oldest run of each unit."""
+    """The oldest run of each specimen."""
     last: dict[str, int] = {}
     for i, (unit, age) in enumerate(zip(runs.unit, runs.age, strict=True)):
         if unit not in last or age >= runs.age[last[unit]]:

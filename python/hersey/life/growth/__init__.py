@@ -1,4 +1,4 @@
-"""How indicators grow with age over units, and when they reach a limit.
+"""How indicators grow with age over specimens, and when they reach a limit.
 
 =============  ===========================================================
 laws           how an indicator may grow with age
@@ -7,8 +7,8 @@ marginal       the likelihood of what specimens share, specimens integrated out
 peaks          where the posterior of what they share is highest
 importance     adaptive importance sampling of any density from its mode
 posterior      how far specimens, spread and law are known: draws and evidence
-limit_ages     the ages at which units and population reach a limit
-fit            `fit_growth`: the growth of an indicator over units
+limit_ages     the ages at which specimens and population reach a limit
+fit            `fit_growth`: the growth of an indicator over specimens
 record_blocks  a continuous record as a few values with their errors
 =============  ===========================================================
 """

@@ -1,7 +1,7 @@
-"""How a positive indicator may grow with age: its logarithm over that of the new unit, ln G.
+"""How a positive indicator may grow with age: its logarithm over that of the new specimen, ln G.
 
-Each law has a size x = ln(r T) of its unit (ln s of a saturating one) and may have a shape that all units
-share. Ages are in T, the greatest age of the data. Torque is proportional to 1/h of a layer of oil
+Each law has a size x = ln(r T) of its specimen (ln s of a saturating one) and may have a shape that all
+specimens share. Ages are in T, the greatest age of the data. Torque is proportional to 1/h of a layer of oil
 (`oil_layer`). Side flow alone thins it as h = (h0^-2 + K t)^(-1/2); a steady loss, h0 - e t, is the curved
 law at c = -1.
 """

@@ -32,8 +32,8 @@ _POPULATION = 256
 
 
 @dataclass(frozen=True)
-class Units:
-    """Draws of units under one law, arrays of shape (draws, units)."""
+class Specimens:
+    """Draws of specimens under one law, arrays of shape (draws, specimens)."""
 
     law: Law
     level: FloatArray  #: ln y0
@@ -48,7 +48,7 @@ def _shape(law: Law, shared: FloatArray) -> FloatArray:
 
 
 def weights_of(points: Points, shared: FloatArray) -> FloatArray:
-    """Return the precision of each value, (draws, units, ages)."""
+    """Return the precision of each value, (draws, specimens, ages)."""
     return points.given / (points.variance + np.exp(2.0 * shared[:, 2])[:, None, None])
 
 
@@ -57,7 +57,7 @@ def _fit_of(
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Weighed squares of what is left, less those that the level takes up, and the two sums of it.
 
-    ``size`` is (draws, units, nodes).
+    ``size`` is (draws, specimens, nodes).
     """
     shape = _shape(law, shared)[:, :, None, None, None]
     growth = law.log_growth(size[..., None], points.age[None, :, None, :], shape)
@@ -68,7 +68,7 @@ def _fit_of(
 
 
 def _constants(points: Points, shared: FloatArray, weight: FloatArray) -> FloatArray:
-    """The part of the likelihood of each unit that does not hang on its size."""
+    """The part of the likelihood of each specimen that does not hang on its size."""
     logs = np.where(points.given, np.log(np.where(points.given, weight, 1.0)), 0.0).sum(axis=2)
     spread = np.exp(2.0 * shared[:, 1])[:, None]
     number = points.given.sum(axis=1)
@@ -79,7 +79,7 @@ def _constants(points: Points, shared: FloatArray, weight: FloatArray) -> FloatA
 def modes(
     law: Law, points: Points, shared: FloatArray, weight: FloatArray, start: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the most probable size of each specimen, and its width (Gauss-Newton), (draws, units)."""
+    """Return the most probable size of each specimen, and its width (Gauss-Newton), (draws, specimens)."""
     mean, precision = shared[:, 3][:, None], np.exp(-2.0 * shared[:, 4])[:, None]
     shape = _shape(law, shared)[:, :, None, None]
     total = weight.sum(axis=2) + np.exp(-2.0 * shared[:, 1])[:, None]
@@ -103,7 +103,7 @@ def modes(
 def _over_nodes(
     law: Law, points: Points, shared: FloatArray, start: FloatArray, nodes: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Log density of each unit's values and size at nodes round its mode, the nodes, and its width."""
+    """Log density of each specimen's values and size at nodes round its mode, the nodes, and its width."""
     weight = weights_of(points, shared)
     mode, width = modes(law, points, shared, weight, start)
     size = mode[..., None] + width[..., None] * nodes
@@ -128,10 +128,10 @@ def likelihood(law: Law, points: Points, shared: FloatArray, start: FloatArray) 
     return np.concatenate(parts)
 
 
-def drawn_units(
+def drawn_specimens(
     law: Law, points: Points, shared: FloatArray, sizes_at_mode: FloatArray, random: np.random.Generator
-) -> Units:
-    """Return one draw of all units, given their own values, for each draw of what they share."""
+) -> Specimens:
+    """Return one draw of all specimens, given their own values, for each draw of what they share."""
     many = max(1, _AT_ONCE // (points.value.size * _FINE.size))
     levels, sizes = [], []
     for i in range(0, len(shared), many):
@@ -145,15 +145,15 @@ def drawn_units(
         normals = random.standard_normal(size.shape)
         levels.append(part[:, :1] + first[..., 0] / total[..., 0] + normals / np.sqrt(total[..., 0]))
         sizes.append(size)
-    return _units(law, np.concatenate(levels), np.concatenate(sizes), shared)
+    return _specimens(law, np.concatenate(levels), np.concatenate(sizes), shared)
 
 
-def _units(law: Law, level: FloatArray, size: FloatArray, shared: FloatArray) -> Units:
-    return Units(law, level, size, _shape(law, shared)[:, :, None], np.exp(shared[:, 2:3]))
+def _specimens(law: Law, level: FloatArray, size: FloatArray, shared: FloatArray) -> Specimens:
+    return Specimens(law, level, size, _shape(law, shared)[:, :, None], np.exp(shared[:, 2:3]))
 
 
 def _drawn(density: FloatArray, nodes: FloatArray, uniform: FloatArray) -> FloatArray:
-    """Return one size per unit from its density at nodes: the inverse of its straight-lined distribution."""
+    """Return one size per specimen from its density at nodes, taken as straight between them."""
     heights = np.exp(density - density.max(axis=2, keepdims=True))
     steps = np.cumsum(0.5 * (heights[..., 1:] + heights[..., :-1]), axis=2)
     target = uniform * steps[..., -1]
@@ -173,9 +173,9 @@ def _spread_normals() -> FloatArray:
     return np.asarray(special.ndtri((0.5 + steps) % 1.0))
 
 
-def new_units(law: Law, shared: FloatArray) -> Units:
-    """Return units of the population for each draw of what they share."""
+def new_specimens(law: Law, shared: FloatArray) -> Specimens:
+    """Return specimens of the population for each draw of what they share."""
     normals = _spread_normals()
     level = shared[:, :1] + np.exp(shared[:, 1:2]) * normals[0]
     size = shared[:, 3:4] + np.exp(shared[:, 4:5]) * normals[1] if law.grows else np.zeros_like(level)
-    return _units(law, level, size, shared)
+    return _specimens(law, level, size, shared)

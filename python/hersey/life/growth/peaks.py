@@ -44,10 +44,10 @@ def _normal(values: FloatArray, mean: float, deviation: float) -> FloatArray:
 def shared_of(
     law: Law, coordinates: FloatArray, middle: FloatArray | None, units: int
 ) -> tuple[FloatArray, FloatArray]:
-    """Return what all units share, and the log of the Jacobian, from coordinates in which it is no funnel.
+    """Return what all specimens share, and the log of the Jacobian, from coordinates without a funnel.
 
-    The means m0 and m1 are known the worse, the more units differ: they are counted from a middle in what
-    so many units tell of them. Without a middle they are what all units share.
+    The means m0 and m1 are known the worse, the more specimens differ: they are counted from a middle in what
+    so many specimens tell of them. Without a middle they are what all specimens share.
     """
     if middle is None:
         return coordinates, np.zeros(len(coordinates))
@@ -87,7 +87,7 @@ def log_posterior(
 
 
 def _first_guess(law: Law, points: Points) -> tuple[FloatArray, FloatArray]:
-    """What all share, and sizes of the units, from lines through each unit."""
+    """What all share, and sizes of the specimens, from lines through each specimen."""
     number = points.given.sum(axis=1)
     mean_age = (points.age * points.given).sum(axis=1) / number
     mean = (points.value * points.given).sum(axis=1) / number
@@ -145,7 +145,7 @@ def _climbed(law: Law, points: Points, at: FloatArray, sizes: FloatArray) -> tup
 
 @dataclass(frozen=True)
 class Peak:
-    """The mode of what all units share under a law."""
+    """The mode of what all specimens share under a law."""
 
     law: Law
     at: FloatArray
@@ -159,7 +159,8 @@ class Peak:
 def peaks(laws: list[Law], points: Points) -> list[Peak]:
     """Return the modes of the laws that need be drawn from: the others fit hopelessly worse.
 
-    Those of the first units come before those of all: they tell where to begin, and what need not be tried.
+    Those of the first specimens come before those of all: they tell where to begin, and what need not be
+    tried.
     """
     few = points.part(_FIRST)
     guesses = [_first_guess(law, few) for law in laws]

@@ -22,7 +22,7 @@ _FALLS = 3.0
 
 @dataclass(frozen=True)
 class Points:
-    """Logarithms of the indicator, one row per unit, filled up to the longest; ages in the greatest age."""
+    """Logarithms of the indicator, one row per specimen, filled up; ages in the greatest age."""
 
     age: FloatArray
     value: FloatArray
@@ -33,7 +33,7 @@ class Points:
     )  #: row and column of each run
 
     def part(self, units: int) -> Points:
-        """The first units alone."""
+        """The first specimens alone."""
         return Points(
             self.age[:units], self.value[:units], self.variance[:units], self.given[:units], self.place
         )
@@ -50,25 +50,25 @@ def checked_runs(
         columns[2] = np.full(len(names), float(columns[2]))
     for name, column in zip(("age", "value", "error"), columns, strict=True):
         if column.shape != (len(names),):
-            raise ParameterError(f"{len(names)} units are named, but {name} has the shape {column.shape}")
+            raise ParameterError(f"{len(names)} specimens are named, but {name} has the shape {column.shape}")
     rules = (("age", "negative"), ("value", "not positive"), ("error", "negative"))
     for (name, fault), column in zip(rules, columns, strict=True):
         for i in np.flatnonzero(~np.isfinite(column)):
-            raise ParameterError(f"{name} of run {i + 1} (unit {names[i]!r}) is no number", index=int(i))
+            raise ParameterError(f"{name} of run {i + 1} (specimen {names[i]!r}) is no number", index=int(i))
         bad = column <= 0.0 if name == "value" else column < 0.0
         for i in np.flatnonzero(bad):
             raise ParameterError(
-                f"{name} of run {i + 1} (unit {names[i]!r}) is {fault}: {column[i]:g}",
+                f"{name} of run {i + 1} (specimen {names[i]!r}) is {fault}: {column[i]:g}",
                 quantity=name,
                 value=float(column[i]),
                 limit=0.0,
                 index=int(i),
             )
     if "" in names:
-        raise ParameterError(f"run {names.index('') + 1} names no unit", index=names.index(""))
+        raise ParameterError(f"run {names.index('') + 1} names no specimen", index=names.index(""))
     if most_ages(np.unique(names, return_inverse=True)[1], columns[0]) < 2:
         raise InsufficientDataError(
-            "no unit was seen at two ages, so nothing tells its growth: add runs at another age"
+            "no specimen was seen at two ages, so nothing tells its growth: add runs at another age"
         )
     return names, columns
 
@@ -90,7 +90,7 @@ def points_of(
 
 
 def falls(points: Points) -> bool:
-    """Whether straight lines through the units, with one slope, fall by three standard errors."""
+    """Whether straight lines through the specimens, with one slope, fall by three standard errors."""
     number = points.given.sum(axis=1, keepdims=True)
     age, value = (
         (each - (each * points.given).sum(axis=1, keepdims=True) / number) * points.given

@@ -21,13 +21,13 @@ _LEAST_SHARE, _MOST = 0.25, 3.0
 
 @dataclass(frozen=True)
 class Posterior:
-    """Weighed draws of what all units share, under one law."""
+    """Weighed draws of what all specimens share, under one law."""
 
     law: Law
     shared: FloatArray  #: columns m0, ln t0, ln sigma, m1, ln t1, shapes (as far as the law has them)
     weight: FloatArray  #: sums to 1
     log_evidence: float
-    sizes: FloatArray  #: of each unit at the mode: where searches for it begin
+    sizes: FloatArray  #: of each specimen at the mode: where searches for it begin
 
     @property
     def effective(self) -> float:
@@ -51,7 +51,7 @@ def posterior(peak: Peak, points: Points, random: np.random.Generator) -> Poster
 
 
 def parameters_of(found: Posterior, scale: tuple[float, float]) -> dict[str, Interval]:
-    """Return medians and 90 % intervals of what all units share, in the units given."""
+    """Return medians and 90 % intervals of what all specimens share, in the units given."""
     shared, law = found.shared, found.law
     named = {"level": np.exp(shared[:, 0] + scale[1]), "spread of levels": np.exp(shared[:, 1])}
     if law.grows:

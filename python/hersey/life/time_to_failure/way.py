@@ -18,13 +18,13 @@ from hersey.result import json_record
 
 @dataclass(frozen=True, repr=False)
 class Mode:
-    """One failure mode: the growth of its indicator and the ages at its limit, of all units."""
+    """One failure mode: the growth of its indicator and the ages at its limit, of all specimens."""
 
     name: str
     kind: str
     si: str
     limit: float
-    sign: bool  #: a precursor, which ends no unit
+    sign: bool  #: a precursor, which ends no specimen
     growth: Growth
     ages: AgesAtLimit
     notes: tuple[str, ...]
@@ -38,18 +38,18 @@ class Mode:
 
 @dataclass(frozen=True)
 class FittedWay:
-    """A mode with its draws: ages of all units and of new ones, and where its runs stand."""
+    """A mode with its draws: ages of all specimens and of new ones, and where its runs stand."""
 
     mode: Mode
     ages: FloatArray
     new: FloatArray
     residuals: FloatArray  #: per run of the campaign, NaN where it does not tell it
-    row: dict[str, int]  #: of each unit that the growth knows
+    row: dict[str, int]  #: of each specimen that the growth knows
     error: float  #: of a run, typically
 
 
 def last_ages(indicators: Indicators) -> dict[str, float]:
-    """Return the age at which each unit was last seen."""
+    """Return the age at which each specimen was last seen."""
     last: dict[str, float] = {}
     for unit, age in zip(indicators.runs.unit, indicators.runs.age.tolist(), strict=True):
         last[unit] = max(age, last.get(unit, 0.0))
@@ -77,21 +77,23 @@ def fitted_way(indicators: Indicators, each: Indicator, seed: int, known: Growth
         age_unit=runs.age_unit,
         seed=seed,
     )
-    of_units, new = growth.drawn_ages(each.limit, limit_error=each.limit_error, accumulates=each.accumulates)
+    of_specimens, new = growth.drawn_ages(
+        each.limit, limit_error=each.limit_error, accumulates=each.accumulates
+    )
     row = {name: i for i, name in enumerate(growth.units)}
     last = last_ages(indicators)
-    # A unit of which no run tells this is one more of the population.
+    # A specimen of which no run tells this is one more of the population.
     random = np.random.default_rng([seed, 3])
     spare = iter(random.permutation(new.shape[1]).tolist() * len(last))
-    ages = np.stack([of_units[:, row[n]] if n in row else new[:, next(spare)] for n in last], axis=1)
+    ages = np.stack([of_specimens[:, row[n]] if n in row else new[:, next(spare)] for n in last], axis=1)
     if each.own_ages is not None:
         columns = random.integers(each.own_ages.new.shape[1], size=new.shape[1])
-        ages, new = (_as_many(own, len(of_units)) for own in (each.own_ages.known, each.own_ages.new))
+        ages, new = (_as_many(own, len(of_specimens)) for own in (each.own_ages.known, each.own_ages.new))
         new = new[:, columns]
     notes = [*each.notes, *growth.notes]
     missing = [name for name in last if name not in row]
     if missing and each.own_ages is None:
-        notes.append(f"no run of {listed(missing)} tells it: taken as any new unit")
+        notes.append(f"no run of {listed(missing)} tells it: taken as any new specimen")
     at_limit = ages_at_limit(
         each.name,
         runs.age_unit,
