@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from scipy import special
@@ -32,9 +33,7 @@ _MEAN_DEVIATION = np.array([2.0, 1.5, 1.5, 1.0, 0.7])
 _SPREAD = np.array([0.5, 0.7, 0.7, 0.2, 0.5])
 #: Scatter of layer and viscosity of runs about the law, beyond their own errors (ln).
 _SCATTER = 0.02
-#: Walkers, steps of which the first are dropped, and draws kept; for few specimens, and for so many that they
-#: tell the spread over specimens by their number.
-_FEW_UNITS, _MANY_UNITS = (64, 500, 200, 2000), (16, 320, 120, 240)
+#: From so many specimens on they are many.
 _MANY = 60
 #: Steps from one cull of walkers to the next, while they still search.
 _CULL = 8
@@ -194,10 +193,8 @@ def fit_depletion(
 ) -> Depletion:
     """Fit the law to what runs tell, all specimens together.
 
-    Walkers move by differences of others (ter Braak, Stat. Comput. 16 (2006) 239), means and spreads are
-    drawn given the specimens. Priors, all weak, in T (the greatest age) and h (the flooded film at the
-    reference): means over specimens ln(h0/h) N(0, 2^2), ln(K T h^2) N(0, 2^2), ln(e T) N(-1.5, 1.5^2), ln
-    viscosity factor N(0, 1), g T N(0.2, 0.7^2); spreads half-normal of 0.5, 0.7, 0.7, 0.2, 0.5.
+    Priors, all weak, are normal in T (the greatest age) and h (the flooded film at the reference), means over
+    specimens as in `_MEAN` and `_MEAN_DEVIATION`; spreads are half-normal, as in `_SPREAD`.
 
     Parameters
     ----------
@@ -210,39 +207,73 @@ def fit_depletion(
     seed
         Of the draws.
     """
-    greatest = float(age.max()) or 1.0
-    units = int(unit.max()) + 1
-    walkers, steps, dropped, many = _FEW_UNITS if units < _MANY else _MANY_UNITS
-    warmth = float(layers.common[0])
+    greatest, warmth = float(age.max()) or 1.0, float(layers.common[0])
     square = np.exp(2.0 * _scale(layers.reference))
     rates = Rates(
         None if side_flow is None else side_flow * greatest * square,
         None if evaporation is None else evaporation * greatest,
     )
     told = _told(layers, unit, age / greatest, warmth, rates)
-    random = np.random.default_rng(seed)
-    free = rates.free
-    own, mean, spread = _begin(layers, told, (walkers, units), random)
+    plan = _FEW_SPECIMENS if told.first.size < _MANY else _MANY_SPECIMENS
+    own, mean, spread = _walked(layers, told, plan, np.random.default_rng(seed))
+    return Depletion(own, mean, spread, greatest, layers.reference, warmth, rates)
+
+
+class _Plan(NamedTuple):
+    """Walkers, steps of which the first are dropped, and draws kept."""
+
+    walkers: int
+    steps: int
+    dropped: int
+    kept: int
+
+
+#: For few specimens, and for so many that they tell the spread over specimens by their number.
+_FEW_SPECIMENS, _MANY_SPECIMENS = _Plan(64, 500, 200, 2000), _Plan(16, 320, 120, 240)
+
+
+def _walked(
+    layers: Layers, told: _Told, plan: _Plan, random: np.random.Generator
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Draws of specimens, means and spreads.
+
+    Walkers move by differences of others (ter Braak, Stat. Comput. 16 (2006) 239); means and spreads are
+    drawn given the specimens.
+    """
+    free = told.rates.free
+    own, mean, spread = _begin(layers, told, (plan.walkers, told.first.size), random)
     density = told.log_likelihood(own)
-    half_way = walkers // 2
     kept: list[tuple[FloatArray, FloatArray, FloatArray]] = []
-    thin = max(1, (steps - dropped) * walkers // many)
-    for step in range(steps):
-        for moved in (slice(0, half_way), slice(half_way, walkers)):
-            others = np.delete(np.arange(walkers), moved)
-            tried, bias = _tried(own, mean, spread, moved, others, free, random)
-            found = told.log_likelihood(tried)
-            gain = found - density[moved] + bias
-            taken = np.log(random.random(gain.shape)) < gain
-            own[moved] = np.where(taken[..., None], tried, own[moved])
-            density[moved] = np.where(taken, found, density[moved])
-        if step < dropped // 2 and step % _CULL == 0:
+    thin = max(1, (plan.steps - plan.dropped) * plan.walkers // plan.kept)
+    for step in range(plan.steps):
+        half_way = plan.walkers // 2
+        for moved in (slice(0, half_way), slice(half_way, plan.walkers)):
+            _move(told, own, density, (mean, spread), moved, random)
+        if step < plan.dropped // 2 and step % _CULL == 0:
             _culled(own, density, mean, spread, free)
         _share(own, mean, spread, free, random)
-        if step >= dropped and step % thin == 0:
+        if step >= plan.dropped and step % thin == 0:
             kept.append((own.copy(), mean.copy(), spread.copy()))
     draws = [np.concatenate(each) for each in zip(*kept, strict=True)]
-    return Depletion(draws[0], draws[1], draws[2], greatest, layers.reference, warmth, rates)
+    return draws[0], draws[1], draws[2]
+
+
+def _move(
+    told: _Told,
+    own: FloatArray,
+    density: FloatArray,
+    shared: tuple[FloatArray, FloatArray],
+    moved: slice,
+    random: np.random.Generator,
+) -> None:
+    """Let some walkers try to move by differences within the others."""
+    others = np.delete(np.arange(len(own)), moved)
+    tried, bias = _tried(own, *shared, moved, others, told.rates.free, random)
+    found = told.log_likelihood(tried)
+    gain = found - density[moved] + bias
+    taken = np.log(random.random(gain.shape)) < gain
+    own[moved] = np.where(taken[..., None], tried, own[moved])
+    density[moved] = np.where(taken, found, density[moved])
 
 
 def _begin(

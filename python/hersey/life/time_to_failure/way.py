@@ -77,19 +77,9 @@ def fitted_way(indicators: Indicators, each: Indicator, seed: int, known: Growth
         age_unit=runs.age_unit,
         seed=seed,
     )
-    of_specimens, new = growth.drawn_ages(
-        each.limit, limit_error=each.limit_error, accumulates=each.accumulates
-    )
     row = {name: i for i, name in enumerate(growth.units)}
     last = last_ages(indicators)
-    # A specimen of which no run tells this is one more of the population.
-    random = np.random.default_rng([seed, 3])
-    spare = iter(random.permutation(new.shape[1]).tolist() * len(last))
-    ages = np.stack([of_specimens[:, row[n]] if n in row else new[:, next(spare)] for n in last], axis=1)
-    if each.own_ages is not None:
-        columns = random.integers(each.own_ages.new.shape[1], size=new.shape[1])
-        ages, new = (_as_many(own, len(of_specimens)) for own in (each.own_ages.known, each.own_ages.new))
-        new = new[:, columns]
+    own = _drawn_ages(each, growth, row, list(last), seed)
     notes = [*each.notes, *growth.notes]
     missing = [name for name in last if name not in row]
     if missing and each.own_ages is None:
@@ -99,7 +89,7 @@ def fitted_way(indicators: Indicators, each: Indicator, seed: int, known: Growth
         runs.age_unit,
         each.limit,
         list(last),
-        OwnAges(ages, new),
+        own,
         list(last.values()),
         tuple(notes),
         accumulates=each.accumulates,
@@ -107,7 +97,21 @@ def fitted_way(indicators: Indicators, each: Indicator, seed: int, known: Growth
     residuals = np.full(runs.age.size, np.nan)
     residuals[told] = growth.residuals()
     mode = Mode(each.name, each.kind, each.si, each.limit, each.sign, growth, at_limit, tuple(notes))
-    return FittedWay(mode, ages, new, residuals, row, float(np.median(each.error[told])))
+    return FittedWay(mode, own.known, own.new, residuals, row, float(np.median(each.error[told])))
+
+
+def _drawn_ages(each: Indicator, growth: Growth, row: dict[str, int], names: list[str], seed: int) -> OwnAges:
+    """Draws of the ages at the limit, of all specimens and of new ones."""
+    known, new = growth.drawn_ages(each.limit, limit_error=each.limit_error, accumulates=each.accumulates)
+    # A specimen of which no run tells this is one more of the population.
+    random = np.random.default_rng([seed, 3])
+    spare = iter(random.permutation(new.shape[1]).tolist() * len(names))
+    if each.own_ages is None:
+        ages = [known[:, row[name]] if name in row else new[:, next(spare)] for name in names]
+        return OwnAges(np.stack(ages, axis=1), new)
+    columns = random.integers(each.own_ages.new.shape[1], size=new.shape[1])
+    known, new = (_as_many(own, len(known)) for own in (each.own_ages.known, each.own_ages.new))
+    return OwnAges(known, new[:, columns])
 
 
 def _as_many(draws: FloatArray, count: int) -> FloatArray:
