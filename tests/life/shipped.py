@@ -21,6 +21,7 @@ from hersey.life.age import Age
 from hersey.life.campaign import Entry
 from hersey.life.campaign.conversion import entry_of
 from hersey.life.growth import fit as growth_module
+from hersey.life.growth import marginal
 from hersey.life.growth import posterior as growth_posterior
 from hersey.life.indicators import sticking
 from hersey.machine.machine import Machine, read_machine
@@ -39,19 +40,19 @@ def machine() -> Machine:
 
 @cache
 def truth() -> list[dict[str, Any]]:
-    """The truth of each unit."""
+    """The truth of each specimen."""
     units: list[dict[str, Any]] = json.loads((FOLDER / "truth.json").read_text())["units"]
     return units
 
 
 @cache
 def film(units: int = 8) -> hersey.FilmLife:
-    """The film of some of the shipped units."""
+    """The film of some of the shipped specimens."""
     return hersey.film_life(campaign(units), machine())
 
 
 def campaign(units: int = 8) -> hersey.Campaign:
-    """What a campaign of some of the shipped units answers."""
+    """What a campaign of some of the shipped specimens answers."""
     listed = pl.read_csv(FOLDER / "runs.csv").with_row_index("run", offset=1)
     listed = listed.filter(pl.col("unit").is_in([f"U{k}" for k in range(1, units + 1)]))
     listed = listed.with_columns(
@@ -110,7 +111,7 @@ _FOLDER = TemporaryDirectory()
 
 @cache
 def opened(units: int = 2) -> hersey.Campaign:
-    """A campaign in a file, of some of the shipped units."""
+    """A campaign in a file, of some of the shipped specimens."""
     return hersey.Campaign.open(write(Path(_FOLDER.name) / f"life-{units}.hersey", units), write=False)
 
 
@@ -118,7 +119,7 @@ def fewer(patch: pytest.MonkeyPatch) -> None:
     """A third of the draws: what they would tell better is the matter of the benchmark."""
     patch.setattr(growth_posterior, "_ROUNDS", (100, 100, 100, 200))
     patch.setattr(growth_posterior, "_MOST", 2.0)
-    patch.setattr(growth_posterior, "_POPULATION", 64)
+    patch.setattr(marginal, "_POPULATION", 64)
     patch.setattr(growth_module, "_DRAWS", 1000)
 
 
@@ -136,14 +137,14 @@ def few() -> Iterator[None]:
 
 @cache
 def followed(units: int = 2) -> hersey.LifeTest:
-    """What ends some of the shipped units, and when; of few ways, which is quicker."""
+    """What ends some of the shipped specimens, and when; of few ways, which is quicker."""
     less = replace(machine(), limits=hersey.Limits(motor_torque=1.0), points=machine().points[:1])
     with few():
         return hersey.follow(opened(units), less)
 
 
 def write(path: Path, units: int = 2) -> Path:
-    """Write a campaign of the dwells of some of the shipped units, whole torques, every second dwell."""
+    """Write a campaign of the dwells of some of the shipped specimens, whole torques, every second dwell."""
     whole = campaign(units)
     rest = machine().rest
     assert rest is not None

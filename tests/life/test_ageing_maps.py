@@ -1,4 +1,4 @@
-"""Maps of a unit through its life: against the truth of the shipped campaign, and what is carried on."""
+"""Maps of a specimen through its life: against the truth of the shipped campaign, and what is carried on."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from tests.life import shipped
 
 
 def told(unit: str, age: float, passed: float = 0.0) -> Any:
-    """What `TimeToFailure` says of one unit, no growth of its torque among it."""
+    """What `TimeToFailure` says of one specimen, no growth of its torque among it."""
     end = SimpleNamespace(
         unit=unit, age=AgeAtLimit(unit, Interval(age, 0.9 * age, 1.1 * age), 0.0, 170e3, passed)
     )
@@ -84,7 +84,7 @@ def test_a_unit_that_has_ended_has_no_end_ahead() -> None:
 
 
 def test_what_cannot_be_drawn_is_told() -> None:
-    with pytest.raises(ParameterError, match="no unit 'U11': did you mean 'U1'"):
+    with pytest.raises(ParameterError, match="no specimen 'U11': did you mean 'U1'"):
         ageing_maps(shipped.opened(1), shipped.machine(), told("U1", 230e3), unit="U11")
     with pytest.raises(InsufficientDataError, match="runs of U7 do not tell torque"):
         ageing_maps(shipped.opened(1), shipped.machine(), told("U7", 230e3))

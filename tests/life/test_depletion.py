@@ -1,7 +1,8 @@
-"""The layer of oil of runs, its law over ages, and when units starve: held against known truth."""
+"""The layer of oil of runs, its law over ages, and when specimens starve: held against known truth."""
 
 from __future__ import annotations
 
+import inspect
 from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
@@ -10,13 +11,14 @@ import numpy as np
 import polars as pl
 import pytest
 
-from hersey.arrays import FloatArray
+from hersey import _core
+from hersey.arrays import FloatArray, pointwise
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.life.film import layer as layer_module
-from hersey.life.film import through_life
-from hersey.life.film.depletion_law import Rates, log_layer
+from hersey.life.film import starving
 from hersey.life.film.filled_dwells import FilledDwells, filled_dwells
 from hersey.life.film.layer import Layers, layers
+from hersey.life.film.of_runs import starvation_indicator
 from hersey.life.film.starved_drag import (
     FREE,
     LAYER,
@@ -27,8 +29,9 @@ from hersey.life.film.starved_drag import (
     film_of,
     flooded,
 )
-from hersey.life.film.through_life import STARVED, film_life, starvation_indicator
+from hersey.life.film.through_life import STARVED, film_life
 from hersey.life.indicator import Indicators, Runs
+from hersey.life.oil_layer import USUAL_SHARPNESS, age_of_layer, log_film_share, log_layer
 from hersey.lubrication.film import film_thickness
 from hersey.testbench import population
 from hersey.testbench.ageing import Ageing
@@ -50,7 +53,7 @@ def grid() -> tuple[FloatArray, FloatArray]:
 
 
 def read(ageing: Ageing, seed: int) -> tuple[Layers, FloatArray]:
-    """What runs of fresh units tell, and ln of their layer over the flooded film at the cold corner."""
+    """What runs of fresh specimens tell, and ln of their layer over the flooded film at the cold corner."""
     machine, rest = example_drive()
     speed, kelvin = grid()
     random = np.random.default_rng(seed)
@@ -141,20 +144,34 @@ def test_a_wrong_viscosity_of_the_file_is_not_starvation() -> None:
 
 
 def test_the_layer_follows_its_law() -> None:
-    h0, side_flow, evaporation = 2.0, 0.3, 0.7
-    loss = side_flow * h0**2 / 2 + evaporation
-    share = evaporation / loss
-    own = np.array([np.log(h0), np.log(loss), np.log(share / (1 - share)), 0.0, 0.0])
+    new, side_flow, evaporation = np.array(0.25), np.array(0.3), np.array(0.7)
     ages = np.array([0.0, 0.5, 1.0, 2.0])
-    layer = np.exp(log_layer(own, ages, Rates()))
+    layer = np.exp(log_layer(new, side_flow, evaporation, ages))
     assert layer[0] == pytest.approx(2.0)
     for age, here in zip(ages[1:], layer[1:], strict=True):
-        near = np.exp(log_layer(own, np.array([age - 1e-5, age + 1e-5]), Rates()))
+        near = np.exp(log_layer(new, side_flow, evaporation, np.array([age - 1e-5, age + 1e-5])))
         assert (near[1] - near[0]) / 2e-5 == pytest.approx(-0.15 * here**3 - 0.7 * here, rel=1e-6)
-    alone = np.exp(log_layer(own, ages, Rates(side_flow, 0.0)))
+    assert age_of_layer(new, side_flow, evaporation, np.log(layer)) == pytest.approx(ages)
+    nothing = np.zeros(())
+    alone = np.exp(log_layer(new, side_flow, nothing, ages))
     assert alone == pytest.approx((0.25 + 0.3 * ages) ** -0.5)
-    steady = np.exp(log_layer(own, ages, Rates(0.0, evaporation)))
+    steady = np.exp(log_layer(new, nothing, evaporation, ages))
     assert steady == pytest.approx(2.0 * np.exp(-0.7 * ages))
+
+
+@pytest.mark.parametrize("sharpness", [2.0, USUAL_SHARPNESS, 5.0])
+def test_the_share_of_the_film_is_that_of_the_core(sharpness: float) -> None:
+    ratio = np.geomspace(1e-3, 1e3, 25)
+    share, slope = log_film_share(np.log(ratio), sharpness)
+    of_core = pointwise(_core.starvation, ratio, 1.0, sharpness).factor
+    assert np.exp(share) == pytest.approx(np.asarray(of_core), rel=1e-12)
+    up, down = (log_film_share(np.log(ratio) + step, sharpness)[0] for step in (1e-5, -1e-5))
+    assert slope == pytest.approx((up - down) / 2e-5, abs=1e-9)
+
+
+def test_the_usual_sharpness_is_that_of_the_film() -> None:
+    usual = inspect.signature(film_thickness).parameters["starvation_sharpness"].default
+    assert usual == USUAL_SHARPNESS
 
 
 def test_the_shipped_units_starve_when_they_do() -> None:
@@ -173,7 +190,7 @@ def test_the_shipped_units_starve_when_they_do() -> None:
     held = (film.film[0].low - 2e-3 <= over) & (over <= film.film[0].high + 2e-3)
     assert held.mean() >= 0.85
     assert [film.runs.unit[i] for i in np.flatnonzero(film.starved())] == ["U4"]
-    assert "1 of 8 units starve" in film.headline()
+    assert "1 of 8 specimens starve" in film.headline()
 
 
 def test_what_a_result_says() -> None:
@@ -233,7 +250,7 @@ def test_given_numbers_of_the_law_are_kept() -> None:
     ("kept", "said"),
     [
         (pl.col("temperature (K)") < 335.0, "one temperature cannot tell"),
-        (pl.col("run_id") == 1, "no unit was seen at two ages"),
+        (pl.col("run_id") == 1, "no specimen was seen at two ages"),
     ],
 )
 def test_what_the_dwells_do_not_tell_is_said(kept: pl.Expr, said: str) -> None:
@@ -256,7 +273,7 @@ def test_a_film_that_is_not_that_of_the_file_is_not_told() -> None:
 def test_what_the_law_itself_may_be_off_moves_all_ages(monkeypatch: pytest.MonkeyPatch) -> None:
     """Without it intervals are those of the dwells alone, and narrower."""
     told = shipped.film(1).starves[0].units[0].age
-    monkeypatch.setattr(through_life, "_LAW", 0.0)
+    monkeypatch.setattr(starving, "_LAW", 0.0)
     bare = film_life(shipped.campaign(1), shipped.machine()).starves[0].units[0].age
     assert told.high - told.low > 1.05 * (bare.high - bare.low)
     assert told.value == pytest.approx(bare.value, rel=0.02)

@@ -61,9 +61,9 @@ def test_what_cannot_be_told_is_said() -> None:
     found = little()
     assert found.film is None
     assert any("film through life" in line for line in found.unsaid)
-    assert "one unit tells nothing of how units differ" in found.summary()
-    assert found.headline().startswith("U1 ends at ")  # not when half of new units do
-    with pytest.raises(InsufficientDataError, match="nothing that ends a unit"):
+    assert "one specimen tells nothing of how specimens differ" in found.summary()
+    assert found.headline().startswith("U1 ends at ")  # not when half of new specimens do
+    with pytest.raises(InsufficientDataError, match="nothing that ends a specimen"):
         follow(shipped.opened(1), hersey.Machine(11e3, 11.0, 15e-3, 3e-3))
 
 

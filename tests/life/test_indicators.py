@@ -1,4 +1,4 @@
-"""What the runs of a campaign say of each failure mode: against the truth of units that age."""
+"""What the runs of a campaign say of each failure mode: against the truth of specimens that age."""
 
 from __future__ import annotations
 
@@ -152,7 +152,7 @@ def test_half_a_table_is_said(
 
 
 def test_a_point_comes_to_lie_on_the_falling_branch(campaign: Campaign) -> None:
-    """Of the unit that wears the speed of least torque passes the slow point; of the others it falls."""
+    """Of the specimen that wears the speed of least torque passes the slow point; of the others it falls."""
     found = named(in_use(campaign), "stick-slip, thick paper")
     true = np.array([float(truth.transition_speed(np.array(180.0))) * 0.015 for truth in truths().values()])
     told = np.isfinite(found.value)
@@ -186,7 +186,7 @@ def test_the_belt_alone_against_the_grip(campaign: Campaign) -> None:
     cold = named(found, "grip, cold and fast")
     at = np.array([0.2 / 0.015]), np.array([60.0])
     true = np.array([(t.torque(*at) - t.rest.torque(at[0]))[0] for t in truths().values()])
-    # The machine's rest is that of a new unit: what it grows by counts as the belt's.
+    # The machine's rest is that of a new specimen: what it grows by counts as the belt's.
     grown = np.array([(t.rest.torque(at[0]) - machine().rest.torque(at[0]))[0] for t in truths().values()])  # type: ignore[union-attr]
     assert np.all(np.abs(np.log(cold.value / (true + grown)) / cold.error) < 4.0)
     assert cold.limit == pytest.approx(0.6 * 300.0 * 0.015)

@@ -36,7 +36,7 @@ def told() -> tuple[OtherUses, hersey.TimeToFailure]:
 
 
 def by_hand() -> OtherUses:
-    """Two limits and two starts, of one unit."""
+    """Two limits and two starts, of one specimen."""
     uses = []
     for start in (323.15, 333.15):
         for limit in (1.0, 1.25):

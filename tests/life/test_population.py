@@ -1,4 +1,4 @@
-"""The Weibull law of units of which some have not failed: published cases, coverage, few failures."""
+"""The Weibull law of specimens of which some have not failed: published cases, coverage, few failures."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def test_a_unit_taken_off_at_the_age_of_a_failure_had_outlived_it() -> None:
 
 
 def test_intervals_cover() -> None:
-    """In 300 campaigns of 8 units that end at the fourth failure, B10's interval holds the truth in 90 %."""
+    """In 300 campaigns of 8 specimens that end at the fourth failure, intervals of B10 hold in 90 %."""
     units = np.sort(1000 * np.random.default_rng(7).weibull(2.0, (300, 8)), axis=1)
     ages = np.minimum(units, units[:, 3:4])
     told = [weibull(each, np.arange(8) < 4).b_life(0.10) for each in ages]
@@ -92,8 +92,8 @@ def test_units_of_age_do_not_matter(units: list[tuple[float, bool]], factor: flo
 @pytest.mark.parametrize(
     ("failed", "words"),
     [
-        ([False, False, False], "No unit has failed up to 30 pages"),
-        ([True, False, False], "One unit has failed, at 10 pages"),
+        ([False, False, False], "No specimen has failed up to 30 pages"),
+        ([True, False, False], "One specimen has failed, at 10 pages"),
     ],
 )
 def test_too_few_failures_are_told(failed: list[bool], words: str) -> None:

@@ -1,4 +1,4 @@
-"""What ends units: truths in closed form, which way is first, what cannot be told."""
+"""What ends specimens: truths in closed form, which way is first, what cannot be told."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import pytest
 
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.life.growth import fit as growth_module
-from hersey.life.growth import posterior as growth_posterior
+from hersey.life.growth import marginal
 from hersey.life.growth.fit import fit_growth
 from hersey.life.indicator import Indicator, Indicators, OwnAges, Runs
 from hersey.life.time_to_failure import joined, next_run
@@ -77,7 +77,7 @@ def test_an_early_sign_ends_no_unit() -> None:
     assert [mode.name for mode in told().modes] == ["torque", "film", "noise"]
     assert [mode.name for mode in told().ending] == ["torque", "film"]
     assert all("noise" not in end.first for end in told().units)
-    assert "noise (a precursor: it ends no unit)" in told().summary()
+    assert "noise (a precursor: it ends no specimen)" in told().summary()
 
 
 def test_what_has_passed_is_said_and_fails_in_the_weibull_plot() -> None:
@@ -92,7 +92,7 @@ def test_what_has_passed_is_said_and_fails_in_the_weibull_plot() -> None:
 
 def test_what_cannot_be_judged_keeps_its_reason() -> None:
     assert told().unsaid[0] == "heat: no table [motor]"
-    assert told().unsaid[1].startswith("grip: no unit was seen at two ages")
+    assert told().unsaid[1].startswith("grip: no specimen was seen at two ages")
     with pytest.raises(InsufficientDataError, match="grip: no run tells it"):
         time_to_failure(of(indicator("grip", np.full(AGE.size, np.nan), 2.0)))
 
@@ -116,20 +116,20 @@ def test_the_same_data_and_seed_give_the_same_ends() -> None:
     once = time_to_failure(few, seed=4, progress=lambda done, every: calls.append((done, every)))
     assert once.to_dict() == time_to_failure(few, seed=4).to_dict()
     assert calls == [(1, 1)]
-    assert "2 units tell little of how units differ" in " ".join(once.notes)
+    assert "2 specimens tell little of how specimens differ" in " ".join(once.notes)
 
 
 def test_a_unit_that_tells_nothing_is_one_of_the_others() -> None:
     value = linear(RATE[:4])
     value[-7:] = np.nan
     found = time_to_failure(of(indicator("torque", value, 2.0), names=NAMES[:28], age=AGE[:28]))
-    assert "no run of F4 tells it: taken as any new unit" in found.summary()
+    assert "no run of F4 tells it: taken as any new specimen" in found.summary()
     wide, narrow = (found.units[i].age.age for i in (3, 0))
     assert wide.high / wide.low > 1.5 * narrow.high / narrow.low
 
 
 def test_far_and_wide_ends_are_said() -> None:
-    """Two units that have hardly begun to grow: neither law nor spread nor age is told."""
+    """Two specimens that have hardly begun to grow: neither law nor spread nor age is told."""
     names, age = ("A",) * 4 + ("B",) * 4, np.tile([0.0, 10.0, 20.0, 30.0], 2)
     value = linear(np.array([0.002, 0.003]), age[:4])
     notes = " ".join(time_to_failure(of(indicator("torque", value, 2.0), names=names, age=age)).notes)
@@ -175,7 +175,7 @@ def test_the_integral_of_each_law_is_that_of_its_curve(law: str) -> None:
     """Summed anew by the trapezium rule, also where a layer dries out soon after."""
     found_law = next(each for each in growth_module.LAWS if each.name == law)
     shapes = np.array([[[-0.9], [-0.3], [0.1], [1.0]]] * len(found_law.shapes)).reshape(-1, 4, 1)
-    units = growth_posterior.Units(
+    units = marginal.Specimens(
         found_law, np.zeros((4, 3)), np.array([[-2.0, 0.0, 1.0]] * 4), shapes, np.ones((4, 1))
     )
     found = growth_module.ages_of_sum(units, np.full((4, 1), math.log(1.7)))

@@ -1,4 +1,4 @@
-"""The torque of a run between its dwells: against the truth of units that age, and of few dwells."""
+"""The torque of a run between its dwells: against the truth of specimens that age, and of few dwells."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def only(run: RunDwells, keep: FloatArray | slice) -> RunDwells:
 
 @cache
 def aged() -> tuple[list[AgedTruth], list[RunDwells], Kernel]:
-    """All 48 runs of the units that ship, and their kernel."""
+    """All 48 runs of the specimens that ship, and their kernel."""
     units = population(*example_drive(), units=8, seed=3)
     truths = [unit.at(age) for unit, age in product(units, AGES)]
     runs = [dwells_of(truth, seed) for seed, truth in enumerate(truths)]
@@ -49,7 +49,7 @@ def aged() -> tuple[list[AgedTruth], list[RunDwells], Kernel]:
 
 
 def test_errors_at_both_corners_are_as_said() -> None:
-    """Errors over their standard errors, of all units and ages, are about normal: mean 0 and deviation 1."""
+    """Errors over their standard errors, of all specimens and ages, are about normal."""
     truths, runs, kernel = aged()
     normal = []
     for truth, run in zip(truths, runs, strict=True):

@@ -1,18 +1,20 @@
 """How a drive ages, and what ends it.
 
 ===============  ==================================================================
-age              an age with its unit: pages, hours, cycles
-campaign         the file of a life test: units, ages, their steady points and fits
+age              an age with its specimen: pages, hours, cycles
+campaign         the file of a life test: specimens, ages, their steady points and fits
 indicator        one failure mode: a number of each run against a limit
 indicators       from the runs of a campaign to each failure mode
 fatigue          cycles of torque counted, and the damage that they do to a part
-population       ages at failure over many units: Weibull law, B10 and B50
+population       ages at failure over many specimens: Weibull law, B10 and B50
 growth           how indicators grow, and the ages at their limits
 drift            what moved with age, and what it points to
+padded_rows      lists of runs or dwells as rows of equal length
+oil_layer        the layer of oil: how it thins, and how far it starves the film
 film             the film through life, the oil that is left, and when it starves
-time_to_failure  what ends each unit, and when
+time_to_failure  what ends each specimen, and when
 other_uses       the same where limit, coldest start or duty is another one
-ageing_maps      the operating map of a unit when new, now and at its end
+ageing_maps      the operating map of a specimen when new, now and at its end
 following        a life test followed, in one answer
 ===============  ==================================================================
 """

@@ -1,4 +1,4 @@
-"""The operating map of a unit when new, as last seen, and when it ends.
+"""The operating map of a specimen when new, as last seen, and when it ends.
 
 Torque between the dwells of a run is that of its `TorqueSurface`, without a law. To the end it is carried on
 by a clock, the growth of the torque that its own growth law tells: at each speed and temperature ln torque
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from hersey.life.campaign import Campaign
     from hersey.life.time_to_failure.estimate import TimeToFailure
-    from hersey.life.time_to_failure.first import UnitEnd
+    from hersey.life.time_to_failure.first import SpecimenEnd
     from hersey.machine.limits import OperatingPoint
     from hersey.machine.machine import Machine
 
@@ -40,7 +40,7 @@ _APART, _BESIDE = 5.0, 10.0
 
 @dataclass(frozen=True, repr=False)
 class AgeingMaps(Result):
-    """The map of one unit at some ages.
+    """The map of one specimen at some ages.
 
     ``when`` says in a word what each age is. ``temperature`` (K, shape (n,)) and ``speed`` (m/s at the belt,
     shape (m,)) span the maps; ``torque`` (N m, shape (ages, n, m)) is that at the roll. Slower than
@@ -81,7 +81,7 @@ class AgeingMaps(Result):
         return "depends on the past" if point.speed < self.upper[index, column] else "smooth"
 
     def headline(self) -> str:
-        """Return the unit and its ages."""
+        """Return the specimen and its ages."""
         return f"maps of {self.unit}: {'; '.join(self.names)}"
 
     def summary(self) -> str:
@@ -130,21 +130,21 @@ def carried_on(log_torque: FloatArray, clock: FloatArray, to: float) -> FloatArr
 
 @one_thread()
 def ageing_maps(campaign: Campaign, machine: Machine, found: TimeToFailure, *, unit: str = "") -> AgeingMaps:
-    """Return the maps of a unit when new, as last seen and, if it has not ended yet, at its end.
+    """Return the maps of a specimen when new, as last seen and, if it has not ended yet, at its end.
 
     Parameters
     ----------
     campaign, machine
-        Whose unit it is, and what drives it.
+        Whose specimen it is, and what drives it.
     found
-        What ends the units, and when.
+        What ends the specimens, and when.
     unit
-        Its name; the unit that ends next if left out.
+        Its name; the specimen that ends next if left out.
 
     Raises
     ------
     ParameterError
-        If there is no such unit.
+        If there is no such specimen.
     InsufficientDataError
         If its runs do not tell torque against temperature.
     """
@@ -197,21 +197,21 @@ def ageing_maps(campaign: Campaign, machine: Machine, found: TimeToFailure, *, u
     )
 
 
-def _chosen(found: TimeToFailure, unit: str) -> UnitEnd:
-    """The unit of that name; else the one that ends next, or first if all have ended."""
+def _chosen(found: TimeToFailure, unit: str) -> SpecimenEnd:
+    """The specimen of that name; else the one that ends next, or first if all have ended."""
     if unit:
         for each in found.units:
             if each.unit == unit:
                 return each
         near = meant(unit, [each.unit for each in found.units])
         way = f"did you mean '{near}'?" if near else "'hersey campaign list' names them"
-        raise ParameterError(f"the campaign has no unit '{unit}': {way}")
+        raise ParameterError(f"the campaign has no specimen '{unit}': {way}")
     coming = [each for each in found.units if each.age.passed <= 0.5]
     return min(coming or found.units, key=lambda each: each.age.age.value)
 
 
 def _clock(found: TimeToFailure, unit: str, ages: FloatArray) -> FloatArray:
-    """How far a unit has aged at ages: ln of the growth of its torque, or the ages where none is told."""
+    """How far a specimen has aged at ages: ln of the growth of its torque, or the ages where none is told."""
     for mode in found.modes:
         if mode.kind == CLOCK and unit in mode.growth.units:
             return np.asarray(np.log(mode.growth.at(ages).median[mode.growth.units.index(unit)]))

@@ -1,4 +1,4 @@
-"""A life test followed: what moved, how thick the film is, what ends each unit and when, in one answer."""
+"""A life test followed: what moved, how thick the film is, what ends each specimen and when."""
 
 from __future__ import annotations
 
@@ -42,11 +42,11 @@ class LifeTest(Result):
     seed: int
 
     def headline(self) -> str:
-        """Return what ends the units, and when."""
+        """Return what ends the specimens, and when."""
         return self.time_to_failure.headline()
 
     def summary(self) -> str:
-        """Return the answer as text: what ends the units, what moved, the film, what is not told."""
+        """Return the answer as text: what ends the specimens, what moved, the film, what is not told."""
         parts = [self.time_to_failure.summary()]
         parts += [each.summary() for each in (self.drift, self.film, self.maps) if each is not None]
         parts += [f"- {line}" for line in self.unsaid]
@@ -79,14 +79,14 @@ def follow(
     uses: bool = False,
     step: Step | None = None,
 ) -> LifeTest:
-    """Follow the units of a campaign to what ends them.
+    """Follow the specimens of a campaign to what ends them.
 
     Parameters
     ----------
     campaign
-        Of one run or more; more ages and units tell more.
+        Of one run or more; more ages and specimens tell more.
     machine
-        Its limits and operating points say what ends a unit; contact and lubricant make the film.
+        Its limits and operating points say what ends a specimen; contact and lubricant make the film.
     seed
         Of all draws.
     unit
@@ -101,7 +101,7 @@ def follow(
     InsufficientDataError
         If no indicator can be told of any run.
     ParameterError
-        If the campaign has no such unit.
+        If the campaign has no such specimen.
     """
     said = step or (lambda _text: None)
     unsaid: list[str] = []
@@ -119,7 +119,7 @@ def follow(
     film = tried("film through life", lambda: film_life(campaign, machine))
     if film is not None:
         indicators = film.with_starvation(indicators)
-    said("growth and what ends the units")
+    said("growth and what ends the specimens")
     found = time_to_failure(indicators, seed=seed)
     drift = tried("drift", lambda: fit_drift(campaign.dwells()))
     maps = tried(

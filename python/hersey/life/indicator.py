@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hersey.arrays import FloatArray
+from hersey.arrays import FloatArray, IntArray
 from hersey.errors import ParameterError
 
 if TYPE_CHECKING:
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, repr=False)
 class Runs:
-    """The runs of a campaign, by unit and age: their numbers in the file, units, and ages in ``age_unit``."""
+    """The runs of a campaign, by specimen and age: numbers in the file, names, and ages in ``age_unit``."""
 
     run: tuple[int, ...]
     unit: tuple[str, ...]
@@ -32,16 +32,22 @@ class Runs:
 
     @property
     def units(self) -> tuple[str, ...]:
-        """The units, each once, in the order of the runs."""
+        """The specimens, each once, in the order of the runs."""
         return tuple(dict.fromkeys(self.unit))
+
+
+def most_ages(place: IntArray, age: FloatArray) -> int:
+    """Return at how many ages the specimen was seen that was seen at most; both of each run."""
+    seen = np.unique(np.stack([place, age]), axis=1)[0]
+    return int(np.unique(seen, return_counts=True)[1].max())
 
 
 @dataclass(frozen=True, repr=False)
 class OwnAges:
     """Ages at the limit by a law of the indicator's own, equally probable draws.
 
-    ``known`` are those of `Runs.units`, shape (draws, units), ``new`` of new units, (draws, new units); a row
-    holds all under one draw of what they share.
+    ``known`` are those of `Runs.units`, shape (draws, specimens), ``new`` of new specimens, (draws, new
+    specimens); a row holds all under one draw of what they share.
     """
 
     known: FloatArray
@@ -56,8 +62,8 @@ class Indicator:
     that ``accumulates`` is a rate per age, and the limit is that of its integral from age 0. ``error`` is its
     relative standard error; ``limit_error`` that of the limit and of the sensor, common to all runs. ``kind``
     is the failure in two or three words, ``name`` tells it from others of its kind. A ``sign`` comes early,
-    and a unit that reaches its limit has not ended. Where ``own_ages`` are told they stand in the place of
-    those of a law of growth.
+    and a specimen that reaches its limit has not ended. Where ``own_ages`` are told they stand in the place
+    of those of a law of growth.
     """
 
     name: str

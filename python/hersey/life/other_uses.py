@@ -12,11 +12,11 @@ import numpy as np
 
 from hersey.arrays import one_thread
 from hersey.errors import HerseyError, ParameterError
-from hersey.life.growth.limit_ages import Interval, share_of_units
+from hersey.life.growth.limit_ages import Interval, share_of_specimens
 from hersey.life.indicators.load_cases import load_cases
 from hersey.life.indicators.of_campaign import indicators_of
 from hersey.life.indicators.run_dwells import read_runs_of
-from hersey.life.time_to_failure.first import ages_of_new, ends_of_units
+from hersey.life.time_to_failure.first import ages_of_new, ends_of_specimens
 from hersey.life.time_to_failure.joined import correlations
 from hersey.life.time_to_failure.way import FittedWay, fitted_way, last_ages
 from hersey.result import Result, json_record
@@ -41,7 +41,7 @@ _MOTOR = "motor torque"
 
 @dataclass(frozen=True)
 class UseEnd:
-    """The first end in another use: of a unit with the ways in words, or of a share of new units."""
+    """The first end in another use: of a specimen with the ways in words, or of a share of new specimens."""
 
     name: str
     age: Interval
@@ -56,12 +56,14 @@ class Use:
     coldest: float | None
     duty: str
     stated: bool  #: the use that the machine's file states
-    ends: tuple[UseEnd, ...]  #: units, a tenth and half of new units; none where nothing can be followed
+    ends: tuple[
+        UseEnd, ...
+    ]  #: specimens, a tenth and half of new specimens; none where nothing can be followed
 
 
 @dataclass(frozen=True, repr=False)
 class OtherUses(Result):
-    """The first ends of units and population in every combination of limits, coldest starts and duties."""
+    """The first ends of specimens and population for every combination of limit, coldest start and duty."""
 
     age_unit: str
     torque_limits: tuple[float, ...]
@@ -75,10 +77,10 @@ class OtherUses(Result):
         ages = [use.ends[-1].age.value for use in told]
         unit = f" {self.age_unit}" if self.age_unit else ""
         low, high = (f"{float(f'{age:.3g}'):.10g}" for age in (min(ages), max(ages)))
-        return f"half of new units end between {low} and {high}{unit} in {len(told)} uses"
+        return f"half of new specimens end between {low} and {high}{unit} in {len(told)} uses"
 
     def summary(self) -> str:
-        """Return one line per use: when half of new units have ended."""
+        """Return one line per use: when half of new specimens have ended."""
         return "\n".join([self.headline(), *(f"  {_words(use)}" for use in self.uses)])
 
     def to_dict(self) -> dict[str, Any]:
@@ -86,7 +88,7 @@ class OtherUses(Result):
         return json_record(vars(self))
 
     def to_frame(self) -> pl.DataFrame:
-        """Return one row per use and unit, the population last; infinite where it is never reached."""
+        """Return one row per use and specimen, the population last; infinite where it is never reached."""
         import polars as pl
 
         rows = [(use, end) for use in self.uses for end in use.ends]
@@ -171,9 +173,9 @@ class _Ways:
             return ()
         random = np.random.default_rng([self._seed, 2])
         of_runs = correlations([way.residuals for way in ways])
-        units, _ = ends_of_units(ways, of_runs, indicators.runs.units, last_ages(indicators), random)
+        units, _ = ends_of_specimens(ways, of_runs, indicators.runs.units, last_ages(indicators), random)
         first = np.sort(ages_of_new(ways, of_runs, random).min(axis=0), axis=1)
-        shares = [share_of_units(first, share) for share in (0.1, 0.5)]
+        shares = [share_of_specimens(first, share) for share in (0.1, 0.5)]
         return (
             *(UseEnd(each.unit, each.age.age, each.ways) for each in units),
             *(UseEnd(each.unit, each.age, "") for each in shares),
@@ -201,7 +203,7 @@ def _coldest(campaign: Campaign, machine: Machine) -> float | None:
 
 
 def _words(use: Use) -> str:
-    """One use, and when half of new units have ended in it."""
+    """One use, and when half of new specimens have ended in it."""
     parts = [] if use.torque_limit is None else [f"{use.torque_limit:.3g} N m"]
     parts += [] if use.coldest is None else [f"from {celsius(use.coldest):.3g} degC"]
     parts += [] if use.duty == AS_STATED else [f"only {use.duty}"]
@@ -232,7 +234,7 @@ def _in_use(
 
 
 def _limited(indicators: Indicators, torque: float | None) -> list[Indicator]:
-    """The indicators that end a unit, that of the motor against another limit."""
+    """The indicators that end a specimen, that of the motor against another limit."""
     ending = [each for each in indicators.each if not each.sign]
     if torque is None:
         return ending

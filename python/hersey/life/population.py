@@ -1,7 +1,7 @@
-"""Ages at failure over many units: a Weibull law with units that have not failed, B10 and B50.
+"""Ages at failure over many specimens: a Weibull law with specimens that have not failed, B10 and B50.
 
 The share failed by age t is F = 1 - exp(-(t / scale)^shape). Maximum likelihood takes what is known of a
-unit that has not failed: that it was older than the age at which it was last seen.
+specimen that has not failed: that it was older than the age at which it was last seen.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ _STEPS, _SETTLED = 100, 1e-13
 
 @dataclass(frozen=True)
 class BLife:
-    """The age by which a share of all units has failed, with its interval."""
+    """The age by which a share of all specimens has failed, with its interval."""
 
     share: float
     age: float
@@ -47,10 +47,10 @@ class BLife:
 
 @dataclass(frozen=True, repr=False)
 class Population(Result):
-    """What units that failed, and units that did not, say of all units like them.
+    """What specimens that failed, and specimens that did not, say of all specimens like them.
 
     ``ages`` (ascending) are in ``unit``; ``failed`` tells which are ages at failure. ``shape``, ``scale`` and
-    their intervals at ``level`` are None where too few units have failed: ``note`` says so.
+    their intervals at ``level`` are None where too few specimens have failed: ``note`` says so.
     """
 
     ages: FloatArray
@@ -65,14 +65,14 @@ class Population(Result):
     seed: int
 
     def b_life(self, share: float) -> BLife:
-        """Return the age by which a share of all units has failed: 0.10 for B10.
+        """Return the age by which a share of all specimens has failed: 0.10 for B10.
 
         Raises
         ------
         ParameterError
             If the share is not between 0 and 1.
         InsufficientDataError
-            If too few units have failed to tell.
+            If too few specimens have failed to tell.
         """
         if not 0 < share < 1:
             raise ParameterError(f"share is {share}: it must lie between 0 and 1", quantity="share")
@@ -82,12 +82,12 @@ class Population(Result):
         return BLife(share, age, low, high, self.level)
 
     def lives(self, shares: ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return ages by which shares of all units have failed, and both ends of their intervals.
+        """Return ages by which shares of all specimens have failed, and both ends of their intervals.
 
         Raises
         ------
         InsufficientDataError
-            If too few units have failed to tell.
+            If too few specimens have failed to tell.
         """
         if self.shape is None or self.scale is None:
             raise InsufficientDataError(self.note)
@@ -104,8 +104,8 @@ class Population(Result):
     def median_ranks(self) -> tuple[FloatArray, FloatArray]:
         """Ages at failure and the share failed at each: medians of their ranks, after Johnson.
 
-        A unit that was taken off may have failed at any later rank: each failure behind it moves up by its
-        part of those. A unit taken off at the age of a failure counts as having outlived it.
+        A specimen that was taken off may have failed at any later rank: each failure behind it moves up by
+        its part of those. A specimen taken off at the age of a failure counts as having outlived it.
         """
         total, rank, ranks = self.ages.size, 0.0, []
         for before in np.flatnonzero(self.failed).tolist():
@@ -124,15 +124,15 @@ class Population(Result):
             return ""
         low, high = self.shape_interval
         if low > 1:
-            return "The rate of failures grows with age: units wear out."
+            return "The rate of failures grows with age: specimens wear out."
         if high < 1:
-            return "The rate of failures falls with age: weak units fail early."
+            return "The rate of failures falls with age: weak specimens fail early."
         return "Whether the rate of failures grows or falls with age is not told."
 
     def headline(self) -> str:
         """Return how many failed, and B10 and B50."""
         count = int(self.failed.sum())
-        head = f"{self.ages.size} units, {count} failed"
+        head = f"{self.ages.size} specimens, {count} failed"
         if self.shape is None:
             return f"{head}: no law is told"
         lives = (self.b_life(share) for share in (0.10, 0.50))
@@ -176,7 +176,7 @@ class Population(Result):
         )
 
     def to_frame(self) -> pl.DataFrame:
-        """Return shape, scale, B10 and B50 with their intervals, and how many units there are."""
+        """Return shape, scale, B10 and B50 with their intervals, and how many specimens there are."""
         rows: list[tuple[str, float | None, str]] = [
             ("units", self.ages.size, ""),
             ("failed", int(self.failed.sum()), ""),
@@ -197,14 +197,15 @@ class Population(Result):
 def weibull(
     ages: ArrayLike, failed: ArrayLike, *, unit: str = "", level: float = 0.90, seed: int = 0
 ) -> Population:
-    """Return the Weibull law of ages at failure, where some units have not failed.
+    """Return the Weibull law of ages at failure, where some specimens have not failed.
 
     Parameters
     ----------
     ages
-        Age of each unit at failure, or when it was last seen; one unit of age for all, shape (units,).
+        Age of each specimen at failure, or when it was last seen; one unit of age for all, shape
+        (specimens,).
     failed
-        Whether each has failed, shape (units,).
+        Whether each has failed, shape (specimens,).
     unit
         What ages count, such as "pages" or "h": for texts and axes.
     level
@@ -226,7 +227,7 @@ def weibull(
     if not 0 < level < 1:
         raise ParameterError(f"level is {level}: it must lie between 0 and 1", quantity="level")
     values, ends = _checked(ages, failed)
-    # At one age failures come first: a unit last seen there had outlived it.
+    # At one age failures come first: a specimen last seen there had outlived it.
     order = np.lexsort((~ends, values))
     values, ends = values[order], ends[order]
     note = _note(values, ends, unit)
@@ -247,7 +248,7 @@ def _checked(ages: ArrayLike, failed: ArrayLike) -> tuple[FloatArray, BoolArray]
     if values.ndim != 1 or ends.shape != values.shape:
         raise ParameterError(f"ages {values.shape} and failed {ends.shape} must be lists of equal length")
     if ends.dtype != bool:
-        raise ParameterError("failed must be true or false for each unit", quantity="failed")
+        raise ParameterError("failed must be true or false for each specimen", quantity="failed")
     wrong = np.flatnonzero(~(np.isfinite(values) & (values > 0)))
     if wrong.size:
         place = int(wrong[0])
@@ -258,19 +259,19 @@ def _checked(ages: ArrayLike, failed: ArrayLike) -> tuple[FloatArray, BoolArray]
 
 
 def _is_told(ages: FloatArray, failed: BoolArray) -> bool:
-    """Whether a law can be told: two failures, and some unit that outlived the first of them."""
+    """Whether a law can be told: two failures, and some specimen that outlived the first of them."""
     return bool(failed.sum() >= _LEAST and ages[failed].min() < ages.max())
 
 
 def _note(ages: FloatArray, failed: BoolArray, unit: str) -> str:
     """What is to be said of few failures; empty if nothing."""
     count, behind = int(failed.sum()), f" {unit}" if unit else ""
-    way = "Follow units until more have failed."
+    way = "Follow specimens until more have failed."
     if count == 0:
-        return f"No unit has failed up to {ages.max():.6g}{behind}: no law of failures is told. {way}"
+        return f"No specimen has failed up to {ages.max():.6g}{behind}: no law of failures is told. {way}"
     if count == 1:
         only = f"{ages[failed][0]:.6g}{behind}"
-        return f"One unit has failed, at {only}: one failure tells no spread, so no law. {way}"
+        return f"One specimen has failed, at {only}: one failure tells no spread, so no law. {way}"
     if not _is_told(ages, failed):
         return f"All failed at {ages.max():.6g}{behind}: one age tells no spread, so no law. {way}"
     if count < _FEW:
@@ -287,7 +288,7 @@ def _place(share: FloatArray) -> FloatArray:
 def _fitted(logs: FloatArray, counts: FloatArray, failed: BoolArray) -> tuple[FloatArray, FloatArray]:
     """Shape and scale of greatest likelihood for rows of logarithms of ages, shape (rows, ages).
 
-    At each age stand ``counts`` units, of which one has failed where ``failed``. The shape solves
+    At each age stand ``counts`` specimens, of which one has failed where ``failed``. The shape solves
     sum(t^b ln t) / sum(t^b) - 1/b = mean of ln t over failures; the left side grows with b.
     """
     top = logs.max(axis=1, keepdims=True)
@@ -309,9 +310,9 @@ def _fitted(logs: FloatArray, counts: FloatArray, failed: BoolArray) -> tuple[Fl
 
 
 def _plan(failed: BoolArray) -> tuple[int, ...]:
-    """How many units leave at each failure: the one that fails, and those taken off before the next.
+    """How many specimens leave at each failure: the one that fails, and those taken off before the next.
 
-    Units taken off before the first failure say least, and leave no trace in the draws.
+    Specimens taken off before the first failure say least, and leave no trace in the draws.
     """
     return tuple(np.diff(np.append(np.flatnonzero(failed), failed.size)).tolist())
 
@@ -320,7 +321,7 @@ def _plan(failed: BoolArray) -> tuple[int, ...]:
 def _told_of_standard(plan: tuple[int, ...], seed: int) -> tuple[FloatArray, FloatArray]:
     """Scales and shapes told of draws from the law of scale 1 and shape 1, taken off by the plan.
 
-    Spacings of failures under such a plan are exponential, each over the units then at risk (Viveros and
+    Spacings of failures under such a plan are exponential, each over the specimens then at risk (Viveros and
     Balakrishnan, Technometrics 36, 1994, 84-91).
     """
     counts = np.array(plan, dtype=float)

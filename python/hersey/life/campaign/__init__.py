@@ -1,4 +1,4 @@
-"""The file of a life test: steady points and fits of many runs of many units, in one SQLite file.
+"""The file of a life test: steady points and fits of many runs of many specimens, in one SQLite file.
 
 ==========  ==========================================================================
 entry       a run as it is kept: its dwells, and all else as text
@@ -7,8 +7,8 @@ conversion  what is kept of a run, from its steady points and back
 guarded     a connection to a file from anywhere: limits of length and work
 content     whether a file holds what this package writes
 store       the file: its schema and version, opening, transactions, what can go wrong
-adding      which runs are new, there already, changed or under another unit
-table       a table of runs: log, unit and age in each row
+adding      which runs are new, there already, changed or under another specimen
+table       a table of runs: log, specimen and age in each row
 checks      whether files, ages and fits are as they should be
 file        `Campaign`: add, list, read back, export
 ==========  ==========================================================================

@@ -1,4 +1,4 @@
-"""Adding a run: which are new, there already, changed, or under another unit or age."""
+"""Adding a run: which are new, there already, changed, or under another specimen or age."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ def add_entry(
     Raises
     ------
     ParameterError
-        If it is changed, or under another unit or age, and ``force`` is false.
+        If it is changed, or under another specimen or age, and ``force`` is false.
     UnitError
         If the ages of the campaign are in another unit.
     """
@@ -155,18 +155,18 @@ def _in_the_unit_of_all(database: sqlite3.Connection, age: Age) -> Age:
 
 
 def _unit(database: sqlite3.Connection, unit: str, force: bool) -> str:
-    """The unit's name, which must be one that can be read and typed again."""
+    """The specimen's name, which must be one that can be read and typed again."""
     unit = " ".join(unit.split())
     if not unit or len(unit) > _LONGEST_UNIT or printable(unit) != unit:
         raise ParameterError(
-            f"unit '{unit[:_LONGEST_UNIT]}' is no name: give 1 to {_LONGEST_UNIT} characters, such as F12"
+            f"specimen '{unit[:_LONGEST_UNIT]}' is no name: give 1 to {_LONGEST_UNIT} characters, such as F12"
         )
     known = [row[0] for row in database.execute("SELECT DISTINCT unit FROM runs")]
     alike = [other for other in known if _folded(other) == _folded(unit)]
     if unit in known or not alike or force:
         return unit
     raise ParameterError(
-        f"unit '{unit}' is called '{alike[0]}' so far: write it so, or use {FORCE.to()} if it is another"
+        f"specimen '{unit}' is called '{alike[0]}' so far: write it so, or use {FORCE.to()} if it is another"
     )
 
 

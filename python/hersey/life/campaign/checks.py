@@ -22,7 +22,7 @@ _AT_ONCE = 60.0
 
 @dataclass(frozen=True)
 class Finding:
-    """Something that is not as it should be: what, in words, of which run and unit (None: the file)."""
+    """Something that is not as it should be: what, in words, of which run and specimen (None: the file)."""
 
     kind: str  #: damaged, log missing, log changed, age backwards or no fit
     text: str

@@ -27,7 +27,7 @@ COLUMNS = {
 
 @dataclass(frozen=True)
 class Entry:
-    """One run as it is kept, before it has a unit and an age.
+    """One run as it is kept, before it has a specimen and an age.
 
     ``dwells`` has a row per dwell with the columns of `COLUMNS`; ``reduction`` is what else `SteadyPoints`
     holds, ``fit`` the fitted surface (None where ``no_fit`` says why there is none), ``settings`` how the log

@@ -1,4 +1,4 @@
-"""`Campaign`: many units at many ages, in one file."""
+"""`Campaign`: many specimens at many ages, in one file."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _LISTED = "id, unit, age, path, sha256, dwells, exponent, transition_speed, no_f
 
 
 class Campaign:
-    """Runs of many units at many ages: their steady points, fits and where they came from, in one file.
+    """Runs of many specimens at many ages: their steady points, fits and where they came from, in one file.
 
     Each change is one transaction, which holds whole or not at all whatever happens; several programs may
     write in turn. Logs stay where they are. `create` and `open` make one; it is a context manager.
@@ -116,9 +116,9 @@ class Campaign:
         settings: dict[str, Any] | None = None,
         force: bool = False,
     ) -> Added:
-        """Add the steady points of a log as a run of a unit at an age: in one transaction.
+        """Add the steady points of a log as a run of a specimen at an age: in one transaction.
 
-        The same log at the same unit and age is one run, however often it is added.
+        The same log at the same specimen and age is one run, however often it is added.
 
         Parameters
         ----------
@@ -127,20 +127,20 @@ class Campaign:
         log
             Its file, which stays where it is.
         unit
-            The unit's name.
+            The specimen's name.
         age
-            As ``"120000 pages"``; 0 for a new unit. Times of all units go together, other words must be one.
+            As ``"120000 pages"``; 0 if new. Times are converted, other words must be one.
         fit
             The damping surface; fitted here if left out.
         settings
             How the log was read, as JSON can hold it.
         force
-            Replace a run whose log has changed, or that was under another unit or age.
+            Replace a run whose log has changed, or that was under another specimen or age.
 
         Raises
         ------
         ParameterError
-            If the log has changed, is there under another unit or age, or was read in another way.
+            If the log has changed, is there under another specimen or age, or was read in another way.
         UnitError
             If the age has no unit, or another than those of the campaign.
         OutputError
@@ -153,7 +153,7 @@ class Campaign:
         return self.add_entries([(entry, unit, parsed)], force=force)[0]
 
     def add_entries(self, entries: Iterable[tuple[Entry, str, Age]], *, force: bool = False) -> list[Added]:
-        """Add several runs, each with its unit and age, in one transaction: all or none; errors as `add`."""
+        """Add several runs, with specimen and age, in one transaction: all or none; errors as `add`."""
         with transaction(self._database, self.path):
             added = [add_entry(self._database, self._home, *each, force=force) for each in entries]
             refuse_unsound_runs(self._database, self.path)  # what is added can be read again
@@ -167,7 +167,7 @@ class Campaign:
             return is_there(self._database, sha256, unit, age, settings)
 
     def runs(self, unit: str = "") -> pl.DataFrame:
-        """Return a row per run, of one unit or of all, by unit and age.
+        """Return a row per run, of one specimen or of all, by specimen and age.
 
         Columns ``run`` (its number), ``unit``, ``age`` (in `age_unit`), ``log``, ``sha256``, ``dwells``,
         ``exponent`` (c of the damping surface), ``transition_speed`` (rad/s; null where none is seen),
@@ -176,7 +176,7 @@ class Campaign:
         Raises
         ------
         ParameterError
-            If there is no such unit.
+            If there is no such specimen.
         """
         import polars as pl
 
@@ -195,7 +195,7 @@ class Campaign:
         known = [row[0] for row in self._database.execute("SELECT DISTINCT unit FROM runs ORDER BY unit")]
         near = meant(unit, known)
         way = f"did you mean '{near}'?" if near else "'hersey campaign list' names them"
-        return ParameterError(f"{self.path.name} has no unit '{unit}': {way}")
+        return ParameterError(f"{self.path.name} has no specimen '{unit}': {way}")
 
     def points(self, run: int) -> SteadyPoints:
         """Return the steady points of a run, whole as they were added; the log's rows are not kept.
@@ -349,7 +349,7 @@ class Campaign:
             return check(self._database, self._home, progress)
 
     def summary(self) -> str:
-        """Return a line for the whole, and one for each unit."""
+        """Return a line for the whole, and one for each specimen."""
         runs = self.runs()
         lines = [f"{self.path.name}: {runs.height} runs of {runs['unit'].n_unique()} units"]
         for (unit,), of in runs.group_by("unit", maintain_order=True):
@@ -361,7 +361,7 @@ class Campaign:
         return "\n".join(lines)
 
     def to_dict(self, unit: str = "") -> dict[str, Any]:
-        """Return file, unit of the ages, and the runs of a unit or of all, as JSON can hold them."""
+        """Return file, unit of the ages, and the runs of a specimen or of all, as JSON can hold them."""
         return {"file": str(self.path), "age_unit": self.age_unit, "runs": self.runs(unit).to_dicts()}
 
     def to_frame(self) -> pl.DataFrame:

@@ -1,4 +1,4 @@
-"""A table of runs: each row names a log, its unit and its age."""
+"""A table of runs: each row names a log, its specimen and its age."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _NEEDED = ("log", "unit", "age")
 
 @dataclass(frozen=True)
 class RunToAdd:
-    """A row of the table: the log's path (whole), its unit and age."""
+    """A row of the table: the log's path (whole), its specimen and age."""
 
     log: Path
     unit: str

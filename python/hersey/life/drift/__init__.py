@@ -2,7 +2,8 @@
 
 ==============  =============================================================
 aged_torque     the torque of a drive at an age, by its parts
-units_with_age  values of runs that change with age, differently in each unit
+mixed_effects   values of runs that change with age, differently in each specimen
+dwells          the dwells of all runs as the fit takes them
 fit             the joint fit of all runs
 quantities      what moved with age, in numbers
 readings        what a drift points to

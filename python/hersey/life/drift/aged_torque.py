@@ -7,11 +7,11 @@ In the product p of viscosity and speed (logarithms, about the middle of the dat
     contact = e^(F + A - K (e^(n (p - p_s) + C) - 1))
     p = ln w + (1 + b) viscosity(T)
 
-The film goes as the product to the power n, and starves where the layer of oil is thinner than a flooded
-film: h/h_ff = (1 + (h_ff/h_oil)^g)^(-1/g), Chevalier and others, J. Tribol. 126 (2004) 105. The contact fades
-with the film over the roughness. p_c is the cold and fast corner of the data, p_s the hot and slow one. All
-runs share F, n, K, k, g and the viscosity; a run has its own rest, L, b, S, A and C. In those ageing is
-linear: thicker oil, say, moves L by 1 - n, S by g n and C by n.
+The film is proportional to the product to the power n, and starves where the layer of oil is thinner than a
+flooded film (`oil_layer`): S + g n (p - p_c) is g times ln of the flooded film over the layer. The contact
+fades as the film grows over the roughness. p_c is the cold and fast corner of the data, p_s the hot and slow
+one. All runs share F, n, K, k, g and the viscosity; a run has its own rest, L, b, S, A and C. In those ageing
+is linear: thicker oil, say, moves L by 1 - n, S by g n and C by n.
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hersey.arrays import BoolArray, FloatArray
+from hersey.life.oil_layer import log_film_share
 
 #: What a run has of its own, in the order of the last axis.
 OWN = ("rest", "film", "temperature law", "starvation", "contact", "cover")
@@ -140,10 +141,8 @@ def parts(
     above = product - scales.reach - d_cold @ shared[[SLOPE, BEND]]
     beyond = product + scales.reach - d_hot @ shared[[SLOPE, BEND]]
     # Film, and how far it is starved.
-    over = np.exp(np.minimum(starved + sharp * exponent * above, _FAR))
-    film = np.exp(np.minimum(level + thick + (1.0 - exponent) * product, _FAR)) * (1.0 + over) ** (
-        1.0 / sharp
-    )
+    log_share, by_layer = log_film_share(-(starved + sharp * exponent * above) / sharp, sharp)
+    film = np.exp(np.minimum(level + thick + (1.0 - exponent) * product, _FAR) - log_share)
     # Contact: fades as the film grows over the roughness.
     steep = np.exp(fading)
     covered = steep * np.exp(np.minimum(exponent * beyond + cover, _FAR))
@@ -152,7 +151,7 @@ def parts(
     if not slopes:
         none = np.empty(0)
         return Parts(rest * still, film, contact, none, none)
-    thinned = film * over / (sharp * (1.0 + over))  # d film / d starvation
+    thinned = film * by_layer / sharp  # d film / d starvation
     fall = -contact * covered  # d contact / d cover
     by_product = film * (1.0 - exponent) + thinned * sharp * exponent + fall * exponent
     d_own = np.stack([still + 0.0 * product, film, by_product * viscosity, thinned, contact, fall], axis=-1)
@@ -170,7 +169,7 @@ def parts(
                 [
                     rest * speed / scales.speed[1],
                     contact * steep + fall,
-                    thinned * sharp * exponent * above - film * np.log1p(over) / sharp,
+                    thinned * sharp * exponent * above + film * log_share,
                 ],
                 axis=-1,
             ),

@@ -1,4 +1,4 @@
-"""The joint fit of all runs of all units: one law, values of each run, their change with age, and spreads."""
+"""The joint fit of all runs of all specimens: one law, values of runs, their change with age, and spreads."""
 
 from __future__ import annotations
 
@@ -8,11 +8,12 @@ import numpy as np
 
 from hersey.arrays import BoolArray, FloatArray
 from hersey.life.drift.aged_torque import OWN, Scales, expected, parts, told
-from hersey.life.drift.units_with_age import Solved, Spread, Told, solve
+from hersey.life.drift.dwells import Dwells
+from hersey.life.drift.mixed_effects import Solved, Spread, Told, solve
 
 #: No torque is taken as known better than this, relative.
 _RESOLUTION = 2e-3
-#: More units than these begin where a fit to half as many ends.
+#: More specimens than these begin where a fit to half as many ends.
 _MANY = 60
 #: First steps, in which the spreads stay.
 _FIRST = 5
@@ -21,7 +22,7 @@ _STEPS, _SETTLED = 150, 2e-3
 #: Factor on the logarithm of a step of the spreads, which are slow by themselves.
 _HASTE = 1.7
 #: Longest step of a run's values, and how many deviations of the prior a shared value may stray: where one
-#: law cannot hold for all units, steps would lead out of all sense.
+#: law cannot hold for all specimens, steps would lead out of all sense.
 _LONGEST, _FURTHEST = 1.0, 4.0
 _NIL = 1e-6
 #: Prior of the population's start: means and deviations, in the order of `OWN`.
@@ -29,23 +30,10 @@ _START = np.array([0.5, 0.0, 0.0, -1.5, -1.0, 0.0])
 _START_DEVIATION = np.array([1.0, _NIL, _NIL, 1.5, 1.5, _NIL])
 #: Deviation of the prior of its change up to the oldest run.
 _CHANGE_DEVIATION = np.array([1.0, 1.0, 0.3, 3.0, 2.0, 1.0])
-#: Usual spreads of units in start and in change, and of runs.
+#: Usual spreads of specimens in start and in change, and of runs.
 _OF_START = np.array([0.01, 0.02, 0.01, 0.1, 0.1, 0.02])
 _OF_CHANGE = np.array([0.01, 0.02, 0.01, 0.1, 0.1, 0.02])
 _OF_RUNS = np.array([0.002, 0.005, 0.003, 0.03, 0.03, 0.005])
-
-
-@dataclass(frozen=True, repr=False)
-class Dwells:
-    """Dwells of runs as rows, filled up with dwells that ``given`` marks as none; runs by unit and age."""
-
-    speed: FloatArray
-    temperature: FloatArray
-    torque: FloatArray
-    error: FloatArray
-    given: BoolArray
-    age: FloatArray  #: of each run, over the greatest
-    unit: np.ndarray  #: its place, ascending
 
 
 @dataclass(frozen=True, repr=False)
@@ -61,15 +49,15 @@ class Fitted:
 
 
 def fit(dwells: Dwells) -> Fitted:
-    """Return the joint fit; that of many units begins where that of some of them ends."""
-    scales, units = _scales(dwells), int(dwells.unit[-1]) + 1
-    if units <= _MANY:
+    """Return the joint fit; that of many specimens begins where that of some of them ends."""
+    scales, specimens = _scales(dwells), int(dwells.specimen[-1]) + 1
+    if specimens <= _MANY:
         return _fitted(dwells, scales, None)
-    some = np.linspace(0, units - 1, _MANY // 2).round().astype(int)
-    chosen = np.isin(dwells.unit, some)
+    some = np.linspace(0, specimens - 1, _MANY // 2).round().astype(int)
+    chosen = np.isin(dwells.specimen, some)
     part = Dwells(*(getattr(dwells, each.name)[chosen] for each in fields(Dwells)))
     return _fitted(
-        dwells, scales, _fitted(replace(part, unit=np.searchsorted(some, part.unit)), scales, None)
+        dwells, scales, _fitted(replace(part, specimen=np.searchsorted(some, part.specimen)), scales, None)
     )
 
 
@@ -86,7 +74,7 @@ def _fitted(dwells: Dwells, scales: Scales, begun: Fitted | None) -> Fitted:
         np.where(np.tile(can, 2), np.concatenate([_OF_START, _OF_CHANGE]), _NIL) ** 2,
         np.where(can, _OF_RUNS, _NIL) ** 2,
     )
-    spread = Spread(9.0 * usual.units, 9.0 * usual.runs) if begun is None else begun.spread
+    spread = Spread(9.0 * usual.specimens, 9.0 * usual.runs) if begun is None else begun.spread
     own = len(OWN)
     values = common[:own] + dwells.age[:, None] * common[own : 2 * own]
     shared_at = slice(2 * own, None)
@@ -104,7 +92,7 @@ def _fitted(dwells: Dwells, scales: Scales, begun: Fitted | None) -> Fitted:
         information = Told(
             weighted.swapaxes(1, 2) @ slopes, (weighted.swapaxes(1, 2) @ pseudo[..., None])[..., 0]
         )
-        solved = solve(information, dwells.age, dwells.unit, spread, usual, prior)
+        solved = solve(information, dwells.age, dwells.specimen, spread, usual, prior)
         # One length for all: runs follow the shared values with which they were solved.
         ahead = solved.common - common
         length = min(1.0, 0.3 + 0.1 * step, float(np.min(longest / np.maximum(np.abs(ahead), longest))))
@@ -115,7 +103,7 @@ def _fitted(dwells: Dwells, scales: Scales, begun: Fitted | None) -> Fitted:
         if step > _FIRST or begun is not None:  # before that residuals are those of the start
             renewed = solved.spread
             spread = Spread(
-                spread.units * (renewed.units / spread.units) ** _HASTE,
+                spread.specimens * (renewed.specimens / spread.specimens) ** _HASTE,
                 spread.runs * (renewed.runs / spread.runs) ** _HASTE,
             )
         if step > 2 * _FIRST and float(np.quantile(moved.max(axis=1), 0.99)) < _SETTLED:

@@ -29,8 +29,9 @@ class Quantity:
     """Something of the drag, when new and how it changed up to the oldest age.
 
     ``si`` is its unit. ``relative``: ``change`` is that of its ratio to the value when new, less 1; otherwise
-    the difference. ``change`` is that of all units with its 90 % interval, ``units`` holds it for each; NaN
-    where it has no value. ``curves`` has a row per unit and ``band`` low, middle and high of all at `ages`.
+    the difference. ``change`` is that of all specimens with its 90 % interval, ``units`` holds it for each;
+    NaN where it has no value. ``curves`` has a row per specimen and ``band`` low, middle and high of all at
+    `ages`.
     """
 
     name: str
@@ -148,8 +149,8 @@ def quantities_of(found: Fitted, oldest: float) -> tuple[tuple[Quantity, ...], F
     solved, own = found.solved, len(OWN)
     two = 2 * own
     grid = np.linspace(0.0, 1.0, _AGES)
-    units = len(solved.unit)
-    # Of all: the line of the population, whose spread counts; of one unit: its own.
+    units = len(solved.specimen)
+    # Of all: the line of the population, whose spread counts; of one specimen: its own.
     line, covariance = solved.common[:two], solved.common_covariance[:two, :two]
     normal = float(normal_quantile(0.5 + CONFIDENCE / 2))
     reach = float(student_quantile(0.5 + CONFIDENCE / 2, units - 1)) if units > 1 else normal
@@ -160,8 +161,10 @@ def quantities_of(found: Fitted, oldest: float) -> tuple[tuple[Quantity, ...], F
     told = []
     for kind in _kinds(found.scales, solved.common[two:]):
         new, change, error = _changed(kind.value, line[None], covariance[None])
-        _, own_change, own_error = _changed(kind.value, solved.unit, solved.unit_covariance)
-        curves = np.stack([kind.value(solved.unit[:, :own] + t * solved.unit[:, own:]) for t in grid], axis=1)
+        _, own_change, own_error = _changed(kind.value, solved.specimen, solved.specimen_covariance)
+        curves = np.stack(
+            [kind.value(solved.specimen[:, :own] + t * solved.specimen[:, own:]) for t in grid], axis=1
+        )
         middle, half = kind.value(along), reach * _error(_slope(kind.value, along), spread)
         band = np.stack([middle - half, middle, middle + half])
         if kind.relative:
@@ -190,7 +193,7 @@ def _interval(kind: _Kind, change: float, half: float) -> Interval:
 def _changed(
     value: Callable[[FloatArray], FloatArray], line: FloatArray, covariance: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """A quantity when new, its change up to the oldest age, and the error of that; lines (units, 2 own)."""
+    """A quantity when new, its change up to the oldest age, and its error; lines (specimens, 2 own)."""
     own = len(OWN)
     new, old = line[:, :own], line[:, :own] + line[:, own:]
     at_end = _slope(value, old)
@@ -200,7 +203,7 @@ def _changed(
 
 
 def _slope(value: Callable[[FloatArray], FloatArray], own: FloatArray) -> FloatArray:
-    """Derivatives of a quantity by a run's own values, (units, own)."""
+    """Derivatives of a quantity by a run's own values, (specimens, own)."""
     steps = _STEP * np.eye(len(OWN))
     rises = [value(own + step) - value(own - step) for step in steps]
     return np.stack(rises, axis=1) / (2.0 * _STEP)

@@ -140,12 +140,13 @@ def states(scales: Scales) -> tuple[FloatArray, FloatArray]:
 def read(
     scales: Scales, shared: FloatArray, new: FloatArray, change: FloatArray, covariance: FloatArray
 ) -> list[Reading]:
-    """Return what the changes of several units, or of one population, point to.
+    """Return what the changes of several specimens, or of one population, point to.
 
     Parameters
     ----------
     new, change, covariance
-        Of each: values when new, their change up to the oldest run, and its covariance; (units, `OWN`, ...).
+        Of each: values when new, their change up to the oldest run, and its covariance; (specimens, `OWN`,
+        ...).
     """
     speed, place = states(scales)
     middle = parts(scales, speed, place, new + 0.5 * change, shared)
@@ -156,7 +157,7 @@ def read(
     blur = wrong * typical / np.maximum(np.abs(relative).max(axis=1), 1e-6)
     weight = np.linalg.inv(covariance + blur[:, :, None] ** 2 * np.eye(len(OWN)))
     every = directions(shared)
-    # With many units chance does more.
+    # With many specimens chance does more.
     price = _PRICE + 2.0 * np.log(len(change))
     sets = _sets(every)
     scores, amounts = np.empty((len(change), len(sets))), []
@@ -201,7 +202,7 @@ def _effect(
     amount: FloatArray,
     name: str,
 ) -> FloatArray:
-    """Change of torque that an ageing of a set does, where it does most, to first order; of each unit."""
+    """Change of torque that an ageing of a set does, where it does most, to first order; of each specimen."""
     step = sum(amount[:, [k]] * every[i][1] for k, i in enumerate(chosen) if every[i][0] == name)
     effect = (relative @ step[..., None])[..., 0]  # type: ignore[index]
     if name in (THICKER, STARVED):  # at the hot and slow corner a thicker oil takes less

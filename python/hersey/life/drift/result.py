@@ -1,8 +1,8 @@
-"""Drift: what of the torque of a drive moved with age, in each unit and over all, and what that points to.
+"""Drift: what moved with age in the torque of a drive, in each specimen and over all, and what it points to.
 
-All runs of all units are fitted together (`fit`): one law of the torque (`aged_torque`), the values
-of each unit when new and their change with age, and how units and runs scatter about that. Quantities that
-anyone can read off a Stribeck curve follow with their intervals; a reading of the change is evidence.
+All runs of all specimens are fitted together (`fit`): one law of the torque (`aged_torque`), the values of
+each specimen when new and their change with age, and how specimens and runs scatter about that. Quantities
+that anyone can read off a Stribeck curve follow with their intervals; a reading of the change is evidence.
 """
 
 from __future__ import annotations
@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hersey.arrays import FloatArray, one_thread
-from hersey.errors import InsufficientDataError, ParameterError
 from hersey.life.campaign import Campaign
 from hersey.life.drift.aged_torque import OWN
-from hersey.life.drift.fit import Dwells, Fitted, fit
+from hersey.life.drift.dwells import Dwells, dwells_of
+from hersey.life.drift.fit import Fitted, fit
 from hersey.life.drift.quantities import Quantity, quantities_of
 from hersey.life.drift.readings import Change, Reading, read
 from hersey.result import Result, json_record, json_value
@@ -25,28 +25,22 @@ from hersey.units import celsius, rpm
 if TYPE_CHECKING:
     import polars as pl
 
-#: Ratio of the fastest to the slowest speed from which speeds tell anything.
-_APART = 1.5
-#: Up to so many units tell little of how units differ.
+#: Up to so many specimens tell little of how specimens differ.
 _FEW = 3
-
-
-#: Dwells that most runs must have.
-_FEWEST = 4
 
 
 @dataclass(frozen=True, repr=False)
 class Drift(Result):
     """What moved with age, and what it points to.
 
-    ``reading`` is that of the units together, ``readings`` that of each; `Reading.sets` holds more than one
-    where the data cannot tell them apart.
+    ``reading`` is that of the specimens together, ``readings`` that of each; `Reading.sets` holds more than
+    one where the data cannot tell them apart.
     """
 
     units: tuple[str, ...]
     age_unit: str
     oldest: float
-    last_age: tuple[float, ...]  #: of each unit
+    last_age: tuple[float, ...]  #: of each specimen
     runs: int
     dwells: int
     quantities: tuple[Quantity, ...]
@@ -63,7 +57,7 @@ class Drift(Result):
 
     def headline(self) -> str:
         """Return what the drift points to."""
-        return f"{len(self.units)} units up to {self._age(self.oldest)}: {_pointed(self.reading)}"
+        return f"{len(self.units)} specimens up to {self._age(self.oldest)}: {_pointed(self.reading)}"
 
     def summary(self) -> str:
         """Return what moved, and the readings, as text."""
@@ -76,15 +70,15 @@ class Drift(Result):
         if len(self.reading.sets) > 1:
             lines.append("These readings cannot be told apart:")
             lines += [f"  {_listed(each) or 'nothing moved'}" for each in self.reading.sets]
-        lines += self._of_units()
+        lines += self._of_specimens()
         if any(self.reading.sets):
             lines.append(
                 "A reading says what would do this, and is no proof: something else may do the same."
             )
         return "\n".join([*lines, *(f"- {note}" for note in self.notes)])
 
-    def _of_units(self) -> list[str]:
-        """A line for each thing that is said of units."""
+    def _of_specimens(self) -> list[str]:
+        """A line for each thing that is said of specimens."""
         if len(self.units) == 1:
             return []
         told: dict[str, list[str]] = {}
@@ -94,7 +88,7 @@ class Drift(Result):
         for words, units in sorted(told.items(), key=lambda each: -len(each[1])):
             named = ", ".join(units[:_NAMED]) + f" and {len(units) - _NAMED} more" * (len(units) > _NAMED)
             lines.append(f"  {named}: {words}")
-        return ["Unit by unit:", *lines]
+        return ["Unit by specimen:", *lines]
 
     def _age(self, age: float) -> str:
         return f"{age:.6g} {self.age_unit}".strip()
@@ -116,7 +110,7 @@ class Drift(Result):
         )
 
     def to_frame(self) -> pl.DataFrame:
-        """Return the change of each quantity, of all units (empty name) and of each."""
+        """Return the change of each quantity, of all specimens (empty name) and of each."""
         import polars as pl
 
         rows = [
@@ -128,7 +122,7 @@ class Drift(Result):
         return pl.DataFrame(rows, schema=names, orient="row")
 
 
-#: How many units are named in a line.
+#: How many specimens are named in a line.
 _NAMED = 12
 #: What each ageing would do, told beside its reading.
 _WOULD = {
@@ -161,7 +155,7 @@ def _pointed(reading: Reading) -> str:
 
 
 def _of_one(reading: Reading) -> str:
-    """What is said of a unit."""
+    """What is said of a specimen."""
     perhaps = {each.words: None for every in reading.sets for each in every}
     for each in reading.sure:
         perhaps.pop(each.words, None)
@@ -179,7 +173,7 @@ def _evidence(change: Change) -> str:
 
 @one_thread()
 def fit_drift(runs: Campaign | pl.DataFrame) -> Drift:
-    """Fit all runs of all units together and tell what moved with age.
+    """Fit all runs of all specimens together and tell what moved with age.
 
     Parameters
     ----------
@@ -192,34 +186,21 @@ def fit_drift(runs: Campaign | pl.DataFrame) -> Drift:
     ParameterError
         If a column is missing, or a number is not one.
     InsufficientDataError
-        If no unit was seen at two ages.
+        If no specimen was seen at two ages.
     """
     table = runs.dwells() if isinstance(runs, Campaign) else runs
     age_name = next((name for name in table.columns if name.startswith("age (")), "")
-    dwells, units, oldest = _dwells_of(table, age_name)
+    dwells, units, oldest = dwells_of(table, age_name)
     found = fit(dwells)
     quantities, ages = quantities_of(found, oldest)
-    own, solved = len(OWN), found.solved
-    shared = solved.common[2 * own :]
-    together = read(
-        found.scales,
-        shared,
-        solved.mean[None, :own],
-        solved.mean[None, own:],
-        solved.mean_covariance[None, own:, own:],
-    )[0]
-    each = read(
-        found.scales,
-        shared,
-        solved.unit[:, :own],
-        solved.unit[:, own:],
-        solved.unit_covariance[:, own:, own:],
-    )
+    solved = found.solved
+    together = _readings(found, solved.mean[None], solved.mean_covariance[None])[0]
+    each = _readings(found, solved.specimen, solved.specimen_covariance)
     return Drift(
         units=units,
         age_unit=age_name.removeprefix("age (").removesuffix(")"),
         oldest=oldest,
-        last_age=tuple(float(oldest * dwells.age[dwells.unit == u].max()) for u in range(len(units))),
+        last_age=tuple(float(oldest * dwells.age[dwells.specimen == u].max()) for u in range(len(units))),
         runs=int(dwells.age.size),
         dwells=int(dwells.given.sum()),
         quantities=quantities,
@@ -232,71 +213,11 @@ def fit_drift(runs: Campaign | pl.DataFrame) -> Drift:
     )
 
 
-def _dwells_of(table: pl.DataFrame, age_name: str) -> tuple[Dwells, tuple[str, ...], float]:
-    """The dwells as rows of runs, by unit and age; names of units; the oldest age."""
-    needed = ("run_id", "unit", "speed (rad/s)", "torque (N m)", "torque error (N m)", "temperature (K)")
-    missing = [name for name in needed if name not in table.columns] + ["age (...)"] * (not age_name)
-    if missing:
-        raise ParameterError(
-            f"the table of dwells has no column {', '.join(map(repr, missing))}: take Campaign.dwells()"
-        )
-    table = table.sort("unit", age_name, "run_id", maintain_order=True)
-    numbers = {name: table[name].cast(float).fill_null(np.nan).to_numpy() for name in (age_name, *needed[2:])}
-    speed, torque, error, temperature = (numbers[name] for name in needed[2:])
-    # Where no error is stated the scatter of the dwells tells it; a temperature may be unknown in all.
-    may_lack = ("torque error (N m)", "temperature (K)")
-    for name, column in numbers.items():
-        for i in np.flatnonzero(~np.isfinite(column) & ~(np.isnan(column) & (name in may_lack))):
-            raise ParameterError(f"{name} of dwell {i + 1} (run {table['run_id'][int(i)]}) is no number")
-    error = np.nan_to_num(error)
-    torque, speed = torque * np.sign(speed), np.abs(speed)
-    for i in np.flatnonzero(speed == 0.0):
-        raise ParameterError(f"speed of dwell {i + 1} (run {table['run_id'][int(i)]}) is 0: leave it out")
-    unknown = np.isnan(temperature)
-    if unknown.any() and not unknown.all():
-        run = table["run_id"][int(np.flatnonzero(unknown)[0])]
-        raise ParameterError(
-            f"run {run} has dwells without a temperature, others have one: leave out the one or the other"
-        )
-    if not table.height:
-        raise InsufficientDataError("there is no dwell: add runs to the campaign")
-    if speed.max() < _APART * speed.min():
-        raise InsufficientDataError(
-            "all dwells have one speed, so nothing tells level, exponent and film apart: record dwells at "
-            "several speeds, or follow the torque itself with hersey.fit_growth"
-        )
-    run_ids, unit_names = table["run_id"].to_numpy(), table["unit"].cast(str).to_list()
-    first = np.flatnonzero(np.r_[True, run_ids[1:] != run_ids[:-1]])
-    counts = np.diff(np.r_[first, run_ids.size])
-    row, column = np.repeat(np.arange(first.size), counts), np.arange(run_ids.size) - np.repeat(first, counts)
-    if np.median(counts) < _FEWEST:
-        raise InsufficientDataError(
-            f"most runs have fewer than {_FEWEST} dwells, so nothing tells level, exponent and film apart: "
-            "record dwells at several speeds, or follow the torque itself with hersey.fit_growth"
-        )
-    given = np.zeros((first.size, int(counts.max())), dtype=bool)
-    given[row, column] = True
-
-    def filled(values: FloatArray) -> FloatArray:
-        rows = np.repeat(values[first][:, None], given.shape[1], axis=1)
-        rows[row, column] = values
-        return rows
-
-    age = numbers[age_name][first]
-    of_run = [unit_names[i] for i in first.tolist()]
-    units = tuple(dict.fromkeys(of_run))
-    place = np.array([units.index(name) for name in units])[np.searchsorted(units, of_run)]
-    seen = [np.unique(age[place == u]).size for u in range(len(units))] if len(units) < 4 else None
-    twice = np.unique(np.stack([place, age]), axis=1).shape[1] > len(units) if seen is None else max(seen) > 1
-    if not twice:
-        raise InsufficientDataError(
-            "no unit was seen at two ages, so nothing tells what moved: add runs at another age"
-        )
-    oldest = float(age.max())
-    dwells = Dwells(
-        filled(speed), filled(temperature), filled(torque), filled(error), given, age / oldest, place
-    )
-    return dwells, units, oldest
+def _readings(found: Fitted, line: FloatArray, covariance: FloatArray) -> list[Reading]:
+    """What starts and changes (specimens, 2 own) point to."""
+    own = len(OWN)
+    shared = found.solved.common[2 * own :]
+    return read(found.scales, shared, line[:, :own], line[:, own:], covariance[:, own:, own:])
 
 
 def _notes(found: Fitted, dwells: Dwells, units: tuple[str, ...]) -> tuple[str, ...]:
@@ -308,10 +229,14 @@ def _notes(found: Fitted, dwells: Dwells, units: tuple[str, ...]) -> tuple[str, 
             "dwells at several temperatures."
         )
     if len(units) == 1:
-        notes.append("One unit tells nothing of how units differ: the intervals are those of this unit.")
+        notes.append(
+            "One specimen tells nothing of how specimens differ: the intervals are those of this specimen."
+        )
     elif len(units) <= _FEW:
-        notes.append(f"{len(units)} units tell little of how units differ: the intervals over all are wide.")
-    ages = np.unique(np.stack([dwells.unit, dwells.age]), axis=1)[0]
+        notes.append(
+            f"{len(units)} specimens tell little of how specimens differ: the intervals over all are wide."
+        )
+    ages = np.unique(np.stack([dwells.specimen, dwells.age]), axis=1)[0]
     alone = [units[int(u)] for u in np.flatnonzero(np.bincount(ages.astype(int)) < 2)]
     if alone:
         named = ", ".join(alone[:_NAMED]) + " and more" * (len(alone) > _NAMED)

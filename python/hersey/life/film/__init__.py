@@ -4,7 +4,9 @@
 filled_dwells  the dwells of all runs as arrays
 starved_drag   torque against viscosity, rest of the drive and layer of oil
 layer          the layer of oil and the viscosity that each run tells
-depletion_law  how the layer thins over ages and units: draws
-through_life   `film_life`: film, oil that is left, ages at which units starve
+depletion_law  how the layer thins over ages and specimens: draws
+of_runs        the film that each run shows, and starvation as an indicator
+starving       when specimens starve, and the oil that they have left
+through_life   `film_life`: film, oil that is left, ages at which specimens starve
 =============  ===============================================================
 """

@@ -1,21 +1,17 @@
-"""How the layer of oil of units thins with age, and how their oil thickens: all units fitted together.
+"""How the layer of oil of specimens thins with age, and how their oil thickens, fitted together.
 
-The layer flows aside out of the track, in proportion to its cube, and evaporates in proportion to itself:
-``dh/dt = -K h^3/2 - e h``. With ``u = h^-2`` that is linear, ``du/dt = K + 2 e u``, so
-
-    h^-2 = h0^-2 exp(2 e t) + K (exp(2 e t) - 1)/(2 e).
-
-K alone is the side flow of van Zoelen, Venner and Lugt (Proc. IMechE J 223 (2009) 541). Viscosity grows as
-``exp(g t)``. Each unit has its own layer when new, rate of loss then (``K h0^2/2 + e``), share of evaporation
-in it, viscosity when new, and g: normal over the units in their logarithms (logit of the share; g itself),
-with unknown means and spreads. What a run tells of layer and viscosity enters as its likelihood, so a run
-that tells but a lower bound says just that.
+The layer thins by side flow and evaporation (`oil_layer`), viscosity grows as ``exp(g t)``. Each specimen has
+its own layer when new, rate of loss then (``K h0^2/2 + e``), share of evaporation in it, viscosity when new,
+and g. Their logarithms (logit of the share; g itself) are normal over the specimens, with unknown means and
+spreads. What a run shows of layer and viscosity enters as its likelihood, so a lower bound enters as just
+that.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from scipy import special
@@ -23,21 +19,21 @@ from scipy import special
 from hersey.arrays import FloatArray, IntArray
 from hersey.life.film.layer import DRY, FLOODED, Layers
 from hersey.life.film.starved_drag import Flooded, cubic
+from hersey.life.oil_layer import log_layer
 
-#: What a unit has, in this order: ln(h0/h), ln of the rate of loss when new times T, logit of the share of
-#: evaporation in it, ln of the factor on viscosity when new, g T; T is the greatest age, h the flooded film
-#: at the reference.
+#: What a specimen has, in this order: ln(h0/h), ln of the rate of loss when new times T, logit of the share
+#: of evaporation in it, ln of the factor on viscosity when new, g T; T is the greatest age, h the flooded
+#: film at the reference.
 LAYER_NEW, LOSS, EVAPORATED, VISCOSITY_NEW, THICKENING = range(5)
 _NUMBERS = 5
-#: Means over units, beforehand: mean and standard deviation; spreads over units: scale of a half-normal.
+#: Means over specimens, beforehand: mean and standard deviation; spreads over specimens: scale of a
+#: half-normal.
 _MEAN = np.array([0.0, -0.5, 0.0, 0.0, 0.2])
 _MEAN_DEVIATION = np.array([2.0, 1.5, 1.5, 1.0, 0.7])
 _SPREAD = np.array([0.5, 0.7, 0.7, 0.2, 0.5])
 #: Scatter of layer and viscosity of runs about the law, beyond their own errors (ln).
 _SCATTER = 0.02
-#: Walkers, steps of which the first are dropped, and draws kept; for few units, and for so many that they
-#: tell the spread over units by their number.
-_FEW_UNITS, _MANY_UNITS = (64, 500, 200, 2000), (16, 320, 120, 240)
+#: From so many specimens on they are many.
 _MANY = 60
 #: Steps from one cull of walkers to the next, while they still search.
 _CULL = 8
@@ -47,9 +43,9 @@ _GRID, _SPREADS = 281, 40
 
 @dataclass(frozen=True)
 class Depletion:
-    """Draws of what units have, (draws, units, 5), and of units in general: means and spreads, (draws, 5)."""
+    """Draws of what specimens have, (draws, specimens, 5), and of all: means and spreads, (draws, 5)."""
 
-    units: FloatArray
+    specimens: FloatArray
     mean: FloatArray
     spread: FloatArray
     greatest_age: float
@@ -57,42 +53,41 @@ class Depletion:
     warmth: float
     rates: Rates
 
-    def layer(self, units: FloatArray, age: FloatArray) -> FloatArray:
+    def layer(self, own: FloatArray, age: FloatArray) -> FloatArray:
         """Return ln of the layer (m) of draws (..., 5) at ages in any unit; shape (..., ages)."""
-        own = units[..., None, :]
-        scaled = np.asarray(age) / self.greatest_age
-        return _scale(self.reference) + log_layer(own, scaled, self.rates)
+        scaled, each = np.asarray(age) / self.greatest_age, own[..., None, :]
+        return _scale(self.reference) + log_layer(_new(each), *self.rates.of(each), scaled)
 
-    def rate(self, units: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def rate(self, own: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return K (1/(m^2 age)), e and g (1/age) of draws (..., 5)."""
-        side_flow, evaporation = self.rates.of(units)
+        side_flow, evaporation = self.rates.of(own)
         square = np.exp(2.0 * _scale(self.reference))
-        each = (side_flow / square, evaporation, units[..., THICKENING])
+        each = (side_flow / square, evaporation, own[..., THICKENING])
         return tuple(rate / self.greatest_age for rate in each)  # type: ignore[return-value]
 
-    def viscosity(self, units: FloatArray, age: FloatArray) -> FloatArray:
+    def viscosity(self, own: FloatArray, age: FloatArray) -> FloatArray:
         """Return ln of the factor on viscosity of draws (..., 5) at ages; shape (..., ages)."""
         scaled = np.asarray(age) / self.greatest_age
-        return units[..., VISCOSITY_NEW, None] + units[..., THICKENING, None] * scaled
+        return own[..., VISCOSITY_NEW, None] + own[..., THICKENING, None] * scaled
 
-    def over_flooded(self, units: FloatArray, age: FloatArray, point: Flooded) -> FloatArray:
+    def over_flooded(self, own: FloatArray, age: FloatArray, point: Flooded) -> FloatArray:
         """Return ln of the layer over the flooded film at a point, of draws (..., 5) at ages."""
-        at = self.viscosity(units, age) + self.warmth * point.steep.item()
-        return self.layer(units, age) - cubic(point.film.reshape(4), at)[0]
+        at = self.viscosity(own, age) + self.warmth * point.steep.item()
+        return self.layer(own, age) - cubic(point.film.reshape(4), at)[0]
 
 
 @dataclass(frozen=True)
 class Rates:
-    """The rates of side flow and evaporation in h and T, where known; None where units have their own.
+    """The rates of side flow and evaporation in h and T, where known; None where specimens have their own.
 
-    Where one is known, the loss of a unit is that by the other.
+    Where one is known, the loss of a specimen is that by the other.
     """
 
     side_flow: float | None = None
     evaporation: float | None = None
 
     def of(self, own: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return K T h^2 and e T of what units have, (..., 5)."""
+        """Return K T h^2 and e T of what specimens have, (..., 5)."""
         loss = np.exp(np.minimum(own[..., LOSS], 50.0))
         flows = 2.0 * np.exp(-2.0 * own[..., LAYER_NEW]) * loss
         if self.side_flow is not None:
@@ -105,29 +100,15 @@ class Rates:
 
     @property
     def free(self) -> IntArray:
-        """What units have of their own."""
+        """What specimens have of their own."""
         unknown = (self.side_flow is None) + (self.evaporation is None)
         fixed = {2: (), 1: (EVAPORATED,), 0: (LOSS, EVAPORATED)}[unknown]
         return np.array([k for k in range(_NUMBERS) if k not in fixed])
 
 
-def log_layer(own: FloatArray, age: FloatArray, rates: Rates) -> FloatArray:
-    """Return ln of the layer over h, of what units have (..., 5), at ages over T."""
-    return _thinned(np.exp(-2.0 * own[..., LAYER_NEW]), *rates.of(own), age)
-
-
-def _thinned(new: FloatArray, side_flow: FloatArray, evaporation: FloatArray, age: FloatArray) -> FloatArray:
-    """Ln of the layer, from that of the new unit to the power -2 and the rates."""
-    # Beyond exp(100) of it a layer is gone, whatever the number.
-    lost = np.minimum(2.0 * evaporation * age, 100.0)
-    grown = np.expm1(lost)
-    mean = np.where(lost > 1e-9, grown / np.where(lost > 1e-9, lost, 1.0), 1.0)
-    return np.asarray(-0.5 * np.log(new * (1.0 + grown) + side_flow * age * mean))
-
-
 @dataclass(frozen=True)
 class _Told:
-    """What runs tell on an even grid of places; runs of a unit stand together.
+    """What runs tell on an even grid of places; runs of a specimen stand together.
 
     ``table`` holds the root of the deviance, ln of the factor on viscosity and its weight, (runs, grid, 3).
     """
@@ -142,7 +123,7 @@ class _Told:
 
     @cached_property
     def first(self) -> IntArray:
-        """First run of each unit."""
+        """First run of each specimen."""
         return np.flatnonzero(np.diff(self.unit, prepend=-1))
 
     @cached_property
@@ -154,10 +135,10 @@ class _Told:
         return np.arange(self.age.size) * _GRID
 
     def log_likelihood(self, own: FloatArray) -> FloatArray:
-        """Return that of units, (walkers, units), at what they have, (walkers, units, 5)."""
+        """Return that of specimens, (walkers, specimens), at what they have, (walkers, specimens, 5)."""
         side_flow, evaporation = (rate[:, self.unit] for rate in self.rates.of(own))
-        new = np.exp(-2.0 * own[..., LAYER_NEW])[:, self.unit]
-        layer = _thinned(new, side_flow, evaporation, self.age)
+        new = _new(own)[:, self.unit]
+        layer = log_layer(new, side_flow, evaporation, self.age)
         thick = own[:, self.unit, VISCOSITY_NEW] + own[:, self.unit, THICKENING] * self.age
         at = np.clip(thick, -3.0, 5.0) + self.warmth * self.reference.steep.item()
         place = self.scale + layer - cubic(self.reference.film.reshape(4), at)[0]
@@ -191,6 +172,11 @@ def _told(layers: Layers, unit: IntArray, age: FloatArray, warmth: float, rates:
     return _Told(table, unit, age, reference, warmth, _scale(reference), rates)
 
 
+def _new(own: FloatArray) -> FloatArray:
+    """The new layer to the power -2, over h."""
+    return np.asarray(np.exp(-2.0 * own[..., LAYER_NEW]))
+
+
 def _scale(reference: Flooded) -> float:
     """Logarithm of the flooded film of new oil at the reference, m."""
     return float(cubic(reference.film, np.zeros(()))[0].item())
@@ -205,63 +191,95 @@ def fit_depletion(
     evaporation: float | None = None,
     seed: int = 0,
 ) -> Depletion:
-    """Fit the law to what runs tell, all units together.
+    """Fit the law to what runs tell, all specimens together.
 
-    Walkers move by differences of others (ter Braak, Stat. Comput. 16 (2006) 239), means and spreads are
-    drawn given the units. Priors, all weak, in T (the greatest age) and h (the flooded film at the
-    reference): means over units ln(h0/h) N(0, 2^2), ln(K T h^2) N(0, 2^2), ln(e T) N(-1.5, 1.5^2), ln
-    viscosity factor N(0, 1), g T N(0.2, 0.7^2); spreads half-normal of 0.5, 0.7, 0.7, 0.2, 0.5.
+    Priors, all weak, are normal in T (the greatest age) and h (the flooded film at the reference), means over
+    specimens as in `_MEAN` and `_MEAN_DEVIATION`; spreads are half-normal, as in `_SPREAD`.
 
     Parameters
     ----------
     layers
         What the runs tell.
     unit, age
-        Of each run: number of its unit from 0 on, ascending, and age in any one unit.
+        Of each run: number of its specimen from 0 on, ascending, and age in any one unit.
     side_flow, evaporation
-        K in 1/(m^2 age) and e in 1/age, where they are known: the same for all units. Fitted if left out.
+        K in 1/(m^2 age) and e in 1/age, where they are known: the same for all specimens. Fitted if left out.
     seed
         Of the draws.
     """
-    greatest = float(age.max()) or 1.0
-    units = int(unit.max()) + 1
-    walkers, steps, dropped, many = _FEW_UNITS if units < _MANY else _MANY_UNITS
-    warmth = float(layers.common[0])
+    greatest, warmth = float(age.max()) or 1.0, float(layers.common[0])
     square = np.exp(2.0 * _scale(layers.reference))
     rates = Rates(
         None if side_flow is None else side_flow * greatest * square,
         None if evaporation is None else evaporation * greatest,
     )
     told = _told(layers, unit, age / greatest, warmth, rates)
-    random = np.random.default_rng(seed)
-    free = rates.free
-    own, mean, spread = _begin(layers, told, (walkers, units), random)
+    plan = _FEW_SPECIMENS if told.first.size < _MANY else _MANY_SPECIMENS
+    own, mean, spread = _walked(layers, told, plan, np.random.default_rng(seed))
+    return Depletion(own, mean, spread, greatest, layers.reference, warmth, rates)
+
+
+class _Plan(NamedTuple):
+    """Walkers, steps of which the first are dropped, and draws kept."""
+
+    walkers: int
+    steps: int
+    dropped: int
+    kept: int
+
+
+#: For few specimens, and for so many that they tell the spread over specimens by their number.
+_FEW_SPECIMENS, _MANY_SPECIMENS = _Plan(64, 500, 200, 2000), _Plan(16, 320, 120, 240)
+
+
+def _walked(
+    layers: Layers, told: _Told, plan: _Plan, random: np.random.Generator
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Draws of specimens, means and spreads.
+
+    Walkers move by differences of others (ter Braak, Stat. Comput. 16 (2006) 239); means and spreads are
+    drawn given the specimens.
+    """
+    free = told.rates.free
+    own, mean, spread = _begin(layers, told, (plan.walkers, told.first.size), random)
     density = told.log_likelihood(own)
-    half_way = walkers // 2
     kept: list[tuple[FloatArray, FloatArray, FloatArray]] = []
-    thin = max(1, (steps - dropped) * walkers // many)
-    for step in range(steps):
-        for moved in (slice(0, half_way), slice(half_way, walkers)):
-            others = np.delete(np.arange(walkers), moved)
-            tried, bias = _tried(own, mean, spread, moved, others, free, random)
-            found = told.log_likelihood(tried)
-            gain = found - density[moved] + bias
-            taken = np.log(random.random(gain.shape)) < gain
-            own[moved] = np.where(taken[..., None], tried, own[moved])
-            density[moved] = np.where(taken, found, density[moved])
-        if step < dropped // 2 and step % _CULL == 0:
+    thin = max(1, (plan.steps - plan.dropped) * plan.walkers // plan.kept)
+    for step in range(plan.steps):
+        half_way = plan.walkers // 2
+        for moved in (slice(0, half_way), slice(half_way, plan.walkers)):
+            _move(told, own, density, (mean, spread), moved, random)
+        if step < plan.dropped // 2 and step % _CULL == 0:
             _culled(own, density, mean, spread, free)
         _share(own, mean, spread, free, random)
-        if step >= dropped and step % thin == 0:
+        if step >= plan.dropped and step % thin == 0:
             kept.append((own.copy(), mean.copy(), spread.copy()))
     draws = [np.concatenate(each) for each in zip(*kept, strict=True)]
-    return Depletion(draws[0], draws[1], draws[2], greatest, layers.reference, warmth, rates)
+    return draws[0], draws[1], draws[2]
+
+
+def _move(
+    told: _Told,
+    own: FloatArray,
+    density: FloatArray,
+    shared: tuple[FloatArray, FloatArray],
+    moved: slice,
+    random: np.random.Generator,
+) -> None:
+    """Let some walkers try to move by differences within the others."""
+    others = np.delete(np.arange(len(own)), moved)
+    tried, bias = _tried(own, *shared, moved, others, told.rates.free, random)
+    found = told.log_likelihood(tried)
+    gain = found - density[moved] + bias
+    taken = np.log(random.random(gain.shape)) < gain
+    own[moved] = np.where(taken[..., None], tried, own[moved])
+    density[moved] = np.where(taken, found, density[moved])
 
 
 def _begin(
     layers: Layers, told: _Told, shape: tuple[int, int], random: np.random.Generator
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Walkers spread about what the youngest run of each unit tells."""
+    """Walkers spread about what the youngest run of each specimen tells."""
     best, _, _ = layers.thickness()
     own = np.empty((*shape, _NUMBERS))
     for k, runs in enumerate(np.split(np.arange(told.age.size), told.first[1:])):
@@ -286,7 +304,9 @@ def _tried(
     """What walkers try, and what their prior adds to the odds of taking it."""
     here = own[moved]
     tried = here.copy()
-    if random.random() < 0.25:  # one number anew from those of all units: then the likelihood alone decides
+    if (
+        random.random() < 0.25
+    ):  # one number anew from those of all specimens: then the likelihood alone decides
         k = free[random.integers(free.size)]
         drawn = random.standard_normal(here.shape[:2])
         tried[..., k] = mean[moved, None, k] + spread[moved, None, k] * drawn
@@ -305,7 +325,7 @@ def _tried(
 def _culled(
     own: FloatArray, density: FloatArray, mean: FloatArray, spread: FloatArray, free: IntArray
 ) -> None:
-    """Put the worse half of the walkers of each unit where the better half is, while they still search."""
+    """Put the worse half of the walkers of each specimen where the better half is, while they search."""
     prior = -0.5 * (((own - mean[:, None]) / spread[:, None])[..., free] ** 2).sum(axis=-1)
     order = np.argsort(density + prior, axis=0)
     half = len(own) // 2
@@ -318,7 +338,7 @@ def _culled(
 def _share(
     own: FloatArray, mean: FloatArray, spread: FloatArray, free: IntArray, random: np.random.Generator
 ) -> None:
-    """Draw means and spreads over units, given the units."""
+    """Draw means and spreads over specimens, given the specimens."""
     units = own.shape[1]
     precision = units / spread[:, free] ** 2 + _MEAN_DEVIATION[free] ** -2
     pulled = own[..., free].sum(axis=1) / spread[:, free] ** 2 + _MEAN[free] * _MEAN_DEVIATION[free] ** -2

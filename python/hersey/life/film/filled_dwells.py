@@ -10,6 +10,7 @@ import numpy as np
 from hersey.arrays import BoolArray, FloatArray, IntArray
 from hersey.errors import InsufficientDataError
 from hersey.life.indicator import Runs
+from hersey.life.padded_rows import PaddedRows
 
 if TYPE_CHECKING:
     from hersey.life.campaign import Campaign
@@ -54,13 +55,6 @@ def filled_dwells(campaign: Campaign, runs: Runs) -> tuple[FilledDwells, IntArra
         )
     place = {run: i for i, run in enumerate(runs.run)}
     of = np.array([place[run] for run in table["run_id"].to_list()])[told]
-    columns = columns[told]
-    with_dwells, first, row, count = np.unique(of, return_index=True, return_inverse=True, return_counts=True)
-    ordered = np.argsort(row, kind="stable")
-    column = np.empty_like(row)
-    column[ordered] = np.arange(row.size) - np.repeat(np.cumsum(count) - count, count)
-    filled = np.repeat(columns[first][:, None], count.max(), axis=1)
-    given = np.zeros(filled.shape[:2], dtype=bool)
-    filled[row, column], given[row, column] = columns, True
-    speed, kelvin, torque, error = np.moveaxis(filled, 2, 0)
-    return FilledDwells(speed, kelvin, torque, error, given), with_dwells
+    rows = PaddedRows.of(of)
+    speed, kelvin, torque, error = (rows.filled(column) for column in columns[told].T)
+    return FilledDwells(speed, kelvin, torque, error, rows.given), np.unique(of)

@@ -26,7 +26,6 @@ from hersey.life.film.starved_drag import (
     PER_KELVIN,
     PER_SPEED,
     ROUGHNESS,
-    USUAL_SHARPNESS,
     VISCOSITY,
     WARMTH,
     Flooded,
@@ -35,9 +34,10 @@ from hersey.life.film.starved_drag import (
     StarvedDrag,
     cubic,
     film_of,
-    film_share,
     flooded,
 )
+from hersey.life.growth.limit_ages import DEVIATIONS
+from hersey.life.oil_layer import USUAL_SHARPNESS, log_film_share
 from hersey.machine.machine import Machine
 
 #: ln of the layer over the flooded film at the reference from which on nothing starves, and the least.
@@ -70,8 +70,8 @@ _COMMON_ENDS = np.array(
 )
 #: Share by which viscosity may be off (95 %), where the lubricant does not state it.
 _UNSTATED = 0.2
-#: Standard errors in the 95 % that an uncertainty is stated at, and in 90 %.
-_DEVIATIONS, _TO_90 = 1.96, 1.645
+#: Standard errors in the 95 % that an uncertainty is stated at.
+_TO_95 = 1.96
 #: Film over roughness below which asperities that the machine does not describe may touch.
 _APART = 4.0
 
@@ -126,10 +126,10 @@ class Layers:
         full, error = self.film_at(point)
         layer = self.place + self.film_at(self.reference)[0] - full
         sharpness = USUAL_SHARPNESS * float(np.exp(self.common[1]))
-        film = full + np.log(film_share(layer, sharpness))
+        film = full + log_film_share(layer, sharpness)[0]
         best, low, high = self._ends(film - self.place, error, level)
         # However thick the layer, the film is the flooded one.
-        most = film[:, -1] + _TO_90 * error[:, -1]
+        most = film[:, -1] + DEVIATIONS * error[:, -1]
         return best, low, np.where(np.isfinite(high), high, most)
 
     def thickness(self, level: float = 0.9) -> tuple[FloatArray, ...]:
@@ -217,7 +217,7 @@ class _Common:
 
 def _warmth(uncertainty: float) -> float:
     """Standard deviation of the change of ln viscosity between two points each known so well."""
-    return max(float(np.sqrt(2.0) * np.log1p(uncertainty)) / _DEVIATIONS, 1e-3)
+    return max(float(np.sqrt(2.0) * np.log1p(uncertainty)) / _TO_95, 1e-3)
 
 
 def _told(searches: Iterable[_Search], about: FloatArray, beforehand: _Common) -> _Common:

@@ -1,8 +1,8 @@
 """Torque of dwells where the film may lack oil, against viscosity, rest of the drive and layer of oil.
 
-For a layer r times as thick as the film of a flooded inlet the film is ``r/(1 + r^g)^(1/g)`` of the flooded
-one (Damiens, Venner, Cann, Lubrecht, J. Tribol. 126 (2004) 105): its shear goes as the inverse, its rolling
-part as the third power, as `Film` has it. All runs are computed at once: arrays of shape (runs, dwells).
+A starved film is a share of the flooded one (`log_film_share`). Its shear is proportional to the inverse of
+that share, its rolling part to the third power, as in `Film`. All runs are computed at once, in arrays of
+shape (runs, dwells).
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import numpy as np
 from hersey import _core
 from hersey.arrays import FloatArray, pointwise
 from hersey.errors import ParameterError
+from hersey.life.oil_layer import USUAL_SHARPNESS, log_film_share
 from hersey.lubrication.contact import Contact
 from hersey.lubrication.film import film_thickness
 from hersey.lubrication.film_temperature import film_temperature
@@ -21,8 +22,6 @@ from hersey.lubrication.lubricant import Lubricant
 from hersey.lubrication.mixed import MixedContact
 from hersey.machine.machine import Machine
 
-#: Rounds the corner between flooded and starved, as `film_thickness` has it.
-USUAL_SHARPNESS = 3.0
 #: ln of the factor on viscosity at which the flooded film is computed; a cubic goes through them.
 _NODES = np.array([-1.0, 0.2, 1.4, 2.6])
 _TO_POWERS = np.linalg.inv(np.vander(_NODES, increasing=True))
@@ -30,8 +29,6 @@ _TO_POWERS = np.linalg.inv(np.vander(_NODES, increasing=True))
 _ALONG = 24
 #: ln of film over roughness at which the share of the asperities is tabled.
 _TABLE = np.linspace(np.log(0.02), np.log(60.0), 600)
-#: Least layer, as sharpness times its ln over the flooded film.
-_THINNEST = -60.0
 #: What is free in a run, in this order, with the index of each.
 VISCOSITY, CONSTANT, PER_SPEED, PER_KELVIN, ROUGHNESS, BOUNDARY, WARMTH, SHARPNESS, ROLLING, LAYER = range(10)
 FREE = LAYER + 1
@@ -103,11 +100,6 @@ def cubic(powers: FloatArray, at: FloatArray) -> tuple[FloatArray, FloatArray]:
     return value, slope
 
 
-def film_share(layer: FloatArray, sharpness: float | FloatArray = USUAL_SHARPNESS) -> FloatArray:
-    """Return the film over the flooded one, from ln of the layer over the flooded film."""
-    return np.asarray(np.exp(-np.logaddexp(0.0, -sharpness * layer) / sharpness))
-
-
 @dataclass(frozen=True)
 class SharedLoad:
     """What asperities do to torque, against ln of the film alone over the roughness."""
@@ -158,9 +150,7 @@ class StarvedDrag:
         least, by_least = cubic(self.reference.film, there)
         layer = column[LAYER] + least - film
         sharpness = USUAL_SHARPNESS * np.exp(column[SHARPNESS])
-        odds = np.exp(-np.maximum(sharpness * layer, _THINNEST))
-        log_share = -np.log1p(odds) / sharpness
-        by_layer = odds / (1.0 + odds)
+        log_share, by_layer = log_film_share(layer, sharpness)
         share = np.exp(log_share)
         shear, by_shear = cubic(self.flooded.shear, at)
         rolled, by_rolled = cubic(self.flooded.rolled, at)

@@ -1,6 +1,7 @@
-"""The film through life: how thick against a flooded one, what oil is left, and when a unit starves.
+"""The film through life: how thick against a flooded one, what oil is left, and when a specimen starves.
 
-What each run tells stands in `layer`, the law over ages and units in `depletion_law`.
+What the runs show is in `of_runs`, the law over ages and specimens in `depletion_law`, and what follows from
+both in `starving`.
 """
 
 from __future__ import annotations
@@ -12,20 +13,15 @@ import numpy as np
 
 from hersey.arrays import BoolArray, FloatArray, IntArray, one_thread
 from hersey.errors import InsufficientDataError, ParameterError
-from hersey.life.film.depletion_law import Depletion, fit_depletion
-from hersey.life.film.filled_dwells import FilledDwells, filled_dwells
-from hersey.life.film.layer import Layers, layers
-from hersey.life.film.starved_drag import USUAL_SHARPNESS, Flooded, cubic, film_of, film_share, flooded
-from hersey.life.growth.limit_ages import (
-    AgesAtLimit,
-    Interval,
-    age_at_limit,
-    quantiles,
-    share_of_units,
-)
-from hersey.life.indicator import Indicator, Indicators, OwnAges, Runs
+from hersey.life.film.depletion_law import fit_depletion
+from hersey.life.film.of_runs import FilmOfRuns, FilmPoint, Told, film_of_runs, systematic_factor
+from hersey.life.film.starved_drag import film_of
+from hersey.life.film.starving import LayersOfSpecimens, OilLeft
+from hersey.life.growth.limit_ages import AgesAtLimit, Interval
+from hersey.life.indicator import Indicator, Indicators, Runs, most_ages
+from hersey.life.oil_layer import USUAL_SHARPNESS
 from hersey.result import Result, json_record
-from hersey.units import celsius, rpm, takes_si
+from hersey.units import takes_si
 
 if TYPE_CHECKING:
     import polars as pl
@@ -33,56 +29,12 @@ if TYPE_CHECKING:
     from hersey.life.campaign import Campaign
     from hersey.machine.machine import Machine
 
+__all__ = ["STARVED", "FilmLife", "Told", "film_life"]
+
 #: Film over flooded below which it is starved: the layer is then thinner than the flooded film.
 STARVED = 2.0 ** (-1.0 / USUAL_SHARPNESS)
-#: Ages looked at, over the greatest of the data; past the last it counts as never.
-_AGES = np.concatenate([[0.0], np.geomspace(3e-3, 10.0, 110)])
 #: Ages of the curves, over the greatest of the data.
 _CURVES = np.linspace(0.0, 2.5, 51)
-#: Standard errors in half of a 90 % interval; those in the 95 % at which uncertainties are stated.
-_TO_90, _TO_95 = 1.645, 1.96
-#: How far the law of film and starvation may be off, ln of layer over film, in common to all units: what
-#: films by other laws showed (`benchmarks/life.py`).
-_LAW = 0.06
-#: Dwells of a run, and kelvin between its coldest and hottest, from which it tells a film.
-_FEWEST, _WARMTH = 6, 10.0
-#: New units drawn for B10 and B50, of each draw of what units share.
-_NEW = 40
-#: Scatter over the stated errors from which the law does not describe a run.
-_BAD = 2.0
-_NAMED = 4
-
-
-@dataclass(frozen=True)
-class FilmPoint:
-    """A state at which the film is told: speed of the roll (rad/s) and temperature (K)."""
-
-    name: str
-    speed: float
-    temperature: float
-
-    def __str__(self) -> str:
-        """Return name, speed and temperature."""
-        return f"{self.name} ({rpm(self.speed):.4g} rpm, {celsius(self.temperature):.4g} degC)"
-
-
-@dataclass(frozen=True)
-class Told:
-    """Something that runs or units tell, with 90 % intervals; an end is infinite where it is not told."""
-
-    value: FloatArray
-    low: FloatArray
-    high: FloatArray
-
-
-@dataclass(frozen=True)
-class OilLeft:
-    """The oil in the layer of a unit, m^3: new, when last seen, and what the film then needs."""
-
-    unit: str
-    new: Interval
-    last: Interval
-    needed: Interval
 
 
 @dataclass(frozen=True, repr=False)
@@ -92,7 +44,7 @@ class FilmLife(Result):
     ``points`` are the fastest operating point and the cold corner. Of each run, (points, runs): ``film`` over
     that of a flooded inlet at the same viscosity and speed, and its ``thickness`` (m); and the ``layer`` of
     oil on the inlet side (m), and ``viscosity`` over that of the lubricant. Lengths are right but for
-    ``systematic``, a factor common to all runs; NaN where a run has no dwells. Of each unit at ``ages``:
+    ``systematic``, a factor common to all runs; NaN where a run has no dwells. Of each specimen at ``ages``:
     ``curves`` of the film over flooded, ``layers``, and what a layer ``needs`` to be; ``starves`` at each
     point.
     """
@@ -110,7 +62,7 @@ class FilmLife(Result):
     layers: Told
     needs: tuple[FloatArray, ...]
     starves: tuple[AgesAtLimit, ...]
-    law: dict[str, Interval]  #: of the median unit: K (1/(m^2 age)), e and g (1/age)
+    law: dict[str, Interval]  #: of the median specimen: K (1/(m^2 age)), e and g (1/age)
     oil: tuple[OilLeft, ...]
     track: float
     notes: tuple[str, ...]
@@ -121,15 +73,15 @@ class FilmLife(Result):
         return np.asarray(self.film[point].high < STARVED)
 
     def headline(self) -> str:
-        """Return how many units starve at the fastest operating point, and when the next ones do."""
+        """Return how many specimens starve at the fastest operating point, and when the next ones do."""
         last = _last_runs(self.runs)
         starved = [self.runs.unit[i] for i in last if self.starved()[i]]
-        text = f"{len(starved)} of {len(last)} units starve of oil at {self.points[0].name}"
+        text = f"{len(starved)} of {len(last)} specimens starve of oil at {self.points[0].name}"
         b50 = self.starves[0].b50.age
-        return f"{text}; half of new units at {b50} {self.runs.age_unit}"
+        return f"{text}; half of new specimens at {b50} {self.runs.age_unit}"
 
     def summary(self) -> str:
-        """Return film, layer and ages of each unit as text."""
+        """Return film, layer and ages of each specimen as text."""
         unit = self.runs.age_unit
         lines = [self.headline()]
         lines += [
@@ -147,7 +99,7 @@ class FilmLife(Result):
         for point, ages in zip(self.points, self.starves, strict=True):
             lines.append(f"age ({unit}) at which the layer is thinner than the flooded film, {point.name}")
             if all(each.age.value == 0.0 for each in ages.units):
-                lines.append("  all units: from the new unit on")
+                lines.append("  all specimens: from the new specimen on")
             else:
                 lines += [f"  {each}" for each in (*ages.units, ages.b10, ages.b50)]
         lines.append(
@@ -156,7 +108,7 @@ class FilmLife(Result):
         )
         lines += [f"  {_volumes(each)}" for each in self.oil]
         lines.append(
-            f"law dh/dt = -K h^3/2 - e h, viscosity exp(g t); median unit, per {unit}: "
+            f"law dh/dt = -K h^3/2 - e h, viscosity exp(g t); median specimen, per {unit}: "
             + ", ".join(f"{name} {each}" for name, each in self.law.items())
         )
         return "\n".join([*lines, *(f"- {note}" for note in self.notes)])
@@ -208,11 +160,11 @@ def film_life(
     evaporation: float | None = None,
     seed: int = 0,
 ) -> FilmLife:
-    """Return the film of the units of a campaign through their life.
+    """Return the film of the specimens of a campaign through their life.
 
     Each run is fitted by the torque of film, asperities and rest of the drive, with viscosity, layer of oil,
     rest, roughness and boundary friction free (`layer`); layer and viscosity of all runs then follow the law
-    of `depletion_law`, units differing.
+    of `depletion_law`, specimens differing.
 
     Parameters
     ----------
@@ -222,7 +174,8 @@ def film_life(
     machine
         Contact and lubricant; asperities and boundary friction if stated; operating points.
     cold
-        Temperature of the cold corner, K; else that of ``[life]``, or the coldest that all units recorded.
+        Temperature of the cold corner, K; else that of ``[life]``, or the coldest that all specimens
+        recorded.
     track
         Length of the track that carries the layer, m, by which it becomes an amount; the roll's circumference
         if left out.
@@ -239,200 +192,67 @@ def film_life(
     InsufficientDataError
         If no dwell has a temperature.
     """
+    _refuse_impossible(side_flow, evaporation, track)
+    read = film_of_runs(campaign, machine, machine.life.coldest if cold is None else cold)
+    age = read.runs.age[read.told]
+    of_run = [read.runs.unit[i] for i in read.told]
+    names = list(dict.fromkeys(of_run))
+    place = np.array([names.index(name) for name in of_run])
+    if most_ages(place, age) < 2:
+        raise InsufficientDataError(
+            "no specimen was seen at two ages, so nothing tells how its oil thins: add runs at another age"
+        )
+    drawn = fit_depletion(read.layers, place, age, side_flow=side_flow, evaporation=evaporation, seed=seed)
+    last = np.array([age[place == k].max() for k in range(len(names))])
+    notes = (*read.notes, *_law_notes(age, place, machine))
+    return _film_life(read, LayersOfSpecimens(drawn, names, last), machine, track, notes)
+
+
+def _refuse_impossible(side_flow: float | None, evaporation: float | None, track: float | None) -> None:
     for name, value in (("side_flow", side_flow), ("evaporation", evaporation)):
         if value is not None and not 0.0 <= value < np.inf:
             raise ParameterError(f"{name} is {value:g}: it must not be negative")
     if track is not None and not 0.0 < track < np.inf:
         raise ParameterError(f"track is {track:g} m: it must be positive")
-    read = _read(campaign, machine, machine.life.coldest if cold is None else cold)
-    runs = read.runs
-    names = list(dict.fromkeys(runs.unit[i] for i in read.told))
-    unit = np.array([names.index(runs.unit[i]) for i in read.told])
-    age = runs.age[read.told]
-    if max(np.unique(age[unit == k]).size for k in range(len(names))) < 2:
-        raise InsufficientDataError(
-            "no unit was seen at two ages, so nothing tells how its oil thins: add runs at another age"
-        )
-    found = fit_depletion(read.layers, unit, age, side_flow=side_flow, evaporation=evaporation, seed=seed)
-    ages = _CURVES * found.greatest_age
-    last = np.array([age[unit == k].max() for k in range(len(names))])
+
+
+def _film_life(
+    read: FilmOfRuns,
+    layers: LayersOfSpecimens,
+    machine: Machine,
+    track: float | None,
+    notes: tuple[str, ...],
+) -> FilmLife:
+    ages = _CURVES * layers.drawn.greatest_age
     length = machine.roll_radius * 2.0 * np.pi if track is None else track
-    area = length * film_of(machine)[0].length
-    starving = [_starving(found, point, len(names)) for point in read.flooded]
-    curves = [_curves(found, point, ages, len(names)) for point in read.flooded]
-    notes = (*read.notes, *_law_notes(age, unit, machine))
+    starving = [layers.starving(point) for point in read.flooded]
+    pairs = zip(starving, read.points, strict=True)
     return FilmLife(
-        runs=runs,
+        runs=read.runs,
         points=read.points,
         film=tuple(read.film(point) for point in read.flooded),
-        thickness=tuple(
-            read.spread(*(np.exp(each) for each in read.layers.film(point))) for point in read.flooded
-        ),
-        layer=read.spread(*(np.exp(each) for each in read.layers.thickness())),
+        thickness=tuple(read.thickness(point) for point in read.flooded),
+        layer=read.layer(),
         viscosity=read.viscosity(),
-        systematic=_systematic(machine, read),
+        systematic=systematic_factor(machine, read),
         scatter=read.of_all(read.layers.scatter),
         ages=ages,
-        curves=tuple(film for film, _ in curves),
-        layers=_of_units(found, lambda own: found.layer(own, ages)),
-        needs=tuple(need for _, need in curves),
-        starves=tuple(
-            _starves(own, state, names, last, runs.age_unit, notes)
-            for own, state in zip(starving, read.points, strict=True)
-        ),
-        law=_law(found),
-        oil=tuple(
-            _oil(found, k, name, float(last[k]), read.flooded[0], area) for k, name in enumerate(names)
-        ),
+        curves=tuple(layers.film(point, ages) for point in read.flooded),
+        layers=layers.thickness(ages),
+        needs=tuple(layers.needs(point, ages) for point in read.flooded),
+        starves=tuple(layers.starves(own, state, read.runs.age_unit, notes) for own, state in pairs),
+        law=layers.rates(),
+        oil=layers.oil(read.flooded[0], length * film_of(machine)[0].length),
         track=length,
         notes=notes,
-        _starvation=replace(read.indicator(), own_ages=_of_all(starving[0], runs.units, names)),
+        _starvation=replace(read.indicator(), own_ages=layers.with_all(starving[0], read.runs.units)),
     )
 
 
-@one_thread()
-def starvation_indicator(campaign: Campaign, machine: Machine) -> Indicator:
-    """Return starvation as a failure mode: flooded film over layer at the fastest operating point, limit 1.
-
-    It needs a machine with contact and lubricant, and dwells at several speeds and temperatures: the layer is
-    seen where it is thinner than a flooded film or near it, cold and fast. A run all of whose dwells are
-    flooded tells a lower bound of the layer alone, which a number with an error cannot hold: there the value
-    is NaN, as for a run without dwells. `film_life` uses those, too.
-
-    Raises
-    ------
-    ParameterError, InsufficientDataError
-        As `film_life`.
-    """
-    return _read(campaign, machine, None).indicator()
-
-
-@dataclass(frozen=True)
-class _Read:
-    """What the runs of a campaign tell; ``told`` are the places of those that have dwells."""
-
-    runs: Runs
-    told: IntArray
-    layers: Layers
-    points: tuple[FilmPoint, ...]
-    flooded: tuple[Flooded, ...]
-    notes: tuple[str, ...]
-
-    def of_all(self, values: FloatArray) -> FloatArray:
-        """Values of all runs, NaN where one has no dwells."""
-        every = np.full(len(self.runs.run), np.nan)
-        every[self.told] = values
-        return every
-
-    def spread(self, *ends: FloatArray) -> Told:
-        return Told(*(self.of_all(each) for each in ends))
-
-    def film(self, point: Flooded) -> Told:
-        sharpness = USUAL_SHARPNESS * float(np.exp(self.layers.common[1]))
-        return self.spread(*(film_share(each, sharpness) for each in self.layers.interval(point)))
-
-    def viscosity(self) -> Told:
-        """Factor on viscosity at the middle temperature, with the error that the layer gives it."""
-        found = self.layers
-        value, error = np.empty(len(found.best)), np.empty(len(found.best))
-        for i, place in enumerate(found.place):
-            weight = np.exp(-0.5 * found.deviance[i]) * np.gradient(place)
-            weight /= weight.sum()
-            value[i] = np.interp(found.best[i], place, found.viscosity[i])
-            away = found.viscosity[i] - value[i]
-            error[i] = np.sqrt(weight @ (away**2 + found.viscosity_error[i] ** 2))
-        return self.spread(*(np.exp(value + reach * error) for reach in (0.0, -_TO_90, _TO_90)))
-
-    def indicator(self) -> Indicator:
-        best, low, high = self.layers.interval(self.flooded[0])
-        seen = np.isfinite(low) & np.isfinite(high)
-        value = np.where(seen, np.exp(-best), np.nan)
-        error = np.where(seen, np.where(seen, high - low, 0.0) / (2.0 * _TO_90), np.nan)
-        return Indicator(
-            name=f"starvation, {self.points[0].name}",
-            kind="starvation",
-            si="1",
-            limit=1.0,
-            value=self.of_all(value),
-            error=self.of_all(error),
-            notes=(
-                f"the film starves where the layer of oil is thinner than a flooded film at {self.points[0]}",
-                *self.notes,
-            ),
-        )
-
-
-def _read(campaign: Campaign, machine: Machine, cold: float | None) -> _Read:
-    contact, lubricant = film_of(machine)
-    runs = Runs.of(campaign)
-    if not runs.run:
-        raise InsufficientDataError(f"{campaign.path.name} holds no run: add logs first")
-    dwells, told = filled_dwells(campaign, runs)
-    heats = np.where(dwells.given, dwells.kelvin, np.nan)
-    telling = dwells.given.sum(axis=1) >= _FEWEST
-    telling &= np.nanmax(heats, axis=1) - np.nanmin(heats, axis=1) >= _WARMTH
-    if not telling.any():
-        raise InsufficientDataError(
-            f"no run has {_FEWEST} dwells over {_WARMTH:g} K or more: one temperature cannot tell a thin "
-            "layer of oil from a thick oil, so record cold and hot ones"
-        )
-    dwells, told = dwells.rows(np.flatnonzero(telling)), told[telling]
-    points = _points(machine, dwells, [runs.unit[i] for i in told], cold)
-    found = layers(dwells, machine, speed=points[1].speed, kelvin=points[1].temperature)
-    films = tuple(
-        flooded(contact, lubricant, np.array([point.speed]), np.array([point.temperature]))
-        for point in points
-    )
-    if np.median(found.scatter) > _BAD:
-        raise InsufficientDataError(
-            f"the dwells of most runs scatter about the law of the film by more than {_BAD:g} times their "
-            f"errors ({np.median(found.scatter):.3g} in the middle): nip, lubricant or load are not those of "
-            "the machine's file"
-        )
-    notes = _notes(runs, told, found)
-    if not telling.all():
-        left = f"{np.count_nonzero(~telling)} of {telling.size} runs have too few dwells or one temperature"
-        notes = (f"{left}: they tell no film", *notes)
-    return _Read(runs, told, found, points, films, notes)
-
-
-def _points(
-    machine: Machine, dwells: FilledDwells, units: list[str], cold: float | None
-) -> tuple[FilmPoint, FilmPoint]:
-    """The fastest operating point, and its speed at the coldest temperature that all units recorded."""
-    coldest: dict[str, float] = {}
-    for unit, kelvin in zip(units, dwells.kelvin.min(axis=1).tolist(), strict=True):
-        coldest[unit] = min(kelvin, coldest.get(unit, kelvin))
-    if machine.points:
-        fastest = max(machine.points, key=lambda point: point.speed)
-        state = FilmPoint(fastest.name, fastest.speed / machine.roll_radius, fastest.temperature)
-    else:
-        state = FilmPoint("fastest and hottest dwells", float(dwells.speed.max()), float(dwells.kelvin.max()))
-    return state, FilmPoint("the cold corner", state.speed, max(coldest.values()) if cold is None else cold)
-
-
-def _notes(runs: Runs, told: IntArray, found: Layers) -> tuple[str, ...]:
-    _, _, high = found.interval()
+def _law_notes(age: FloatArray, place: IntArray, machine: Machine) -> list[str]:
     notes = []
-    unseen = int(np.count_nonzero(~np.isfinite(high)))
-    if unseen:
-        notes.append(
-            f"{unseen} of {len(told)} runs show no starvation at all: of their layer they tell a lower bound"
-        )
-    bad = [f"{runs.unit[told[i]]} at {runs.age[told[i]]:.6g}" for i in np.flatnonzero(found.scatter > _BAD)]
-    if bad:
-        more = " and others" if len(bad) > _NAMED else ""
-        notes.append(
-            f"dwells of {', '.join(bad[:_NAMED])}{more} scatter about the law by more than {_BAD:g} times "
-            "their errors: nip, lubricant or load are not those of the machine's file"
-        )
-    return tuple(notes)
-
-
-def _law_notes(age: FloatArray, unit: IntArray, machine: Machine) -> list[str]:
-    notes = []
-    if max(len(np.unique(age[unit == k])) for k in np.unique(unit)) < 3:
-        notes.append("no unit was seen at three ages: side flow and evaporation cannot be told apart")
+    if most_ages(place, age) < 3:
+        notes.append("no specimen was seen at three ages: side flow and evaporation cannot be told apart")
     if machine.asperities is None:
         notes.append(
             "the machine's file states no asperities: dwells with a film below four times the roughness are "
@@ -445,102 +265,8 @@ def _law_notes(age: FloatArray, unit: IntArray, machine: Machine) -> list[str]:
     return notes
 
 
-def _systematic(machine: Machine, read: _Read) -> float:
-    """Factor (90 %) by which all layers may be off: the nip's width is taken for viscosity."""
-    contact, _ = film_of(machine)
-    if contact.nip_uncertainty is None:
-        return 1.0
-    point = read.flooded[0]
-    level = cubic(point.shear, np.zeros(()))[1].item()
-    film = cubic(point.film, np.zeros(()))[1].item()
-    return float(np.exp(_TO_90 / _TO_95 * np.log1p(contact.nip_uncertainty) * film / max(level, 0.1)))
-
-
-def _of_units(found: Depletion, of: Any) -> Told:
-    """Median and 90 % ends of exp of a function of what a unit has, (units, ages)."""
-    each = [np.exp(quantiles(of(found.units[:, k]))) for k in range(found.units.shape[1])]
-    low, middle, high = np.moveaxis(np.array(each), 1, 0)
-    return Told(middle, low, high)
-
-
-def _curves(found: Depletion, point: Flooded, ages: FloatArray, units: int) -> tuple[Told, FloatArray]:
-    over = _of_units(found, lambda own: np.log(film_share(found.over_flooded(own, ages, point))))
-    needs = np.empty((units, ages.size))
-    for k in range(units):
-        own = found.units[:, k]
-        needs[k] = np.exp(np.median(found.layer(own, ages) - found.over_flooded(own, ages, point), axis=0))
-    return over, needs
-
-
-def _ages_below(found: Depletion, own: FloatArray, point: Flooded, off: FloatArray) -> FloatArray:
-    """Ages at which layers of draws (..., 5) are first as thin as the flooded film; infinite where never.
-
-    ``off`` is the error of ln of layer over film that all units have in common, of each draw.
-    """
-    ages = _AGES * found.greatest_age
-    above = found.over_flooded(own, ages, point) + off[..., None]
-    below = above <= 0.0
-    first = np.argmax(below, axis=-1)
-    before = np.maximum(first - 1, 0)
-    high = np.take_along_axis(above, before[..., None], -1)[..., 0]
-    low = np.take_along_axis(above, first[..., None], -1)[..., 0]
-    share = np.where(first > 0, high / np.where(high > low, high - low, 1.0), 0.0)
-    met = ages[before] + share * (ages[first] - ages[before])
-    return np.asarray(np.where(below.any(axis=-1), met, np.inf))
-
-
-def _starving(found: Depletion, point: Flooded, units: int) -> OwnAges:
-    """Ages at which units and new units starve at a point, draws."""
-    some = np.linspace(0, len(found.mean) - 1, min(len(found.mean), 400)).astype(np.intp)
-    random = np.random.default_rng(0)
-    normals = random.standard_normal((some.size, _NEW, found.mean.shape[1]))
-    off = _LAW * random.standard_normal(len(found.mean))
-    known = [_ages_below(found, found.units[:, k], point, off) for k in range(units)]
-    new = found.mean[some, None] + found.spread[some, None] * normals
-    return OwnAges(np.stack(known, axis=1), _ages_below(found, new, point, off[some, None]))
-
-
-def _of_all(own: OwnAges, units: tuple[str, ...], names: list[str]) -> OwnAges:
-    """The same of all units: one that no run tells is a new one."""
-    spare = np.resize(own.new[:, 0], len(own.known))
-    columns = [own.known[:, names.index(unit)] if unit in names else spare for unit in units]
-    return OwnAges(np.stack(columns, axis=1), own.new)
-
-
-def _starves(
-    own: OwnAges,
-    state: FilmPoint,
-    names: list[str],
-    last: FloatArray,
-    age_unit: str,
-    notes: tuple[str, ...],
-) -> AgesAtLimit:
-    told = tuple(age_at_limit(name, own.known[:, k], float(last[k])) for k, name in enumerate(names))
-    new = np.sort(own.new, axis=1)
-    quantity = f"the flooded film over the layer at {state.name}"
-    b10, b50 = share_of_units(new, 0.1), share_of_units(new, 0.5)
-    return AgesAtLimit(quantity, age_unit, 1.0, told, b10, b50, notes)
-
-
-def _interval(draws: FloatArray) -> Interval:
-    low, middle, high = quantiles(draws).tolist()
-    return Interval(middle, low, high)
-
-
-def _law(found: Depletion) -> dict[str, Interval]:
-    return {name: _interval(draws) for name, draws in zip("Keg", found.rate(found.mean), strict=True)}
-
-
-def _oil(found: Depletion, k: int, name: str, last: float, point: Flooded, area: float) -> OilLeft:
-    own, ages = found.units[:, k], np.array([0.0, last])
-    layer = found.layer(own, ages)
-    needed = layer - found.over_flooded(own, ages, point)
-    new, now, needs = (_interval(area * np.exp(each)) for each in (layer[:, 0], layer[:, 1], needed[:, 1]))
-    return OilLeft(name, new, now, needs)
-
-
 def _last_runs(runs: Runs) -> list[int]:
-    """The oldest run of each unit."""
+    """The oldest run of each specimen."""
     last: dict[str, int] = {}
     for i, (unit, age) in enumerate(zip(runs.unit, runs.age, strict=True)):
         if unit not in last or age >= runs.age[last[unit]]:

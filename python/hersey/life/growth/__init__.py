@@ -1,11 +1,14 @@
-"""How indicators grow with age over units, and when they reach a limit.
+"""How indicators grow with age over specimens, and when they reach a limit.
 
 =============  ===========================================================
-drying         a layer that side flow and evaporation thin at once
 laws           how an indicator may grow with age
-posterior      how far units, spread and law are known: draws and evidence
-limit_ages     the ages at which units and population reach a limit
-fit            `fit_growth`: the growth of an indicator over units
+points         the runs of an indicator as rows of specimens
+marginal       the likelihood of what specimens share, specimens integrated out
+peaks          where the posterior of what they share is highest
+importance     adaptive importance sampling of any density from its mode
+posterior      how far specimens, spread and law are known: draws and evidence
+limit_ages     the ages at which specimens and population reach a limit
+fit            `fit_growth`: the growth of an indicator over specimens
 record_blocks  a continuous record as a few values with their errors
 =============  ===========================================================
 """

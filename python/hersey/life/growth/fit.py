@@ -1,6 +1,6 @@
-"""The growth of a positive indicator over units, and the ages at which it reaches a limit.
+"""The growth of a positive indicator over specimens, and the ages at which it reaches a limit.
 
-The laws of `laws` are fitted to the logarithm of the indicator over all units together, each with its
+The laws of `laws` are fitted to the logarithm of the indicator over all specimens together, each with its
 own level and rate, and weighed by their evidence; nothing hangs on one law alone unless the data say so.
 """
 
@@ -16,23 +16,26 @@ from numpy.typing import ArrayLike
 from scipy import special
 
 from hersey.arrays import FloatArray, numbers_of, one_thread
-from hersey.errors import InsufficientDataError, ParameterError
+from hersey.errors import ParameterError
+from hersey.life.growth.importance import systematic
 from hersey.life.growth.laws import LAWS, Law
 from hersey.life.growth.limit_ages import (
     BEYOND,
     BEYOND_SUM,
-    CONFIDENCE,
     AgesAtLimit,
     Interval,
-    age_at_limit,
+    ages_at_limit,
     ages_of,
     ages_of_sum,
     beyond,
     later,
     quantiles,
-    share_of_units,
 )
-from hersey.life.growth.posterior import Points, Posterior, Units, drawn_units, new_units, peaks, posterior
+from hersey.life.growth.marginal import Specimens, drawn_specimens, new_specimens
+from hersey.life.growth.peaks import peaks
+from hersey.life.growth.points import Points, checked_runs, falls, points_of
+from hersey.life.growth.posterior import Posterior, parameters_of, posterior
+from hersey.life.indicator import OwnAges
 from hersey.result import Result, json_record
 
 if TYPE_CHECKING:
@@ -40,19 +43,17 @@ if TYPE_CHECKING:
 
 #: Weight from which a law is named.
 NAMED = 0.9
-#: Draws behind every interval; of more than so many units.
+#: Draws behind every interval; of more than so many specimens.
 _DRAWS, _OF_MANY, _MANY = 2000, 1000, 100
-#: No value is taken as known better than this, relative.
-_RESOLUTION = 1e-4
 #: Draws, about, behind the middle of a curve.
 _OF_MIDDLE = 100
-#: Up to so many units tell little of how units differ.
+#: Up to so many specimens tell little of how specimens differ.
 _FEW = 3
 
 
 @dataclass(frozen=True)
 class GrowthCurves:
-    """The indicator of each unit without the scatter of runs: median and 90 % band, (units, ages)."""
+    """The indicator of each specimen without the scatter of runs: median and 90 % band, (specimens, ages)."""
 
     units: tuple[str, ...]
     age: FloatArray
@@ -63,17 +64,17 @@ class GrowthCurves:
 
 @dataclass(frozen=True, repr=False)
 class Growth(Result):
-    """The growth of an indicator over units.
+    """The growth of an indicator over specimens.
 
-    ``weights`` are those of the laws, and sum to 1; ``parameters`` those of each law: the median new unit
-    (``level``), growth of the median unit per age (``rate``; the whole of it for a saturating law), the
-    spreads between units and the scatter of runs (standard deviations of the logarithm), and the shape.
+    ``weights`` are those of the laws, and sum to 1; ``parameters`` those of each law: the median new specimen
+    (``level``), growth of the median specimen per age (``rate``; the whole of it for a saturating law), the
+    spreads between specimens and the scatter of runs (standard deviations of the logarithm), and the shape.
     """
 
     quantity: str
     age_unit: str
     units: tuple[str, ...]
-    runs: tuple[int, ...]  #: of each unit
+    runs: tuple[int, ...]  #: of each specimen
     last_age: tuple[float, ...]
     weights: dict[str, float]
     parameters: dict[str, dict[str, Interval]]
@@ -81,8 +82,8 @@ class Growth(Result):
         float  #: how many independent draws the posterior is worth, of the least sampled law that counts
     )
     notes: tuple[str, ...]
-    _of_units: tuple[Units, ...] = field(repr=False)
-    _of_population: tuple[Units, ...] = field(repr=False)
+    _of_specimens: tuple[Specimens, ...] = field(repr=False)
+    _of_population: tuple[Specimens, ...] = field(repr=False)
     _points: Points = field(repr=False)
     _scale: tuple[float, float] = field(repr=False)  #: greatest age; mean logarithm of the value
     seed: int = 0
@@ -99,7 +100,7 @@ class Growth(Result):
         heaviest = sorted(self.weights, key=lambda name: -self.weights[name])
         lines = [
             self.headline(),
-            f"{len(self.units)} units, {sum(self.runs)} runs, up to {max(self.last_age):.6g}{unit}",
+            f"{len(self.units)} specimens, {sum(self.runs)} runs, up to {max(self.last_age):.6g}{unit}",
             "weights of the laws: " + ", ".join(f"{name} {self.weights[name]:.2f}" for name in heaviest),
         ]
         for name in heaviest:
@@ -136,7 +137,7 @@ class Growth(Result):
         return pl.DataFrame(rows, schema=names, orient="row")
 
     def at(self, age: ArrayLike) -> GrowthCurves:
-        """Return the indicator of each unit at ages, without the scatter of runs.
+        """Return the indicator of each specimen at ages, without the scatter of runs.
 
         Parameters
         ----------
@@ -150,10 +151,10 @@ class Growth(Result):
         """
         ages = np.atleast_1d(numbers_of("age", age)).ravel()
         if not (np.isfinite(ages) & (ages >= 0.0)).all():
-            raise ParameterError("an age is negative or no number: ages are counted from the new unit")
+            raise ParameterError("an age is negative or no number: ages are counted from the new specimen")
         factors, last = self._beyond(BEYOND)[0], np.array(self.last_age)
         begin, drawn = 0, []
-        for units in self._of_units:
+        for units in self._of_specimens:
             factor = factors[begin : (begin := begin + len(units.scatter)), :, None]
             scaled = later(ages, last[:, None], 1.0 / factor) / self._scale[0]
             grown = units.law.log_growth(units.size[..., None], scaled, units.shape[..., None])
@@ -162,9 +163,9 @@ class Growth(Result):
         return GrowthCurves(self.units, ages, median, low, high)
 
     def reaches(self, limit: float, *, limit_error: float = 0.0, accumulates: bool = False) -> AgesAtLimit:
-        """Return the ages at which each unit, and a tenth and half of new units, reach a limit.
+        """Return the ages at which each specimen, and a tenth and half of new specimens, reach a limit.
 
-        A unit that has passed the limit already is told by the same draws; one that begins above it
+        A specimen that has passed the limit already is told by the same draws; one that begins above it
         has age 0.
 
         Parameters
@@ -181,19 +182,24 @@ class Growth(Result):
         ParameterError
             If the limit is not positive, or its error negative.
         """
-        ages, new = self.drawn_ages(limit, limit_error=limit_error, accumulates=accumulates)
-        told = tuple(age_at_limit(name, ages[:, i], self.last_age[i]) for i, name in enumerate(self.units))
-        new.sort(axis=1)
-        b10, b50 = (share_of_units(new, share) for share in (0.1, 0.5))
-        quantity = f"the sum of {self.quantity} over age" if accumulates else self.quantity
-        return AgesAtLimit(quantity, self.age_unit, limit, told, b10, b50, self.notes, accumulates)
+        own = OwnAges(*self.drawn_ages(limit, limit_error=limit_error, accumulates=accumulates))
+        return ages_at_limit(
+            self.quantity,
+            self.age_unit,
+            limit,
+            self.units,
+            own,
+            self.last_age,
+            self.notes,
+            accumulates=accumulates,
+        )
 
     def drawn_ages(
         self, limit: float, *, limit_error: float = 0.0, accumulates: bool = False
     ) -> tuple[FloatArray, FloatArray]:
-        """Return equally probable ages at a limit, of the units and of new units: (draws, units) each.
+        """Return equally probable ages at a limit, of the specimens and of new ones: (draws, specimens) each.
 
-        A row holds all units under one draw of what they share and of the limit. Arguments are those of
+        A row holds all specimens under one draw of what they share and of the limit. Arguments are those of
         `reaches`.
         """
         if not (math.isfinite(limit) and limit > 0.0):
@@ -201,41 +207,43 @@ class Growth(Result):
         if not (math.isfinite(limit_error) and limit_error >= 0.0):
             raise ParameterError(f"the error of the limit is {limit_error}: it must not be negative")
         level = math.log(limit) - self._scale[1] - (math.log(self._scale[0]) if accumulates else 0.0)
-        count = sum(len(units.scatter) for units in self._of_units)
+        count = sum(len(units.scatter) for units in self._of_specimens)
         normals = np.random.default_rng([self.seed, 1]).standard_normal((count, 1))
         levels = level + limit_error * normals
         ages = ages_of_sum if accumulates else ages_of
         found = []
-        for drawn in (self._of_units, self._of_population):
+        for drawn in (self._of_specimens, self._of_population):
             ends = np.cumsum([0, *(len(units.scatter) for units in drawn)])
             parts = [ages(u, levels[a:b]) for u, a, b in zip(drawn, ends, ends[1:], strict=False)]
             found.append(np.concatenate(parts) * self._scale[0])
         last = np.array(self.last_age)
-        of_units, of_new = self._beyond(BEYOND_SUM if accumulates else BEYOND)
-        return later(found[0], last, of_units), later(found[1], last.max(), of_new)
+        of_specimens, of_new = self._beyond(BEYOND_SUM if accumulates else BEYOND)
+        return later(found[0], last, of_specimens), later(found[1], last.max(), of_new)
 
     def _beyond(self, share: float) -> tuple[FloatArray, FloatArray]:
-        """How much longer than by its law each unit, and each new one, may take beyond the last run."""
-        draws = sum(len(units.scatter) for units in self._of_units)
+        """How much longer than by its law each specimen, and each new one, may take beyond the last run."""
+        draws = sum(len(units.scatter) for units in self._of_specimens)
         widths = len(self.units), self._of_population[0].level.shape[1]
         known, new = beyond(np.random.default_rng([self.seed, 4]), share, draws, *widths)
         return known, new
 
     def drawn_values(self, unit: int, age: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return logarithms of the indicator of a unit at ages, (draws, ages), and the scatter of runs.
+        """Return logarithms of the indicator of a specimen at ages, (draws, ages), and the scatter of runs.
 
         The draws are those of `drawn_ages`, in the same order; the scatter has the shape (draws, 1).
         """
         factors = self._beyond(BEYOND)[0][:, unit, None]
         begin, values = 0, []
-        for u in self._of_units:
+        for u in self._of_specimens:
             factor = factors[begin : (begin := begin + len(u.scatter))]
             scaled = later(age, np.array(self.last_age[unit]), 1.0 / factor) / self._scale[0]
             values.append(u.level[:, unit, None] + u.law.log_growth(u.size[:, unit, None], scaled, u.shape))
-        return np.concatenate(values) + self._scale[1], np.concatenate([u.scatter for u in self._of_units])
+        return np.concatenate(values) + self._scale[1], np.concatenate(
+            [u.scatter for u in self._of_specimens]
+        )
 
     def runs_of_units(self) -> list[tuple[FloatArray, FloatArray]]:
-        """Return ages and values of the runs of each unit, ascending in age, in the units given."""
+        """Return ages and values of the runs of each specimen, ascending in age, in the units given."""
         points, (greatest, middle) = self._points, self._scale
         return [
             (age[given] * greatest, np.exp(value[given] + middle))
@@ -244,10 +252,10 @@ class Growth(Result):
 
     def residuals(self) -> FloatArray:
         """Return what the growth leaves of the logarithms of the runs, in the order given."""
-        every = sum(len(units.scatter) for units in self._of_units)
+        every = sum(len(units.scatter) for units in self._of_specimens)
         step = max(1, every // _OF_MIDDLE)
         total, number = np.zeros(self._points.value.shape), 0
-        for units in self._of_units:
+        for units in self._of_specimens:
             for i in range(0, len(units.scatter), step):
                 shape = units.shape[:, i, :, None]
                 total += units.level[i][:, None] + units.law.log_growth(
@@ -270,20 +278,20 @@ def fit_growth(
     laws: Sequence[str] | None = None,
     seed: int = 0,
 ) -> Growth:
-    """Fit the growth of a positive indicator over units.
+    """Fit the growth of a positive indicator over specimens.
 
-    Priors, all weak: ln(r T) of the median unit N(-0.5, 2^2), T being the greatest age (ln s of a saturating
-    law); standard deviations between units half-normal of scale 1 (ln of level and rate); scatter of runs
-    half-normal of scale 0.1; ln(tau/T) N(0.3, 1); c N(0.5, 1); logit q
-    N(-1, 1.5^2); logit p N(1, 1). That it grows is as probable beforehand as
-    that it does not; the laws of growth share that equally.
+    Priors, all weak: ln(r T) of the median specimen N(-0.5, 2^2), T being the greatest age (ln s of a
+    saturating law); standard deviations between specimens half-normal of scale 1 (ln of level and rate);
+    scatter of runs half-normal of scale 0.1; ln(tau/T) N(0.3, 1); c N(0.5, 1); logit q N(-1, 1.5^2); logit p
+    N(1, 1). That it grows is as probable beforehand as that it does not; the laws of growth share that
+    equally.
 
     Parameters
     ----------
     unit
-        Name of the unit of each run.
+        Name of the specimen of each run.
     age
-        Age of each run since the unit was new, in any one unit; shape (runs,).
+        Age of each run since the specimen was new, in any one unit; shape (runs,).
     value
         The indicator, positive, in any one unit; shape (runs,).
     error
@@ -300,7 +308,7 @@ def fit_growth(
     ParameterError
         If a value is not positive, an age negative, an error negative, or any of them no number.
     InsufficientDataError
-        If no unit was seen at two ages.
+        If no specimen was seen at two ages.
 
     Examples
     --------
@@ -310,9 +318,9 @@ def fit_growth(
     [50, 30]
     """
     chosen = _chosen(laws)
-    names, columns = _checked(unit, age, value, error)
+    names, columns = checked_runs(unit, age, value, error)
     units = tuple(dict.fromkeys(names))
-    points, scale = _points(names, units, *columns)
+    points, scale = points_of(names, units, *columns)
     random = np.random.default_rng(seed)
     found = [posterior(peak, points, random) for peak in peaks(chosen, points)]
     before = dict(zip((law.name for law in chosen), _beforehand(chosen), strict=True))
@@ -332,11 +340,13 @@ def fit_growth(
         runs=runs,
         last_age=last,
         weights=by_law,
-        parameters={each.law.name: _parameters(each, scale) for each in found},
+        parameters={each.law.name: parameters_of(each, scale) for each in found},
         effective=min(each.effective for each, w in zip(found, weights, strict=True) if w > 0.05),
         notes=_notes(runs, points),
-        _of_units=tuple(drawn_units(each, points, shared, random) for each, shared in draws),
-        _of_population=tuple(new_units(each.law, shared) for each, shared in draws),
+        _of_specimens=tuple(
+            drawn_specimens(each.law, points, shared, each.sizes, random) for each, shared in draws
+        ),
+        _of_population=tuple(new_specimens(each.law, shared) for each, shared in draws),
         _points=points,
         _scale=scale,
         seed=seed,
@@ -361,71 +371,12 @@ def _beforehand(laws: list[Law]) -> FloatArray:
     return np.array([-math.log(growing) if law.grows else 0.0 for law in laws])
 
 
-def _checked(
-    unit: Sequence[object], age: ArrayLike, value: ArrayLike, error: ArrayLike
-) -> tuple[list[str], list[FloatArray]]:
-    names = [str(each).strip() for each in ([unit] if isinstance(unit, str) else unit)]
-    columns = [np.atleast_1d(numbers_of(*each)) for each in (("age", age), ("value", value))]
-    columns.append(numbers_of("error", error))
-    if columns[2].ndim == 0:
-        columns[2] = np.full(len(names), float(columns[2]))
-    for name, column in zip(("age", "value", "error"), columns, strict=True):
-        if column.shape != (len(names),):
-            raise ParameterError(f"{len(names)} units are named, but {name} has the shape {column.shape}")
-    rules = (("age", "negative"), ("value", "not positive"), ("error", "negative"))
-    for (name, fault), column in zip(rules, columns, strict=True):
-        for i in np.flatnonzero(~np.isfinite(column)):
-            raise ParameterError(f"{name} of run {i + 1} (unit {names[i]!r}) is no number", index=int(i))
-        bad = column <= 0.0 if name == "value" else column < 0.0
-        for i in np.flatnonzero(bad):
-            raise ParameterError(
-                f"{name} of run {i + 1} (unit {names[i]!r}) is {fault}: {column[i]:g}",
-                quantity=name,
-                value=float(column[i]),
-                limit=0.0,
-                index=int(i),
-            )
-    if "" in names:
-        raise ParameterError(f"run {names.index('') + 1} names no unit", index=names.index(""))
-    ages: dict[str, set[float]] = {}
-    for name, t in zip(names, columns[0].tolist(), strict=True):
-        ages.setdefault(name, set()).add(t)
-    if max(len(each) for each in ages.values()) < 2:
-        raise InsufficientDataError(
-            "no unit was seen at two ages, so nothing tells its growth: add runs at another age"
-        )
-    return names, columns
-
-
-def _points(
-    names: list[str], units: tuple[str, ...], age: FloatArray, value: FloatArray, error: FloatArray
-) -> tuple[Points, tuple[float, float]]:
-    """Runs as rows of units, filled up, in scaled ages and logarithms less their mean; and both scales."""
-    of_unit: dict[str, list[int]] = {each: [] for each in units}
-    for i, name in enumerate(names):
-        of_unit[name].append(i)
-    rows = [np.array(each) for each in of_unit.values()]
-    longest = max(row.size for row in rows)
-    given = np.zeros((len(units), longest), dtype=bool)
-    filled = np.zeros((3, len(units), longest))
-    logs, greatest = np.log(value), float(age.max())
-    middle = float(logs.mean())
-    place = np.zeros((2, value.size), dtype=np.intp)
-    for i, row in enumerate(rows):
-        given[i, : row.size] = True
-        ordered = row[np.argsort(age[row], kind="stable")]
-        filled[:, i, : row.size] = age[ordered] / greatest, logs[ordered] - middle, error[ordered] ** 2
-        place[0, ordered], place[1, ordered] = i, np.arange(row.size)
-    return Points(filled[0], filled[1], filled[2] + _RESOLUTION**2, given, place), (greatest, middle)
-
-
 def _resampled(
     found: list[Posterior], weights: FloatArray, count: int, random: np.random.Generator
 ) -> list[tuple[Posterior, FloatArray]]:
     """Equally probable draws over all laws (systematic resampling); laws without any are left out."""
     every = np.concatenate([each.weight * w for each, w in zip(found, weights, strict=True)])
-    steps = (np.arange(count) + random.random()) / count
-    index = np.minimum(np.searchsorted(np.cumsum(every) / every.sum(), steps), every.size - 1)
+    index = systematic(every, count, random)
     ends = np.cumsum([0, *(len(each.shared) for each in found)])
     draws = []
     for each, begin, end in zip(found, ends, ends[1:], strict=False):
@@ -435,60 +386,20 @@ def _resampled(
     return draws
 
 
-def _parameters(found: Posterior, scale: tuple[float, float]) -> dict[str, Interval]:
-    """Medians and 90 % intervals of what all units share, in the units given."""
-    shared, law = found.shared, found.law
-    named = {"level": np.exp(shared[:, 0] + scale[1]), "spread of levels": np.exp(shared[:, 1])}
-    if law.grows:
-        per_age = 1.0 if law.name == "saturating" else scale[0]
-        named["rate"] = np.exp(shared[:, 3]) / per_age
-        named["spread of rates"] = np.exp(shared[:, 4])
-    for i, (name, _, _) in enumerate(law.shapes, 5):
-        own = shared[:, i]
-        if name.startswith("logit "):
-            named[name.removeprefix("logit ")] = special.expit(own)
-        elif name == "ln(tau/T)":
-            named["tau"] = np.exp(own) * scale[0]
-        else:
-            named[name] = own
-    named["scatter of runs"] = np.exp(shared[:, 2])
-    return {name: _weighed(values, found.weight) for name, values in named.items()}
-
-
-def _weighed(values: FloatArray, weight: FloatArray) -> Interval:
-    order = np.argsort(values)
-    steps = np.cumsum(weight[order])
-    ends = np.searchsorted(steps, [0.5, 0.5 - CONFIDENCE / 2, 0.5 + CONFIDENCE / 2])
-    return Interval(*(float(values[order[min(i, values.size - 1)]]) for i in ends))
-
-
 def _notes(runs: tuple[int, ...], points: Points) -> tuple[str, ...]:
     notes = []
     if len(runs) == 1:
         notes.append(
-            "one unit tells nothing of how units differ: B10 and B50 hang on the prior of the spread"
+            "one specimen tells nothing of how specimens differ: B10 and B50 hang on the prior of the spread"
         )
     elif len(runs) <= _FEW:
         notes.append(
-            f"{len(runs)} units tell little of how units differ: B10 and B50 lean on the prior of the spread"
+            f"{len(runs)} specimens tell little of how specimens differ: B10 and B50 lean on the "
+            "prior of the spread"
         )
     once = sum(np.unique(age[given]).size < 2 for age, given in zip(points.age, points.given, strict=True))
     if once:
-        notes.append(f"{once} of the units were seen at one age only: their growth is that of the others")
-    if _falls(points):
+        notes.append(f"{once} of the specimens were seen at one age only: their growth is that of the others")
+    if falls(points):
         notes.append("values fall with age: no law of growth does; give the reciprocal of what falls")
     return tuple(notes)
-
-
-def _falls(points: Points) -> bool:
-    """Whether straight lines through the units, with one slope, fall by three standard errors."""
-    number = points.given.sum(axis=1, keepdims=True)
-    age, value = (
-        (each - (each * points.given).sum(axis=1, keepdims=True) / number) * points.given
-        for each in (points.age, points.value)
-    )
-    square = (age**2).sum()
-    slope = (age * value).sum() / square
-    left = ((value - slope * age) ** 2 * points.given).sum() / max(number.sum() - len(number) - 1, 1)
-    least = (points.variance * points.given).sum() / number.sum()
-    return bool(slope < -3.0 * math.sqrt(max(left, least) / square))

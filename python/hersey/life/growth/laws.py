@@ -1,9 +1,9 @@
-"""How a positive indicator may grow with age: its logarithm over that of the new unit, ln G.
+"""How a positive indicator may grow with age: its logarithm over that of the new specimen, ln G.
 
-Each law has a size x = ln(r T) of its unit (ln s of a saturating one) and may have a shape that all units
-share. Ages are in T, the greatest age of the data. Side flow thins a layer as h = (h0^-2 + K t)^(-1/2), and
-torque goes as 1/h (van Zoelen, Venner, Lugt, Proc. IMechE J 223 (2009) 541); evaporation at a steady rate
-thins it as h0 - e t, which is the curved law at c = -1.
+Each law has a size x = ln(r T) of its specimen (ln s of a saturating one) and may have a shape that all
+specimens share. Ages are in T, the greatest age of the data. Torque is proportional to 1/h of a layer of oil
+(`oil_layer`). Side flow alone thins it as h = (h0^-2 + K t)^(-1/2); a steady loss, h0 - e t, is the curved
+law at c = -1.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import numpy as np
 from scipy import special
 
 from hersey.arrays import FloatArray
-from hersey.life.growth.drying import dried, dried_age, dried_slope
+from hersey.life.oil_layer import age_of_layer, log_layer
 
 #: Greatest size: beyond it growth is as good as infinite.
 _GREATEST = 30.0
@@ -76,6 +76,26 @@ def _curved_age(x: FloatArray, y: FloatArray, a: FloatArray) -> FloatArray:
     return np.expm1(bent * y) / bent * np.exp(-x)
 
 
+def _dried_rates(x: FloatArray, a: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """The new layer, K and e of one that thins at the rate exp(x) when new, q of it by evaporation."""
+    rate, evaporated = np.exp(np.minimum(x, _GREATEST)), special.expit(a[0])
+    return np.ones(()), 2.0 * (1.0 - evaporated) * rate, evaporated * rate
+
+
+def _dried(x: FloatArray, t: FloatArray, a: FloatArray) -> FloatArray:
+    return -log_layer(*_dried_rates(x, a), t)
+
+
+def _dried_slope(x: FloatArray, t: FloatArray, a: FloatArray) -> FloatArray:
+    new, side_flow, evaporation = _dried_rates(x, a)
+    layer = np.exp(log_layer(new, side_flow, evaporation, t))
+    return np.asarray(t * (0.5 * side_flow * layer**2 + evaporation))
+
+
+def _dried_age(x: FloatArray, y: FloatArray, a: FloatArray) -> FloatArray:
+    return age_of_layer(*_dried_rates(x, a), -y)
+
+
 def _rested(law: Law) -> Law:
     """The law of a drag of which a share p grows so and the rest stays; logit p is the last shape."""
 
@@ -132,10 +152,10 @@ LAWS = (
     _rested(
         Law(
             "drying film",
-            "1 - p + p/h, h' = -r ((1 - q) h^3 + q)",
-            dried,
-            dried_slope,
-            dried_age,
+            "1 - p + p/h, h' = -r ((1 - q) h^3 + q h)",
+            _dried,
+            _dried_slope,
+            _dried_age,
             (("logit q", -1.0, 1.5),),
         )
     ),

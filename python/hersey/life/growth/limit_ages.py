@@ -1,8 +1,9 @@
-"""The age at which units, and shares of the population, reach a limit."""
+"""The age at which specimens, and shares of the population, reach a limit."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -10,7 +11,8 @@ import numpy as np
 from scipy import special
 
 from hersey.arrays import FloatArray
-from hersey.life.growth.posterior import Units
+from hersey.life.growth.marginal import Specimens
+from hersey.life.indicator import OwnAges
 from hersey.result import Result, json_record
 
 if TYPE_CHECKING:
@@ -18,9 +20,11 @@ if TYPE_CHECKING:
 
 #: Confidence of every interval of an age: what life tests are planned for.
 CONFIDENCE = 0.9
+#: Standard deviations of a normal distribution in half of such an interval.
+DEVIATIONS = 1.645
 #: A law is fitted up to the last run. Growth is a sum of processes, and the time from there to a limit was
 #: off by so much (logarithm) in campaigns of a generator of its own (`benchmarks/life.py`), most of it in
-#: common to the units; more for what accumulates, where a rate is a power of what grows.
+#: common to the specimens; more for what accumulates, where a rate is a power of what grows.
 BEYOND, BEYOND_SUM, _OWN = 0.10, 0.15, 0.3
 #: Share of draws from which "never" is worth a word.
 _SAID = 0.05
@@ -46,7 +50,7 @@ class Interval:
 
 @dataclass(frozen=True)
 class AgeAtLimit:
-    """The age at which one unit, or a share of the population, reaches a limit."""
+    """The age at which one specimen, or a share of the population, reaches a limit."""
 
     unit: str
     age: Interval
@@ -67,13 +71,13 @@ class AgeAtLimit:
 
 @dataclass(frozen=True, repr=False)
 class AgesAtLimit(Result):
-    """The ages at which units and population reach a limit."""
+    """The ages at which specimens and population reach a limit."""
 
     quantity: str
     age_unit: str
     limit: float
     units: tuple[AgeAtLimit, ...]
-    b10: AgeAtLimit  #: a tenth of new units has reached it
+    b10: AgeAtLimit  #: a tenth of new specimens has reached it
     b50: AgeAtLimit
     notes: tuple[str, ...]
     accumulates: bool = False  #: the limit is that of the integral over age
@@ -87,14 +91,15 @@ class AgesAtLimit(Result):
 
     def headline(self) -> str:
         """Return the age of half the population."""
-        return f"half of new units reach {self.quantity} = {self.limit:.4g} at {self.b50.age} {self.age_unit}"
+        age = f"{self.b50.age} {self.age_unit}"
+        return f"half of new specimens reach {self.quantity} = {self.limit:.4g} at {age}"
 
     def to_dict(self) -> dict[str, Any]:
         """Return the ages; None for what is never reached."""
         return json_record(vars(self))
 
     def to_frame(self) -> pl.DataFrame:
-        """Return one row per unit, then the population; infinite where it is never reached."""
+        """Return one row per specimen, then the population; infinite where it is never reached."""
         import polars as pl
 
         rows = [*self.units, self.b10, self.b50]
@@ -112,40 +117,61 @@ class AgesAtLimit(Result):
 
 
 def age_at_limit(name: str, ages: FloatArray, last: float = math.nan) -> AgeAtLimit:
-    """Return what equally probable ages tell of a unit that was last seen at ``last``."""
-    low, median, high = (float(each) for each in quantiles(ages))
+    """Return what equally probable ages tell of a specimen that was last seen at ``last``."""
     never, passed = float(np.isinf(ages).mean()), float((ages <= last).mean())
-    return AgeAtLimit(name, Interval(median, low, high), never, last, passed)
+    return AgeAtLimit(name, interval(ages), never, last, passed)
 
 
-def share_of_units(ages: FloatArray, share: float) -> AgeAtLimit:
-    """Age that a share of new units has reached, ``ages`` being sorted along the units."""
+def share_of_specimens(ages: FloatArray, share: float) -> AgeAtLimit:
+    """Age that a share of new specimens has reached, ``ages`` being sorted along the specimens."""
     return age_at_limit(f"B{share * 100:.0f}", ages[:, math.ceil(share * ages.shape[1]) - 1])
 
 
-def ages_of(units: Units, level: FloatArray) -> FloatArray:
-    """Ages, in the greatest age, at which drawn units reach a level (logarithm), shape (draws, 1)."""
-    above = np.maximum(level - units.level, 0.0)
+def ages_at_limit(
+    quantity: str,
+    age_unit: str,
+    limit: float,
+    names: Sequence[str],
+    own: OwnAges,
+    last: Sequence[float] | FloatArray,
+    notes: tuple[str, ...],
+    *,
+    accumulates: bool = False,
+) -> AgesAtLimit:
+    """Return what draws of the ages of specimens, last seen at ``last``, and of new ones show.
+
+    ``accumulates``: the limit is that of the integral of the quantity over age.
+    """
+    quantity = f"the sum of {quantity} over age" if accumulates else quantity
+    known = [age_at_limit(name, own.known[:, i], float(last[i])) for i, name in enumerate(names)]
+    new = np.sort(own.new, axis=1)
+    b10, b50 = (share_of_specimens(new, share) for share in (0.1, 0.5))
+    return AgesAtLimit(quantity, age_unit, limit, tuple(known), b10, b50, notes, accumulates)
+
+
+def ages_of(drawn: Specimens, level: FloatArray) -> FloatArray:
+    """Ages, in the greatest age, at which drawn specimens reach a level (logarithm), shape (draws, 1)."""
+    above = np.maximum(level - drawn.level, 0.0)
     with np.errstate(over="ignore"):
-        return np.where(above > 0.0, units.law.age(units.size, above, units.shape), 0.0)
+        return np.where(above > 0.0, drawn.law.age(drawn.size, above, drawn.shape), 0.0)
 
 
-def ages_of_sum(units: Units, level: FloatArray) -> FloatArray:
+def ages_of_sum(drawn: Specimens, level: FloatArray) -> FloatArray:
     """Ages at which the integral of the indicator from age 0 reaches a level (logarithm), as in `ages_of`.
 
     Newton's method in the logarithms of integral and age, kept between ends by halving.
     """
-    need = level - units.level
-    size, goal = (np.broadcast_to(x, need.shape).ravel() for x in (units.size, need))
-    shape = np.broadcast_to(units.shape, (len(units.shape), *need.shape)).reshape(len(units.shape), need.size)
+    need = level - drawn.level
+    size, goal = (np.broadcast_to(x, need.shape).ravel() for x in (drawn.size, need))
+    shape = np.broadcast_to(drawn.shape, (len(drawn.shape), *need.shape)).reshape(len(drawn.shape), need.size)
     # What grows has got there before a constant would; its integral is no steeper than the age itself.
     high, low = goal.copy(), np.full(goal.shape, -np.inf)
     at, open_ = high.copy(), np.arange(goal.size)
     for _ in range(_TURNS):
         x, a, t = size[open_], shape[:, open_], at[open_]
         with np.errstate(over="ignore"):
-            grown = units.law.log_growth(x[:, None], np.exp(t)[:, None] * _PLACES, a[:, :, None])
-            end = np.minimum(units.law.log_growth(x, np.exp(t), a), _HUGE)
+            grown = drawn.law.log_growth(x[:, None], np.exp(t)[:, None] * _PLACES, a[:, :, None])
+            end = np.minimum(drawn.law.log_growth(x, np.exp(t), a), _HUGE)
         sum_ = np.log(np.exp(np.minimum(grown, _HUGE)) @ _PARTS)
         left = goal[open_] - t - sum_
         high[open_] = np.where(left < 0.0, t, high[open_])
@@ -187,6 +213,12 @@ def quantiles(values: FloatArray) -> FloatArray:
     """Lower end, median and upper end over the draws; infinite numbers are numbers."""
     ends = [0.5 - CONFIDENCE / 2, 0.5, 0.5 + CONFIDENCE / 2]
     return np.asarray(np.quantile(values, ends, axis=0, method="inverted_cdf"))
+
+
+def interval(values: FloatArray) -> Interval:
+    """Return the median of draws with its interval."""
+    low, median, high = (float(each) for each in quantiles(values))
+    return Interval(median, low, high)
 
 
 def _number(value: float) -> str:

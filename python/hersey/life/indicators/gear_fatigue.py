@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hersey.arrays import FloatArray
-from hersey.errors import HerseyError, UnfinishedError, UnitError
+from hersey.errors import HerseyError, UnitError
 from hersey.files.toml import naming
 from hersey.life.age import Age, one_of
 from hersey.life.fatigue import RainflowCycles, SNCurve, rainflow_cycles, stick_slip_damage_rate
 from hersey.life.indicator import Indicator
-from hersey.life.indicators.at_states import AtStates
+from hersey.life.indicators.at_states import AtStates, Curves
 from hersey.life.indicators.sticking import MOST_FOLDS, curve_at, drag_of
 from hersey.log.mapping import read_with_mapping
 from hersey.motion.simulation import stick_slip
@@ -67,56 +67,126 @@ def gear_fatigue(
     gear = machine.gear
     if gear is None:
         return [], ["gear fatigue: add [gear] with torque, cycles and slope of its S-N curve"]
-    with naming("[gear]"):
-        curve = SNCurve(
-            gear.torque, gear.cycles, gear.slope, gear.second_slope, gear.endurance, gear.ultimate
-        )
-    whole, error = told.whole, told.whole_error
-    mix = whole[:, points] @ shares_of(machine) if machine.points else whole[:, cold]
-    rate, spread = np.zeros(whole.shape[0]), np.zeros(whole.shape[0])
-    notes: list[str] = []
-    loads = 0
-    if gear.starts is not None:
-        shares = _shares_of_starts(gear, machine, told, cold, points)
-        with naming("[gear] starts"):
-            per_age = gear.starts[0] / Age.parse(gear.starts[1]).as_unit(told.runs.runs.age_unit).value
-        for state, share in shares.items():
-            cycle = RainflowCycles(np.ones(1), np.full(1, 0.5), np.full(1, share * per_age))
-            _add(rate, spread, *_damage(curve, cycle, gear.ratio * whole[:, state]), error[:, state])
-        notes.append(
-            f"{per_age:.3g} starts per {one_of(told.runs.runs.age_unit)}, without breakaway and acceleration"
-        )
-        loads += 1
-    if gear.duty is not None and gear.duty_age is not None:
-        with naming("[gear] duty_age"):
-            age = Age.parse(gear.duty_age).as_unit(told.runs.runs.age_unit).value
-        counted = _counted(gear.duty, age)
-        young = told.runs.runs.age == told.runs.runs.age[np.isfinite(mix)].min(initial=np.inf)
-        scale = mix / np.nanmedian(mix[young]) if np.isfinite(mix[young]).any() else np.full_like(mix, np.nan)
-        mean_error = np.nan_to_num(error[:, points] if machine.points else error[:, [cold]]).mean(axis=1)
-        _add(rate, spread, *_damage(curve, counted, gear.ratio * scale), mean_error)
-        notes.append("the duty recorded grows as the torque at the points, from that of the youngest runs")
-        loads += 1
-    loads += _stick_slip(told, machine, gear, curve, rate, spread, notes)
-    if not loads:
+    load = _GearLoad(told, machine, gear, cold, points)
+    if not any([load.starts(), load.duty(), load.stick_slip()]):
         return [], [
             'gear fatigue: [gear] says no load: add starts = "20 per 1000 pages", or duty and duty_age'
         ]
-    value = np.where(rate > 0.0, rate, np.nan)
-    if silent := int(np.count_nonzero(told.runs.enough & ~np.isfinite(value))):
-        notes.append(f"not told by {silent} runs: no damage, a peak that breaks the part, or no torque there")
-    found = Indicator(
-        "gear fatigue",
-        "gear fatigue",
-        f"1/{one_of(told.runs.runs.age_unit)}",
-        gear.damage,
-        value,
-        np.where(np.isfinite(value), spread / np.where(rate > 0.0, rate, 1.0), np.nan),
-        limit_error * gear.slope,
-        accumulates=True,
-        notes=tuple(notes),
-    )
-    return [found], []
+    return [load.indicator(limit_error)], []
+
+
+class _GearLoad:
+    """The damage of a gear per age, of each run, summed over its loads."""
+
+    def __init__(self, told: AtStates, machine: Machine, gear: GearTable, cold: int, points: slice) -> None:
+        self.told, self.machine, self.gear = told, machine, gear
+        self.cold, self.points, self.age_unit = cold, points, told.runs.runs.age_unit
+        with naming("[gear]"):
+            self.curve = SNCurve(
+                gear.torque, gear.cycles, gear.slope, gear.second_slope, gear.endurance, gear.ultimate
+            )
+        self.rate, self.spread = np.zeros(told.whole.shape[0]), np.zeros(told.whole.shape[0])
+        self.notes: list[str] = []
+
+    def _add(self, cycles: RainflowCycles, scale: FloatArray, error: FloatArray) -> None:
+        """Add cycles whose torque is so many times as large, known to a relative error."""
+        damage, steep = _damage(self.curve, cycles, self.gear.ratio * scale)
+        self.rate += damage
+        self.spread += damage * steep * error
+
+    def starts(self) -> bool:
+        """Add the starts; whether there are any."""
+        if self.gear.starts is None:
+            return False
+        shares = _shares_of_starts(self.gear, self.machine, self.told, self.cold, self.points)
+        with naming("[gear] starts"):
+            per_age = self.gear.starts[0] / Age.parse(self.gear.starts[1]).as_unit(self.age_unit).value
+        for state, share in shares.items():
+            cycle = RainflowCycles(np.ones(1), np.full(1, 0.5), np.full(1, share * per_age))
+            self._add(cycle, self.told.whole[:, state], self.told.whole_error[:, state])
+        self.notes.append(
+            f"{per_age:.3g} starts per {one_of(self.age_unit)}, without breakaway and acceleration"
+        )
+        return True
+
+    def duty(self) -> bool:
+        """Add the duty that was recorded; whether there is one."""
+        if self.gear.duty is None or self.gear.duty_age is None:
+            return False
+        with naming("[gear] duty_age"):
+            age = Age.parse(self.gear.duty_age).as_unit(self.age_unit).value
+        whole, ages = self.told.whole, self.told.runs.runs.age
+        states = self.points if self.machine.points else [self.cold]
+        mix = whole[:, states] @ shares_of(self.machine) if self.machine.points else whole[:, self.cold]
+        known = np.isfinite(mix)
+        young = known & (ages == ages[known].min(initial=np.inf))
+        scale = mix / np.median(mix[young]) if young.any() else np.full_like(mix, np.nan)
+        error = np.nan_to_num(self.told.whole_error[:, states]).mean(axis=1)
+        self._add(_counted(self.gear.duty, age), scale, error)
+        self.notes.append(
+            "the duty recorded grows as the torque at the points, from that of the youngest runs"
+        )
+        return True
+
+    def stick_slip(self) -> bool:
+        """Add stick-slip at points on the falling branch; whether there is any."""
+        radius, lasting = self.machine.roll_radius, []
+        for point, share in zip(self.machine.points, shares_of(self.machine), strict=True):
+            curves = curve_at(self.told, point.temperature)
+            places = np.flatnonzero((curves.least * radius > point.speed) | curves.above)
+            if places.size:
+                lasting.append((point, share, curves, places))
+        if not lasting:
+            return False
+        time = running_time(self.machine, self.age_unit)
+        if time is None:
+            self.notes.append('stick-slip at the points is not in it: [life] lacks travel = "300 mm"')
+            return False
+        for point, share, curves, places in lasting:
+            self.rate[places[MOST_FOLDS:]] = np.nan
+            for place in places[:MOST_FOLDS].tolist():
+                damage = share * time * self._rate_of_sticking(curves, place, point.speed)
+                slowest = float(np.nan_to_num(self.told.belt_error[place]).max())
+                self.rate[place] += damage
+                self.spread[place] += np.nan_to_num(damage) * self.gear.slope * slowest
+            self.notes.append(
+                f"stick-slip at {point.name} in {len(places)} runs, where torque falls with speed"
+            )
+        return True
+
+    def _rate_of_sticking(self, curves: Curves, place: int, speed: float) -> float:
+        """Damage per second of a run that sticks at a speed (m/s); NaN where its motion is not found."""
+        train = self.machine.train
+        try:
+            drag = drag_of(self.told, curves, place, self.machine)
+            if drag is None:
+                return np.nan  # no transition above its stick speed
+            cycle = stick_slip(train, drag, drive_speed=speed, most_steps=_STEPS)
+            radius, ratio = self.machine.roll_radius, self.gear.ratio
+            return stick_slip_damage_rate(cycle, train, self.curve, roll_radius=radius, ratio=ratio)
+        except HerseyError:
+            return np.nan
+
+    def indicator(self, limit_error: float) -> Indicator:
+        """Return what adds up to the limit."""
+        value = np.where(self.rate > 0.0, self.rate, np.nan)
+        known = np.isfinite(value)
+        notes = list(self.notes)
+        if silent := int(np.count_nonzero(self.told.runs.enough & ~known)):
+            notes.append(
+                f"not told by {silent} runs: no damage, a peak that breaks the part, or no torque there"
+            )
+        return Indicator(
+            "gear fatigue",
+            "gear fatigue",
+            f"1/{one_of(self.age_unit)}",
+            self.gear.damage,
+            value,
+            np.where(known, self.spread / np.where(known, self.rate, 1.0), np.nan),
+            limit_error * self.gear.slope,
+            accumulates=True,
+            notes=tuple(notes),
+        )
 
 
 def _shares_of_starts(
@@ -129,13 +199,6 @@ def _shares_of_starts(
         place: (1.0 - of_cold) * float(share) for place, share in zip(places, shares_of(machine), strict=True)
     }
     return {place: share for place, share in {cold: of_cold, **warm}.items() if share > 0.0}
-
-
-def _add(
-    rate: FloatArray, spread: FloatArray, damage: FloatArray, steep: FloatArray, error: FloatArray
-) -> None:
-    rate += damage
-    spread += damage * steep * error
 
 
 def _damage(curve: SNCurve, cycles: RainflowCycles, scale: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -167,55 +230,3 @@ def _counted(path: str, age: float) -> RainflowCycles:
     summed = np.bincount(place.ravel(), weights=counts, minlength=alike.shape[0])
     kept = alike[:, 0] > 0.0
     return RainflowCycles(alike[kept, 0] * step, alike[kept, 1] * step, summed[kept] / age)
-
-
-def _stick_slip(
-    told: AtStates,
-    machine: Machine,
-    gear: GearTable,
-    curve: SNCurve,
-    rate: FloatArray,
-    spread: FloatArray,
-    notes: list[str],
-) -> int:
-    """Add the damage of stick-slip at points on the falling branch; return whether there is any."""
-    sticking = [
-        (point, share, curve_at(told, point.temperature))
-        for point, share in zip(machine.points, shares_of(machine), strict=True)
-    ]
-    lasting = [
-        (
-            point,
-            share,
-            curves,
-            np.flatnonzero((curves.least * machine.roll_radius > point.speed) | curves.above),
-        )
-        for point, share, curves in sticking
-    ]
-    if not any(places.size for *_, places in lasting):
-        return 0
-    time = running_time(machine, told.runs.runs.age_unit)
-    if time is None:
-        notes.append('stick-slip at the points is not in it: [life] lacks travel = "300 mm"')
-        return 0
-    for point, share, curves, places in lasting:
-        for place in places[MOST_FOLDS:].tolist():
-            rate[place] = np.nan
-        for place in places[:MOST_FOLDS].tolist():
-            drag = drag_of(told, curves, place, machine)
-            try:
-                if drag is None:
-                    raise UnfinishedError("the drag of the run has no transition above its stick speed")
-                cycle = stick_slip(machine.train, drag, drive_speed=point.speed, most_steps=_STEPS)
-                damage = stick_slip_damage_rate(
-                    cycle, machine.train, curve, roll_radius=machine.roll_radius, ratio=gear.ratio
-                )
-            except HerseyError:
-                rate[place] = np.nan
-                continue
-            rate[place] += damage * share * time
-            slowest = float(np.nan_to_num(told.belt_error[place]).max())
-            spread[place] += damage * share * time * gear.slope * slowest
-        if places.size:
-            notes.append(f"stick-slip at {point.name} in {places.size} runs, where torque falls with speed")
-    return 1

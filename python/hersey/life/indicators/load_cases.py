@@ -42,15 +42,15 @@ def load_cases(machine: Machine, runs: CampaignRuns) -> tuple[State, State] | No
     """Return the cold fast and the hot slow corner of the machine's use; None if no run has a dwell.
 
     Fastest and slowest are those of ``[[points]]``; without these the speed of ``[limits]``, else what all
-    units recorded. Coldest is that of ``[life]``, else the coldest that all units recorded; hottest that of
-    the points, else the hottest that all units recorded.
+    specimens recorded. Coldest is that of ``[life]``, else the coldest that all specimens recorded; hottest
+    that of the points, else the hottest that all specimens recorded.
     """
     slowest, fastest = runs.shared("speed", least=True), runs.shared("speed", least=False)
     if slowest is None or fastest is None:
         return None
     coldest, hottest = runs.shared("temperature", least=True), runs.shared("temperature", least=False)
-    cold_from = hot_from = "that all units recorded" if coldest is not None else ""
-    slow_from = fast_from = "slowest and fastest that all units recorded"
+    cold_from = hot_from = "that all specimens recorded" if coldest is not None else ""
+    slow_from = fast_from = "slowest and fastest that all specimens recorded"
     if machine.life.coldest is not None and coldest is not None:
         coldest, cold_from = machine.life.coldest, "[life] coldest"
     if machine.limits.speed is not None:

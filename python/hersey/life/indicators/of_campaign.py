@@ -143,7 +143,7 @@ class _Asked:
         breakaway, how = self._breakaway()
         error = told.belt_error[:, _STILL]
         from_rest = self._torque("grip, from rest", "grip", limit, breakaway, error, _STILL, how, *notes)
-        # Nobody measured the factor of Eq. 29: it warns, and ends no unit.
+        # Nobody measured the factor of Eq. 29: it warns, and ends no specimen.
         told_by_rule = static_force(self.machine) is None
         return [
             self._torque("grip, cold and fast", "grip", limit, *cold, _COLD, *notes),

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, repr=False)
 class CampaignRuns:
-    """The runs of a campaign, by unit and age: ``dwells``, ``rests`` and ``sensors`` have one entry for each.
+    """The runs of a campaign by specimen and age; ``dwells``, ``rests`` and ``sensors`` are those of each.
 
     ``dwells`` are those that turn and are known; a rest is None where none is known. ``notes`` say what is
     not there.
@@ -40,7 +40,7 @@ class CampaignRuns:
         return np.array([dwells.speed.size >= FEWEST for dwells in self.dwells])
 
     def name(self, place: int) -> str:
-        """Return unit and age of a run."""
+        """Return specimen and age of a run."""
         return f"{self.runs.unit[place]} at {Age(float(self.runs.age[place]), self.runs.age_unit)}"
 
     def told(self) -> Iterator[tuple[int, RunDwells, RestOfDrive | None]]:
@@ -49,9 +49,10 @@ class CampaignRuns:
             yield place, self.dwells[place], self.rests[place]
 
     def shared(self, of: str, *, least: bool) -> float | None:
-        """Return the least (or greatest) speed or temperature that every unit has recorded; None without any.
+        """Return the least (or greatest) speed or temperature that every specimen recorded; None without any.
 
-        Units are asked, not runs: an old one that stalls where it was measured when new keeps that corner.
+        Specimens are asked, not runs: an old one that stalls where it was measured when new keeps that
+        corner.
         """
         ends: dict[str, float] = {}
         toward = min if least else max

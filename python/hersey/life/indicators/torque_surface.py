@@ -291,7 +291,7 @@ class TorqueSurface:
 def shared_kernel(runs: Sequence[RunDwells]) -> Kernel:
     """Return the kernel of a campaign by the restricted likelihood of its runs together.
 
-    Of many runs some tell it, spread evenly over those given: give them by unit and age.
+    Of many runs some tell it, spread evenly over those given: give them by specimen and age.
 
     Raises
     ------

@@ -1,10 +1,10 @@
-"""What ends each unit, and when: every indicator against its limit.
+"""What ends each specimen, and when: every indicator against its limit.
 
 ========  ====================================================================
 way       `Mode`: the growth of an indicator and the ages at its limit
 joined    draws of several failure modes side by side
-first     `UnitEnd`: which way comes first, and when
+first     `SpecimenEnd`: which way comes first, and when
 next_run  what to measure next, and how far it would narrow an interval
-estimate  `time_to_failure`: the first end of each unit, and of the population
+estimate  `time_to_failure`: the first end of each specimen, and of the population
 ========  ====================================================================
 """

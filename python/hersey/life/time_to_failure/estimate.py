@@ -1,4 +1,4 @@
-"""What ends each unit, and when: the growth of every indicator against its limit, side by side."""
+"""What ends each specimen, and when: the growth of every indicator against its limit, side by side."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ from hersey.life.growth.limit_ages import (
     AgeAtLimit,
     Interval,
     quantiles,
-    share_of_units,
+    share_of_specimens,
 )
 from hersey.life.indicator import Indicators
 from hersey.life.population import Population, weibull
-from hersey.life.time_to_failure.first import UnitEnd, ages_of_new, ends_of_units
+from hersey.life.time_to_failure.first import SpecimenEnd, ages_of_new, ends_of_specimens
 from hersey.life.time_to_failure.joined import correlations
 from hersey.life.time_to_failure.next_run import (
     HORIZON,
     NextRun,
     candidate_ages,
     width,
-    width_after_unit,
+    width_after_specimen,
     widths_after,
 )
 from hersey.life.time_to_failure.way import FittedWay, Mode, fitted_way, last_ages, listed
@@ -37,15 +37,15 @@ from hersey.result import Result, json_record, json_value
 if TYPE_CHECKING:
     import polars as pl
 
-#: What is said of a unit from so many times the age at which it was last seen on.
+#: What is said of a specimen from so many times the age at which it was last seen on.
 FAR = 3.0
 #: Places of the curve of the population.
 _PLACES = 121
-#: Units, of the widest intervals, for which a further run is weighed; advice that the summary gives.
+#: Specimens, of the widest intervals, for which a further run is weighed; advice that the summary gives.
 _WEIGHED, _ADVISED = 24, 3
 #: An interval whose ends differ by this factor tells the order of an age, no more.
 _WIDE = 2.0
-#: Up to so many units tell little of how units differ.
+#: Up to so many specimens tell little of how specimens differ.
 _FEW = 3
 #: Rows that a summary shows.
 _SHOWN = 24
@@ -54,7 +54,7 @@ NEVER = "none"
 
 @dataclass(frozen=True)
 class ShareEnded:
-    """Share of new units that have ended at an age: median and 90 % band over the draws."""
+    """Share of new specimens that have ended at an age: median and 90 % band over the draws."""
 
     age: FloatArray
     median: FloatArray
@@ -64,14 +64,14 @@ class ShareEnded:
 
 @dataclass(frozen=True, repr=False)
 class TimeToFailure(Result):
-    """What ends each unit and the population, and when; ages in ``age_unit``."""
+    """What ends each specimen and the population, and when; ages in ``age_unit``."""
 
     age_unit: str
     modes: tuple[Mode, ...]
-    units: tuple[UnitEnd, ...]
-    b10: AgeAtLimit  #: a tenth of new units has ended, by whichever way
+    units: tuple[SpecimenEnd, ...]
+    b10: AgeAtLimit  #: a tenth of new specimens has ended, by whichever way
     b50: AgeAtLimit
-    shares: dict[str, Interval]  #: of new units that each way ends
+    shares: dict[str, Interval]  #: of new specimens that each way ends
     curve: ShareEnded
     next_runs: tuple[NextRun, ...]  #: what narrows most first
     together: tuple[str, ...]  #: ways whose runs scatter together
@@ -87,12 +87,12 @@ class TimeToFailure(Result):
 
     @property
     def ending(self) -> tuple[Mode, ...]:
-        """The ways that end a unit: all but the precursors."""
+        """The ways that end a specimen: all but the precursors."""
         return tuple(mode for mode in self.modes if not mode.sign)
 
     @cached_property
     def population(self) -> Population:
-        """The units that have ended by now at their ages as estimated, the others as not failed."""
+        """The specimens that have ended by now at their ages as estimated, the others as not failed."""
         seen = [each for each in self.units if each.age.last > 0.0]
         failed = np.array([each.age.passed > 0.5 for each in seen])
         last = np.array([each.age.last for each in seen])
@@ -102,37 +102,39 @@ class TimeToFailure(Result):
         )
 
     def summary(self) -> str:
-        """Return units, population, what cannot be told and what to measure next as text."""
+        """Return specimens, population, what cannot be told and what to measure next as text."""
         unit = f" {self.age_unit}" if self.age_unit else ""
         lines = [self.headline(), f"age of the first end{unit and f' ({unit.strip()})'}, 90 % intervals"]
         lines += [f"  {each}" for each in self.units[:_SHOWN]]
         if len(self.units) > _SHOWN:
-            lines.append(f"  and {len(self.units) - _SHOWN} more units")
+            lines.append(f"  and {len(self.units) - _SHOWN} more specimens")
         lines += [f"  {self.b10}", f"  {self.b50}"]
         ordered = sorted(self.shares.items(), key=lambda item: -item[1].value)
         shares = ", ".join(f"{name} {each.value:.0%}" for name, each in ordered if each.value >= 0.005)
-        lines += [f"share of new units that each ends: {shares}", "each way by itself"]
+        lines += [f"share of new specimens that each ends: {shares}", "each way by itself"]
         soon = FAR * max(each.age.last for each in self.units)
         far = [mode.name for mode in self.modes if mode.ages.b50.age.low > soon]
         for mode in self.modes:
-            sign = " (a precursor: it ends no unit)" if mode.sign else ""
+            sign = " (a precursor: it ends no specimen)" if mode.sign else ""
             if mode.name not in far:
                 lines.append(f"  {mode.name}{sign}: {mode.ages.b50}")
         if far:
-            lines.append(f"  half of new units later than {FAR:g} times the age followed: {'; '.join(far)}")
+            lines.append(
+                f"  half of new specimens later than {FAR:g} times the age followed: {'; '.join(far)}"
+            )
         lines += [f"not judged: {each}" for each in self.unsaid]
         lines += [f"- {each}" for each in self.notes]
         return "\n".join([*lines, *(f"next: {each}" for each in self.advice)])
 
     def headline(self) -> str:
-        """Return when half of new units have ended, and by what."""
+        """Return when half of new specimens have ended, and by what."""
         unit = f" {self.age_unit}" if self.age_unit else ""
         if len(self.units) < _FEW:
             first = min(self.units, key=lambda each: each.age.age.value)
             by = " or ".join(first.named) or "no way told"
             return f"{first.unit} ends at {first.age.age}{unit} by {by}"
         likely = max(self.shares, key=lambda name: self.shares[name].value)
-        return f"half of new units have ended at {self.b50.age}{unit}, most by {likely}"
+        return f"half of new specimens have ended at {self.b50.age}{unit}, most by {likely}"
 
     @property
     def advice(self) -> tuple[str, ...]:
@@ -156,7 +158,7 @@ class TimeToFailure(Result):
         )
 
     def to_frame(self) -> pl.DataFrame:
-        """Return one row per unit and way, and of the first of all; infinite where it is never reached."""
+        """Return one row per specimen and way, and the first of all; infinite where it is never reached."""
         import polars as pl
 
         rows: list[tuple[AgeAtLimit, str, float]] = []
@@ -186,12 +188,12 @@ class TimeToFailure(Result):
 def time_to_failure(
     indicators: Indicators, *, seed: int = 0, progress: Callable[[int, int], None] | None = None
 ) -> TimeToFailure:
-    """Return what ends each unit, and when, from the indicators of the runs.
+    """Return what ends each specimen, and when, from the indicators of the runs.
 
-    The growth of each indicator is fitted over all units (`fit_growth`), and its draws give the ages at its
-    limit. Failure modes are independent, given their growth, save where the runs of two scatter together:
-    there the draws of a unit move together by the correlation of the runs, and new units by that of the ages
-    of units.
+    The growth of each indicator is fitted over all specimens (`fit_growth`), and its draws give the ages at
+    its limit. Failure modes are independent, given their growth, save where the runs of two scatter together:
+    there the draws of a specimen move together by the correlation of the runs, and new specimens by that of
+    the ages of specimens.
 
     Parameters
     ----------
@@ -205,7 +207,7 @@ def time_to_failure(
     Raises
     ------
     InsufficientDataError
-        If no indicator that ends a unit can be fitted; the message names the reasons.
+        If no indicator that ends a specimen can be fitted; the message names the reasons.
     """
     fitted, unsaid = [], list(indicators.unsaid)
     for i, each in enumerate(indicators.each):
@@ -218,15 +220,15 @@ def time_to_failure(
     ending = [each for each in fitted if not each.mode.sign]
     if not ending:
         why = "; ".join(unsaid) or "no indicator was given"
-        raise InsufficientDataError(f"nothing that ends a unit can be followed: {why}")
+        raise InsufficientDataError(f"nothing that ends a specimen can be followed: {why}")
     random = np.random.default_rng([seed, 2])
     of_runs = correlations([each.residuals for each in ending])
     names, last = indicators.runs.units, last_ages(indicators)
-    units, picks = ends_of_units(ending, of_runs, names, last, random)
+    units, picks = ends_of_specimens(ending, of_runs, names, last, random)
     new = ages_of_new(ending, of_runs, random)
     greatest = float(indicators.runs.age.max())
     first = np.sort(new.min(axis=0), axis=1)
-    b10, b50 = (share_of_units(first, share) for share in (0.1, 0.5))
+    b10, b50 = (share_of_specimens(first, share) for share in (0.1, 0.5))
     runs = [*_again(ending, units, picks, of_runs, greatest, random), *_one_more(first, greatest, random)]
     modes = tuple(each.mode for each in fitted)
     return TimeToFailure(
@@ -264,13 +266,13 @@ def _curve(first: FloatArray, greatest: float) -> ShareEnded:
 
 def _again(
     ending: Sequence[FittedWay],
-    units: Sequence[UnitEnd],
+    units: Sequence[SpecimenEnd],
     picks: Sequence[tuple[IntArray, FloatArray]],
     of_runs: FloatArray,
     greatest: float,
     random: np.random.Generator,
 ) -> list[NextRun]:
-    """How far one more run of each unit would narrow the interval of its end."""
+    """How far one more run of each specimen would narrow the interval of its end."""
     open_ = [i for i, each in enumerate(units) if each.age.passed <= 0.5]
     spans = {i: width(np.minimum(picks[i][1], HORIZON * greatest)) for i in open_}
     open_.sort(key=lambda i: -spans[i])
@@ -296,11 +298,11 @@ def _again(
 
 
 def _one_more(first: FloatArray, greatest: float, random: np.random.Generator) -> list[NextRun]:
-    """How far a new unit, followed to its end, would narrow the interval of B10."""
+    """How far a new specimen, followed to its end, would narrow the interval of B10."""
     capped = np.clip(first, 1e-6 * greatest, HORIZON * greatest)
     b10 = capped[:, math.ceil(0.1 * first.shape[1]) - 1]
     age = float(np.median(capped))
-    return [NextRun(None, age, width(b10), width_after_unit(b10, capped, random))]
+    return [NextRun(None, age, width(b10), width_after_specimen(b10, capped, random))]
 
 
 def _together(ending: Sequence[FittedWay], of_runs: FloatArray) -> tuple[str, ...]:
@@ -312,7 +314,7 @@ def _together(ending: Sequence[FittedWay], of_runs: FloatArray) -> tuple[str, ..
     )
 
 
-def _notes(ending: Sequence[FittedWay], units: Sequence[UnitEnd], of_runs: FloatArray) -> tuple[str, ...]:
+def _notes(ending: Sequence[FittedWay], units: Sequence[SpecimenEnd], of_runs: FloatArray) -> tuple[str, ...]:
     """What cannot be told, and what rests on priors."""
     notes = []
     named = {name for each in units for name in each.named}
@@ -323,11 +325,13 @@ def _notes(ending: Sequence[FittedWay], units: Sequence[UnitEnd], of_runs: Float
             "are taken over all laws that remain"
         )
     if len(units) == 1:
-        notes.append("one unit tells nothing of how units differ: B10, B50 and the shares rest on the prior")
+        notes.append(
+            "one specimen tells nothing of how specimens differ: B10, B50 and the shares rest on the prior"
+        )
     elif len(units) <= _FEW:
         notes.append(
-            f"{len(units)} units tell little of how units differ: B10, B50 and the shares lean on the "
-            "prior of the spread"
+            f"{len(units)} specimens tell little of how specimens differ: B10, B50 and the shares "
+            "lean on the prior of the spread"
         )
     passed = [each.unit for each in units if each.age.passed > 0.5]
     if passed:
@@ -350,8 +354,8 @@ def _notes(ending: Sequence[FittedWay], units: Sequence[UnitEnd], of_runs: Float
     return tuple(notes)
 
 
-def _mode_notes(ending: Sequence[FittedWay], units: Sequence[UnitEnd]) -> tuple[tuple[str, str], ...]:
-    """The notes of the modes that come first for a unit."""
+def _mode_notes(ending: Sequence[FittedWay], units: Sequence[SpecimenEnd]) -> tuple[tuple[str, str], ...]:
+    """The notes of the modes that come first for a specimen."""
     named = {name for each in units for name in each.named}
     modes = [each.mode for each in ending if each.mode.name in named]
     return tuple((mode.name, note) for mode in modes for note in mode.notes)

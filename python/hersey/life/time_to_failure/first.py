@@ -1,4 +1,4 @@
-"""The first end: of each unit by all ways together, and of new units."""
+"""The first end: of each specimen by all ways together, and of new specimens."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ MENTIONED, NEAR = 0.05, 1.25
 
 
 @dataclass(frozen=True)
-class UnitEnd:
-    """What ends a unit, and when."""
+class SpecimenEnd:
+    """What ends a specimen, and when."""
 
     unit: str
     age: AgeAtLimit  #: of the first of all ways
@@ -55,14 +55,14 @@ class UnitEnd:
         return f"{self.age} by {self.ways}"
 
 
-def ends_of_units(
+def ends_of_specimens(
     ending: Sequence[FittedWay],
     of_runs: FloatArray,
     names: Sequence[str],
     last: dict[str, float],
     random: np.random.Generator,
-) -> tuple[tuple[UnitEnd, ...], list[tuple[IntArray, FloatArray]]]:
-    """The first end of each unit; and which draws of each way stand together, with their first ages."""
+) -> tuple[tuple[SpecimenEnd, ...], list[tuple[IntArray, FloatArray]]]:
+    """The first end of each specimen; and which draws of each way stand together, with their first ages."""
     found, picks = [], []
     for i, name in enumerate(names):
         keys = np.stack([each.ages[:, i] for each in ending], axis=1)
@@ -73,7 +73,7 @@ def ends_of_units(
         end = age_at_limit(name, first, last[name])
         middle = {e.mode.name: float(np.median(e.ages[:, i])) for e in ending}
         near = tuple(way for way, age in middle.items() if age <= NEAR * end.age.value < np.inf)
-        found.append(UnitEnd(name, end, shares, near))
+        found.append(SpecimenEnd(name, end, shares, near))
         picks.append((order, first))
     return tuple(found), picks
 
@@ -86,10 +86,10 @@ def _firsts(ages: FloatArray) -> FloatArray:
 
 
 def ages_of_new(ending: Sequence[FittedWay], of_runs: FloatArray, random: np.random.Generator) -> FloatArray:
-    """Ages of new units at each limit, (ways, draws, units), units side by side."""
+    """Ages of new specimens at each limit, (ways, draws, specimens), specimens side by side."""
     logs = [np.log(np.clip([a.age.value for a in each.mode.ages.units], 1e-9, 1e300)) for each in ending]
-    of_units = correlations(logs)
+    of_specimens = correlations(logs)
     middle = np.stack([np.median(each.new, axis=1) for each in ending], axis=1)
     order = order_by(middle, ranks_of(len(middle), of_runs, random))
-    ranks = ranks_of(ending[0].new.shape[1], of_units, random)
+    ranks = ranks_of(ending[0].new.shape[1], of_specimens, random)
     return np.stack([np.sort(each.new[order[:, m]], axis=1)[:, ranks[:, m]] for m, each in enumerate(ending)])

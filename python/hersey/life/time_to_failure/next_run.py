@@ -27,8 +27,8 @@ HORIZON = 10.0
 class NextRun:
     """What could be measured, and how far it is expected to narrow an interval (its widths, in age)."""
 
-    unit: str | None  #: None: one more unit, followed to its end
-    age: float  #: of the run; of a new unit, about where it ends
+    unit: str | None  #: None: one more specimen, followed to its end
+    age: float  #: of the run; of a new specimen, about where it ends
     before: float
     after: float
 
@@ -42,7 +42,7 @@ class NextRun:
         what = (
             f"measure {self.unit} again at {rounded(self.age)} {age_unit}: the interval of its end"
             if self.unit is not None
-            else f"follow one more unit to its end (about {rounded(self.age)} {age_unit}): that of B10"
+            else f"follow one more specimen to its end (about {rounded(self.age)} {age_unit}): that of B10"
         )
         widths = f"{rounded(self.before)} to about {rounded(self.after)} {age_unit}"
         return f"{what} narrows from {widths} in width".replace(" :", ":")
@@ -54,7 +54,7 @@ def rounded(age: float, digits: int = 2) -> str:
 
 
 def candidate_ages(last: float, end: float) -> FloatArray:
-    """Return the ages at which a unit that was last seen at ``last`` could be measured again."""
+    """Return the ages at which a specimen that was last seen at ``last`` could be measured again."""
     reach = min(end, _FARTHEST * last if last > 0.0 else end)
     if not (math.isfinite(reach) and reach > last):
         return np.empty(0)
@@ -98,11 +98,11 @@ def widths_after(
     return found
 
 
-def width_after_unit(ages: FloatArray, new: FloatArray, random: np.random.Generator) -> float:
-    """Return the expected width of the interval of an age once the end of one more unit is known.
+def width_after_specimen(ages: FloatArray, new: FloatArray, random: np.random.Generator) -> float:
+    """Return the expected width of the interval of an age once the end of one more specimen is known.
 
-    ``new`` are ends of new units under each draw of ``ages``, (draws, units), all finite and positive: how
-    probable an end is under a draw is taken from a lognormal law through them.
+    ``new`` are ends of new specimens under each draw of ``ages``, (draws, specimens), all finite and
+    positive: how probable an end is under a draw is taken from a lognormal law through them.
     """
     order = np.argsort(ages)
     logs = np.log(new[order])

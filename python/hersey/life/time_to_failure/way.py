@@ -11,20 +11,20 @@ import numpy as np
 from hersey.arrays import FloatArray
 from hersey.errors import InsufficientDataError
 from hersey.life.growth.fit import Growth, fit_growth
-from hersey.life.growth.limit_ages import AgesAtLimit, age_at_limit, share_of_units
-from hersey.life.indicator import Indicator, Indicators
+from hersey.life.growth.limit_ages import AgesAtLimit, ages_at_limit
+from hersey.life.indicator import Indicator, Indicators, OwnAges
 from hersey.result import json_record
 
 
 @dataclass(frozen=True, repr=False)
 class Mode:
-    """One failure mode: the growth of its indicator and the ages at its limit, of all units."""
+    """One failure mode: the growth of its indicator and the ages at its limit, of all specimens."""
 
     name: str
     kind: str
     si: str
     limit: float
-    sign: bool  #: a precursor, which ends no unit
+    sign: bool  #: a precursor, which ends no specimen
     growth: Growth
     ages: AgesAtLimit
     notes: tuple[str, ...]
@@ -38,18 +38,18 @@ class Mode:
 
 @dataclass(frozen=True)
 class FittedWay:
-    """A mode with its draws: ages of all units and of new ones, and where its runs stand."""
+    """A mode with its draws: ages of all specimens and of new ones, and where its runs stand."""
 
     mode: Mode
     ages: FloatArray
     new: FloatArray
     residuals: FloatArray  #: per run of the campaign, NaN where it does not tell it
-    row: dict[str, int]  #: of each unit that the growth knows
+    row: dict[str, int]  #: of each specimen that the growth knows
     error: float  #: of a run, typically
 
 
 def last_ages(indicators: Indicators) -> dict[str, float]:
-    """Return the age at which each unit was last seen."""
+    """Return the age at which each specimen was last seen."""
     last: dict[str, float] = {}
     for unit, age in zip(indicators.runs.unit, indicators.runs.age.tolist(), strict=True):
         last[unit] = max(age, last.get(unit, 0.0))
@@ -77,37 +77,41 @@ def fitted_way(indicators: Indicators, each: Indicator, seed: int, known: Growth
         age_unit=runs.age_unit,
         seed=seed,
     )
-    of_units, new = growth.drawn_ages(each.limit, limit_error=each.limit_error, accumulates=each.accumulates)
     row = {name: i for i, name in enumerate(growth.units)}
     last = last_ages(indicators)
-    # A unit of which no run tells this is one more of the population.
-    random = np.random.default_rng([seed, 3])
-    spare = iter(random.permutation(new.shape[1]).tolist() * len(last))
-    ages = np.stack([of_units[:, row[n]] if n in row else new[:, next(spare)] for n in last], axis=1)
-    if each.own_ages is not None:
-        columns = random.integers(each.own_ages.new.shape[1], size=new.shape[1])
-        ages, new = (_as_many(own, len(of_units)) for own in (each.own_ages.known, each.own_ages.new))
-        new = new[:, columns]
+    own = _drawn_ages(each, growth, row, list(last), seed)
     notes = [*each.notes, *growth.notes]
     missing = [name for name in last if name not in row]
     if missing and each.own_ages is None:
-        notes.append(f"no run of {listed(missing)} tells it: taken as any new unit")
-    ordered = np.sort(new, axis=1)
-    quantity = f"the sum of {each.name} over age" if each.accumulates else each.name
-    at_limit = AgesAtLimit(
-        quantity,
+        notes.append(f"no run of {listed(missing)} tells it: taken as any new specimen")
+    at_limit = ages_at_limit(
+        each.name,
         runs.age_unit,
         each.limit,
-        tuple(age_at_limit(name, ages[:, i], last[name]) for i, name in enumerate(last)),
-        share_of_units(ordered, 0.1),
-        share_of_units(ordered, 0.5),
+        list(last),
+        own,
+        list(last.values()),
         tuple(notes),
-        each.accumulates,
+        accumulates=each.accumulates,
     )
     residuals = np.full(runs.age.size, np.nan)
     residuals[told] = growth.residuals()
     mode = Mode(each.name, each.kind, each.si, each.limit, each.sign, growth, at_limit, tuple(notes))
-    return FittedWay(mode, ages, new, residuals, row, float(np.median(each.error[told])))
+    return FittedWay(mode, own.known, own.new, residuals, row, float(np.median(each.error[told])))
+
+
+def _drawn_ages(each: Indicator, growth: Growth, row: dict[str, int], names: list[str], seed: int) -> OwnAges:
+    """Draws of the ages at the limit, of all specimens and of new ones."""
+    known, new = growth.drawn_ages(each.limit, limit_error=each.limit_error, accumulates=each.accumulates)
+    # A specimen of which no run tells this is one more of the population.
+    random = np.random.default_rng([seed, 3])
+    spare = iter(random.permutation(new.shape[1]).tolist() * len(names))
+    if each.own_ages is None:
+        ages = [known[:, row[name]] if name in row else new[:, next(spare)] for name in names]
+        return OwnAges(np.stack(ages, axis=1), new)
+    columns = random.integers(each.own_ages.new.shape[1], size=new.shape[1])
+    known, new = (_as_many(own, len(known)) for own in (each.own_ages.known, each.own_ages.new))
+    return OwnAges(known, new[:, columns])
 
 
 def _as_many(draws: FloatArray, count: int) -> FloatArray:

@@ -1,0 +1,228 @@
+"""What the runs of a campaign show of their film: the layer of oil, viscosity, and the film at two states."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hersey.arrays import BoolArray, FloatArray, IntArray, one_thread
+from hersey.errors import InsufficientDataError
+from hersey.life.film.filled_dwells import FilledDwells, filled_dwells
+from hersey.life.film.layer import Layers, layers
+from hersey.life.film.starved_drag import Flooded, cubic, film_of, flooded
+from hersey.life.growth.limit_ages import DEVIATIONS
+from hersey.life.indicator import Indicator, Runs
+from hersey.life.oil_layer import USUAL_SHARPNESS, log_film_share
+from hersey.units import celsius, rpm
+
+if TYPE_CHECKING:
+    from hersey.life.campaign import Campaign
+    from hersey.machine.machine import Machine
+
+#: Dwells of a run from which it shows a film.
+_FEWEST = 6
+#: Kelvin between the coldest and the hottest dwell of a run from which it shows a film.
+_WARMTH = 10.0
+#: Scatter over the stated errors from which the law does not describe a run.
+_BAD = 2.0
+#: Runs that a note names.
+_NAMED = 4
+#: Standard errors in the 95 % at which uncertainties are stated.
+_TO_95 = 1.96
+
+
+@dataclass(frozen=True)
+class FilmPoint:
+    """A state at which the film is told: speed of the roll (rad/s) and temperature (K)."""
+
+    name: str
+    speed: float
+    temperature: float
+
+    def __str__(self) -> str:
+        """Return name, speed and temperature."""
+        return f"{self.name} ({rpm(self.speed):.4g} rpm, {celsius(self.temperature):.4g} degC)"
+
+
+@dataclass(frozen=True)
+class Told:
+    """Something that runs or specimens tell, with 90 % intervals; an end is infinite where it is not told."""
+
+    value: FloatArray
+    low: FloatArray
+    high: FloatArray
+
+
+@dataclass(frozen=True)
+class FilmOfRuns:
+    """What the runs of a campaign tell; ``told`` are the places of those that have dwells."""
+
+    runs: Runs
+    told: IntArray
+    layers: Layers
+    points: tuple[FilmPoint, ...]
+    flooded: tuple[Flooded, ...]
+    notes: tuple[str, ...]
+
+    def of_all(self, values: FloatArray) -> FloatArray:
+        """Return values of all runs, NaN where one has no dwells."""
+        every = np.full(len(self.runs.run), np.nan)
+        every[self.told] = values
+        return every
+
+    def spread(self, *ends: FloatArray) -> Told:
+        """Return a value and the ends of its interval of all runs."""
+        return Told(*(self.of_all(each) for each in ends))
+
+    def film(self, point: Flooded) -> Told:
+        """Return the film over the flooded one at a point."""
+        sharpness = USUAL_SHARPNESS * float(np.exp(self.layers.common[1]))
+        return self.spread(
+            *(np.exp(log_film_share(each, sharpness)[0]) for each in self.layers.interval(point))
+        )
+
+    def thickness(self, point: Flooded) -> Told:
+        """Return the film at a point, m."""
+        return self.spread(*(np.exp(each) for each in self.layers.film(point)))
+
+    def layer(self) -> Told:
+        """Return the layer of oil, m."""
+        return self.spread(*(np.exp(each) for each in self.layers.thickness()))
+
+    def viscosity(self) -> Told:
+        """Return the factor on viscosity at the middle temperature; its error includes that of the layer."""
+        found = self.layers
+        value, error = np.empty(len(found.best)), np.empty(len(found.best))
+        for i, place in enumerate(found.place):
+            weight = np.exp(-0.5 * found.deviance[i]) * np.gradient(place)
+            weight /= weight.sum()
+            value[i] = np.interp(found.best[i], place, found.viscosity[i])
+            away = found.viscosity[i] - value[i]
+            error[i] = np.sqrt(weight @ (away**2 + found.viscosity_error[i] ** 2))
+        return self.spread(*(np.exp(value + reach * error) for reach in (0.0, -DEVIATIONS, DEVIATIONS)))
+
+    def indicator(self) -> Indicator:
+        """Return starvation as a failure mode: flooded film over layer, limit 1."""
+        best, low, high = self.layers.interval(self.flooded[0])
+        seen = np.isfinite(low) & np.isfinite(high)
+        value = np.where(seen, np.exp(-best), np.nan)
+        error = np.where(seen, np.where(seen, high - low, 0.0) / (2.0 * DEVIATIONS), np.nan)
+        return Indicator(
+            name=f"starvation, {self.points[0].name}",
+            kind="starvation",
+            si="1",
+            limit=1.0,
+            value=self.of_all(value),
+            error=self.of_all(error),
+            notes=(
+                f"the film starves where the layer of oil is thinner than a flooded film at {self.points[0]}",
+                *self.notes,
+            ),
+        )
+
+
+def film_of_runs(campaign: Campaign, machine: Machine, cold: float | None) -> FilmOfRuns:
+    """Return what runs show of their film, at a cold corner of ``cold`` (K; None: what all recorded).
+
+    Raises
+    ------
+    ParameterError, InsufficientDataError
+        As `film_life`.
+    """
+    runs = Runs.of(campaign)
+    if not runs.run:
+        raise InsufficientDataError(f"{campaign.path.name} holds no run: add logs first")
+    dwells, told = filled_dwells(campaign, runs)
+    telling = _tells(dwells)
+    if not telling.any():
+        raise InsufficientDataError(
+            f"no run has {_FEWEST} dwells over {_WARMTH:g} K or more: one temperature cannot tell a thin "
+            "layer of oil from a thick oil, so record cold and hot ones"
+        )
+    dwells, told = dwells.rows(np.flatnonzero(telling)), told[telling]
+    points = _points(machine, dwells, [runs.unit[i] for i in told], cold)
+    found = layers(dwells, machine, speed=points[1].speed, kelvin=points[1].temperature)
+    if (scatter := float(np.median(found.scatter))) > _BAD:
+        raise InsufficientDataError(
+            f"the dwells of most runs scatter about the law of the film by more than {_BAD:g} times their "
+            f"errors ({scatter:.3g} in the middle): nip, lubricant or load are not those of the machine's "
+            "file"
+        )
+    films = tuple(
+        flooded(*film_of(machine), np.array([point.speed]), np.array([point.temperature])) for point in points
+    )
+    notes = _notes(runs, told, found)
+    if not telling.all():
+        left = f"{np.count_nonzero(~telling)} of {telling.size} runs have too few dwells or one temperature"
+        notes = (f"{left}: they tell no film", *notes)
+    return FilmOfRuns(runs, told, found, points, films, notes)
+
+
+def _tells(dwells: FilledDwells) -> BoolArray:
+    """Which runs have dwells enough, over temperatures enough."""
+    heats = np.where(dwells.given, dwells.kelvin, np.nan)
+    range_of_heat = np.nanmax(heats, axis=1) - np.nanmin(heats, axis=1)
+    return np.asarray((dwells.given.sum(axis=1) >= _FEWEST) & (range_of_heat >= _WARMTH))
+
+
+def _points(
+    machine: Machine, dwells: FilledDwells, units: list[str], cold: float | None
+) -> tuple[FilmPoint, FilmPoint]:
+    """The fastest operating point, and its speed at the coldest temperature that all specimens recorded."""
+    coldest: dict[str, float] = {}
+    for unit, kelvin in zip(units, dwells.kelvin.min(axis=1).tolist(), strict=True):
+        coldest[unit] = min(kelvin, coldest.get(unit, kelvin))
+    if machine.points:
+        fastest = max(machine.points, key=lambda point: point.speed)
+        state = FilmPoint(fastest.name, fastest.speed / machine.roll_radius, fastest.temperature)
+    else:
+        state = FilmPoint("fastest and hottest dwells", float(dwells.speed.max()), float(dwells.kelvin.max()))
+    return state, FilmPoint("the cold corner", state.speed, max(coldest.values()) if cold is None else cold)
+
+
+def _notes(runs: Runs, told: IntArray, found: Layers) -> tuple[str, ...]:
+    _, _, high = found.interval()
+    notes = []
+    unseen = int(np.count_nonzero(~np.isfinite(high)))
+    if unseen:
+        notes.append(
+            f"{unseen} of {len(told)} runs show no starvation at all: of their layer they tell a lower bound"
+        )
+    bad = [f"{runs.unit[told[i]]} at {runs.age[told[i]]:.6g}" for i in np.flatnonzero(found.scatter > _BAD)]
+    if bad:
+        more = " and others" if len(bad) > _NAMED else ""
+        notes.append(
+            f"dwells of {', '.join(bad[:_NAMED])}{more} scatter about the law by more than {_BAD:g} times "
+            "their errors: nip, lubricant or load are not those of the machine's file"
+        )
+    return tuple(notes)
+
+
+def systematic_factor(machine: Machine, read: FilmOfRuns) -> float:
+    """Factor (90 %) by which all layers may be off: the nip's width is taken for viscosity."""
+    contact, _ = film_of(machine)
+    if contact.nip_uncertainty is None:
+        return 1.0
+    point = read.flooded[0]
+    level = cubic(point.shear, np.zeros(()))[1].item()
+    film = cubic(point.film, np.zeros(()))[1].item()
+    return float(np.exp(DEVIATIONS / _TO_95 * np.log1p(contact.nip_uncertainty) * film / max(level, 0.1)))
+
+
+@one_thread()
+def starvation_indicator(campaign: Campaign, machine: Machine) -> Indicator:
+    """Return starvation as a failure mode: flooded film over layer at the fastest operating point, limit 1.
+
+    It needs a machine with contact and lubricant, and dwells at several speeds and temperatures: the layer is
+    seen where it is thinner than a flooded film or near it, cold and fast. A run all of whose dwells are
+    flooded tells a lower bound of the layer alone, which a number with an error cannot hold: there the value
+    is NaN, as for a run without dwells. `film_life` uses those, too.
+
+    Raises
+    ------
+    ParameterError, InsufficientDataError
+        As `film_life`.
+    """
+    return film_of_runs(campaign, machine, None).indicator()

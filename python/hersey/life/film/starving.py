@@ -1,0 +1,122 @@
+"""When specimens starve, from the draws of the law of their layers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from hersey.arrays import FloatArray
+from hersey.life.film.depletion_law import Depletion
+from hersey.life.film.of_runs import FilmPoint, Told
+from hersey.life.film.starved_drag import Flooded
+from hersey.life.growth.limit_ages import AgesAtLimit, Interval, ages_at_limit, interval, quantiles
+from hersey.life.indicator import OwnAges
+from hersey.life.oil_layer import USUAL_SHARPNESS, log_film_share
+
+#: Ages looked at, over the greatest of the data; past the last it counts as never.
+_AGES = np.concatenate([[0.0], np.geomspace(3e-3, 10.0, 110)])
+#: How far the law of film and starvation may be off, ln of layer over film, in common to all specimens: what
+#: films by other laws showed (`benchmarks/life.py`).
+_LAW = 0.06
+#: New specimens drawn for B10 and B50, of each draw of what specimens share.
+_NEW = 40
+#: Draws of what specimens share from which new ones are drawn.
+_NEW_OF = 400
+
+
+@dataclass(frozen=True)
+class OilLeft:
+    """The oil in the layer of a specimen, m^3: new, when last seen, and what the film then needs."""
+
+    unit: str
+    new: Interval
+    last: Interval
+    needed: Interval
+
+
+@dataclass(frozen=True)
+class LayersOfSpecimens:
+    """The layers of the specimens of a campaign: draws of their law, names, and ages when last seen."""
+
+    drawn: Depletion
+    names: list[str]
+    last: FloatArray
+
+    def spread(self, of: Callable[[FloatArray], FloatArray]) -> Told:
+        """Return median and 90 % ends of exp of a function of what a specimen has, (specimens, ages)."""
+        every = np.moveaxis(self.drawn.specimens, 1, 0)
+        low, middle, high = np.moveaxis(np.array([np.exp(quantiles(of(own))) for own in every]), 1, 0)
+        return Told(middle, low, high)
+
+    def thickness(self, ages: FloatArray) -> Told:
+        """Return the layer at ages, m."""
+        return self.spread(lambda own: self.drawn.layer(own, ages))
+
+    def film(self, point: Flooded, ages: FloatArray) -> Told:
+        """Return the film over the flooded one at a point."""
+        drawn = self.drawn
+        return self.spread(
+            lambda own: log_film_share(drawn.over_flooded(own, ages, point), USUAL_SHARPNESS)[0]
+        )
+
+    def needs(self, point: Flooded, ages: FloatArray) -> FloatArray:
+        """Return the layer that the flooded film at a point needs, m, median of (specimens, ages)."""
+        drawn, own = self.drawn, self.drawn.specimens
+        return np.exp(np.median(drawn.layer(own, ages) - drawn.over_flooded(own, ages, point), axis=0))
+
+    def oil(self, point: Flooded, area: float) -> tuple[OilLeft, ...]:
+        """Return the oil on a track of an area (m^2), and what the film at a point needs of it."""
+        return tuple(self._oil(k, point, area) for k in range(len(self.names)))
+
+    def _oil(self, k: int, point: Flooded, area: float) -> OilLeft:
+        own, ages = self.drawn.specimens[:, k], np.array([0.0, self.last[k]])
+        layer = self.drawn.layer(own, ages)
+        needed = layer - self.drawn.over_flooded(own, ages, point)
+        drawn = (layer[:, 0], layer[:, 1], needed[:, 1])
+        return OilLeft(self.names[k], *(interval(area * np.exp(each)) for each in drawn))
+
+    def rates(self) -> dict[str, Interval]:
+        """Return K (1/(m^2 age)), e and g (1/age) of the median specimen."""
+        drawn = self.drawn.rate(self.drawn.mean)
+        return {name: interval(each) for name, each in zip("Keg", drawn, strict=True)}
+
+    def starving(self, point: Flooded) -> OwnAges:
+        """Return draws of the ages at which these specimens and new ones starve at a point."""
+        drawn, many = self.drawn, len(self.drawn.mean)
+        some = np.linspace(0, many - 1, min(many, _NEW_OF)).astype(np.intp)
+        random = np.random.default_rng(0)
+        normals = random.standard_normal((some.size, _NEW, drawn.mean.shape[1]))
+        off = _LAW * random.standard_normal(many)
+        new = drawn.mean[some, None] + drawn.spread[some, None] * normals
+        known = _ages_below(drawn, drawn.specimens, point, off[:, None])
+        return OwnAges(known, _ages_below(drawn, new, point, off[some, None]))
+
+    def starves(self, own: OwnAges, state: FilmPoint, age_unit: str, notes: tuple[str, ...]) -> AgesAtLimit:
+        """Return the ages at which the specimens starve at a point, of their draws."""
+        quantity = f"the flooded film over the layer at {state.name}"
+        return ages_at_limit(quantity, age_unit, 1.0, self.names, own, self.last, notes)
+
+    def with_all(self, own: OwnAges, names: tuple[str, ...]) -> OwnAges:
+        """Return the draws of all specimens: one that no run shows is a new one."""
+        spare = np.resize(own.new[:, 0], len(own.known))
+        columns = [own.known[:, self.names.index(name)] if name in self.names else spare for name in names]
+        return OwnAges(np.stack(columns, axis=1), own.new)
+
+
+def _ages_below(drawn: Depletion, own: FloatArray, point: Flooded, off: FloatArray) -> FloatArray:
+    """Ages at which layers of draws (..., 5) are first as thin as the flooded film; infinite where never.
+
+    ``off`` is the error of ln of layer over film that all specimens have in common, of each draw.
+    """
+    ages = _AGES * drawn.greatest_age
+    above = drawn.over_flooded(own, ages, point) + off[..., None]
+    below = above <= 0.0
+    first = np.argmax(below, axis=-1)
+    before = np.maximum(first - 1, 0)
+    high = np.take_along_axis(above, before[..., None], -1)[..., 0]
+    low = np.take_along_axis(above, first[..., None], -1)[..., 0]
+    share = np.where(first > 0, high / np.where(high > low, high - low, 1.0), 0.0)
+    met = ages[before] + share * (ages[first] - ages[before])
+    return np.asarray(np.where(below.any(axis=-1), met, np.inf))

@@ -1,0 +1,103 @@
+"""The runs of an indicator as rows of specimens: checked, in logarithms and in the greatest age."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from hersey.arrays import BoolArray, FloatArray, IntArray, numbers_of
+from hersey.errors import InsufficientDataError, ParameterError
+from hersey.life.indicator import most_ages
+from hersey.life.padded_rows import PaddedRows
+
+#: No value is taken as known better than this, relative.
+_RESOLUTION = 1e-4
+#: Standard errors by which a common slope must fall.
+_FALLS = 3.0
+
+
+@dataclass(frozen=True)
+class Points:
+    """Logarithms of the indicator, one row per specimen, filled up; ages in the greatest age."""
+
+    age: FloatArray
+    value: FloatArray
+    variance: FloatArray  #: of the stated errors
+    given: BoolArray
+    place: IntArray = field(
+        default_factory=lambda: np.zeros((2, 0), dtype=np.intp)
+    )  #: row and column of each run
+
+    def part(self, units: int) -> Points:
+        """The first specimens alone."""
+        return Points(
+            self.age[:units], self.value[:units], self.variance[:units], self.given[:units], self.place
+        )
+
+
+def checked_runs(
+    unit: Sequence[object], age: ArrayLike, value: ArrayLike, error: ArrayLike
+) -> tuple[list[str], list[FloatArray]]:
+    """Return names of specimens, ages, values and errors of runs; errors as `fit_growth`."""
+    names = [str(each).strip() for each in ([unit] if isinstance(unit, str) else unit)]
+    columns = [np.atleast_1d(numbers_of(*each)) for each in (("age", age), ("value", value))]
+    columns.append(numbers_of("error", error))
+    if columns[2].ndim == 0:
+        columns[2] = np.full(len(names), float(columns[2]))
+    for name, column in zip(("age", "value", "error"), columns, strict=True):
+        if column.shape != (len(names),):
+            raise ParameterError(f"{len(names)} specimens are named, but {name} has the shape {column.shape}")
+    rules = (("age", "negative"), ("value", "not positive"), ("error", "negative"))
+    for (name, fault), column in zip(rules, columns, strict=True):
+        for i in np.flatnonzero(~np.isfinite(column)):
+            raise ParameterError(f"{name} of run {i + 1} (specimen {names[i]!r}) is no number", index=int(i))
+        bad = column <= 0.0 if name == "value" else column < 0.0
+        for i in np.flatnonzero(bad):
+            raise ParameterError(
+                f"{name} of run {i + 1} (specimen {names[i]!r}) is {fault}: {column[i]:g}",
+                quantity=name,
+                value=float(column[i]),
+                limit=0.0,
+                index=int(i),
+            )
+    if "" in names:
+        raise ParameterError(f"run {names.index('') + 1} names no specimen", index=names.index(""))
+    if most_ages(np.unique(names, return_inverse=True)[1], columns[0]) < 2:
+        raise InsufficientDataError(
+            "no specimen was seen at two ages, so nothing tells its growth: add runs at another age"
+        )
+    return names, columns
+
+
+def points_of(
+    names: list[str], units: tuple[str, ...], age: FloatArray, value: FloatArray, error: FloatArray
+) -> tuple[Points, tuple[float, float]]:
+    """Runs as rows of specimens, by age, in scaled ages and logarithms less their mean; and both scales."""
+    greatest, logs = float(age.max()), np.log(value)
+    middle = float(logs.mean())
+    label = np.array([units.index(name) for name in names])
+    order = np.lexsort((age, label))
+    rows = PaddedRows.of(label[order])
+    place = np.zeros((2, value.size), dtype=np.intp)
+    place[:, order] = rows.row, rows.column
+    columns = (age[order] / greatest, logs[order] - middle, error[order] ** 2 + _RESOLUTION**2)
+    ages, values, variances = (rows.filled(column) for column in columns)
+    return Points(ages, values, variances, rows.given, place), (greatest, middle)
+
+
+def falls(points: Points) -> bool:
+    """Whether straight lines through the specimens, with one slope, fall by three standard errors."""
+    number = points.given.sum(axis=1, keepdims=True)
+    age, value = (
+        (each - (each * points.given).sum(axis=1, keepdims=True) / number) * points.given
+        for each in (points.age, points.value)
+    )
+    square = (age**2).sum()
+    slope = (age * value).sum() / square
+    left = ((value - slope * age) ** 2 * points.given).sum() / max(number.sum() - len(number) - 1, 1)
+    least = (points.variance * points.given).sum() / number.sum()
+    return bool(slope < -_FALLS * math.sqrt(max(left, least) / square))

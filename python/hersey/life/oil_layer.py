@@ -1,0 +1,58 @@
+"""The layer of oil that feeds the film: how it thins with age, and the share of the flooded film it leaves.
+
+Loss. The layer flows aside out of the track in proportion to its cube, and evaporates in proportion to
+itself::
+
+    dh/dt = -K h^3/2 - e h,   so that   h^-2 = h0^-2 exp(2 e t) + K (exp(2 e t) - 1)/(2 e).
+
+K alone is the side flow of van Zoelen, Venner and Lugt (Proc. IMechE J 223 (2009) 541). A pure liquid would
+evaporate at a steady rate until the track is dry. Oil is a blend: its vapour pressure falls as the volatile
+part leaves (Raoult's law), so the loss is proportional to what is left.
+
+Starvation. A layer r times as thick as the film of a flooded inlet leaves r/(1 + r^g)^(1/g) of that film
+(Damiens, Venner, Cann, Lubrecht, J. Tribol. 126 (2004) 105). `hersey._core.starvation` computes the same
+share for the published sharpness g of 2 to 5. A fit also needs the slope, and may try values outside that
+range.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy import special
+
+from hersey.arrays import FloatArray
+
+#: Sharpness g of starvation where nothing tells it, as `film_thickness` has it.
+USUAL_SHARPNESS = 3.0
+#: Greatest 2 e t: a layer beyond exp(-50) of the new one is gone, whatever the number.
+_MOST_LOST = 100.0
+#: Least r^g, as a logarithm: keeps its inverse finite.
+_THINNEST = -60.0
+
+
+def log_layer(new: FloatArray, side_flow: FloatArray, evaporation: FloatArray, age: FloatArray) -> FloatArray:
+    """Return ln of the layer at ages.
+
+    Parameters
+    ----------
+    new
+        The new layer to the power -2, 1/m^2.
+    side_flow, evaporation
+        K in 1/(m^2 age) and e in 1/age. Any unit of length will do that ``new`` shares.
+    """
+    lost = np.minimum(2.0 * evaporation * age, _MOST_LOST)
+    return np.asarray(-0.5 * np.log(new * np.exp(lost) + side_flow * age * special.exprel(lost)))
+
+
+def age_of_layer(
+    new: FloatArray, side_flow: FloatArray, evaporation: FloatArray, layer: FloatArray
+) -> FloatArray:
+    """Return the age at which the layer, given as its logarithm, is reached; arguments as `log_layer`."""
+    thinned = (np.exp(-2.0 * layer) - new) / (2.0 * evaporation * new + side_flow)
+    return np.asarray(np.log1p(2.0 * evaporation * thinned) / (2.0 * evaporation))
+
+
+def log_film_share(log_layer: FloatArray, sharpness: float | FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return ln of the film over the flooded film, and its slope, from ln of the layer over that film."""
+    odds = np.exp(-np.maximum(sharpness * log_layer, _THINNEST))
+    return np.asarray(-np.log1p(odds) / sharpness), np.asarray(odds / (1.0 + odds))
