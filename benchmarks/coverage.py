@@ -1,8 +1,8 @@
 """What hersey says of logs of an independent generator: intervals, verdicts, transitions.
 
 Every log is written by the generator in ``benchmarks/independent``, which shares no code with the virtual
-test stand, and read as a user's would be. The parts and what counts as true stand in its modules. The same seed
-gives the same logs, whoever works and whichever settings are chosen.
+test stand, and read as a user's would be. The parts and what counts as true stand in its modules. The same
+seed gives the same logs, whoever works and whichever settings are chosen.
 
 Usage: python -m benchmarks.coverage [--part generator|coverage|verdicts|transitions]
 [--settings 'plain,visit5*'] [--logs 200] [--workers 2] [--scheduler ADDRESS] [--seed 1]
