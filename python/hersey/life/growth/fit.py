@@ -17,7 +17,6 @@ from scipy import special
 
 from hersey.arrays import FloatArray, numbers_of, one_thread
 from hersey.errors import ParameterError
-from hersey.life.growth.importance import systematic
 from hersey.life.growth.laws import LAWS, Law
 from hersey.life.growth.limit_ages import (
     BEYOND,
@@ -34,7 +33,7 @@ from hersey.life.growth.limit_ages import (
 from hersey.life.growth.marginal import Specimens, drawn_specimens, new_specimens
 from hersey.life.growth.peaks import peaks
 from hersey.life.growth.points import Points, checked_runs, falls, points_of
-from hersey.life.growth.posterior import Posterior, parameters_of, posterior
+from hersey.life.growth.posterior import parameters_of, posterior, resampled
 from hersey.life.indicator import OwnAges
 from hersey.result import Result, json_record
 
@@ -330,7 +329,7 @@ def fit_growth(
         each.law.name: float(w) for each, w in zip(found, weights, strict=True)
     }
     count = _DRAWS if len(units) <= _MANY else min(_DRAWS, _OF_MANY)
-    draws = _resampled(found, weights, count, random)
+    draws = resampled(found, weights, count, random)
     last = tuple(float(row.max() * scale[0]) for row in points.age)
     runs = tuple(int(n) for n in points.given.sum(axis=1))
     return Growth(
@@ -369,21 +368,6 @@ def _beforehand(laws: list[Law]) -> FloatArray:
     """Log prior probabilities of laws, up to a constant."""
     growing = sum(law.grows for law in laws)
     return np.array([-math.log(growing) if law.grows else 0.0 for law in laws])
-
-
-def _resampled(
-    found: list[Posterior], weights: FloatArray, count: int, random: np.random.Generator
-) -> list[tuple[Posterior, FloatArray]]:
-    """Equally probable draws over all laws (systematic resampling); laws without any are left out."""
-    every = np.concatenate([each.weight * w for each, w in zip(found, weights, strict=True)])
-    index = systematic(every, count, random)
-    ends = np.cumsum([0, *(len(each.shared) for each in found)])
-    draws = []
-    for each, begin, end in zip(found, ends, ends[1:], strict=False):
-        own = index[(index >= begin) & (index < end)] - begin
-        if own.size:
-            draws.append((each, each.shared[own]))
-    return draws
 
 
 def _notes(runs: tuple[int, ...], points: Points) -> tuple[str, ...]:

@@ -8,7 +8,7 @@ import numpy as np
 from scipy import special
 
 from hersey.arrays import FloatArray
-from hersey.life.growth.importance import importance_sampled
+from hersey.life.growth.importance import importance_sampled, systematic
 from hersey.life.growth.laws import Law
 from hersey.life.growth.limit_ages import CONFIDENCE, Interval
 from hersey.life.growth.peaks import Peak, log_posterior, shared_of
@@ -75,3 +75,18 @@ def _weighed(values: FloatArray, weight: FloatArray) -> Interval:
     steps = np.cumsum(weight[order])
     ends = np.searchsorted(steps, [0.5, 0.5 - CONFIDENCE / 2, 0.5 + CONFIDENCE / 2])
     return Interval(*(float(values[order[min(i, values.size - 1)]]) for i in ends))
+
+
+def resampled(
+    found: list[Posterior], weights: FloatArray, count: int, random: np.random.Generator
+) -> list[tuple[Posterior, FloatArray]]:
+    """Return equally probable draws over all laws (systematic resampling); laws without any are left out."""
+    every = np.concatenate([each.weight * w for each, w in zip(found, weights, strict=True)])
+    index = systematic(every, count, random)
+    ends = np.cumsum([0, *(len(each.shared) for each in found)])
+    draws = []
+    for each, begin, end in zip(found, ends, ends[1:], strict=False):
+        own = index[(index >= begin) & (index < end)] - begin
+        if own.size:
+            draws.append((each, each.shared[own]))
+    return draws
