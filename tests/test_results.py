@@ -18,21 +18,18 @@ import hersey
 from hersey import testbench
 from hersey.damping.compare import LogComparison
 from hersey.damping.rest import RestOfDrive
-from hersey.document.parts.ageing_maps import AgeingMapsPart
 from hersey.document.parts.cycles import CyclesPart
 from hersey.document.parts.drift import DriftPart
-from hersey.document.parts.film_life import FilmLifePart
 from hersey.document.parts.fit import FitPart
 from hersey.document.parts.life import PopulationPart
 from hersey.document.parts.life_test import LifeTestPart
 from hersey.document.parts.log import LogPart, PointsPart
 from hersey.document.parts.models import ModelsPart
 from hersey.document.parts.motion import StickSlipPart
-from hersey.document.parts.other_uses import OtherUsesPart
 from hersey.document.parts.posterior import PosteriorPart
 from hersey.document.parts.stability import BandPart
 from hersey.document.parts.study import StudyPart
-from hersey.document.parts.time_to_failure import AgesPart, GrowthPart, TimeToFailurePart
+from hersey.document.parts.time_to_failure import TimeToFailurePart
 from hersey.identification.identified_drive import IdentifiedDrive
 from hersey.inspection.inspecting import Inspection
 from hersey.motion.simulation import Trajectory
@@ -181,17 +178,17 @@ RESULTS: dict[str, tuple[Callable[[], Any], type]] = {
     "Study": (lambda: hersey.study(points()), StudyPart),
     "Posterior": (lambda: hersey.posterior(points(), machine(), draws=200), PosteriorPart),
     "WarmUp": (warm_up, WarmUp),
-    "FilmLife": (lambda: shipped.film(1), FilmLifePart),
-    "OtherUses": (test_other_uses.by_hand, OtherUsesPart),
-    "AgeingMaps": (test_ageing_maps.maps, AgeingMapsPart),
+    "FilmLife": (lambda: shipped.film(1), hersey.FilmLife),
+    "OtherUses": (test_other_uses.by_hand, hersey.OtherUses),
+    "AgeingMaps": (test_ageing_maps.maps, hersey.AgeingMaps),
     "LifeTest": (lambda: shipped.followed(2), LifeTestPart),
     "Population": (
         lambda: hersey.weibull([4.0, 6.0, 7.0, 9.0], [True, True, False, True], unit="h"),
         PopulationPart,
     ),
     "Drift": (lambda: hersey.fit_drift(table(other("lubricant", 1, units=2, logs=3))), DriftPart),
-    "Growth": (growth, GrowthPart),
-    "AgesAtLimit": (lambda: growth().reaches(2.0), AgesPart),
+    "Growth": (growth, hersey.Growth),
+    "AgesAtLimit": (lambda: growth().reaches(2.0), hersey.AgesAtLimit),
     "TimeToFailure": (ends, TimeToFailurePart),
     "ModelComparison": (models, ModelsPart),
     "LogComparison": (lambda: hersey.compare(points(), points()), LogComparison),

@@ -8,7 +8,7 @@ went with ln of the clock over the ages seen, and goes on so.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
@@ -18,7 +18,8 @@ from hersey.life.age import Age
 from hersey.life.indicators.run_dwells import read_runs_of
 from hersey.life.indicators.sticking import belt_drag, edges
 from hersey.life.indicators.torque_surface import RunDwells, TorqueSurface, shared_kernel
-from hersey.result import Result, json_record
+from hersey.machine.limits import OperatingPoint
+from hersey.result import Means, Result
 from hersey.units import celsius
 
 if TYPE_CHECKING:
@@ -27,7 +28,6 @@ if TYPE_CHECKING:
     from hersey.life.campaign import Campaign
     from hersey.life.time_to_failure.estimate import TimeToFailure
     from hersey.life.time_to_failure.first import SpecimenEnd
-    from hersey.machine.limits import OperatingPoint
     from hersey.machine.machine import Machine
 
 #: Temperatures and speeds of each map.
@@ -51,15 +51,18 @@ class AgeingMaps(Result):
     unit: str
     age_unit: str
     ages: FloatArray
-    when: tuple[str, ...]
+    when: Annotated[tuple[str, ...], Means("what each age is, in a word")]
     temperature: FloatArray
     speed: FloatArray
-    torque: FloatArray
-    transition: FloatArray
-    upper: FloatArray
+    torque: Annotated[FloatArray, Means("N m at the roll", shape="(ages, temperatures, speeds)", open=True)]
+    transition: Annotated[FloatArray, Means("; 0 where torque falls nowhere", shape="(ages, temperatures)")]
+    upper: Annotated[
+        FloatArray,
+        Means("V*, below which the past decides; null beyond the search", shape="(n, m)", open=True),
+    ]
     torque_limit: float | None
     points: tuple[OperatingPoint, ...]
-    roll_radius: float
+    roll_radius: Annotated[float, Means(unit="m")]
     notes: tuple[str, ...] = ()
 
     @property
@@ -93,10 +96,6 @@ class AgeingMaps(Result):
                 at = f"{1e3 * point.speed:.3g} mm/s at {celsius(point.temperature):.3g} degC"
                 lines.append(f"  {point.name}, {at}: {', '.join(states)}")
         return "\n".join([*lines, *(f"- {note}" for note in self.notes)])
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return the maps as JSON can hold them, in SI."""
-        return json_record(vars(self))
 
     def to_frame(self) -> pl.DataFrame:
         """Return one row per age and temperature."""

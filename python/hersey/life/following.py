@@ -31,6 +31,9 @@ Step = Callable[[str], None]
 class LifeTest(Result):
     """A life test followed; what cannot be told is None, and ``unsaid`` says why."""
 
+    also_stated = ("file",)
+    not_stated = ("name", "indicators")
+
     name: str
     indicators: Indicators
     time_to_failure: TimeToFailure
@@ -52,17 +55,10 @@ class LifeTest(Result):
         parts += [f"- {line}" for line in self.unsaid]
         return "\n".join(parts)
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return all parts as JSON can hold them, in SI; ages in the unit of the campaign."""
-        parts = {name: getattr(self, name) for name in ("drift", "film", "maps", "uses")}
-        told = {name: None if part is None else part.to_dict() for name, part in parts.items()}
-        return {
-            "file": self.name,
-            "time_to_failure": self.time_to_failure.to_dict(),
-            **told,
-            "unsaid": list(self.unsaid),
-            "seed": self.seed,
-        }
+    @property
+    def file(self) -> str:
+        """The campaign's file."""
+        return self.name
 
     def to_frame(self) -> pl.DataFrame:
         """Return the ages of `TimeToFailure`."""

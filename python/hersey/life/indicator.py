@@ -9,13 +9,14 @@ import numpy as np
 
 from hersey.arrays import FloatArray, IntArray
 from hersey.errors import ParameterError
+from hersey.result import Record
 
 if TYPE_CHECKING:
     from hersey.life.campaign import Campaign
 
 
 @dataclass(frozen=True, repr=False)
-class Runs:
+class Runs(Record):
     """The runs of a campaign, by specimen and age: numbers in the file, names, and ages in ``age_unit``."""
 
     run: tuple[int, ...]

@@ -6,7 +6,7 @@ import contextlib
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import product
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
@@ -19,7 +19,7 @@ from hersey.life.indicators.run_dwells import read_runs_of
 from hersey.life.time_to_failure.first import ages_of_new, ends_of_specimens
 from hersey.life.time_to_failure.joined import correlations
 from hersey.life.time_to_failure.way import FittedWay, fitted_way, last_ages
-from hersey.result import Result, json_record
+from hersey.result import Means, Record, Result
 from hersey.units import celsius
 
 if TYPE_CHECKING:
@@ -40,24 +40,26 @@ _MOTOR = "motor torque"
 
 
 @dataclass(frozen=True)
-class UseEnd:
+class UseEnd(Record):
     """The first end in another use: of a specimen with the ways in words, or of a share of new specimens."""
 
     name: str
     age: Interval
-    ways: str
+    ways: Annotated[str, Means("which way comes first, in words; empty for a share of new units")]
 
 
 @dataclass(frozen=True)
-class Use:
+class Use(Record):
     """One use: limit of the motor's torque (N m), coldest start (K), duty, and the first ends in it."""
 
-    torque_limit: float | None
-    coldest: float | None
+    torque_limit: Annotated[float | None, Means(unit="N m")]
+    coldest: Annotated[float | None, Means("coldest start", "K")]
     duty: str
-    stated: bool  #: the use that the machine's file states
-    ends: tuple[
-        UseEnd, ...
+    stated: Annotated[
+        bool, Means("the use that the machine's file states")
+    ]  #: the use that the machine's file states
+    ends: Annotated[
+        tuple[UseEnd, ...], Means("units, then a tenth and half of new units; empty if not told")
     ]  #: specimens, a tenth and half of new specimens; none where nothing can be followed
 
 
@@ -66,8 +68,8 @@ class OtherUses(Result):
     """The first ends of specimens and population for every combination of limit, coldest start and duty."""
 
     age_unit: str
-    torque_limits: tuple[float, ...]
-    coldest: tuple[float, ...]
+    torque_limits: Annotated[tuple[float, ...], Means(unit="N m")]
+    coldest: Annotated[tuple[float, ...], Means(unit="K")]
     duties: tuple[str, ...]
     uses: tuple[Use, ...]
 
@@ -82,10 +84,6 @@ class OtherUses(Result):
     def summary(self) -> str:
         """Return one line per use: when half of new specimens have ended."""
         return "\n".join([self.headline(), *(f"  {_words(use)}" for use in self.uses)])
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return all uses; None for what is never reached."""
-        return json_record(vars(self))
 
     def to_frame(self) -> pl.DataFrame:
         """Return one row per use and specimen, the population last; infinite where it is never reached."""

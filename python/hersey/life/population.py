@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
 from functools import cached_property, lru_cache
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,7 +16,7 @@ from scipy.special import betaincinv
 
 from hersey.arrays import BoolArray, FloatArray, numbers_of
 from hersey.errors import InsufficientDataError, ParameterError
-from hersey.result import Result, json_record, table_of
+from hersey.result import OPEN, Record, Result, json_record, table_of
 
 if TYPE_CHECKING:
     import polars as pl
@@ -30,13 +30,13 @@ _STEPS, _SETTLED = 100, 1e-13
 
 
 @dataclass(frozen=True)
-class BLife:
+class BLife(Record):
     """The age by which a share of all specimens has failed, with its interval."""
 
     share: float
     age: float
     low: float
-    high: float  #: infinite where no upper end is told
+    high: Annotated[float, OPEN]  #: infinite where no upper end is told
     level: float
 
     @property

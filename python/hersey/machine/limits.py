@@ -9,6 +9,7 @@ from pydantic.dataclasses import dataclass
 
 from hersey.files.toml import Quantity, Share, Table, Text
 from hersey.motion.belt import Drivetrain
+from hersey.result import Means, Record
 
 _Speed = Annotated[float, Quantity("belt speed", 1e-6, 1e3)]
 
@@ -52,7 +53,7 @@ class Limits(Table):
 
 
 @dataclass(frozen=True)
-class OperatingPoint(Table):
+class OperatingPoint(Table, Record):
     """A named state of the machine: belt speed (m/s) and temperature (K).
 
     ``share`` is that of the running time; None for all points alike.
@@ -61,4 +62,4 @@ class OperatingPoint(Table):
     name: Text
     speed: _Speed
     temperature: Annotated[float, Quantity("temperature", 150.0, 1000.0)]
-    share: Share | None = None
+    share: Annotated[Share | None, Means("of the use; null where none is stated")] = None

@@ -13,10 +13,7 @@ posterior        what dwells, starts and stick-slip say together
 study            what a log and its machine tell together
 life             ages at failure
 drift            what moved with age
-film_life        the film of units that age
 time_to_failure  growth of indicators, and what ends units
-ageing_maps      the maps of a unit through its life
-other_uses       the ages in other uses
 life_test        a life test followed: all of these
 ===============  ===============================================
 """

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pydantic import Field
 
+from hersey.life.campaign.checks import Finding
 from hersey.schema.part import Part
 
 
@@ -23,19 +24,10 @@ class CampaignRun(Part):
     added: str = Field(description="UTC")
 
 
-class CampaignFinding(Part):
-    """Something that is not as it should be, of a run and its unit, or (null) of the file."""
-
-    kind: str
-    text: str
-    run: int | None
-    unit: str | None
-
-
 class CampaignPart(Part):
     """Runs of many units at many ages; null findings where none were looked for."""
 
     file: str
     age_unit: str
     runs: list[CampaignRun]
-    findings: list[CampaignFinding] | None = None
+    findings: list[Finding] | None = None

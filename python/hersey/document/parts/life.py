@@ -4,17 +4,8 @@ from __future__ import annotations
 
 from pydantic import Field
 
+from hersey.life.population import BLife
 from hersey.schema.part import Holed, Numbers, Part
-
-
-class BLifePart(Part):
-    """The age by which a share of all units has failed; an end is null where it is not told."""
-
-    share: float
-    age: float
-    low: float
-    high: float | None
-    level: float
 
 
 class PopulationPart(Part):
@@ -30,7 +21,7 @@ class PopulationPart(Part):
     unit: str = Field(description="of ages; empty if none was said")
     note: str = Field(description="what few failures do not tell; empty if nothing")
     seed: int
-    b10: BLifePart | None
-    b50: BLifePart | None
+    b10: BLife | None
+    b50: BLife | None
     median_ranks: Numbers = Field(description="shares failed at the ages at failure, ascending")
     verdict: str

@@ -12,6 +12,7 @@ from hersey.errors import FORCE, MissingFileError
 from hersey.files.reading import hash_of
 from hersey.life.age import Age
 from hersey.life.campaign.adding import age_unit, lies_at
+from hersey.result import Record
 
 if TYPE_CHECKING:
     import polars as pl
@@ -21,7 +22,7 @@ _AT_ONCE = 60.0
 
 
 @dataclass(frozen=True)
-class Finding:
+class Finding(Record):
     """Something that is not as it should be: what, in words, of which run and specimen (None: the file)."""
 
     kind: str  #: damaged, log missing, log changed, age backwards or no fit

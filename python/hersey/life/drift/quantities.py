@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from hersey.damping.distributions import normal_quantile, student_quantile
 from hersey.life.drift.aged_torque import OWN, Scales, parts
 from hersey.life.drift.fit import Fitted
 from hersey.life.growth.limit_ages import CONFIDENCE, Interval
+from hersey.result import OPEN, Means, Record
 from hersey.units import celsius, rpm
 
 #: Ages at which the curves of a chart are drawn.
@@ -25,7 +27,7 @@ _GAS = 8.314462618
 
 
 @dataclass(frozen=True, repr=False)
-class Quantity:
+class Quantity(Record):
     """Something of the drag, when new and how it changed up to the oldest age.
 
     ``si`` is its unit. ``relative``: ``change`` is that of its ratio to the value when new, less 1; otherwise
@@ -36,13 +38,16 @@ class Quantity:
 
     name: str
     si: str
-    relative: bool
+    relative: Annotated[
+        bool,
+        Means("whether the change is that of the ratio to the value when new, less 1, or the difference"),
+    ]
     where: str
-    new: float
+    new: Annotated[float, OPEN]
     change: Interval
     units: tuple[Interval, ...]
-    curves: FloatArray
-    band: FloatArray
+    curves: Annotated[FloatArray, Means("of each unit at the ages", shape="(units, ages)", open=True)]
+    band: Annotated[FloatArray, Means("low, middle and high of all units", shape="(3, ages)", open=True)]
 
     @property
     def moved(self) -> bool:

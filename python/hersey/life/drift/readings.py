@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from itertools import combinations
+from typing import Annotated
 
 import numpy as np
 
@@ -27,6 +28,7 @@ from hersey.life.drift.aged_torque import (
     Scales,
     parts,
 )
+from hersey.result import Means, Record
 
 #: Names of what ages.
 THICKER, STARVED, TOUCHING, LOADED, OTHER, LAWFUL = (
@@ -62,7 +64,7 @@ _LEAST_PART, _LEAST_CHANGE = 0.05, 0.003
 
 
 @dataclass(frozen=True)
-class Change:
+class Change(Record):
     """An ageing that the change points to: whether it `grows`, and what it does to torque.
 
     ``torque`` (N m) is the change up to the oldest run at a state that shows it, ``low`` and ``high`` end
@@ -74,9 +76,9 @@ class Change:
     torque: float
     low: float
     high: float
-    share: float
-    speed: float  #: rad/s
-    temperature: float | None  #: K
+    share: Annotated[float, Means("of torque when new")]
+    speed: Annotated[float, Means(unit="rad/s")]  #: rad/s
+    temperature: Annotated[float | None, Means(unit="K")]  #: K
 
     @property
     def words(self) -> str:
@@ -85,7 +87,7 @@ class Change:
 
 
 @dataclass(frozen=True)
-class Reading:
+class Reading(Record):
     """What a change points to: sets of ageings, the best first; more than one cannot be told apart.
 
     An empty set says that nothing moved beyond the errors.

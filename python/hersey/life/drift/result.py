@@ -8,7 +8,7 @@ that anyone can read off a Stribeck curve follow with their intervals; a reading
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 
@@ -19,7 +19,7 @@ from hersey.life.drift.dwells import Dwells, dwells_of
 from hersey.life.drift.fit import Fitted, fit
 from hersey.life.drift.quantities import Quantity, quantities_of
 from hersey.life.drift.readings import Change, Reading, read
-from hersey.result import Result, json_record, json_value
+from hersey.result import Means, Result
 from hersey.units import celsius, rpm
 
 if TYPE_CHECKING:
@@ -37,17 +37,22 @@ class Drift(Result):
     one where the data cannot tell them apart.
     """
 
+    also_stated = ("headline",)
+    not_stated = ("fitted",)
+
     units: tuple[str, ...]
     age_unit: str
     oldest: float
-    last_age: tuple[float, ...]  #: of each specimen
+    last_age: Annotated[tuple[float, ...], Means("of each unit")]  #: of each specimen
     runs: int
     dwells: int
     quantities: tuple[Quantity, ...]
     reading: Reading
     readings: tuple[Reading, ...]
     ages: FloatArray
-    scatter: float  #: of dwells beyond their stated errors, relative
+    scatter: Annotated[
+        float, Means("of dwells beyond their stated errors, relative")
+    ]  #: of dwells beyond their stated errors, relative
     notes: tuple[str, ...]
     fitted: Fitted = field(repr=False)
 
@@ -95,19 +100,8 @@ class Drift(Result):
 
     def to_dict(self) -> dict[str, Any]:
         """Return what moved and what it points to, in SI."""
-        told = {name: value for name, value in vars(self).items() if name != "fitted"}
-        readings = [
-            {"unit": unit, "sets": json_value(reading.sets)}
-            for unit, reading in zip(self.units, self.readings, strict=True)
-        ]
-        return json_record(
-            {
-                **told,
-                "reading": {"sets": json_value(self.reading.sets)},
-                "readings": readings,
-                "headline": self.headline(),
-            }
-        )
+        readings = zip(self.units, self.readings, strict=True)
+        return super().to_dict() | {"readings": [{"unit": unit} | each.to_dict() for unit, each in readings]}
 
     def to_frame(self) -> pl.DataFrame:
         """Return the change of each quantity, of all specimens (empty name) and of each."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from hersey.life.film.starved_drag import Flooded, cubic, film_of, flooded
 from hersey.life.growth.limit_ages import DEVIATIONS
 from hersey.life.indicator import Indicator, Runs
 from hersey.life.oil_layer import USUAL_SHARPNESS, log_film_share
+from hersey.result import Means, Record
 from hersey.units import celsius, rpm
 
 if TYPE_CHECKING:
@@ -34,7 +35,7 @@ _TO_95 = 1.96
 
 
 @dataclass(frozen=True)
-class FilmPoint:
+class FilmPoint(Record):
     """A state at which the film is told: speed of the roll (rad/s) and temperature (K)."""
 
     name: str
@@ -47,12 +48,12 @@ class FilmPoint:
 
 
 @dataclass(frozen=True)
-class Told:
+class Told(Record):
     """Something that runs or specimens tell, with 90 % intervals; an end is infinite where it is not told."""
 
-    value: FloatArray
-    low: FloatArray
-    high: FloatArray
+    value: Annotated[FloatArray, Means(shape="(n, m)", open=True)]
+    low: Annotated[FloatArray, Means(shape="(n, m)", open=True)]
+    high: Annotated[FloatArray, Means(shape="(n, m)", open=True)]
 
 
 @dataclass(frozen=True)

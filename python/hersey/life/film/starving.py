@@ -14,6 +14,7 @@ from hersey.life.film.starved_drag import Flooded
 from hersey.life.growth.limit_ages import AgesAtLimit, Interval, ages_at_limit, interval, quantiles
 from hersey.life.indicator import OwnAges
 from hersey.life.oil_layer import USUAL_SHARPNESS, log_film_share
+from hersey.result import Record
 
 #: Ages looked at, over the greatest of the data; past the last it counts as never.
 _AGES = np.concatenate([[0.0], np.geomspace(3e-3, 10.0, 110)])
@@ -27,7 +28,7 @@ _NEW_OF = 400
 
 
 @dataclass(frozen=True)
-class OilLeft:
+class OilLeft(Record):
     """The oil in the layer of a specimen, m^3: new, when last seen, and what the film then needs."""
 
     unit: str

@@ -7,7 +7,7 @@ both in `starving`.
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 
@@ -20,7 +20,7 @@ from hersey.life.film.starving import LayersOfSpecimens, OilLeft
 from hersey.life.growth.limit_ages import AgesAtLimit, Interval
 from hersey.life.indicator import Indicator, Indicators, Runs, most_ages
 from hersey.life.oil_layer import USUAL_SHARPNESS
-from hersey.result import Result, json_record
+from hersey.result import Means, Result
 from hersey.units import takes_si
 
 if TYPE_CHECKING:
@@ -49,20 +49,27 @@ class FilmLife(Result):
     point.
     """
 
+    also_stated = ("starved",)
+    not_stated = ("_starvation",)
+
     runs: Runs
-    points: tuple[FilmPoint, ...]
-    film: tuple[Told, ...]
-    thickness: tuple[Told, ...]
-    layer: Told
-    viscosity: Told
-    systematic: float
-    scatter: FloatArray  #: of the dwells of each run about the law, over their errors
+    points: Annotated[tuple[FilmPoint, ...], Means("fastest operating point, cold corner")]
+    film: Annotated[tuple[Told, ...], Means("over that of a flooded inlet, at each point, shape (runs,)")]
+    thickness: Annotated[tuple[Told, ...], Means("of the film at each point, shape (runs,)", "m")]
+    layer: Annotated[Told, Means("of oil on the inlet side, shape (runs,)", "m")]
+    viscosity: Annotated[Told, Means("over that of the lubricant, shape (runs,)")]
+    systematic: Annotated[float, Means("factor by which all layers may be off together")]
+    scatter: Annotated[
+        FloatArray, Means("of the dwells about the law, over their errors", shape="(runs,)", open=True)
+    ]  #: of the dwells of each run about the law, over their errors
     ages: FloatArray
-    curves: tuple[Told, ...]
-    layers: Told
-    needs: tuple[FloatArray, ...]
+    curves: Annotated[tuple[Told, ...], Means("film over flooded at each point, shape (units, ages)")]
+    layers: Annotated[Told, Means("shape (units, ages)", "m")]
+    needs: Annotated[tuple[FloatArray, ...], Means("flooded film at each point", "m", shape="(units, ages)")]
     starves: tuple[AgesAtLimit, ...]
-    law: dict[str, Interval]  #: of the median specimen: K (1/(m^2 age)), e and g (1/age)
+    law: Annotated[
+        dict[str, Interval], Means("K in 1/(m^2 age), e and g in 1/age")
+    ]  #: of the median specimen: K (1/(m^2 age)), e and g (1/age)
     oil: tuple[OilLeft, ...]
     track: float
     notes: tuple[str, ...]
@@ -124,12 +131,6 @@ class FilmLife(Result):
         if indicators.runs.run != self.runs.run:
             raise ParameterError("the indicators are of other runs than the film")
         return replace(indicators, each=(*indicators.each, self._starvation))
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return all of it, in SI; ages in the unit of the campaign; None for what is not told."""
-        told = {name: value for name, value in vars(self).items() if not name.startswith("_")}
-        starves = [each.to_dict() for each in self.starves]
-        return json_record({**told, "starves": starves, "starved": self.starved()})
 
     def to_frame(self) -> pl.DataFrame:
         """Return one row per run; infinite where an end is not told."""

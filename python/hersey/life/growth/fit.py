@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -35,7 +35,7 @@ from hersey.life.growth.peaks import peaks
 from hersey.life.growth.points import Points, checked_runs, falls, points_of
 from hersey.life.growth.posterior import parameters_of, posterior, resampled
 from hersey.life.indicator import OwnAges
-from hersey.result import Result, json_record
+from hersey.result import Means, Result
 
 if TYPE_CHECKING:
     import polars as pl
@@ -70,15 +70,20 @@ class Growth(Result):
     spreads between specimens and the scatter of runs (standard deviations of the logarithm), and the shape.
     """
 
+    also_stated = ("law",)
+    not_stated = ("_of_specimens", "_of_population", "_points", "_scale")
+
     quantity: str
     age_unit: str
     units: tuple[str, ...]
-    runs: tuple[int, ...]  #: of each specimen
-    last_age: tuple[float, ...]
-    weights: dict[str, float]
-    parameters: dict[str, dict[str, Interval]]
+    runs: Annotated[tuple[int, ...], Means("of each unit")]  #: of each specimen
+    last_age: Annotated[tuple[float, ...], Means("of each unit")]
+    weights: Annotated[dict[str, float], Means("of the laws, sum 1")]
+    parameters: Annotated[dict[str, dict[str, Interval]], Means("of each law")]
     effective: (
-        float  #: how many independent draws the posterior is worth, of the least sampled law that counts
+        Annotated[
+            float, Means("how many independent draws the posterior is worth")
+        ]  #: how many independent draws the posterior is worth, of the least sampled law that counts
     )
     notes: tuple[str, ...]
     _of_specimens: tuple[Specimens, ...] = field(repr=False)
@@ -117,11 +122,6 @@ class Growth(Result):
             return f"growth of {self.quantity}: {self.law}, {formula}"
         near = [name for name, weight in self.weights.items() if weight >= 0.05]
         return f"growth of {self.quantity}: cannot tell which law ({', '.join(near)})"
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return what was found, ages and values in the units given."""
-        told = {name: value for name, value in vars(self).items() if not name.startswith("_")}
-        return json_record({**told, "law": self.law})
 
     def to_frame(self) -> pl.DataFrame:
         """Return the parameters of each law with its weight."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 from scipy import special
@@ -13,7 +13,7 @@ from scipy import special
 from hersey.arrays import FloatArray
 from hersey.life.growth.marginal import Specimens
 from hersey.life.indicator import OwnAges
-from hersey.result import Result, json_record
+from hersey.result import OPEN, Means, Record, Result
 
 if TYPE_CHECKING:
     import polars as pl
@@ -35,12 +35,12 @@ _TURNS, _SETTLED, _STEEPEST, _HUGE = 60, 3e-3, 3.0, 300.0
 
 
 @dataclass(frozen=True)
-class Interval:
+class Interval(Record):
     """A number with its 90 % interval; infinite where it is never reached."""
 
-    value: float
-    low: float
-    high: float
+    value: Annotated[float, OPEN]
+    low: Annotated[float, OPEN]
+    high: Annotated[float, OPEN]
 
     def __str__(self) -> str:
         """Return value and limits with sensible digits."""
@@ -49,14 +49,20 @@ class Interval:
 
 
 @dataclass(frozen=True)
-class AgeAtLimit:
+class AgeAtLimit(Record):
     """The age at which one specimen, or a share of the population, reaches a limit."""
 
     unit: str
     age: Interval
-    never: float  #: share of draws that never reach it
-    last: float  #: greatest age of its data; NaN for the population
-    passed: float  #: share of draws that have reached it by then
+    never: Annotated[
+        float, Means("share of draws that never reach it")
+    ]  #: share of draws that never reach it
+    last: Annotated[
+        float, Means("age last seen; null for the population", open=True)
+    ]  #: greatest age of its data; NaN for the population
+    passed: Annotated[
+        float, Means("share of draws that have reached it by then")
+    ]  #: share of draws that have reached it by then
 
     def __str__(self) -> str:
         """Return the age in words."""
@@ -80,7 +86,9 @@ class AgesAtLimit(Result):
     b10: AgeAtLimit  #: a tenth of new specimens has reached it
     b50: AgeAtLimit
     notes: tuple[str, ...]
-    accumulates: bool = False  #: the limit is that of the integral over age
+    accumulates: Annotated[bool, Means("the limit is that of the integral over age")] = (
+        False  #: the limit is that of the integral over age
+    )
 
     def summary(self) -> str:
         """Return the ages as text."""
@@ -93,10 +101,6 @@ class AgesAtLimit(Result):
         """Return the age of half the population."""
         age = f"{self.b50.age} {self.age_unit}"
         return f"half of new specimens reach {self.quantity} = {self.limit:.4g} at {age}"
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return the ages; None for what is never reached."""
-        return json_record(vars(self))
 
     def to_frame(self) -> pl.DataFrame:
         """Return one row per specimen, then the population; infinite where it is never reached."""

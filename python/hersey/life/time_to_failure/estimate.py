@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
@@ -32,7 +32,7 @@ from hersey.life.time_to_failure.next_run import (
     widths_after,
 )
 from hersey.life.time_to_failure.way import FittedWay, Mode, fitted_way, last_ages, listed
-from hersey.result import Result, json_record, json_value
+from hersey.result import Means, Record, Result
 
 if TYPE_CHECKING:
     import polars as pl
@@ -53,7 +53,7 @@ NEVER = "none"
 
 
 @dataclass(frozen=True)
-class ShareEnded:
+class ShareEnded(Record):
     """Share of new specimens that have ended at an age: median and 90 % band over the draws."""
 
     age: FloatArray
@@ -66,18 +66,29 @@ class ShareEnded:
 class TimeToFailure(Result):
     """What ends each specimen and the population, and when; ages in ``age_unit``."""
 
+    also_stated = ("population", "advice", "notes")
+    not_stated = ("general_notes", "mode_notes")
+
     age_unit: str
     modes: tuple[Mode, ...]
     units: tuple[SpecimenEnd, ...]
-    b10: AgeAtLimit  #: a tenth of new specimens has ended, by whichever way
+    b10: Annotated[
+        AgeAtLimit, Means("a tenth of new units has ended, by whichever way")
+    ]  #: a tenth of new specimens has ended, by whichever way
     b50: AgeAtLimit
-    shares: dict[str, Interval]  #: of new specimens that each way ends
+    shares: Annotated[
+        dict[str, Interval], Means("of new units that each way ends")
+    ]  #: of new specimens that each way ends
     curve: ShareEnded
-    next_runs: tuple[NextRun, ...]  #: what narrows most first
-    together: tuple[str, ...]  #: ways whose runs scatter together
+    next_runs: Annotated[tuple[NextRun, ...], Means("what narrows most first")]  #: what narrows most first
+    together: Annotated[
+        tuple[str, ...], Means("ways whose runs scatter together")
+    ]  #: ways whose runs scatter together
     general_notes: tuple[str, ...]  #: what cannot be told, and what rests on priors
     mode_notes: tuple[tuple[str, str], ...]  #: name and note, of modes that may come first
-    unsaid: tuple[str, ...]  #: ways that are not judged, and why
+    unsaid: Annotated[
+        tuple[str, ...], Means("ways that are not judged, and why")
+    ]  #: ways that are not judged, and why
     seed: int = 0
 
     @property
@@ -140,22 +151,6 @@ class TimeToFailure(Result):
     def advice(self) -> tuple[str, ...]:
         """What to measure next, in words."""
         return tuple(each.words(self.age_unit) for each in self.next_runs[:_ADVISED])
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return what was found; None for what is never reached."""
-        kept = ("age_unit", "b10", "b50", "shares", "curve", "together", "notes", "unsaid", "seed")
-        units = [{**json_value(each), "named": list(each.named)} for each in self.units]
-        runs = [{**json_value(each), "narrowing": each.narrowing} for each in self.next_runs]
-        return json_record(
-            {
-                **{name: getattr(self, name) for name in kept},
-                "modes": [mode.to_dict() for mode in self.modes],
-                "units": units,
-                "next_runs": runs,
-                "advice": self.advice,
-                "population": self.population.to_dict(),
-            }
-        )
 
     def to_frame(self) -> pl.DataFrame:
         """Return one row per specimen and way, and the first of all; infinite where it is never reached."""

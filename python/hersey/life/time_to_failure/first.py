@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
@@ -11,6 +12,7 @@ from hersey.arrays import FloatArray, IntArray
 from hersey.life.growth.limit_ages import AgeAtLimit, age_at_limit
 from hersey.life.time_to_failure.joined import correlations, order_by, ranks_of
 from hersey.life.time_to_failure.way import FittedWay
+from hersey.result import Means, Record
 
 #: Ways are named until they hold so much of the probability of being first.
 NAMED = 0.9
@@ -19,13 +21,19 @@ MENTIONED, NEAR = 0.05, 1.25
 
 
 @dataclass(frozen=True)
-class SpecimenEnd:
+class SpecimenEnd(Record):
     """What ends a specimen, and when."""
 
+    also_stated = ("named",)
+
     unit: str
-    age: AgeAtLimit  #: of the first of all ways
-    first: dict[str, float]  #: probability of each way to be the first; the rest is that none comes
-    near: tuple[str, ...]  #: ways whose own age, the middle one, is up to 25 % later than the first
+    age: Annotated[AgeAtLimit, Means("of the first of all ways")]  #: of the first of all ways
+    first: Annotated[
+        dict[str, float], Means("probability of each way to be the first")
+    ]  #: probability of each way to be the first; the rest is that none comes
+    near: Annotated[
+        tuple[str, ...], Means("ways whose own age is up to 25 % later than the first")
+    ]  #: ways whose own age, the middle one, is up to 25 % later than the first
 
     @property
     def named(self) -> tuple[str, ...]:

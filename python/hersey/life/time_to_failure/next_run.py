@@ -9,11 +9,13 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.life.growth.limit_ages import CONFIDENCE
+from hersey.result import Means, Record
 
 #: New runs drawn for each candidate.
 _RUNS = 64
@@ -24,12 +26,16 @@ HORIZON = 10.0
 
 
 @dataclass(frozen=True)
-class NextRun:
+class NextRun(Record):
     """What could be measured, and how far it is expected to narrow an interval (its widths, in age)."""
 
-    unit: str | None  #: None: one more specimen, followed to its end
+    also_stated = ("narrowing",)
+
+    unit: Annotated[
+        str | None, Means("null: one more unit, followed to its end")
+    ]  #: None: one more specimen, followed to its end
     age: float  #: of the run; of a new specimen, about where it ends
-    before: float
+    before: Annotated[float, Means("width of the interval of the end of the unit, or of B10, in age")]
     after: float
 
     @property

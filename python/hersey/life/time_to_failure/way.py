@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated
 
 import numpy as np
 
@@ -13,27 +13,21 @@ from hersey.errors import InsufficientDataError
 from hersey.life.growth.fit import Growth, fit_growth
 from hersey.life.growth.limit_ages import AgesAtLimit, ages_at_limit
 from hersey.life.indicator import Indicator, Indicators, OwnAges
-from hersey.result import json_record
+from hersey.result import Means, Record
 
 
 @dataclass(frozen=True, repr=False)
-class Mode:
+class Mode(Record):
     """One failure mode: the growth of its indicator and the ages at its limit, of all specimens."""
 
     name: str
     kind: str
     si: str
     limit: float
-    sign: bool  #: a precursor, which ends no specimen
+    sign: Annotated[bool, Means("a precursor, which ends no unit")]  #: a precursor, which ends no specimen
     growth: Growth
     ages: AgesAtLimit
     notes: tuple[str, ...]
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return what was found."""
-        kept = ("name", "kind", "si", "limit", "sign", "notes")
-        told = {name: getattr(self, name) for name in kept}
-        return json_record({**told, "growth": self.growth.to_dict(), "ages": self.ages.to_dict()})
 
 
 @dataclass(frozen=True)
