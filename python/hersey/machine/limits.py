@@ -9,7 +9,6 @@ from pydantic.dataclasses import dataclass
 
 from hersey.files.toml import Quantity, Share, Table, Text
 from hersey.motion.belt import Drivetrain
-from hersey.result import Means, Record
 
 _Speed = Annotated[float, Quantity("belt speed", 1e-6, 1e3)]
 
@@ -53,7 +52,7 @@ class Limits(Table):
 
 
 @dataclass(frozen=True)
-class OperatingPoint(Table, Record):
+class OperatingPoint(Table):
     """A named state of the machine: belt speed (m/s) and temperature (K).
 
     ``share`` is that of the running time; None for all points alike.
@@ -62,4 +61,4 @@ class OperatingPoint(Table, Record):
     name: Text
     speed: _Speed
     temperature: Annotated[float, Quantity("temperature", 150.0, 1000.0)]
-    share: Annotated[Share | None, Means("of the use; null where none is stated")] = None
+    share: Share | None = None

@@ -200,11 +200,15 @@ def _plain(kind: Any, means: Means) -> Any:
 
 
 def _array(inside: tuple[Any, ...], means: Means) -> Any:
-    """Lists as deep as the shape of an array says."""
-    held: Any = _ITEMS[np.dtype(get_args(inside[1])[0]).kind]
+    """Lists as deep as the shape of an array says, or one of its shapes."""
+    item: Any = _ITEMS[np.dtype(get_args(inside[1])[0]).kind]
     if means.open:
-        held |= None
+        item |= None
+    return reduce(or_, (_nested(item, shape) for shape in (means.shape or "(n,)").split(" or ")))
+
+
+def _nested(item: Any, shape: str) -> Any:
     listed: Any = list
-    for _ in range(means.shape.count(",") + (not means.shape.endswith(",)")) if means.shape else 1):
-        held = listed[held]
-    return held
+    for _ in shape.strip("()").rstrip(",").split(","):
+        item = listed[item]
+    return item

@@ -51,9 +51,9 @@ class FilmPoint(Record):
 class Told(Record):
     """Something that runs or specimens tell, with 90 % intervals; an end is infinite where it is not told."""
 
-    value: Annotated[FloatArray, Means(shape="(n, m)", open=True)]
-    low: Annotated[FloatArray, Means(shape="(n, m)", open=True)]
-    high: Annotated[FloatArray, Means(shape="(n, m)", open=True)]
+    value: Annotated[FloatArray, Means(shape="(n,) or (n, m)", open=True)]
+    low: Annotated[FloatArray, Means(shape="(n,) or (n, m)", open=True)]
+    high: Annotated[FloatArray, Means(shape="(n,) or (n, m)", open=True)]
 
 
 @dataclass(frozen=True)
