@@ -83,17 +83,12 @@ if TYPE_CHECKING:
     from hersey.log import TorqueLog, memory_limit, read
     from hersey.log.many import ManyLogs, read_many
     from hersey.log.mapping import read_with_mapping
+    from hersey.lubrication.asperities import Asperities, BoundaryFriction
     from hersey.lubrication.contact import Contact, nip_width
-    from hersey.lubrication.film import Film, drag_torque, film_thickness
+    from hersey.lubrication.film import drag_torque, film_thickness
+    from hersey.lubrication.film_result import Film
     from hersey.lubrication.lubricant import Lubricant, ShearThinning
-    from hersey.lubrication.mixed import (
-        Asperities,
-        BoundaryFriction,
-        MixedContact,
-        MixedFilm,
-        mixed_contact,
-        mixed_torque,
-    )
+    from hersey.lubrication.mixed import MixedContact, MixedFilm, mixed_contact, mixed_torque
     from hersey.lubrication.mixed_drag import MixedDrag
     from hersey.lubrication.reynolds import (
         ElasticLayer,
@@ -168,8 +163,10 @@ _HOMES = {
     "posterior.sampling": "posterior",
     "lubrication.lubricant": "Lubricant ShearThinning",
     "lubrication.contact": "Contact nip_width",
-    "lubrication.film": "Film drag_torque film_thickness",
-    "lubrication.mixed": "Asperities BoundaryFriction MixedContact MixedFilm mixed_contact mixed_torque",
+    "lubrication.film": "drag_torque film_thickness",
+    "lubrication.film_result": "Film",
+    "lubrication.asperities": "Asperities BoundaryFriction",
+    "lubrication.mixed": "MixedContact MixedFilm mixed_contact mixed_torque",
     "lubrication.mixed_drag": "MixedDrag",
     "lubrication.reynolds": "ElasticLayer LineContactSolution ThickeningFluid solve_line_contact",
     "machine": "Limits Machine OperatingPoint Uncertainty read_machine read_temperature_profile",

@@ -20,7 +20,7 @@ from hersey.cli.terminal import say
 from hersey.errors import ParameterError
 
 if TYPE_CHECKING:
-    from hersey.lubrication.film import Film
+    from hersey.lubrication.film_result import Film
     from hersey.machine.machine import Machine
     from hersey.study.nip import SharedLoad
     from hersey.verdict.evidence import MeasuredFilm, Verdict

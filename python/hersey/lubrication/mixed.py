@@ -18,22 +18,28 @@ from numpy.typing import ArrayLike, NDArray
 from hersey import _core
 from hersey.arrays import FloatArray, pointwise
 from hersey.errors import ParameterError
+from hersey.lubrication.asperities import Asperities, BoundaryFriction
 from hersey.lubrication.contact import Contact
-from hersey.lubrication.film import REGIMES, film_thickness, soft_force_beyond
+from hersey.lubrication.film import film_thickness, inlet_length, soft_force_beyond
+from hersey.lubrication.film_result import REGIMES, SOFT
 from hersey.lubrication.lubricant import Lubricant
-from hersey.result import OPEN, Means, Record, Result, json_record
-from hersey.units import celsius, fields_in_si, takes_si
+from hersey.result import OPEN, Means, Record, Result, json_record, stated_names
+from hersey.units import celsius, takes_si
 
 if TYPE_CHECKING:
     import polars as pl
 
 #: The core takes no film whose thickness hangs on load less than so.
 _LEAST_LOAD_EXPONENT = 0.01
-#: Index of the soft regime, whose drag has more than the shear of the nip.
-_SOFT = REGIMES.index("isoviscous-elastic")
-#: What the law of a soft film was checked for against the full numerical solution (docs/mixed.md): pressure
-#: of the asperities at F = 1 over that of the nip, half-width over thickness, inlet over half-width, share.
-_STIFFNESS, _WIDTH, _INLET, _SHARE = (2.0, 60.0), (0.6, 1.6), 0.05, 0.5
+#: Pressure of the asperities at F = 1 over that of the nip for which the law of a soft film was checked
+#: against the full numerical solution (docs/mixed.md).
+_STIFFNESS = (2.0, 60.0)
+#: Half-width of the nip over thickness of the rubber for which it was.
+_WIDTH = (0.6, 1.6)
+#: Longest inlet over half-width for which it was.
+_INLET = 0.05
+#: Largest share of the load on the asperities for which it was.
+_SHARE = 0.5
 #: Largest share at which the law of a hard film is supported.
 _HARD_SHARE = 0.1
 #: Least roundness of the dry pressure that the core takes.
@@ -44,92 +50,11 @@ _BETWEEN = (5.0, 20.0)
 
 
 @dataclass(frozen=True)
-class Asperities(Record):
-    """The summits of two hard faces as Greenwood and Tripp (1970) have them.
-
-    Parameters
-    ----------
-    modulus
-        Contact modulus E* of the two faces that touch, Pa: 1/E* = (1-nu1^2)/E1 + (1-nu2^2)/E2. That of the
-        faces of belt and heater, not of the rubber behind them.
-    sigma_beta_density
-        Roughness times radius times number of the summits per area.
-    sigma_over_beta
-        Roughness over radius of the summits.
-
-    Raises
-    ------
-    ParameterError
-        If a value is not positive.
-    """
-
-    modulus: Annotated[float, Means("contact modulus of the faces", "Pa")]
-    sigma_beta_density: float = 0.05
-    sigma_over_beta: float = 0.01
-
-    def __post_init__(self) -> None:
-        """Bring the modulus to SI if it comes with a unit, and check the values."""
-        fields_in_si(self, {"modulus": "pressure"})
-        for name, value in vars(self).items():
-            if not 0 < value < np.inf:
-                raise ParameterError(f"{name} is {value:g}: it must be greater than 0")
-
-    @property
-    def pressure(self) -> float:
-        """Mean pressure of the asperities over F(lambda), Pa."""
-        slope: float = self.sigma_beta_density**2 * self.sigma_over_beta**0.5
-        return _core.GREENWOOD_TRIPP * slope * self.modulus
-
-
-@dataclass(frozen=True)
-class BoundaryFriction(Record):
-    """Friction where asperities carry all: coefficient + slope (T - temperature).
-
-    ``coefficient`` has no unit, ``slope`` is in 1/K, ``temperature`` (K) is that of the coefficient, needed
-    where the slope is not 0.
-    """
-
-    coefficient: float
-    slope: Annotated[float, Means("1/K")] = 0.0
-    temperature: Annotated[float | None, Means("of the coefficient", "K")] = None
-
-    def __post_init__(self) -> None:
-        """Bring the temperature to K if it comes with a unit, and check the values."""
-        fields_in_si(self, {"temperature": "temperature"})
-        if not 0 < self.coefficient < np.inf:
-            raise ParameterError(f"boundary friction is {self.coefficient:g}: it must be greater than 0")
-        if self.slope and self.temperature is None:
-            raise ParameterError("boundary friction has a slope: give the temperature of its coefficient")
-
-    @takes_si(temperature="temperature")
-    def at(self, temperature: ArrayLike) -> FloatArray:
-        """Return the coefficient at temperatures (K).
-
-        Raises
-        ------
-        ParameterError
-            If it falls to 0 or below.
-        """
-        kelvin = np.asarray(temperature, dtype=float)
-        rise = np.zeros_like(kelvin) if self.temperature is None else kelvin - self.temperature
-        coefficient = np.asarray(self.coefficient + self.slope * rise)
-        if not np.all(coefficient > 0):
-            worst = float(kelvin.ravel()[np.argmin(coefficient)])
-            raise ParameterError(
-                f"boundary friction is {np.min(coefficient):.3g} at {celsius(worst):.1f} degC: its slope of "
-                f"{self.slope:g} per K does not hold so far"
-            )
-        return coefficient
-
-
-@dataclass(frozen=True)
 class MixedTransition(Record):
     """Where the drag, falling with speed, begins to rise; arrays, not a number where it never falls.
 
-    ``temperature`` (K), ``product`` of viscosity and belt speed (Pa m), ``speed`` of the roll (rad/s),
-    ``belt_speed`` (m/s), ``lambda_ratio``, the least ``torque`` (N m), and ``sensitivity``: d ln product by
-    the logarithm of each number of the law, by name. ``by_roughness`` is d ln speed/d ln roughness with the
-    summits of one shape; by boundary friction it is ``sensitivity["boundary"]``, by viscosity -1.
+    ``by_roughness`` is that with the summits of one shape; the derivative of the speed by boundary friction
+    is ``sensitivity["boundary"]``, by viscosity -1.
     """
 
     not_stated = ("temperature",)
@@ -241,7 +166,7 @@ class MixedContact(Record):
             return np.asarray(share > _HARD_SHARE)
         nip = self.contact.nip
         width = nip.half_width / self.contact.rubber_thickness
-        inlet = _inlet_length(self.contact, product) / nip.half_width
+        inlet = inlet_length(self.contact, 1.0, 0.5 * product) / nip.half_width
         nip_known = _STIFFNESS[0] <= self.stiffness <= _STIFFNESS[1] and _WIDTH[0] <= width <= _WIDTH[1]
         return np.asarray((share > _SHARE) | (inlet > _INLET) | (not nip_known))
 
@@ -274,13 +199,7 @@ class MixedContact(Record):
 
 @dataclass(frozen=True, repr=False)
 class MixedFilm(Result):
-    """Film and asperities at operating points; arrays of one shape.
-
-    ``speed`` of the roll (rad/s), ``temperature`` (K), ``viscosity`` (Pa s), ``lambda_ratio``,
-    ``minimum_ratio`` (the least film over the roughness; not a number where no law of it is known), ``share``
-    of the load that asperities carry, and the torques (N m) of the asperities, of the film sheared over the
-    nip and of what its inlet and its pressure add (all that `Film` has beyond eta U/h_c).
-    """
+    """Film and asperities at operating points; arrays of one shape."""
 
     also_stated = ("torque", "beyond_checked_range")
     not_stated = ("mixed",)
@@ -353,31 +272,14 @@ class MixedFilm(Result):
 
     def to_dict(self) -> dict[str, Any]:
         """Return the law and the points, in SI; arrays of shape (points,)."""
-        hidden = ("contact", "lubricant", "asperities", "friction")
-        law = {name: value for name, value in vars(self.mixed).items() if name not in hidden}
-        points = {
-            name: np.ravel(value) for name, value in vars(self).items() if isinstance(value, np.ndarray)
-        }
-        turn = self.transition
-        shifts = {name: np.ravel(shift) for name, shift in turn.sensitivity.items()}
+        turn = {name: getattr(self.transition, name) for name in stated_names(MixedTransition)}
+        shifts = {name: np.ravel(shift) for name, shift in self.transition.sensitivity.items()}
         return json_record(
             {
-                "law": law
-                | {"asperities": vars(self.mixed.asperities), "friction": vars(self.mixed.friction)},
-                "points": points
-                | {
-                    "torque": np.ravel(self.torque),
-                    "beyond_checked_range": np.ravel(self.beyond_checked_range),
-                },
-                "transition": {
-                    "speed": np.ravel(turn.speed),
-                    "belt_speed": np.ravel(turn.belt_speed),
-                    "product": np.ravel(turn.product),
-                    "lambda_ratio": np.ravel(turn.lambda_ratio),
-                    "torque": np.ravel(turn.torque),
-                    "sensitivity": shifts,
-                    "by_roughness": np.ravel(turn.by_roughness),
-                },
+                "law": self.mixed,
+                "points": {name: np.ravel(getattr(self, name)) for name in stated_names(type(self))},
+                "transition": {name: np.ravel(value) for name, value in turn.items() if name != "sensitivity"}
+                | {"sensitivity": shifts},
             }
         )
 
@@ -409,25 +311,33 @@ def _under(mixed: MixedContact) -> str:
     return f", as its load to -{mixed.load_exponent:g}"
 
 
-def _inlet_length(contact: Contact, product: ArrayLike) -> FloatArray:
-    """Length of the inlet of the film alone, m, at products of viscosity and belt speed, Pa m."""
-    nip = contact.nip
-    modulus = contact.effective_modulus
-    speed = 0.5 * np.asarray(product, dtype=float)
-    return pointwise(
-        _core.inlet_length, 1.0, speed, contact.reduced_radius, modulus, nip.edge, nip.half_width
-    )
-
-
 def _edge(contact: Contact, reference: float) -> tuple[float, float]:
     """Mean pressure over K sqrt(l) at a reference, Pa m, and K^2 a/(2 p_max^2); p = K sqrt(d) at the edge."""
     nip = contact.nip
     half = nip.half_width
     # K as of the core: edge E*/(2R) sqrt(2a), E* = E'/2
     slope = nip.edge * 0.25 * contact.effective_modulus / contact.reduced_radius * (2.0 * half) ** 0.5
-    length = float(_inlet_length(contact, reference))
+    length = float(inlet_length(contact, 1.0, 0.5 * reference))
     roundness = slope**2 * half / (2.0 * nip.pressure_max**2)
     return nip.pressure_mean / (slope * length**0.5), float(np.clip(roundness, _FLATTEST, 1.0))
+
+
+def _rolling(contact: Contact, reference: float, exponent: float) -> tuple[float, float]:
+    """What inlet and pressure of a soft film add at a reference, N, and its power of eta U."""
+    ends = np.array(_BETWEEN) ** (1.0 / exponent)
+    low, high = soft_force_beyond(contact, reference * ends).tolist()
+    power = float(np.log(high / low) / np.log(ends[1] / ends[0]))
+    return low / float(ends[0]) ** power, power
+
+
+def _check_carry(asperities: Asperities, pressure: float) -> None:
+    """Refuse summits that do not carry the pressure of the nip, Pa, before the mean planes meet."""
+    most = asperities.pressure * float(_core.asperity_integral(np.zeros(())))
+    if most <= pressure:
+        raise ParameterError(
+            f"the asperities carry at most {1e-6 * most:.3g} MPa before the mean planes meet, and the nip "
+            f"presses with {1e-6 * pressure:.3g} MPa: state stiffer or denser summits, or a softer nip"
+        )
 
 
 @takes_si(speed="speed", temperature="temperature")
@@ -484,23 +394,10 @@ def mixed_contact(
     exponent = _core.FILM_SPEED_EXPONENTS[index]
     product = float(film.viscosity) * 2.0 * float(film.entrainment_speed)
     reference = product * (contact.roughness / central) ** (1.0 / exponent)
-    most = asperities.pressure * float(_core.asperity_integral(np.zeros(())))
-    soft = index == _SOFT
-    needed = film.nip.pressure_max if soft else film.nip.pressure_mean
-    if most <= needed:
-        raise ParameterError(
-            f"the asperities carry at most {1e-6 * most:.3g} MPa before the mean planes meet, and the nip "
-            f"presses with {1e-6 * needed:.3g} MPa: state stiffer or denser summits, or a "
-            "softer nip"
-        )
-    rolling, power = 0.0, exponent
-    edge, roundness = 0.0, 1.0
-    if soft:
-        edge, roundness = _edge(contact, reference)
-        ends = np.array(_BETWEEN) ** (1.0 / exponent)
-        low, high = soft_force_beyond(contact, reference * ends).tolist()
-        power = float(np.log(high / low) / np.log(ends[1] / ends[0]))
-        rolling = low / float(ends[0]) ** power
+    soft = index == SOFT
+    _check_carry(asperities, film.nip.pressure_max if soft else film.nip.pressure_mean)
+    edge, roundness = _edge(contact, reference) if soft else (0.0, 1.0)
+    rolling, power = _rolling(contact, reference, exponent) if soft else (0.0, exponent)
     mixed = MixedContact(
         contact=contact,
         lubricant=lubricant,

@@ -22,10 +22,17 @@ NODES = 201
 _MANY = 1_000_000
 #: What an exponent can be asked of.
 Quantity = Literal["damping", "torque", "minimum_thickness", "central_thickness", "base_traction"]
-#: Shares of a layer's thickness and of its roll's radius beyond which linear elasticity is a sketch.
-_INDENTATION, _HALF_WIDTH = 0.15, 0.3
+#: Share of a layer's thickness beyond which linear elasticity is a sketch.
+_INDENTATION = 0.15
+#: Share of the roll's radius up to which its parabola holds.
+_HALF_WIDTH = 0.3
 #: Error of the least film that asks for more nodes.
 _GRID_ERROR = 0.01
+#: What a solution has by the same name in the core.
+_OF_THE_CORE = (
+    *("x", "pressure", "film_thickness", "couette", "poiseuille", "greatest_pressure", "outlet", "offset"),
+    *("length", "load_residual", "flow_residual", "grid_error", "iterations", "stations"),
+)
 #: Pressure above which Barus' law overstates viscosity, Pa.
 _BARUS = 0.4e9
 
@@ -208,28 +215,16 @@ def solve_line_contact(
     )
     for profile in (solution.x, solution.pressure, solution.film_thickness):
         profile.setflags(write=False)
+    own = {name: getattr(solution, name) for name in _OF_THE_CORE}
     return LineContactSolution(
-        x=solution.x,
-        pressure=solution.pressure,
-        film_thickness=solution.film_thickness,
+        **own,
         central_thickness=solution.central,
         minimum_thickness=solution.minimum,
-        couette=solution.couette,
-        poiseuille=solution.poiseuille,
         roll_traction=solution.traction_1,
         base_traction=solution.traction_2,
-        greatest_pressure=solution.greatest_pressure,
-        outlet=solution.outlet,
-        offset=solution.offset,
-        length=solution.length,
-        load_residual=solution.load_residual,
-        flow_residual=solution.flow_residual,
-        grid_error=solution.grid_error,
         by_speed=_exponents(solution.by_speed),
         by_load=_exponents(solution.by_load),
         friction=abs(solution.traction_1) / load,
-        iterations=solution.iterations,
-        stations=solution.stations,
         cautions=_cautions(solution, radius, layer, barus=fluid.thickening == "barus"),
     )
 

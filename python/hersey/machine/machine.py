@@ -18,9 +18,10 @@ from hersey.errors import MAPPING, ParameterError, printable
 from hersey.files.toml import Quantity, Table, naming, read_tables, read_toml
 from hersey.log.sensor_tables import SensorTables, sensors_of
 from hersey.log.sensors import Sensors
+from hersey.lubrication.asperities import Asperities, BoundaryFriction
 from hersey.lubrication.contact import Contact
 from hersey.lubrication.lubricant import Lubricant
-from hersey.lubrication.mixed import Asperities, BoundaryFriction, MixedContact, mixed_contact
+from hersey.lubrication.mixed import MixedContact, mixed_contact
 from hersey.lubrication.mixed_drag import MixedDrag
 from hersey.machine.duty import GearTable, LifeTable, refuse_other_than_all
 from hersey.machine.heat import HeatTable

@@ -9,7 +9,8 @@ import numpy as np
 
 from hersey.damping.dwells import SteadyPoints, groups_of_temperature
 from hersey.damping.surface import DampingSurface
-from hersey.lubrication.film import REGIMES, Film, film_thickness
+from hersey.lubrication.film import film_thickness
+from hersey.lubrication.film_result import REGIMES, Film
 from hersey.lubrication.film_temperature import film_temperature
 from hersey.lubrication.mixed import MixedFilm
 from hersey.machine.machine import Machine

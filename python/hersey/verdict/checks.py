@@ -9,7 +9,8 @@ import numpy as np
 from hersey import _core
 from hersey.errors import ParameterError
 from hersey.lubrication.contact import Contact
-from hersey.lubrication.film import REGIMES, Film, shear_heating
+from hersey.lubrication.film import shear_heating
+from hersey.lubrication.film_result import REGIMES, Film
 from hersey.lubrication.lubricant import Lubricant
 from hersey.machine.machine import Machine
 from hersey.units import celsius, rpm

@@ -22,7 +22,8 @@ from hersey.damping.estimate import Estimate, quantile
 from hersey.damping.surface import DampingSurface
 from hersey.errors import InsufficientDataError, ParameterError, Setting, UnfinishedError, way_in
 from hersey.lubrication.contact import Contact, nip_width
-from hersey.lubrication.film import REGIMES, Film, film_thickness
+from hersey.lubrication.film import film_thickness
+from hersey.lubrication.film_result import REGIMES, Film
 from hersey.lubrication.film_temperature import film_temperature
 from hersey.lubrication.lubricant import Lubricant
 from hersey.lubrication.reynolds import ElasticLayer, ThickeningFluid, exponent, solve_line_contact

@@ -15,7 +15,8 @@ from hersey.damping.candidates.observations import Inputs, Observations
 from hersey.damping.candidates.shared_load import SharedLoadLaw
 from hersey.damping.candidates.thermal import ARRHENIUS
 from hersey.errors import InsufficientDataError, ParameterError
-from hersey.lubrication.mixed import Asperities, BoundaryFriction, mixed_contact
+from hersey.lubrication.asperities import Asperities, BoundaryFriction
+from hersey.lubrication.mixed import mixed_contact
 from tests.lubrication.roll import OIL, ROLL
 
 CONTACT = mixed_contact(

@@ -115,16 +115,11 @@ class Search:
 
     def run(self, *, again: bool = False) -> Shape | None:
         """Return the quickest profile, or None if none of the family works; again: not far from the best."""
-        for stretch in _STRETCHES:
-            self._over_grid(stretch)
-            if self.best is not None:
-                break
+        self.over_grids()
         if self.best is None:
             return None
         self._at_random()
-        starts = self._apart(_STARTS)
-        if not again:
-            starts += self._others()
+        starts = self.starts(again=again)
         rng = np.random.default_rng([self.seed, 8])
         valleys = []
         for i, start in enumerate(starts):
@@ -133,9 +128,25 @@ class Search:
         for valley in sorted(valleys, key=_time)[:_BEST]:
             self._descend(valley)
         self._wander((self.time, self.best), rng)
-        self._simplify()
-        fine = self.trials.time(self.best, tolerance=FINE)
-        self.time = fine if fine < math.inf else self.time
+        return self.settle()
+
+    def over_grids(self) -> None:
+        """Try the grid, then ever slower ones until a profile works."""
+        for stretch in _STRETCHES:
+            self._over_grid(stretch)
+            if self.best is not None:
+                break
+
+    def starts(self, *, again: bool = False) -> list[tuple[float, Shape]]:
+        """Return the profiles found from which to refine, with those of other valleys unless ``again``."""
+        return self._apart(_STARTS) + ([] if again else self._others())
+
+    def settle(self) -> Shape | None:
+        """Simplify the best profile, and find its time to a fine tolerance."""
+        if self.best is not None:
+            self._simplify()
+            fine = self.trials.time(self.best, tolerance=FINE)
+            self.time = fine if fine < math.inf else self.time
         return self.best
 
     def again(self, machines: Sequence[MachineSample], allowed: int) -> Shape | None:
