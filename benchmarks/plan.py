@@ -30,9 +30,10 @@ from hersey.machine.uncertainty import Uncertainty
 from hersey.stability.hysteresis import hysteresis
 from hersey.stability.plan import Plan, plan_profile
 from hersey.stability.plan.draws import drawn
+from hersey.stability.plan.grid import Room
 from hersey.stability.plan.obstacles import Reach
-from hersey.stability.plan.planner import Unknown
-from hersey.stability.plan.search import Room, Search
+from hersey.stability.plan.proof import Unknown
+from hersey.stability.plan.search import Search
 from hersey.stability.plan.trial import MachineSample, Shape, TemperatureProfile, rounded
 
 CONFIDENCE = 0.95

@@ -108,9 +108,10 @@ if TYPE_CHECKING:
     from hersey.motion.drag import Drag, DragTable
     from hersey.motion.heat import HeatBalance
     from hersey.motion.schedule import Schedule
-    from hersey.motion.simulation import StickSlipCycle, Trajectory, simulate, stick_slip
+    from hersey.motion.simulation import StickSlipCycle, simulate, stick_slip
     from hersey.motion.stepper import Stepper
     from hersey.motion.sweep import sweep
+    from hersey.motion.trajectory import Trajectory
     from hersey.motion.work import Work
     from hersey.posterior.evidence import BreakAway, Start, StickSlip
     from hersey.posterior.result import Posterior
@@ -127,7 +128,8 @@ if TYPE_CHECKING:
     from hersey.stability.hysteresis_sweep import hysteresis_sweep
     from hersey.stability.operating_map import OperatingMap, operating_map
     from hersey.stability.plan import Plan, plan_profile
-    from hersey.stability.warm_up import WarmUp, warm_up
+    from hersey.stability.warm_up import warm_up
+    from hersey.stability.warm_up_result import WarmUp
     from hersey.study.log_and_machine import Study, study
     from hersey.verdict.evidence import MeasuredFilm, measured_film
     from hersey.verdict.regime import Regime, regime
@@ -141,7 +143,8 @@ _HOMES = {
     "motion.schedule": "Schedule",
     "motion.drag": "Drag DragTable",
     "motion.heat": "HeatBalance",
-    "motion.simulation": "Drivetrain StickSlipCycle Trajectory simulate stick_slip",
+    "motion.simulation": "Drivetrain StickSlipCycle simulate stick_slip",
+    "motion.trajectory": "Trajectory",
     "motion.stepper": "Stepper",
     "motion.sweep": "sweep",
     "motion.work": "Work",
@@ -178,7 +181,8 @@ _HOMES = {
     "stability.disturbance": "Disturbance SafeStep disturbance safe_step",
     "stability.operating_map": "OperatingMap operating_map",
     "stability.plan": "Plan plan_profile",
-    "stability.warm_up": "WarmUp warm_up",
+    "stability.warm_up": "warm_up",
+    "stability.warm_up_result": "WarmUp",
     "study.log_and_machine": "Study study",
     "report.page": "report",
     "life.fatigue": (

@@ -19,7 +19,8 @@ from hersey.lubrication.film_result import Correction, Film
 from hersey.lubrication.lubricant import Lubricant
 from hersey.machine.machine import Machine, read_machine
 from hersey.verdict.checks import Misfit, misfits
-from hersey.verdict.evidence import MeasuredFilm, Verdict, measured_film, verdict
+from hersey.verdict.contact_verdict import Verdict, verdict
+from hersey.verdict.evidence import MeasuredFilm, measured_film
 from hersey.verdict.regime import Regime, regime
 from hersey.verdict.transition import ContactTransition
 from tests.conftest import ROOT

@@ -8,7 +8,8 @@ import altair as alt
 
 from hersey.arrays import FloatArray
 from hersey.charts.style import BLUE, INK, ORANGE, WIDTH, Chart, Row, plot, rows_of, tip
-from hersey.motion.simulation import StickSlipCycle, Trajectory
+from hersey.motion.simulation import StickSlipCycle
+from hersey.motion.trajectory import Trajectory
 from hersey.units import celsius
 
 #: Names and colours of the modes, dark to light by speed.

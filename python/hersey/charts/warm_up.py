@@ -8,7 +8,7 @@ import altair as alt
 
 from hersey.charts.motion import temperatures_over_time
 from hersey.charts.style import BLUE, INK, ORANGE, RIM, WIDTH, Chart, Row, level, plot, rows_of, tip
-from hersey.stability.warm_up import WarmUp
+from hersey.stability.warm_up_result import WarmUp
 
 #: Width kept for the axes, so that the panels line up.
 _AXIS = 46

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from hersey import _core
 from hersey.arrays import FloatArray, pointwise
@@ -67,9 +67,7 @@ def film_thickness(
     >>> print(film.regime_names()[0], f"{1e6 * film.central:.1f} um")
     isoviscous-elastic 2.2 um
     """
-    speeds, temperatures = np.broadcast_arrays(
-        np.abs(np.asarray(speed, dtype=float)), np.asarray(temperature, dtype=float)
-    )
+    speeds, temperatures = operating_points(speed, temperature)
     nip = contact.nip
     viscosity = lubricant.viscosity(temperatures)
     alpha = lubricant.alpha(temperatures) if lubricant.pressure_viscosity else np.zeros_like(viscosity)
@@ -77,7 +75,6 @@ def film_thickness(
     laws = _line_film(contact, alpha, viscosity, entrainment)
     by_paper = _by_paper(contact, alpha, viscosity, entrainment) if np.all(alpha > 0) else {}
     regime = laws.regime.astype(np.intp)
-    inlet = inlet_length(contact, viscosity, entrainment)
     force = _soft_traction(contact, viscosity, entrainment)
     soft = regime == SOFT
     film = Film(
@@ -92,7 +89,7 @@ def film_thickness(
         central=np.choose(regime, list(laws.central.values())),
         minima=dict(laws.minimum) | by_paper,
         centres=dict(laws.central) | by_paper,
-        inlet_short=np.asarray(inlet < _SHORT * min(contact.rubber_thickness, nip.half_width)),
+        inlet_short=_inlet_short(contact, viscosity, entrainment),
         shear_factor=np.where(soft, force.shear_factor, 1.0),
         rolling_force=np.where(soft, force.rolling, 0.0),
         contact=contact,
@@ -101,6 +98,14 @@ def film_thickness(
     )
     layer = contact.supply if supply is None else supply
     return replace(film, corrections=_corrections(film, layer, starvation_sharpness))
+
+
+def operating_points(speed: ArrayLike, temperature: ArrayLike) -> tuple[FloatArray, FloatArray]:
+    """Return speeds (rad/s) without their sign and temperatures (K), broadcast together."""
+    speeds, kelvin = np.broadcast_arrays(
+        np.abs(np.asarray(speed, dtype=float)), np.asarray(temperature, dtype=float)
+    )
+    return speeds, kelvin
 
 
 def _line_film(
@@ -138,6 +143,11 @@ def inlet_length(contact: Contact, viscosity: ArrayLike, entrainment: ArrayLike)
     """Return the length of the inlet of a soft film, m, at viscosities (Pa s) and mean speeds (m/s)."""
     nip, radius, modulus = contact.nip, contact.reduced_radius, contact.effective_modulus
     return pointwise(_core.inlet_length, viscosity, entrainment, radius, modulus, nip.edge, nip.half_width)
+
+
+def _inlet_short(contact: Contact, viscosity: FloatArray, entrainment: FloatArray) -> NDArray[np.bool_]:
+    least = min(contact.rubber_thickness, contact.nip.half_width)
+    return np.asarray(inlet_length(contact, viscosity, entrainment) < _SHORT * least)
 
 
 def soft_force_beyond(contact: Contact, product: FloatArray) -> FloatArray:

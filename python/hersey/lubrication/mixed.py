@@ -19,8 +19,9 @@ from hersey import _core
 from hersey.arrays import FloatArray, pointwise
 from hersey.errors import ParameterError
 from hersey.lubrication.asperities import Asperities, BoundaryFriction
+from hersey.lubrication.checked_range import beyond_checked_range
 from hersey.lubrication.contact import Contact
-from hersey.lubrication.film import film_thickness, inlet_length, soft_force_beyond
+from hersey.lubrication.film import film_thickness, inlet_length, operating_points, soft_force_beyond
 from hersey.lubrication.film_result import REGIMES, SOFT
 from hersey.lubrication.lubricant import Lubricant
 from hersey.result import OPEN, Means, Record, Result, json_record, stated_names
@@ -31,17 +32,6 @@ if TYPE_CHECKING:
 
 #: The core takes no film whose thickness hangs on load less than so.
 _LEAST_LOAD_EXPONENT = 0.01
-#: Pressure of the asperities at F = 1 over that of the nip for which the law of a soft film was checked
-#: against the full numerical solution (docs/mixed.md).
-_STIFFNESS = (2.0, 60.0)
-#: Half-width of the nip over thickness of the rubber for which it was.
-_WIDTH = (0.6, 1.6)
-#: Longest inlet over half-width for which it was.
-_INLET = 0.05
-#: Largest share of the load on the asperities for which it was.
-_SHARE = 0.5
-#: Largest share at which the law of a hard film is supported.
-_HARD_SHARE = 0.1
 #: Least roundness of the dry pressure that the core takes.
 _FLATTEST = 0.01
 #: Films over roughness, if alone, between which inlet and pressure make a power of eta U; its local
@@ -75,13 +65,10 @@ class MixedTransition(Record):
 class MixedContact(Record):
     """A contact whose load film and asperities share; made by `mixed_contact`.
 
-    ``regime`` is the law of the film, ``reference`` (Pa m) the product of viscosity and belt speed at which
-    the film alone is as thick as the roughness. A soft film has an ``edge``, the mean pressure of the nip
-    over K sqrt(l) with the slope of pressure K at its edge and the length l of the inlet there, and the
-    ``roundness`` K^2 a/(2 p_max^2) of its pressure; others have edge 0 and go as their share of the load to
-    -``load_exponent``. ``stiffness`` is the pressure of the asperities over F(lambda)
-    and over the mean pressure of the nip, ``shear`` (N) the force that shears a film of lambda = 1 there over
-    the nip, ``rolling`` (N) what inlet and pressure add to it, as eta U to the ``rolling_exponent``.
+    ``regime`` is the law of the film. K of a soft film is the slope of pressure at the edge of the nip, l the
+    length of the inlet there; other films have edge 0 and go as their share of the load to
+    -``load_exponent``. ``stiffness`` is the pressure of the asperities over F(lambda) and over the mean
+    pressure of the nip; ``rolling`` goes as eta U to the ``rolling_exponent``.
     """
 
     not_stated = ("contact", "lubricant")
@@ -136,18 +123,15 @@ class MixedContact(Record):
         ParameterError
             If a value is impossible.
         """
-        speeds, kelvin = np.broadcast_arrays(
-            np.abs(np.asarray(speed, dtype=float)), np.asarray(temperature, dtype=float)
-        )
+        speeds, kelvin = operating_points(speed, temperature)
         if not np.all(np.isfinite(speeds)):
             raise ParameterError("speed is not a finite number")
-        radius = self.contact.roll_radius
-        viscosity = self.lubricant.viscosity(kelvin)
+        radius = self.lever
         state = pointwise(_core.mixed_contact, self.product(speeds, kelvin), *self.numbers(kelvin))
         return MixedFilm(
             speed=speeds,
             temperature=kelvin,
-            viscosity=viscosity,
+            viscosity=self.lubricant.viscosity(kelvin),
             lambda_ratio=state.lambda_ratio,
             minimum_ratio=state.minimum,
             share=state.share,
@@ -158,17 +142,8 @@ class MixedContact(Record):
         )
 
     def beyond_checked_range(self, share: FloatArray, product: FloatArray) -> NDArray[np.bool_]:
-        """Return where the law was not checked against the full numerical solution of a contact.
-
-        ``share`` is that of the asperities, ``product`` viscosity times belt speed (Pa m), of one shape.
-        """
-        if not self.edge:
-            return np.asarray(share > _HARD_SHARE)
-        nip = self.contact.nip
-        width = nip.half_width / self.contact.rubber_thickness
-        inlet = inlet_length(self.contact, 1.0, 0.5 * product) / nip.half_width
-        nip_known = _STIFFNESS[0] <= self.stiffness <= _STIFFNESS[1] and _WIDTH[0] <= width <= _WIDTH[1]
-        return np.asarray((share > _SHARE) | (inlet > _INLET) | (not nip_known))
+        """Return where the law was not checked, at shares of the asperities and products eta U (Pa m)."""
+        return beyond_checked_range(self.contact, share, product, self.stiffness if self.edge else None)
 
     def _by_roughness(self, shift: Mapping[str, FloatArray]) -> FloatArray:
         """The reference goes as roughness^(1/n); at one product shear, rolling and inlet are the film's."""
@@ -184,14 +159,13 @@ class MixedContact(Record):
         kelvin = np.asarray(temperature, dtype=float)
         found = pointwise(_core.mixed_transition, *self.numbers(kelvin))
         belt_speed = found.product / self.lubricant.viscosity(kelvin)
-        radius = self.contact.roll_radius
         return MixedTransition(
             temperature=kelvin,
             product=found.product,
-            speed=belt_speed / radius,
+            speed=belt_speed / self.lever,
             belt_speed=belt_speed,
             lambda_ratio=found.lambda_ratio,
-            torque=found.force * radius,
+            torque=found.force * self.lever,
             sensitivity=found.sensitivity,
             by_roughness=self._by_roughness(found.sensitivity),
         )
@@ -225,8 +199,8 @@ class MixedFilm(Result):
     @property
     def beyond_checked_range(self) -> NDArray[np.bool_]:
         """Where the law was not checked against the full numerical solution of a contact."""
-        product = self.mixed.product(self.speed, self.temperature)
-        return self.mixed.beyond_checked_range(self.share, product)
+        mixed = self.mixed
+        return mixed.beyond_checked_range(self.share, mixed.product(self.speed, self.temperature))
 
     @cached_property
     def transition(self) -> MixedTransition:
@@ -244,9 +218,12 @@ class MixedFilm(Result):
     def summary(self, names: Sequence[str] = ()) -> str:
         """Return the points and the transition as text; ``names`` of the points, numbered if not given."""
         mixed, asperities = self.mixed, self.mixed.asperities
+        under = f", as its load to -{mixed.load_exponent:g}"
+        if mixed.edge:
+            under = " if alone, made where the dry pressure exceeds that of the asperities"
         lines = [
             self.headline(),
-            f"  film as that of {mixed.regime}: as speed to {mixed.film_exponent:g}{_under(mixed)}; "
+            f"  film as that of {mixed.regime}: as speed to {mixed.film_exponent:g}{under}; "
             f"lambda = 1 at eta U = {mixed.reference:.3g} Pa m if alone",
             f"  asperities: sigma beta D = {asperities.sigma_beta_density:g}, sigma/beta = "
             f"{asperities.sigma_over_beta:g}, E* = {1e-9 * asperities.modulus:.3g} GPa",
@@ -263,24 +240,21 @@ class MixedFilm(Result):
                 f"  {name[:16]:16s} {celsius(kelvin):6.1f} {speed:9.3g} {ratio:7.3g} "
                 f"{100 * share:8.3g} {torque:11.3g} {turn:>15s}"
             )
-        beyond = int(np.count_nonzero(self.beyond_checked_range))
-        if beyond:
-            lines.append(
-                f"  {beyond} of {self.share.size} points are beyond the range in which the law was checked"
-            )
+        if beyond := int(np.count_nonzero(self.beyond_checked_range)):
+            where = f"{beyond} of {self.share.size} points"
+            lines.append(f"  {where} are beyond the range in which the law was checked")
         return "\n".join(lines)
 
     def to_dict(self) -> dict[str, Any]:
         """Return the law and the points, in SI; arrays of shape (points,)."""
         turn = {name: getattr(self.transition, name) for name in stated_names(MixedTransition)}
-        shifts = {name: np.ravel(shift) for name, shift in self.transition.sensitivity.items()}
+        shifts = turn.pop("sensitivity")
+        points = {name: getattr(self, name) for name in stated_names(type(self))}
+        turn, shifts, points = (
+            {name: np.ravel(value) for name, value in each.items()} for each in (turn, shifts, points)
+        )
         return json_record(
-            {
-                "law": self.mixed,
-                "points": {name: np.ravel(getattr(self, name)) for name in stated_names(type(self))},
-                "transition": {name: np.ravel(value) for name, value in turn.items() if name != "sensitivity"}
-                | {"sensitivity": shifts},
-            }
+            {"law": self.mixed, "points": points, "transition": turn | {"sensitivity": shifts}}
         )
 
     def to_frame(self) -> pl.DataFrame:
@@ -304,13 +278,6 @@ class MixedFilm(Result):
         return pl.DataFrame({name: np.ravel(values) for name, values in columns.items()})
 
 
-def _under(mixed: MixedContact) -> str:
-    """How asperities thicken the film, in words."""
-    if mixed.edge:
-        return " if alone, made where the dry pressure exceeds that of the asperities"
-    return f", as its load to -{mixed.load_exponent:g}"
-
-
 def _edge(contact: Contact, reference: float) -> tuple[float, float]:
     """Mean pressure over K sqrt(l) at a reference, Pa m, and K^2 a/(2 p_max^2); p = K sqrt(d) at the edge."""
     nip = contact.nip
@@ -322,12 +289,14 @@ def _edge(contact: Contact, reference: float) -> tuple[float, float]:
     return nip.pressure_mean / (slope * length**0.5), float(np.clip(roundness, _FLATTEST, 1.0))
 
 
-def _rolling(contact: Contact, reference: float, exponent: float) -> tuple[float, float]:
-    """What inlet and pressure of a soft film add at a reference, N, and its power of eta U."""
+def _soft_numbers(contact: Contact, reference: float, exponent: float) -> dict[str, float]:
+    """The numbers that only a soft film has, at a reference, Pa m; what inlet and pressure add is a power."""
+    edge, roundness = _edge(contact, reference)
     ends = np.array(_BETWEEN) ** (1.0 / exponent)
     low, high = soft_force_beyond(contact, reference * ends).tolist()
     power = float(np.log(high / low) / np.log(ends[1] / ends[0]))
-    return low / float(ends[0]) ** power, power
+    rolling = low / float(ends[0]) ** power
+    return {"edge": edge, "roundness": roundness, "rolling": rolling, "rolling_exponent": power}
 
 
 def _check_carry(asperities: Asperities, pressure: float) -> None:
@@ -387,8 +356,7 @@ def mixed_contact(
         raise ParameterError(f"regime '{regime}' is not known: governing, {', '.join(REGIMES)}")
     film = film_thickness(contact, lubricant, speed=speed, temperature=temperature)
     name = film.regime_names()[0] if regime == "governing" else regime
-    central = float(film.centres[name])
-    if not central > 0:
+    if not (central := float(film.centres[name])) > 0:
         raise ParameterError(f"regime '{name}' needs the pressure-viscosity coefficient of {lubricant.name}")
     index = REGIMES.index(name)
     exponent = _core.FILM_SPEED_EXPONENTS[index]
@@ -396,8 +364,7 @@ def mixed_contact(
     reference = product * (contact.roughness / central) ** (1.0 / exponent)
     soft = index == SOFT
     _check_carry(asperities, film.nip.pressure_max if soft else film.nip.pressure_mean)
-    edge, roundness = _edge(contact, reference) if soft else (0.0, 1.0)
-    rolling, power = _rolling(contact, reference, exponent) if soft else (0.0, exponent)
+    of_hard = {"edge": 0.0, "roundness": 1.0, "rolling": 0.0, "rolling_exponent": exponent}
     mixed = MixedContact(
         contact=contact,
         lubricant=lubricant,
@@ -407,12 +374,9 @@ def mixed_contact(
         reference=reference,
         film_exponent=exponent,
         load_exponent=max(_core.FILM_LOAD_EXPONENTS[index], _LEAST_LOAD_EXPONENT),
-        edge=edge,
-        roundness=roundness,
+        **(_soft_numbers(contact, reference, exponent) if soft else of_hard),
         stiffness=asperities.pressure / film.nip.pressure_mean,
         shear=reference / contact.roughness * film.nip.width * contact.length,
-        rolling=rolling,
-        rolling_exponent=power,
     )
     mixed.transition(temperature)
     return mixed

@@ -9,11 +9,12 @@ against a rigid one. E* = E'/2 is the contact modulus.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Annotated, Literal
 
 from hersey import _core
 from hersey.arrays import FloatArray
 from hersey.errors import ParameterError
+from hersey.result import Means
 from hersey.units import fields_in_si, takes_si
 
 #: Nodes between inlet and outlet.
@@ -94,60 +95,35 @@ class LineExponents:
 class LineContactSolution:
     """Pressure, film and friction of a line contact, SI.
 
-    Parameters
-    ----------
-    x
-        Places of the nodes from the axis of the roll, downstream positive, m.
-    pressure, film_thickness
-        Pa and m at the nodes. Beyond ``outlet`` (m) the film is broken and pressure is zero.
-    central_thickness, minimum_thickness
-        Film under the axis of the roll and least film, m.
-    greatest_pressure
-        Pa.
-    couette, poiseuille
-        Shear by sliding, and half the integral of film thickness times pressure gradient, N/m.
-    roll_traction, base_traction
-        Shear force per length on the roll and on what it runs against, along the motion, N/m:
-        ``-couette - poiseuille`` and ``couette - poiseuille``. The broken film is not counted.
-    friction
-        Magnitude of ``roll_traction`` over the load.
-    offset
-        Film less parabola and deflection, m: for a layer minus the approach of roll and base; for a half
-        space it belongs to the unit ``length`` (m) of the logarithm.
-    by_speed, by_load
-        Exponents of speed (both surfaces alike) and of load.
-    load_residual, flow_residual
-        Relative errors of the load balance and of the flow that remain.
-    grid_error
-        Relative error of the least film estimated from two grids.
-    iterations, stations
-        Newton steps in all, and solutions on the way from a rigid roll.
-    cautions
-        What the model does not hold for, or could be resolved better.
+    The broken film beyond ``outlet``, where pressure is zero, is not counted in the tractions, which are
+    along the motion: ``-couette - poiseuille`` and ``couette - poiseuille``.
     """
 
-    x: FloatArray
-    pressure: FloatArray
-    film_thickness: FloatArray
-    central_thickness: float
-    minimum_thickness: float
-    couette: float
-    poiseuille: float
-    roll_traction: float
-    base_traction: float
-    greatest_pressure: float
-    outlet: float
-    offset: float
-    length: float
-    load_residual: float
-    flow_residual: float
-    grid_error: float
-    by_speed: LineExponents
-    by_load: LineExponents
-    friction: float
-    iterations: int
-    stations: int
-    cautions: tuple[str, ...]
+    x: Annotated[FloatArray, Means("places of the nodes from the axis of the roll, downstream positive", "m")]
+    pressure: Annotated[FloatArray, Means("at the nodes", "Pa")]
+    film_thickness: Annotated[FloatArray, Means("at the nodes", "m")]
+    central_thickness: Annotated[float, Means("film under the axis of the roll", "m")]
+    minimum_thickness: Annotated[float, Means("least film", "m")]
+    couette: Annotated[float, Means("shear by sliding", "N/m")]
+    poiseuille: Annotated[float, Means("half the integral of film thickness times pressure gradient", "N/m")]
+    roll_traction: Annotated[float, Means("shear force on the roll per length", "N/m")]
+    base_traction: Annotated[float, Means("shear force on what it runs against per length", "N/m")]
+    greatest_pressure: Annotated[float, Means(unit="Pa")]
+    outlet: Annotated[float, Means("where the film breaks", "m")]
+    #: for a layer minus the approach of roll and base; for a half space it belongs to ``length``
+    offset: Annotated[float, Means("film less parabola and deflection", "m")]
+    length: Annotated[float, Means("unit of the logarithm in the deflection of a half space", "m")]
+    load_residual: Annotated[float, Means("relative error of the load balance that remains")]
+    flow_residual: Annotated[float, Means("relative error of the flow that remains")]
+    grid_error: Annotated[float, Means("relative error of the least film, estimated from two grids")]
+    by_speed: Annotated[LineExponents, Means("of speed, both surfaces alike")]
+    by_load: Annotated[LineExponents, Means("of load")]
+    friction: Annotated[float, Means("magnitude of roll_traction over the load")]
+    iterations: Annotated[int, Means("Newton steps in all")]
+    stations: Annotated[int, Means("solutions on the way from a rigid roll")]
+    cautions: Annotated[
+        tuple[str, ...], Means("what the model does not hold for, or could be resolved better")
+    ]
 
 
 @takes_si(

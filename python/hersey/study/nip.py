@@ -16,7 +16,8 @@ from hersey.lubrication.mixed import MixedFilm
 from hersey.machine.machine import Machine
 from hersey.study.nip_film import FilmPart, FilmPoint
 from hersey.verdict.checks import Misfit, misfits, remarks
-from hersey.verdict.evidence import MeasuredFilm, Verdict, measured_film, verdict
+from hersey.verdict.contact_verdict import Verdict, verdict
+from hersey.verdict.evidence import MeasuredFilm, measured_film
 from hersey.verdict.regime import Regime
 from hersey.verdict.transition import ContactTransition, contact_transition
 

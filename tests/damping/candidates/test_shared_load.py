@@ -10,7 +10,8 @@ import pytest
 from hersey.damping.candidates import Candidate, compare_models
 from hersey.damping.candidates.branched import HELD, SHARED
 from hersey.damping.candidates.candidate import contact_candidates
-from hersey.damping.candidates.fitting import fit_law, not_identified
+from hersey.damping.candidates.fitting import fit_law
+from hersey.damping.candidates.identifiability import not_identified
 from hersey.damping.candidates.observations import Inputs, Observations
 from hersey.damping.candidates.shared_load import SharedLoadLaw
 from hersey.damping.candidates.thermal import ARRHENIUS
