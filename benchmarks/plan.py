@@ -4,8 +4,9 @@ Of every plan: the share of fresh draws (another seed, tolerance 1e-11) that sli
 and keep all limits; and the quickest of a grid of up-over-down profiles that passes the plan's own rules on
 its own draws. Infeasible drives are counted and left out.
 
-With ``--compare``, the search alone against `scipy.optimize.differential_evolution` on the same family, the
-same draws and the same rule of what works: the quickest profile found, and the trials of a machine it took.
+With ``--compare``, the refinement of the search against `scipy.optimize` (differential evolution, and Nelder
+and Mead), each from the same grid, on the same family, draws and rule of what works: the time of the quickest
+profile found as a multiple of the own, and the wall time.
 
 Usage: python -m benchmarks.plan [--cases 200] [--first 0] [--compare]
 """
@@ -20,7 +21,7 @@ import time
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.optimize import differential_evolution
+from scipy.optimize import differential_evolution, minimize
 
 import hersey
 from hersey.machine.limits import Limits
@@ -29,18 +30,21 @@ from hersey.machine.uncertainty import Uncertainty
 from hersey.stability.hysteresis import hysteresis
 from hersey.stability.plan import Plan, plan_profile
 from hersey.stability.plan.draws import drawn
+from hersey.stability.plan.grid import Room
 from hersey.stability.plan.obstacles import Reach
-from hersey.stability.plan.planner import Unknown
-from hersey.stability.plan.search import Room, Search
+from hersey.stability.plan.proof import Unknown
+from hersey.stability.plan.search import Search
 from hersey.stability.plan.trial import MachineSample, Shape, TemperatureProfile, rounded
 
 CONFIDENCE = 0.95
 FRESH = 1000
 GRID = (0.0, 0.15, 0.3, 0.6, 1.0, 2.0, 4.0)
-#: Seeds of the comparison, and trials of the evolution as multiples of those of the own search.
-SEEDS, BUDGETS = 3, (1, 3)
-#: Longest rise, hold and fall of the evolution, laps; what is so much slower than its best counts as failed.
-LONGEST, BELOW = 12.0, 1.5
+#: Motions that scipy's searches may follow as a multiple of those of the own search.
+MOTIONS = 1.5
+#: Longest rise, hold and fall of scipy's searches, laps.
+LONGEST = 40.0
+#: A profile slower than the best by this factor counts as failed.
+BELOW = 1.5
 
 
 @dataclass(frozen=True)
@@ -213,53 +217,112 @@ def trials_of(search: Search) -> int:
     return search.count + search.trials.count
 
 
-def evolved(search: Search, budget: int, seed: int) -> None:
-    """Let differential evolution search, until it has followed so many motions."""
-    lap, room, target = search.nominal.lap, search.room, search.target
-    limit = [math.inf]
-    worst = 100.0 * lap + search.thermal.end
+def started(search: Search) -> list[tuple[float, Shape]]:
+    """Run the grid of the own search alone, and return the profiles from which its refinement would start."""
+    search.over_grids()
+    return search.starts() if search.best is not None else []
 
-    def shape(row: np.ndarray) -> Shape:
-        peak = target + row[0] * max(room.speed - target, 0.0)
-        rise, hold, fall = (LONGEST * lap * x**2 for x in row[1:4])
-        return room.shape(target, peak, rise, hold, fall, row[4] * search.thermal.end if len(row) > 4 else 0)
 
-    def value(row: np.ndarray) -> float:
-        took = search.attempt(shape(row), limit[0])
+class Family:
+    """The profiles of a search as points of a unit cube, and what scipy minimises over it."""
+
+    def __init__(self, search: Search, budget: float) -> None:
+        """Count motions up to the budget, after which every profile counts as failed."""
+        self.search, self.budget, self.limit = search, budget, math.inf
+        self.lap, self.span = search.nominal.lap, max(search.room.speed - search.target, 0.0)
+        self.worst = 200.0 * self.lap + 2.0 * search.thermal.end
+        self.sides = 4 if len(search.waits()) == 1 else 5  # no wait helps where the temperature stays
+
+    def spent(self, *_: object, **__: object) -> bool:
+        """Return whether the motions of the budget have been followed."""
+        return trials_of(self.search) >= self.budget
+
+    def shape(self, row: np.ndarray) -> Shape:
+        """Return the profile of a point."""
+        peak = self.search.target + row[0] * self.span
+        rise, hold, fall = (LONGEST * self.lap * x**2 for x in row[1:4])
+        wait = row[4] * self.search.thermal.end if self.sides > 4 else 0.0
+        return self.search.room.shape(self.search.target, peak, rise, hold, fall, wait)
+
+    def row(self, shape: Shape) -> np.ndarray:
+        """Return the point of a profile."""
+        least = self.search.room.shape(shape.target, shape.peak, 0.0, 0.0, 0.0)
+        spare = (shape.rise - least.rise, shape.hold, shape.fall - least.fall)
+        row = [(shape.peak - shape.target) / (self.span or 1.0)]
+        row += [math.sqrt(max(time, 0.0) / (LONGEST * self.lap)) for time in spare]
+        row += [shape.wait / (self.search.thermal.end or 1.0)]
+        return np.clip(row[: self.sides], 0.0, 1.0)
+
+    def value(self, row: np.ndarray) -> float:
+        """Return the time of the profile at a point; a great number if it fails or is far from the best."""
+        if self.spent():
+            return self.worst
+        took = self.search.attempt(self.shape(np.clip(row, 0.0, 1.0)), self.limit)
         if took == math.inf:
-            return 2.0 * worst
-        limit[0] = min(limit[0], took * BELOW)
+            return self.worst
+        self.limit = min(self.limit, took * BELOW)
         return took
 
-    def spent(*_: object, **__: object) -> bool:
-        return trials_of(search) >= budget
 
-    sides = 4 if len(search.waits()) == 1 else 5  # no wait helps where the temperature stays
+def evolved(search: Search, budget: float, seed: int) -> None:
+    """Let differential evolution go on from the profiles that the grid found."""
+    starts, family = started(search), Family(search, budget)
+    if not starts:
+        return
+    rng = np.random.default_rng(seed)
+    rows = np.array([family.row(shape) for _, shape in starts])
+    crowd = rows[rng.integers(0, len(rows), 15 * family.sides)]
+    crowd = crowd + rng.standard_normal(crowd.shape) * np.exp(rng.uniform(-6.0, -1.2, (len(crowd), 1)))
+    crowd[: len(rows)] = rows
     differential_evolution(
-        value, [(0.0, 1.0)] * sides, rng=seed, maxiter=100_000, tol=0.0, polish=False, callback=spent
+        family.value,
+        [(0.0, 1.0)] * family.sides,
+        init=np.clip(crowd, 0.0, 1.0),
+        rng=seed,
+        maxiter=100_000,
+        tol=0.0,
+        polish=False,
+        callback=family.spent,
     )
 
 
-def compared(number: int, seeds: int) -> None:
-    """Print a line for each seed: times in laps and trials of the own search and of the evolution."""
-    given = case(number)
-    for seed in range(seeds):
-        row: dict[str, object] = {"case": number, "seed": seed}
-        own = search_of(given, number + 1, seed)
-        begin = time.perf_counter()
-        own.run()
-        if own.best is None:
+def descended(search: Search, budget: float, seed: int) -> None:
+    """Let Nelder and Mead go down from each of the profiles that the grid found, then again from the best."""
+    starts, family = started(search), Family(search, budget)
+    rng = np.random.default_rng(seed)
+    rows = [family.row(shape) for _, shape in starts]
+    for round_ in itertools.count():
+        for row in rows:
+            sizes = np.exp(rng.uniform(-5.0, -1.5, family.sides)) * rng.choice((-1.0, 1.0), family.sides)
+            simplex = np.clip(np.vstack([row, row + np.diag(sizes)]), 0.0, 1.0)
+            family.limit = math.inf
+            minimize(
+                family.value,
+                row,
+                method="Nelder-Mead",
+                options={"initial_simplex": simplex, "maxfev": 300, "xatol": 1e-4, "fatol": 1e-9},
+            )
+        if search.best is None or family.spent() or round_ > 200:
             return
-        lap = own.nominal.lap
-        row |= {"own": own.time / lap, "trials": trials_of(own), "s": time.perf_counter() - begin}
-        for budget in BUDGETS:
-            other = search_of(given, number + 1, seed)
-            begin = time.perf_counter()
-            evolved(other, budget * trials_of(own), seed)
-            took = time.perf_counter() - begin
-            row[f"evolved {budget}"] = other.time / own.time
-            row[f"s {budget}"] = took
-        print(json.dumps(row), flush=True)
+        rows = [family.row(search.best)]
+
+
+def compared(number: int, motions: float) -> None:
+    """Print a line: time in laps and motions of the own search, and of scipy's from the same grid."""
+    given = case(number)
+    own = search_of(given, number + 1, 0)
+    begin = time.perf_counter()
+    own.run()
+    row: dict[str, object] = {"case": number, "own": own.time / own.nominal.lap, "motions": trials_of(own)}
+    row["s"] = took = time.perf_counter() - begin
+    for name, other in (("evolution", evolved), ("simplex", descended)):
+        search = search_of(given, number + 1, 0)
+        begin = time.perf_counter()
+        other(search, motions * trials_of(own), 0)
+        search.settle()
+        row[name] = search.time / own.time if own.best is not None else search.time / own.nominal.lap
+        row[f"s {name}"] = (time.perf_counter() - begin) / took
+    print(json.dumps(row), flush=True)
 
 
 def main() -> None:
@@ -271,7 +334,7 @@ def main() -> None:
     asked = parser.parse_args()
     if asked.compare:
         for number in range(asked.first, asked.first + asked.cases):
-            compared(number, SEEDS)
+            compared(number, MOTIONS)
         return
     feasible, number = 0, asked.first
     while feasible < asked.cases:

@@ -32,15 +32,15 @@ from hersey.document.parts.study import StudyPart
 from hersey.document.parts.time_to_failure import TimeToFailurePart
 from hersey.identification.identified_drive import IdentifiedDrive
 from hersey.inspection.inspecting import Inspection
-from hersey.motion.simulation import Trajectory
+from hersey.motion.trajectory import Trajectory
 from hersey.result import LINE, Result, json_value, table_of
 from hersey.schema.record import part_of
 from hersey.stability.operating_map.result import OperatingMap
 from hersey.stability.plan.result import Plan
-from hersey.stability.warm_up import WarmUp
+from hersey.stability.warm_up_result import WarmUp
 from hersey.study.first_screen.result import DesignPart
 from hersey.study.nip_film import FilmPart, MeasuredFilmPart, MixedPart, VerdictPart
-from hersey.verdict.evidence import verdict
+from hersey.verdict.contact_verdict import verdict
 from hersey.verdict.regime import Regime
 from tests.conftest import ROOT
 from tests.life import shipped, test_ageing_maps, test_other_uses

@@ -20,9 +20,10 @@ from scipy.special import gamma, pbdv
 from benchmarks.mixed.full_contact import Floats, march
 from benchmarks.mixed.table import PRODUCTS, nip_of
 from hersey.errors import ParameterError
+from hersey.lubrication.asperities import Asperities, BoundaryFriction
 from hersey.lubrication.contact import Contact
 from hersey.lubrication.lubricant import EXAMPLES
-from hersey.lubrication.mixed import Asperities, BoundaryFriction, MixedContact, mixed_contact
+from hersey.lubrication.mixed import MixedContact, mixed_contact
 
 SHARES = [(0.003, 0.03), (0.03, 0.1), (0.1, 0.3), (0.3, 0.5)]
 #: Shares at which the full solution is looked at.

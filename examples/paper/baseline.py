@@ -9,7 +9,8 @@ import altair as alt
 
 from hersey.charts.motion import mode_strip
 from hersey.charts.style import WIDTH, Chart, level
-from hersey.motion.simulation import StickSlipCycle, Trajectory
+from hersey.motion.simulation import StickSlipCycle
+from hersey.motion.trajectory import Trajectory
 from paper.figure import ABOUT, ROUNDING, Claim, PaperFigure, Verdict, shown
 from paper.panels import trace
 from paper.sweep import DAMPING, DRIVE_SPEED, STIFFNESS, Case

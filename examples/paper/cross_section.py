@@ -10,7 +10,8 @@ import numpy as np
 from hersey.charts.style import Chart
 from hersey.errors import ParameterError
 from hersey.lubrication.contact import RULES, Contact, nip_width
-from hersey.lubrication.film import Film, film_thickness
+from hersey.lubrication.film import film_thickness
+from hersey.lubrication.film_result import Film
 from hersey.lubrication.film_temperature import film_temperature
 from hersey.machine.limits import OperatingPoint
 from hersey.machine.machine import Machine

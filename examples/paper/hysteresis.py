@@ -10,7 +10,8 @@ import numpy as np
 
 from hersey.charts.style import WIDTH, Chart
 from hersey.motion.schedule import Schedule
-from hersey.motion.simulation import StickSlipCycle, Trajectory, simulate, stick_slip
+from hersey.motion.simulation import StickSlipCycle, simulate, stick_slip
+from hersey.motion.trajectory import Trajectory
 from hersey.stability.hysteresis import HysteresisBand, hysteresis
 from hersey.stability.hysteresis_sweep import hysteresis_sweep
 from paper.figure import Claim, PaperFigure, Verdict, shown

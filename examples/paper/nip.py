@@ -13,7 +13,8 @@ from hersey.charts.labels import apart
 from hersey.charts.style import BLUE, INK, ORANGE, WIDTH, Chart, Row, plot, rows_of
 from hersey.errors import ParameterError
 from hersey.lubrication.contact import Contact
-from hersey.lubrication.film import Film, film_thickness
+from hersey.lubrication.film import film_thickness
+from hersey.lubrication.film_result import Film
 from hersey.lubrication.reynolds import ElasticLayer, LineContactSolution, solve_line_contact
 from hersey.machine.machine import Machine
 from paper.cross_section import contact_of, film_at, told

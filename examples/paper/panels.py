@@ -11,7 +11,7 @@ import numpy as np
 from hersey.arrays import FloatArray
 from hersey.charts.style import BLUE, INK, Chart, Row, plot, ramp, rows_of
 from hersey.motion.schedule import Schedule
-from hersey.motion.simulation import Trajectory
+from hersey.motion.trajectory import Trajectory
 from paper.judges import Quantity
 from paper.sweep import Sweep
 

@@ -11,7 +11,8 @@ import numpy as np
 from hersey.arrays import FloatArray
 from hersey.motion.belt import Drivetrain
 from hersey.motion.drag import Drag
-from hersey.motion.simulation import StickSlipCycle, Trajectory, simulate, stick_slip
+from hersey.motion.simulation import StickSlipCycle, simulate, stick_slip
+from hersey.motion.trajectory import Trajectory
 
 #: Values per sweep, spaced evenly in logarithms so that every ratio counts alike.
 VALUES = 61

@@ -20,7 +20,17 @@ from hersey.schema.record import (
 if TYPE_CHECKING:
     import polars as pl
 
-__all__ = ["OPEN", "Fact", "Means", "Record", "Result", "json_record", "json_value", "table_of"]
+__all__ = [
+    "OPEN",
+    "Fact",
+    "Means",
+    "Record",
+    "Result",
+    "json_record",
+    "json_value",
+    "stated_names",
+    "table_of",
+]
 
 #: Longest one-line form of a result.
 LINE = 120

@@ -122,7 +122,7 @@ def test_a_profile_that_fresh_draws_refuse_is_said_to_be_so(
     drawn: Posterior, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A search that allows too many failures finds a profile that less than 99 % of fresh draws follow."""
-    monkeypatch.setattr("hersey.stability.plan.planner._STRICTLY", 6.0)
+    monkeypatch.setattr("hersey.stability.plan.proof._STRICTLY", 6.0)
     plan = plan_warm_start(drawn, 0.05, temperature=WARMING, confidence=0.99)
     [obstacle] = plan.obstacles
     assert obstacle.limit == "confidence"

@@ -16,7 +16,8 @@ from hersey.damping.surface import DampingSurface
 from hersey.errors import HerseyError, ParameterError, UnitError
 from hersey.lubrication.lubricant import EXAMPLES, ShearThinning
 from hersey.machine.machine import Machine, read_machine
-from hersey.verdict.evidence import measured_film, solved_exponent, verdict
+from hersey.verdict.contact_verdict import solved_exponent, verdict
+from hersey.verdict.evidence import measured_film
 from tests.cli.command import run
 from tests.conftest import ROOT
 from tests.verdict.said import check_film

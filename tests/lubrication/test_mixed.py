@@ -14,7 +14,8 @@ from scipy.integrate import quad
 import hersey
 from hersey import _core
 from hersey.errors import ParameterError
-from hersey.lubrication.mixed import Asperities, BoundaryFriction, MixedContact, mixed_contact, mixed_torque
+from hersey.lubrication.asperities import Asperities, BoundaryFriction
+from hersey.lubrication.mixed import MixedContact, mixed_contact, mixed_torque
 from hersey.machine.machine import read_machine
 from tests.lubrication.roll import OIL, ROLL, WARM
 from tests.lubrication.soft_law import solved

@@ -19,8 +19,8 @@ from hersey import SteadyPoints
 from hersey.charts.friction import along, friction_chart
 from hersey.charts.render import specification_of
 from hersey.errors import ParameterError
+from hersey.lubrication.asperities import Asperities, BoundaryFriction
 from hersey.lubrication.lubricant import Lubricant
-from hersey.lubrication.mixed import Asperities, BoundaryFriction
 from hersey.machine.limits import OperatingPoint
 from hersey.machine.machine import Machine, read_machine
 from hersey.units import ZERO_CELSIUS

@@ -16,7 +16,7 @@ from hersey.errors import ParameterError
 from hersey.machine.limits import Limits
 from hersey.machine.uncertainty import Uncertainty
 from hersey.stability.plan import Plan, plan_profile
-from hersey.stability.plan.planner import Proof, Unknown
+from hersey.stability.plan.proof import Proof, Unknown
 from hersey.stability.plan.trial import Follow, MachineSample, Shape, TemperatureProfile, outcomes
 from hersey.stability.plan.warming import apart, course_of
 from hersey.stability.warm_up import warm_up
@@ -109,8 +109,8 @@ def test_a_trial_with_heat_is_the_motion_with_heat() -> None:
 
 def test_draws_make_their_own_temperature(monkeypatch: pytest.MonkeyPatch) -> None:
     """The last proof has heat as a state: a course that is no longer true leaves it alone."""
-    monkeypatch.setattr("hersey.stability.plan.planner._FRESH", 60)
-    monkeypatch.setattr("hersey.stability.plan.planner._LONG", 1)
+    monkeypatch.setattr("hersey.stability.plan.proof._FRESH", 60)
+    monkeypatch.setattr("hersey.stability.plan.proof._LONG", 1)
     seen = []
     verify = Unknown.verify
 

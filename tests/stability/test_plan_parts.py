@@ -18,9 +18,10 @@ from hersey.motion.schedule import Schedule
 from hersey.motion.simulation import simulate
 from hersey.stability.plan import Plan
 from hersey.stability.plan.draws import Trials, drawn, lower_bound, most_failures, needed, neighbours
+from hersey.stability.plan.grid import Room
 from hersey.stability.plan.obstacles import Reach, _obstacle, speed_text
-from hersey.stability.plan.planner import Unknown
-from hersey.stability.plan.search import Room, Search
+from hersey.stability.plan.proof import Unknown
+from hersey.stability.plan.search import Search
 from hersey.stability.plan.trial import (
     FINE,
     Follow,

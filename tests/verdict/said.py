@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from hersey.lubrication.film import Film
+from hersey.lubrication.film_result import Film
 from hersey.machine.machine import Machine
 from hersey.verdict.checks import misfits, remarks
 from hersey.verdict.evidence import MeasuredFilm

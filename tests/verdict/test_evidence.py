@@ -15,11 +15,13 @@ from hersey.damping.estimate import Estimate
 from hersey.damping.surface import DampingSurface
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.lubrication.contact import Contact
-from hersey.lubrication.film import Correction, Film, drag_torque, film_thickness
+from hersey.lubrication.film import drag_torque, film_thickness
+from hersey.lubrication.film_result import Correction, Film
 from hersey.lubrication.lubricant import Lubricant
 from hersey.machine.machine import Machine, read_machine
 from hersey.verdict.checks import Misfit, misfits
-from hersey.verdict.evidence import MeasuredFilm, Verdict, measured_film, verdict
+from hersey.verdict.contact_verdict import Verdict, verdict
+from hersey.verdict.evidence import MeasuredFilm, measured_film
 from hersey.verdict.regime import Regime, regime
 from hersey.verdict.transition import ContactTransition
 from tests.conftest import ROOT

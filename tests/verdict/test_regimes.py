@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from scipy import stats
 
+from hersey.damping import distributions
 from hersey.damping.estimate import Estimate, estimate
-from hersey.verdict.regimes import _holm, judged
+from hersey.verdict.regimes import judged
 from tests.verdict.cases import alone, holm
 
 DOWSON_HIGGINSON = "Dowson-Higginson EHL"
@@ -20,11 +21,11 @@ def of(exponent: Estimate, name: str) -> tuple[float, bool]:
 
 
 def test_holm_by_hand() -> None:
-    assert _holm([0.01, 0.04, 0.03, 0.005]) == pytest.approx([0.03, 0.06, 0.06, 0.02])
-    assert _holm([0.5, 0.4, 0.9]) == pytest.approx([1.0, 1.0, 1.0])
-    assert _holm([0.02]) == [0.02]
+    assert distributions.holm([0.01, 0.04, 0.03, 0.005]) == pytest.approx([0.03, 0.06, 0.06, 0.02])
+    assert distributions.holm([0.5, 0.4, 0.9]) == pytest.approx([1.0, 1.0, 1.0])
+    assert distributions.holm([0.02]) == [0.02]
     # one just within its own level is not refuted among six
-    assert _holm([0.02, 1.0, 1.0, 1.0, 1.0, 1.0])[0] == pytest.approx(0.12)
+    assert distributions.holm([0.02, 1.0, 1.0, 1.0, 1.0, 1.0])[0] == pytest.approx(0.12)
 
 
 def test_a_bias_that_the_sensors_allow_excludes_nothing() -> None:

@@ -13,7 +13,7 @@ from hersey.charts.friction import friction_chart
 from hersey.charts.labels import Labels
 from hersey.charts.style import BLUE, INK, RIM, WIDTH, Chart, Row, logarithmic_axis, plot
 from hersey.charts.transition import transition_chart
-from hersey.lubrication.film import REGIMES, Film
+from hersey.lubrication.film_result import REGIMES, Film
 from hersey.lubrication.mixed import MixedContact
 from hersey.study.nip import film_points
 from hersey.study.nip_film import FilmPoint

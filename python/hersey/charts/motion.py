@@ -9,7 +9,8 @@ import altair as alt
 from hersey.arrays import FloatArray
 from hersey.charts.over_time import BARE, over_time, shaded, temperatures_over_time, time_axis
 from hersey.charts.style import BLUE, INK, ORANGE, WIDTH, Chart, Row, categories, plot, rows_of, stacked
-from hersey.motion.simulation import StickSlipCycle, Trajectory
+from hersey.motion.simulation import StickSlipCycle
+from hersey.motion.trajectory import Trajectory
 
 #: Names and colours of the modes, dark to light by speed.
 MODES = {

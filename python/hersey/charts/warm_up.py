@@ -8,7 +8,7 @@ import altair as alt
 
 from hersey.charts.over_time import moment, over_time, temperatures_over_time, time_axis
 from hersey.charts.style import BLUE, ORANGE, WIDTH, Chart, level, rows_of, stacked
-from hersey.stability.warm_up import WarmUp
+from hersey.stability.warm_up_result import WarmUp
 
 
 def warm_up_chart(warm: WarmUp) -> Chart:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from hersey.machine.motor import MotorUse
     from hersey.motion.belt import Drivetrain
     from hersey.motion.drag import PowerDrag
-    from hersey.motion.simulation import Trajectory
+    from hersey.motion.trajectory import Trajectory
 
 #: Damping exponents of the paper's baseline.
 _EXPONENTS = {"ehl_exponent": -0.7, "mixed_exponent": -1.2}

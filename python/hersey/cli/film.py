@@ -20,10 +20,11 @@ from hersey.cli.terminal import say
 from hersey.errors import ParameterError
 
 if TYPE_CHECKING:
-    from hersey.lubrication.film import Film
+    from hersey.lubrication.film_result import Film
     from hersey.machine.machine import Machine
     from hersey.study.nip import SharedLoad
-    from hersey.verdict.evidence import MeasuredFilm, Verdict
+    from hersey.verdict.contact_verdict import Verdict
+    from hersey.verdict.evidence import MeasuredFilm
 
 
 #: What the tables that a film needs say at least, as examples.
@@ -73,7 +74,8 @@ def film(
     from hersey.study.nip import film_document, shared_load
     from hersey.verdict.cautions import cautions
     from hersey.verdict.checks import misfits, remarks
-    from hersey.verdict.evidence import measured_film, verdict
+    from hersey.verdict.contact_verdict import verdict
+    from hersey.verdict.evidence import measured_film
     from hersey.verdict.regime import regime
 
     machine = read_machine(machine_file)

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from pydantic import BaseModel
 
     from hersey.stability.plan import Plan
-    from hersey.stability.warm_up import WarmUp
+    from hersey.stability.warm_up_result import WarmUp
 
 #: Kinds of file that a page is.
 PAGES = (".html", ".htm")

@@ -26,7 +26,7 @@ from hersey.cli.terminal import say
 from hersey.errors import ParameterError
 
 if TYPE_CHECKING:
-    from hersey.motion.simulation import Trajectory
+    from hersey.motion.trajectory import Trajectory
 
 #: Time simulated with temperature as a state if none is given.
 _WARMING = "60 s"

@@ -22,8 +22,8 @@ from hersey.damping.candidates.comparison import compare_models
 from hersey.damping.candidates.intervals import quantities
 from hersey.damping.candidates.likelihood import EVIDENCE
 from hersey.damping.candidates.model_comparison import CandidateFit, ModelComparison
-from hersey.damping.candidates.observations import Inputs, Observations
-from hersey.damping.distributions import ratio_quantile, student_above, student_quantile
+from hersey.damping.candidates.observations import Observations
+from hersey.damping.distributions import holm, ratio_quantile, student_above, student_quantile
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.estimate import CONFIDENCE, Estimate
 from hersey.errors import ISOTHERMAL, HerseyError, InsufficientDataError
@@ -33,8 +33,10 @@ from hersey.units import convert, rpm
 if TYPE_CHECKING:
     import polars as pl
 
-#: Speeds and temperatures at which the ratio is taken.
-SPEEDS, TEMPERATURES = 9, 4
+#: Speeds at which the ratio is taken.
+SPEEDS = 9
+#: Temperatures at which it is.
+TEMPERATURES = 4
 #: Least share of the ranges that two logs must have in common: a factor of speed.
 LEAST_SPAN = 1.2
 _QUOTED = ("b", "c", "c below the transition", "transition speed", "Stribeck speed", "T0")
@@ -188,18 +190,16 @@ def compare(
     )
 
 
-def _observed(points: SteadyPoints | Observations, name: str) -> Observations:
-    if isinstance(points, Observations):
-        return points
+def _fitted(data: Observations, name: str) -> ModelComparison:
     try:
-        return Observations.of(points)
+        return compare_models(data, bootstrap=0, cross_validate=False)
     except HerseyError as error:
         raise error.within(name) from None
 
 
-def _fitted(data: Observations, name: str) -> ModelComparison:
+def _observed(points: SteadyPoints | Observations, name: str) -> Observations:
     try:
-        return compare_models(data, bootstrap=0, cross_validate=False)
+        return points if isinstance(points, Observations) else Observations.of(points)
     except HerseyError as error:
         raise error.within(name) from None
 
@@ -267,8 +267,7 @@ def _common_candidate(
 
 def _least_freedom(a: CandidateFit, b: CandidateFit, g_a: FloatArray, g_b: FloatArray) -> float:
     """Degrees of freedom of the less known log, least over linear combinations of the values (rows)."""
-    each = [fit.freedoms.of(row) for fit, rows in ((a.fit, g_a), (b.fit, g_b)) for row in rows]
-    return min(each)
+    return min(fit.freedoms.of(row) for fit, rows in ((a.fit, g_a), (b.fit, g_b)) for row in rows)
 
 
 def _flat(speeds: FloatArray, temperatures: FloatArray) -> tuple[FloatArray, FloatArray | None]:
@@ -281,23 +280,18 @@ def _flat(speeds: FloatArray, temperatures: FloatArray) -> tuple[FloatArray, Flo
 def _law_at(
     candidate: CandidateFit, data: Observations, speed: FloatArray, kelvin: FloatArray | None
 ) -> tuple[FloatArray, FloatArray]:
-    hot = kelvin
-    if hot is None and data.inputs.kelvin is not None:
-        hot = np.full(speed.size, float(np.mean(data.inputs.kelvin)))
-    inputs: Inputs = data.at(speed, hot)
-    return candidate.fit.law.predict(candidate.fit.values, inputs), candidate.fit.law.jacobian(
-        candidate.fit.values, inputs
-    )
+    if kelvin is None and data.inputs.kelvin is not None:
+        kelvin = np.full(speed.size, float(np.mean(data.inputs.kelvin)))
+    inputs, law, values = data.at(speed, kelvin), candidate.fit.law, candidate.fit.values
+    return law.predict(values, inputs), law.jacobian(values, inputs)
 
 
 def _mean(difference: FloatArray, covariance: FloatArray, freedom: float) -> Estimate:
     share = np.full(difference.size, 1.0 / difference.size)
     centre, error = float(share @ difference), float(np.sqrt(share @ covariance @ share))
-    reach = float(student_quantile(0.5 + CONFIDENCE / 2, freedom)) * error
-    ratio = float(np.exp(centre))
-    return Estimate(
-        ratio, ratio * error, float(np.exp(centre - reach)), float(np.exp(centre + reach)), freedom
-    )
+    width = float(student_quantile(0.5 + CONFIDENCE / 2, freedom)) * error
+    ratio, low, high = (float(np.exp(centre + by)) for by in (0.0, -width, width))
+    return Estimate(ratio, ratio * error, low, high, freedom)
 
 
 def _changes(a: CandidateFit, b: CandidateFit, of_a: Observations, of_b: Observations) -> tuple[Change, ...]:
@@ -333,16 +327,8 @@ def _changes(a: CandidateFit, b: CandidateFit, of_a: Observations, of_b: Observa
             ratio = float(np.exp(size))
             change = Estimate(ratio, ratio * error, *(float(np.exp(end)) for end in ends))
         out.append(Change(name, *values, change, is_ratio, p_value))
-    return _corrected(out)
-
-
-def _corrected(changes: list[Change]) -> tuple[Change, ...]:
-    """Holm's p-values, in the order of the names."""
-    corrected, least = [], 0.0
-    for rank, change in enumerate(sorted(changes, key=lambda c: c.p_value)):
-        least = max(least, min(1.0, change.p_value * (len(changes) - rank)))
-        corrected.append(replace(change, p_value=least))
-    return tuple(sorted(corrected, key=lambda c: c.name))
+    corrected = [replace(c, p_value=p) for c, p in zip(out, holm([c.p_value for c in out]), strict=True)]
+    return tuple(sorted(corrected, key=lambda change: change.name))
 
 
 def _moved(candidate: CandidateFit, data: Observations, kelvin: float | None) -> float:

@@ -26,8 +26,10 @@ from hersey.units import convert, rpm, takes_si
 if TYPE_CHECKING:
     import polars as pl
 
-#: Speeds of the candidate grid, and draws of the fit over which the gain is averaged.
-SPEEDS, DRAWS = 25, 40
+#: Speeds of the candidate grid.
+SPEEDS = 25
+#: Draws of the fit over which the gain is averaged.
+DRAWS = 40
 
 
 @dataclass(frozen=True)
@@ -120,16 +122,7 @@ def design(
     fit, data = comparison.chosen.fit, comparison.data
     wanted = _wanted(comparison, quantity)
     candidates = _dwells_to_try(comparison, speeds, temperatures)
-    values = _draws(comparison, seed)
-    # each further dwell is a visit of its own; of exact data it has no error
-    sigma = max(of_one_dwell(fit.scatter, float(np.median(fit.errors)), fit.shared), 1e-10)
-    rows = np.stack([fit.law.jacobian(v, candidates) / sigma for v in values])
-    measured = np.stack([_beside_shared(fit, fit.law.jacobian(v, data.inputs)) for v in values])
-    information = np.einsum("kni,knj->kij", measured, measured)
-    scale = np.sqrt(np.diag(fit.covariance))
-    if not np.all(np.isfinite(scale)) or np.any(scale <= 0):
-        raise InsufficientDataError("the law is not determined by these data: record more of them first")
-    rows, information = rows * scale, information * np.outer(scale, scale)
+    rows, information, scale = _information(comparison, candidates, seed)
     start = np.linalg.slogdet(information)[1]
     picked: list[DesignPoint] = []
     for _ in range(count):
@@ -138,9 +131,9 @@ def design(
         if wanted is None:
             gain = np.median(np.log1p(leverage), axis=0)
         else:
-            reach = np.einsum("kni,ki->kn", rows, inverse[:, :, wanted.parameter])
-            share = reach**2 / (1.0 + leverage) / inverse[:, wanted.parameter, wanted.parameter][:, None]
-            gain = np.mean(share, axis=0)
+            variance = inverse[:, wanted.parameter, wanted.parameter][:, None]
+            moved = np.einsum("kni,ki->kn", rows, inverse[:, :, wanted.parameter])
+            gain = np.mean(moved**2 / (1.0 + leverage) / variance, axis=0)
         best = int(np.argmax(gain))
         information = information + np.einsum("ki,kj->kij", rows[:, best], rows[:, best])
         volume = float(np.exp(-0.5 * np.median(np.linalg.slogdet(information)[1] - start)))
@@ -153,6 +146,27 @@ def design(
         now = fit.error(fit.law.names[wanted.parameter]) * _slope(comparison, wanted)
     name, unit = (wanted.name, wanted.unit) if wanted else ("", "")
     return TestDesign(name, unit, now, tuple(picked), comparison.chosen.candidate.name, seed)
+
+
+def _information(
+    comparison: ModelComparison, candidates: Inputs, seed: int
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """What each draw of the fit learns of the values, in today's standard errors, and these.
+
+    From each candidate, shape (draws, candidates, parameters), and from the log, shape (draws, parameters,
+    parameters).
+    """
+    fit = comparison.chosen.fit
+    values = _draws(comparison, seed)
+    # each further dwell is a visit of its own; of exact data it has no error
+    sigma = max(of_one_dwell(fit.scatter, float(np.median(fit.errors)), fit.shared), 1e-10)
+    rows = np.stack([fit.law.jacobian(v, candidates) / sigma for v in values])
+    measured = np.stack([_beside_shared(fit, fit.law.jacobian(v, comparison.data.inputs)) for v in values])
+    information = np.einsum("kni,knj->kij", measured, measured)
+    scale = np.sqrt(np.diag(fit.covariance))
+    if not np.all(np.isfinite(scale)) or np.any(scale <= 0):
+        raise InsufficientDataError("the law is not determined by these data: record more of them first")
+    return rows * scale, information * np.outer(scale, scale), scale
 
 
 def _beside_shared(fit: LawFit, slopes: FloatArray) -> FloatArray:
@@ -178,9 +192,7 @@ def _wanted(comparison: ModelComparison, quantity: str) -> Quantity | None:
 
 
 def _dwells_to_try(
-    comparison: ModelComparison,
-    speeds: tuple[float, float] | None,
-    temperatures: tuple[float, float] | None,
+    comparison: ModelComparison, speeds: tuple[float, float] | None, temperatures: tuple[float, float] | None
 ) -> Inputs:
     data = comparison.data
     slow, fast = (data.speed.min(), data.speed.max()) if speeds is None else speeds

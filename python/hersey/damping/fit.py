@@ -11,7 +11,8 @@ from hersey.arrays import FloatArray
 from hersey.damping.branches import Transition, fit_branches, transition, why_no_transition
 from hersey.damping.candidates.branched import ONE, Law
 from hersey.damping.candidates.candidate import Candidate
-from hersey.damping.candidates.fitting import LawFit, clustered_covariance, fit_law
+from hersey.damping.candidates.clustered import clustered_covariance
+from hersey.damping.candidates.fitting import LawFit, fit_law
 from hersey.damping.candidates.likelihood import minimise, scatter_beyond
 from hersey.damping.candidates.observations import Observations
 from hersey.damping.candidates.thermal import scaled_temperature

@@ -84,16 +84,7 @@ class FittedLaw(Result):
         the trend lines on either side, as are `torque` and `predict`: they describe each branch, but meet
         below the torque measured, so that `drag` has the torque of the dwells at the transition instead.
         """
-        speeds = np.abs(np.asarray(speed, dtype=float))
-        self._warn_outside("speed", speeds, self.speed_range)
-        if self.b is not None and temperature is None:
-            raise ParameterError("this law depends on temperature: give it one, in K")
-        kelvin = None
-        if self.b is not None and temperature is not None:
-            kelvin = np.asarray(temperature, dtype=float)
-            self._warn_outside("temperature", kelvin, self.temperature_range)
-            speeds, kelvin = np.broadcast_arrays(speeds, kelvin)
-        inputs = self._inputs(speeds, kelvin)
+        speeds, inputs = self._points(speed, temperature)
         return np.asarray(np.exp(self._law.predict(self._law_values, inputs)).reshape(speeds.shape) / speeds)
 
     @cached_property
@@ -113,6 +104,19 @@ class FittedLaw(Result):
     def _with_torque(self, values: FloatArray) -> FloatArray:
         """Values whose level is of torque, not of damping."""
         return np.append(values[0] + np.log(self.reference_speed), values[1:])
+
+    def _points(self, speed: ArrayLike, temperature: ArrayLike | None) -> tuple[FloatArray, Inputs]:
+        """Speeds without their sign, and the points of the law at them; warns outside the data."""
+        speeds = np.abs(np.asarray(speed, dtype=float))
+        self._warn_outside("speed", speeds, self.speed_range)
+        kelvin = None
+        if self.b is not None:
+            if temperature is None:
+                raise ParameterError("this law depends on temperature: give it one, in K")
+            kelvin = np.asarray(temperature, dtype=float)
+            self._warn_outside("temperature", kelvin, self.temperature_range)
+            speeds, kelvin = np.broadcast_arrays(speeds, kelvin)
+        return speeds, self._inputs(speeds, kelvin)
 
     def _inputs(self, speed: FloatArray, kelvin: FloatArray | None) -> Inputs:
         z = np.log(speed.ravel() / self.reference_speed)
@@ -149,18 +153,9 @@ class FittedLaw(Result):
         >>> surface.predict("25 rpm", "150 degC").torque.round(3)
         array([0.201])
         """
-        speeds = np.abs(np.asarray(speed, dtype=float))
-        self._warn_outside("speed", speeds, self.speed_range)
-        kelvin = None
-        if self.b is not None:
-            if temperature is None:
-                raise ParameterError("this law depends on temperature: give it one, in K")
-            kelvin = np.asarray(temperature, dtype=float)
-            self._warn_outside("temperature", kelvin, self.temperature_range)
-            speeds, kelvin = np.broadcast_arrays(speeds, kelvin)
+        _, inputs = self._points(speed, temperature)
         of_points = self.statistics
         dwell = of_one_dwell(of_points.scatter, of_points.dwell_error, of_points.shared)
-        inputs = self._inputs(speeds, kelvin)
         self._warn_untold()
         return band_of(self._law, self._law_values, self.freedoms, dwell, inputs)
 
@@ -188,5 +183,5 @@ class FittedLaw(Result):
             warnings.warn(
                 f"{name} outside the measured {limits[0]:.4g} to {limits[1]:.4g} {unit}: extrapolated",
                 ExtrapolationWarning,
-                stacklevel=4,
+                stacklevel=5,
             )

@@ -7,6 +7,7 @@ them, and what they share (the zero of torque, visits to a temperature, runs).
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -54,11 +55,7 @@ def rest_of_drive(points: SteadyPoints) -> RestOfDrive:
     20 mN m + 1 mN m s/rad times speed (table)
     """
     name = points.log.files[0].name
-    if any(c.name.startswith("no-load") for c in points.log.corrections):
-        raise ParameterError(
-            f"{name}: the mapping takes a no-load torque off this log too, so that nothing is left: leave "
-            "out no_load of the mapping"
-        )
+    _refuse_corrected(points, name)
     speed = np.abs(points.column("speed"))
     data, scale = _observations(points)
     law = _law(name, data)
@@ -96,6 +93,14 @@ def rest_of_drive(points: SteadyPoints) -> RestOfDrive:
     )
 
 
+def _refuse_corrected(points: SteadyPoints, name: str) -> None:
+    if any(c.name.startswith("no-load") for c in points.log.corrections):
+        raise ParameterError(
+            f"{name}: the mapping takes a no-load torque off this log too, so that nothing is left: leave "
+            "out no_load of the mapping"
+        )
+
+
 def _law(name: str, data: Observations) -> RestLaw:
     """The parts that speeds and temperatures can tell, if there are dwells enough for them."""
     kelvin, several = data.inputs.kelvin, data.temperatures.size > 1
@@ -113,22 +118,18 @@ def _law(name: str, data: Observations) -> RestLaw:
 def _observations(points: SteadyPoints) -> tuple[Observations, float]:
     """Torque over its median size in place of ln torque, and that size; no film is there to be heated."""
     plain = replace(points, log=replace(points.log, sensors=Sensors()))
-    with np.errstate(
-        divide="ignore", invalid="ignore"
-    ):  # a torque of nothing has no logarithm and needs none
+    # a torque of nothing has no logarithm and needs none
+    with np.errstate(divide="ignore", invalid="ignore"):
         data = Observations.of(plain, fewest_speeds=1)
     sign = np.sign(points.column("speed"))
     signed = points.column("torque") * sign
     scale = float(np.median(np.abs(signed))) or 1.0
-    return (
-        replace(
-            data,
-            log_torque=signed / scale,
-            torque_error=points.column("torque_error") / scale,
-            tare=points.tare_errors * sign[:, None] / scale,
-        ),
-        scale,
-    )
+    torque: dict[str, Any] = {
+        "log_torque": signed / scale,
+        "torque_error": points.column("torque_error") / scale,
+        "tare": points.tare_errors * sign[:, None] / scale,
+    }
+    return replace(data, **torque), scale
 
 
 def _of_visits(fit: LawFit) -> bool:

@@ -29,6 +29,8 @@ AnyLaw = TypeVar("AnyLaw", bound=AnyDrag)
 #: Factors beyond the speeds of a no-load log up to which its line is drawn on: where it tells the slope in
 #: speed, and where it does not.
 REACH, REACH_OF_ONE = 2.0, 1.1
+#: The numbers of the rest of the drive, in the order of their covariance.
+NUMBERS = ("constant", "per_speed", "temperature_slope")
 #: Standard deviations that enclose 95 % of a normal distribution on either side.
 _DEVIATIONS = quantile(np.inf)
 
@@ -39,9 +41,7 @@ class RestOfDrive(Result):
 
     ``constant`` is in N m, ``per_speed`` in N m s/rad, ``temperature_slope`` in 1/K about
     ``reference_temperature`` (K; None if it does not vary). An interval that is not told (unbounded) stands
-    for a part taken as nothing. ``covariance`` is that of the three numbers, ``freedom`` its degrees of
-    freedom. ``speed_range`` (rad/s) and ``temperature_range`` (K) bound the log it is from; None if stated.
-    ``source`` names file and key, ``sha256`` the files, and ``notes`` what they do not tell.
+    for a part taken as nothing. ``source`` names file and key, ``sha256`` the files.
     """
 
     constant: Estimate
@@ -105,10 +105,9 @@ class RestOfDrive(Result):
             )
         values = np.array([constant, per_speed, temperature_slope], dtype=float)
         error = np.log1p(uncertainty) / _DEVIATIONS * np.array([constant, per_speed, 0.0])
-        told = ("constant", "per_speed", "temperature_slope")
         covariance = np.outer(error, error)
         notes = () if uncertainty else ("its uncertainty is not stated, so that it counts as exact",)
-        level, by_speed, slope = estimates_of(values, covariance, np.full(3, np.inf), told)
+        level, by_speed, slope = estimates_of(values, covariance, np.full(3, np.inf), NUMBERS)
         return cls(
             constant=level,
             per_speed=by_speed,
@@ -199,9 +198,8 @@ class RestOfDrive(Result):
         reach = REACH if self.per_speed.told else REACH_OF_ONE
         slow, fast = float(np.min(np.abs(speed))), float(np.max(np.abs(speed)))
         if slow < low / reach or fast > high * reach:
-            covered = (
-                f"{rpm(low):.3g} to {rpm(high):.3g} rpm" if self.per_speed.told else f"{rpm(low):.3g} rpm"
-            )
+            covered = f"{rpm(low):.3g} to {rpm(high):.3g} rpm"
+            covered = covered if self.per_speed.told else f"{rpm(low):.3g} rpm"
             raise InsufficientDataError(
                 f"{self.source} holds the rest of the drive at {covered}, and {what} goes from "
                 f"{rpm(slow):.3g} to {rpm(fast):.3g} rpm: record the drive without the film there too"
@@ -265,7 +263,7 @@ def estimates_of(
 ) -> list[Estimate]:
     """Return constant, speed and temperature part with their intervals, unbounded for one not in ``told``."""
     out = []
-    for i, name in enumerate(("constant", "per_speed", "temperature_slope")):
+    for i, name in enumerate(NUMBERS):
         error = float(np.sqrt(covariance[i, i]))
         one = estimate(float(values[i]), error, float(freedoms[i]))
         out.append(one if name in told else Estimate(one.value, error, -np.inf, np.inf, one.freedom))

@@ -12,6 +12,7 @@ from hersey.arrays import BoolArray, FloatArray
 from hersey.damping.branches import Branches
 from hersey.damping.candidates.observations import Observations
 from hersey.damping.dwells import SAME_SPEED, SteadyPoints, distinct_speeds
+from hersey.damping.dwells.groups import levels_of_speed
 from hersey.damping.estimate import quantile
 from hersey.damping.scaled import scaled_speed, scaled_torque
 from hersey.errors import ROTATION
@@ -53,8 +54,7 @@ def _higher(
 ) -> tuple[int, int]:
     """How many speeds of a side have more torque than the least beyond the errors, and of how many."""
     torque, error = least
-    order = np.flatnonzero(side)[np.argsort(z[side], kind="stable")]
-    levels = np.split(order, np.flatnonzero(np.diff(z[order]) > 0.5 * SAME_SPEED) + 1)
+    levels = levels_of_speed(z, np.flatnonzero(side), 0.5 * SAME_SPEED)
     reach, weight = quantile(branches.fit.freedom), 1.0 / branches.fit.sigma**2
     high = 0
     for level in levels:

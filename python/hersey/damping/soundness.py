@@ -11,7 +11,7 @@ import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.damping.estimate import Estimate, quantile
-from hersey.damping.rest import RestOfDrive
+from hersey.damping.rest import NUMBERS, RestOfDrive
 
 #: How far a number may be from the one that it follows from, relative.
 AGREES = 1e-6
@@ -60,15 +60,11 @@ def faults_of_estimate(name: str, part: Estimate, scale: str = "linear") -> Iter
         yield name, "within its interval"
         return
     reach = quantile(part.freedom) * part.error
-    ends = {"linear": (part.value - reach, part.value + reach), "log": (0.0, 0.0), "neither": (0.0, 0.0)}[
-        scale
-    ]
+    ends = part.value - reach, part.value + reach
     if scale == "log":
         with np.errstate(over="ignore"):
-            ends = (
-                part.value * float(np.exp(-reach / part.value)),
-                part.value * float(np.exp(reach / part.value)),
-            )
+            low, high = (part.value * float(np.exp(by / part.value)) for by in (-reach, reach))
+        ends = low, high
     if scale != "neither":
         if np.isfinite(part.low) != np.isfinite(part.high):
             yield name, "with both ends of its interval, or none"
@@ -87,11 +83,10 @@ def faults_of_range(name: str, ends: tuple[float, float] | None) -> Iterator[Fau
 
 def faults_of_rest(rest: RestOfDrive) -> Iterator[Fault]:
     """Yield what is wrong with the rest of the drive."""
-    numbers = ("constant", "per_speed", "temperature_slope")
-    parts = [getattr(rest, name) for name in numbers]
-    for name, part in zip(numbers, parts, strict=True):
+    parts = [getattr(rest, name) for name in NUMBERS]
+    for name, part in zip(NUMBERS, parts, strict=True):
         yield from faults_of_estimate(name, part)
-    found = list(faults_of_covariance("covariance", rest.covariance, len(numbers)))
+    found = list(faults_of_covariance("covariance", rest.covariance, len(NUMBERS)))
     yield from found
     if not found and not agree(np.sqrt(np.diag(rest.covariance)), np.array([part.error for part in parts])):
         yield "covariance", "the squares of the three errors on its diagonal"

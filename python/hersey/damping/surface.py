@@ -192,21 +192,7 @@ class DampingSurface(FittedLaw):
             "stick_speed_rule": stick_speed_rule,
         }
         if temperature is None and self.b is not None and self.reference_temperature is not None:
-            if stick_speed_rule == FIXED:
-                raise ParameterError(
-                    f"a stick speed that is '{FIXED}' at all temperatures cannot be followed while it "
-                    f"varies: give one temperature, or stick_speed_rule '{WITH_TRANSITION}'"
-                )
-            reference = self.reference_temperature
-            at_reference = self.drag(roll_radius=roll_radius, temperature=reference, **sticking)
-            exponent = self.transition.temperature_exponent
-            return replace(
-                at_reference,
-                reference_temperature=reference,
-                force_temperature_exponent=self.b.value + (1.0 + self.c.value) * exponent,
-                speed_temperature_exponent=exponent,
-                temperature_zero=self.temperature_zero,
-            )
+            return self._varying_drag(roll_radius, self.reference_temperature, self.b.value, sticking)
         film = Drag(
             transition_force=self.transition_torque(temperature) / roll_radius,
             transition_speed=self.transition_speed(temperature) * roll_radius,
@@ -215,6 +201,25 @@ class DampingSurface(FittedLaw):
             stick_speed=self.stick_speed_at(temperature, **sticking),
         )
         return film if self.rest is None else with_rest(film, self.rest, roll_radius, temperature)
+
+    def _varying_drag(
+        self, roll_radius: float, reference: float, exponent: float, sticking: dict[str, Any]
+    ) -> Drag:
+        """The drag that varies with temperature, from that at a reference temperature (K)."""
+        assert self.transition is not None
+        if sticking["stick_speed_rule"] == FIXED:
+            raise ParameterError(
+                f"a stick speed that is '{FIXED}' at all temperatures cannot be followed while it "
+                f"varies: give one temperature, or stick_speed_rule '{WITH_TRANSITION}'"
+            )
+        moved = self.transition.temperature_exponent
+        return replace(
+            self.drag(roll_radius=roll_radius, temperature=reference, **sticking),
+            reference_temperature=reference,
+            force_temperature_exponent=exponent + (1.0 + self.c.value) * moved,
+            speed_temperature_exponent=moved,
+            temperature_zero=self.temperature_zero,
+        )
 
     @takes_si(roll_radius="length", temperature="temperature")
     def drag_samples(

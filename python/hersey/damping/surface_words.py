@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import textwrap
 from typing import TYPE_CHECKING, Any
 
@@ -10,7 +11,6 @@ import numpy as np
 from hersey.damping.candidates.shared_errors import SharedScatter
 from hersey.damping.estimate import Estimate
 from hersey.damping.fitted_law import FittedLaw
-from hersey.damping.rest import RestOfDrive
 from hersey.result import json_record
 from hersey.units import celsius
 
@@ -40,8 +40,12 @@ def summary_of(s: FittedLaw) -> str:
         "    # fitting method   = robust likelihood of ln torque, errors of torque, speed and temperature",
         f"    # scatter added    = {st.scatter:.3%} between dwells, beyond the errors of their means",
         *(f"    # scatter shared   = {_shared_text(shared)}" for shared in st.shared),
-        *_sensors_text(s.sensors),
-        *_rest_text(s.rest),
+        *(_wrapped(f"    # sensors +/-      = {s.sensors}") if s.sensors else []),
+        *(
+            _wrapped(f"    # torque of film   = measured less the rest of the drive: {s.rest}")
+            if s.rest
+            else []
+        ),
         f"    # data points      = {st.points}",
         f"    # variables        = {st.variables}",
         f"    chi-square         = {st.chi_square:.6g}  (against the errors of the dwells alone)",
@@ -53,30 +57,34 @@ def summary_of(s: FittedLaw) -> str:
         "[[Variables]]                                        95 % interval",
     ]
     lines += [_variable("a", s.a), *([_variable("b", s.b)] if s.b else []), _variable("c", s.c)]
-    if s.transition:
-        at = (
-            ""
-            if s.reference_temperature is None
-            else f" at {_temperature_text(s.reference_temperature, s.temperature_scale)}"
-        )
-        lines += [
-            _variable("c_mixed", s.transition.mixed_exponent),
-            _variable("w_t", s.transition.speed) + f"  rad/s{at}",
-        ]
-        if s.b:
-            freed = s.transition.freed
-            why = "fixed Hersey number"
-            if freed is not None:
-                why = f"by itself: one Hersey number does not hold, its AICc is worse by {freed:.1f}"
-            lines.append(f"    w_t varies as T^{s.transition.temperature_exponent:.3g} ({why})")
-        lines.append("    below w_t the exponent is c_mixed")
-        if s.transition.gradual:
-            lines.append("    the bend is gradual: w_t is where a smooth curve through the dwells is least,")
-            lines.append(f"    the trend lines on either side meet at {s.transition.meeting_speed:.4g} rad/s")
+    lines += _transition_text(s)
     lines += ["[[Fitted in torque space, errors absolute]]"]
     lines += [_variable(name, estimate) for name, estimate in s.torque_space.items()]
     lines += ["[[Correlations]] (unreported are below 0.1)", *_correlations(s)]
     return "\n".join(lines)
+
+
+def _transition_text(s: FittedLaw) -> list[str]:
+    """The lines of the transition, none where there is none."""
+    if not s.transition:
+        return []
+    kelvin = s.reference_temperature
+    at = "" if kelvin is None else f" at {_temperature_text(kelvin, s.temperature_scale)}"
+    lines = [
+        _variable("c_mixed", s.transition.mixed_exponent),
+        _variable("w_t", s.transition.speed) + f"  rad/s{at}",
+    ]
+    if s.b:
+        freed = s.transition.freed
+        why = "fixed Hersey number"
+        if freed is not None:
+            why = f"by itself: one Hersey number does not hold, its AICc is worse by {freed:.1f}"
+        lines.append(f"    w_t varies as T^{s.transition.temperature_exponent:.3g} ({why})")
+    lines.append("    below w_t the exponent is c_mixed")
+    if s.transition.gradual:
+        lines.append("    the bend is gradual: w_t is where a smooth curve through the dwells is least,")
+        lines.append(f"    the trend lines on either side meet at {s.transition.meeting_speed:.4g} rad/s")
+    return lines
 
 
 def record_of(s: FittedLaw) -> dict[str, Any]:
@@ -130,21 +138,9 @@ def _variable(name: str, e: Estimate) -> str:
     return f"    {name:8s} {e.value: .7g} +/- {e.error:.3g} {share:10s} {ends}{sensors}"
 
 
-def _sensors_text(sensors: str) -> list[str]:
-    """Errors of the sensors in lines that a page holds."""
-    return (
-        textwrap.wrap(f"    # sensors +/-      = {sensors}", 96, subsequent_indent=25 * " ")
-        if sensors
-        else []
-    )
-
-
-def _rest_text(rest: RestOfDrive | None) -> list[str]:
-    """What was taken off before the fit, in lines that a page holds."""
-    if rest is None:
-        return []
-    told = f"    # torque of film   = measured less the rest of the drive: {rest}"
-    return textwrap.wrap(told, 96, subsequent_indent=25 * " ")
+def _wrapped(text: str) -> list[str]:
+    """A statistic in lines that a page holds."""
+    return textwrap.wrap(text, 96, subsequent_indent=25 * " ")
 
 
 def _shared_text(shared: SharedScatter) -> str:
@@ -157,12 +153,11 @@ def _shared_text(shared: SharedScatter) -> str:
 def _correlations(s: FittedLaw) -> list[str]:
     deviation = np.sqrt(np.diag(s.covariance))
     pairs = []
-    for i, first in enumerate(s.variables):
-        for j in range(i + 1, len(s.variables)):
-            spread = deviation[i] * deviation[j]
-            r = float(s.covariance[i, j] / spread) if spread else 0.0
-            if abs(r) >= 0.1:
-                pairs.append((-abs(r), f"    C({first}, {s.variables[j]}) = {r:+.4f}"))
+    for (i, first), (j, second) in itertools.combinations(enumerate(s.variables), 2):
+        spread = deviation[i] * deviation[j]
+        r = float(s.covariance[i, j] / spread) if spread else 0.0
+        if abs(r) >= 0.1:
+            pairs.append((-abs(r), f"    C({first}, {second}) = {r:+.4f}"))
     return [text for _, text in sorted(pairs)]
 
 

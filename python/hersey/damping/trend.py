@@ -17,6 +17,7 @@ from hersey.arrays import FloatArray, IntArray
 from hersey.damping.candidates.observations import Observations
 from hersey.damping.distributions import student_quantile
 from hersey.damping.dwells import SAME_SPEED
+from hersey.damping.dwells.groups import levels_of_speed
 from hersey.damping.order import MOST, chances, off_parabolas
 
 #: Probability with which a constant torque seems to rise or to fall somewhere.
@@ -56,7 +57,7 @@ def trend_of(data: Observations) -> Trend:
     rises = falls = False
     lows, spreads = [], [0.0]
     groups = [np.flatnonzero(data.inputs.group == g) for g in np.unique(data.inputs.group)]
-    levels = [_levels(data, members) for members in groups]
+    levels = [levels_of_speed(data.inputs.log_speed, members, SAME_SPEED) for members in groups]
     pairs = sum(len(each) * (len(each) - 1) // 2 for each in levels)
     chance = 0.5 * BY_CHANCE  # of each claim
     limit = float(student_quantile(1.0 - chance / max(pairs, 1), freedom))
@@ -86,14 +87,6 @@ def _together(data: Observations, groups: list[IntArray]) -> tuple[float, float]
     z = data.inputs.log_speed
     found = [chances([(z[each], (data.log_torque + zero)[each]) for each in sorted_]) for zero in zeros]
     return max(rise for rise, _ in found), max(fall for _, fall in found)
-
-
-def _levels(data: Observations, members: IntArray) -> list[IntArray]:
-    """The dwells of each speed among some, the slowest first."""
-    z = data.inputs.log_speed[members]
-    order = members[np.argsort(z, kind="stable")]
-    steps = np.diff(data.inputs.log_speed[order]) > SAME_SPEED
-    return np.split(order, np.flatnonzero(steps) + 1)
 
 
 def _means(
@@ -141,7 +134,7 @@ def _scatter(data: Observations) -> tuple[float, float]:
         best = hump if hump < _HUMP * valley and y.size >= _BOTH else valley
         squares += best
         freedom += _freedom(y.size)
-        apart += _about_parabolas(data, _levels(data, members))
+        apart += _about_parabolas(data, levels_of_speed(data.inputs.log_speed, members, SAME_SPEED))
     scatter = float(np.sqrt(squares / max(freedom, 1.0)))
     if len(apart) >= _ENOUGH:  # the median of the magnitude of noise of one is 0.6745
         scatter = max(scatter, float(np.median(apart)) / 0.6745)

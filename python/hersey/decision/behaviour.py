@@ -25,7 +25,7 @@ from hersey.machine.machine import Machine
 from hersey.motion.belt import Drivetrain
 from hersey.motion.drag import DragTable
 from hersey.motion.schedule import Schedule
-from hersey.motion.simulation import Trajectory
+from hersey.motion.trajectory import Trajectory
 from hersey.posterior import Posterior, posterior
 from hersey.posterior.drives import Drives
 from hersey.posterior.priors import CLOSURES, NUMBERS

@@ -18,7 +18,8 @@ from hersey.decision.judge import drive_limit
 from hersey.errors import ParameterError
 from hersey.machine.limits import Limits
 from hersey.motion.schedule import Schedule
-from hersey.motion.simulation import Trajectory, simulate
+from hersey.motion.simulation import simulate
+from hersey.motion.trajectory import Trajectory
 from hersey.posterior import Posterior
 from hersey.posterior.drives import Drives
 from hersey.posterior.typical import typical_drag

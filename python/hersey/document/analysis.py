@@ -25,7 +25,7 @@ from hersey.schema.part import SCHEMA_VERSION, Part
 from hersey.stability.hysteresis import HysteresisBand
 from hersey.stability.operating_map.result import OperatingMap
 from hersey.stability.plan.result import Plan
-from hersey.stability.warm_up import WarmUp
+from hersey.stability.warm_up_result import WarmUp
 from hersey.study.first_screen.result import DecisionPart, DesignPart
 from hersey.study.nip_film import FilmPart
 from hersey.study.simulation import SimulationPart

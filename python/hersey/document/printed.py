@@ -16,7 +16,7 @@ from hersey.document.parts.stability import BandPart
 from hersey.inspection.inspecting import Inspection
 from hersey.stability.operating_map.result import OperatingMap
 from hersey.stability.plan.result import Plan
-from hersey.stability.warm_up import WarmUp
+from hersey.stability.warm_up_result import WarmUp
 from hersey.study.first_screen.result import DesignPart
 from hersey.study.nip_film import FilmPart
 

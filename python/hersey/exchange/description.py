@@ -18,10 +18,7 @@ COPYRIGHT, LICENSE = "Copyright (c) 2026 The hersey authors", "MIT"
 _TYPES_2 = {"Float64": "Real", "Enumeration": "Enumeration", "Boolean": "Boolean"}
 #: How a variable begins, where FMI lets one say so.
 _INITIAL = {"parameter": "exact", "output": "calculated"}
-_CATEGORIES = {
-    "logStatusWarning": "What is odd, but goes on",
-    "logStatusError": "What is refused, and why",
-}
+_CATEGORIES = {"logStatusWarning": "What is odd, but goes on", "logStatusError": "What is refused, and why"}
 
 
 @dataclass(frozen=True)

@@ -14,15 +14,19 @@ from hersey.errors import ParameterError
 from hersey.exchange.unit import ROTATIONAL, ExportedUnit
 from hersey.motion.belt import Drivetrain
 from hersey.motion.drag import AnyDrag
-from hersey.motion.simulation import Trajectory, simulate
+from hersey.motion.simulation import simulate
+from hersey.motion.trajectory import Trajectory
 
 #: How far unit and core may differ, as a share of the greatest value.
 AGREEMENT = 1e-9
 #: Quantities compared.
 COMPARED = ("belt_speed", "spring_force")
-#: The run: so many communication steps over so many times that in which the belt swings by a radian; s where
-#: no spring holds it.
-_STEPS, _SWINGS, _FREE = 200, 40.0, 0.2
+#: Communication steps of the run.
+_STEPS = 200
+#: Its length over the time in which the belt swings by a radian.
+_SWINGS = 40.0
+#: Its length where no spring holds the belt, s.
+_FREE = 0.2
 #: Torque of the run over that which just starts a belt at rest.
 _OVER = 1.2
 

@@ -164,25 +164,8 @@ def export_fmu(
         If the file exists, or cannot be written.
     """
     _refuse(out, name, drive, port, fmi, roll_radius)
-    if drive == "torque" and start == "steady":
-        raise ParameterError("start 'steady' goes with drive 'speed'")
-    if temperature is not None and temperature <= drag.temperature_zero:
-        raise ParameterError(
-            f"temperature is {celsius(temperature):.6g} degC: the law holds above "
-            f"{celsius(drag.temperature_zero):.6g} degC"
-        )
-    simulate(
-        train,
-        drag,
-        drive_speed=drive_speed if drive == "speed" else None,
-        drive_torque=drive_torque / roll_radius if drive == "torque" and roll_radius else None,
-        temperature=temperature,
-        start=start,
-        duration=_TRIAL,
-        samples=2,
-        tolerance=tolerance,
-    )
     given = {"drive_speed": drive_speed, "drive_torque": drive_torque, "temperature": temperature}
+    _try(train, drag, drive, given, start, roll_radius, tolerance)
     values = _values(train, drag, drive, port, given, start, roll_radius, tolerance)
     values |= _measured(drag, fitted, roll_radius)
     variables = _own(variables_of(own_library()), values, fmi)
@@ -191,22 +174,68 @@ def export_fmu(
     told = printable(" ".join([f"{name}, driven by a {drive}.", *(f"{k}: {v}." for k, v in facts.items())]))
     starts = {key: value for key, value in values.items() if isinstance(value, int | float)}
     model = Model(name, told, str(values["start"]), tolerance, starts)
-    contents = {
+    files = {
         "documentation/index.html": page(model, variables, facts, fmi).encode(),
         "documentation/licenses/license.txt": LICENSE_TEXT.encode(),
         **binaries,
     }
-    remarks = [f"{key}: {fact}" for key, fact in facts.items()]
-    token = _token(
-        [description(model, variables, fmi, ""), drive_text(values, remarks).encode(), *contents.values()]
-    )
-    contents = {
-        "modelDescription.xml": description(model, variables, fmi, token),
-        "resources/drive.txt": drive_text({"format": "1", "token": token, **values}, remarks).encode(),
-    } | contents
+    token, contents = _contents(model, variables, fmi, values, facts, files)
     write_atomically(Path(out), _packed(contents), overwrite=overwrite)
     return ExportedUnit(
         Path(out), fmi, drive, str(values["start"]), token, platforms, variables, starts, facts, port
+    )
+
+
+def _contents(
+    model: Model,
+    variables: tuple[Variable, ...],
+    fmi: str,
+    values: Mapping[str, Wire],
+    facts: Mapping[str, str],
+    files: Mapping[str, bytes],
+) -> tuple[str, dict[str, bytes]]:
+    """The token of a unit, and its files with the two in which the token stands."""
+    remarks = [f"{key}: {fact}" for key, fact in facts.items()]
+    token = _token(
+        [description(model, variables, fmi, ""), drive_text(values, remarks).encode(), *files.values()]
+    )
+    return token, {
+        "modelDescription.xml": description(model, variables, fmi, token),
+        "resources/drive.txt": drive_text({"format": "1", "token": token, **values}, remarks).encode(),
+        **files,
+    }
+
+
+def _try(
+    train: Drivetrain,
+    drag: AnyDrag,
+    drive: str,
+    given: Mapping[str, float | None],
+    start: str | tuple[float, float],
+    roll_radius: float | None,
+    tolerance: float,
+) -> None:
+    """Refuse what a motion cannot start with; ``given`` are the inputs in the units of the belt."""
+    if drive == "torque" and start == "steady":
+        raise ParameterError("start 'steady' goes with drive 'speed'")
+    temperature, torque = given["temperature"], given["drive_torque"]
+    if temperature is not None and temperature <= drag.temperature_zero:
+        raise ParameterError(
+            f"temperature is {celsius(temperature):.6g} degC: the law holds above "
+            f"{celsius(drag.temperature_zero):.6g} degC"
+        )
+    simulate(
+        train,
+        drag,
+        drive_speed=given["drive_speed"] if drive == "speed" else None,
+        drive_torque=torque / roll_radius
+        if drive == "torque" and roll_radius and torque is not None
+        else None,
+        temperature=temperature,
+        start=start,
+        duration=_TRIAL,
+        samples=2,
+        tolerance=tolerance,
     )
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cached_property, partial
 from typing import Annotated
 
 import numpy as np
@@ -153,9 +153,9 @@ class Contact(Record):
         """Load per length, N/m."""
         return self.load / self.length
 
-    @property
+    @cached_property
     def nip(self) -> Nip:
-        """The width of the nip and the pressure in it."""
+        """The width of the nip and the pressure in it, whose solution takes a millisecond."""
         load = self.load_per_length
         rubber = (self.rubber_thickness, self.modulus, self.poisson_ratio)
         nip = pointwise(_core.layer, load, self.reduced_radius, *rubber)

@@ -15,14 +15,16 @@ from numpy.typing import ArrayLike
 from hersey.arrays import FloatArray
 from hersey.errors import ParameterError
 from hersey.lubrication.contact import Contact
-from hersey.lubrication.film import film_thickness, shear_heating
+from hersey.lubrication.film import film_thickness, operating_points, shear_heating
 from hersey.lubrication.lubricant import Lubricant
 from hersey.units import celsius, takes_si
 
 #: Mean of a parabola over its top.
 _MEAN = 2.0 / 3.0
-#: Half a step at a time settles for any drop or rise below a hundred kelvin; where it has, K.
-_STEPS, _SETTLED = 200, 1e-6
+#: Half a step at a time settles for any drop or rise below a hundred kelvin: steps at the most.
+_STEPS = 200
+#: Step below which it has, K.
+_SETTLED = 1e-6
 
 
 @takes_si(speed="speed", temperature="temperature", supply="length")
@@ -62,9 +64,7 @@ def film_temperature(
     >>> print(f"{453.15 - film:.1f} K colder than the heater")
     7.1 K colder than the heater
     """
-    speeds, read = np.broadcast_arrays(
-        np.abs(np.asarray(speed, dtype=float)), np.asarray(temperature, dtype=float)
-    )
+    speeds, read = operating_points(speed, temperature)
     if contact.heat_flow is None:
         return np.array(read)
     if lubricant.conductivity is None:

@@ -89,10 +89,7 @@ class Lubricant(Record):
     def __post_init__(self) -> None:
         """Bring the values to SI if they come with units, and check the points against the law."""
         fields_in_si(self, {"density": "density", "conductivity": "thermal conductivity"})
-        for name, kind in (
-            ("points", "viscosity"),
-            ("pressure_viscosity", "pressure-viscosity coefficient"),
-        ):
+        for name, kind in (("points", "viscosity"), ("pressure_viscosity", "pressure-viscosity coefficient")):
             object.__setattr__(self, name, _pairs_in_si(name, kind, getattr(self, name)))
         if self.model not in MODELS:
             raise ParameterError(f"viscosity model '{self.model}' is not known: {', '.join(MODELS)} are")

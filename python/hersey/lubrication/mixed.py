@@ -18,24 +18,20 @@ from numpy.typing import ArrayLike, NDArray
 from hersey import _core
 from hersey.arrays import FloatArray, pointwise
 from hersey.errors import ParameterError
+from hersey.lubrication.asperities import Asperities, BoundaryFriction
+from hersey.lubrication.checked_range import beyond_checked_range
 from hersey.lubrication.contact import Contact
-from hersey.lubrication.film import REGIMES, film_thickness, soft_force_beyond
+from hersey.lubrication.film import film_thickness, inlet_length, operating_points, soft_force_beyond
+from hersey.lubrication.film_result import REGIMES, SOFT
 from hersey.lubrication.lubricant import Lubricant
-from hersey.result import OPEN, Means, Record, Result, json_record
-from hersey.units import celsius, fields_in_si, takes_si
+from hersey.result import OPEN, Means, Record, Result, json_record, stated_names
+from hersey.units import celsius, takes_si
 
 if TYPE_CHECKING:
     import polars as pl
 
 #: The core takes no film whose thickness hangs on load less than so.
 _LEAST_LOAD_EXPONENT = 0.01
-#: Index of the soft regime, whose drag has more than the shear of the nip.
-_SOFT = REGIMES.index("isoviscous-elastic")
-#: What the law of a soft film was checked for against the full numerical solution (docs/mixed.md): pressure
-#: of the asperities at F = 1 over that of the nip, half-width over thickness, inlet over half-width, share.
-_STIFFNESS, _WIDTH, _INLET, _SHARE = (2.0, 60.0), (0.6, 1.6), 0.05, 0.5
-#: Largest share at which the law of a hard film is supported.
-_HARD_SHARE = 0.1
 #: Least roundness of the dry pressure that the core takes.
 _FLATTEST = 0.01
 #: Films over roughness, if alone, between which inlet and pressure make a power of eta U; its local
@@ -44,92 +40,11 @@ _BETWEEN = (5.0, 20.0)
 
 
 @dataclass(frozen=True)
-class Asperities(Record):
-    """The summits of two hard faces as Greenwood and Tripp (1970) have them.
-
-    Parameters
-    ----------
-    modulus
-        Contact modulus E* of the two faces that touch, Pa: 1/E* = (1-nu1^2)/E1 + (1-nu2^2)/E2. That of the
-        faces of belt and heater, not of the rubber behind them.
-    sigma_beta_density
-        Roughness times radius times number of the summits per area.
-    sigma_over_beta
-        Roughness over radius of the summits.
-
-    Raises
-    ------
-    ParameterError
-        If a value is not positive.
-    """
-
-    modulus: Annotated[float, Means("contact modulus of the faces", "Pa")]
-    sigma_beta_density: float = 0.05
-    sigma_over_beta: float = 0.01
-
-    def __post_init__(self) -> None:
-        """Bring the modulus to SI if it comes with a unit, and check the values."""
-        fields_in_si(self, {"modulus": "pressure"})
-        for name, value in vars(self).items():
-            if not 0 < value < np.inf:
-                raise ParameterError(f"{name} is {value:g}: it must be greater than 0")
-
-    @property
-    def pressure(self) -> float:
-        """Mean pressure of the asperities over F(lambda), Pa."""
-        slope: float = self.sigma_beta_density**2 * self.sigma_over_beta**0.5
-        return _core.GREENWOOD_TRIPP * slope * self.modulus
-
-
-@dataclass(frozen=True)
-class BoundaryFriction(Record):
-    """Friction where asperities carry all: coefficient + slope (T - temperature).
-
-    ``coefficient`` has no unit, ``slope`` is in 1/K, ``temperature`` (K) is that of the coefficient, needed
-    where the slope is not 0.
-    """
-
-    coefficient: float
-    slope: Annotated[float, Means("1/K")] = 0.0
-    temperature: Annotated[float | None, Means("of the coefficient", "K")] = None
-
-    def __post_init__(self) -> None:
-        """Bring the temperature to K if it comes with a unit, and check the values."""
-        fields_in_si(self, {"temperature": "temperature"})
-        if not 0 < self.coefficient < np.inf:
-            raise ParameterError(f"boundary friction is {self.coefficient:g}: it must be greater than 0")
-        if self.slope and self.temperature is None:
-            raise ParameterError("boundary friction has a slope: give the temperature of its coefficient")
-
-    @takes_si(temperature="temperature")
-    def at(self, temperature: ArrayLike) -> FloatArray:
-        """Return the coefficient at temperatures (K).
-
-        Raises
-        ------
-        ParameterError
-            If it falls to 0 or below.
-        """
-        kelvin = np.asarray(temperature, dtype=float)
-        rise = np.zeros_like(kelvin) if self.temperature is None else kelvin - self.temperature
-        coefficient = np.asarray(self.coefficient + self.slope * rise)
-        if not np.all(coefficient > 0):
-            worst = float(kelvin.ravel()[np.argmin(coefficient)])
-            raise ParameterError(
-                f"boundary friction is {np.min(coefficient):.3g} at {celsius(worst):.1f} degC: its slope of "
-                f"{self.slope:g} per K does not hold so far"
-            )
-        return coefficient
-
-
-@dataclass(frozen=True)
 class MixedTransition(Record):
     """Where the drag, falling with speed, begins to rise; arrays, not a number where it never falls.
 
-    ``temperature`` (K), ``product`` of viscosity and belt speed (Pa m), ``speed`` of the roll (rad/s),
-    ``belt_speed`` (m/s), ``lambda_ratio``, the least ``torque`` (N m), and ``sensitivity``: d ln product by
-    the logarithm of each number of the law, by name. ``by_roughness`` is d ln speed/d ln roughness with the
-    summits of one shape; by boundary friction it is ``sensitivity["boundary"]``, by viscosity -1.
+    ``by_roughness`` is that with the summits of one shape; the derivative of the speed by boundary friction
+    is ``sensitivity["boundary"]``, by viscosity -1.
     """
 
     not_stated = ("temperature",)
@@ -150,13 +65,10 @@ class MixedTransition(Record):
 class MixedContact(Record):
     """A contact whose load film and asperities share; made by `mixed_contact`.
 
-    ``regime`` is the law of the film, ``reference`` (Pa m) the product of viscosity and belt speed at which
-    the film alone is as thick as the roughness. A soft film has an ``edge``, the mean pressure of the nip
-    over K sqrt(l) with the slope of pressure K at its edge and the length l of the inlet there, and the
-    ``roundness`` K^2 a/(2 p_max^2) of its pressure; others have edge 0 and go as their share of the load to
-    -``load_exponent``. ``stiffness`` is the pressure of the asperities over F(lambda)
-    and over the mean pressure of the nip, ``shear`` (N) the force that shears a film of lambda = 1 there over
-    the nip, ``rolling`` (N) what inlet and pressure add to it, as eta U to the ``rolling_exponent``.
+    ``regime`` is the law of the film. K of a soft film is the slope of pressure at the edge of the nip, l the
+    length of the inlet there; other films have edge 0 and go as their share of the load to
+    -``load_exponent``. ``stiffness`` is the pressure of the asperities over F(lambda) and over the mean
+    pressure of the nip; ``rolling`` goes as eta U to the ``rolling_exponent``.
     """
 
     not_stated = ("contact", "lubricant")
@@ -211,18 +123,15 @@ class MixedContact(Record):
         ParameterError
             If a value is impossible.
         """
-        speeds, kelvin = np.broadcast_arrays(
-            np.abs(np.asarray(speed, dtype=float)), np.asarray(temperature, dtype=float)
-        )
+        speeds, kelvin = operating_points(speed, temperature)
         if not np.all(np.isfinite(speeds)):
             raise ParameterError("speed is not a finite number")
-        radius = self.contact.roll_radius
-        viscosity = self.lubricant.viscosity(kelvin)
+        radius = self.lever
         state = pointwise(_core.mixed_contact, self.product(speeds, kelvin), *self.numbers(kelvin))
         return MixedFilm(
             speed=speeds,
             temperature=kelvin,
-            viscosity=viscosity,
+            viscosity=self.lubricant.viscosity(kelvin),
             lambda_ratio=state.lambda_ratio,
             minimum_ratio=state.minimum,
             share=state.share,
@@ -233,17 +142,8 @@ class MixedContact(Record):
         )
 
     def beyond_checked_range(self, share: FloatArray, product: FloatArray) -> NDArray[np.bool_]:
-        """Return where the law was not checked against the full numerical solution of a contact.
-
-        ``share`` is that of the asperities, ``product`` viscosity times belt speed (Pa m), of one shape.
-        """
-        if not self.edge:
-            return np.asarray(share > _HARD_SHARE)
-        nip = self.contact.nip
-        width = nip.half_width / self.contact.rubber_thickness
-        inlet = _inlet_length(self.contact, product) / nip.half_width
-        nip_known = _STIFFNESS[0] <= self.stiffness <= _STIFFNESS[1] and _WIDTH[0] <= width <= _WIDTH[1]
-        return np.asarray((share > _SHARE) | (inlet > _INLET) | (not nip_known))
+        """Return where the law was not checked, at shares of the asperities and products eta U (Pa m)."""
+        return beyond_checked_range(self.contact, share, product, self.stiffness if self.edge else None)
 
     def _by_roughness(self, shift: Mapping[str, FloatArray]) -> FloatArray:
         """The reference goes as roughness^(1/n); at one product shear, rolling and inlet are the film's."""
@@ -259,14 +159,13 @@ class MixedContact(Record):
         kelvin = np.asarray(temperature, dtype=float)
         found = pointwise(_core.mixed_transition, *self.numbers(kelvin))
         belt_speed = found.product / self.lubricant.viscosity(kelvin)
-        radius = self.contact.roll_radius
         return MixedTransition(
             temperature=kelvin,
             product=found.product,
-            speed=belt_speed / radius,
+            speed=belt_speed / self.lever,
             belt_speed=belt_speed,
             lambda_ratio=found.lambda_ratio,
-            torque=found.force * radius,
+            torque=found.force * self.lever,
             sensitivity=found.sensitivity,
             by_roughness=self._by_roughness(found.sensitivity),
         )
@@ -274,13 +173,7 @@ class MixedContact(Record):
 
 @dataclass(frozen=True, repr=False)
 class MixedFilm(Result):
-    """Film and asperities at operating points; arrays of one shape.
-
-    ``speed`` of the roll (rad/s), ``temperature`` (K), ``viscosity`` (Pa s), ``lambda_ratio``,
-    ``minimum_ratio`` (the least film over the roughness; not a number where no law of it is known), ``share``
-    of the load that asperities carry, and the torques (N m) of the asperities, of the film sheared over the
-    nip and of what its inlet and its pressure add (all that `Film` has beyond eta U/h_c).
-    """
+    """Film and asperities at operating points; arrays of one shape."""
 
     also_stated = ("torque", "beyond_checked_range")
     not_stated = ("mixed",)
@@ -306,8 +199,8 @@ class MixedFilm(Result):
     @property
     def beyond_checked_range(self) -> NDArray[np.bool_]:
         """Where the law was not checked against the full numerical solution of a contact."""
-        product = self.mixed.product(self.speed, self.temperature)
-        return self.mixed.beyond_checked_range(self.share, product)
+        mixed = self.mixed
+        return mixed.beyond_checked_range(self.share, mixed.product(self.speed, self.temperature))
 
     @cached_property
     def transition(self) -> MixedTransition:
@@ -325,9 +218,12 @@ class MixedFilm(Result):
     def summary(self, names: Sequence[str] = ()) -> str:
         """Return the points and the transition as text; ``names`` of the points, numbered if not given."""
         mixed, asperities = self.mixed, self.mixed.asperities
+        under = f", as its load to -{mixed.load_exponent:g}"
+        if mixed.edge:
+            under = " if alone, made where the dry pressure exceeds that of the asperities"
         lines = [
             self.headline(),
-            f"  film as that of {mixed.regime}: as speed to {mixed.film_exponent:g}{_under(mixed)}; "
+            f"  film as that of {mixed.regime}: as speed to {mixed.film_exponent:g}{under}; "
             f"lambda = 1 at eta U = {mixed.reference:.3g} Pa m if alone",
             f"  asperities: sigma beta D = {asperities.sigma_beta_density:g}, sigma/beta = "
             f"{asperities.sigma_over_beta:g}, E* = {1e-9 * asperities.modulus:.3g} GPa",
@@ -344,41 +240,21 @@ class MixedFilm(Result):
                 f"  {name[:16]:16s} {celsius(kelvin):6.1f} {speed:9.3g} {ratio:7.3g} "
                 f"{100 * share:8.3g} {torque:11.3g} {turn:>15s}"
             )
-        beyond = int(np.count_nonzero(self.beyond_checked_range))
-        if beyond:
-            lines.append(
-                f"  {beyond} of {self.share.size} points are beyond the range in which the law was checked"
-            )
+        if beyond := int(np.count_nonzero(self.beyond_checked_range)):
+            where = f"{beyond} of {self.share.size} points"
+            lines.append(f"  {where} are beyond the range in which the law was checked")
         return "\n".join(lines)
 
     def to_dict(self) -> dict[str, Any]:
         """Return the law and the points, in SI; arrays of shape (points,)."""
-        hidden = ("contact", "lubricant", "asperities", "friction")
-        law = {name: value for name, value in vars(self.mixed).items() if name not in hidden}
-        points = {
-            name: np.ravel(value) for name, value in vars(self).items() if isinstance(value, np.ndarray)
-        }
-        turn = self.transition
-        shifts = {name: np.ravel(shift) for name, shift in turn.sensitivity.items()}
+        turn = {name: getattr(self.transition, name) for name in stated_names(MixedTransition)}
+        shifts = turn.pop("sensitivity")
+        points = {name: getattr(self, name) for name in stated_names(type(self))}
+        turn, shifts, points = (
+            {name: np.ravel(value) for name, value in each.items()} for each in (turn, shifts, points)
+        )
         return json_record(
-            {
-                "law": law
-                | {"asperities": vars(self.mixed.asperities), "friction": vars(self.mixed.friction)},
-                "points": points
-                | {
-                    "torque": np.ravel(self.torque),
-                    "beyond_checked_range": np.ravel(self.beyond_checked_range),
-                },
-                "transition": {
-                    "speed": np.ravel(turn.speed),
-                    "belt_speed": np.ravel(turn.belt_speed),
-                    "product": np.ravel(turn.product),
-                    "lambda_ratio": np.ravel(turn.lambda_ratio),
-                    "torque": np.ravel(turn.torque),
-                    "sensitivity": shifts,
-                    "by_roughness": np.ravel(turn.by_roughness),
-                },
-            }
+            {"law": self.mixed, "points": points, "transition": turn | {"sensitivity": shifts}}
         )
 
     def to_frame(self) -> pl.DataFrame:
@@ -402,32 +278,35 @@ class MixedFilm(Result):
         return pl.DataFrame({name: np.ravel(values) for name, values in columns.items()})
 
 
-def _under(mixed: MixedContact) -> str:
-    """How asperities thicken the film, in words."""
-    if mixed.edge:
-        return " if alone, made where the dry pressure exceeds that of the asperities"
-    return f", as its load to -{mixed.load_exponent:g}"
-
-
-def _inlet_length(contact: Contact, product: ArrayLike) -> FloatArray:
-    """Length of the inlet of the film alone, m, at products of viscosity and belt speed, Pa m."""
-    nip = contact.nip
-    modulus = contact.effective_modulus
-    speed = 0.5 * np.asarray(product, dtype=float)
-    return pointwise(
-        _core.inlet_length, 1.0, speed, contact.reduced_radius, modulus, nip.edge, nip.half_width
-    )
-
-
 def _edge(contact: Contact, reference: float) -> tuple[float, float]:
     """Mean pressure over K sqrt(l) at a reference, Pa m, and K^2 a/(2 p_max^2); p = K sqrt(d) at the edge."""
     nip = contact.nip
     half = nip.half_width
     # K as of the core: edge E*/(2R) sqrt(2a), E* = E'/2
     slope = nip.edge * 0.25 * contact.effective_modulus / contact.reduced_radius * (2.0 * half) ** 0.5
-    length = float(_inlet_length(contact, reference))
+    length = float(inlet_length(contact, 1.0, 0.5 * reference))
     roundness = slope**2 * half / (2.0 * nip.pressure_max**2)
     return nip.pressure_mean / (slope * length**0.5), float(np.clip(roundness, _FLATTEST, 1.0))
+
+
+def _soft_numbers(contact: Contact, reference: float, exponent: float) -> dict[str, float]:
+    """The numbers that only a soft film has, at a reference, Pa m; what inlet and pressure add is a power."""
+    edge, roundness = _edge(contact, reference)
+    ends = np.array(_BETWEEN) ** (1.0 / exponent)
+    low, high = soft_force_beyond(contact, reference * ends).tolist()
+    power = float(np.log(high / low) / np.log(ends[1] / ends[0]))
+    rolling = low / float(ends[0]) ** power
+    return {"edge": edge, "roundness": roundness, "rolling": rolling, "rolling_exponent": power}
+
+
+def _check_carry(asperities: Asperities, pressure: float) -> None:
+    """Refuse summits that do not carry the pressure of the nip, Pa, before the mean planes meet."""
+    most = asperities.pressure * float(_core.asperity_integral(np.zeros(())))
+    if most <= pressure:
+        raise ParameterError(
+            f"the asperities carry at most {1e-6 * most:.3g} MPa before the mean planes meet, and the nip "
+            f"presses with {1e-6 * pressure:.3g} MPa: state stiffer or denser summits, or a softer nip"
+        )
 
 
 @takes_si(speed="speed", temperature="temperature")
@@ -477,30 +356,15 @@ def mixed_contact(
         raise ParameterError(f"regime '{regime}' is not known: governing, {', '.join(REGIMES)}")
     film = film_thickness(contact, lubricant, speed=speed, temperature=temperature)
     name = film.regime_names()[0] if regime == "governing" else regime
-    central = float(film.centres[name])
-    if not central > 0:
+    if not (central := float(film.centres[name])) > 0:
         raise ParameterError(f"regime '{name}' needs the pressure-viscosity coefficient of {lubricant.name}")
     index = REGIMES.index(name)
     exponent = _core.FILM_SPEED_EXPONENTS[index]
     product = float(film.viscosity) * 2.0 * float(film.entrainment_speed)
     reference = product * (contact.roughness / central) ** (1.0 / exponent)
-    most = asperities.pressure * float(_core.asperity_integral(np.zeros(())))
-    soft = index == _SOFT
-    needed = film.nip.pressure_max if soft else film.nip.pressure_mean
-    if most <= needed:
-        raise ParameterError(
-            f"the asperities carry at most {1e-6 * most:.3g} MPa before the mean planes meet, and the nip "
-            f"presses with {1e-6 * needed:.3g} MPa: state stiffer or denser summits, or a "
-            "softer nip"
-        )
-    rolling, power = 0.0, exponent
-    edge, roundness = 0.0, 1.0
-    if soft:
-        edge, roundness = _edge(contact, reference)
-        ends = np.array(_BETWEEN) ** (1.0 / exponent)
-        low, high = soft_force_beyond(contact, reference * ends).tolist()
-        power = float(np.log(high / low) / np.log(ends[1] / ends[0]))
-        rolling = low / float(ends[0]) ** power
+    soft = index == SOFT
+    _check_carry(asperities, film.nip.pressure_max if soft else film.nip.pressure_mean)
+    of_hard = {"edge": 0.0, "roundness": 1.0, "rolling": 0.0, "rolling_exponent": exponent}
     mixed = MixedContact(
         contact=contact,
         lubricant=lubricant,
@@ -510,12 +374,9 @@ def mixed_contact(
         reference=reference,
         film_exponent=exponent,
         load_exponent=max(_core.FILM_LOAD_EXPONENTS[index], _LEAST_LOAD_EXPONENT),
-        edge=edge,
-        roundness=roundness,
+        **(_soft_numbers(contact, reference, exponent) if soft else of_hard),
         stiffness=asperities.pressure / film.nip.pressure_mean,
         shear=reference / contact.roughness * film.nip.width * contact.length,
-        rolling=rolling,
-        rolling_exponent=power,
     )
     mixed.transition(temperature)
     return mixed

@@ -9,11 +9,12 @@ against a rigid one. E* = E'/2 is the contact modulus.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Annotated, Literal
 
 from hersey import _core
 from hersey.arrays import FloatArray
 from hersey.errors import ParameterError
+from hersey.result import Means
 from hersey.units import fields_in_si, takes_si
 
 #: Nodes between inlet and outlet.
@@ -22,10 +23,17 @@ NODES = 201
 _MANY = 1_000_000
 #: What an exponent can be asked of.
 Quantity = Literal["damping", "torque", "minimum_thickness", "central_thickness", "base_traction"]
-#: Shares of a layer's thickness and of its roll's radius beyond which linear elasticity is a sketch.
-_INDENTATION, _HALF_WIDTH = 0.15, 0.3
+#: Share of a layer's thickness beyond which linear elasticity is a sketch.
+_INDENTATION = 0.15
+#: Share of the roll's radius up to which its parabola holds.
+_HALF_WIDTH = 0.3
 #: Error of the least film that asks for more nodes.
 _GRID_ERROR = 0.01
+#: What a solution has by the same name in the core.
+_OF_THE_CORE = (
+    *("x", "pressure", "film_thickness", "couette", "poiseuille", "greatest_pressure", "outlet", "offset"),
+    *("length", "load_residual", "flow_residual", "grid_error", "iterations", "stations"),
+)
 #: Pressure above which Barus' law overstates viscosity, Pa.
 _BARUS = 0.4e9
 
@@ -87,60 +95,35 @@ class LineExponents:
 class LineContactSolution:
     """Pressure, film and friction of a line contact, SI.
 
-    Parameters
-    ----------
-    x
-        Places of the nodes from the axis of the roll, downstream positive, m.
-    pressure, film_thickness
-        Pa and m at the nodes. Beyond ``outlet`` (m) the film is broken and pressure is zero.
-    central_thickness, minimum_thickness
-        Film under the axis of the roll and least film, m.
-    greatest_pressure
-        Pa.
-    couette, poiseuille
-        Shear by sliding, and half the integral of film thickness times pressure gradient, N/m.
-    roll_traction, base_traction
-        Shear force per length on the roll and on what it runs against, along the motion, N/m:
-        ``-couette - poiseuille`` and ``couette - poiseuille``. The broken film is not counted.
-    friction
-        Magnitude of ``roll_traction`` over the load.
-    offset
-        Film less parabola and deflection, m: for a layer minus the approach of roll and base; for a half
-        space it belongs to the unit ``length`` (m) of the logarithm.
-    by_speed, by_load
-        Exponents of speed (both surfaces alike) and of load.
-    load_residual, flow_residual
-        Relative errors of the load balance and of the flow that remain.
-    grid_error
-        Relative error of the least film estimated from two grids.
-    iterations, stations
-        Newton steps in all, and solutions on the way from a rigid roll.
-    cautions
-        What the model does not hold for, or could be resolved better.
+    The broken film beyond ``outlet``, where pressure is zero, is not counted in the tractions, which are
+    along the motion: ``-couette - poiseuille`` and ``couette - poiseuille``.
     """
 
-    x: FloatArray
-    pressure: FloatArray
-    film_thickness: FloatArray
-    central_thickness: float
-    minimum_thickness: float
-    couette: float
-    poiseuille: float
-    roll_traction: float
-    base_traction: float
-    greatest_pressure: float
-    outlet: float
-    offset: float
-    length: float
-    load_residual: float
-    flow_residual: float
-    grid_error: float
-    by_speed: LineExponents
-    by_load: LineExponents
-    friction: float
-    iterations: int
-    stations: int
-    cautions: tuple[str, ...]
+    x: Annotated[FloatArray, Means("places of the nodes from the axis of the roll, downstream positive", "m")]
+    pressure: Annotated[FloatArray, Means("at the nodes", "Pa")]
+    film_thickness: Annotated[FloatArray, Means("at the nodes", "m")]
+    central_thickness: Annotated[float, Means("film under the axis of the roll", "m")]
+    minimum_thickness: Annotated[float, Means("least film", "m")]
+    couette: Annotated[float, Means("shear by sliding", "N/m")]
+    poiseuille: Annotated[float, Means("half the integral of film thickness times pressure gradient", "N/m")]
+    roll_traction: Annotated[float, Means("shear force on the roll per length", "N/m")]
+    base_traction: Annotated[float, Means("shear force on what it runs against per length", "N/m")]
+    greatest_pressure: Annotated[float, Means(unit="Pa")]
+    outlet: Annotated[float, Means("where the film breaks", "m")]
+    #: for a layer minus the approach of roll and base; for a half space it belongs to ``length``
+    offset: Annotated[float, Means("film less parabola and deflection", "m")]
+    length: Annotated[float, Means("unit of the logarithm in the deflection of a half space", "m")]
+    load_residual: Annotated[float, Means("relative error of the load balance that remains")]
+    flow_residual: Annotated[float, Means("relative error of the flow that remains")]
+    grid_error: Annotated[float, Means("relative error of the least film, estimated from two grids")]
+    by_speed: Annotated[LineExponents, Means("of speed, both surfaces alike")]
+    by_load: Annotated[LineExponents, Means("of load")]
+    friction: Annotated[float, Means("magnitude of roll_traction over the load")]
+    iterations: Annotated[int, Means("Newton steps in all")]
+    stations: Annotated[int, Means("solutions on the way from a rigid roll")]
+    cautions: Annotated[
+        tuple[str, ...], Means("what the model does not hold for, or could be resolved better")
+    ]
 
 
 @takes_si(
@@ -208,28 +191,16 @@ def solve_line_contact(
     )
     for profile in (solution.x, solution.pressure, solution.film_thickness):
         profile.setflags(write=False)
+    own = {name: getattr(solution, name) for name in _OF_THE_CORE}
     return LineContactSolution(
-        x=solution.x,
-        pressure=solution.pressure,
-        film_thickness=solution.film_thickness,
+        **own,
         central_thickness=solution.central,
         minimum_thickness=solution.minimum,
-        couette=solution.couette,
-        poiseuille=solution.poiseuille,
         roll_traction=solution.traction_1,
         base_traction=solution.traction_2,
-        greatest_pressure=solution.greatest_pressure,
-        outlet=solution.outlet,
-        offset=solution.offset,
-        length=solution.length,
-        load_residual=solution.load_residual,
-        flow_residual=solution.flow_residual,
-        grid_error=solution.grid_error,
         by_speed=_exponents(solution.by_speed),
         by_load=_exponents(solution.by_load),
         friction=abs(solution.traction_1) / load,
-        iterations=solution.iterations,
-        stations=solution.stations,
         cautions=_cautions(solution, radius, layer, barus=fluid.thickening == "barus"),
     )
 

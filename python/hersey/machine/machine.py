@@ -18,9 +18,10 @@ from hersey.errors import MAPPING, ParameterError, printable
 from hersey.files.toml import Quantity, Table, naming, read_tables, read_toml
 from hersey.log.sensor_tables import SensorTables, sensors_of
 from hersey.log.sensors import Sensors
+from hersey.lubrication.asperities import Asperities, BoundaryFriction
 from hersey.lubrication.contact import Contact
 from hersey.lubrication.lubricant import Lubricant
-from hersey.lubrication.mixed import Asperities, BoundaryFriction, MixedContact, mixed_contact
+from hersey.lubrication.mixed import MixedContact, mixed_contact
 from hersey.lubrication.mixed_drag import MixedDrag
 from hersey.machine.duty import GearTable, LifeTable, refuse_other_than_all
 from hersey.machine.heat import HeatTable
@@ -80,6 +81,7 @@ class Machine:
     static_friction: float | None = None
     life: LifeTable = field(default_factory=LifeTable)
     gear: GearTable | None = None
+    heat: HeatBalance | None = None
 
     def __post_init__(self) -> None:
         """Bring the values to SI if they come with units."""
@@ -98,16 +100,13 @@ class Machine:
         """
         if self.asperities is None and self.boundary is None:
             return None
-        missing = [table for table in NEEDED if getattr(self, table) is None]
-        if missing:
-            raise ParameterError(
-                "film and asperities share the load of contact, lubricant, asperities and boundary: "
-                f"[{missing[0]}] is missing, with {NEEDED[missing[0]]}"
-            )
-        assert self.contact is not None
-        assert self.lubricant is not None
-        assert self.asperities is not None
-        assert self.boundary is not None
+        for table, needed in NEEDED.items():
+            if getattr(self, table) is None:
+                raise ParameterError(
+                    "film and asperities share the load of contact, lubricant, asperities and boundary: "
+                    f"[{table}] is missing, with {needed}"
+                )
+        assert self.contact and self.lubricant and self.asperities and self.boundary  # noqa: PT018
         if self.contact.roughness is None:
             raise ParameterError(
                 '[contact] lacks the roughness of both faces together, rms: add roughness = "0.4 um"'
@@ -148,8 +147,6 @@ class Machine:
         static = None if self.static_friction is None else self.static_friction * mixed.contact.load
         drag = MixedDrag(mixed, temperature, stick, static_force=static)
         return drag if self.rest is None else with_rest(drag, self.rest, self.roll_radius, temperature)
-
-    heat: HeatBalance | None = None
 
     @property
     def train(self) -> Drivetrain:
@@ -226,47 +223,33 @@ def read_machine(path: str | Path) -> Machine:
             f"machine's file: give it as {MAPPING.to(printable(str(path)))}"
         )
     tables = read_tables(path, _MachineFile)
-    uncertainty, contact, lubricant, rest, heat = {}, None, None, None, None
+    uncertainty = {}
     for parameter, text in tables.uncertainty.items():
         with naming(f"{path.name}: uncertainty.{parameter}"):
             uncertainty[parameter] = read_uncertainty(parameter, text)
-    if tables.contact is not None:
-        with naming(f"{path.name}: [contact]"):
-            contact = tables.contact.contact(tables.drivetrain.roll_radius, tables.limits.nip_load)
-    if tables.lubricant is not None:
-        with naming(f"{path.name}: [lubricant]"):
-            lubricant = tables.lubricant.lubricant()
-    if tables.rest is not None:
-        with naming(f"{path.name}: [rest]"):
-            rest = tables.rest.rest(path)
-    boundary = None
-    if tables.boundary is not None:
-        with naming(f"{path.name}: [boundary]"):
-            boundary = tables.boundary.boundary()
+    parts: dict[str, Any] = {
+        "contact": lambda of: of.contact(tables.drivetrain.roll_radius, tables.limits.nip_load),
+        "lubricant": lambda of: of.lubricant(),
+        "rest": lambda of: of.rest(path),
+        "boundary": lambda of: of.boundary(),
+        "gear": lambda of: of.gear(path),
+        "heat": lambda of: of.heat(),
+        "asperities": lambda of: of.asperities(),
+    }
+    for table, made in parts.items():
+        with naming(f"{path.name}: [{table}]"):
+            parts[table] = None if getattr(tables, table) is None else made(getattr(tables, table))
     with naming(f"{path.name}: points"):
         refuse_other_than_all(tables.points)
-    gear = None
-    if tables.gear is not None:
-        with naming(f"{path.name}: [gear]"):
-            gear = tables.gear.gear(path)
-    if tables.heat is not None:
-        with naming(f"{path.name}: [heat]"):
-            heat = tables.heat.heat()
     machine = Machine(
         **vars(tables.drivetrain),
+        **parts,
         limits=tables.limits,
         points=tables.points,
         uncertainty=uncertainty,
-        contact=contact,
-        lubricant=lubricant,
         sensors=sensors_of(**vars(tables.sensors)),
-        rest=rest,
-        asperities=None if tables.asperities is None else tables.asperities.asperities(),
-        boundary=boundary,
         static_friction=None if tables.boundary is None else tables.boundary.static_friction,
-        heat=heat,
         life=tables.life,
-        gear=gear,
     )
     with naming(path.name):
         _ = machine.mixed  # what it lacks is said here, with the file

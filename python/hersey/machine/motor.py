@@ -9,7 +9,7 @@ from typing import Annotated
 import numpy as np
 
 from hersey.errors import ParameterError
-from hersey.motion.simulation import Trajectory
+from hersey.motion.trajectory import Trajectory
 from hersey.result import Means, Record
 from hersey.units import takes_si
 

@@ -120,10 +120,7 @@ class LubricantTable(Table):
         """
         lubricant = self._of_example() if self.example else self._through_points()
         return replace(
-            lubricant,
-            thinning=self._thinning(),
-            conductivity=self.conductivity,
-            uncertainty=self.uncertainty,
+            lubricant, thinning=self._thinning(), conductivity=self.conductivity, uncertainty=self.uncertainty
         )
 
     def _of_example(self) -> Lubricant:

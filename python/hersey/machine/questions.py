@@ -46,38 +46,17 @@ _BARE = re.compile(r"\s*[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?\s*
 
 @dataclass(frozen=True)
 class Question:
-    """One key of a file.
+    """One key of a file."""
 
-    Attributes
-    ----------
-    section, field
-        Table and key.
-    words
-        What the number is, for a person who has the machine before them.
-    example
-        An answer.
-    unit
-        In which a bare number of the app's form is meant, which shows it beside the field; empty for a number
-        without dimension, and for a text.
-    letter
-        How the sketch calls it, or empty.
-    needed
-        Whether its table says nothing without it.
-    first
-        Whether it is asked of everyone; the others may be folded.
-    uncertain
-        Whether a range, or a share behind the value, is an answer too.
-    """
-
-    section: str
-    field: str
-    words: str
-    example: str
-    unit: str = ""
-    letter: str = ""
-    needed: bool = False
-    first: bool = False
-    uncertain: bool = False
+    section: str  #: its table
+    field: str  #: its key
+    words: str  #: what it is, for a person who has the machine before them
+    example: str  #: an answer
+    unit: str = ""  #: in which a bare number of the app's form is meant; empty for a pure number or a text
+    letter: str = ""  #: how the sketch calls it, or empty
+    needed: bool = False  #: whether its table says nothing without it
+    first: bool = False  #: whether it is asked of everyone; the others may be folded
+    uncertain: bool = False  #: whether a range, or a share behind the value, is an answer too
 
     @property
     def key(self) -> str:
@@ -163,9 +142,8 @@ def _number(text: str) -> Any:
         value = float(text)
     except ValueError:
         return text
-    return (
-        int(value) if value.is_integer() and abs(value) < 1e15 and re.fullmatch(r"[-+]?\d+", text) else value
-    )
+    whole = value.is_integer() and abs(value) < 1e15 and re.fullmatch(r"[-+]?\d+", text)
+    return int(value) if whole else value
 
 
 def _split(text: str) -> tuple[str, str]:

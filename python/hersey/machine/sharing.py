@@ -8,7 +8,7 @@ from pydantic.dataclasses import dataclass
 
 from hersey.errors import ParameterError
 from hersey.files.toml import Quantity, Table
-from hersey.lubrication.mixed import Asperities, BoundaryFriction
+from hersey.lubrication.asperities import Asperities, BoundaryFriction
 from hersey.machine.rest import PerKelvin
 
 

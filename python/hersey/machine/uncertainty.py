@@ -86,10 +86,8 @@ def read_uncertainty(parameter: str, text: object) -> Uncertainty:
     kind = KINDS[parameter]
     try:
         low, high = (float(end) if kind is None else parse(kind, end) for end in ends)
-    except ParameterError:
-        raise
     except ValueError as error:
-        if kind is not None:
+        if kind is not None or isinstance(error, ParameterError):
             raise
         raise ParameterError(f"'{text}' is not a range of two numbers: {error}") from None
     return Uncertainty(limits=(low, high))

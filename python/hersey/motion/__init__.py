@@ -5,6 +5,7 @@ schedule    drive speed, torque or temperature against time
 drag        drag laws: force against belt speed and temperature
 heat        temperature as a state: two bodies, a heater and friction
 belt        what moves: a drivetrain with its drag, or a machine with the law of its log
+trajectory  a motion as it was found: samples, changes of mode, energies
 simulation  stick-slip motion of the belt, and what it settles to
 stepper     the same motion from call to call, with inputs given on the way
 parameters  names of the parameters, and the kinds of their units

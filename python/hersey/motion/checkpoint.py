@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, nullcontext
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -146,26 +146,12 @@ def _followed(
     notes: list[str],
 ) -> Checkpoint:
     """Do what is not done."""
-    tally, count = Tally(), folder.cut.count
-    lacking = np.ones(count, dtype=bool)
-    damaged = []
-    for number in folder.finished():
-        if (note := folder.note(number)) is None:
-            damaged.append(number)
-        else:
-            try:
-                tally.add(note)
-            except (AttributeError, KeyError, TypeError, ValueError):
-                raise OutputError(
-                    f"{folder.path}: what is told of chunk {number} is damaged: remove its "
-                    f"files, and it is done anew"
-                ) from None
-            lacking[number] = False
+    tally, lacking, damaged = _counted(folder)
+    count = lacking.size
     notes = [*notes, *folder.mended, *_done_again(folder.path, damaged)]
     before = count - int(lacking.sum())
     ended, there = before, tally.sets
-    numbers = np.flatnonzero(lacking).tolist()
-    pieces = _Pieces(sets, folder.cut, numbers)
+    pieces = _Pieces(sets, folder.cut, np.flatnonzero(lacking).tolist())
     if progress is not None:
         progress(there, sets.count)
     try:
@@ -188,6 +174,24 @@ def _followed(
         interrupt.add_note(_left(ended, count))
         raise
     return Checkpoint(folder.path, tally, count, before, tuple(notes))
+
+
+def _counted(folder: Folder) -> tuple[Tally, NDArray[np.bool_], list[int]]:
+    """The outcomes of the chunks that are there, which chunks are lacking, and which are damaged."""
+    tally, lacking, damaged = Tally(), np.ones(folder.cut.count, dtype=bool), []
+    for number in folder.finished():
+        if (note := folder.note(number)) is None:
+            damaged.append(number)
+            continue
+        try:
+            tally.add(note)
+        except (AttributeError, KeyError, TypeError, ValueError):
+            raise OutputError(
+                f"{folder.path}: what is told of chunk {number} is damaged: remove its "
+                f"files, and it is done anew"
+            ) from None
+        lacking[number] = False
+    return tally, lacking, damaged
 
 
 def _done_again(path: Path, damaged: list[int]) -> list[str]:
@@ -231,8 +235,7 @@ def gathered(sets: Sets, rules: Rules, work: Work) -> tuple[dict[str, NDArray[An
 @contextmanager
 def _connected(client: Client | LocalWorkers | str | None) -> Iterator[Client | LocalWorkers | None]:
     if client is None:
-        with nullcontext():
-            yield None
+        yield None
         return
     with connected(client) as (known, _name):
         refuse_others(known)

@@ -80,19 +80,14 @@ class Rules:
     def told(self) -> dict[str, Any]:
         """Return what decides the bits, beside the sets."""
         drag = self.drag
+        near = ("closure", "bristle_stiffness", "bristle_damping", "static_force")
+        own = {name: value for name, value in vars(self).items() if name != "drag"}
         return {
             "hersey_version": _core.VERSION,
-            "closure": drag.closure,
-            "bristle_stiffness": drag.bristle_stiffness,
-            "bristle_damping": drag.bristle_damping,
-            "static_force": drag.static_force,
+            **{name: getattr(drag, name) for name in near},
             "rest_force": float(drag.rest_force),
             "rest_damping": float(drag.rest_damping),
-            "grip": self.grip,
-            "start": self.start,
-            "duration": self.duration,
-            "tolerance": self.tolerance,
-            "most_steps": self.most_steps,
+            **own,
         }
 
 

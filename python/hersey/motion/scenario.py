@@ -73,16 +73,8 @@ class Scenario:
         """Keep each chunk of sets in a folder as it ends."""
         from hersey.motion.checkpoint import checkpointed
 
-        train, drag, varied = self._arguments()
-        sets, rules = planned(
-            train,
-            drag,
-            varied,
-            zip=self.zip,
-            start=self.start,
-            duration=self.duration,
-            tolerance=self.tolerance,
-        )
+        how: dict[str, Any] = {"start": self.start, "duration": self.duration, "tolerance": self.tolerance}
+        sets, rules = planned(*self._arguments(), zip=self.zip, **how)
         return checkpointed(sets, rules, out, work, units=self.units)
 
     def _arguments(self) -> tuple[Drivetrain, Drag, dict[str, Any]]:

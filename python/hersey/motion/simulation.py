@@ -9,12 +9,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, fields
-from functools import cached_property
 from operator import attrgetter
-from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, TypedDict, Unpack
+from typing import Annotated, Any, TypedDict, Unpack
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hersey import _core
 from hersey.arrays import FloatArray, refuse_unknown
@@ -24,11 +22,9 @@ from hersey.motion.drag import AnyDrag
 from hersey.motion.heat import HeatBalance
 from hersey.motion.parameters import MOST_STEPS, whole
 from hersey.motion.schedule import Schedule
-from hersey.result import Means, Record, Result
-from hersey.units import celsius, takes_si
-
-if TYPE_CHECKING:
-    import polars as pl
+from hersey.motion.trajectory import Energy, Event, SelfCheck, Trajectory
+from hersey.result import Means, Result
+from hersey.units import takes_si
 
 #: Relative tolerance of the steps.
 TOLERANCE = 1e-9
@@ -58,161 +54,6 @@ class Numerics(TypedDict, total=False):
     tolerance: float
     check: bool
     most_steps: float
-
-
-class Event(NamedTuple):
-    """A change of mode: when, from and to which, the condition crossed, and the state there."""
-
-    time: Annotated[float, Means(unit="s")]
-    from_mode: str
-    to_mode: str
-    guard: str
-    stretch: Annotated[float, Means(unit="m")]
-    belt_speed: Annotated[float, Means(unit="m/s")]
-
-
-_event_columns = attrgetter(*Event._fields)
-
-
-@dataclass(frozen=True)
-class Energy(Record):
-    """Where the work of the drive went over a run: each figure is its own integral.
-
-    ``slipped`` was lost where the roll slipped on the belt; ``residual`` is what is missing (work less
-    dissipated less slipped less stored) as a share of all energy turned over.
-
-    The closure ``retained`` keeps the speed of a belt that it holds, even against a pull that points back:
-    there the contact gives energy. With ``heat`` the film does not cool for that: what friction takes
-    afterwards pays the debt before it heats. ``owed`` is what is left of the debt at the end, so the
-    contact has heated the film by dissipated plus owed, less what the rest of the drive took.
-    """
-
-    work: float
-    dissipated: float
-    slipped: float
-    stored: float
-    owed: Annotated[float, Means("given by a contact that holds a belt, and not got back")]
-    residual: float
-
-
-@dataclass(frozen=True)
-class SelfCheck(Record):
-    """The same run by another integrator.
-
-    ``speed_difference`` and ``stretch_difference`` are the greatest differences at the samples, as a share of
-    the greatest value; ``same_events`` tells whether both saw the same changes of mode in the same order.
-    ``note`` says why there are no figures, if the other integrator could not finish.
-    """
-
-    integrator: str
-    speed_difference: float | None
-    stretch_difference: float | None
-    same_events: bool
-    note: str = ""
-
-    def __str__(self) -> str:
-        """Return it in words."""
-        if self.speed_difference is None:
-            return f"{self.integrator}: " + self.note
-        return (
-            f"{self.integrator} differs by {self.speed_difference:.1e} in speed and "
-            f"{self.stretch_difference:.1e} in stretch; "
-            f"{'the same' if self.same_events else 'OTHER'} events"
-        )
-
-
-@dataclass(frozen=True, repr=False)
-class Trajectory(Result):
-    """Motion at equally spaced times: arrays of shape (samples,), every change of mode, and the energies.
-
-    ``stretch`` is drive position minus belt position; with a torque drive, the position of the mass (zero
-    without a spring). ``spring_force`` is stiffness times stretch; ``slipping`` tells where the roll slips
-    on the belt. ``film_temperature`` and ``roll_temperature`` (K) are there if they are states.
-    """
-
-    also_stated = ("mode",)
-    not_stated = ("mode_index",)
-
-    time: Annotated[FloatArray, Means(unit="s")]
-    belt_speed: Annotated[FloatArray, Means(unit="m/s")]
-    stretch: Annotated[FloatArray, Means(unit="m")]
-    spring_force: Annotated[FloatArray, Means(unit="N")]
-    mode_index: NDArray[np.uint8]
-    slipping: NDArray[np.bool_]
-    events: tuple[Event, ...]
-    energy: Energy
-    steps: int
-    check: SelfCheck | None = None
-    film_temperature: Annotated[FloatArray | None, Means("if it is a state", "K")] = None
-    roll_temperature: Annotated[FloatArray | None, Means("if it is a state", "K")] = None
-
-    @cached_property
-    def mode(self) -> NDArray[np.str_]:
-        """The mode at each sample: ``ehl``, ``mixed``, ``microslip`` or ``stuck``."""
-        return np.array(_core.MODES)[self.mode_index]
-
-    @property
-    def roll_slips(self) -> list[tuple[float, float]]:
-        """When the roll begins and ends to slip on the belt; the last may end with the motion."""
-        begins = [float(self.time[0])] if self.slipping[0] else []
-        begins += [event.time for event in self.events if event.guard == "grip_lost"]
-        ends = [event.time for event in self.events if event.guard == "grip_regained"]
-        spans = zip(begins, [*ends, float(self.time[-1])], strict=False)
-        return [(begin, end) for begin, end in spans if end > begin]
-
-    def slipping_in_words(self) -> str:
-        """Return when the roll slips, and how long; empty if it never does."""
-        if not (spans := self.roll_slips):
-            return ""
-        total, begin = sum(end - begin for begin, end in spans), spans[0][0]
-        if len(spans) == 1:
-            return f"the roll slips on the belt from {begin:.6g} on, for {total:.6g}"
-        return f"the roll slips on the belt {len(spans)} times, first at {begin:.6g}, for {total:.6g} in all"
-
-    def summary(self) -> str:
-        """Return ranges, energies and check as text, in the units of the arguments."""
-        lines = [
-            f"{self.time.size} samples from {self.time[0]:.6g} to {self.time[-1]:.6g}, {len(self.events)} "
-            f"changes of mode; SI or the units given",
-            f"  belt speed      {self.belt_speed.min():.6f} to {self.belt_speed.max():.6f}",
-            f"  stretch         {self.stretch.min():.6f} to {self.stretch.max():.6f}",
-            f"  spring force    {self.spring_force.min():.6f} to {self.spring_force.max():.6f}",
-            *self._heating(),
-            *(
-                [f"  {self.energy.owed:.3g} J given by the contact did not come back"]
-                if self.energy.owed
-                else []
-            ),
-            *([f"  {self.slipping_in_words()}"] if self.roll_slips else []),
-            f"energy balance: {self.energy.residual:.1e} of the energy turned over is missing",
-        ]
-        return "\n".join([*lines, *([] if self.check is None else [str(self.check)])])
-
-    def _heating(self) -> list[str]:
-        bodies = (("film", self.film_temperature), ("roll", self.roll_temperature))
-        return [
-            f"  {name:15s} {celsius(t[0]):.2f} to {celsius(t[-1]):.2f} degC"
-            for name, t in bodies
-            if t is not None
-        ]
-
-    def to_frame(self) -> pl.DataFrame:
-        """Return one row per sample; the units named are SI, and stand for those given."""
-        import polars as pl
-
-        bodies = {"film": self.film_temperature, "roll": self.roll_temperature}
-        temperatures = {f"{name} (K)": t for name, t in bodies.items() if t is not None}
-        return pl.DataFrame(
-            {
-                "time (s)": self.time,
-                "belt speed (m/s)": self.belt_speed,
-                "stretch (m)": self.stretch,
-                "spring force (N)": self.spring_force,
-                "mode": self.mode,
-                "roll slips": self.slipping,
-                **temperatures,
-            }
-        )
 
 
 #: What is said of a kind in which the roll slips.
@@ -325,58 +166,54 @@ def simulate(
     >>> abs(run.energy.residual) < 1e-8, run.check.same_events
     (True, True)
     """
-    refuse_unknown(
-        "simulate", numerics, tuple(Numerics.__annotations__), {"heat": "temperature=HeatBalance(...)"}
-    )
-    count, steps = (
-        whole("samples", numerics.get("samples", SAMPLES), 2),
-        whole("most_steps", numerics.get("most_steps", MOST_STEPS)),
-    )
-    tolerance = float(numerics.get("tolerance", TOLERANCE))
+    known = tuple(Numerics.__annotations__)
+    refuse_unknown("simulate", numerics, known, {"heat": "temperature=HeatBalance(...)"})
+    samples = whole("samples", numerics.get("samples", SAMPLES), 2)
+    steps = whole("most_steps", numerics.get("most_steps", MOST_STEPS))
     check_inputs(drag, drive_speed, drive_torque, temperature)
-    given = drive_speed if drive_speed is not None else drive_torque
-    drive = Schedule.of(given if given is not None else 0.0)
+    kind, given = ("torque", drive_torque or 0.0) if drive_speed is None else ("speed", drive_speed)
+    drive = Schedule.of(given)
     law, zero = drag.law(), drag.temperature_zero
-    heat, course, at_start = None, None, None
-    if isinstance(temperature, HeatBalance):
-        heat = temperature
-        at_start = Schedule.of(heat.film_temperature).shifted(-zero)
-    elif temperature is not None:
-        at_start = course = Schedule.of(temperature).shifted(-zero)
-    state = start_state(train, law, drive, at_start, start, is_torque=drive_speed is None)
+    heat = temperature if isinstance(temperature, HeatBalance) else None
+    stated = temperature.film_temperature if isinstance(temperature, HeatBalance) else temperature
+    film = None if stated is None else Schedule.of(stated).shifted(-zero)
+    state = start_state(train, law, drive, film, start, is_torque=kind == "torque")
 
     def run(integrator: str) -> _core.Trajectory:
         return _core.simulate(
             train._arguments,
             law,
-            ("speed" if drive_speed is not None else "torque", drive.arguments),
-            None if course is None else course.arguments,
+            (kind, drive.arguments),
+            None if film is None or heat is not None else film.arguments,
             state,
             float(duration),
-            count,
-            tolerance,
+            samples,
+            float(numerics.get("tolerance", TOLERANCE)),
             integrator,
             steps,
             None if heat is None else heat.arguments(zero),
         )
 
-    trajectory = run("adaptive")
-    energy = trajectory.energy
+    return _trajectory(run, train.stiffness, check=bool(numerics.get("check")))
+
+
+def _trajectory(run: Callable[[str], _core.Trajectory], stiffness: float, *, check: bool) -> Trajectory:
+    """The motion by the usual integrator, and its check by the other if that is asked for."""
+    found = run("adaptive")
+    film, roll = (None, None) if found.temperature is None else found.temperature
     return Trajectory(
-        time=trajectory.time,
-        belt_speed=trajectory.belt_speed,
-        stretch=trajectory.stretch,
-        spring_force=train.stiffness * trajectory.stretch,
-        mode_index=trajectory.mode_index,
-        slipping=trajectory.slipping,
-        film_temperature=None if trajectory.temperature is None else trajectory.temperature[0],
-        roll_temperature=None if trajectory.temperature is None else trajectory.temperature[1],
-        events=tuple(map(Event._make, zip(*_event_columns(trajectory.events), strict=True))),
-        energy=Energy(
-            energy.work, energy.dissipated, energy.slipped, energy.stored, energy.owed, energy.residual
-        ),
-        steps=trajectory.steps,
-        check=_self_check(lambda: run("dormand-prince"), trajectory) if numerics.get("check") else None,
+        time=found.time,
+        belt_speed=found.belt_speed,
+        stretch=found.stretch,
+        spring_force=stiffness * found.stretch,
+        mode_index=found.mode_index,
+        slipping=found.slipping,
+        film_temperature=film,
+        roll_temperature=roll,
+        events=tuple(map(Event._make, zip(*attrgetter(*Event._fields)(found.events), strict=True))),
+        energy=Energy(**{field.name: getattr(found.energy, field.name) for field in fields(Energy)}),
+        steps=found.steps,
+        check=_self_check(lambda: run("dormand-prince"), found) if check else None,
     )
 
 
@@ -406,9 +243,10 @@ def _self_check(run: Callable[[], _core.Trajectory], first: _core.Trajectory) ->
     )
 
 
-def _difference(one: FloatArray, two: FloatArray) -> float:
-    greatest = float(np.max(np.abs(one)))
-    return float(np.max(np.abs(one - two))) / greatest if greatest > 0 else float(np.max(np.abs(two)))
+def _difference(first: FloatArray, other: FloatArray) -> float:
+    """The greatest difference as a share of the greatest value."""
+    greatest = float(np.max(np.abs(first)))
+    return float(np.max(np.abs(first - other))) / greatest if greatest > 0 else float(np.max(np.abs(other)))
 
 
 @takes_si(drive_speed="belt speed", temperature="temperature")

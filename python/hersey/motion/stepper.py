@@ -12,7 +12,8 @@ from hersey.motion.belt import Drivetrain
 from hersey.motion.drag import AnyDrag
 from hersey.motion.parameters import MOST_STEPS, whole
 from hersey.motion.schedule import Schedule
-from hersey.motion.simulation import TOLERANCE, Event, check_inputs, start_state
+from hersey.motion.simulation import TOLERANCE, check_inputs, start_state
+from hersey.motion.trajectory import Event
 from hersey.units import takes_si
 
 

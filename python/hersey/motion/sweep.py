@@ -173,11 +173,7 @@ def _labelled(
             **{name: over(values[name]) for name in (*NUMBERS, "stuck_fraction", "laps")},
         },
         coords=_coordinates(sets),
-        attrs={
-            **_about(rules),
-            "failures": failures,
-            **({"notes": notes} if notes else {}),
-        },
+        attrs={**_about(rules), "failures": failures, **({"notes": notes} if notes else {})},
     )
 
 

@@ -48,9 +48,8 @@ class SafeStep(Record):
 class Disturbance(Record):
     """What throws a belt that slides at ``drive_speed`` into stick-slip.
 
-    ``kick`` is the greatest sudden loss of belt speed that it bears, ``step`` the greatest sudden fall of the
-    drive speed that ends at ``drive_speed``. Each is infinite where none is too large (a kick: down to a dead
-    stop), and 0 where steady sliding itself does not last.
+    ``kick`` and ``step`` are the greatest that it bears: infinite where none is too large (a kick: down to a
+    dead stop), and 0 where steady sliding itself does not last.
     """
 
     drive_speed: float
@@ -62,12 +61,7 @@ class Disturbance(Record):
 
 @takes_si(from_speed="belt speed", to_speed="belt speed", temperature="temperature")
 def safe_step(
-    train: Drivetrain,
-    drag: AnyDrag,
-    *,
-    from_speed: float,
-    to_speed: float,
-    temperature: float | None = None,
+    train: Drivetrain, drag: AnyDrag, *, from_speed: float, to_speed: float, temperature: float | None = None
 ) -> SafeStep:
     """Return whether a sudden change of drive speed makes a sliding belt stick, and the ramp that does not.
 

@@ -30,6 +30,8 @@ if TYPE_CHECKING:
 
 #: Relative step of the derivatives.
 _STEP = 1e-3
+#: What a band has by the same name in the core.
+_SHARED = ("lower", "transition", "upper", "stalls", "lower_accuracy", "upper_accuracy", "deeper", "laps")
 
 
 @dataclass(frozen=True, repr=False)
@@ -235,29 +237,20 @@ def hysteresis(
     if sensitivity is None:
         sensitivity = plain is not None and band.half_laps and band.upper > 0
     changes = _sensitivities(train, plain, tolerance, steps) if sensitivity else ({}, {})
-    interval, lower_interval, share = None, None, None
+    drawn: dict[str, Any] = {}
     if samples is not None:
-        drawn = {name: _drawn(name, values) for name, values in samples.items()}
-        edges = _sampled(train, plain, drawn, tolerance, steps)
-        interval, lower_interval = _middle(edges.upper), _middle(edges.lower)
-        share = float(np.mean(edges.upper > edges.transition))
+        given = {name: _drawn(name, values) for name, values in samples.items()}
+        edges = _sampled(train, plain, given, tolerance, steps)
+        drawn = {"interval": _middle(edges.upper), "lower_interval": _middle(edges.lower)}
+        drawn["share_bistable"] = float(np.mean(edges.upper > edges.transition))
     return HysteresisBand(
-        lower=band.lower,
-        transition=band.transition,
-        upper=band.upper,
-        stalls=band.stalls,
+        **{name: getattr(band, name) for name in _SHARED},
         closure=closure,
         method="half laps" if band.half_laps else "simulation",
-        lower_accuracy=band.lower_accuracy,
-        upper_accuracy=band.upper_accuracy,
-        deeper=band.deeper,
         speed_max=None if np.isnan(band.speed_max) else band.speed_max,
-        laps=band.laps,
         sensitivity=changes[0],
         lower_sensitivity=changes[1],
-        interval=interval,
-        lower_interval=lower_interval,
-        share_bistable=share,
+        **drawn,
     )
 
 
@@ -346,11 +339,7 @@ def _sensitivities(
 
 
 def _sampled(
-    train: Drivetrain,
-    drag: Drag | None,
-    samples: Mapping[str, ArrayLike],
-    tolerance: float,
-    most_steps: int,
+    train: Drivetrain, drag: Drag | None, samples: Mapping[str, ArrayLike], tolerance: float, most_steps: int
 ) -> _core.Bands:
     if drag is None:
         raise ParameterError("samples need a Drag: a table has no parameters to draw")

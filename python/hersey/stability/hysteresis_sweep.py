@@ -135,14 +135,7 @@ def sweep_bands(
 
     ``varied`` holds parameters by the names of that; one that is None or not there is that of train or drag.
     """
-    if not isinstance(drag, Drag):
-        raise ParameterError("a sweep needs a Drag")
-    if drag.varies_with_temperature != (temperature is not None):
-        drag.law_at(None if temperature is None else 300.0)
-    if temperature is not None:
-        clash = [n for n in _MOVED if varied.get(n) is not None]
-        if clash:
-            raise ParameterError(f"{clash[0]} follows from the temperature: give one of them")
+    _check(drag, varied, temperature)
     parameters = {**vars(train), **vars(drag)}
     asked = {name: values for name, values in varied.items() if values is not None}
     given = {name: numbers_of(name, asked.get(name, parameters[name])) for name in OF_THE_BELT}
@@ -171,6 +164,17 @@ def sweep_bands(
         coordinates,
         tuple(f"set {index}: {text}" for index, text in failures),
     )
+
+
+def _check(drag: Drag, varied: Mapping[str, ArrayLike | None], temperature: ArrayLike | None) -> None:
+    """Refuse a drag and parameters that do not go with the temperature."""
+    if not isinstance(drag, Drag):
+        raise ParameterError("a sweep needs a Drag")
+    if drag.varies_with_temperature != (temperature is not None):
+        drag.law_at(None if temperature is None else 300.0)
+    clash = [name for name in _MOVED if temperature is not None and varied.get(name) is not None]
+    if clash:
+        raise ParameterError(f"{clash[0]} follows from the temperature: give one of them")
 
 
 def _at_temperatures(drag: Drag, temperatures: FloatArray) -> dict[str, FloatArray]:
@@ -211,15 +215,7 @@ class BandRules:
             ]
         grip = None if self.train.grip is None else float(self.train.grip)
         return _core.bands(
-            arrays,
-            closure,
-            beside,
-            grip,
-            self.lower,
-            self.tolerance,
-            threads,
-            progress,
-            self.most_steps,
+            arrays, closure, beside, grip, self.lower, self.tolerance, threads, progress, self.most_steps
         )
 
 

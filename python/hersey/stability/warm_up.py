@@ -9,8 +9,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Annotated
+from dataclasses import replace
+from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -20,168 +21,30 @@ from hersey.motion.belt import Drivetrain
 from hersey.motion.drag import AnyDrag
 from hersey.motion.heat import HeatBalance
 from hersey.motion.schedule import Schedule
-from hersey.motion.simulation import Trajectory, simulate
-from hersey.result import Means, Result
+from hersey.motion.simulation import simulate
+from hersey.motion.trajectory import Trajectory
 from hersey.stability.hysteresis import hysteresis
+from hersey.stability.warm_up_result import WarmUp
 from hersey.units import celsius, takes_si
 
-if TYPE_CHECKING:
-    import polars as pl
-
-#: Points of a course; rounds at the most, and the temperature to which two of them agree, K.
-_POINTS, _ROUNDS, _ALIKE = 501, 50, 0.1
-#: Between these temperatures speeds are interpolated, K: the allowed one, and the fold, which takes longer.
-_STEP, _FOLD_STEP = 0.5, 10.0
-#: The course goes on beyond its estimated end by this share, and by these laps of the free belt.
-_BEYOND, _LAPS = 1.1, 20
-#: Samples of a motion for each point of the course, and points of the temperature profile for a plan.
-_FINER, _OF_PROFILE = 4, 101
+#: Points of a course.
+_POINTS = 501
+#: Rounds at the most.
+_ROUNDS = 50
+#: Temperature to which two rounds agree, K.
+_ALIKE = 0.1
+#: Between these temperatures the allowed speed is interpolated, K.
+_STEP = 0.5
+#: Between these the fold is, which takes longer, K.
+_FOLD_STEP = 10.0
+#: The course goes on beyond its estimated end by this share.
+_BEYOND = 1.1
+#: And by so many laps of the free belt.
+_LAPS = 20
+#: Samples of a motion for each point of the course.
+_FINER = 4
 #: Modes in which the belt does not slide.
 _HELD = ("stuck", "microslip")
-_ROWS = 12
-
-
-@dataclass(frozen=True, repr=False)
-class WarmUp(Result):
-    """A course of drive speed from a cold start, and the temperatures that go with it.
-
-    Arrays have shape (points,): ``time`` (s), ``drive_speed`` (m/s; straight lines join the points),
-    ``film_temperature`` and ``roll_temperature`` (K), and ``drag`` (N), that of steady sliding at each
-    moment, NaN while the drive stands. ``force_limit`` (N) is kept with a ``margin``, a share of it, to
-    spare. The drive starts at ``start`` (s) and is at ``target_speed`` (m/s) from ``full_speed`` (s) on,
-    infinite if not within the time looked at. In the motion, ``response``, the belt slides for good from
-    ``slides_from`` (s) on, and ``peak_force`` (N) is the greatest spring force.
-
-    Beside it: at full speed from the start on drag begins with ``drag_at_once`` (N) and keeps ``force_limit``
-    from ``within_at_once`` (s) on; standing until the film is warm enough for the target brings full speed at
-    ``full_speed_standing`` (s). ``rounds`` were needed.
-    """
-
-    also_stated = ("verdict", "beside")
-    not_stated = ("response",)
-
-    target_speed: float
-    force_limit: float
-    margin: Annotated[float, Means("share of the limit kept to spare")]
-    acceleration: Annotated[float, Means(unit="m/s^2")]
-    time: FloatArray
-    drive_speed: Annotated[FloatArray, Means("straight lines between", shape="(n,)")]
-    film_temperature: FloatArray
-    roll_temperature: FloatArray
-    drag: Annotated[FloatArray, Means("of sliding steadily; null at standstill", shape="(n,)", open=True)]
-    start: Annotated[float, Means("of the drive; null if it cannot start", open=True)]
-    full_speed: Annotated[float, Means("from when on; null if not within the time looked at", open=True)]
-    slides_from: Annotated[float, Means("from when on the belt slides for good; null if never", open=True)]
-    peak_force: Annotated[float, Means("of the spring, in the motion")]
-    drag_at_once: Annotated[float, Means("greatest, at full speed from the start on")]
-    within_at_once: Annotated[float, Means("when that keeps the limit; null if not in time", open=True)]
-    full_speed_standing: Annotated[float, Means("by standing until warm; null if not in time", open=True)]
-    rounds: int
-    warnings: tuple[str, ...]
-    response: Trajectory
-
-    @property
-    def found(self) -> bool:
-        """Whether full speed is reached, and the belt slides."""
-        return math.isfinite(max(self.full_speed, self.slides_from))
-
-    @property
-    def schedule(self) -> Schedule:
-        """Drive speed against time, m/s."""
-        return Schedule(self.time, self.drive_speed)
-
-    @property
-    def profile(self) -> Schedule:
-        """Film temperature against time, K, thinned: the ``temperature`` of `plan_profile`."""
-        kept = np.unique(np.linspace(0, self.time.size - 1, _OF_PROFILE).round().astype(int))
-        return Schedule(self.time[kept], self.film_temperature[kept])
-
-    def verdict(self) -> str:
-        """Return the course in a sentence or two."""
-        end = _warmth(self, -1)
-        target = _speed(self.target_speed)
-        if not math.isfinite(self.start):
-            return (
-                f"The drive cannot start within {self.time[-1]:.4g} s: at the {end} reached by then no speed "
-                f"up to {target} slides with less than {self.kept_below:.4g} N."
-            )
-        first = "Start at once" if self.start == 0 else f"Stand for {self.start:.4g} s, then start"
-        if not math.isfinite(self.full_speed):
-            last = _speed(float(self.drive_speed[-1]))
-            return f"{first}; {target} is not reached within {self.time[-1]:.4g} s: {last} at {end}."
-        at = int(np.searchsorted(self.time, self.full_speed))
-        sliding = "" if math.isfinite(self.slides_from) else " The belt sticks at it."
-        how = "" if self.full_speed - self.start <= self._least_ramp else ", slow until warm"
-        when = f"full speed {target} after {self.full_speed:.4g} s, at {_warmth(self, at)}"
-        return f"{first}{how}: {when}.{sliding}"
-
-    @property
-    def kept_below(self) -> float:
-        """The limit less the margin, N."""
-        return self.force_limit * (1.0 - self.margin)
-
-    @property
-    def _least_ramp(self) -> float:
-        """Time that the acceleration alone takes, and the points of the course make of it, s."""
-        return self.target_speed / self.acceleration + 2.0 * float(self.time[1])
-
-    def beside(self) -> list[str]:
-        """Return what the two other ways would do, a sentence each."""
-        times = self.drag_at_once / self.force_limit
-        if not math.isfinite(self.within_at_once):
-            until = f"not below it within {self.time[-1]:.4g} s"
-        else:
-            until = f"below it from {self.within_at_once:.4g} s on" if self.within_at_once > 0 else "below it"
-        at_once = f"Full speed at once: {self.drag_at_once:.4g} N, {times:.3g} times the limit, {until}."
-        if not math.isfinite(self.full_speed_standing):
-            return [at_once, f"Standing until warm: no full speed within {self.time[-1]:.4g} s."]
-        return [at_once, f"Standing until warm: full speed after {self.full_speed_standing:.4g} s."]
-
-    def table(self) -> str:
-        """Return the course as CSV, which `hersey plan --temperature-profile` reads, too."""
-        lines = ["time [s],drive speed [m/s],temperature [degC],roll [degC]"]
-        columns = (
-            self.time,
-            self.drive_speed,
-            celsius(self.film_temperature),
-            celsius(self.roll_temperature),
-        )
-        lines += [",".join(f"{value:.9g}" for value in row) for row in zip(*columns, strict=True)]
-        return "\n".join(lines) + "\n"
-
-    def summary(self) -> str:
-        """Return the course, what it keeps, the other ways and warnings as text."""
-        limit = f"{self.force_limit:.4g} N less {100 * self.margin:.3g} %"
-        lines = [self.verdict(), f"Drag stays below {self.kept_below:.4g} N ({limit}).", *self.beside(), ""]
-        if not math.isfinite(self.start):
-            del lines[1]
-        lines.append(f"  {'time (s)':>9s}  {'drive (mm/s)':>12s}  {'film (degC)':>11s}  {'roll (degC)':>11s}")
-        last = min(self.time.size - 1, int(np.searchsorted(self.time, self.full_speed)))
-        for i in np.unique(np.linspace(0, last, _ROWS).round().astype(int)).tolist():
-            film, roll = celsius(self.film_temperature[i]), celsius(self.roll_temperature[i])
-            lines.append(
-                f"  {self.time[i]:9.4g}  {1e3 * self.drive_speed[i]:12.4g}  {film:11.1f}  {roll:11.1f}"
-            )
-        return "\n".join([*lines, *(f"- {warning}" for warning in self.warnings)])
-
-    def headline(self) -> str:
-        """Return target and time."""
-        target = f"warm-up to {_speed(self.target_speed)}"
-        return f"{target}, {self.full_speed:.4g} s" if self.found else f"{target}: not reached"
-
-    def to_frame(self) -> pl.DataFrame:
-        """Return the course, a row per point."""
-        import polars as pl
-
-        return pl.DataFrame(
-            {
-                "time (s)": self.time,
-                "drive speed (m/s)": self.drive_speed,
-                "film (K)": self.film_temperature,
-                "roll (K)": self.roll_temperature,
-                "drag (N)": self.drag,
-            }
-        )
 
 
 @takes_si(target_speed="belt speed", force_limit="force", acceleration="acceleration", longest="time")
@@ -239,75 +102,98 @@ def warm_up(
     >>> warm.found, warm.drag_at_once > 180, warm.full_speed < warm.full_speed_standing
     (True, True, True)
     """
-    for name, value in (
-        ("target_speed", target_speed),
-        ("force_limit", force_limit),
-        ("acceleration", acceleration),
-        ("longest", longest),
-    ):
-        if not 0 < value < math.inf:
-            raise ParameterError(f"{name} is {value:g}: it must be greater than 0, and finite")
-    if not 0 <= margin < 1:
-        raise ParameterError(f"margin is {margin:g}: it is a share of the limit, from 0 to below 1")
+    _check(
+        margin, target_speed=target_speed, force_limit=force_limit, acceleration=acceleration, longest=longest
+    )
     rule = _Rule(train, drag, target_speed, force_limit * (1.0 - margin))
-    lap = train.free_period
-
-    def moved(speed: float | Schedule, duration: float) -> Trajectory:
-        count = _FINER * (_POINTS - 1) + 1
-        return simulate(train, drag, drive_speed=speed, temperature=heat, duration=duration, samples=count)
-
-    resting = moved(0.0, longest)
-    warm = np.flatnonzero(rule.allowed(_film(resting)) >= target_speed)
-    end = longest
-    if warm.size:
-        needed = _BEYOND * resting.time[_FINER * warm[0]] + 2.0 * target_speed / acceleration + _LAPS * lap
-        end = min(longest, needed)
+    motion = partial(_motion, train, drag, heat)
+    resting = motion(0.0, longest)
+    end = min(longest, _estimated_end(rule, resting, 2.0 * target_speed / acceleration))
     time = np.linspace(0.0, end, _POINTS)
-    still = moved(0.0, end)
-    film, rounds = _film(still), 0
-    while True:
-        rounds += 1
-        speed = _ramped(rule.course(film), acceleration * float(time[1]))
-        run = moved(Schedule(time, speed), end)
-        off = float(np.max(np.abs(_film(run) - film)))
-        film = _film(run)
-        if off < _ALIKE:
-            break
-        if rounds == _ROUNDS:
-            raise UnfinishedError(
-                f"speed and temperature do not agree after {rounds} rounds: they differ by {off:.2g} K. "
-                "Give a smaller target, or a larger heat capacity",
-                quantity="temperature",
-                value=off,
-                unit="K",
-            )
-    standing = rule.allowed(_film(still)) >= target_speed
-    from_rest = _ramped(np.where(standing, target_speed, 0.0), acceleration * float(time[1]))
+    still = _film(motion(0.0, end))
+    speed, run, rounds = _agreed(rule, motion, time, still, acceleration)
+    standing = np.where(rule.allowed(still) >= target_speed, target_speed, 0.0)
     drag_at_once, within = _at_once(train, drag, heat, target_speed, force_limit, end)
-    running = speed > 0
-    peak = float(np.max(np.abs(run.spring_force)))
     result = WarmUp(
         target_speed=float(target_speed),
         force_limit=float(force_limit),
         margin=float(margin),
         acceleration=float(acceleration),
-        time=time,
-        drive_speed=speed,
-        film_temperature=film,
-        roll_temperature=_of(run.roll_temperature),
-        drag=_steady(drag, speed, film),
-        start=float(time[max(int(np.argmax(running)) - 1, 0)]) if running.any() else math.inf,
+        **_found(train, drag, time, speed, run),
         full_speed=_full(time, speed, target_speed),
-        slides_from=_slides_from(run) if running.any() else math.inf,
-        peak_force=max([peak, *(train.stiffness * abs(event.stretch) for event in run.events)]),
         drag_at_once=drag_at_once,
         within_at_once=within,
-        full_speed_standing=_full(time, from_rest, target_speed),
+        full_speed_standing=_full(time, _ramped(standing, acceleration * float(time[1])), target_speed),
         rounds=rounds,
         warnings=(),
-        response=run,
     )
     return replace(result, warnings=tuple(_warnings(result, rule, resting)))
+
+
+def _check(margin: float, **positive: float) -> None:
+    for name, value in positive.items():
+        if not 0 < value < math.inf:
+            raise ParameterError(f"{name} is {value:g}: it must be greater than 0, and finite")
+    if not 0 <= margin < 1:
+        raise ParameterError(f"margin is {margin:g}: it is a share of the limit, from 0 to below 1")
+
+
+def _estimated_end(rule: _Rule, resting: Trajectory, ramps: float) -> float:
+    """When a course is over by an estimate, s; ``ramps`` up and down take so long."""
+    warm = np.flatnonzero(rule.allowed(_film(resting)) >= rule.target)
+    if not warm.size:
+        return math.inf
+    return float(_BEYOND * resting.time[_FINER * warm[0]] + ramps + _LAPS * rule.train.free_period)
+
+
+def _motion(
+    train: Drivetrain, drag: AnyDrag, heat: HeatBalance, speed: float | Schedule, duration: float
+) -> Trajectory:
+    count = _FINER * (_POINTS - 1) + 1
+    return simulate(train, drag, drive_speed=speed, temperature=heat, duration=duration, samples=count)
+
+
+def _agreed(
+    rule: _Rule,
+    motion: Callable[[float | Schedule, float], Trajectory],
+    time: FloatArray,
+    film: FloatArray,
+    acceleration: float,
+) -> tuple[FloatArray, Trajectory, int]:
+    """The course and its motion, once their temperatures agree, and the rounds that took."""
+    for rounds in range(1, _ROUNDS + 1):
+        speed = _ramped(rule.course(film), acceleration * float(time[1]))
+        run = motion(Schedule(time, speed), float(time[-1]))
+        off = float(np.max(np.abs(_film(run) - film)))
+        film = _film(run)
+        if off < _ALIKE:
+            return speed, run, rounds
+    raise UnfinishedError(
+        f"speed and temperature do not agree after {rounds} rounds: they differ by {off:.2g} K. "
+        "Give a smaller target, or a larger heat capacity",
+        quantity="temperature",
+        value=off,
+        unit="K",
+    )
+
+
+def _found(
+    train: Drivetrain, drag: AnyDrag, time: FloatArray, speed: FloatArray, run: Trajectory
+) -> dict[str, Any]:
+    """What a `WarmUp` has of its course and of the motion along it."""
+    running = speed > 0
+    peak = float(np.max(np.abs(run.spring_force)))
+    return {
+        "time": time,
+        "drive_speed": speed,
+        "film_temperature": _film(run),
+        "roll_temperature": _of(run.roll_temperature),
+        "drag": _steady(drag, speed, _film(run)),
+        "start": float(time[max(int(np.argmax(running)) - 1, 0)]) if running.any() else math.inf,
+        "slides_from": _slides_from(run) if running.any() else math.inf,
+        "peak_force": max([peak, *(train.stiffness * abs(event.stretch) for event in run.events)]),
+        "response": run,
+    }
 
 
 class _Rule:
@@ -456,12 +342,3 @@ def _warnings(warm: WarmUp, rule: _Rule, resting: Trajectory) -> list[str]:
             "speed is above the target, and sliding at it is unstable"
         )
     return said
-
-
-def _warmth(warm: WarmUp, at: int) -> str:
-    film, roll = celsius(warm.film_temperature[at]), celsius(warm.roll_temperature[at])
-    return f"{film:.4g} degC (roll {roll:.4g} degC)"
-
-
-def _speed(speed: float) -> str:
-    return f"{1e3 * speed:.4g} mm/s"

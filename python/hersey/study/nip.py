@@ -9,13 +9,15 @@ import numpy as np
 
 from hersey.damping.dwells import SteadyPoints, groups_of_temperature
 from hersey.damping.surface import DampingSurface
-from hersey.lubrication.film import REGIMES, Film, film_thickness
+from hersey.lubrication.film import film_thickness
+from hersey.lubrication.film_result import REGIMES, Film
 from hersey.lubrication.film_temperature import film_temperature
 from hersey.lubrication.mixed import MixedFilm
 from hersey.machine.machine import Machine
 from hersey.study.nip_film import FilmPart, FilmPoint
 from hersey.verdict.checks import Misfit, misfits, remarks
-from hersey.verdict.evidence import MeasuredFilm, Verdict, measured_film, verdict
+from hersey.verdict.contact_verdict import Verdict, verdict
+from hersey.verdict.evidence import MeasuredFilm, measured_film
 from hersey.verdict.regime import Regime
 from hersey.verdict.transition import ContactTransition, contact_transition
 

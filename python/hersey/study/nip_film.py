@@ -8,7 +8,7 @@ from pydantic import Field
 
 from hersey.damping.estimate import Estimate
 from hersey.lubrication.contact import Contact, Nip
-from hersey.lubrication.film import Correction
+from hersey.lubrication.film_result import Correction
 from hersey.lubrication.lubricant import Lubricant
 from hersey.lubrication.mixed import MixedContact, MixedFilm, MixedTransition
 from hersey.schema.part import Numbers, Part

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from hersey.damping.rest import RestOfDrive
+from hersey.lubrication.asperities import Asperities, BoundaryFriction
 from hersey.lubrication.contact import Contact
 from hersey.lubrication.lubricant import Lubricant
-from hersey.lubrication.mixed import Asperities, BoundaryFriction
 from hersey.machine.limits import Limits, OperatingPoint
 from hersey.machine.machine import Machine
 from hersey.units import ZERO_CELSIUS

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
 
 from hersey.arrays import FloatArray
-from hersey.damping.rest import RestOfDrive
+from hersey.damping.rest import NUMBERS, RestOfDrive
 from hersey.errors import ParameterError
 from hersey.lubrication.mixed import MixedContact
 from hersey.lubrication.mixed_drag import MixedDrag
@@ -49,15 +49,16 @@ class PhysicalTruth:
 
     def to_dict(self) -> dict[str, Any]:
         """Return what it is made of as plain data, in SI."""
-        numbers = ("constant", "per_speed", "temperature_slope")
-        rest = {name: getattr(self.rest, name).value for name in numbers}
+        rest = {name: getattr(self.rest, name).value for name in NUMBERS}
         rest["reference_temperature"] = self.rest.reference_temperature
         if self.mixed is None:
             return {"rest": rest}
-        names = ("contact", "lubricant", "asperities", "friction")
+        made_of = {
+            name: getattr(self.mixed, name) for name in ("contact", "lubricant", "asperities", "friction")
+        }
         parts = {
-            name: {key: value for key, value in vars(getattr(self.mixed, name)).items() if key[0] != "_"}
-            for name in names
+            name: {each.name: getattr(part, each.name) for each in fields(part) if each.name[0] != "_"}
+            for name, part in made_of.items()
         }
         return json_record({**parts, "rest": rest})
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,11 +10,13 @@ import numpy as np
 from hersey import _core
 from hersey.errors import ParameterError
 from hersey.lubrication.contact import Contact
-from hersey.lubrication.film import REGIMES, Film, shear_heating
+from hersey.lubrication.film import shear_heating
+from hersey.lubrication.film_result import REGIMES, Film
 from hersey.lubrication.lubricant import Lubricant
 from hersey.machine.machine import Machine
 from hersey.units import celsius, rpm
-from hersey.verdict.evidence import MeasuredFilm, Verdict, agrees
+from hersey.verdict.contact_verdict import Verdict, agrees
+from hersey.verdict.evidence import MeasuredFilm
 from hersey.verdict.transition import ContactTransition
 
 #: Friction above this is no fluid film between smooth surfaces.
@@ -115,23 +118,21 @@ def _apart(one: float, other: float) -> float:
     return max(one / other, other / one)
 
 
-def _check_statements(machine: Machine, contact: Contact) -> list[Misfit]:
-    found = []
+def _check_statements(machine: Machine, contact: Contact) -> Iterator[Misfit]:
     if abs(contact.roll_radius / machine.roll_radius - 1.0) > _SAME:
         text = (
             f"[contact] roll_radius is {1e3 * contact.roll_radius:.4g} mm, [drivetrain] roll_radius "
             f"{1e3 * machine.roll_radius:.4g} mm: one roll has one radius"
         )
-        found.append(Misfit(text, _apart(contact.roll_radius, machine.roll_radius), grave=True))
+        yield Misfit(text, _apart(contact.roll_radius, machine.roll_radius), grave=True)
     load = machine.limits.nip_load
     if load is not None and abs(contact.load / load - 1.0) > _SAME:
         text = f"[contact] load is {contact.load:.4g} N, [limits] nip_load {load:.4g} N: say which"
-        found.append(Misfit(text, _apart(contact.load, load), grave=True))
-    return found
+        yield Misfit(text, _apart(contact.load, load), grave=True)
 
 
-def _check_contact(contact: Contact, film: Film) -> list[Misfit]:
-    nip, found = film.nip, []
+def _check_contact(contact: Contact, film: Film) -> Iterator[Misfit]:
+    nip = film.nip
     if not nip.paper_in_range:
         low, high = _core.NIP_RATIO_RANGE
         ratio = nip.paper_width / contact.rubber_thickness
@@ -140,25 +141,23 @@ def _check_contact(contact: Contact, film: Film) -> list[Misfit]:
             f"regression of Eq. 8, {low:g} to {high:g}: "
             f"it is {100 * (nip.paper_width / nip.width - 1):+.0f} % off the solved nip"
         )
-        found.append(Misfit(text, max(low / ratio, ratio / high)))
+        yield Misfit(text, max(low / ratio, ratio / high))
     if nip.strain > MAX_STRAIN:
         text = (
             f"the rubber is strained by {100 * nip.strain:.0f} % (a^2/(2 R h)): linear elasticity ends near "
             f"{100 * MAX_STRAIN:.0f} %"
         )
-        found.append(Misfit(text, nip.strain / MAX_STRAIN))
+        yield Misfit(text, nip.strain / MAX_STRAIN)
     if not np.all(film.inlet_short) and np.any(film.regime == REGIMES.index("isoviscous-elastic")):
         text = "the inlet of the film is not short against rubber and nip: the soft law is rough there"
-        found.append(Misfit(text, 1.0))
+        yield Misfit(text, 1.0)
     if contact.roughness is not None:
         least = float(film.lambda_ratio(contact.roughness).min())
         if least < LAMBDA_BANDS[0]:
-            found.append(Misfit(_thin(least, "boundary", LAMBDA_BANDS[0]), LAMBDA_BANDS[0] / least))
-    return found
+            yield Misfit(_thin(least, "boundary", LAMBDA_BANDS[0]), LAMBDA_BANDS[0] / least)
 
 
-def _check_lubricant(lubricant: Lubricant, film: Film) -> list[Misfit]:
-    found = []
+def _check_lubricant(lubricant: Lubricant, film: Film) -> Iterator[Misfit]:
     low, high = lubricant.temperature_range
     hottest, coldest = float(film.temperature.max()), float(film.temperature.min())
     if hottest > high + 0.5 or coldest < low - 0.5:
@@ -167,48 +166,41 @@ def _check_lubricant(lubricant: Lubricant, film: Film) -> list[Misfit]:
             f"from {celsius(coldest):.0f} to {celsius(hottest):.0f} degC"
         )
         known = max(high - low, _WARM)
-        found.append(Misfit(text, 1.0 + max(hottest - high, low - coldest) / known))
+        yield Misfit(text, 1.0 + max(hottest - high, low - coldest) / known)
     for name, correction in film.corrections.items():
         if not np.all(correction.valid):
             factor = float(correction.factor.min())
             text = f"{name}: the factor (down to {factor:.3g}) is outside the validity of its rule"
-            found.append(Misfit(text, _apart(factor, 1.0)))
+            yield Misfit(text, _apart(factor, 1.0))
     if lubricant.conductivity is not None:
-        rise = float(
-            np.max(
-                shear_heating(
-                    lubricant, sliding_speed=2.0 * film.entrainment_speed, temperature=film.temperature
-                )
-            )
-        )
+        sliding, kelvin = 2.0 * film.entrainment_speed, film.temperature
+        rise = float(np.max(shear_heating(lubricant, sliding_speed=sliding, temperature=kelvin)))
         if rise > _WARM:
             text = f"shear warms the film by up to {rise:.2g} K over its walls: it is thinner than stated"
-            found.append(Misfit(text, rise / _WARM))
-    return found
+            yield Misfit(text, rise / _WARM)
 
 
-def _check_measured(measured: MeasuredFilm, contact: Contact) -> list[Misfit]:
-    found = []
+def _check_measured(measured: MeasuredFilm, contact: Contact) -> Iterator[Misfit]:
     highest = float(measured.friction.max())
     if highest > MAX_FILM_FRICTION:
         text = (
             f"friction coefficient {highest:.2g} is not a fluid film: above {MAX_FILM_FRICTION:g} surfaces "
             "touch, or torque holds more than the nip's drag"
         )
-        found.append(Misfit(text, highest / MAX_FILM_FRICTION, grave=True))
+        yield Misfit(text, highest / MAX_FILM_FRICTION, grave=True)
     if measured.grip is not None and highest > measured.grip:
         text = (
             f"friction coefficient {highest:.2g} exceeds that of belt on roll, {measured.grip:g}: "
             "it would slip"
         )
-        found.append(Misfit(text, highest / measured.grip, grave=True))
+        yield Misfit(text, highest / measured.grip, grave=True)
     factor = measured.calibration.value
     if not 1 / _FAR < factor < _FAR:
         text = (
             f"measured torque is {factor:.3g} times the predicted one: viscosity, nip or what the "
             "torque holds besides the film is not as stated; the last of these moves exponents too"
         )
-        found.append(Misfit(text, _apart(factor, 1.0) / _FAR, grave=True))
+        yield Misfit(text, _apart(factor, 1.0) / _FAR, grave=True)
     if measured.lambda_ratio is not None:
         thin = measured.lambda_ratio[measured.on_film > 0.5]
         if thin.size and float(thin.min()) < LAMBDA_BANDS[0]:
@@ -218,25 +210,22 @@ def _check_measured(measured: MeasuredFilm, contact: Contact) -> list[Misfit]:
                 f"({1e6 * (contact.roughness or 0.0):.2g} um) where torque rises with speed: not thickness "
                 "alone makes this drag"
             )
-            found.append(Misfit(text, LAMBDA_BANDS[0] / least))
-    return found
+            yield Misfit(text, LAMBDA_BANDS[0] / least)
 
 
-def _check_exponents(says: Verdict) -> list[Misfit]:
-    found = []
+def _check_exponents(says: Verdict) -> Iterator[Misfit]:
     theory = says.expected if says.solved is None else says.solved
     c, thermal = says.exponent, says.thermal
     if says.contradicted:
         text = f"damping goes as speed to the power {c}; the film of this nip gives {theory:.2f}"
-        found.append(Misfit(text, _reaches(c.value, theory, c.low, c.high), grave=True))
+        yield Misfit(text, _reaches(c.value, theory, c.low, c.high), grave=True)
     if thermal is not None and thermal.told and not agrees(thermal, says.thermal_expected):
         text = (
             f"with temperature (K) damping goes to the power {thermal}; the film of this lubricant predicts "
             f"{says.thermal_expected:.2f}"
         )
         size = _reaches(thermal.value, says.thermal_expected, thermal.low, thermal.high)
-        found.append(Misfit(text, size))
-    return found
+        yield Misfit(text, size)
 
 
 def _check_transition(turn: ContactTransition) -> list[Misfit]:

@@ -15,8 +15,8 @@ from hersey.arrays import FloatArray
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.surface import DampingSurface
 from hersey.lubrication.contact import Contact
-from hersey.lubrication.film import REGIMES as FILMS
 from hersey.lubrication.film import film_thickness
+from hersey.lubrication.film_result import REGIMES as FILMS
 from hersey.lubrication.film_temperature import film_temperature
 from hersey.lubrication.lubricant import Lubricant
 from hersey.verdict.explanations import FilmLaw

@@ -38,9 +38,13 @@ LEAST_SHARE = 0.02
 LEVEL = 0.05
 #: By how much the exponent of the film's formula may be off.
 FORMULA = 0.01
+# Keys of the explanations; ``CONSTANT`` stands behind the name of a film.
 CONSTANT = " + constant torque"
-COULOMB_VISCOUS, STRIBECK = "Coulomb + viscous", "Stribeck curve"
-THINNING, HEATING, OTHER = "shear thinning", "shear heating", "other curvature"
+COULOMB_VISCOUS = "Coulomb + viscous"
+STRIBECK = "Stribeck curve"
+THINNING = "shear thinning"
+HEATING = "shear heating"
+OTHER = "other curvature"
 #: A logarithm beyond this is that of nothing, or of no bound.
 _ANYTHING = 1e3
 UNTRIED, POWER = "film" + CONSTANT, "one power of speed"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from operator import attrgetter
 from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
@@ -89,12 +90,9 @@ class Regime(Result):
 
         numbers = ("speed low (rad/s)", "speed high (rad/s)", "exponent (1)", "low (1)", "high (1)")
         schema = {"temperature (K)": pl.Float64, "branch": pl.String, "points": pl.Int64}
-        rows = [(*_facts_of(e), e.exponent.value, e.exponent.low, e.exponent.high) for e in self.exponents]
+        facts = attrgetter("temperature", "branch", "points", "speed_low", "speed_high")
+        rows = [(*facts(e), e.exponent.value, e.exponent.low, e.exponent.high) for e in self.exponents]
         return pl.DataFrame(rows, schema={**schema, **dict.fromkeys(numbers, pl.Float64)}, orient="row")
-
-
-def _facts_of(e: BranchExponent) -> tuple[float | None, str, int, float, float]:
-    return e.temperature, e.branch, e.points, e.speed_low, e.speed_high
 
 
 def regime(
@@ -135,11 +133,9 @@ def regime(
 
 def _taken_off(points: SteadyPoints) -> str:
     """What was taken off before any of this was judged; empty if nothing was."""
-    return (
-        ""
-        if points.rest is None
-        else f"This is of the film alone, the rest of the drive taken off: {points.rest}."
-    )
+    if points.rest is None:
+        return ""
+    return f"This is of the film alone, the rest of the drive taken off: {points.rest}."
 
 
 def branch_exponents(points: SteadyPoints, surface: DampingSurface) -> tuple[BranchExponent, ...]:

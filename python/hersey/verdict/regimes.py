@@ -7,7 +7,7 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from hersey.damping.distributions import student_above
+from hersey.damping.distributions import holm, student_above
 from hersey.damping.estimate import CONFIDENCE, Estimate
 from hersey.result import OPEN, Means, Record
 
@@ -49,13 +49,7 @@ REGIMES: tuple[RegimeRow, ...] = (
         "piezoviscous-elastic",
         "piezoviscous line contact, Eq. 10 of the paper",
     ),
-    RegimeRow(
-        COULOMB,
-        -1.0,
-        -1.0,
-        "isoviscous-rigid",
-        "torque independent of speed",
-    ),
+    RegimeRow(COULOMB, -1.0, -1.0, "isoviscous-rigid", "torque independent of speed"),
     RegimeRow(FALLING, -np.inf, -1.0, "", "torque falls with speed: mixed lubrication, stick-slip possible"),
 )
 
@@ -101,7 +95,7 @@ def judged(
     alone = [_p_value(exponent, row) for row in table]
     return tuple(
         Hypothesis(*row, p, None if film is None else row.film == film)
-        for row, p in zip(table, _holm(alone), strict=True)
+        for row, p in zip(table, holm(alone), strict=True)
     )
 
 
@@ -110,14 +104,6 @@ def _p_value(exponent: Estimate, row: RegimeRow) -> float:
     sides = 1.0 if np.isinf(row.low) else 2.0
     deviation = max(away, 0.0) / max(exponent.error, 1e-12)
     return min(1.0, sides * float(student_above(deviation, max(exponent.freedom, 1))))
-
-
-def _holm(p_values: list[float]) -> list[float]:
-    out, least = [0.0] * len(p_values), 0.0
-    for rank, index in enumerate(np.argsort(p_values)):
-        least = max(least, min(1.0, p_values[index] * (len(p_values) - rank)))
-        out[index] = least
-    return out
 
 
 def listed(names: list[str]) -> str:

@@ -17,13 +17,7 @@ from hersey.units import celsius, rpm
 
 @dataclass(frozen=True)
 class ContactTransition(Record):
-    """Transition speed against temperature; arrays of shape (temperatures,), NaN where there is none.
-
-    ``temperature`` (K) is the one read, ``speed`` (rad/s) that of the contact, ``measured`` (rad/s) that of
-    the fitted surface with its 95 % limits ``low`` and ``high`` (unbounded where not told). ``by_roughness``
-    and ``by_boundary`` are d ln speed by the logarithms of roughness and boundary friction; by that of
-    viscosity it is -1.
-    """
+    """Transition speed against temperature; arrays of shape (temperatures,), NaN where there is none."""
 
     also_stated = ("ratio",)
 

@@ -11,7 +11,8 @@ from hersey.damping.candidates.branched import CONSTANT_PLUS, ONE, REST_PLUS, La
 from hersey.damping.candidates.candidate import Candidate
 from hersey.damping.candidates.comparison import compare_models
 from hersey.damping.candidates.constant_plus import ConstantPlusLaw
-from hersey.damping.candidates.fitting import fit_law, not_identified
+from hersey.damping.candidates.fitting import fit_law
+from hersey.damping.candidates.identifiability import not_identified
 from hersey.damping.candidates.intervals import quantities
 from hersey.damping.candidates.thermal import ARRHENIUS, CELSIUS, KELVIN, VFT, Thermal
 from tests.damping.candidates.cases import hand_fit, inputs

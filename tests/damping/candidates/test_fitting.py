@@ -9,7 +9,8 @@ import pytest
 from scipy import integrate, optimize, stats
 
 from hersey.damping.candidates.branched import FREE, HELD, ONE, Law
-from hersey.damping.candidates.fitting import LawFit, fit_law, left_out, not_identified, resampled, search
+from hersey.damping.candidates.fitting import LawFit, fit_law, left_out, resampled, search
+from hersey.damping.candidates.identifiability import not_identified
 from hersey.damping.candidates.observations import Observations
 from hersey.damping.candidates.stribeck import StribeckLaw
 from hersey.damping.candidates.thermal import ARRHENIUS, KELVIN, VFT, Thermal

@@ -8,7 +8,8 @@ from scipy import stats
 
 from hersey.damping.candidates import compare_models
 from hersey.damping.candidates.branched import FREE, HELD, ONE, Law
-from hersey.damping.candidates.fitting import fit_law, not_identified
+from hersey.damping.candidates.fitting import fit_law
+from hersey.damping.candidates.identifiability import not_identified
 from hersey.damping.candidates.intervals import (
     METHODS,
     band,

@@ -10,12 +10,14 @@ import pytest
 from hersey.damping.candidates import Candidate, compare_models
 from hersey.damping.candidates.branched import HELD, SHARED
 from hersey.damping.candidates.candidate import contact_candidates
-from hersey.damping.candidates.fitting import fit_law, not_identified
+from hersey.damping.candidates.fitting import fit_law
+from hersey.damping.candidates.identifiability import not_identified
 from hersey.damping.candidates.observations import Inputs, Observations
 from hersey.damping.candidates.shared_load import SharedLoadLaw
 from hersey.damping.candidates.thermal import ARRHENIUS
 from hersey.errors import InsufficientDataError, ParameterError
-from hersey.lubrication.mixed import Asperities, BoundaryFriction, mixed_contact
+from hersey.lubrication.asperities import Asperities, BoundaryFriction
+from hersey.lubrication.mixed import mixed_contact
 from tests.lubrication.roll import OIL, ROLL
 
 CONTACT = mixed_contact(

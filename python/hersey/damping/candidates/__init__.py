@@ -12,7 +12,9 @@ shared_load           a known contact whose load film and asperities share
 candidate             which laws there are, and which the data cannot carry
 shared_errors         errors that dwells share: of the zero, of visits and runs
 likelihood            robust likelihood and its least-squares solution
-fitting               one law fitted; left-out and resampled fits; what is not identified
+clustered             the covariance whatever the points of a cluster have in common
+fitting               one law fitted; left-out and resampled fits
+identifiability       which parameters the data do not determine, and what would
 errors_in_variables   the same fit by orthogonal distance regression
 lack_of_fit           whether a law holds at all
 intervals             each parameter's interval by covariance, clusters, profile and bootstrap

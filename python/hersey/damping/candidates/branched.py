@@ -24,8 +24,13 @@ from hersey.damping.candidates.thermal import Thermal
 #: Least 1 + c by which a transition at one Hersey number is computed; nearer 0 torque tells no viscosity.
 LEAST_POWER = 0.05
 
-NO_SPEED, ONE, HELD, FREE = "no speed", "one branch", "two branches, one Hersey number", "two branches, free"
-CONSTANT_PLUS, COULOMB_VISCOUS = "constant torque plus power of speed", "Coulomb plus viscous"
+# Branches of a law, as they are called in words.
+NO_SPEED = "no speed"
+ONE = "one branch"
+HELD = "two branches, one Hersey number"
+FREE = "two branches, free"
+CONSTANT_PLUS = "constant torque plus power of speed"
+COULOMB_VISCOUS = "Coulomb plus viscous"
 REST_PLUS = "constant and viscous torque plus power of speed"
 SHARED = "film and asperities plus constant torque"
 

@@ -28,8 +28,12 @@ from hersey.units import convert
 
 #: Degrees of freedom that a fit must leave.
 LEAST_FREEDOM = 3
-#: Distinct speeds that one branch, a constant beside a film, and two branches need.
-SPEEDS_OF_ONE, SPEEDS_OF_CURVE, SPEEDS_OF_TWO = 3, 4, 5
+#: Distinct speeds that one branch needs.
+SPEEDS_OF_ONE = 3
+#: Those that a constant beside a film needs.
+SPEEDS_OF_CURVE = 4
+#: Those that two branches need.
+SPEEDS_OF_TWO = 5
 _WORDS = {CELSIUS: "power-degC", KELVIN: "power-K", ARRHENIUS: "arrhenius", VFT: "vft", None: "isothermal"}
 _BRANCH_WORDS = {
     NO_SPEED: "viscosity",

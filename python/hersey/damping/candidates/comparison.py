@@ -18,11 +18,9 @@ from hersey.damping.candidates.candidate import Candidate, all_candidates, conta
 from hersey.damping.candidates.collapse import HerseyCollapse, temperature_collapse
 from hersey.damping.candidates.energy import ActivationEnergies, activation_energies, usable_for_transition
 from hersey.damping.candidates.errors_in_variables import orthogonal_fit
-from hersey.damping.candidates.fitting import LawFit, fit_law, left_out, not_identified
-from hersey.damping.candidates.intervals import (
-    bootstrap_draws,
-    estimates,
-)
+from hersey.damping.candidates.fitting import LawFit, fit_law, left_out
+from hersey.damping.candidates.identifiability import not_identified
+from hersey.damping.candidates.intervals import bootstrap_draws, estimates
 from hersey.damping.candidates.lack_of_fit import lack_of_fit
 from hersey.damping.candidates.likelihood import EVIDENCE
 from hersey.damping.candidates.model_comparison import CandidateFit, ModelComparison
@@ -90,29 +88,33 @@ def compare_models(
     carried = [candidate for candidate in candidates if not candidate.refused(data)]
     if not carried:
         raise InsufficientDataError(f"no law can be fitted: {refused[0][0]} {refused[0][1]}")
-    fits = []
-    for done, candidate in enumerate(carried):
-        if progress:
-            progress(done, len(carried))
-        fits.append((candidate, fit_law(candidate.law(data), data)))
-    by_aicc = ranked(fits, data, cross_validate)
+    by_aicc = ranked(_fitted(carried, data, progress), data, cross_validate)
     chosen = choose(by_aicc)
-    draws = bootstrap_draws(chosen.fit, data, bootstrap, seed) if bootstrap else None
-    if draws is not None and not draws.size:
-        draws, bootstrap = None, 0
+    draws = bootstrap_draws(chosen.fit, data, bootstrap, seed) if bootstrap else np.empty(0)
     return ModelComparison(
         candidates=by_aicc,
         refused=tuple(refused),
         chosen=chosen,
         reasons=_reasons(by_aicc, chosen, data),
-        parameters=estimates(chosen.fit, data, draws=draws),
+        parameters=estimates(chosen.fit, data, draws=draws if draws.size else None),
         energies=_energies(by_aicc, chosen, data),
         collapse=_collapse(data, chosen.fit),
         orthogonal=orthogonal_fit(chosen.fit, data),
         data=data,
-        bootstrap=bootstrap,
+        bootstrap=bootstrap if draws.size else 0,
         seed=seed,
     )
+
+
+def _fitted(
+    candidates: list[Candidate], data: Observations, progress: Callable[[int, int], None] | None
+) -> list[tuple[Candidate, LawFit]]:
+    fits = []
+    for done, candidate in enumerate(candidates):
+        if progress:
+            progress(done, len(candidates))
+        fits.append((candidate, fit_law(candidate.law(data), data)))
+    return fits
 
 
 def choose(candidates: tuple[CandidateFit, ...]) -> CandidateFit:
@@ -132,7 +134,8 @@ def ranked(
     out = []
     for (candidate, fit), weight in zip(fits, weights.tolist(), strict=True):
         missed = left_out(fit, data) if cross_validate else None
-        usable = missed is not None and bool(np.all(np.isfinite(missed)))
+        if missed is not None and not np.all(np.isfinite(missed)):
+            missed = None
         out.append(
             CandidateFit(
                 candidate,
@@ -141,8 +144,8 @@ def ranked(
                 fit.aicc - least_aicc,
                 fit.bic - least_bic,
                 weight,
-                float(np.sqrt(np.mean(missed**2))) if usable and missed is not None else None,
-                missed if usable else None,
+                None if missed is None else float(np.sqrt(np.mean(missed**2))),
+                missed,
                 lack_of_fit(fit, data),
             )
         )

@@ -15,8 +15,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hersey.arrays import FloatArray, IntArray
-from hersey.damping.candidates.branched import LEAST_POWER, Law
+from hersey.arrays import FloatArray
+from hersey.damping.candidates.branched import Law
+from hersey.damping.candidates.clustered import clustered_with_prior
 from hersey.damping.candidates.constant_plus import ConstantPlusLaw
 from hersey.damping.candidates.likelihood import HUBER, Minimum, aicc, bic, deviance, minimise, scatter_beyond
 from hersey.damping.candidates.observations import Observations
@@ -30,7 +31,7 @@ from hersey.damping.candidates.shared_errors import (
     groupings,
     shared_scatter,
 )
-from hersey.damping.candidates.shared_load import BOUND, SharedLoadLaw
+from hersey.damping.candidates.shared_load import SharedLoadLaw
 from hersey.damping.candidates.stribeck import StribeckLaw
 from hersey.damping.estimate import Estimate, estimate
 
@@ -42,7 +43,9 @@ _ROUNDS = 8
 _FIRST_SCATTER = 0.03
 #: Standard errors of the zero or the rest beyond which a fit is tried from a wide scatter too: of a law that
 #: does not hold, an error of the zero by tens of them can make up for a part, and then leaves little scatter.
-_STRAINED, _WIDE_SCATTER = 4.0, 0.3
+_STRAINED = 4.0
+#: That scatter.
+_WIDE_SCATTER = 0.3
 #: Variance of a value by a scatter of groups that is not told, over that by as much of dwells, that is
 #: little: groups may scatter several times as much as dwells.
 _LITTLE = 0.1
@@ -206,13 +209,12 @@ def _law_fit(
     scatter: float,
     best: Minimum,
 ) -> LawFit:
-    size = len(law.names)
+    size, known = len(law.names), _stated(data)
     sigma = np.sqrt(errors**2 + scatter**2 + 1e-20)
     residuals = _residuals(law, data, columns, best.values)
     bread = np.asarray(np.linalg.pinv(best.jacobian.T @ best.jacobian, rcond=1e-14), dtype=np.float64)
     slopes = np.column_stack([law.jacobian(best.values[:size], data.inputs), columns])
     effects = best.values[size:]
-    known = _stated(data)
     stated = columns[:, :known] @ effects[:known]
     return LawFit(
         law=law,
@@ -220,7 +222,7 @@ def _law_fit(
         effects=effects,
         disturbances=columns,
         covariance=np.asarray(bread[:size, :size]),
-        clustered=_clustered(best.jacobian, residuals / sigma, bread, data.cluster)[:size, :size],
+        clustered=clustered_with_prior(best.jacobian, residuals / sigma, bread, data.cluster)[:size, :size],
         scatter=scatter,
         shared=shared,
         errors=errors,
@@ -372,9 +374,8 @@ def resampled(fit: LawFit, data: Observations, count: int, seed: int) -> FloatAr
     groups = getattr(fit.law, "groups", 1)
     for row in range(count):
         for _ in range(_MOST_TRIES):
-            sample = np.concatenate(
-                [clusters[i] for i in random.integers(0, len(clusters), len(clusters))]
-            ).astype(np.intp)
+            drawn = random.integers(0, len(clusters), len(clusters))
+            sample = np.concatenate([clusters[i] for i in drawn]).astype(np.intp)
             if np.unique(data.inputs.group[sample]).size >= min(2, data.temperatures.size, 2) and (
                 groups == 1 or np.unique(data.inputs.group[sample]).size == groups
             ):
@@ -394,131 +395,6 @@ def resampled(fit: LawFit, data: Observations, count: int, seed: int) -> FloatAr
     return draws
 
 
-def not_identified(fit: LawFit, data: Observations) -> dict[str, str]:
-    """Return the parameters that the data do not determine, each with what would."""
-    out: dict[str, str] = {}
-    law = fit.law
-    column = law.jacobian(fit.values, data.inputs) / fit.sigma[:, None]
-    norms = np.linalg.norm(column, axis=0)
-    _, singular, axes = np.linalg.svd(column / np.maximum(norms, 1e-300), full_matrices=False)
-    for value, axis in zip(singular, axes, strict=True):
-        if value < 1e-6 * singular[0]:
-            for index in np.flatnonzero(np.abs(axis) > 0.1):
-                out[law.names[index]] = "other parameters can make up for any change of it: vary speed and "
-                out[law.names[index]] += "temperature independently"
-    if isinstance(law, StribeckLaw):
-        for name, what in (("stick", "slower"), ("viscous", "faster")):
-            part = law.index(name)  # a factor e of it, in standard errors of all dwells together
-            if norms[part] < 2.0 or fit.covariance[part, part] > 1.0:
-                out[name] = f"the part it scales hardly shows: record dwells at {what} speeds"
-        return out
-    if isinstance(law, ConstantPlusLaw):
-        return out | _parts_shown(fit, norms)
-    if isinstance(law, SharedLoadLaw):
-        return out | _contact_shown(fit)
-    if isinstance(law, RestLaw):
-        return out
-    if law.broken:
-        out |= _branches_shown(fit, data)
-    if "q" in law.names:
-        q, error = fit.values[law.index("q")], fit.error("q")
-        if q <= 2.0 * error:
-            out["q"] = "T0 has no lower bound in these data: record temperatures further apart"
-    if "q" not in out and law.branches == "two branches, one Hersey number" and law.thermal:
-        c = fit.values[law.index("c")]
-        if 1.0 + c <= LEAST_POWER:
-            out["at"] = (
-                "torque hardly depends on viscosity above it (1 + c is at its bound), so where one Hersey "
-                "number lies at other temperatures is not determined: record faster speeds"
-            )
-    return out
-
-
-def _parts_shown(fit: LawFit, norms: FloatArray) -> dict[str, str]:
-    """Which part beside the film, or the film, hardly shows: a factor e of it is within the errors."""
-    out: dict[str, str] = {}
-    for name, what in (("rest", "constant"), ("viscous", "viscous")):
-        part = fit.law.index(name) if name in fit.law.names else None
-        if part is None or (norms[part] >= 2.0 and fit.covariance[part, part] <= 1.0):
-            continue
-        why = f"the {what} torque hardly shows beside the film, or the film beside it: record a wider range"
-        out |= {lost: why for lost in (name, "r") if lost in fit.law.names}
-    return out
-
-
-def _contact_shown(fit: LawFit) -> dict[str, str]:
-    """Which numbers of a contact the log hardly tells: a factor e of it is within the errors."""
-    more = {
-        "viscosity": "speeds at which the film carries all, and the rest of the drive by itself",
-        "roughness": "speeds on both sides of the transition",
-        "boundary": "slower speeds, at which asperities carry more",
-    }
-    return {
-        name: f"not told: a factor {np.e:.1f} of it is within the errors; record {what}"
-        for name, what in more.items()
-        if name in fit.law.names
-        and (fit.error(name) > 1.0 or abs(fit.values[fit.law.index(name)]) >= 0.99 * BOUND)
-    }
-
-
-def _branches_shown(fit: LawFit, data: Observations) -> dict[str, str]:
-    """Which parameters of a corner have too few speeds on either side."""
-    assert isinstance(fit.law, Law)
-    away = data.inputs.log_speed - fit.law.transition(fit.values, data.inputs)
-    for side, what in ((away < 0, "slower"), (away >= 0, "faster")):
-        levels = np.unique(np.round(np.sort(away[side]) / 0.03)).size
-        if np.count_nonzero(side) < 3 or levels < 2:
-            count = int(np.count_nonzero(side))
-            where = "below" if what == "slower" else "above"
-            reason = f"only {count} dwells lie {where} the transition: record dwells at {what} speeds"
-            lost = ["at", "c_mixed"] if what == "slower" else ["at", "c"]
-            return {name: reason for name in lost if name in fit.law.names}
-    if fit.error("at") > 0.25 * float(np.ptp(data.inputs.log_speed)):
-        return {
-            "at": "the branches differ too little to say where they meet: record slower and faster speeds"
-        }
-    return {}
-
-
 def _residuals(law: AnyLaw, data: Observations, columns: FloatArray, values: FloatArray) -> FloatArray:
     size = values.size - columns.shape[1]
     return np.asarray(data.log_torque - law.predict(values[:size], data.inputs) - columns @ values[size:])
-
-
-def _clustered(jacobian: FloatArray, u: FloatArray, bread: FloatArray, cluster: IntArray) -> FloatArray:
-    """Covariance of the values and the effects, whose priors are the last rows."""
-    prior = jacobian[u.size :]
-    return _cr3(jacobian[: u.size], u, bread, cluster, prior.T @ prior)
-
-
-def clustered_covariance(jacobian: FloatArray, u: FloatArray, cluster: IntArray) -> FloatArray:
-    """Return a covariance that holds whatever points of a cluster have in common (Bell and McCaffrey's CR3).
-
-    Parameters
-    ----------
-    jacobian
-        Of the residuals in standard errors, shape (points, parameters).
-    u
-        These residuals, shape (points,).
-    cluster
-        Label of each point, shape (points,).
-    """
-    bread = np.asarray(np.linalg.pinv(jacobian.T @ jacobian), dtype=np.float64)
-    return _cr3(jacobian, u, bread, cluster, np.zeros_like(bread))
-
-
-def _cr3(
-    rows: FloatArray, u: FloatArray, bread: FloatArray, cluster: IntArray, prior: FloatArray
-) -> FloatArray:
-    out = np.zeros_like(bread)
-    # the rows carry the root of Huber's weight already, so the residual carries the other root
-    weighted = np.sign(u) * np.sqrt(np.minimum(np.abs(u), HUBER) * np.abs(u))
-    labels = np.unique(cluster)
-    for label in labels:
-        members = np.flatnonzero(cluster == label)
-        part = rows[members]
-        leverage = np.eye(members.size) - part @ bread @ part.T
-        push = part.T @ np.linalg.pinv(leverage) @ weighted[members]
-        out += np.outer(push, push)
-    shrink = (labels.size - 1) / labels.size
-    return np.asarray(bread @ (shrink * out + prior) @ bread)

@@ -23,7 +23,8 @@ import numpy as np
 from hersey.arrays import FloatArray
 from hersey.damping.candidates.branched import FREE, Law
 from hersey.damping.candidates.constant_plus import ConstantPlusLaw
-from hersey.damping.candidates.fitting import AnyLaw, Effort, LawFit, not_identified, resampled, search
+from hersey.damping.candidates.fitting import AnyLaw, Effort, LawFit, resampled, search
+from hersey.damping.candidates.identifiability import not_identified
 from hersey.damping.candidates.observations import Inputs, Observations
 from hersey.damping.candidates.shared_errors import Freedom, SharedScatter, shared_variance
 from hersey.damping.candidates.shared_load import SharedLoadLaw
@@ -84,54 +85,69 @@ class Band:
     prediction: tuple[FloatArray, FloatArray]
 
 
+#: A parameter of a law, what it is called, its unit, and its value of that of the parameter.
+_Named = tuple[str, str, str, Callable[[float], float]]
+
+
 def quantities(law_fit: LawFit, data: Observations) -> tuple[Quantity, ...]:
     """Return what the parameters of a fit are called, in which units, and their values."""
-    law, w, kelvin = law_fit.law, data.reference_speed, data.reference_kelvin
-    names = {name: index for index, name in enumerate(law.names)}
-    all_quantities = []
+    law, w = law_fit.law, data.reference_speed
+    stribeck = isinstance(law, StribeckLaw)
+    of_heat, of_transition = _of_temperature(law, data.reference_kelvin)
+    named: list[_Named] = [
+        *_of_level(law, w),
+        *of_heat,
+        ("c", "c of the film" if isinstance(law, ConstantPlusLaw) else "c", "", float),
+        *(
+            (f"c{i}", f"c at {convert(float(kelvin), 'K', 'degC'):.0f} degC", "", float)
+            for i, kelvin in enumerate(data.temperatures, 1)
+        ),
+        ("c_mixed", "c below the transition", "", float),
+        ("stick", "ln(Stribeck peak / Coulomb)", "", float),
+        *([("viscous", "ln(viscous torque at the Stribeck speed / Coulomb)", "", float)] if stribeck else []),
+        ("at", "Stribeck speed" if stribeck else "transition speed", "rad/s", lambda v: w * _exp(v)),
+        *of_transition,
+    ]
+    index = {name: i for i, name in enumerate(law.names)}
+    return tuple(Quantity(name, unit, index[p], of) for p, name, unit, of in named if p in index)
 
-    def add(parameter: str, name: str, unit: str, of: Callable[[float], float]) -> None:
-        if parameter in names:
-            all_quantities.append(Quantity(name, unit, names[parameter], of))
 
+def _of_level(law: AnyLaw, w: float) -> list[_Named]:
+    """What stands for the level of a law, or of its parts, at a reference speed (rad/s)."""
     if isinstance(law, StribeckLaw):
-        add("level", "Coulomb torque", "N m", _exp)
-    elif isinstance(law, ConstantPlusLaw):
-        add("level", "torque of the film at reference", "N m", _exp)
-        add("rest", "constant torque over that of the film at reference", "", _exp)
-        add("viscous", "viscous torque over that of the film at reference", "", _exp)
-    elif isinstance(law, SharedLoadLaw):
+        return [("level", "Coulomb torque", "N m", _exp)]
+    if isinstance(law, ConstantPlusLaw):
+        return [
+            ("level", "torque of the film at reference", "N m", _exp),
+            ("rest", "constant torque over that of the film at reference", "", _exp),
+            ("viscous", "viscous torque over that of the film at reference", "", _exp),
+        ]
+    if isinstance(law, SharedLoadLaw):
         stated, torque = law.contact.stated, law.torque
-        add("viscosity", "viscosity over that stated", "", _exp)
-        add("roughness", "roughness of both faces, rms", "m", lambda v: stated["roughness"] * _exp(v))
-        add("boundary", "boundary friction", "", lambda v: stated["boundary"] * _exp(v))
-        add("rest", "constant torque", "N m", lambda v: torque * v)
-    else:
-        add("level", "damping at reference", "N m s/rad", lambda v: _exp(v) / w)
-    if law.thermal and kelvin is not None:
-        if law.thermal.kind in (ARRHENIUS, VFT):
-            per_unit = law.thermal.energy(kelvin) / 1e3
-            of_what = {Law: "torque", ConstantPlusLaw: "torque of the film"}.get(type(law), "viscosity")
-            add("e", f"activation energy of {of_what}", "kJ/mol", lambda v: per_unit * v)
-        else:
-            add("e", "b of the film" if isinstance(law, ConstantPlusLaw) else "b", "", float)
-        add("q", "T0", "K", lambda v: kelvin - 1.0 / v)
-    add("c", "c of the film" if isinstance(law, ConstantPlusLaw) else "c", "", float)
-    for i, hot in enumerate(data.temperatures):
-        add(f"c{i + 1}", f"c at {convert(float(hot), 'K', 'degC'):.0f} degC", "", float)
-    add("c_mixed", "c below the transition", "", float)
-    add("stick", "ln(Stribeck peak / Coulomb)", "", float)
-    if isinstance(law, StribeckLaw):
-        add("viscous", "ln(viscous torque at the Stribeck speed / Coulomb)", "", float)
-    speed = "Stribeck speed" if isinstance(law, StribeckLaw) else "transition speed"
-    add("at", speed, "rad/s", lambda v: w * _exp(v))
-    if law.thermal and kelvin is not None and isinstance(law, Law) and law.branches == FREE:
-        if law.thermal.kind in (ARRHENIUS, VFT):
-            by_d = -law.thermal.energy(kelvin) / 1e3
-            add("d", "activation energy of the transition speed", "kJ/mol", lambda v: by_d * v)
-        else:
-            add("d", "exponent of the transition speed in temperature", "", float)
-    return tuple(all_quantities)
+        return [
+            ("viscosity", "viscosity over that stated", "", _exp),
+            ("roughness", "roughness of both faces, rms", "m", lambda v: stated["roughness"] * _exp(v)),
+            ("boundary", "boundary friction", "", lambda v: stated["boundary"] * _exp(v)),
+            ("rest", "constant torque", "N m", lambda v: torque * v),
+        ]
+    return [("level", "damping at reference", "N m s/rad", lambda v: _exp(v) / w)]
+
+
+def _of_temperature(law: AnyLaw, kelvin: float | None) -> tuple[list[_Named], list[_Named]]:
+    """What stands for temperature in a law, and in its transition, at a reference temperature (K)."""
+    if not law.thermal or kelvin is None:
+        return [], []
+    of_film = isinstance(law, ConstantPlusLaw)
+    by_energy = law.thermal.kind in (ARRHENIUS, VFT)
+    per_unit = law.thermal.energy(kelvin) / 1e3 if by_energy else 1.0
+    named: list[_Named] = [("e", "b of the film" if of_film else "b", "", float)]
+    moved: list[_Named] = [("d", "exponent of the transition speed in temperature", "", float)]
+    if by_energy:
+        of_what = {Law: "torque", ConstantPlusLaw: "torque of the film"}.get(type(law), "viscosity")
+        named = [("e", f"activation energy of {of_what}", "kJ/mol", lambda v: per_unit * v)]
+        moved = [("d", "activation energy of the transition speed", "kJ/mol", lambda v: -per_unit * v)]
+    named.append(("q", "T0", "K", lambda v: kelvin - 1.0 / v))
+    return named, moved if isinstance(law, Law) and law.branches == FREE else []
 
 
 def estimates(
@@ -212,14 +228,8 @@ def _intervals(
     value, reach = float(fit.values[parameter]), quantile(freedom)
     out = {}
     clusters = np.unique(data.cluster).size
-    by = (
-        ("covariance", fit.covariance, reach),
-        (
-            "clustered",
-            fit.clustered,
-            quantile(min(clusters - fit.values.size, freedom)),
-        ),
-    )
+    of_clusters = quantile(min(clusters - fit.values.size, freedom))
+    by = ("covariance", fit.covariance, reach), ("clustered", fit.clustered, of_clusters)
     for method, covariance, width in by:
         error = float(np.sqrt(max(covariance[parameter, parameter], 0.0)))
         out[method] = value - width * error, value + width * error
@@ -228,9 +238,7 @@ def _intervals(
     if draws is not None:
         low, high = np.quantile(draws[:, parameter], [0.5 - CONFIDENCE / 2, 0.5 + CONFIDENCE / 2])
         widened = np.sqrt(clusters / max(clusters - fit.values.size, 1))
-        widened *= quantile(min(clusters - fit.values.size, freedom)) / float(
-            normal_quantile(0.5 + CONFIDENCE / 2)
-        )
+        widened *= of_clusters / float(normal_quantile(0.5 + CONFIDENCE / 2))
         out["bootstrap"] = value - widened * (value - float(low)), value + widened * (float(high) - value)
     return out
 

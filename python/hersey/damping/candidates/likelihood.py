@@ -101,8 +101,7 @@ def minimise(
         share = np.where(np.abs(u) <= limit, 1.0, limit / root)
         return np.asarray(share[:, None] * slopes(values))
 
-    count = residual(start).size
-    if count < start.size:
+    if (count := residual(start).size) < start.size:
         raise InsufficientDataError(f"{count} points cannot determine {start.size} parameters")
     with np.errstate(over="ignore", invalid="ignore"):  # of a covariance that is not used
         solution, *_ = optimize.leastsq(

@@ -15,7 +15,7 @@ from hersey.damping.candidates.collapse import HerseyCollapse
 from hersey.damping.candidates.energy import CALORIE, ActivationEnergies, scaled
 from hersey.damping.candidates.errors_in_variables import OrthogonalFit
 from hersey.damping.candidates.fitting import LawFit
-from hersey.damping.candidates.intervals import METHODS, Band, Ends, ParameterEstimate, band
+from hersey.damping.candidates.intervals import METHODS, Band, ParameterEstimate, band
 from hersey.damping.candidates.lack_of_fit import LackOfFit
 from hersey.damping.candidates.observations import Observations
 from hersey.damping.candidates.shared_load import SharedLoadLaw
@@ -165,14 +165,11 @@ def _document(comparison: ModelComparison) -> dict[str, object]:
         "reasons": comparison.reasons,
         "parameters": [_parameter_document(p) for p in comparison.parameters],
         "bootstrap": {"draws": comparison.bootstrap, "seed": comparison.seed},
-        "errors_in_variables": {
-            "share": comparison.orthogonal.share,
-            "largest_shift": comparison.orthogonal.largest_shift,
-            "converged": comparison.orthogonal.converged,
-            "verdict": comparison.orthogonal.verdict,
-        },
+        "errors_in_variables": _picked(comparison.orthogonal, "share largest_shift converged verdict"),
         "activation_energy": _energy_document(comparison.energies),
-        "hersey_collapse": None if comparison.collapse is None else _collapse_document(comparison.collapse),
+        "hersey_collapse": None
+        if (c := comparison.collapse) is None
+        else _picked(c, "collapses deviation scatter p_value overlap verdict") | {"log_viscosity": c.shifts},
     }
 
 
@@ -210,34 +207,25 @@ def _local(kelvin: float, energy: float) -> str:
     )
 
 
+def _picked(of: object, names: str) -> dict[str, object]:
+    """Some of the fields of a result, by name."""
+    return {name: getattr(of, name) for name in names.split()}
+
+
 def _candidate_document(r: CandidateFit) -> dict[str, object]:
     return {
-        "key": r.candidate.key,
-        "name": r.candidate.name,
+        **_picked(r.candidate, "key name"),
         "parameters": dict(zip(r.fit.law.names, r.fit.values.tolist(), strict=True)),
-        "not_identified": r.not_identified,
-        "aicc": r.fit.aicc,
-        "bic": r.fit.bic,
-        "delta_aicc": r.delta_aicc,
-        "delta_bic": r.delta_bic,
+        **_picked(r, "not_identified delta_aicc delta_bic cross_validation lack_of_fit"),
+        **_picked(r.fit, "aicc bic scatter"),
         "akaike_weight": r.weight,
-        "cross_validation": r.cross_validation,
-        "scatter": r.fit.scatter,
         "shared_scatter": r.fit.shared,
-        "lack_of_fit": r.lack_of_fit,
     }
 
 
 def _parameter_document(p: ParameterEstimate) -> dict[str, object]:
-    intervals: dict[str, Ends] = p.intervals
-    return {
-        "name": p.name,
-        "unit": p.unit,
-        "value": None if p.not_identified else p.value,
-        "error": p.error,
-        "intervals": intervals,
-        "not_identified": p.not_identified,
-    }
+    value = None if p.not_identified else p.value
+    return {**_picked(p, "name unit error intervals not_identified"), "value": value}
 
 
 def _energy_document(e: ActivationEnergies) -> dict[str, object]:
@@ -251,19 +239,6 @@ def _energy_document(e: ActivationEnergies) -> dict[str, object]:
         "power": None if e.power is None else vars(e.power),
         "viscosity": each(e.viscosity),
         "transition": each(e.transition),
-        "p_value": e.p_value,
-        "verdict": e.verdict,
+        **_picked(e, "p_value verdict"),
         "local": [{"temperature": kelvin, "joule_per_mol": energy} for kelvin, energy in e.local],
-    }
-
-
-def _collapse_document(c: HerseyCollapse) -> dict[str, object]:
-    return {
-        "collapses": c.collapses,
-        "deviation": c.deviation,
-        "scatter": c.scatter,
-        "p_value": c.p_value,
-        "overlap": c.overlap,
-        "log_viscosity": c.shifts,
-        "verdict": c.verdict,
     }

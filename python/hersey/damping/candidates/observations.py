@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import TypeVar
+from typing import Any
 
 import numpy as np
 
@@ -14,8 +14,6 @@ from hersey.damping.dwells.misleading import lagging, one_direction, unlinked_ru
 from hersey.errors import InsufficientDataError
 from hersey.log.means import MeansTable
 from hersey.units import rpm
-
-AnyArray = TypeVar("AnyArray", FloatArray, IntArray)
 
 #: Change of temperature from dwell to dwell, K, that ends a stay.
 STEP = 6.0
@@ -46,9 +44,8 @@ class Observations:
     torque_error: FloatArray  #: relative
     speed_error: FloatArray  #: relative
     temperature_error: FloatArray  #: K
-    tare: (
-        FloatArray  #: of ``log_torque`` by a standard error of each error of zero and rest: (points, errors)
-    )
+    #: of ``log_torque`` by a standard error of each error of zero and rest, shape (points, errors)
+    tare: FloatArray
     visit: IntArray  #: which stay at a temperature a dwell belongs to, shape (points,)
     run: IntArray
     cluster: IntArray  #: points that share it are left out and resampled together
@@ -94,14 +91,13 @@ class Observations:
         if kelvin is not None and points.log.sensors.film_heating:  # visits are stays of what is read
             kelvin, heating = _heated(kelvin, torque * speed, points.log.sensors.film_heating)
         by_run = np.unique(run).size >= MANY_RUNS
-        zero = np.zeros_like(speed)
         reference = float(np.exp(np.mean(np.log(speed))))
         return cls(
             inputs=Inputs(np.log(speed / reference), kelvin, group),
             log_torque=np.log(torque),
             torque_error=points.column("torque_error") / torque,
             speed_error=points.column("speed_error") / speed,
-            temperature_error=zero if kelvin is None else points.column("temperature_error"),
+            temperature_error=np.zeros_like(speed) if kelvin is None else points.column("temperature_error"),
             tare=points.zero_errors / points.column("torque")[:, None],
             visit=visit,
             run=run,
@@ -127,22 +123,12 @@ class Observations:
 
     def take(self, index: IntArray) -> Observations:
         """Return the observations at an index, repeats allowed, about the same reference."""
-        return replace(
-            self,
-            inputs=self.inputs.take(index),
-            log_torque=self.log_torque[index],
-            torque_error=self.torque_error[index],
-            speed_error=self.speed_error[index],
-            temperature_error=self.temperature_error[index],
-            tare=self.tare[index],
-            heating=_taken(self.heating, index),
-            direction=_taken(self.direction, index),
-            temperature_rate=_taken(self.temperature_rate, index),
-            unlinked=_taken(self.unlinked, index),
-            visit=self.visit[index],
-            run=self.run[index],
-            cluster=self.cluster[index],
-        )
+        taken: dict[str, Any] = {
+            name: values[index]
+            for name, values in vars(self).items()
+            if isinstance(values, np.ndarray) and len(values) and name != "temperatures"
+        }
+        return replace(self, inputs=self.inputs.take(index), **taken)
 
     def at(self, speed: FloatArray, kelvin: FloatArray | None) -> Inputs:
         """Return inputs at other speeds (rad/s) and temperatures (K), grouped with the nearest measured."""
@@ -153,11 +139,6 @@ class Observations:
         hot = np.broadcast_to(np.asarray(kelvin, dtype=np.float64), z.shape).copy()
         nearest = np.argmin(np.abs(hot[:, None] - self.temperatures[None, :]), axis=1)
         return Inputs(z, hot, nearest.astype(np.intp))
-
-
-def _taken(values: AnyArray, index: IntArray) -> AnyArray:
-    """Values at an index, or none where there are none."""
-    return values[index] if values.size else values
 
 
 def _groups(kelvin: FloatArray | None, count: int) -> tuple[IntArray, FloatArray]:

@@ -79,10 +79,7 @@ def shared_variance(scatter: tuple[SharedScatter, ...]) -> float:
 
 
 def disturbances(
-    data: Observations,
-    grouped: tuple[Grouping, ...],
-    scatter: tuple[SharedScatter, ...],
-    by_heat: FloatArray,
+    data: Observations, grouped: tuple[Grouping, ...], scatter: tuple[SharedScatter, ...], by_heat: FloatArray
 ) -> FloatArray:
     """Return by how much one standard error of each shared error moves ln torque, shape (points, errors).
 

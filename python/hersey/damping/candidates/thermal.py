@@ -27,7 +27,11 @@ GAS_CONSTANT = _core.GAS_CONSTANT
 #: Least value of 1 + q t T_ref: a temperature at or below T0 has no viscosity.
 _NEAR_T0 = 0.02
 
-CELSIUS, KELVIN, ARRHENIUS, VFT = "power law in degC", "power law in K", "Arrhenius", "VFT"
+# Kinds of laws of temperature, as they are called in words.
+CELSIUS = "power law in degC"
+KELVIN = "power law in K"
+ARRHENIUS = "Arrhenius"
+VFT = "VFT"
 
 
 @dataclass(frozen=True)

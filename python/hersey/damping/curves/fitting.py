@@ -19,8 +19,12 @@ from hersey.damping.curves.shapes import Shape
 
 #: Numbers before those of the shape.
 _COMMON = ("level", "at", "move", "bend", "force")
-#: Reach of the smooth curve of a free law beyond the dwells, and the distance of its bumps, in ln speed.
-_BELOW, _ABOVE, _APART = 2.5, 1.5, 0.9
+#: How far the smooth curve of a free law goes on below the dwells, in ln speed.
+_BELOW = 2.5
+#: How far above them.
+_ABOVE = 1.5
+#: Distance of its bumps.
+_SPACING = 0.9
 #: Standard deviations of the priors: of ln torque, place, viscosity, its bend, and force with temperature.
 _WIDE = {"level": 3.0, "at": 1.5, "move": 8.0, "bend": 1.0, "force": 0.3}
 #: Standard deviation of the prior of ln scatter about that of the fitted surface.
@@ -233,7 +237,7 @@ def predicted(
     both = (
         weights[:, None, :] + 0.5 * tilted[:, None, :] * (np.atleast_1d(temperature) / reach)[None, :, None]
     )
-    near = np.exp(-0.5 * ((scaled[:, :, None] - bumps) / _APART) ** 2)
+    near = np.exp(-0.5 * ((scaled[:, :, None] - bumps) / _SPACING) ** 2)
     return np.asarray(out + shape.residual * np.sum(near * both, axis=2))
 
 
@@ -245,4 +249,4 @@ def _scaled(numbers: FloatArray, log_speed: FloatArray, temperature: FloatArray)
 def _bumps(dwells: Dwells) -> FloatArray:
     """Centres of the bumps of the smooth curve, in ln speed."""
     low, high = float(dwells.log_speed.min()) - _BELOW, float(dwells.log_speed.max()) + _ABOVE
-    return np.arange(low, high + _APART, _APART)
+    return np.arange(low, high + _SPACING, _SPACING)

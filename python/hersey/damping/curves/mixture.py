@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
@@ -10,7 +10,7 @@ from typing import Annotated
 
 import numpy as np
 
-from hersey.arrays import FloatArray, IntArray
+from hersey.arrays import BoolArray, FloatArray, IntArray
 from hersey.damping.candidates.shared_load import SharedLoad
 from hersey.damping.curves.beyond import BEYOND, log_torque_beyond
 from hersey.damping.curves.dwells import Dwells, dwells_of
@@ -66,11 +66,6 @@ class CurveMixture:
         return max(law.size for law in self.laws) + BEYOND
 
     @property
-    def without_formula(self) -> float:
-        """Weight of the smooth curve without a formula."""
-        return float(sum(w for law, w in zip(self.laws, self.weights, strict=True) if law.shape.residual))
-
-    @property
     def scatter(self) -> float:
         """Relative scatter of dwells about the law of most weight."""
         law = self.laws[int(np.argmax(self.weights))]
@@ -91,11 +86,15 @@ class CurveMixture:
     def log_weight(self, law: IntArray, latent: FloatArray) -> FloatArray:
         """Return by how much draws are likelier than their latents, shape (draws,)."""
         out = np.zeros(law.size)
-        for index, one in enumerate(self.laws):
-            mine = law == index
-            if mine.any():
-                out[mine] = one.log_weight(latent[mine][:, BEYOND : BEYOND + one.size])
+        for one, mine in self._draws(law):
+            out[mine] = one.log_weight(latent[mine][:, BEYOND : BEYOND + one.size])
         return out
+
+    def _draws(self, law: IntArray) -> Iterator[tuple[FittedLaw, BoolArray]]:
+        """Each law that has draws, and which they are."""
+        for index, one in enumerate(self.laws):
+            if (mine := law == index).any():
+                yield one, mine
 
     def log_torque(
         self, law: IntArray, latent: FloatArray, speed: FloatArray, kelvin: float | None
@@ -106,11 +105,9 @@ class CurveMixture:
         """
         z, s = np.log(speed / self.dwells.reference_speed), self.dwells.shape_of(kelvin)
         out = np.empty((law.size, z.size))
-        for index, one in enumerate(self.laws):
-            mine = law == index
-            if mine.any():
-                numbers = one.at(latent[mine][:, BEYOND : BEYOND + one.size])
-                out[mine] = log_torque_beyond(one, numbers, latent[mine][:, :BEYOND], z, s)
+        for one, mine in self._draws(law):
+            numbers = one.at(latent[mine][:, BEYOND : BEYOND + one.size])
+            out[mine] = log_torque_beyond(one, numbers, latent[mine][:, :BEYOND], z, s)
         return out
 
     def torque(self, speed: FloatArray, kelvin: float | None) -> FloatArray:
@@ -139,17 +136,12 @@ class CurveMixture:
         return self._of_each(law, latent, lambda one, numbers: one.log_level(numbers, s))
 
     def _of_each(
-        self,
-        law: IntArray,
-        latent: FloatArray,
-        figure: Callable[[FittedLaw, FloatArray], FloatArray],
+        self, law: IntArray, latent: FloatArray, figure: Callable[[FittedLaw, FloatArray], FloatArray]
     ) -> FloatArray:
         """A figure of each draw by its law and the law's numbers, shape (draws,)."""
         out = np.zeros(law.size)
-        for index, one in enumerate(self.laws):
-            mine = law == index
-            if mine.any():
-                out[mine] = figure(one, one.at(latent[mine][:, BEYOND : BEYOND + one.size]))
+        for one, mine in self._draws(law):
+            out[mine] = figure(one, one.at(latent[mine][:, BEYOND : BEYOND + one.size]))
         return out
 
 

@@ -28,6 +28,12 @@ def groups_of_temperature(temperature: FloatArray, width: float = 6.0) -> Iterat
             start = i
 
 
+def levels_of_speed(log_speed: FloatArray, members: NDArray[np.intp], apart: float) -> list[NDArray[np.intp]]:
+    """Return the members of each speed, the slowest first; ``apart`` in ln speed parts two of them."""
+    order = members[np.argsort(log_speed[members], kind="stable")]
+    return np.split(order, np.flatnonzero(np.diff(log_speed[order]) > apart) + 1)
+
+
 def distinct_speeds(speed: FloatArray) -> int:
     """Return how many different speeds there are, to `SAME_SPEED`."""
     ordered = np.sort(speed)

@@ -83,48 +83,18 @@ def judged(
 
     if reason := _no_dwell(segment, asked):
         return reject(reason)
-    start, end, reason = _steady_rows(run, segment, asked, tare, noise, common, step)
+    judge = _Judge(run, segment, asked, tare, noise, common, step)
+    start, end, reason = judge.steady_rows()
     if reason:
-        again = _Again(run, segment, asked, tare, noise, common, step)
-        return reject(_spoilt(again, reason) or reason)
+        return reject(_spoilt(judge, reason) or reason)
     if np.mean(run.speed[start:end]) * (np.mean(run.torque[start:end]) - tare) <= 0:
         return reject(Reason("opposite signs"))
     return Dwell(stretch.run, segment, stretch.previous, start, end)
 
 
-def _steady_rows(
-    run: Run,
-    segment: Segment,
-    asked: Asked,
-    tare: float,
-    noise: SharedNoise | None,
-    common: float,
-    step: float,
-) -> tuple[int, int, Reason | None]:
-    """The rows [start, end) of a segment that may be a dwell, and why they are none."""
-    if segment.ripple:
-        start, end = segment.start, segment.end
-    else:
-        start, end = settled(run, segment, noise)
-        later = segment.start + round(common / run.sampling_interval)
-        if later > start and end - later >= max((end - start) / 2.0, asked.min_dwell / run.sampling_interval):
-            start = later
-    reason = unsteady(run, start, end, asked.min_dwell, tare, noise, segment.ripple, step)
-    for share in LATER_STARTS:  # a warm-up at the same speed may come before what is steady
-        later = start + round(share * (end - start))
-        if (
-            reason
-            and reason.drifts
-            and not segment.ripple
-            and unsteady(run, later, end, asked.min_dwell, tare, noise, step=step) is None
-        ):
-            start, reason = later, None
-    return start, end, reason
-
-
 @dataclass(frozen=True)
-class _Again:
-    """How a segment was judged, so that it can be judged again with another torque."""
+class _Judge:
+    """What a segment is judged by; the numbers as of `judged`."""
 
     run: Run
     segment: Segment
@@ -134,48 +104,63 @@ class _Again:
     common: float
     step: float
 
+    def _unsteady(self, start: int, end: int, *, ripple: bool = False) -> Reason | None:
+        asked, noise = self.asked, self.noise
+        return unsteady(self.run, start, end, asked.min_dwell, self.tare, noise, ripple, self.step)
+
+    def steady_rows(self) -> tuple[int, int, Reason | None]:
+        """Return the rows [start, end) of the segment that may be a dwell, and why they are none."""
+        segment, interval = self.segment, self.run.sampling_interval
+        start, end = segment.start, segment.end
+        if not segment.ripple:
+            start, end = settled(self.run, segment, self.noise)
+            later = segment.start + round(self.common / interval)
+            if later > start and end - later >= max((end - start) / 2.0, self.asked.min_dwell / interval):
+                start = later
+        reason = self._unsteady(start, end, ripple=segment.ripple)
+        for share in LATER_STARTS:  # a warm-up at the same speed may come before what is steady
+            if reason is None or not reason.drifts or segment.ripple:
+                break
+            later = start + round(share * (end - start))
+            if self._unsteady(later, end) is None:
+                start, reason = later, None
+        return start, end, reason
+
     @property
     def alone(self) -> Run:
         """The rows of the segment as a run."""
         rows = slice(self.segment.start, self.segment.end)
         kelvin = None if self.run.temperature is None else self.run.temperature[rows]
-        return replace(
-            self.run,
-            time=self.run.time[rows],
-            torque=self.run.torque[rows],
-            speed=self.run.speed[rows],
-            temperature=kelvin,
-            load=None,
-        )
+        parts = {name: getattr(self.run, name)[rows] for name in ("time", "torque", "speed")}
+        return replace(self.run, **parts, temperature=kelvin, load=None)
 
     def is_steady(self, run: Run) -> bool:
-        """Whether the segment alone, its torque another, is a dwell."""
+        """Return whether the segment alone, its torque another, is a dwell."""
         segment = replace(self.segment, start=0, end=run.time.size)
-        found = _steady_rows(run, segment, self.asked, self.tare, self.noise, self.common, self.step)
-        return found[2] is None
+        return replace(self, run=run, segment=segment).steady_rows()[2] is None
 
 
-def _spoilt(again: _Again, reason: Reason) -> Reason | None:
+def _spoilt(judge: _Judge, reason: Reason) -> Reason | None:
     """The spikes or the ripple without which a segment were a dwell, or None.
 
     A stick-slip is as periodic as a ripple: only spikes can look like it.
     """
-    lasts = float(again.run.time[again.segment.end - 1] - again.run.time[again.segment.start])
-    if reason.kind not in _OF_TORQUE or lasts < again.asked.min_dwell:
+    lasts = float(judge.run.time[judge.segment.end - 1] - judge.run.time[judge.segment.start])
+    if reason.kind not in _OF_TORQUE or lasts < judge.asked.min_dwell:
         return None
-    run = again.alone
-    level = abs(float(np.median(run.torque)) - again.tare)
+    run = judge.alone
+    level = abs(float(np.median(run.torque)) - judge.tare)
     if level == 0.0:
         return None
     if found := without_spikes(run.torque):
         torque, spikes = found
-        if again.is_steady(replace(run, torque=torque)):
+        if judge.is_steady(replace(run, torque=torque)):
             return Reason("spikes", share=spikes.size / level, count=spikes.count, seen_as=reason.kind)
     if reason.kind != "stick-slip" and (wavy := without_wave(run.time, run.torque)):
         torque, wave = wavy
-        if again.is_steady(replace(run, torque=torque)):
-            turns = abs(again.segment.speed) / (2.0 * np.pi)
-            level = abs(float(np.mean(torque)) - again.tare)
+        if judge.is_steady(replace(run, torque=torque)):
+            turns = abs(judge.segment.speed) / (2.0 * np.pi)
+            level = abs(float(np.mean(torque)) - judge.tare)
             return Reason(
                 "ripple",
                 share=wave.amplitude / level,

@@ -12,7 +12,7 @@ from typing import Literal
 import numpy as np
 
 from hersey.arrays import FloatArray, IntArray
-from hersey.damping.dwells.groups import SAME_SPEED, groups_of_temperature
+from hersey.damping.dwells.groups import SAME_SPEED, groups_of_temperature, levels_of_speed
 from hersey.damping.dwells.points import SteadyPoints
 from hersey.damping.dwells.relaxation import Relaxation
 from hersey.log.sensors import HYSTERESIS_OF_LARGEST, TEMPERATURE_LAG
@@ -81,8 +81,7 @@ def _both_ways(points: SteadyPoints, sign: FloatArray) -> int:
     groups = [np.arange(sign.size)] if kelvin is None else list(groups_of_temperature(kelvin))
     count = 0
     for group in groups:
-        order = group[np.argsort(speed[group], kind="stable")]
-        levels = np.split(order, np.flatnonzero(np.diff(speed[order]) > SAME_SPEED) + 1)
+        levels = levels_of_speed(speed, group, SAME_SPEED)
         count += sum(bool(np.any(sign[level] > 0) and np.any(sign[level] < 0)) for level in levels)
     return count
 
@@ -172,15 +171,10 @@ def _coarse(points: SteadyPoints) -> list[Misleading]:
 
 def in_words(found: Misleading, points: SteadyPoints) -> str:
     """Return what an error structure means for the fit, and what to do about it."""
-    if found.kind == "one direction":
-        return _direction_words(found)
     if found.kind == "relaxation" and points.relaxation is not None:
         return _relaxation_words(found, points.relaxation)
-    if found.kind == "temperature lag":
-        return _lag_words(found)
-    if found.kind == "unlinked runs":
-        return _runs_words(found)
-    return _resolution_words(found)
+    words = {"one direction": _direction_words, "temperature lag": _lag_words, "unlinked runs": _runs_words}
+    return words.get(found.kind, _resolution_words)(found)
 
 
 def _direction_words(found: Misleading) -> str:

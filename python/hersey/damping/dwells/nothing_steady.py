@@ -31,10 +31,7 @@ _TOO_BRIEF, _RARER = 1.0, 50
 
 
 def nothing_steady(
-    log: TorqueLog,
-    rejected: tuple[Rejection, ...],
-    asked: Asked,
-    dwells_with: Callable[[float], int],
+    log: TorqueLog, rejected: tuple[Rejection, ...], asked: Asked, dwells_with: Callable[[float], int]
 ) -> str:
     """Return the message; ``dwells_with`` counts the dwells that another least duration, s, would give."""
     name = log.files[0].name + (f" and {len(log.files) - 1} more" if len(log.files) > 1 else "")

@@ -273,18 +273,10 @@ class SteadyPoints(Result):
 
     def to_dict(self) -> dict[str, Any]:
         """Return the dwells, what is not used, and the tare, in SI."""
+        plain = ("tare", "tare_error", "tare_errors", "notes", "standing_torque", "rest", "rest_errors")
         return json_record(
-            {
-                "points": self.table.to_dicts(),
-                "rejected": [_record(r) for r in self.rejected],
-                "tare": self.tare,
-                "tare_error": self.tare_error,
-                "tare_errors": self.tare_errors,
-                "notes": self.notes,
-                "standing_torque": self.standing_torque,
-                "rest": self.rest,
-                "rest_errors": self.rest_errors,
-            }
+            {"points": self.table.to_dicts(), "rejected": [_record(r) for r in self.rejected]}
+            | {name: getattr(self, name) for name in plain}
         )
 
     def to_frame(self) -> pl.DataFrame:

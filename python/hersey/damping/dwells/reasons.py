@@ -47,44 +47,23 @@ LABELS: dict[Kind, str] = {
 
 @dataclass(frozen=True)
 class Reason:
-    """Why a stretch is not used; only what belongs to the ``kind`` is set.
-
-    Attributes
-    ----------
-    kind
-        What is wrong.
-    share
-        How much, as a share of the mean: standard deviation of a swing, drift over the dwell with its sign,
-        median size of the spikes, amplitude of the ripple.
-    kelvin
-        Drift of the temperature over the dwell, K.
-    slow, fast
-        Between what the speed varies, rpm.
-    lasts, rows, needed
-        How long and how many rows are settled, s, and the duration that is needed, s.
-    count
-        Spikes.
-    frequency, per_turn
-        Of a ripple: Hz, and times per revolution of the roll.
-    seen_as
-        What is wrong with the dwell because of spikes or a ripple.
-    asked
-        Rotation that was asked for, ``forward`` or ``reverse``.
-    """
+    """Why a stretch is not used; only what belongs to the ``kind`` is set."""
 
     kind: Kind
+    #: as a share of the mean: standard deviation of a swing, drift over the dwell with its sign, median size
+    #: of the spikes, amplitude of the ripple
     share: float | None = None
-    kelvin: float | None = None
-    slow: float = 0.0
-    fast: float = 0.0
-    lasts: float = 0.0
-    rows: int = 0
-    needed: float = 0.0
-    count: int = 0
-    frequency: float = 0.0
-    per_turn: float = 0.0
-    seen_as: Kind | None = None
-    asked: str = ""
+    kelvin: float | None = None  #: drift of the temperature over the dwell, K
+    slow: float = 0.0  #: least speed, rpm
+    fast: float = 0.0  #: greatest speed, rpm
+    lasts: float = 0.0  #: how long is settled, s
+    rows: int = 0  #: how many rows are settled
+    needed: float = 0.0  #: duration that is needed, s
+    count: int = 0  #: spikes
+    frequency: float = 0.0  #: of a ripple, Hz
+    per_turn: float = 0.0  #: of a ripple, times per revolution of the roll
+    seen_as: Kind | None = None  #: what is wrong with the dwell because of spikes or a ripple
+    asked: str = ""  #: rotation that was asked for, ``forward`` or ``reverse``
 
     @property
     def drifts(self) -> bool:

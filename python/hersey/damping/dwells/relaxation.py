@@ -15,12 +15,18 @@ import numpy as np
 from hersey.arrays import FloatArray
 from hersey.damping.dwells.groups import SAME_SPEED
 
-#: Fewest dwells whose trends are compared, and blocks into which each is averaged.
-FEWEST, BLOCKS = 8, 12
+#: Fewest dwells whose trends are compared.
+FEWEST = 8
+#: Blocks into which each is averaged.
+BLOCKS = 12
 #: Standard errors by which trends must go with the change of speed.
 SIGNIFICANT = 5.0
-#: Time constants tried, as shares of the median dwell, and how many.
-SHORTEST, LONGEST, TRIED = 0.1, 10.0, 41
+#: Shortest time constant tried, as a share of the median dwell.
+SHORTEST = 0.1
+#: Longest of them.
+LONGEST = 10.0
+#: How many are tried.
+TRIED = 41
 #: Square of residuals over the least at which a time constant is still possible, in variances of a residual.
 POSSIBLE = 4.0
 #: Largest share of torque that may be left of a relaxation without being worth an error.

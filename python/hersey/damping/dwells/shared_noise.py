@@ -23,8 +23,12 @@ from hersey.damping.dwells.noise import thinned
 FEWEST = 5
 #: Dwells, spread over the log, from which the shape is taken at most.
 MOST = 400
-#: Cosines taken singly; the rest in bands, each this factor wider and counted as so many at most.
-SINGLE, BAND, BAND_COUNT = 16, 1.3, 16.0
+#: Cosines taken singly; the rest in bands.
+SINGLE = 16
+#: Factor by which each band is wider than the one before.
+BAND = 1.3
+#: Cosines as which a band counts at most.
+BAND_COUNT = 16.0
 #: Slowest cosines, whose power is that of the slow part of a dwell.
 SLOW = 6
 #: Powers beyond so many times their expectation are ripple, not noise; the first few are never left out.
@@ -33,8 +37,12 @@ RIPPLE, NEVER_RIPPLE = 16.0, 3
 DISAGREE = 5.0
 #: Longest time of the mixture, as a share of a dwell: of slower noise a dwell shows only the steepest part.
 LONGEST_TIME = 0.22
-#: Steps of the search for the mixture, and those after ripple was left out; from one time to the next.
-STEPS, MORE_STEPS, TIME_STEP = 200, 60, 2.0
+#: Steps of the search for the mixture.
+STEPS = 200
+#: Those after ripple was left out.
+MORE_STEPS = 60
+#: Factor from one time of the mixture to the next.
+TIME_STEP = 2.0
 
 
 @dataclass(frozen=True)

@@ -13,17 +13,25 @@ from hersey.damping.dwells.shared_noise import Powers, SharedNoise
 from hersey.log.torque_log import Run
 from hersey.units import rpm
 
-#: Largest drifts within a dwell: of temperature in K; of speed and torque as a share; of torque also in
-#: standard deviations of what fluctuates about the drift (a turning shaft makes slow waves of its own).
-MAX_TEMPERATURE_DRIFT, MAX_SPEED_DRIFT, MAX_TORQUE_DRIFT, MAX_DRIFT_TO_NOISE = 2.0, 0.01, 0.03, 2.0
+#: Largest drift of temperature within a dwell, K.
+MAX_TEMPERATURE_DRIFT = 2.0
+#: Of speed, as a share.
+MAX_SPEED_DRIFT = 0.01
+#: Of torque, as a share.
+MAX_TORQUE_DRIFT = 0.03
+#: Of torque, in standard deviations of what fluctuates about it: a turning shaft makes slow waves of its own.
+MAX_DRIFT_TO_NOISE = 2.0
 #: Largest standard deviation within a dwell as a share of the mean, of torque and of speed. A speed that
 #: swings more has no torque of its own: the law is not straight over what it swings through.
 MAX_TORQUE_SWING, MAX_SPEED_SWING = 0.35, 0.5
 #: Drift of torque, in steps of its sensor, that one reading next to another makes.
 MAX_STEP_DRIFT = 1.5
-#: Stick-slip: torque swings by more than this, and its changes are this skewed (slow rises, sudden drops). Of
-#: a cycle with few samples less skewness shows: it counts where changes go on, which those of noise do not.
-STICK_SLIP_SWING, STICK_SLIP_SKEWNESS, COARSE_SKEWNESS = 0.05, -3.0, -1.0
+#: In stick-slip torque swings by more than this share.
+STICK_SLIP_SWING = 0.05
+#: Its changes are this skewed (slow rises, sudden drops).
+STICK_SLIP_SKEWNESS = -3.0
+#: A cycle with few samples shows less: this counts where changes go on, which those of noise do not.
+COARSE_SKEWNESS = -1.0
 #: Drift counts as real beyond this many standard errors.
 SIGNIFICANT = 3.0
 

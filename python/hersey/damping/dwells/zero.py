@@ -26,9 +26,12 @@ from hersey.log.torque_log import Run
 
 #: Sizes of line and walk over the log that are weighed, as shares of what the stretches differ by.
 SIZES = (0.0, 0.1, 0.2, 0.4, 0.8, 1.6, 3.2)
-#: Disturbances of the zero with less than this share of the variance of the largest are left to the dwells,
-#: and those that leave no dwell more than this share of its own error; there are so many at the most.
-SMALL, NEGLIGIBLE, MOST_DISTURBANCES = 1e-6, 0.1, 30
+#: Disturbances of the zero with less than this share of the variance of the largest are left to the dwells.
+SMALL = 1e-6
+#: So are those that leave no dwell more than this share of its own error.
+NEGLIGIBLE = 0.1
+#: Disturbances at the most.
+MOST_DISTURBANCES = 30
 #: Times at which disturbances are computed at the most; between them they are straight.
 MOST_TIMES = 300
 #: A difference of stretches is no chance below this p-value.

@@ -5,7 +5,8 @@ from __future__ import annotations
 from pydantic import Field
 
 from hersey.machine.motor import MotorUse
-from hersey.motion.simulation import Energy, SelfCheck, StickSlipCycle, Trajectory
+from hersey.motion.simulation import StickSlipCycle
+from hersey.motion.trajectory import Energy, SelfCheck, Trajectory
 from hersey.schema.part import Part
 from hersey.schema.record import part_of
 

@@ -78,6 +78,25 @@ def operating_map(
     >>> [map_.state_at(180 + 273.15, v).state for v in (0.02, 0.045, 0.2)]
     ['stick_slip', 'bistable', 'smooth']
     """
+    _check(surface, machine, draws)
+    sticking = {name: value for name, value in machine.belt.items() if name != "roll_radius"}
+    first = surface.stick_speed_at(surface.reference_temperature, **sticking)
+    train, radius, rule = machine.train, machine.roll_radius, machine.stick_speed_rule
+    drag = surface.drag(roll_radius=radius, stick_speed=first)
+    known = dict(machine.uncertainty)
+    if "stick_speed" in known:  # stated with the stick speed, so at its temperature
+        known["stick_speed"] = known["stick_speed"].times(first / machine.stick_speed)
+    kelvin = shown_temperatures(surface, drag, machine.points, temperatures)
+    edges = edges_at(train, drag, kelvin, rule)
+    drawing = Drawing.of(surface, replace(machine, uncertainty=known), drag, draws, seed)
+    found = intervals(drawing, kelvin, threads=threads, client=client)
+    holding = np.array([law.holding_force for law in laws_at(drag, kelvin, rule)])
+    edges = edges | {"holding": holding * radius}
+    return _drawn(surface, machine, drag, kelvin, edges, found, speeds)
+
+
+def _check(surface: DampingSurface, machine: Machine, draws: int) -> None:
+    """Refuse what no map can be made of."""
     if not isinstance(machine, Machine):
         raise ParameterError(
             "a map needs the machine, which states roll radius and stick speed: give read_machine(...) or "
@@ -90,33 +109,6 @@ def operating_map(
             f"no operating map: the data show no falling branch ({surface.rejected_transition}); "
             "record slower dwells, until torque rises as the drive slows"
         )
-    at = surface.reference_temperature
-    first = surface.stick_speed_at(
-        at,
-        stick_speed=machine.stick_speed,
-        stick_speed_temperature=machine.stick_speed_temperature,
-        stick_speed_rule=machine.stick_speed_rule,
-    )
-    train, radius, rule = machine.train, machine.roll_radius, machine.stick_speed_rule
-    drag = surface.drag(roll_radius=radius, stick_speed=first)
-    known = dict(machine.uncertainty)
-    if "stick_speed" in known:  # stated with the stick speed, so at its temperature
-        known["stick_speed"] = known["stick_speed"].times(first / machine.stick_speed)
-    kelvin = shown_temperatures(surface, drag, machine.points, temperatures)
-    edges = edges_at(train, drag, kelvin, rule)
-    drawing = Drawing.of(surface, replace(machine, uncertainty=known), drag, draws, seed)
-    found = intervals(drawing, kelvin, threads=threads, client=client)
-    holding = np.array([law.holding_force for law in laws_at(drag, kelvin, rule)])
-    return _drawn(
-        surface,
-        machine,
-        drag,
-        kelvin,
-        edges,
-        holding * radius,
-        found,
-        speeds=speeds,
-    )
 
 
 def given_map(
@@ -145,6 +137,7 @@ def given_map(
         "lower": given.transition,
         "transition": given.transition,
         "upper": np.maximum(given.upper, given.transition),
+        "holding": given.holding * roll_radius,
     }
     found = Intervals(
         given.transition_interval,
@@ -153,16 +146,7 @@ def given_map(
         given.uncertain,
         (),
     )
-    return _drawn(
-        surface,
-        machine,
-        drag,
-        kelvin,
-        edges,
-        given.holding * roll_radius,
-        found,
-        speeds=None,
-    )
+    return _drawn(surface, machine, drag, kelvin, edges, found, None)
 
 
 def _drawn(
@@ -171,12 +155,10 @@ def _drawn(
     drag: PowerDrag,
     kelvin: FloatArray | None,
     edges: dict[str, FloatArray],
-    holding: FloatArray,
     found: Intervals,
-    *,
     speeds: ArrayLike | None,
 ) -> OperatingMap:
-    """The map of edges (m/s) and starting torques (N m), with torque, stall and points."""
+    """The map of edges (m/s) and starting torques (N m, ``holding``), with torque, stall and points."""
     train, limits, roll_radius = machine.train, machine.limits, machine.roll_radius
     reach = surface.speed_range[0] * roll_radius, surface.speed_range[1] * roll_radius
     speed_grid = shown_speeds(edges, reach, machine.points, limits.speed, speeds)
@@ -192,7 +174,6 @@ def _drawn(
         stall_below=below,
         stall_above=above,
         torque=np.array([law.force(speed_grid) for law in laws]) * roll_radius,
-        holding=holding,
         holding_interval=found.holding,
         torque_limit=limit,
         limited_by=limited_by,

@@ -30,13 +30,11 @@ class OperatingMap(Result):
     """Speeds (m/s) that divide the behaviour at each temperature (K), shape (n,).
 
     ``temperature`` is None for an isothermal fit, whose map has one column. ``upper`` is infinite beyond
-    10,000 transition speeds. Intervals, shape (2, n), hold 95 % of the draws; ``upper_interval`` counts the
-    fit and the parameters in ``uncertain``. Drag exceeds ``torque_limit`` (N m, set by ``limited_by``) from
-    ``stall_above`` up (infinite if never) and, on the falling branch, up to ``stall_below`` (0 if never).
-    ``torque`` in N m, shape (n, m), is that of steady sliding at ``speed``, shape (m,). The measured ranges
-    bound the dwells. ``holding`` (N m, shape (n,)) is what a belt at rest bears, the rest of the drive
-    counted: where it exceeds ``torque_limit`` the drive does not start the belt; ``holding_interval`` counts
-    what that of V* does. The bands are those of the roll with its grip (``train``), on which the belt slips
+    10,000 transition speeds; its interval counts the fit and the parameters in ``uncertain``, as does that of
+    ``holding``. Drag exceeds ``torque_limit`` (set by ``limited_by``) from ``stall_above`` up (infinite if
+    never) and, on the falling branch, up to ``stall_below`` (0 if never). The measured ranges bound the
+    dwells. Where ``holding``, the rest of the drive counted, exceeds ``torque_limit``, the drive does not
+    start the belt. The bands are those of the roll with its grip (``train``), on which the belt slips
     where a lap asks for more; ``lower`` is zero where no belt sticks and slips in turn, as one that sticks is
     held for good. ``stick_speed_rule`` says how the stick speed depends on temperature. Where edges are
     ``given``, transition and V* are those of a posterior of drives, and are interpolated between

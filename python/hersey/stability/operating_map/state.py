@@ -39,13 +39,9 @@ _MAY_NOT_START = "The drive may not start a belt at rest. If it does:"
 class MapState(Record):
     """What the belt does at one temperature and drive speed; speeds in m/s, torque in N m.
 
-    ``state`` is one of `STATES`. ``torque`` is that of steady sliding, with which the drive must cope, and
-    ``holding`` that which a belt at rest bears before it starts; where the drive cannot bear it (``starts``
-    is false) the state is ``stall`` or ``motor``, and ``moving`` that of a belt which moves already;
-    ``doubtful`` says that the limit lies within the 95 % interval of ``holding``.
-    ``stick_speed`` is that at this temperature. ``slipping`` says that the roll slips for a part of the laps.
-    ``extrapolated`` says that no dwell of the
-    fit lies that far out.
+    ``state`` is one of `STATES`: ``stall`` or ``motor`` where the drive does not start a belt at rest.
+    ``torque`` is that of steady sliding, with which the drive must cope. ``slipping`` says that the roll
+    slips for a part of the laps, ``extrapolated`` that no dwell of the fit lies that far out.
     """
 
     state: str

@@ -10,10 +10,13 @@ module    what it holds
 ========= ==================================================================
 trial     one profile on one machine: shape, temperature profile, outcome
 draws     machines drawn from what is not known of one, and what must hold
+grid      the profiles tried first
 search    the quickest profile that works on all but a few of them
+probing   the profile that asks least of the drive
 obstacles why there is none: the limit, and the number that would do
 result    the plan, its table and its words
 warming   the film's temperature where heater and plan make it
+proof     what fresh draws say of a profile
 planner   the whole way: search, proof on fresh draws, plan
 of_log    the same for the machine whose drag a log tells
 ========= ==================================================================

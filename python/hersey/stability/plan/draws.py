@@ -138,11 +138,7 @@ class Trials:
     """Machines on which a profile must work, all but ``allowed`` of them."""
 
     def __init__(
-        self,
-        machines: Sequence[MachineSample],
-        allowed: int,
-        thermal: TemperatureProfile,
-        force_limit: float,
+        self, machines: Sequence[MachineSample], allowed: int, thermal: TemperatureProfile, force_limit: float
     ) -> None:
         """Keep the machines; those that fail come to the front, so that bad profiles fail soon."""
         self.machines = list(machines)

@@ -13,7 +13,9 @@ from hersey.errors import ParameterError
 from hersey.machine.limits import Limits
 from hersey.result import OPEN, Record
 from hersey.stability.plan.draws import Trials
-from hersey.stability.plan.search import PROBES, Room, Search
+from hersey.stability.plan.grid import Room
+from hersey.stability.plan.probing import PROBES, least, slower
+from hersey.stability.plan.search import Search
 from hersey.stability.plan.trial import MachineSample, Shape
 
 #: Profiles tried for the force that would do, where the force allowed does not even start the belt.
@@ -105,15 +107,11 @@ def obstacles(
         return (_obstacle("speed", limits.speed, target),)
     lowest = _lowest_target(trials, target)
     if lowest >= target:
-        where = (
-            ""
-            if search.thermal.schedule is None
-            else " at the temperature in which the temperature profile ends"
-        )
+        fixed = search.thermal.schedule is None
+        where = "" if fixed else " at the temperature in which the temperature profile ends"
         text = (
             f"the target speed {speed_text(target)} is not above the transition speed {speed_text(lowest)}"
-            f"{where}, "
-            "where steady sliding is unstable: a target above it would do"
+            f"{where}, where steady sliding is unstable: a target above it would do"
         )
         return (Obstacle("target_speed", target, _up(lowest * 1.01), text),)
     if not searched and _least_force(trials, target) <= reach.force:
@@ -156,7 +154,7 @@ def _of_force(search: Search, reach: Reach) -> list[Obstacle]:
     starting = _starting_force(search.trials)
     free = _relaxed(search, search.room, math.inf)
     probes = _FEW_PROBES if starting > reach.force else PROBES
-    easiest = free.least(probes=probes)
+    easiest = least(free, probes=probes)
     if easiest is None:
         return [
             _not_started(n, limit, starting, reach) for n, limit in reach.forces.items() if starting > limit
@@ -172,8 +170,8 @@ def _of_force(search: Search, reach: Reach) -> list[Obstacle]:
 def _not_started(name: str, limit: float, starting: float, reach: Reach) -> Obstacle:
     """The obstacle of a force that does not start the belt, where no force would leave a profile."""
     (label, unit), factor = _NAMES[name], reach.factors[name]
-    least, most = (_written(value * factor, unit) for value in (_up(starting), limit))
-    text = f"the {label} of {most} does not start this belt, which bears {least} at rest"
+    enough, given = (_written(value * factor, unit) for value in (_up(starting), limit))
+    text = f"the {label} of {given} does not start this belt, which bears {enough} at rest"
     return Obstacle(name, limit * factor, None, text)
 
 
@@ -184,38 +182,31 @@ def _of_room(search: Search, reach: Reach, greatest: float) -> list[Obstacle]:
         free = _relaxed(
             search, replace(search.room, speed=max(greatest, reach.speed)), search.trials.force_limit
         )
-        least = free.least(lambda shape: shape.peak)
-        if least is not None and (peak := free.slower(least[1]).peak) > reach.speed:
+        easiest = least(free, lambda shape: shape.peak)
+        if easiest is not None and (peak := slower(free, easiest[1]).peak) > reach.speed:
             reasons.append(_obstacle("speed", reach.speed, peak))
     if reach.acceleration < math.inf:
         free = _relaxed(search, replace(search.room, acceleration=math.inf), search.trials.force_limit)
-        least = free.least(lambda shape: shape.acceleration)
-        if least is not None and reach.acceleration < least[0] < math.inf:
-            reasons.append(_obstacle("acceleration", reach.acceleration, least[0]))
+        easiest = least(free, lambda shape: shape.acceleration)
+        if easiest is not None and reach.acceleration < easiest[0] < math.inf:
+            reasons.append(_obstacle("acceleration", reach.acceleration, easiest[0]))
     return reasons
 
 
 def _relaxed(search: Search, room: Room, force: float) -> Search:
     trials = Trials(search.trials.machines, search.trials.allowed, search.thermal, force)
-    return Search(
-        search.nominal,
-        trials,
-        search.thermal,
-        search.target,
-        room,
-        seed=search.seed,
-        progress=search.progress,
-    )
+    nominal, thermal, target = search.nominal, search.thermal, search.target
+    return Search(nominal, trials, thermal, target, room, seed=search.seed, progress=search.progress)
 
 
 def _obstacle(name: str, given: float, needed: float, *, held: bool = False) -> Obstacle:
     """The obstacle of a limit; ``held``: it does not even start the belt."""
     label, unit = _NAMES[name]
     enough = _up(needed)
-    least, most = (_written(value, unit) for value in (enough, given))
-    text = f"the {label} is limited to {most}: {least} would do"
+    would_do, limit = (_written(value, unit) for value in (enough, given))
+    text = f"the {label} is limited to {limit}: {would_do} would do"
     if held and name != "spring_force":
-        text = f"the {label} of {most} does not start this belt: {least} are needed"
+        text = f"the {label} of {limit} does not start this belt: {would_do} are needed"
     return Obstacle(name, given, enough, text)
 
 

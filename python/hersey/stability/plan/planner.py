@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Any
@@ -15,51 +14,30 @@ from numpy.typing import ArrayLike
 from hersey.errors import ParameterError
 from hersey.machine.limits import Limits
 from hersey.machine.machine import Machine
-from hersey.machine.uncertainty import Uncertainty
 from hersey.motion.belt import BeltDrag, Drivetrain, Train, belt_of
 from hersey.motion.drag import AnyDrag
 from hersey.motion.heat import HeatBalance
 from hersey.motion.schedule import Schedule
 from hersey.motion.simulation import simulate
 from hersey.stability.hysteresis import hysteresis
-from hersey.stability.plan.draws import Trials, drawn, lower_bound, most_failures, needed, neighbours
+from hersey.stability.plan.draws import most_failures
+from hersey.stability.plan.grid import Room
 from hersey.stability.plan.obstacles import Obstacle, Reach, obstacles
+from hersey.stability.plan.proof import LEAST_GIVEN, LEVEL, Proof, Unknown
 from hersey.stability.plan.result import CONFIDENCES, NOTHING, LimitUse, Plan
-from hersey.stability.plan.search import Progress, Room, Search
-from hersey.stability.plan.trial import (
-    FORCE,
-    ROUNDING,
-    Follow,
-    MachineSample,
-    Outcome,
-    Shape,
-    TemperatureProfile,
-    outcomes,
-    rounded,
-)
+from hersey.stability.plan.search import Progress, Search
+from hersey.stability.plan.trial import FORCE, MachineSample, Shape, TemperatureProfile, rounded
 from hersey.stability.plan.warming import ALIKE, ROUNDS, apart, course_of
 from hersey.units import takes_si
 
-#: Probability with which a profile that passes keeps its confidence: high, for the search tries many.
-_LEVEL = 0.999
-#: Draws of the search that may fail; none where the confidence asks for thousands of draws.
-_ALLOWED, _STRICT = 2, 0.99
-#: Level of the bound of the share that is stated, and least number of fresh draws behind it.
-_STATED, _FRESH = 0.95, 1500
-#: Least number of machines that may be given, and share of the failures asked for that the search allows.
-_LEAST, _STRICTLY = 40, 0.25
-#: Machines at the most that the search tries of those given.
-_MOST = 250
 #: Profiles verified before giving up; after each the search takes the draws it failed on.
 _VERIFIED = 5
 #: Share of the failures that a verification lets pass which the search allows after one, two...
 _STRICTER = (0.8, 0.8, 0.7, 0.5)
-#: Tolerance of the verification.
-_TIGHT = 1e-11
-#: Peak speeds are sought up to this many fold speeds (or transition speeds) if the drive has no limit.
-_FOLDS, _TRANSITIONS = 3.0, 20.0
-#: Draws followed to the end of the temperature profile, and laps for which that is still quick.
-_LONG, _LONG_LAPS = 10, 20_000
+#: Peak speeds are sought up to this many fold speeds if the drive has no limit.
+_FOLDS = 3.0
+#: And up to this many transition speeds.
+_TRANSITIONS = 20.0
 #: Samples of the response.
 _SAMPLES = 2001
 _CLOSURES = ("retained", "stiction")
@@ -135,11 +113,11 @@ def plan_profile(
     uncertainty = {} if machine is None else dict(machine.uncertainty)
     if isinstance(samples, Mapping):
         unknown = Unknown(train, drag, uncertainty, dict(samples), seed)
-    elif len(samples) >= _LEAST:
+    elif len(samples) >= LEAST_GIVEN:
         machines = [MachineSample(replace(each, grip=None), of) for each, of in samples]
         unknown = Unknown(train, drag, {}, {}, seed, machines)
     else:
-        raise ParameterError(f"samples: give at least {_LEAST} machines")
+        raise ParameterError(f"samples: give at least {LEAST_GIVEN} machines")
     asked = _Asked(unknown, gripping, target_speed, limits, reach, confidence, progress)
     if not isinstance(temperature, HeatBalance):
         return asked.on(TemperatureProfile(temperature))[0]
@@ -193,28 +171,33 @@ class _Asked:
         }
         reasons = obstacles(search, limits, reach, wide, searched=False)
         if not reasons:
-            shape = search.run()
-            for number in range(1, _VERIFIED + 1):
-                if shape is None:
-                    break
-                duration = max(rounded(search.time, up=True), shape.end)
-                if search.time <= shape.end:
-                    duration = float(shape.points()[0][-1])
-                proof = unknown.verify(shape, duration, thermal, reach.force, self.confidence, number)
-                if proof.accepted:
-                    facts |= {"tried": search.count, "warnings": _warnings(reach, proof.impossible)}
-                    machine = MachineSample(self.gripping, unknown.drag)
-                    return _found(machine, shape, thermal, proof, reach, facts), shape
-                if unknown.machines:  # given machines prove one profile: after that none of them is new
-                    return self._unproven(facts, search.count, proof.share), None
-                if number == _VERIFIED:
-                    break
-                share = _STRICTER[number - 1] * most_failures(self.confidence, _LEVEL, proof.draws)
+            if (proven := self._searched(search, facts)) is not None:
+                return proven
+            reasons = obstacles(search, limits, reach, wide, searched=True)
+        return Plan(**facts, **NOTHING, warnings=(), obstacles=reasons, tried=search.count), None
+
+    def _searched(self, search: Search, facts: Mapping[str, Any]) -> tuple[Plan, Shape | None] | None:
+        """The plan that a search finds and fresh draws prove; None if no profile works."""
+        unknown, reach, shape = self.unknown, self.reach, search.run()
+        for number in range(1, _VERIFIED + 1):
+            if shape is None:
+                return None
+            duration = max(rounded(search.time, up=True), shape.end)
+            if search.time <= shape.end:
+                duration = float(shape.points()[0][-1])
+            proof = unknown.verify(shape, duration, search.thermal, reach.force, self.confidence, number)
+            if proof.accepted:
+                said = {"tried": search.count, "warnings": _warnings(reach, proof.impossible)}
+                machine = MachineSample(self.gripping, unknown.drag)
+                return _found(machine, shape, search.thermal, proof, reach, {**facts, **said}), shape
+            if unknown.machines:  # given machines prove one profile: after that none of them is new
+                return self._unproven(facts, search.count, proof.share), None
+            if number < _VERIFIED:
+                share = _STRICTER[number - 1] * most_failures(self.confidence, LEVEL, proof.draws)
                 share /= proof.draws
                 known = len(search.trials.machines) + proof.draws
                 shape = search.again(proof.machines, math.floor(share * known))
-            reasons = obstacles(search, limits, reach, wide, searched=True)
-        return Plan(**facts, **NOTHING, warnings=(), obstacles=reasons, tried=search.count), None
+        return None
 
     def _unproven(self, facts: Mapping[str, Any], tried: int, share: float) -> Plan:
         """The plan without the profile that the search found and fresh draws refuse."""
@@ -251,102 +234,6 @@ _FACTS = (
     *("target_speed", "confidence", "seed", "fold_speed", "transition_speed", "stick_speed", "temperature"),
     *("greatest_speed", "tried", "warnings"),
 )
-
-
-@dataclass(frozen=True)
-class Proof:
-    """What fresh draws say of a profile."""
-
-    duration: float
-    share: float
-    share_low: float
-    draws: int
-    failures: Mapping[str, int]
-    peak_force: float
-    accepted: bool
-    machines: list[MachineSample]
-    impossible: float
-
-
-@dataclass(frozen=True)
-class Unknown:
-    """The machine and what is not known of it."""
-
-    train: Drivetrain
-    drag: AnyDrag
-    uncertainty: Mapping[str, Uncertainty]
-    samples: Mapping[str, ArrayLike]
-    seed: int
-    machines: Sequence[MachineSample] = ()
-
-    def draws(self, stream: int, count: int) -> list[MachineSample]:
-        """Return machines of a stream of random draws; the nominal one alone if all is known."""
-        return self.drawn(stream, count)[0]
-
-    def drawn(self, stream: int, count: int) -> tuple[list[MachineSample], float]:
-        """Return the same with the share of the draws that are no machine."""
-        if self.machines:
-            return list(self.machines[1::2] if stream else self.machines[::2]), 0.0
-        if not self.uncertainty and not self.samples:
-            return [MachineSample(self.train, self.drag)], 0.0
-        rng = np.random.default_rng([self.seed, stream])
-        return drawn(self.train, self.drag, self.uncertainty, self.samples, rng, count)
-
-    def trials(self, confidence: float, thermal: TemperatureProfile, force_limit: float) -> Trials:
-        """Return the machines of the search."""
-        if self.machines:
-            half = self.draws(0, 0)
-            half = half[:: max(math.ceil(len(half) / _MOST), 1)]
-            return Trials(half, math.floor(_STRICTLY * (1.0 - confidence) * len(half)), thermal, force_limit)
-        if not self.uncertainty and not self.samples:
-            return Trials(neighbours(self.train, self.drag), 0, thermal, force_limit)
-        allowed = _ALLOWED if confidence <= _STRICT else 0
-        machines = self.draws(0, needed(confidence, _LEVEL, allowed))
-        return Trials(machines, allowed, thermal, force_limit)
-
-    def verify(
-        self,
-        shape: Shape,
-        duration: float,
-        thermal: TemperatureProfile,
-        force_limit: float,
-        confidence: float,
-        number: int,
-    ) -> Proof:
-        """Try a profile on draws that the search has not seen; with heat each makes its temperature."""
-        machines, impossible = self.drawn(number, max(_FRESH, math.ceil(10.0 / (1.0 - confidence))))
-        laps = thermal.end / machines[0].lap
-        long = 0 if thermal.heat is not None else _LONG if laps < _LONG_LAPS else 1
-
-        def tried(machines: Sequence[MachineSample], until: float = 0.0) -> list[Outcome]:
-            how = Follow(force=True, until=until, tolerance=_TIGHT)
-            return outcomes(machines, [shape], thermal, force_limit, how)
-
-        found = [*tried(machines[:long], thermal.end), *tried(machines[long:])]
-        [nominal] = tried([MachineSample(self.train, self.drag)])
-        failures = Counter(_failures(found, duration))
-        good = len(found) - failures.total()
-        share = good / len(found)
-        enough = good == 1 if len(found) == 1 else lower_bound(good, len(found), _LEVEL) >= confidence
-        if self.machines:
-            enough = share >= confidence
-        return Proof(
-            duration=duration,
-            share=share,
-            share_low=share if len(found) == 1 else lower_bound(good, len(found), _STATED),
-            draws=len(found),
-            failures=dict(sorted(failures.items())),
-            peak_force=float(np.quantile([f.peak_force for f in found], confidence, method="higher")),
-            accepted=nominal.ready < math.inf and enough,
-            machines=machines,
-            impossible=impossible,
-        )
-
-
-def _failures(outcomes: Iterable[Outcome], duration: float) -> Iterable[str]:
-    for outcome in outcomes:
-        if outcome.ready > duration * (1.0 + ROUNDING):
-            yield outcome.why or "sticks longer"
 
 
 def _found(

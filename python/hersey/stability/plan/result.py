@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 import numpy as np
 
 from hersey.motion.schedule import Schedule
-from hersey.motion.simulation import Trajectory
+from hersey.motion.trajectory import Trajectory
 from hersey.result import OPEN, Means, Record, Result
 from hersey.stability.plan.obstacles import Obstacle, speed_text
 from hersey.units import celsius

@@ -10,19 +10,18 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hersey.stability.plan.draws import Trials
+from hersey.stability.plan.grid import STRETCHES, WAITS, Room, profiles, thinned, waits_of
 from hersey.stability.plan.trial import (
     COARSE,
     FINE,
-    ROUNDING,
     Follow,
     MachineSample,
-    Outcome,
     Shape,
     TemperatureProfile,
     outcomes,
@@ -31,60 +30,40 @@ from hersey.stability.plan.trial import (
 
 Progress = Callable[[int, int], object]
 
-#: Durations of the grid in laps (periods of spring and mass), beyond what the acceleration needs.
-_RISES = (0.0, 0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0)
-_HOLDS = (0.0, 0.1, 0.2, 0.35, 0.5, 0.7, 1.0, 1.4, 2.0, 3.0, 5.0, 8.0)
-_FALLS = (0.0, 0.1, 0.2, 0.35, 0.5, 0.75, 1.0, 1.5, 2.5, 4.0, 7.0)
-#: One in so many that overshoot is tried first, all of them only if none of these works.
-_EVERY = 4
-#: Factors on these durations: each only if those before find nothing.
-_STRETCHES = (1.0, 6.0, 40.0)
-#: Shares of them in the profiles tried for the number that would do: the longest take the longest.
-_SHARES = (0.6, 0.3, 0.1)
-#: Peak speeds of the grid between target and greatest.
-_PEAKS = 10
-#: Profiles tried at random below the best found, and steps of the refinement as shares of its duration.
+#: Profiles tried at random below the best found.
 _RANDOM = 600
+#: Steps of the refinement as shares of its duration.
 _STEPS = (0.15, 0.06, 0.025, 0.01, 0.004, 0.0015)
 #: Factors by which rise, hold and fall of failed profiles become longer.
 _LONGER = (1.0, 1.02, 1.05, 1.1, 1.2, 1.4, 2.0)
-#: Profiles of the grid so much slower than the best are starts too, those of them that differ by a share.
-_NEAR, _APART, _STARTS = 1.03, 0.15, 5
+#: Profiles of the grid so much slower than the best are starts too.
+_NEAR = 1.03
+#: Those of them that differ by this share.
+_DIFFERENT = 0.15
+#: And no more of them than this.
+_STARTS = 5
 #: Profiles that differ, kept for the search after a failed verification.
 _KEPT = 12
-#: Best profiles refined, others of the grid so much slower at most, steps at random, draws of a step.
-_BEST, _OTHERS, _VALLEYS, _TRIES, _DRAWS = 3, 9, 1.15, 160, 6
-#: Profiles tried for the number that would do, those tried on all machines, and waits among them.
-PROBES, _PROBED, _FEW_WAITS = 1500, 200, 5
-#: Profiles followed at once, spread over the cores: of the grid, and of those probed.
-_TOGETHER, _PROBED_TOGETHER = 16, 64
-#: Speeds and durations within this factor are the same, and relative time that a simpler profile may cost.
-_SAME, _SAME_TIME = 1.01, 1e-5
-#: Waits of the grid over a temperature profile, and share of the profile's duration to which a wait is found.
-_WAITS = 24
+#: Best profiles refined.
+_BEST = 3
+#: Other profiles of the grid that are.
+_OTHERS = 9
+#: So much slower than the best at most.
+_VALLEYS = 1.15
+#: Steps at random from a profile.
+_TRIES = 160
+#: Draws of a step.
+_DRAWS = 6
+#: Profiles followed at once, spread over the cores.
+_TOGETHER = 16
+#: Speeds and durations within this factor are the same.
+_SAME = 1.01
+#: Relative time that a simpler profile may cost.
+_SAME_TIME = 1e-5
 #: Profiles of the grid after each of several waits, and of the slow grid.
 _THINNED = 300
+#: Share of the profile's duration to which a wait is found.
 _WAIT_STEP = 0.02
-
-
-@dataclass(frozen=True)
-class Room:
-    """What the drive may do: greatest speed (m/s), greatest acceleration (m/s^2; infinite for jumps)."""
-
-    speed: float
-    acceleration: float
-
-    def shape(
-        self, target: float, peak: float, rise: float, hold: float, fall: float, wait: float = 0.0
-    ) -> Shape:
-        """Return the profile whose ramps take so much longer than they must."""
-        peak = max(peak, target)
-        least_rise, least_fall = peak / self.acceleration, (peak - target) / self.acceleration
-        return Shape(target, peak, least_rise + rise, hold, least_fall + fall, wait)
-
-    def allows(self, shape: Shape) -> bool:
-        """Return whether the profile keeps within."""
-        return shape.peak <= self.speed and shape.acceleration <= self.acceleration * (1.0 + ROUNDING)
 
 
 class Search:
@@ -115,27 +94,38 @@ class Search:
 
     def run(self, *, again: bool = False) -> Shape | None:
         """Return the quickest profile, or None if none of the family works; again: not far from the best."""
-        for stretch in _STRETCHES:
-            self._over_grid(stretch)
-            if self.best is not None:
-                break
+        self.over_grids()
         if self.best is None:
             return None
         self._at_random()
-        starts = self._apart(_STARTS)
-        if not again:
-            starts += self._others()
+        starts = self.starts(again=again)
         rng = np.random.default_rng([self.seed, 8])
         valleys = []
         for i, start in enumerate(starts):
-            self._report(i, len(starts))
+            self.report(i, len(starts))
             valleys.append(self._wander(start, rng))
         for valley in sorted(valleys, key=_time)[:_BEST]:
             self._descend(valley)
         self._wander((self.time, self.best), rng)
-        self._simplify()
-        fine = self.trials.time(self.best, tolerance=FINE)
-        self.time = fine if fine < math.inf else self.time
+        return self.settle()
+
+    def over_grids(self) -> None:
+        """Try the grid, then ever slower ones until a profile works."""
+        for stretch in STRETCHES:
+            self._over_grid(stretch)
+            if self.best is not None:
+                break
+
+    def starts(self, *, again: bool = False) -> list[tuple[float, Shape]]:
+        """Return the profiles found from which to refine, with those of other valleys unless ``again``."""
+        return self._apart(_STARTS) + ([] if again else self._others())
+
+    def settle(self) -> Shape | None:
+        """Simplify the best profile, and find its time to a fine tolerance."""
+        if self.best is not None:
+            self._simplify()
+            fine = self.trials.time(self.best, tolerance=FINE)
+            self.time = fine if fine < math.inf else self.time
         return self.best
 
     def again(self, machines: Sequence[MachineSample], allowed: int) -> Shape | None:
@@ -154,87 +144,15 @@ class Search:
             self.attempt(shape)
         return self.run(again=True)
 
-    def least(
-        self, demand: Callable[[Shape], float] | None = None, probes: int = PROBES
-    ) -> tuple[float, Shape] | None:
-        """Return the profile that works with the least demand on the drive, and that demand.
-
-        Without one it is the spring force at the nominal. Of so many profiles of the grid only: the number
-        that would do, not the least possible.
-        """
-        waits = self.waits()
-        waits = waits[:: max(1, len(waits) // _FEW_WAITS)]
-        tried = []
-        for stretch, share in zip(_STRETCHES, _SHARES, strict=True):
-            rows = list(itertools.product(waits, self.grid(stretch)))
-            few = max(1, math.ceil(len(rows) / (probes * share)))
-            tried += [replace(shape, wait=wait) for wait, shape in rows[::few]]
-        if demand is not None:
-            tried.sort(key=demand)
-        working: list[tuple[float, Shape]] = []
-        for i in range(0, len(tried), _PROBED_TOGETHER):
-            self._report(i, len(tried))
-            for shape, outcome in self._probed(tried[i : i + _PROBED_TOGETHER], force=demand is None):
-                if outcome.ready == math.inf:
-                    continue
-                if demand is None:
-                    working.append((outcome.peak_force, shape))
-                elif self.trials.time(shape) < math.inf:
-                    return demand(shape), shape
-        working.sort(key=_time)
-        even = working[:: max(1, len(working) // _PROBED)]
-        return next((row for row in even if self.trials.time(row[1]) < math.inf), None)
-
-    def _probed(self, shapes: Sequence[Shape], *, force: bool) -> list[tuple[Shape, Outcome]]:
-        """What profiles do to the nominal machine; those of one wait go together."""
-        limit, found = self.trials.force_limit, []
-        for wait in dict.fromkeys(shape.wait for shape in shapes):
-            same = [shape for shape in shapes if shape.wait == wait]
-            how = Follow(force=force, tolerance=COARSE)
-            done = outcomes([self.nominal], same, self.thermal, limit, how)
-            found += list(zip(same, done, strict=True))
-        return found
-
-    def slower(self, shape: Shape) -> Shape:
-        """Return the profile with the least peak speed, to a per cent, that works with the same ramps."""
-        low, high = shape.target, shape.peak
-        while high - low > 0.01 * high:
-            middle = 0.5 * (low + high)
-            moved = replace(shape, peak=middle)
-            if self.trials.time(moved) < math.inf:
-                shape, high = moved, middle
-            else:
-                low = middle
-        return shape
-
     def grid(self, stretch: float = 1.0) -> list[Shape]:
         """Return the profiles of the grid that the room allows, quickest first, without waits."""
         if stretch not in self._grids:
-            self._grids[stretch] = self._made(stretch)
+            self._grids[stretch] = profiles(self.room, self.target, self.nominal.lap * stretch)
         return self._grids[stretch]
 
-    def _made(self, stretch: float) -> list[Shape]:
-        lap = self.nominal.lap * stretch
-        peaks = np.linspace(self.target, self.room.speed, _PEAKS + 1)[1:].tolist()
-        if not self.room.speed > self.target:
-            peaks = []
-        direct = [self.room.shape(self.target, self.target, lap * r, 0.0, 0.0) for r in (*_RISES, *_HOLDS)]
-        over = (
-            self.room.shape(self.target, peak, lap * r, lap * h, lap * f)
-            for peak, r, h, f in itertools.product(peaks, _RISES, _HOLDS, _FALLS)
-        )
-        return sorted((s for s in {*direct, *over} if self.room.allows(s)), key=lambda s: (s.end, s.peak))
-
     def waits(self) -> list[float]:
-        """Return the waits of the grid: none, and where the temperature has moved by equal shares."""
-        levels = self.thermal.levels
-        if len({value for _, value in levels}) < 2:
-            return [0.0]
-        even = np.linspace(0.0, self.thermal.end, 20 * _WAITS)
-        moved = np.cumsum(np.abs(np.diff([self.thermal.at(t) or 0.0 for t in even], prepend=0.0)))
-        moved = moved - moved[0]
-        shares = np.linspace(0.0, moved[-1], _WAITS)
-        return sorted({0.0, *np.interp(shares, moved, even).tolist(), self.thermal.end})
+        """Return the waits of the grid."""
+        return waits_of(self.thermal)
 
     def attempt(self, shape: Shape, below: float = math.inf) -> float:
         """Return the time of a profile, infinite if it fails or is not below that of the best, or another."""
@@ -286,7 +204,8 @@ class Search:
         if time < self.time:
             self.best, self.time = shape, time
 
-    def _report(self, done: int, total: int) -> None:
+    def report(self, done: int, total: int) -> None:
+        """Say how far a stage is."""
         if self.progress is not None:
             self.progress(done, total)
 
@@ -296,7 +215,7 @@ class Search:
         waits = [wait for wait in self.waits() if self._may_start(wait)]
         if len(waits) > 1 or stretch > 1.0:
             grid = grid[:: max(1, len(grid) // _THINNED)]
-        elif waits and self._at_wait(_thinned(grid), waits[0], 0, len(grid)):
+        elif waits and self._at_wait(thinned(grid), waits[0], 0, len(grid)):
             return
         for i, wait in enumerate(waits):
             self._at_wait(grid, wait, i * len(grid), len(waits) * len(grid))
@@ -309,7 +228,7 @@ class Search:
         """Try the grid after a wait; whether something worked that was quicker than the best."""
         before = self.time
         for j in range(0, len(grid), _TOGETHER):
-            self._report(done + j, total)
+            self.report(done + j, total)
             some = grid[j : j + _TOGETHER]
             moved = [replace(shape, wait=wait) for shape in some] if wait > 0 else some
             if moved[0].end >= self.time:
@@ -323,7 +242,7 @@ class Search:
 
     def _may_start(self, wait: float) -> bool:
         """Whether enough belts break away within the force allowed, after this wait or a little later."""
-        later = self.thermal.end / _WAITS if self.thermal.schedule is not None else 0.0
+        later = self.thermal.end / WAITS if self.thermal.schedule is not None else 0.0
         limit = self.trials.force_limit
         if limit == math.inf:
             return True
@@ -351,7 +270,7 @@ class Search:
         count = _RANDOM if len(self.waits()) == 1 else _RANDOM // 4
         for i, row in enumerate(rng.uniform(size=(count, 5))):
             if i % 64 == 0:
-                self._report(i, count)
+                self.report(i, count)
             assert self.best is not None
             self.attempt(self._between(row, self.best))
 
@@ -374,10 +293,10 @@ class Search:
         assert self.best is not None
         most, seen = self.time * _VALLEYS, set[float]()
         slower: list[tuple[float, Shape]] = []
-        for j, shape in enumerate(_thinned(self.grid())):
+        for j, shape in enumerate(thinned(self.grid())):
             moved = replace(shape, wait=self.best.wait)
             if j % 64 == 0:
-                self._report(j, _OTHERS * 1000)
+                self.report(j, _OTHERS * 1000)
             if moved.end >= most or len(slower) >= _OTHERS:
                 break
             if moved.peak not in seen and (time := self.attempt(moved, most)) < math.inf:
@@ -469,15 +388,10 @@ class Search:
         )
 
 
-def _thinned(grid: Sequence[Shape]) -> list[Shape]:
-    """The profiles of a grid that are tried first: straight up to the target, and one in so many others."""
-    return [shape for i, shape in enumerate(grid) if i % _EVERY == 0 or shape.peak == shape.target]
-
-
 def _time(row: tuple[float, Shape]) -> float:
     return row[0]
 
 
 def _differ(one: Shape, other: Shape) -> bool:
     pairs = ((one.rise, other.rise), (one.hold, other.hold), (one.fall, other.fall))
-    return max(abs(a - b) for a, b in pairs) > _APART * other.ramps
+    return max(abs(a - b) for a, b in pairs) > _DIFFERENT * other.ramps

@@ -246,12 +246,7 @@ class MachineSample:
         return self._belts[force_limit]
 
     def for_good(
-        self,
-        shape: Shape,
-        thermal: TemperatureProfile,
-        force_limit: float,
-        ready: float,
-        peak: float,
+        self, shape: Shape, thermal: TemperatureProfile, force_limit: float, ready: float, peak: float
     ) -> Outcome:
         """What comes after the profile: temperature goes on slowly, the belt slides along."""
         for temperature in thermal.after(shape.wait + ready):

@@ -11,10 +11,16 @@ from hersey.motion.heat import HeatBalance
 from hersey.motion.schedule import Schedule
 from hersey.motion.simulation import simulate
 
-#: Rounds of plan and temperature at most, and what the film's temperature may change by in the last, K.
-ROUNDS, ALIKE = 8, 0.05
-#: Time over which the film is followed, s, samples of it, and what a course of straight lines may be off, K.
-_LONGEST, _SAMPLES, _OFF = 1800.0, 18_001, 0.01
+#: Rounds of plan and temperature at most.
+ROUNDS = 8
+#: What the film's temperature may change by in the last, K.
+ALIKE = 0.05
+#: Time over which the film is followed, s.
+_LONGEST = 1800.0
+#: Samples of it.
+_SAMPLES = 18_001
+#: Greatest error of a course of straight lines, K.
+_ERROR = 0.01
 
 
 def course_of(
@@ -32,7 +38,7 @@ def course_of(
     moving = np.flatnonzero(np.abs(run.film_temperature - last) > ALIKE)
     count = int(moving[-1]) + 2 if moving.size else 1
     time, film = run.time[:count], np.append(run.film_temperature[: count - 1], last)
-    kept = corners(time, film, _OFF)
+    kept = corners(time, film, _ERROR)
     return Schedule(time[kept], film[kept])
 
 

@@ -1,0 +1,100 @@
+"""Which parameters of a law its data do not determine, each with what would."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from hersey.arrays import FloatArray
+from hersey.damping.candidates.branched import LEAST_POWER, Law
+from hersey.damping.candidates.constant_plus import ConstantPlusLaw
+from hersey.damping.candidates.fitting import LawFit
+from hersey.damping.candidates.observations import Observations
+from hersey.damping.candidates.rest_law import RestLaw
+from hersey.damping.candidates.shared_load import BOUND, SharedLoadLaw
+from hersey.damping.candidates.stribeck import StribeckLaw
+
+
+def not_identified(fit: LawFit, data: Observations) -> dict[str, str]:
+    """Return the parameters that the data do not determine, each with what would."""
+    out: dict[str, str] = {}
+    law = fit.law
+    column = law.jacobian(fit.values, data.inputs) / fit.sigma[:, None]
+    norms = np.linalg.norm(column, axis=0)
+    _, singular, axes = np.linalg.svd(column / np.maximum(norms, 1e-300), full_matrices=False)
+    for value, axis in zip(singular, axes, strict=True):
+        if value < 1e-6 * singular[0]:
+            for index in np.flatnonzero(np.abs(axis) > 0.1):
+                out[law.names[index]] = "other parameters can make up for any change of it: vary speed and "
+                out[law.names[index]] += "temperature independently"
+    if isinstance(law, StribeckLaw):
+        for name, what in (("stick", "slower"), ("viscous", "faster")):
+            part = law.index(name)  # a factor e of it, in standard errors of all dwells together
+            if norms[part] < 2.0 or fit.covariance[part, part] > 1.0:
+                out[name] = f"the part it scales hardly shows: record dwells at {what} speeds"
+        return out
+    if isinstance(law, ConstantPlusLaw):
+        return out | _parts_shown(fit, norms)
+    if isinstance(law, SharedLoadLaw):
+        return out | _contact_shown(fit)
+    if isinstance(law, RestLaw):
+        return out
+    if law.broken:
+        out |= _branches_shown(fit, data)
+    if "q" in law.names:
+        q, error = fit.values[law.index("q")], fit.error("q")
+        if q <= 2.0 * error:
+            out["q"] = "T0 has no lower bound in these data: record temperatures further apart"
+    if "q" not in out and law.branches == "two branches, one Hersey number" and law.thermal:
+        c = fit.values[law.index("c")]
+        if 1.0 + c <= LEAST_POWER:
+            out["at"] = (
+                "torque hardly depends on viscosity above it (1 + c is at its bound), so where one Hersey "
+                "number lies at other temperatures is not determined: record faster speeds"
+            )
+    return out
+
+
+def _parts_shown(fit: LawFit, norms: FloatArray) -> dict[str, str]:
+    """Which part beside the film, or the film, hardly shows: a factor e of it is within the errors."""
+    out: dict[str, str] = {}
+    for name, what in (("rest", "constant"), ("viscous", "viscous")):
+        part = fit.law.index(name) if name in fit.law.names else None
+        if part is None or (norms[part] >= 2.0 and fit.covariance[part, part] <= 1.0):
+            continue
+        why = f"the {what} torque hardly shows beside the film, or the film beside it: record a wider range"
+        out |= {lost: why for lost in (name, "r") if lost in fit.law.names}
+    return out
+
+
+def _contact_shown(fit: LawFit) -> dict[str, str]:
+    """Which numbers of a contact the log hardly tells: a factor e of it is within the errors."""
+    more = {
+        "viscosity": "speeds at which the film carries all, and the rest of the drive by itself",
+        "roughness": "speeds on both sides of the transition",
+        "boundary": "slower speeds, at which asperities carry more",
+    }
+    return {
+        name: f"not told: a factor {np.e:.1f} of it is within the errors; record {what}"
+        for name, what in more.items()
+        if name in fit.law.names
+        and (fit.error(name) > 1.0 or abs(fit.values[fit.law.index(name)]) >= 0.99 * BOUND)
+    }
+
+
+def _branches_shown(fit: LawFit, data: Observations) -> dict[str, str]:
+    """Which parameters of a corner have too few speeds on either side."""
+    assert isinstance(fit.law, Law)
+    away = data.inputs.log_speed - fit.law.transition(fit.values, data.inputs)
+    for side, what in ((away < 0, "slower"), (away >= 0, "faster")):
+        levels = np.unique(np.round(np.sort(away[side]) / 0.03)).size
+        if np.count_nonzero(side) < 3 or levels < 2:
+            count = int(np.count_nonzero(side))
+            where = "below" if what == "slower" else "above"
+            reason = f"only {count} dwells lie {where} the transition: record dwells at {what} speeds"
+            lost = ["at", "c_mixed"] if what == "slower" else ["at", "c"]
+            return {name: reason for name in lost if name in fit.law.names}
+    if fit.error("at") > 0.25 * float(np.ptp(data.inputs.log_speed)):
+        return {
+            "at": "the branches differ too little to say where they meet: record slower and faster speeds"
+        }
+    return {}

@@ -1,0 +1,167 @@
+"""A motion as it was found: its samples, its changes of mode, where the work went, and a check of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Annotated, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hersey import _core
+from hersey.arrays import FloatArray
+from hersey.result import Means, Record, Result
+from hersey.units import celsius
+
+if TYPE_CHECKING:
+    import polars as pl
+
+
+class Event(NamedTuple):
+    """A change of mode: when, from and to which, the condition crossed, and the state there."""
+
+    time: Annotated[float, Means(unit="s")]
+    from_mode: str
+    to_mode: str
+    guard: str
+    stretch: Annotated[float, Means(unit="m")]
+    belt_speed: Annotated[float, Means(unit="m/s")]
+
+
+@dataclass(frozen=True)
+class Energy(Record):
+    """Where the work of the drive went over a run: each figure is its own integral.
+
+    ``slipped`` was lost where the roll slipped on the belt; ``residual`` is what is missing (work less
+    dissipated less slipped less stored) as a share of all energy turned over.
+
+    The closure ``retained`` keeps the speed of a belt that it holds, even against a pull that points back:
+    there the contact gives energy. With ``heat`` the film does not cool for that: what friction takes
+    afterwards pays the debt before it heats. ``owed`` is what is left of the debt at the end, so the
+    contact has heated the film by dissipated plus owed, less what the rest of the drive took.
+    """
+
+    work: float
+    dissipated: float
+    slipped: float
+    stored: float
+    owed: Annotated[float, Means("given by a contact that holds a belt, and not got back")]
+    residual: float
+
+
+@dataclass(frozen=True)
+class SelfCheck(Record):
+    """The same run by another integrator: the greatest differences at the samples, as shares of the greatest.
+
+    ``same_events`` is whether both saw the same changes of mode in the same order. ``note`` says why there
+    are no figures, if the other integrator could not finish.
+    """
+
+    integrator: str
+    speed_difference: float | None
+    stretch_difference: float | None
+    same_events: bool
+    note: str = ""
+
+    def __str__(self) -> str:
+        """Return it in words."""
+        if self.speed_difference is None:
+            return f"{self.integrator}: " + self.note
+        return (
+            f"{self.integrator} differs by {self.speed_difference:.1e} in speed and "
+            f"{self.stretch_difference:.1e} in stretch; "
+            f"{'the same' if self.same_events else 'OTHER'} events"
+        )
+
+
+@dataclass(frozen=True, repr=False)
+class Trajectory(Result):
+    """Motion at equally spaced times: arrays of shape (samples,), every change of mode, and the energies.
+
+    ``stretch`` is drive position minus belt position; with a torque drive, the position of the mass (zero
+    without a spring). ``spring_force`` is stiffness times stretch; ``slipping`` tells where the roll slips
+    on the belt. ``film_temperature`` and ``roll_temperature`` (K) are there if they are states.
+    """
+
+    also_stated = ("mode",)
+    not_stated = ("mode_index",)
+
+    time: Annotated[FloatArray, Means(unit="s")]
+    belt_speed: Annotated[FloatArray, Means(unit="m/s")]
+    stretch: Annotated[FloatArray, Means(unit="m")]
+    spring_force: Annotated[FloatArray, Means(unit="N")]
+    mode_index: NDArray[np.uint8]
+    slipping: NDArray[np.bool_]
+    events: tuple[Event, ...]
+    energy: Energy
+    steps: int
+    check: SelfCheck | None = None
+    film_temperature: Annotated[FloatArray | None, Means("if it is a state", "K")] = None
+    roll_temperature: Annotated[FloatArray | None, Means("if it is a state", "K")] = None
+
+    @cached_property
+    def mode(self) -> NDArray[np.str_]:
+        """The mode at each sample: ``ehl``, ``mixed``, ``microslip`` or ``stuck``."""
+        return np.array(_core.MODES)[self.mode_index]
+
+    @property
+    def roll_slips(self) -> list[tuple[float, float]]:
+        """When the roll begins and ends to slip on the belt; the last may end with the motion."""
+        begins = [float(self.time[0])] if self.slipping[0] else []
+        begins += [event.time for event in self.events if event.guard == "grip_lost"]
+        ends = [event.time for event in self.events if event.guard == "grip_regained"]
+        spans = zip(begins, [*ends, float(self.time[-1])], strict=False)
+        return [(begin, end) for begin, end in spans if end > begin]
+
+    def slipping_in_words(self) -> str:
+        """Return when the roll slips, and how long; empty if it never does."""
+        if not (spans := self.roll_slips):
+            return ""
+        total, begin = sum(end - begin for begin, end in spans), spans[0][0]
+        if len(spans) == 1:
+            return f"the roll slips on the belt from {begin:.6g} on, for {total:.6g}"
+        return f"the roll slips on the belt {len(spans)} times, first at {begin:.6g}, for {total:.6g} in all"
+
+    def summary(self) -> str:
+        """Return ranges, energies and check as text, in the units of the arguments."""
+        owed = [f"  {self.energy.owed:.3g} J given by the contact did not come back"]
+        lines = [
+            f"{self.time.size} samples from {self.time[0]:.6g} to {self.time[-1]:.6g}, {len(self.events)} "
+            f"changes of mode; SI or the units given",
+            f"  belt speed      {self.belt_speed.min():.6f} to {self.belt_speed.max():.6f}",
+            f"  stretch         {self.stretch.min():.6f} to {self.stretch.max():.6f}",
+            f"  spring force    {self.spring_force.min():.6f} to {self.spring_force.max():.6f}",
+            *self._heating(),
+            *(owed if self.energy.owed else []),
+            *([f"  {self.slipping_in_words()}"] if self.roll_slips else []),
+            f"energy balance: {self.energy.residual:.1e} of the energy turned over is missing",
+        ]
+        return "\n".join([*lines, *([] if self.check is None else [str(self.check)])])
+
+    def _temperatures(self) -> dict[str, FloatArray]:
+        """The temperatures that are states, K, by body."""
+        bodies = {"film": self.film_temperature, "roll": self.roll_temperature}
+        return {name: kelvin for name, kelvin in bodies.items() if kelvin is not None}
+
+    def _heating(self) -> list[str]:
+        return [
+            f"  {name:15s} {celsius(kelvin[0]):.2f} to {celsius(kelvin[-1]):.2f} degC"
+            for name, kelvin in self._temperatures().items()
+        ]
+
+    def to_frame(self) -> pl.DataFrame:
+        """Return one row per sample; the units named are SI, and stand for those given."""
+        import polars as pl
+
+        return pl.DataFrame(
+            {
+                "time (s)": self.time,
+                "belt speed (m/s)": self.belt_speed,
+                "stretch (m)": self.stretch,
+                "spring force (N)": self.spring_force,
+                "mode": self.mode,
+                "roll slips": self.slipping,
+                **{f"{name} (K)": kelvin for name, kelvin in self._temperatures().items()},
+            }
+        )
