@@ -9,7 +9,7 @@ import pytest
 
 from hersey.errors import ParameterError
 from hersey.lubrication.contact import Contact, nip_width, shore_a_modulus
-from hersey.lubrication.film import drag_torque, film_thickness, shear_heating
+from hersey.lubrication.film import REGIMES, drag_torque, film_thickness, shear_heating
 from hersey.lubrication.lubricant import EXAMPLES, Lubricant, ShearThinning
 from hersey.lubrication.reynolds import ElasticLayer, exponent, solve_line_contact
 
@@ -376,3 +376,41 @@ def test_the_oils_of_the_table() -> None:
         for celsius, eta, alpha in zip((30.0, 60.0, 100.0), viscosities, alphas, strict=True):
             assert float(oil.viscosity(celsius + 273.15)) == pytest.approx(1e-3 * eta, rel=1e-9)
             assert float(oil.alpha(celsius + 273.15)) == pytest.approx(1e-9 * alpha, rel=1e-9)
+
+
+@pytest.mark.parametrize(("rubber", "eta", "thin"), [(3.5e-3, 0.05, False), (0.6e-3, 3.0, True)])
+def test_the_inlet_s_share_of_the_shear_by_hand(rubber: float, eta: float, thin: bool) -> None:
+    """By the fit of the solver's results, whose inlet is at most a quarter of nip or layer."""
+    roll = replace(ROLL, rubber_thickness=rubber)
+    oil = Lubricant("arrhenius", ((399.0, 1.001 * eta), (400.0, eta)), name="oil")
+    film = film_thickness(roll, oil, speed=20.0, temperature=400.0)
+    half, modulus = roll.nip.half_width, MODULUS / 2
+    edge = roll.nip.edge * modulus / (2 * RADIUS) * np.sqrt(2 * half)
+    inlet = (eta * 0.5 * 20.0 * 15e-3 * modulus**2 / edge**3) ** 0.4 / half
+    short = min(inlet, 0.25 * min(rubber / half, 1.0))
+    assert (inlet > short) == thin
+    bend = roll.nip.curvature + 0.25
+    assert bend > 0.05
+    by_hand = 1.0 + short * (0.339 + 0.455 * short + bend * max(2.427 - 6.026 * short, 0.0))
+    assert float(film.shear_factor) == pytest.approx(by_hand, rel=1e-9)
+
+
+def test_a_rigid_film_that_pressure_thickens_has_a_regime_by_hand() -> None:
+    """Greenwood's chart: rigid while g_E^2 is less than pi/4 of the thicker of the two rigid films."""
+    steel = replace(ROLL, modulus=2e11, poisson_ratio=0.3, load=5000.0)
+    oil = Lubricant(
+        "arrhenius", ((399.0, 0.1001), (400.0, 0.1)), name="oil", pressure_viscosity=((400.0, 3e-8),)
+    )
+    speeds = np.geomspace(1.0, 1e5, 60)
+    film = film_thickness(steel, oil, speed=speeds, temperature=400.0)
+    modulus = 2 * 2e11 / (1 - 0.3**2)
+    u, w = 0.1 * 0.5 * speeds * 15e-3 / (modulus * RADIUS), 5000.0 / 0.22 / (modulus * RADIUS)
+    g_v, g_e = 3e-8 * modulus * w**1.5 / np.sqrt(u), w / np.sqrt(u)
+    blok = 1.66 * g_v ** (2 / 3)
+    rigid = g_e**2 < np.pi / 4 * np.maximum(4.9, blok)
+    thick = np.where(rigid, blok, 2.65 * g_v**0.54 * g_e**0.06)
+    names = np.where(rigid, "piezoviscous-rigid", "piezoviscous-elastic")
+    piezo = thick > np.maximum(4.9, 3.10 * steel.nip.layer_factor * g_e**0.8)
+    assert np.count_nonzero(piezo & rigid & (g_e**2 > np.pi / 4 * 4.9)) > 3
+    regimes = [REGIMES[k] for k in film.regime]
+    assert [regimes[i] for i in np.flatnonzero(piezo)] == names[piezo].tolist()

@@ -244,3 +244,11 @@ def test_profiles_cannot_be_overwritten() -> None:
     for profile in (solution.x, solution.pressure, solution.film_thickness):
         with pytest.raises(ValueError, match="read-only"):
             profile[0] = 1.0
+
+
+def test_the_shear_of_a_rigid_roll_reaches_far_upstream() -> None:
+    """Between h + x^2/2R and a wall the integral of dx/h is an arctangent, of which the grid holds a part."""
+    film = solve(1e-2, sliding_speed=0.02, effective_modulus=1e14, nodes=401)
+    reach = np.sqrt(2 * RADIUS * film.minimum_thickness)
+    by_hand = reach / film.minimum_thickness * (np.arctan(film.outlet / reach) + np.pi / 2)
+    assert film.couette / (VISCOSITY * 0.02) == pytest.approx(by_hand, rel=3e-4)

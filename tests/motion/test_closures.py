@@ -177,3 +177,21 @@ def test_a_static_force_must_exceed_the_drag_at_the_stick_speed() -> None:
         assert cycle.stretch_max * 1000 < 1.2 * sliding
     with pytest.raises(ParameterError, match="static_growth"):
         replace(plain, static_growth=0.1)
+
+
+@pytest.mark.parametrize("closure", ["retained", "stiction", "stribeck"])
+def test_every_speed_of_a_closure_moves_with_temperature(closure: str) -> None:
+    """At 440 K, 1.1 times the reference: forces by 1/1.1, speeds by 1.1^2, by hand."""
+    warm = drag(
+        closure, reference_temperature=400.0, force_temperature_exponent=-1.0, speed_temperature_exponent=2.0
+    )
+    hand = replace(
+        drag(closure),
+        transition_force=warm.transition_force / 1.1,
+        transition_speed=warm.transition_speed * 1.21,
+        stick_speed=warm.stick_speed * 1.21,
+    )
+    at = hersey.simulate(TRAIN, warm, drive_speed=1.0, duration=1.0, samples=101, temperature=440.0)
+    run = hersey.simulate(TRAIN, hand, drive_speed=1.0, duration=1.0, samples=101)
+    assert at.belt_speed == pytest.approx(run.belt_speed, rel=1e-6, abs=1e-9)
+    assert at.spring_force == pytest.approx(run.spring_force, rel=1e-6)

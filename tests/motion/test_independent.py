@@ -99,6 +99,8 @@ def test_bristles(case: dict[str, Any]) -> None:
     assert cycle.frequency == pytest.approx(case["mean_lap_frequency_Hz"], rel=1e-6)
     assert cycle.speed_max == pytest.approx(case["u_max"], rel=1e-6)
     assert cycle.stuck_fraction == pytest.approx(case["stick_fraction_abs_u_below_vs"], rel=1e-4)
+    slips = (1.0 - case["stick_fraction_abs_u_below_vs"]) / case["mean_lap_frequency_Hz"]
+    assert cycle.slip_duration == pytest.approx(slips, rel=1e-5)
 
 
 @pytest.mark.parametrize("case", _REFERENCE["heat"], ids=lambda c: c["name"][:12])

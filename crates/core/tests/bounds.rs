@@ -5,7 +5,7 @@ use std::cell::Cell;
 use hersey_core::drag::{Closure, Drag};
 use hersey_core::lubrication::reynolds::{Fluid, Foundation, LineContact, Thickening};
 use hersey_core::motion::{
-    Belt, Drivetrain, Integrator, Span, Start, System, ensemble, settle, simulate,
+    Belt, Drivetrain, Integrator, Schedule, Span, Start, System, ensemble, settle, simulate,
 };
 use hersey_core::stability::{bands, swings};
 use hersey_core::{Error, Work};
@@ -146,4 +146,13 @@ fn more_samples_than_memory_are_refused() {
         &Work::default(),
     );
     assert!(matches!(run, Err(Error::TooLarge { quantity: "samples", .. })));
+}
+
+#[test]
+#[allow(clippy::float_cmp)] // small whole numbers
+fn a_schedule_s_range_reaches_beyond_its_ends() {
+    // t^3 - 3 t falls from 0 to -2 at t = 1, and has risen to -1.125 at its end
+    let ends = (&[0.0, 1.5], &[[0.0, -3.0, 0.0, 1.0]]);
+    let schedule = Schedule::piecewise("temperature", ends.0, ends.1, -1.125).unwrap();
+    assert_eq!(schedule.range(), (-2.0, 0.0));
 }
