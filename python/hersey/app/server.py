@@ -104,28 +104,26 @@ def _safe(handler: Handler) -> Handler:
     async def answer(request: Request) -> Response:
         try:
             return await handler(request)
-        except UnknownError:
-            return _refused(404, "that is no longer here")
-        except TooMuchError as error:
-            return _refused(413, str(error))
-        except NotNowError as error:
-            return _refused(409, str(error))
-        except ClientDisconnect:
-            return _refused(400, "the page went away")
-        except BadRequestError as error:
-            return _refused(400, str(error))
-        except SlowError as error:
-            return _refused(408, str(error))
-        except (ValueError, TypeError, KeyError):
-            return _refused(400, "that cannot be chosen")
-        except HerseyError as error:
-            return _refused(409, str(error))
+        except Exception as error:
+            for kinds, status, words in _REFUSALS:
+                if isinstance(error, kinds):
+                    return JSONResponse({"error": words or str(error)}, status_code=status)
+            raise
 
     return answer
 
 
-def _refused(status: int, words: str) -> Response:
-    return JSONResponse({"error": words}, status_code=status)
+#: What refuses a request, the first that an error is one of: its status, and the words if not its own.
+_REFUSALS: tuple[tuple[type[Exception] | tuple[type[Exception], ...], int, str], ...] = (
+    (UnknownError, 404, "that is no longer here"),
+    (TooMuchError, 413, ""),
+    (NotNowError, 409, ""),
+    (ClientDisconnect, 400, "the page went away"),
+    (BadRequestError, 400, ""),
+    (SlowError, 408, ""),
+    ((ValueError, TypeError, KeyError), 400, "that cannot be chosen"),
+    (HerseyError, 409, ""),
+)
 
 
 class _Routes:
