@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from hersey.app.checking import check
 from hersey.app.guard import POLICY, SANDBOX
 from hersey.app.machine import file_faults
 from hersey.app.uploads import Bounds, clean_name
@@ -252,7 +253,7 @@ def test_a_machine_s_file_names_only_what_was_dropped(asked: Asked) -> None:
         text = f'{machine}[rest]\nlog = "{named}"\n'
         one = asked.session.get(asked.first)
         one.take_machine({"text": text})
-        one.check()
+        check(one)
         (fault,) = one.faults
         assert fault.at == "toml"
         assert "drop that file here too" in fault.text

@@ -12,7 +12,9 @@ import pytest
 
 from hersey.app.analysis import Analysis, Dropped
 from hersey.app.channels import Fault
+from hersey.app.checking import check
 from hersey.app.looking import look
+from hersey.app.view import line_of, view_of
 from hersey.errors import HerseyError
 from tests.cli.test_bad_input import staircase
 from tests.conftest import ROOT
@@ -42,7 +44,7 @@ def dropped(folder: Path, *contents: bytes) -> Analysis:
             one.propose(file)
         except HerseyError as error:
             file.state, file.fault = "fault", f"not a log: {error}"
-    one.check()
+    check(one)
     return one
 
 
@@ -57,7 +59,7 @@ def only(one: Analysis) -> Fault:
 def test_a_sound_log_is_ready(tmp_path: Path) -> None:
     one = dropped(tmp_path, log())
     assert one.faults == []
-    assert one.line()["ready"]
+    assert line_of(one)["ready"]
     assert {name: choice["role"] for name, choice in one.choices.items()} == {
         "Time": "time", "Torque": "torque", "Speed": "speed", "Temperature": "temperature",
     }  # fmt: skip
@@ -166,10 +168,10 @@ def test_a_mistake_ends_in_words_at_its_control(mistake: str, tmp_path: Path) ->
     assert fault.at.startswith(at)
     assert said in f"{fault.title} {fault.text}"
     assert fault.button == button
-    assert not one.line()["ready"]
+    assert not line_of(one)["ready"]
     if button:
         one.choose(fault.mend)
-        one.check()
+        check(one)
         if button == "Use “Shaft”":
             assert one.choices["Shaft"] == {"role": "speed", "unit": "rad/s"}
         assert one.faults == []
@@ -179,7 +181,7 @@ def test_what_is_only_doubtful_can_be_kept(tmp_path: Path) -> None:
     one = dropped(tmp_path, MISTAKES["kelvin called Celsius"][0])
     assert only(one).keep == "Keep °C"
     one.kept.add(only(one).key)
-    one.check()
+    check(one)
     assert one.faults == []
 
 
@@ -187,7 +189,7 @@ def test_the_radius_of_a_friction_force_is_given_in_words_of_its_reader(tmp_path
     one = dropped(tmp_path, MISTAKES["a friction force"][0])
     for text, faults in (("25 kg", 1), ("25", 0)):
         one.choose({"corrections": {"radius.value": text}})
-        one.check()
+        check(one)
         assert len(one.faults) == faults, one.faults
     assert 'value = "25 mm"' in one.mapping_file()
 
@@ -195,10 +197,10 @@ def test_the_radius_of_a_friction_force_is_given_in_words_of_its_reader(tmp_path
 def test_a_motor_s_current_becomes_a_torque(tmp_path: Path) -> None:
     one = dropped(tmp_path, log("Time [s],Motor [A],Speed [rpm],Temperature [degC]"))
     one.choose({"roles": {"Motor": "torque"}})
-    one.check()
+    check(one)
     assert only(one).at == "field:torque.motor_constant"
     one.choose({"corrections": {"torque.motor_constant": "35"}})
-    one.check()
+    check(one)
     assert one.faults == []
     assert 'motor_constant = "35 mN*m/A"' in one.mapping_file()
 
@@ -206,7 +208,7 @@ def test_a_motor_s_current_becomes_a_torque(tmp_path: Path) -> None:
 def test_of_two_logs_one_can_be_compared_with_the_other(tmp_path: Path) -> None:
     one = dropped(tmp_path, log(), log(change=lambda t, q, n, c: (t, 1.1 * float(q), n, c)))
     first, second = one.logs
-    assert [file["name"] for file in one.view()["pair"]] == ["log0.csv", "log1.csv"]
+    assert [file["name"] for file in view_of(one)["pair"]] == ["log0.csv", "log1.csv"]
     assert "log0.csv log1.csv" in one.command()
     one.choose({"options": {"against": first.id}})
     assert (one.earlier, one.told_of) == (first, [second])
@@ -216,7 +218,7 @@ def test_of_two_logs_one_can_be_compared_with_the_other(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="against"):
         one.choose({"options": {"against": "/etc/passwd"}})
     one.remove(second.id)
-    assert (one.earlier, one.told_of, one.view()["pair"]) == (None, [first], [])
+    assert (one.earlier, one.told_of, view_of(one)["pair"]) == (None, [first], [])
 
 
 def test_a_log_that_is_unlike_the_first_says_so(tmp_path: Path) -> None:
@@ -225,7 +227,7 @@ def test_a_log_that_is_unlike_the_first_says_so(tmp_path: Path) -> None:
     assert "no channel “Torque”" in fault.text
     assert fault.at.startswith("file:")
     one.choose(fault.mend)
-    one.check()
+    check(one)
     assert (len(one.files), one.faults) == (1, [])
 
 
@@ -273,13 +275,13 @@ def test_a_mistake_about_the_machine_stands_at_its_field(mistake: str, tmp_path:
     given, at, said = MACHINES[mistake]
     one = dropped(tmp_path, log())
     one.take_machine({"answers": DRIVETRAIN})
-    one.check()
+    check(one)
     assert one.faults == []
     one.take_machine(given)
-    one.check()
+    check(one)
     at_fault = {fault.at: f"{fault.title} {fault.text}" for fault in one.faults}
     assert said in at_fault[at]
-    assert not one.line()["ready"]
+    assert not line_of(one)["ready"]
 
 
 @pytest.mark.parametrize(
@@ -288,13 +290,13 @@ def test_a_mistake_about_the_machine_stands_at_its_field(mistake: str, tmp_path:
 def test_a_value_that_no_machine_has_can_be_kept(field: str, text: str, tmp_path: Path) -> None:
     one = dropped(tmp_path, log())
     one.take_machine({"answers": {**DRIVETRAIN, f"drivetrain.{field}": text}})
-    one.check()
+    check(one)
     fault = only(one)
     assert fault.at == f"field:drivetrain.{field}"
     assert "far from what such a drive has" in fault.title
     assert fault.keep.startswith("Keep ")
     one.kept.add(fault.key)
-    one.check()
+    check(one)
     assert one.faults == []
 
 
@@ -303,10 +305,10 @@ def test_form_and_text_say_the_same(tmp_path: Path) -> None:
     one.take_machine({"answers": {**DRIVETRAIN, "drivetrain.mass": "11 kg ± 10 %"}})
     one.take_machine({"add": True})
     one.take_machine({"point": 0, "answers": {"points.speed": "200", "points.temperature": "180"}})
-    one.check()
+    check(one)
     assert one.turn("toml") == ""
     text = one.text
-    one.check()
+    check(one)
     assert one.faults == []
     assert one.turn("form") == ""
     assert one.machine_file() == text
@@ -325,7 +327,7 @@ def toml(one: Analysis, text: str) -> Dropped:
     one.files[file.id] = file
     if not one.take_file(file):
         file.state, file.fault = "fault", "none"
-    one.check()
+    check(one)
     return file
 
 
@@ -342,9 +344,9 @@ def test_what_the_form_has_no_field_for_is_kept(tmp_path: Path) -> None:
     assert one.faults == []
     assert one.turn("form") == ""
     assert tomllib.loads(one.machine_file()) == before
-    assert any(each.startswith("[heat] ") for each in one.view()["machine"]["kept"])
+    assert any(each.startswith("[heat] ") for each in view_of(one)["machine"]["kept"])
     one.take_machine({"answers": {"drivetrain.mass": "12 kg"}})
-    one.check()
+    check(one)
     assert one.faults == []
     after = tomllib.loads(one.machine_file())
     assert after["drivetrain"].pop("mass") == "12 kg"
@@ -399,7 +401,7 @@ def test_a_mapping_that_is_dropped_fills_the_channels(first: str, tmp_path: Path
         toml(one, MAPPING)
         one.files[log_file.id] = log_file
         one.propose(log_file)
-        one.check()
+        check(one)
     else:
         toml(one, MAPPING)
     roles = {choice["role"]: (name, choice["unit"]) for name, choice in one.choices.items() if choice["role"]}
@@ -413,8 +415,8 @@ def test_a_mapping_that_is_dropped_fills_the_channels(first: str, tmp_path: Path
     assert again["torque"] == {**tomllib.loads(MAPPING)["torque"]}
     assert again["load"] == {"channel": "Press", "unit": "N"}
     assert again["speed"] == {"channel": "Shaft", "unit": "rpm", "gear_ratio": 12.5}
-    assert [(f["state"], f["name"]) for f in one.view()["files"]].count(("mapping", "mine.toml")) == 1
-    assert one.view()["mapping_kept"] == ["[torque] 1 value"]
+    assert [(f["state"], f["name"]) for f in view_of(one)["files"]].count(("mapping", "mine.toml")) == 1
+    assert view_of(one)["mapping_kept"] == ["[torque] 1 value"]
     assert "mine.toml" not in one.command()
 
 
@@ -424,14 +426,14 @@ def test_a_mapping_of_another_log_says_so_at_the_channels(tmp_path: Path) -> Non
     said = {fault.at: fault for fault in one.faults}
     assert set(said) == {"lacking:torque", "lacking:speed", "lacking:load"}
     assert "calls the torque “Moment”, and this log has no such channel" in said["lacking:torque"].title
-    assert not one.line()["ready"]
+    assert not line_of(one)["ready"]
     one.choose(said["lacking:torque"].mend)
     one.choose(said["lacking:speed"].mend)
-    one.check()
+    check(one)
     assert [fault.at for fault in one.faults] == ["lacking:load"]
     (mapping,) = [file for file in one.files.values() if file.state == "mapping"]
     one.remove(mapping.id)
-    one.check()
+    check(one)
     assert (one.faults, one.corrections) == ([], {})
 
 
@@ -458,7 +460,7 @@ def test_a_mapping_names_only_what_was_dropped(tmp_path: Path) -> None:
         toml(one, f'[torque]\nno_load = "{named}"\n')
         assert f"the log {named}: drop that file here too" in only(one).text
     beside.name = "free.csv"
-    one.check()
+    check(one)
     assert one.faults == []
     assert len(one.logs) == 1
     assert 'no_load = "free.csv"' in one.mapping_file()
@@ -476,5 +478,5 @@ def test_a_channel_called_a_radius_is_proposed_and_taken_with_its_button_alone(t
     assert (fault.at, fault.button) == ("field:radius.value", "Use “Track radius”")
     assert fault.mend == {"roles": {"Track radius": "radius"}}
     one.choices["Track radius"]["role"] = "radius"
-    one.check()
+    check(one)
     assert one.faults == []

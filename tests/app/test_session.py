@@ -14,6 +14,7 @@ from hersey.app import session as module
 from hersey.app.analysis import Analysis
 from hersey.app.looking import look
 from hersey.app.session import NotNowError, Session
+from hersey.app.view import line_of
 from hersey.app.workers import EndedError, Refused
 from hersey.errors import HerseyError
 from tests.app.asking import run
@@ -39,7 +40,7 @@ async def ready(folder: Path, work: Work, monkeypatch: pytest.MonkeyPatch) -> tu
     await session.drop(one, "drive.csv", None, chunks())
     while one.waiting:
         await asyncio.sleep(0.01)
-    assert one.line()["ready"], one.faults
+    assert line_of(one)["ready"], one.faults
     return session, one
 
 
@@ -62,12 +63,12 @@ def test_a_finished_run_is_kept_under_a_name_that_is_free(
         for _ in range(2):
             await session.run(one)
             await over(one)
-            assert (one.state, one.line()["signal"]) == ("done", "good")
+            assert (one.state, line_of(one)["signal"]) == ("done", "good")
             assert session.shown[one.report].read_text().startswith("report of hersey report drive.csv")
             assert len(session.shown) == 1  # the report before has no address any more
         kept = {path.name: path.read_text() for path in (tmp_path / "reports").iterdir()}
         assert set(kept) == {"drive.html", "drive-2.html"}
-        assert (one.line()["left"], one.line()["spent"]) == (None, None)
+        assert (line_of(one)["left"], line_of(one)["spent"]) == (None, None)
         (file,) = one.files.values()
         session.remove(one)
         assert not file.path.exists()
@@ -94,8 +95,8 @@ def test_a_cancelled_run_is_not_done_and_leaves_nothing(
         await session.run(one)
         while one.step != "reading":
             await asyncio.sleep(0.01)
-        assert one.line()["spent"] >= 0.0
-        assert one.line()["left"] is None  # nothing like it has ended yet
+        assert line_of(one)["spent"] >= 0.0
+        assert line_of(one)["left"] is None  # nothing like it has ended yet
         with pytest.raises(NotNowError, match="cancel it first"):
             await session.change(one, {"options": {"isothermal": True}})
         session.cancel(one)

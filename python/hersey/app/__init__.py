@@ -9,6 +9,8 @@ uploads   dropped files, to disk as they come, within bounds
 session   the analyses of one start
 analysis  one analysis: files, choices, machine, and how far it is
 channels  what is wrong with the choices, where, and what mends it
+checking  what stands before a run
+view      what the page shows of an analysis
 course    how long a run takes, once one like it has ended
 machine   what is wrong with the answers about the machine
 workers   processes that read and compute, ended by whoever waits for them

@@ -6,22 +6,16 @@ import asyncio
 import re
 import secrets
 import shlex
-import time
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from hersey.app.channels import UNITS, Fault, channel_faults
+from hersey.app.channels import Fault
 from hersey.app.course import Course
 from hersey.app.machine import (
-    POINT_FIELDS,
     answer_faults,
-    doubtful,
-    file_faults,
     form_text,
-    kept_beside,
-    mapping_faults,
     mapping_of_form,
     mapping_said,
     named_logs,
@@ -33,8 +27,6 @@ from hersey.log.text.column import Column
 from hersey.machine.questions import BY_KEY, MAPPING
 from hersey.machine.writing import answers_of
 
-#: Channels that the page shows of a log at the most, those with a role first.
-_SHOWN = 200
 #: Operating points of a machine at the most.
 _MOST_POINTS = 50
 #: ``against`` is the file that the other of two logs is compared with, or empty: runs of one machine.
@@ -60,6 +52,17 @@ class Dropped:
     fault: str = ""
     look: dict[str, Any] = field(default_factory=dict)
     id: str = field(default_factory=number)
+
+    @property
+    def names(self) -> set[str]:
+        """Return the names of its channels."""
+        return {channel["name"] for channel in self.look["channels"]}
+
+    def channel(self, name: str) -> str:
+        """Return the channel that a mapping means by a name, or nothing."""
+        columns = tuple(Column(i, c["name"], c["written"]) for i, c in enumerate(self.look["channels"]))
+        meant = called(name, columns)
+        return str(meant[0].name) if meant else ""
 
 
 @dataclass
@@ -151,10 +154,10 @@ class Analysis:
 
     def mapping_file(self) -> str:
         """Return ``hersey.toml`` as it stands."""
-        return mapping_of_form(self.mapping_answers(), self._mapping_others())
+        return mapping_of_form(self.mapping_answers(), self.mapping_tables())
 
-    def _mapping_others(self) -> dict[str, Any]:
-        """What no question asks: channels of the other roles, and what a mapping that was dropped said."""
+    def mapping_tables(self) -> dict[str, Any]:
+        """Return what no question asks: channels of other roles, and what a dropped mapping said."""
         out = {section: dict(table) for section, table in self.mapping_others.items()}
         for name, choice in self.choices.items():
             if choice["role"] in OTHER_ROLES:
@@ -185,7 +188,7 @@ class Analysis:
         """Give the channels of a file the roles and units that the mapping states."""
         for role in (*ROLES, *OTHER_ROLES):
             stated = self.mapped.get(role, "")
-            name = _called(stated, file) if stated else ""
+            name = file.channel(stated) if stated else ""
             if name:
                 for choice in self.choices.values():
                     choice["role"] = "" if choice["role"] == role else choice["role"]
@@ -194,67 +197,6 @@ class Analysis:
             if unit and (name or not stated):
                 for choice in self.choices.values():
                     choice["unit"] = unit if choice["role"] == role else choice["unit"]
-
-    def check(self) -> None:
-        """Look again for what stands before a run; it may take a moment where the machine names a log."""
-        self.revision += 1
-        faults = [
-            Fault(
-                f"file:{file.id}",
-                "",
-                file.fault,
-                f"{file.name}: {_short(file.fault)}",
-                "Remove",
-                {"remove": file.id},
-            )
-            for file in self.files.values()
-            if file.state == "fault"
-        ]
-        logs = self.logs
-        if logs:
-            faults += self._channel_faults(logs)
-        faults += self._machine_faults()
-        self.faults = [fault for fault in faults if not (fault.keep and fault.key in self.kept)]
-
-    def _channel_faults(self, logs: list[Dropped]) -> list[Fault]:
-        options = {
-            **self.options,
-            "every": self.corrections.get("time.every", ""),
-            "radius": self.corrections.get("radius.value", ""),
-            "motor_constant": self.corrections.get("torque.motor_constant", ""),
-        }
-        faults = channel_faults(logs[0].look, self.choices, options)
-        used = {name for name, choice in self.choices.items() if choice["role"] in ROLES}
-        for other in logs[1:]:
-            have = {channel["name"] for channel in other.look["channels"]}
-            if absent := sorted(name for name in used - have if name in _names(logs[0])):
-                text = f"It has no channel “{absent[0]}”: logs of one analysis are alike."
-                faults.append(
-                    Fault(
-                        f"file:{other.id}",
-                        "",
-                        text,
-                        f"{other.name}: other channels",
-                        "Remove",
-                        {"remove": other.id},
-                    )
-                )
-        for role, stated in self.mapped.items():
-            if not _called(stated, logs[0]) and (role != "temperature" or not self.options["isothermal"]):
-                faults = [fault for fault in faults if fault.at != f"lacking:{role}"]
-                faults.append(_not_there(role, stated, self.choices))
-        return faults or mapping_faults(
-            self.mapping_answers(), self._mapping_others(), self.folder, self._dropped()
-        )
-
-    def _dropped(self) -> dict[str, Path]:
-        return {file.name: file.path for file in self.files.values() if file.state == "ready"}
-
-    def _machine_faults(self) -> list[Fault]:
-        if self.mode == "form" and (faults := answer_faults(self.answers, self.points)):
-            return faults
-        faults = file_faults(self.machine_file(), self.folder, self._dropped())
-        return faults + (doubtful(self.answers) if self.mode == "form" else [])
 
     def choose(self, given: Mapping[str, Any]) -> None:
         """Take what the page changes: ``roles``, ``units`` by channel, ``options``, ``corrections``.
@@ -392,105 +334,13 @@ class Analysis:
         if not self.files:
             self.choices, self.corrections, self.options = {}, {}, dict(_OPTIONS)
         elif gone.look:
-            still = {name for f in self.files.values() if f.look for name in _names(f)}
+            still = {name for f in self.files.values() if f.look for name in f.names}
             self.choices = {name: choice for name, choice in self.choices.items() if name in still}
-
-    def line(self) -> dict[str, Any]:
-        """Return what the list shows."""
-        course = self.course if self.state == "running" else None
-        left = None if course is None or course.ends is None else course.ends - time.monotonic()
-        return {
-            "id": self.id,
-            "name": self.name,
-            "state": self.state,
-            "step": self.step,
-            "share": self.share,
-            "spent": None if course is None else time.monotonic() - course.began,
-            "left": left if left is not None and left > 1.0 else None,
-            "signal": self.result.get("signal", ""),
-            "words": self.result.get("words", ""),
-            "report": self.report,
-            "saved": self.saved,
-            "finished": self.finished,
-            "reason": self.reason,
-            "faults": len(self.faults),
-            "ready": bool(self.logs) and not self.faults and not self.waiting,
-            "revision": self.revision,
-        }
 
     @property
     def waiting(self) -> bool:
         """Whether a file is still on its way."""
         return any(file.state in ("arriving", "looking") for file in self.files.values())
-
-    def view(self) -> dict[str, Any]:
-        """Return all that the page shows of it."""
-        logs = self.logs
-        look = logs[0].look if logs else None
-        return self.line() | {
-            "files": [_file_view(file) for file in self.files.values()],
-            "beside": sorted(self.beside),
-            "pair": [{"id": f.id, "name": f.name} for f in logs] if len(logs) == 2 else [],
-            "mapping_kept": kept_beside([], self.mapping_others),
-            "log": None if look is None else {key: look[key] for key in ("name", "means", "own_clock")},
-            "channels": [] if look is None else self._channels(look),
-            "hidden": 0 if look is None else max(0, len(look["channels"]) - _SHOWN),
-            "units": UNITS,
-            "corrections": self.corrections,
-            "options": self.options,
-            "machine": {
-                "mode": self.mode,
-                "answers": self.answers,
-                "points": [{key: point.get(key, "") for key in POINT_FIELDS} for point in self.points],
-                "kept": kept_beside(self.points, self.machine_others),
-                "text": self.text,
-                "blank": not self.machine_file().strip(),
-            },
-            "all_faults": [asdict(fault) | {"key": fault.key} for fault in self.faults],
-        }
-
-    def _channels(self, look: Mapping[str, Any]) -> list[dict[str, Any]]:
-        rates = {clock["name"]: clock["interval"] for clock in look["clocks"]}
-        rows = [
-            {
-                **{key: channel[key] for key in ("name", "written", "low", "high", "preview", "findings")},
-                "column": column,
-                "proposed": channel["unit"],
-                "interval": rates.get(channel["name"]),
-                **self.choices[channel["name"]],
-            }
-            for column, channel in enumerate(look["channels"], 1)
-        ]
-        if len(rows) > _SHOWN:
-            rows.sort(key=lambda row: not row["role"])
-            rows = rows[:_SHOWN]
-        return rows
-
-
-def _names(file: Dropped) -> set[str]:
-    return {channel["name"] for channel in file.look["channels"]}
-
-
-def _called(name: str, file: Dropped) -> str:
-    """The channel of a file that a mapping means by a name, or nothing."""
-    channels = [(c["name"], c["written"]) for c in file.look["channels"]]
-    meant = called(name, tuple(Column(i, *channel) for i, channel in enumerate(channels)))
-    return str(meant[0].name) if meant else ""
-
-
-def _not_there(role: str, stated: str, choices: Mapping[str, Mapping[str, str]]) -> Fault:
-    """The fault of a channel that the mapping names and the log does not have."""
-    now = next((name for name, choice in choices.items() if choice["role"] == role), "")
-    title = f"The mapping calls the {role} “{stated}”, and this log has no such channel."
-    link = f"choose the {role} channel"
-    text = "Choose one in the column Role."
-    if not now:
-        return Fault(f"lacking:{role}", title, text, link)
-    return Fault(f"lacking:{role}", title, "", link, f"Use “{now}”", {"roles": {now: role}})
-
-
-def _short(fault: str) -> str:
-    return fault.split(":")[0][:60]
 
 
 def _whole(given: Any, below: int) -> int:
@@ -503,22 +353,3 @@ def _texts(given: Any) -> dict[str, str]:
     if not isinstance(given, dict) or not all(isinstance(value, str) for value in given.values()):
         raise ValueError("texts by name are needed")
     return {str(key): value for key, value in given.items()}
-
-
-def _file_view(file: Dropped) -> dict[str, Any]:
-    look = file.look
-    clock = look["clocks"][0] if look.get("clocks") else None
-    return {
-        "id": file.id,
-        "name": file.name,
-        "size": file.size,
-        "received": file.received,
-        "state": file.state,
-        "fault": file.fault,
-        "rows": look.get("rows"),
-        "duration": None if clock is None else clock["duration"],
-        "gaps": None if clock is None else clock["gaps"],
-        "lost": None if clock is None else clock["lost"],
-        "cut_off": look.get("cut_off", False),
-        "means": look.get("means", False),
-    }

@@ -26,6 +26,7 @@ UNITS = {
 }
 #: No belt is colder, K; so large a share of the rows may be left out without a question.
 _TOO_COLD, _FEW = 220.0, 0.02
+_NUMBERS = {2: "Two", 3: "Three", 4: "Four"}
 _SETPOINT = re.compile(r"\b(set|cmd|command|target|demand|reference|soll|nominal)", re.IGNORECASE)
 
 
@@ -120,26 +121,13 @@ def _claimed(role: str, names: list[str], channels: Mapping[str, Any]) -> Fault:
     best = min(names, key=worth)
     others = [name for name in names if name != best]
     set_value = next((name for name in others if _SETPOINT.search(name)), "")
-    listed = " and ".join(f"“{name}”" for name in others[:3])
-    text = (
-        f"“{set_value}” looks like a set value."
-        if set_value
-        else f"The other is {listed}."
-        if len(others) == 1
-        else f"The others are {listed}."
-    )
-    return Fault(
-        f"role:{best}",
-        f"{_number(len(names))} channels claim {role}.",
-        text,
-        f"choose the {role} channel",
-        "Keep this one",
-        {"roles": dict.fromkeys(others, "")},
-    )
-
-
-def _number(count: int) -> str:
-    return {2: "Two", 3: "Three", 4: "Four"}.get(count, str(count))
+    text = "The other is " if len(others) == 1 else "The others are "
+    text += " and ".join(f"“{name}”" for name in others[:3]) + "."
+    if set_value:
+        text = f"“{set_value}” looks like a set value."
+    title = f"{_NUMBERS.get(len(names), str(len(names)))} channels claim {role}."
+    mend = {"roles": dict.fromkeys(others, "")}
+    return Fault(f"role:{best}", title, text, f"choose the {role} channel", "Keep this one", mend)
 
 
 def _lacking(
@@ -158,18 +146,9 @@ def _lacking(
         if not choices.get(channel["name"], {}).get("role") and not channel["dead"]
     ]
     units = {channel["name"]: channel["unit"] for channel in look["channels"]}
-    fitting = next((name for name in free if units[name] and _fits(role, units[name])), "")
-    if fitting:
-        return [
-            Fault(
-                at,
-                title,
-                f"“{fitting}” has a unit of it.",
-                link,
-                f"Use “{fitting}”",
-                {"roles": {fitting: role}},
-            )
-        ]
+    if fitting := next((name for name in free if units[name] and _fits(role, units[name])), ""):
+        text, button = f"“{fitting}” has a unit of it.", f"Use “{fitting}”"
+        return [Fault(at, title, text, link, button, {"roles": {fitting: role}})]
     if role == "temperature":
         text = "Choose one below, or leave it out: the law then holds at the one temperature of the log."
         return [Fault(at, title, text, link, "Run without temperature", {"options": {"isothermal": True}})]
@@ -188,85 +167,71 @@ def _of_one(
 ) -> list[Fault]:
     name, unit = channel["name"], choices[channel["name"]]["unit"].strip()
     if channel["dead"] and role in ("torque", "speed"):
-        others = [
-            c
-            for c in look["channels"]
-            if c["name"] != name and not c["dead"] and not choices[c["name"]]["role"]
-        ]
-        other = next((c["name"] for c in others if c["unit"] and _fits(role, c["unit"])), "")
-        value = "" if channel["low"] is None else f" {channel['low']:.6g} {unit}".rstrip()
-        title = f"It holds{value} throughout." if value else "It holds no number."
-        button, mend = (f"Use “{other}”", {"roles": {name: "", other: role}}) if other else ("", {})
-        return [
-            Fault(
-                f"role:{name}",
-                title,
-                "A dead channel: choose another.",
-                f"choose a {role} that lives",
-                button,
-                mend,
-            )
-        ]
+        return [_dead(role, channel, unit, choices, look)]
     faults = _unit_faults(role, channel, unit, options) or _lacking_radius(
         role, channel, unit, choices, look, options
     )
     slow = role == "temperature" and is_slow(channel["rows"], channel["rows"] - channel["missing"])
     many = channel["missing"] > max(1, _FEW * channel["rows"]) and not slow
     if not faults and many and not options["drop_missing"]:
-        share = 100 * channel["missing"] / channel["rows"]
-        faults.append(
-            Fault(
-                f"role:{name}",
-                f"{channel['missing']} rows lack a number.",
-                f"That is {share:.2g} % of all.",
-                f"rows without {role}",
-                "Leave these rows out",
-                {"options": {"drop_missing": True}},
-            )
-        )
+        title = f"{channel['missing']} rows lack a number."
+        text = f"That is {100 * channel['missing'] / channel['rows']:.2g} % of all."
+        mend = {"options": {"drop_missing": True}}
+        link, button = f"rows without {role}", "Leave these rows out"
+        faults.append(Fault(f"role:{name}", title, text, link, button, mend))
     if not faults and role == "time":
         faults += _rare(channel, unit, look)
     return faults
 
 
+def _dead(
+    role: str,
+    channel: Mapping[str, Any],
+    unit: str,
+    choices: Mapping[str, Mapping[str, str]],
+    look: Mapping[str, Any],
+) -> Fault:
+    """The fault of a channel that holds one value throughout, or none."""
+    name = channel["name"]
+    free = [
+        c for c in look["channels"] if c["name"] != name and not c["dead"] and not choices[c["name"]]["role"]
+    ]
+    other = next((c["name"] for c in free if c["unit"] and _fits(role, c["unit"])), "")
+    value = "" if channel["low"] is None else f" {channel['low']:.6g} {unit}".rstrip()
+    title = f"It holds{value} throughout." if value else "It holds no number."
+    text, link = "A dead channel: choose another.", f"choose a {role} that lives"
+    return Fault(f"role:{name}", title, text, link, *_use(other, {name: "", other: role}))
+
+
+def _use(name: str, roles: Mapping[str, str]) -> tuple[str, Mapping[str, Any]]:
+    """The button that gives a channel a role, and what it changes; neither without a channel."""
+    return (f"Use “{name}”", {"roles": roles}) if name else ("", {})
+
+
+def _read_as(channel: Mapping[str, Any], unit: str, title: str, text: str, keep: str = "") -> Fault:
+    """A fault of the unit of a channel that reading it in another mends."""
+    name = channel["name"]
+    button, mend = f"Read as {sign(unit)}", {"units": {name: unit}}
+    return Fault(f"unit:{name}", title, text, f"unit of {name}", button, mend, keep)
+
+
 def _unit_faults(role: str, channel: Mapping[str, Any], unit: str, options: Mapping[str, Any]) -> list[Fault]:
-    name, at = channel["name"], f"unit:{channel['name']}"
-    link = f"unit of {name}"
     if not unit:
         usual = _usual(role, channel)
         text = "A number without a unit could be any."
         if role == "temperature" and channel["most"] is not None:
             ends = _celsius(channel, usual)
             text = f"Read as {sign(usual)} it is {ends[0]:.0f} to {ends[1]:.0f} °C."
-        return [
-            Fault(
-                at,
-                "It has no unit in the file.",
-                text,
-                link,
-                f"Read as {sign(usual)}",
-                {"units": {name: usual}},
-            )
-        ]
+        return [_read_as(channel, usual, "It has no unit in the file.", text)]
     if role == "torque" and unit in ("A", "mA"):
-        text = f"“{name}” is a current: the constant of the motor makes a torque of it."
+        text = f"“{channel['name']}” is a current: the constant of the motor makes a torque of it."
         at, said = "field:torque.motor_constant", "A motor's current needs its motor constant."
         return [] if options["motor_constant"].strip() else [Fault(at, said, text, "motor constant")]
     try:
         _, line = role_conversion(role, unit)
     except UnitError as error:
         near = _nearest(role, unit, channel)
-        text = f"{error}"
-        return [
-            Fault(
-                at,
-                f"{sign(unit)} is no unit of {role}.",
-                text,
-                link,
-                f"Read as {sign(near)}",
-                {"units": {name: near}},
-            )
-        ]
+        return [_read_as(channel, near, f"{sign(unit)} is no unit of {role}.", str(error))]
     if role != "temperature" or channel["most"] is None:
         return []
     return _doubtful_heat(channel, unit, line.scale, line.offset)
@@ -288,40 +253,23 @@ def _lacking_radius(
         return []
     listed = tuple(Column(i, c["name"], c["written"]) for i, c in enumerate(look["channels"]))
     named = next((column.name for column in proposed("radius", listed)), "")
-    button, mend = (f"Use “{named}”", {"roles": {named: "radius"}}) if named else ("", {})
-    return [
-        Fault(
-            "field:radius.value",
-            "A friction force needs its radius.",
-            f"“{channel['name']}” is a force: torque is force times radius.",
-            "radius of the friction force",
-            button,
-            mend,
-        )
-    ]
+    title, text = "A friction force needs its radius.", "is a force: torque is force times radius."
+    link = "radius of the friction force"
+    text = f"“{channel['name']}” {text}"
+    return [Fault("field:radius.value", title, text, link, *_use(named, {named: "radius"}))]
 
 
 def _doubtful_heat(channel: Mapping[str, Any], unit: str, scale: float, offset: float) -> list[Fault]:
-    name = channel["name"]
     most, median = scale * channel["most"] + offset, scale * channel["median"] + offset
     if median > _TOO_COLD and most < ZERO_CELSIUS + TOO_HOT:
         return []
-    hot = most >= ZERO_CELSIUS + TOO_HOT
+    end, what = ("most", "hotter") if most >= ZERO_CELSIUS + TOO_HOT else ("median", "colder")
+    title = f"{channel[end]:.4g} {sign(unit)} is {what} than any belt here."
     for other in ("K", "degC", "degF"):
         low, high = _celsius(channel, other)
         if other != unit and low > _TOO_COLD - ZERO_CELSIUS and high < TOO_HOT:
-            title = (
-                f"{channel['most']:.4g} {sign(unit)} is hotter than any belt here."
-                if hot
-                else f"{channel['median']:.4g} {sign(unit)} is colder than any belt here."
-            )
             text = f"Read as {sign(other)} it is {low:.0f} to {high:.0f} °C."
-            return [
-                Fault(
-                    f"unit:{name}", title, text, f"unit of {name}", f"Read as {sign(other)}",
-                    {"units": {name: other}}, f"Keep {sign(unit)}",
-                )
-            ]  # fmt: skip
+            return [_read_as(channel, other, title, text, f"Keep {sign(unit)}")]
     return []
 
 
@@ -337,12 +285,7 @@ def _rare(channel: Mapping[str, Any], unit: str, look: Mapping[str, Any]) -> lis
     if clock is None or unit != channel["unit"] or unit != "s" or (clock["interval"] or 0.0) < RARE:
         return []
     title = f"Rows come every {clock['interval']:.4g} s."
-    return [
-        Fault(
-            f"unit:{channel['name']}", title, "Logs of a drive have them far more often.",
-            f"unit of {channel['name']}", "Read as ms", {"units": {channel["name"]: "ms"}}, "Keep s",
-        )
-    ]  # fmt: skip
+    return [_read_as(channel, "ms", title, "Logs of a drive have them far more often.", "Keep s")]
 
 
 def _fits(role: str, unit: str) -> bool:

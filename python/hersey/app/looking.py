@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-from collections import Counter
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +16,7 @@ from hersey.log.channels import OTHER_ROLES, ROLES, ChannelChoice, Stated, find_
 from hersey.log.mapping import LogMapping, read_with_mapping
 from hersey.log.means import is_means_table
 from hersey.log.stating import proposed
-from hersey.log.text.column import Column
+from hersey.log.text.column import Column, distinct_names
 
 #: Columns of a preview: each shows the least and the greatest of its rows.
 _COLUMNS = 75
@@ -36,7 +35,7 @@ def look(path: Path) -> dict[str, Any]:
         raise UnreadableLogError(f"{log.name} holds no channel of numbers")
     choices = {role: ChannelChoice() for role in (*ROLES, *OTHER_ROLES)}
     report = file_report(log, choices, Stated())
-    names = _names(log)
+    names = distinct_names([channel.column for channel in log.channels])
     units = _units(log)
     means = is_means_table(path, {}, {})
     without = {role: why for role, why in report.lacking.items() if not (means and role == "time")}
@@ -51,27 +50,14 @@ def look(path: Path) -> dict[str, Any]:
         "clocks": [_clock(clock) for clock in report.clocks],
         "own_clock": any(channel.clock is not None for channel in log.channels),
         "channels": [
-            _channel(
-                report.channels[i], names[i], units.get(report.channels[i].role, ""), log.channels[i].values
-            )
-            for i in range(len(names))
+            _channel(shown, name, units.get(shown.role, ""), channel.values)
+            for shown, name, channel in zip(report.channels, names, log.channels, strict=True)
         ],
         "without": {role: why.text for role, why in without.items()},
         "claims": {role: _claims(role, log, names, why) for role, why in without.items()},
         "problem": {} if without or means else _problem(path),
         "found": found,
     }
-
-
-def _names(log: RawLog) -> list[str]:
-    """Names as `hersey.read` understands them: the second of a name has its number."""
-    counts, seen = Counter(channel.column.path for channel in log.channels), Counter[str]()
-    names = []
-    for channel in log.channels:
-        path = channel.column.path
-        seen[path] += 1
-        names.append(f"{path}#{seen[path]}" if counts[path] > 1 else path)
-    return names
 
 
 def _units(log: RawLog) -> dict[str, str]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import tomllib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -206,8 +205,8 @@ def mapping_faults(
         read_mapping(path)
     except HerseyError as error:
         said = str(error).removeprefix(f"{MAPPING_FILE}: ")
-        match = re.match(r"(\w+\.\w+)", said)
-        at = f"field:{match[1]}" if match and match[1] in BY_KEY else "corrections"
+        key = error.setting.name if error.setting is not None else ""
+        at = f"field:{key}" if key in BY_KEY else "corrections"
         return [Fault(at, "This cannot be read.", said, "corrections")]
     return []
 

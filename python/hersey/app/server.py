@@ -21,6 +21,7 @@ from hersey.app.door import Door, Patience, SlowError
 from hersey.app.guard import SANDBOX, Guard
 from hersey.app.session import NotNowError, Session, UnknownError
 from hersey.app.uploads import TooMuchError
+from hersey.app.view import line_of, view_of
 from hersey.errors import HerseyError
 from hersey.machine.questions import BY_KEY, MACHINE, POINT, Question
 
@@ -103,28 +104,26 @@ def _safe(handler: Handler) -> Handler:
     async def answer(request: Request) -> Response:
         try:
             return await handler(request)
-        except UnknownError:
-            return _refused(404, "that is no longer here")
-        except TooMuchError as error:
-            return _refused(413, str(error))
-        except NotNowError as error:
-            return _refused(409, str(error))
-        except ClientDisconnect:
-            return _refused(400, "the page went away")
-        except BadRequestError as error:
-            return _refused(400, str(error))
-        except SlowError as error:
-            return _refused(408, str(error))
-        except (ValueError, TypeError, KeyError):
-            return _refused(400, "that cannot be chosen")
-        except HerseyError as error:
-            return _refused(409, str(error))
+        except Exception as error:
+            for kinds, status, words in _REFUSALS:
+                if isinstance(error, kinds):
+                    return JSONResponse({"error": words or str(error)}, status_code=status)
+            raise
 
     return answer
 
 
-def _refused(status: int, words: str) -> Response:
-    return JSONResponse({"error": words}, status_code=status)
+#: What refuses a request, the first that an error is one of: its status, and the words if not its own.
+_REFUSALS: tuple[tuple[type[Exception] | tuple[type[Exception], ...], int, str], ...] = (
+    (UnknownError, 404, "that is no longer here"),
+    (TooMuchError, 413, ""),
+    (NotNowError, 409, ""),
+    (ClientDisconnect, 400, "the page went away"),
+    (BadRequestError, 400, ""),
+    (SlowError, 408, ""),
+    ((ValueError, TypeError, KeyError), 400, "that cannot be chosen"),
+    (HerseyError, 409, ""),
+)
 
 
 class _Routes:
@@ -164,13 +163,13 @@ class _Routes:
         )
 
     async def state(self, _request: Request) -> Response:
-        return JSONResponse({"analyses": [one.line() for one in self._session.analyses.values()]})
+        return JSONResponse({"analyses": [line_of(one) for one in self._session.analyses.values()]})
 
     async def new(self, _request: Request) -> Response:
-        return JSONResponse(self._session.new().view())
+        return JSONResponse(view_of(self._session.new()))
 
     async def view(self, request: Request) -> Response:
-        return JSONResponse(self._one(request).view())
+        return JSONResponse(view_of(self._one(request)))
 
     async def remove(self, request: Request) -> Response:
         self._session.remove(self._one(request))
@@ -181,41 +180,41 @@ class _Routes:
         length = request.headers.get("content-length", "")
         name = unquote(request.headers.get("x-name", ""))
         await self._session.drop(one, name, int(length) if length else None, request.stream())
-        return JSONResponse(one.view())
+        return JSONResponse(view_of(one))
 
     async def remove_file(self, request: Request) -> Response:
         one = self._one(request)
         await self._session.remove_file(one, request.path_params["file"])
-        return JSONResponse(one.view())
+        return JSONResponse(view_of(one))
 
     async def choices(self, request: Request) -> Response:
         one = self._one(request)
         given = await self._json(request)
         given.pop("remove", None)
         await self._session.change(one, given)
-        return JSONResponse(one.view())
+        return JSONResponse(view_of(one))
 
     async def machine(self, request: Request) -> Response:
         one = self._one(request)
         refused = await self._session.take_machine(one, await self._json(request))
-        return JSONResponse(one.view() | {"refused": refused})
+        return JSONResponse(view_of(one) | {"refused": refused})
 
     async def mend(self, request: Request) -> Response:
         one = self._one(request)
         given = await self._json(request)
         act = self._session.keep if given.get("keep") else self._session.mend
         await act(one, str(given["fault"]))
-        return JSONResponse(one.view())
+        return JSONResponse(view_of(one))
 
     async def run(self, request: Request) -> Response:
         one = self._one(request)
         await self._session.run(one)
-        return JSONResponse(one.view())
+        return JSONResponse(view_of(one))
 
     async def cancel(self, request: Request) -> Response:
         one = self._one(request)
         self._session.cancel(one)
-        return JSONResponse(one.view())
+        return JSONResponse(view_of(one))
 
     async def mapping_file(self, request: Request) -> Response:
         return PlainTextResponse(self._one(request).mapping_file())

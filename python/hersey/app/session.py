@@ -18,6 +18,7 @@ from typing import Any
 
 from hersey.app.analysis import Analysis, Dropped, number
 from hersey.app.channels import of_problem
+from hersey.app.checking import check
 from hersey.app.course import Courses
 from hersey.app.machine import MACHINE_FILE, MAPPING_FILE
 from hersey.app.uploads import Bounds, TooMuchError, clean_name, megabytes, receive
@@ -112,31 +113,21 @@ class Session:
             In words for the user; what is too long stands in the list with its fault.
         """
         self._refuse_while_busy(one)
-        held = sum(
-            file.size or file.received for each in self.analyses.values() for file in each.files.values()
+        files = [file for each in self.analyses.values() for file in each.files.values()]
+        if len(files) >= self.bounds.files:
+            raise NotNowError(f"{len(files)} files are here already: remove some first")
+        most = min(
+            self.bounds.file, self.bounds.all_files - sum(file.size or file.received for file in files)
         )
-        count = sum(len(each.files) for each in self.analyses.values())
-        if count >= self.bounds.files:
-            raise NotNowError(f"{count} files are here already: remove some first")
         file = Dropped(clean_name(name), Path())
         folder = one.folder / file.id / _DROPPED
         folder.parent.mkdir(mode=0o700)
         folder.mkdir(mode=0o700)
         file.path = folder / file.name
-        most = min(self.bounds.file, self.bounds.all_files - held)
         one.files[file.id] = file
         one.revision += 1
         try:
-            if length is not None and length > most:
-                raise TooMuchError(
-                    f"it has {megabytes(length)}, and {megabytes(max(most, 0))} can be taken here: "
-                    "thin it, or use hersey report in a terminal"
-                )
-
-            def received(size: int) -> None:
-                file.received = size
-
-            file.size = await receive(chunks, file.path, most, received)
+            await _received(file, length, most, chunks)
         except TooMuchError as error:
             file.state, file.fault, file.received = "fault", str(error), 0
             async with one.lock:
@@ -255,35 +246,10 @@ class Session:
             self._start(one.id, self._run(one))
 
     async def _run(self, one: Analysis) -> None:
-        def said(step: str, share: float | None) -> None:
-            course.step(step)
-            one.step, one.share = step, share
-
-        results = one.folder / _RESULTS
-        page = results / f"{number()}.html"
-        machine = one.folder / MACHINE_FILE
-        request = {
-            "task": "run",
-            "logs": [str(file.path) for file in one.told_of],
-            "against": None if one.earlier is None else str(one.earlier.path),
-            "mapping": str(one.folder / MAPPING_FILE),
-            "machine": str(machine) if machine.exists() else None,
-            "command": one.command(),
-            "report": str(page),
-            **{key: one.options[key] for key in ("isothermal", "drop_missing", "tare")},
-        }
+        page = one.folder / _RESULTS / f"{number()}.html"
         try:
             async with self._running:
-                alike = (
-                    len(one.logs),
-                    bool(request["against"]),
-                    bool(request["machine"]),
-                    one.machine_file().count("[[points]]"),
-                )
-                one.state, one.step = "running", "starting"
-                one.course = course = self._courses.begin(alike)
-                one.result = await ask(request, results, said)
-                self._courses.keep(alike, course)
+                await self._computed(one, page)
             one.saved = await asyncio.to_thread(self._kept, one, page)
             self.shown.pop(one.report, None)
             one.report = number()
@@ -291,16 +257,12 @@ class Session:
             one.state = "done"
         except Refused as error:
             one.state, one.reason = "stopped", str(error)
-            logs = one.logs
-            if logs:
+            if logs := one.logs:
                 one.faults = [of_problem(error.problem, logs[0].look, one.choices)]
-        except (EndedError, OutputError) as error:
-            one.state = "stopped"
-            one.reason = (
-                str(error)
-                if isinstance(error, OutputError)
-                else "the calculation ended by itself: is there memory left?"
-            )
+        except OutputError as error:
+            one.state, one.reason = "stopped", str(error)
+        except EndedError:
+            one.state, one.reason = "stopped", "the calculation ended by itself: is there memory left?"
         except asyncio.CancelledError:
             one.state, one.step = "editing", ""
             raise
@@ -308,6 +270,31 @@ class Session:
             one.share = one.course = None
             one.finished = time.strftime("%H:%M")
             one.revision += 1
+
+    async def _computed(self, one: Analysis, page: Path) -> None:
+        """Let a process compute an analysis and write its page."""
+        machine, earlier = one.folder / MACHINE_FILE, one.earlier
+        request = {
+            "task": "run",
+            "logs": [str(file.path) for file in one.told_of],
+            "against": None if earlier is None else str(earlier.path),
+            "mapping": str(one.folder / MAPPING_FILE),
+            "machine": str(machine) if machine.exists() else None,
+            "command": one.command(),
+            "report": str(page),
+            **{key: one.options[key] for key in ("isothermal", "drop_missing", "tare")},
+        }
+        points = one.machine_file().count("[[points]]")
+        alike = (len(one.logs), bool(request["against"]), bool(request["machine"]), points)
+        one.state, one.step = "running", "starting"
+        one.course = course = self._courses.begin(alike)
+
+        def said(step: str, share: float | None) -> None:
+            course.step(step)
+            one.step, one.share = step, share
+
+        one.result = await ask(request, page.parent, said)
+        self._courses.keep(alike, course)
 
     def _kept(self, one: Analysis, page: Path) -> str:
         """Keep a finished report beyond this start, under a name that is free; return what the page says."""
@@ -338,9 +325,9 @@ class Session:
         await asyncio.gather(*tasks, return_exceptions=True)
 
     async def _check(self, one: Analysis) -> None:
-        await asyncio.to_thread(one.check)
-        if one.state in ("done", "stopped") and not one.busy:
-            one.state = "editing" if one.state == "stopped" else one.state
+        await asyncio.to_thread(check, one)
+        if one.state == "stopped":
+            one.state = "editing"
 
     def _refuse_while_busy(self, one: Analysis) -> None:
         if one.busy:
@@ -354,6 +341,20 @@ class Session:
     def _end(self, name: str) -> None:
         if (task := self._tasks.get(name)) is not None:
             task.cancel()
+
+
+async def _received(file: Dropped, length: int | None, most: int, chunks: AsyncIterator[bytes]) -> None:
+    """Write a file as it comes."""
+    if length is not None and length > most:
+        raise TooMuchError(
+            f"it has {megabytes(length)}, and {megabytes(max(most, 0))} can be taken here: "
+            "thin it, or use hersey report in a terminal"
+        )
+
+    def received(size: int) -> None:
+        file.received = size
+
+    file.size = await receive(chunks, file.path, most, received)
 
 
 def _same(one: dict[str, Any], other: dict[str, Any]) -> bool:

@@ -11,7 +11,8 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-_PACKAGE = str(Path(__file__).absolute().parents[2])
+from hersey.processes.child import import_path
+
 #: Longest line that such a process says: results go through a file.
 _LONGEST = 1 << 20
 
@@ -51,7 +52,6 @@ async def ask(
         If the process ended without a result.
     """
     result = folder / f"{request['task']}.json"
-    places = [str(Path(place).absolute()) for place in sys.path if place]
     process = await asyncio.create_subprocess_exec(
         sys.executable,
         "-P",
@@ -60,7 +60,7 @@ async def ask(
         stdin=asyncio.subprocess.PIPE,
         stdout=asyncio.subprocess.PIPE,
         stderr=asyncio.subprocess.DEVNULL,
-        env={**os.environ, "PYTHONPATH": os.pathsep.join([*places, _PACKAGE])},
+        env={**os.environ, **import_path()},
         limit=_LONGEST,
         start_new_session=True,  # Ctrl-C is for the server, which ends what it started
     )

@@ -31,7 +31,7 @@ from pydantic import (
 from pydantic.dataclasses import dataclass
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
-from hersey.errors import HerseyError, ParameterError, UnitError, meant
+from hersey.errors import HerseyError, ParameterError, Setting, UnitError, meant
 from hersey.files.text import read_text, shown
 from hersey.units import KINDS, parse
 
@@ -273,21 +273,23 @@ def _code(char: str) -> str:
 
 
 @contextmanager
-def naming(place: str) -> Iterator[None]:
-    """Put file and place before the message of what is raised inside."""
+def naming(file: str, key: str = "") -> Iterator[None]:
+    """Put file and key before the message of what is raised inside; the key is what is to be set."""
     try:
         yield
     except (ParameterError, UnitError) as error:
-        raise _named(place, error) from None
+        raise _named(f"{file}: {key}" if key else file, error, key) from None
 
 
 def _mistake(file: str, error: ValidationError) -> ParameterError | UnitError:
     """The first mistake in our own words; what is missing comes after what is wrong."""
     first = min(error.errors(), key=lambda mistake: mistake["type"] == "missing")
-    about = first.get("ctx", {})
+    about, place = first.get("ctx", {}), _place(first["loc"], first["input"]) if first["loc"] else ""
     if first["type"] == "value_error":
-        return _named(f"{file}: {_place(first['loc'], first['input'])}", about["error"])
-    return ParameterError(f"{file}: {_told(first['type'], first['loc'], first['input'], about)}")
+        return _named(f"{file}: {place}", about["error"], place)
+    told = ParameterError(f"{file}: {_told(first['type'], first['loc'], first['input'], about)}")
+    told.setting = Setting(place)
+    return told
 
 
 def _told(kind: str, loc: tuple[str | int, ...], given: object, about: Mapping[str, Any]) -> str:
@@ -324,9 +326,11 @@ def _place(loc: tuple[str | int, ...], given: object) -> str:
     return ".".join([f"{loc[0]}{rows}", *(name for name in loc[1:] if isinstance(name, str))])
 
 
-def _named(place: str, error: Exception) -> ParameterError | UnitError:
-    """The error with the place before its message."""
+def _named(place: str, error: Exception, key: str = "") -> ParameterError | UnitError:
+    """The error with the place before its message; the key of the value that is at fault is what to set."""
     text = str(error)
     goes_on = _GOES_ON.match(text)
     told = f"{place}{'' if text.startswith('.') else ' ' if goes_on else ': '}{text}"
-    return UnitError(told) if isinstance(error, UnitError) else ParameterError(told)
+    named = UnitError(told) if isinstance(error, UnitError) else ParameterError(told)
+    named.setting = Setting(key) if key else None
+    return named

@@ -192,7 +192,7 @@ def read_mapping(path: str | Path) -> LogMapping:
         )
     mapping = LogMapping(**vars(read_tables(path, _Roles)), source=path)
     for role in ROLE_KINDS:
-        with naming(f"{path.name}: {role}.unit"):
+        with naming(path.name, f"{role}.unit"):
             _check_unit(role, getattr(mapping, role).unit, mapping.torque.motor_constant)
     return mapping
 

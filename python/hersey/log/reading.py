@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
@@ -15,6 +14,7 @@ from hersey.log.channels import OTHER_ROLES, ROLES, ChannelChoice, Stated
 from hersey.log.formats import format_of, opened
 from hersey.log.formats.frame import frame_recording, is_frame
 from hersey.log.friction import of_each_run
+from hersey.log.text.column import distinct_names
 from hersey.log.text.delimited import Progress, delimited_columns, read_delimited
 from hersey.log.torque_log import LARGEST, LogFile, Run, TorqueLog
 from hersey.log.wanted import Wanted
@@ -145,13 +145,7 @@ def list_channels(path: Any) -> list[tuple[str, str]]:
                 raise nothing_to_read(recording)
     else:
         listed = delimited_columns(path)
-    counts, seen = Counter(column.path for column in listed), Counter[str]()
-    names = []
-    for column in listed:
-        seen[column.path] += 1
-        repeated = f"#{seen[column.path]}" if counts[column.path] > 1 else ""
-        names.append((f"{column.path}{repeated}", column.unit))
-    return names
+    return list(zip(distinct_names(listed), (column.unit for column in listed), strict=True))
 
 
 def _listed(paths: Any) -> list[Any]:

@@ -206,7 +206,7 @@ class Child:
                     stdin=subprocess.PIPE,
                     stdout=subprocess.PIPE,
                     stderr=subprocess.DEVNULL,
-                    env={**environment, **_import_path()},
+                    env={**environment, **import_path()},
                     pass_fds=theirs,
                     start_new_session=True,  # a group of its own, without a terminal
                 )
@@ -278,8 +278,8 @@ class Child:
         _close(process, files)
 
 
-def _import_path() -> dict[str, str]:
-    """What lets a process import the same modules as this one, this package above all."""
+def import_path() -> dict[str, str]:
+    """Return what, in its environment, lets a process import the modules that this one can, ours too."""
     places = [str(Path(place).absolute()) for place in sys.path if place]
     if _PACKAGE not in places:
         places.append(_PACKAGE)

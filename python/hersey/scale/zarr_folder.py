@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import json
 import os
+import warnings
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -59,8 +60,6 @@ class ZarrKind:
 
     def create(self, path: Path, layout: Layout, manifest: Scenario) -> None:
         """Make a store without values."""
-        import warnings
-
         import zarr
         from zarr.codecs import BloscCodec, Crc32cCodec, ZstdCodec
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -25,10 +26,7 @@ _UNITS = ("unit_string", "NI_UnitDescription", "Unit", "unit", "units")
 def open_tdms(opened: BinaryIO, _name: str) -> Iterator[Recording]:
     """Open a TDMS file; channels with ``wf_increment`` carry their own clock."""
     nptdms = library("nptdms", "TDMS files")
-    with (
-        listening("nptdms") as heard,
-        nptdms.TdmsFile.open(opened) as file,
-    ):
+    with listening("nptdms") as heard, nptdms.TdmsFile.open(opened) as file:
         channels = [channel for group in file.groups() for channel in group.channels()]
         several = len({channel.group_name for channel in channels}) > 1
         numeric = [channel for channel in channels if _is_numeric(channel) and len(channel)]
@@ -47,13 +45,20 @@ def open_tdms(opened: BinaryIO, _name: str) -> Iterator[Recording]:
         )
         if starts and known and first is None:
             recording.notes.append("some channels say when they started and some do not: all start at 0 s")
-        if file.file_status.incomplete_final_segment or any(
-            "segment" in words or "chunk" in words for words in heard
-        ):
+        if _is_cut_off(file, opened):
             recording.cut_off = True
             recording.notes.append("the last segment of the file is incomplete: what is there was read")
         recording.notes.extend(f"nptdms warns: {words[:160]}" for words in dict.fromkeys(heard))
         yield recording
+
+
+def _is_cut_off(file: Any, opened: BinaryIO) -> bool:
+    """Whether the last segment lacks data, or has a head that is not whole, which nptdms passes over."""
+    status = file.file_status
+    if status.incomplete_final_segment or status.channel_statuses is not None:
+        return True
+    ends = [segment.next_segment_pos for segment in file._reader._segments]
+    return max(ends, default=0) < opened.seek(0, io.SEEK_END)
 
 
 def _signal(file: Any, channel: Any, first: Any, several: bool) -> Signal:

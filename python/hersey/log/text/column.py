@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from hersey.errors import UnreadableLogError, printable
@@ -45,6 +47,16 @@ def name_and_unit(text: str) -> tuple[str, str] | None:
     """Return name and unit of a column called ``Torque [N*m]`` or ``Torque (N*m)``, None of any other."""
     match = NAME_WITH_UNIT.fullmatch(text)
     return match and (match[1].strip(), (match[2] if match[2] is not None else match[3]).strip())
+
+
+def distinct_names(columns: Sequence[Column]) -> list[str]:
+    """Return the path of each column; where several have one, with its number among them, ``name#2``."""
+    counts, seen = Counter(column.path for column in columns), Counter[str]()
+    names = []
+    for path in (column.path for column in columns):
+        seen[path] += 1
+        names.append(f"{path}#{seen[path]}" if counts[path] > 1 else path)
+    return names
 
 
 def refuse_columns(place: str, count: int) -> None:
