@@ -161,7 +161,7 @@ def span(values: Sequence[float], room: float = 0.05) -> tuple[float, float]:
     return float(np.exp(low - pad)), float(np.exp(high + pad))
 
 
-def logarithmic_axis(domain: tuple[float, float]) -> Row:
+def logarithmic_axis(domain: tuple[float, float], **look: Any) -> Row:
     """Return scale and axis of a channel from a least to a greatest value, with round numbers along it."""
     low, high = domain
     decades = range(int(np.floor(np.log10(low))), int(np.ceil(np.log10(high))) + 1)
@@ -175,7 +175,7 @@ def logarithmic_axis(domain: tuple[float, float]) -> Row:
         values = [each * 10.0**decade for decade in decades for each in steps]
     return {
         "scale": alt.Scale(type="log", domain=list(domain), nice=False),
-        "axis": alt.Axis(values=[v for v in values if low <= v <= high], format="~g"),
+        "axis": alt.Axis(values=[v for v in values if low <= v <= high], format="~g", **look),
     }
 
 
