@@ -22,8 +22,6 @@ SECONDARY, SHADE, EDGE, RED, GREEN = "#4b5965", "#eaeef1", "#73808c", "#a5301a",
 _RAMP = ((0x2B, 0x4F, 0x9E), (0x7A, 0x3F, 0x9D), (0xB3, 0x2C, 0x66), (0xB8, 0x50, 0x0C))
 #: Shares of greatest over least beyond which an axis names decades alone, and below which it has even steps.
 _WIDE, _CLOSE = 1e4, 5.0
-#: Names at the ends of lines are as far apart, pixels.
-APART = 16.0
 SHAPES = ("circle", "square", "triangle-up", "diamond", "cross", "triangle-down")
 Row = dict[str, Any]
 #: A pale rim around words, so that lines do not run through them.
