@@ -10,7 +10,6 @@ import numpy as np
 from hersey.arrays import FloatArray
 from hersey.charts.labels import apart
 from hersey.charts.style import (
-    APART,
     INK,
     ROLL_SPEED,
     WIDTH,
@@ -29,6 +28,8 @@ from hersey.units import rpm
 #: Share of a torque down to which its error is surely in the picture.
 _SHORTEST = 0.6
 _HEIGHT = 290
+#: Names at the ends of lines are as far apart, pixels.
+_APART = 16.0
 #: Name of the parameter that lists the temperatures which the reader hid.
 _HIDDEN = "hidden"
 
@@ -127,7 +128,7 @@ def _ends(curves: list[Row], domain: tuple[float, float], color: alt.Color) -> l
     ups = [_HEIGHT * (float(np.log(row["y"])) - low) / (high - low) for row in ends.values()]
     named: list[Row] = [
         {"level": level, "y": float(np.exp(low + (high - low) * up / _HEIGHT)), "text": f"{level:.0f} °C"}
-        for level, up in zip(ends, apart(ups, APART), strict=True)
+        for level, up in zip(ends, apart(ups, _APART), strict=True)
     ]
     text = plot(named).mark_text(align="left", dx=6, fontSize=11.5, fontWeight="bold")
     return [text.encode(x=across(), y="y:Q", text="text:N", color=color)]

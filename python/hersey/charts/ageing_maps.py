@@ -6,9 +6,8 @@ import altair as alt
 import numpy as np
 
 from hersey.arrays import FloatArray
-from hersey.charts.operating_map.frame import decades
-from hersey.charts.operating_map.regions import REGIONS
-from hersey.charts.style import INK, RIM, Chart, Row, plot, tip
+from hersey.charts.operating_map.regions import REGIONS, region_color
+from hersey.charts.style import INK, TEMPERATURE, Chart, Row, logarithmic_axis, plot, rimmed, rows_of, tip
 from hersey.life.ageing_maps import AgeingMaps
 from hersey.units import celsius
 
@@ -20,11 +19,8 @@ _TOLD = ("motor", "stick_slip", "bistable", "smooth")
 
 def ageing_maps_chart(result: AgeingMaps) -> Chart:
     """Return one map per age, on the same axes."""
-    named = {name: text for name, text, _, _ in REGIONS}
-    colors = {name: color for name, _, _, color in REGIONS}
-    scale = alt.Scale(domain=[named[name] for name in _TOLD], range=[colors[name] for name in _TOLD])
     width = _ALL / len(result.when)
-    panels = [_panel(result, index, scale, width) for index in range(len(result.when))]
+    panels = [_panel(result, index, width) for index in range(len(result.when))]
     title = alt.Title(
         f"Operating map of {result.unit} through its life",
         subtitle=["solid: transition; dashed: V*; points: operating points", *result.notes],
@@ -33,53 +29,30 @@ def ageing_maps_chart(result: AgeingMaps) -> Chart:
     return chart
 
 
-def _panel(result: AgeingMaps, index: int, scale: alt.Scale, width: float) -> Chart:
+def _panel(result: AgeingMaps, index: int, width: float) -> Chart:
     named = {name: text for name, text, _, _ in REGIONS}
     hot = celsius(result.temperature)
-    low, high = float(result.speed[0]), float(result.speed[-1])
-    x = alt.X(
-        "x:Q",
-        title="Temperature (°C)",
-        scale=alt.Scale(domain=[float(hot[0]), float(hot[-1])], nice=False),
-        axis=alt.Axis(grid=False, tickCount=4),
-    )
-    y = alt.Y(
-        "y:Q",
-        title="Drive speed at the belt (mm/s)" if index == 0 else None,
-        scale=alt.Scale(type="log", domain=[1e3 * low, 1e3 * high], nice=False),
-        axis=alt.Axis(grid=False, values=decades(1e3 * low, 1e3 * high), format="~g"),
-    )
-    rows: list[Row] = []
-    for name, bottom, top in _regions(result, index):
-        rows += [
-            {
-                "x": float(t),
-                "y": 1e3 * float(a),
-                "top": 1e3 * float(b),
-                "region": named[name.split()[0]],
-                "part": name,
-            }
-            for t, a, b in zip(hot, bottom, top, strict=True)
-        ]
-    legend = alt.Legend(
-        orient="bottom", title=None, symbolType="square", symbolSize=140, labelLimit=260, columns=2
-    )
-    color = alt.Color("region:N", scale=scale, legend=legend)
+    scale = alt.Scale(domain=[float(hot[0]), float(hot[-1])], nice=False)
+    x = alt.X("x:Q", title=TEMPERATURE, scale=scale, axis=alt.Axis(grid=False, tickCount=4))
+    domain = logarithmic_axis((1e3 * float(result.speed[0]), 1e3 * float(result.speed[-1])), grid=False)
+    y = alt.Y("y:Q", title="Drive speed at the belt (mm/s)" if index == 0 else None, **domain)
+    rows = [
+        row | {"region": named[name.split()[0]], "part": name}
+        for name, bottom, top in _regions(result, index)
+        for row in rows_of(x=hot, y=1e3 * bottom, top=1e3 * top)
+    ]
+    color = region_color("region", _TOLD, symbolSize=140, columns=2)
     areas = plot(rows).mark_area(clip=True).encode(x=x, y=y, y2="top:Q", color=color, detail="part:N")
     lines = [
-        plot(_line(hot, edge))
+        plot([row for row in rows_of(x=hot, y=1e3 * edge) if row["y"] > 0])
         .mark_line(color=INK, strokeWidth=1.6, strokeDash=dash, clip=True)
         .encode(x=x, y=y)
         for edge, dash in ((result.transition[index], [1, 0]), (result.upper[index], [5, 3]))
     ]
-    marks = _points(result, index, x, y)
     title = alt.Title(result.names[index], fontSize=12, anchor="middle")
+    marks = _points(result, index, x, y)
     panel: Chart = alt.layer(areas, *lines, *marks, title=title, width=width, height=_HEIGHT)
     return panel
-
-
-def _line(hot: FloatArray, edge: FloatArray) -> list[Row]:
-    return [{"x": float(t), "y": 1e3 * float(v)} for t, v in zip(hot, edge, strict=True) if v > 0]
 
 
 def _regions(result: AgeingMaps, index: int) -> list[tuple[str, FloatArray, FloatArray]]:
@@ -134,19 +107,8 @@ def _points(result: AgeingMaps, index: int, x: alt.X, y: alt.Y) -> list[alt.Char
     if not rows:
         return []
     base = plot(rows).encode(x=x, y=y)
-    mark = base.mark_point(
-        shape="circle", filled=True, fill="white", stroke=INK, strokeWidth=1.6, size=60, clip=False
-    )
-    tips = [
-        alt.Tooltip("name:N"),
-        alt.Tooltip("state:N"),
-        tip("x", "temperature (°C)"),
-        tip("y", "speed (mm/s)"),
-    ]
-    text = base.encode(text="name:N")
-    look: Row = {"align": "right", "dx": -8, "fontSize": 11}
-    return [
-        mark.encode(tooltip=tips),
-        text.mark_text(**(look | RIM)),
-        text.mark_text(**look, color="black"),
-    ]
+    mark = base.mark_point(filled=True, fill="white", stroke=INK, strokeWidth=1.6, size=60, clip=False)
+    numbers = [tip("x", "temperature (°C)"), tip("y", "speed (mm/s)")]
+    tips = [alt.Tooltip("name:N"), alt.Tooltip("state:N"), *numbers]
+    names = rimmed(base.encode(text="name:N"), align="right", dx=-8, fontSize=11)
+    return [mark.encode(tooltip=tips), *names]

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import Any
 
 import altair as alt
 import numpy as np
@@ -66,12 +67,12 @@ def charts(document: Analysis, *, but: tuple[str, ...] = ()) -> dict[str, Chart]
         "residuals": residuals,
         "regime": regime,
         "film": film,
-        "transition": transition,
-        "torque_budget": torque_budget,
-        "stick_speed": stick_speed,
+        "transition": lambda d: _if_there(transition_chart, d.film and d.film.transition),
+        "torque_budget": lambda d: _if_there(torque_budget_chart, d.torque_budget),
+        "stick_speed": lambda d: _if_there(lambda _: stick_speed_chart(d), d.stick_speed_sweep),
         "simulation_speed": simulation_speed,
         "simulation_force": simulation_force,
-        "compare": compare,
+        "compare": lambda d: _if_there(logs_chart, d.compare),
         "timeline_speed": timeline_speed,
         "timeline_torque": timeline_torque,
         "timeline_temperature": timeline_temperature,
@@ -194,27 +195,9 @@ def film(document: Analysis) -> Chart | None:
     return None if part is None else regime_chart(part.points, part.dwells, part.layer_factor)
 
 
-def transition(document: Analysis) -> Chart | None:
-    """Transition speed of the user's contact against temperature, and that of the log."""
-    part = None if document.film is None else document.film.transition
-    if part is None:
-        return None
-    return transition_chart(part)
-
-
-def torque_budget(document: Analysis) -> Chart | None:
-    """What of the torque the film carries, what the contact, what the rest of the drive."""
-    return None if document.torque_budget is None else torque_budget_chart(document.torque_budget)
-
-
-def stick_speed(document: Analysis) -> Chart | None:
-    """V* against the stick speed, which nobody measures."""
-    return None if document.stick_speed_sweep is None else stick_speed_chart(document)
-
-
-def compare(document: Analysis) -> Chart | None:
-    """Damping of one log over that of another."""
-    return None if document.compare is None else logs_chart(document.compare)
+def _if_there(draw: Callable[[Any], Chart], part: object) -> Chart | None:
+    """The chart of a part that not every document has."""
+    return None if part is None else draw(part)
 
 
 def simulation_speed(document: Analysis) -> Chart | None:

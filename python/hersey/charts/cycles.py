@@ -5,7 +5,7 @@ from __future__ import annotations
 import altair as alt
 import numpy as np
 
-from hersey.charts.style import BLUE, ORANGE, WIDTH, Chart, plot, rows_of
+from hersey.charts.style import BLUE, ORANGE, WIDTH, Chart, categories, plot, rows_of, stacked
 from hersey.identification.cycle_record import CycleRecord, Scatter
 from hersey.identification.identified_drive import IdentifiedDrive
 
@@ -30,19 +30,18 @@ def trace_chart(record: CycleRecord, drive: IdentifiedDrive | None = None, *, un
     if drive is not None:
         panels.append(_cycle(drive, label))
     title = alt.Title("Cycles of the trace", subtitle=_heading(record, drive))
-    panels_together = alt.vconcat(*panels, spacing=16).resolve_scale(color="independent")
-    stacked: Chart = panels_together.properties(title=title)
-    return stacked
+    return stacked(*panels, title=title, spacing=16)
 
 
 def drive_chart(drive: IdentifiedDrive, *, unit: str = "") -> Chart:
     """Return the mean cycle with the motion of the drive that was identified from it."""
+    title = alt.Title("Identified drive", subtitle=_identified(drive))
+    return _cycle(drive, _label("force", unit)).properties(title=title, height=300)
+
+
+def _identified(drive: IdentifiedDrive) -> str:
     decided = "" if drive.decided else " (not decided)"
-    subtitle = f"closure {drive.closure}{decided}; within {100 * drive.misfit:.2g} % of the drop"
-    chart: Chart = _cycle(drive, _label("force", unit)).properties(
-        title=alt.Title("Identified drive", subtitle=subtitle), height=300
-    )
-    return chart
+    return f"closure {drive.closure}{decided}, within {100 * drive.misfit:.2g} % of the drop"
 
 
 def _label(quantity: str, unit: str) -> str:
@@ -54,15 +53,8 @@ def _heading(record: CycleRecord, drive: IdentifiedDrive | None) -> list[str]:
     if not record.slips:
         return [words]
     period = Scatter.of(record.period)
-    lines = [
-        f"{words}: {record.slips} slips, period {period.median:.4g} s; dots: where the slip is half done"
-    ]
-    if drive is not None:
-        decided = "" if drive.decided else " (not decided)"
-        lines.append(
-            f"fitted motion: closure {drive.closure}{decided}, within {100 * drive.misfit:.2g} % of the drop"
-        )
-    return lines
+    slips = f"{words}: {record.slips} slips, period {period.median:.4g} s; dots: where the slip is half done"
+    return [slips] if drive is None else [slips, f"fitted motion: {_identified(drive)}"]
 
 
 def _window(record: CycleRecord) -> tuple[int, int]:
@@ -92,16 +84,10 @@ def _trace(record: CycleRecord, label: str) -> Chart:
 def _slips(record: CycleRecord, label: str) -> alt.Chart:
     step = max(1, record.slips // _DRAWN)
     rows = rows_of(time=record.slip_time[::step], drop=record.drop[::step])
-    chart: alt.Chart = (
-        plot(rows)
-        .mark_point(color=BLUE, filled=True, size=14, opacity=0.7)
-        .encode(
-            x=alt.X("time:Q", title="Time (s), whole trace", scale=alt.Scale(nice=False, zero=False)),
-            y=alt.Y("drop:Q", title=label.replace("Force", "Fall", 1)),
-        )
-        .properties(width=WIDTH, height=120)
-    )
-    return chart
+    x = alt.X("time:Q", title="Time (s), whole trace", scale=alt.Scale(nice=False, zero=False))
+    y = alt.Y("drop:Q", title=label.replace("Force", "Fall", 1))
+    dots: alt.Chart = plot(rows).mark_point(color=BLUE, filled=True, size=14, opacity=0.7)
+    return dots.encode(x=x, y=y).properties(width=WIDTH, height=120)
 
 
 def _cycle(drive: IdentifiedDrive, label: str) -> Chart:
@@ -109,11 +95,10 @@ def _cycle(drive: IdentifiedDrive, label: str) -> Chart:
     time, size = 1e3 * wave.offset, wave.offset.size
     rows = rows_of(time=time, force=wave.force, line=["mean of the laps"] * size)
     fitted = rows_of(time=time, force=drive.fitted, line=["fitted motion"] * size, index=range(size))
-    names = alt.Scale(domain=["mean of the laps", "fitted motion"], range=[ORANGE, BLUE])
     legend = alt.Legend(title=None, orient="bottom-right", fillColor="white", padding=4)
     x = alt.X("time:Q", title="Time from the middle of the slip (ms)", scale=alt.Scale(nice=False))
     y = alt.Y("force:Q", title=label, scale=alt.Scale(zero=False))
-    color = alt.Color("line:N", scale=names, legend=legend)
+    color = categories(alt.Color, "line", {"mean of the laps": ORANGE, "fitted motion": BLUE}, legend)
     dots = plot(rows).mark_point(filled=True, size=24).encode(x=x, y=y, color=color)
     line = plot(fitted).mark_line(strokeWidth=1.5).encode(x=x, y=y, color=color, order="index:Q")
     return alt.layer(line, dots).properties(width=WIDTH, height=220)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import altair as alt
 import numpy as np
 
+from hersey.charts.growth import age_axis
 from hersey.charts.style import BLUE, INK, WIDTH, Chart, plot, rows_of, tip
 from hersey.life.drift.quantities import Quantity
 from hersey.life.drift.result import Drift
@@ -30,30 +31,25 @@ def drift_chart(drift: Drift) -> Chart:
     some = "" if len(chosen) == count else f" ({len(chosen)} of {count})"
     words = f"thin: units{some}; thick, with 90 % band: all units"
     title = alt.Title("Drift", subtitle=[drift.headline(), words])
-    stacked: Chart = alt.vconcat(*rows, spacing=14, title=title)
-    return stacked
+    return alt.vconcat(*rows, spacing=14, title=title)
 
 
 def _panel(drift: Drift, quantity: Quantity, chosen: list[int]) -> Chart:
     scale, unit = _SHOWN[quantity.si]
-    x = alt.X("age:Q", title=f"Age ({drift.age_unit or 'as given'})", axis=alt.Axis(format="~s", tickCount=5))
-    title = f"{_capital(quantity.name)} ({unit})"
-    y = alt.Y(
-        "value:Q", title=title, scale=alt.Scale(zero=False), axis=alt.Axis(minExtent=_AXIS, tickCount=5)
-    )
+    x = age_axis("age", drift.age_unit, alt.Scale(), 5)
+    title = f"{quantity.name[:1].upper()}{quantity.name[1:]} ({unit})"
+    axis = alt.Axis(minExtent=_AXIS, tickCount=5)
+    y = alt.Y("value:Q", title=title, scale=alt.Scale(zero=False), axis=axis)
     low, middle, high = scale * quantity.band
     seen = np.isfinite(middle) & np.isfinite(low) & np.isfinite(high)
     band = plot(rows_of(age=drift.ages[seen], value=middle[seen], low=low[seen], high=high[seen]))
-    tips = [tip("age", "age"), tip("value", quantity.name), tip("low", "from"), tip("high", "to")]
+    tips = [tip("age", "age"), tip("value", quantity.name)]
+    units = [alt.Tooltip("unit:N"), *tips]
+    area, line = band.mark_area(color=BLUE, opacity=0.18), band.mark_line(color=BLUE, strokeWidth=2.5)
     layers = [
-        band.mark_area(color=BLUE, opacity=0.18).encode(x=x, y=alt.Y("low:Q", title=title), y2="high:Q"),
-        _lines(drift, quantity, chosen, scale).encode(
-            x=x,
-            y=y,
-            detail="unit:N",
-            tooltip=[alt.Tooltip("unit:N"), tip("age", "age"), tip("value", quantity.name)],
-        ),
-        band.mark_line(color=BLUE, strokeWidth=2.5).encode(x=x, y=y, tooltip=tips),
+        area.encode(x=x, y=alt.Y("low:Q", title=title), y2="high:Q"),
+        _lines(drift, quantity, chosen, scale).encode(x=x, y=y, detail="unit:N", tooltip=units),
+        line.encode(x=x, y=y, tooltip=[*tips, tip("low", "from"), tip("high", "to")]),
     ]
     heading = alt.Title(quantity.where, fontSize=11, fontWeight="normal", anchor="start")
     width = (WIDTH - _GAP - _AXIS) // _COLUMNS
@@ -70,7 +66,3 @@ def _lines(drift: Drift, quantity: Quantity, chosen: list[int], scale: float) ->
         rows += rows_of(unit=[drift.units[i]] * int(seen.sum()), age=ages[seen], value=values[seen])
     chart: alt.Chart = plot(rows).mark_line(color=INK, strokeWidth=0.8, opacity=0.55)
     return chart
-
-
-def _capital(words: str) -> str:
-    return words[:1].upper() + words[1:]

@@ -11,7 +11,19 @@ from hersey import _core
 from hersey.arrays import FloatArray, IntArray, pointwise
 from hersey.charts.friction import friction_chart
 from hersey.charts.labels import Labels
-from hersey.charts.style import BLUE, INK, RIM, WIDTH, Chart, Row, logarithmic_axis, plot
+from hersey.charts.style import (
+    BLUE,
+    DIAMOND,
+    INK,
+    RIM,
+    WIDTH,
+    Chart,
+    Row,
+    categories,
+    logarithmic_axis,
+    plot,
+    stacked,
+)
 from hersey.charts.transition import transition_chart
 from hersey.lubrication.film_result import REGIMES, Film
 from hersey.lubrication.mixed import MixedContact
@@ -41,7 +53,7 @@ _TIPS = [
     alt.Tooltip("h:Q", title="least film (um)", format=".3~g"),
 ]
 #: The chart shows at least this.
-_LEAST = ((-2.0, 4.0), (-1.0, 3.0))
+_LEAST = {"g_v": (-2.0, 4.0), "g_e": (-1.0, 3.0)}
 #: Speed parameter at which the chart is computed: the regimes depend on g_V and g_E alone.
 _U = 1e-10
 
@@ -60,58 +72,44 @@ def film_chart(
     Points without ``names`` are called by their speed and temperature. The curve has the model of a ``mixed``
     contact, if one is given.
     """
-    names = _places(film) if names is None else names
-    dwells = []
-    if measured is not None and measured.predicted is not film:
-        dwells = film_points(measured.predicted, [""] * measured.speed.size)
-    charts: list[Chart] = [regime_chart(film_points(film, names), dwells, film.nip.layer_factor)]
+    points = film_points(film, _places(film) if names is None else names)
+    dwells = [] if measured is None or measured.predicted is film else _dwells(measured)
+    charts: list[Chart] = [regime_chart(points, dwells, film.nip.layer_factor)]
     if measured is not None:
         charts.append(friction_chart(measured, mixed, grip=measured.grip))
     if transition is not None:
         charts.append(transition_chart(transition))
-    if len(charts) == 1:
-        return charts[0]
-    stacked: Chart = alt.vconcat(*charts, spacing=24).resolve_scale(color="independent", shape="independent")
-    return stacked
+    return charts[0] if len(charts) == 1 else stacked(*charts, spacing=24)
 
 
 def measured_chart(measured: MeasuredFilm) -> Chart:
     """Return where the dwells of a log lie on the regime chart, over their Stribeck curve."""
-    dwells = film_points(measured.predicted, [""] * measured.speed.size)
-    chart = regime_chart([], dwells, measured.predicted.nip.layer_factor)
-    stacked: Chart = alt.vconcat(
-        chart, friction_chart(measured, grip=measured.grip), spacing=24
-    ).resolve_scale(color="independent", shape="independent")
-    return stacked
+    chart = regime_chart([], _dwells(measured), measured.predicted.nip.layer_factor)
+    return stacked(chart, friction_chart(measured, grip=measured.grip), spacing=24)
+
+
+def _dwells(measured: MeasuredFilm) -> list[FilmPoint]:
+    return film_points(measured.predicted, [""] * measured.speed.size)
 
 
 def regime_chart(points: list[FilmPoint], dwells: list[FilmPoint], layer_factor: float) -> Chart:
     """Return the regime chart with named points of the machine and the dwells of a log on it."""
-    return _regimes([_row(point) for point in points], [_row(dwell) for dwell in dwells], layer_factor)
-
-
-def _regimes(points: list[Row], dwells: list[Row], layer_factor: float) -> Chart:
-    known = [row for row in (*points, *dwells) if row["g_v"] > 0]
-    spans = [_span([row["g_v"] for row in known], _LEAST[0]), _span([row["g_e"] for row in known], _LEAST[1])]
+    named, unnamed = [_row(point) for point in points], [_row(dwell) for dwell in dwells]
+    known = [row for row in (*named, *unnamed) if row["g_v"] > 0]
+    spans = [_span([row[name] for row in known], least) for name, least in _LEAST.items()]
     x = alt.X("g_v:Q", title="Viscosity parameter g_V (no unit)", **_log(spans[0]))
     y = alt.Y("g_e:Q", title="Elasticity parameter g_E (no unit)", **_log(spans[1]))
     cells, regime = _cells(spans, layer_factor)
-    shade = alt.Scale(domain=list(REGIMES), range=list(_SHADES))
-    area = (
-        plot(cells)
-        .mark_rect(clip=True, strokeWidth=0)
-        .encode(x=x, x2="g_v2:Q", y=y, y2="g_e2:Q", color=alt.Color("regime:N", scale=shade, legend=None))
-    )
-    dots = (
-        plot([row for row in dwells if row["g_v"] > 0])
-        .mark_point(filled=True, color=BLUE, size=12, opacity=1)
-        .encode(x=x, y=y)
-    )
-    marks = (
-        plot([row for row in points if row["g_v"] > 0])
-        .mark_point(shape="diamond", fill="white", stroke=INK, strokeWidth=1.8, size=85, opacity=1)
-        .encode(x=x, y=y, tooltip=_TIPS)
-    )
+    color = categories(alt.Color, "regime", dict(zip(REGIMES, _SHADES, strict=True)), None)
+    area = plot(cells).mark_rect(clip=True, strokeWidth=0)
+    dots = plot([row for row in unnamed if row["g_v"] > 0])
+    marks = plot([row for row in named if row["g_v"] > 0]).mark_point(**DIAMOND)
+    layers = [
+        area.encode(x=x, x2="g_v2:Q", y=y, y2="g_e2:Q", color=color),
+        dots.mark_point(filled=True, color=BLUE, size=12, opacity=1).encode(x=x, y=y),
+        marks.encode(x=x, y=y, tooltip=_TIPS),
+        *_texts(named if len(named) <= _NAMED else [], unnamed, spans, regime, x, y),
+    ]
     hidden = "" if known else " No point is shown: alpha is not known, g_V = 0."
     subtitle = [
         "Ground: the law that holds. g_V = G W^1.5/U^0.5, g_E = W/U^0.5, with U = eta u/(E'R) of the mean "
@@ -120,9 +118,7 @@ def _regimes(points: list[Row], dwells: list[Row], layer_factor: float) -> Chart
     if dwells and points:
         subtitle.append("Diamonds: points of the machine. Dots: dwells of the log.")
     title = alt.Title("Regimes of the film", subtitle=subtitle)
-    named = points if len(points) <= _NAMED else []
-    texts = _texts(named, dwells, spans, regime, x, y)
-    return alt.layer(area, dots, marks, *texts, width=WIDTH, height=_TALL, title=title)
+    return alt.layer(*layers, width=WIDTH, height=_TALL, title=title)
 
 
 def _texts(

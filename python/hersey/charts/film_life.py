@@ -2,13 +2,26 @@
 
 from __future__ import annotations
 
-from typing import cast
-
 import altair as alt
 import numpy as np
 
 from hersey.arrays import BoolArray
-from hersey.charts.style import BLUE, INK, ORANGE, WIDTH, Chart, level, plot, ramp, rows_of, tip
+from hersey.charts.growth import age_axis
+from hersey.charts.style import (
+    BLUE,
+    INK,
+    ORANGE,
+    WIDTH,
+    Chart,
+    Row,
+    categories,
+    level,
+    plot,
+    ramp,
+    rows_of,
+    stacked,
+    tip,
+)
 from hersey.life.film.through_life import STARVED, FilmLife, Told
 
 #: Units drawn by themselves, in rows of so many, and the size of each.
@@ -21,6 +34,8 @@ _HEIGHT = 260
 _BEYOND = 2.0
 #: Room above the greatest layer.
 _ROOM = 1.5
+#: What all points of runs look like.
+_POINT: Row = {"opacity": 1, "clip": True}
 #: A micrometre in metres.
 _MICRO = 1e-6
 
@@ -33,17 +48,12 @@ def film_life_chart(film: FilmLife) -> Chart:
     names = [each.unit for each in film.starves[0].units]
     soonest = sorted(range(len(names)), key=lambda k: film.starves[0].units[k].age.value)
     chosen = sorted(soonest[:_SHOWN])
-    chart = alt.vconcat(_over_flooded(film, ages, names), _layers(film, ages, names, chosen), spacing=24)
-    return cast("Chart", chart.resolve_scale(color="independent"))
+    return stacked(_over_flooded(film, ages, names), _layers(film, ages, names, chosen), spacing=24)
 
 
 def _age(film: FilmLife, ages: BoolArray, *, ticks: int) -> alt.X:
-    return alt.X(
-        "age:Q",
-        title=f"Age ({film.runs.age_unit or 'as given'})",
-        scale=alt.Scale(domain=[0.0, float(film.ages[ages].max())], nice=False),
-        axis=alt.Axis(format="~s", tickCount=ticks),
-    )
+    scale = alt.Scale(domain=[0.0, float(film.ages[ages].max())], nice=False)
+    return age_axis("age", film.runs.age_unit, scale, ticks)
 
 
 def _over_flooded(film: FilmLife, ages: BoolArray, names: list[str]) -> Chart:
@@ -61,48 +71,31 @@ def _over_flooded(film: FilmLife, ages: BoolArray, names: list[str]) -> Chart:
     ]
     x = _age(film, ages, ticks=8)
     y = alt.Y("value:Q", title="Film over flooded (1)", scale=alt.Scale(domain=[0.0, 1.05], nice=False))
-    legend = (
-        alt.Legend(title=None, orient="bottom-left", columns=4, symbolOpacity=1)
-        if len(names) <= _NAMED
-        else None
-    )
-    colour = alt.Color("unit:N", scale=alt.Scale(domain=names, range=ramp(len(names))), legend=legend)
+    low = alt.Y("low:Q", title="Film over flooded (1)")
+    legend = alt.Legend(title=None, orient="bottom-left", columns=4, symbolOpacity=1)
+    looks = dict(zip(names, ramp(len(names)), strict=True))
+    colour = categories(alt.Color, "unit", looks, legend if len(names) <= _NAMED else None)
     tips = [alt.Tooltip("unit:N"), tip("age", "age"), tip("value", "film over flooded")]
-    chart = plot(rows)
-    band = chart.mark_area(opacity=0.08, clip=True).encode(
-        x=x, y=alt.Y("low:Q", title="Film over flooded (1)"), y2="high:Q", color=colour
-    )
-    line = chart.mark_line(strokeWidth=2, clip=True).encode(x=x, y=y, color=colour, tooltip=tips)
-    points = plot(_runs(film, read, most=1.0)).mark_point(filled=True, size=40, opacity=1, clip=True)
-    bars = plot(_runs(film, read, most=1.0)).mark_rule(strokeWidth=1, clip=True)
-    title = alt.Title(
-        f"Film at {film.points[0]}, over that of a flooded inlet at the same viscosity",
-        subtitle=[
-            film.headline(),
-            "points: single runs; lines and bands: law over all units; 90 % intervals",
-        ],
-    )
-    return alt.layer(
-        band,
-        line,
+    band, line = plot(rows).mark_area(opacity=0.08, clip=True), plot(rows).mark_line(strokeWidth=2, clip=True)
+    runs = plot(_runs(film, read, most=1.0))
+    bars, points = runs.mark_rule(strokeWidth=1, clip=True), runs.mark_point(filled=True, **_POINT, size=40)
+    layers = [
+        band.encode(x=x, y=low, y2="high:Q", color=colour),
+        line.encode(x=x, y=y, color=colour, tooltip=tips),
         bars.encode(x=x, y=alt.Y("low:Q"), y2="high:Q", color=colour),
         points.encode(x=x, y=y, color=colour, tooltip=tips),
         *level(STARVED, "starved below"),
-        title=title,
-        width=WIDTH,
-        height=_HEIGHT,
-    )
-
-
-def _runs(
-    film: FilmLife, read: Told, *, most: float, unit: str = "", factor: float = 1.0
-) -> list[dict[str, object]]:
-    """Rows of the runs that tell something, of one unit or of all; ends that are not told at ``most``."""
-    chosen = [
-        i
-        for i, name in enumerate(film.runs.unit)
-        if np.isfinite(read.value[i]) and (not unit or name == unit)
     ]
+    name = f"Film at {film.points[0]}, over that of a flooded inlet at the same viscosity"
+    words = "points: single runs; lines and bands: law over all units; 90 % intervals"
+    title = alt.Title(name, subtitle=[film.headline(), words])
+    return alt.layer(*layers, title=title, width=WIDTH, height=_HEIGHT)
+
+
+def _runs(film: FilmLife, read: Told, *, most: float, unit: str = "", factor: float = 1.0) -> list[Row]:
+    """Rows of the runs that tell something, of one unit or of all; ends that are not told at ``most``."""
+    names = enumerate(film.runs.unit)
+    chosen = [i for i, name in names if np.isfinite(read.value[i]) and (not unit or name == unit)]
     return rows_of(
         age=film.runs.age[chosen],
         value=np.minimum(factor * read.value[chosen], most),
@@ -117,13 +110,11 @@ def _layers(film: FilmLife, ages: BoolArray, names: list[str], chosen: list[int]
     each = [_layer(film, ages, names[k], k, most, first=i % _ACROSS == 0) for i, k in enumerate(chosen)]
     lines = [alt.hconcat(*each[i : i + _ACROSS], spacing=14) for i in range(0, len(each), _ACROSS)]
     more = f"; the {len(chosen)} units that starve first" if len(chosen) < len(names) else ""
-    title = alt.Title(
-        f"Layer of oil against what the film needs{more}",
-        subtitle=(
-            f"blue: layer; orange: flooded film at {film.points[0].name}, thicker as the oil thickens; "
-            "where they meet the film starves"
-        ),
+    subtitle = (
+        f"blue: layer; orange: flooded film at {film.points[0].name}, thicker as the oil thickens; "
+        "where they meet the film starves"
     )
+    title = alt.Title(f"Layer of oil against what the film needs{more}", subtitle=subtitle)
     return alt.vconcat(*lines, spacing=10, title=title)
 
 

@@ -90,7 +90,8 @@ def friction_chart(
     near = [(value, name) for value, name in stalls if value < _NEAR * seen.max()]
     far = [f"{name} at {value:.3g}, beyond the chart" for value, name in stalls if (value, name) not in near]
     low, high = seen.min() / _ROOM, max([float(seen.max()), *(value for value, _ in near)]) * _ROOM
-    x = alt.X("hersey:Q", title=NUMBER, scale=alt.Scale(type="log", domain=_micro(span), nice=False))
+    domain = [1e6 * end for end in span]
+    x = alt.X("hersey:Q", title=NUMBER, scale=alt.Scale(type="log", domain=domain, nice=False))
     y = alt.Y("friction:Q", title=COEFFICIENT, scale=alt.Scale(type="log", domain=[low, high], nice=False))
     layers: list[alt.Chart] = []
     if model is not None:
@@ -103,9 +104,8 @@ def friction_chart(
     if measured is not None:
         layers.append(_dots(measured, x, y))
     subtitle = [*_legend(measured, model), *(["; ".join(far)] if far else [])]
-    return alt.layer(*layers).properties(
-        width=WIDTH, height=HEIGHT, title=alt.Title("Stribeck curve", subtitle=subtitle)
-    )
+    title = alt.Title("Stribeck curve", subtitle=subtitle)
+    return alt.layer(*layers, width=WIDTH, height=HEIGHT, title=title)
 
 
 def along(mixed: MixedContact, kelvin: float, dwells: FloatArray) -> _Model:
@@ -142,10 +142,6 @@ def _span(dwells: FloatArray, model: _Model | None) -> tuple[float, float]:
     return low / _ROOM**0.5, high * _ROOM**0.5
 
 
-def _micro(span: tuple[float, float]) -> list[float]:
-    return [1e6 * each for each in span]
-
-
 def _regimes(model: _Model, span: tuple[float, float], x: alt.X) -> list[alt.Chart]:
     """A shade as dark as the share of the load on the asperities, and the names of the regimes."""
     edges = np.geomspace(*span, _STRIPS + 1)
@@ -170,12 +166,9 @@ def _regimes(model: _Model, span: tuple[float, float], x: alt.X) -> list[alt.Cha
 def _curves(model: _Model, x: alt.X, y: alt.Y) -> list[alt.Chart]:
     whole = rows_of(hersey=1e6 * model.hersey, friction=model.friction)
     film = rows_of(hersey=1e6 * model.hersey, friction=model.shear)
-    return [
-        plot(film)
-        .mark_line(color=INK, strokeDash=[5, 4], strokeWidth=1.3, clip=True)
-        .encode(x=x, y=y, order="hersey:Q"),
-        plot(whole).mark_line(color=INK, strokeWidth=2, clip=True).encode(x=x, y=y, order="hersey:Q"),
-    ]
+    dashed = plot(film).mark_line(color=INK, strokeDash=[5, 4], strokeWidth=1.3, clip=True)
+    solid = plot(whole).mark_line(color=INK, strokeWidth=2, clip=True)
+    return [line.encode(x=x, y=y, order="hersey:Q") for line in (dashed, solid)]
 
 
 def _film(measured: MeasuredFilm, x: alt.X, y: alt.Y) -> alt.Chart:
@@ -183,12 +176,8 @@ def _film(measured: MeasuredFilm, x: alt.X, y: alt.Y) -> alt.Chart:
     order = np.argsort(measured.hersey_number)
     scale = measured.friction / measured.torque * measured.predicted_torque * measured.calibration.value
     rows = rows_of(hersey=1e6 * measured.hersey_number[order], friction=scale[order])
-    line: alt.Chart = (
-        plot(rows)
-        .mark_line(color=INK, strokeDash=[6, 4], strokeWidth=1.5, clip=True)
-        .encode(x=x, y=y, order="hersey:Q")
-    )
-    return line
+    line: alt.Chart = plot(rows).mark_line(color=INK, strokeDash=[6, 4], strokeWidth=1.5, clip=True)
+    return line.encode(x=x, y=y, order="hersey:Q")
 
 
 def _dots(measured: MeasuredFilm, x: alt.X, y: alt.Y) -> alt.Chart:
@@ -202,18 +191,11 @@ def _dots(measured: MeasuredFilm, x: alt.X, y: alt.Y) -> alt.Chart:
         level=[temperature_name(each) for each in steps],
     )
     color, shape = temperature_channels(steps, orient="top")
-    chart: alt.Chart = (
-        plot(rows)
-        .mark_point(filled=True, size=45, opacity=0.9, stroke="white", strokeWidth=0.6)
-        .encode(
-            x=x,
-            y=y,
-            color=color,
-            shape=shape,
-            tooltip=[tip("hersey", "Hersey number, um"), tip("friction", "friction")],
-        )
+    tips = [tip("hersey", "Hersey number, um"), tip("friction", "friction")]
+    dots: alt.Chart = plot(rows).mark_point(
+        filled=True, size=45, opacity=0.9, stroke="white", strokeWidth=0.6
     )
-    return chart
+    return dots.encode(x=x, y=y, color=color, shape=shape, tooltip=tips)
 
 
 def _stalls(near: list[tuple[float, str]], domain: tuple[float, float]) -> list[alt.Chart]:
@@ -226,12 +208,11 @@ def _stalls(near: list[tuple[float, str]], domain: tuple[float, float]) -> list[
     ]
     least = [{"friction": min(value for value, _ in near), "top": domain[1]}]
     y = alt.Y("friction:Q")
+    words = plot(rows).mark_text(align="left", dx=6, color="#a33", fontSize=12)
     return [
         plot(least).mark_rect(color="#c0392b", opacity=0.08).encode(y=y, y2="top:Q"),
         plot(rows).mark_rule(color="#a33", strokeWidth=1.6, strokeDash=[8, 3]).encode(y=y),
-        plot(rows)
-        .mark_text(align="left", dx=6, color="#a33", fontSize=12)
-        .encode(x=alt.value(WIDTH), y=alt.Y("down:Q", scale=None, axis=None), text=alt.Text("text:N")),
+        words.encode(x=alt.value(WIDTH), y=alt.Y("down:Q", scale=None, axis=None), text="text:N"),
     ]
 
 

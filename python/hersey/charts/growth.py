@@ -8,7 +8,7 @@ from typing import NamedTuple
 import altair as alt
 import numpy as np
 
-from hersey.charts.style import BLUE, HEIGHT, INK, ORANGE, WIDTH, Chart, Row, plot, rows_of, tip
+from hersey.charts.style import BLUE, DIAMOND, HEIGHT, INK, ORANGE, WIDTH, Chart, Row, plot, rows_of, tip
 from hersey.life.growth.fit import Growth
 from hersey.life.growth.limit_ages import AgeAtLimit, AgesAtLimit
 
@@ -58,10 +58,8 @@ def growth_chart(growth: Growth, *, ages: AgesAtLimit | None = None, si: str = "
     panels = []
     for i, unit in enumerate(growth.units[:count]):
         # Far above the axis a drawing would overflow.
-        low, median, high = (
-            np.minimum(each[i], 10.0 * top) for each in (curves.low, curves.median, curves.high)
-        )
-        band = rows_of(age=at, median=median, low=low, high=high)
+        ends = {name: np.minimum(getattr(curves, name)[i], 10.0 * top) for name in ("low", "median", "high")}
+        band = rows_of(age=at, **ends)
         title = _values(growth, si, short=count > 1) if i % columns == 0 else None
         layers = _curve(growth, band, rows_of(age=runs[i][0], value=runs[i][1]), axes, title)
         if line is not None:
@@ -69,9 +67,8 @@ def growth_chart(growth: Growth, *, ages: AgesAtLimit | None = None, si: str = "
             layers.append(rule.encode(y=alt.Y("value:Q", title=title)))
         if unit in told:
             layers += _age(told[unit], line if line is not None else top / _FREE, axes, title)
-        panels.append(
-            alt.layer(*layers, title=alt.Title(unit, fontSize=12), width=axes.width, height=axes.height)
-        )
+        name = alt.Title(unit, fontSize=12)
+        panels.append(alt.layer(*layers, title=name, width=axes.width, height=axes.height))
     rows = [alt.hconcat(*panels[i : i + columns], spacing=12) for i in range(0, count, columns)]
     heading = f"Growth of {growth.quantity}" + (f" ({si.replace(' ', '·')})" if si else "")
     return alt.vconcat(*rows, title=alt.Title(heading, subtitle=_heading(growth, ages)), spacing=10)
@@ -125,9 +122,7 @@ def _age(told: AgeAtLimit, height: float, axes: _Axes, title: str | None) -> lis
         rule = plot([span]).mark_rule(color=ORANGE, strokeWidth=4, clip=True)
         layers.append(rule.encode(x=alt.X("low:Q", scale=axes.age), x2="high:Q", y=y))
     if told.age.value < axes.end:
-        point = plot([mark]).mark_point(
-            color=ORANGE, fill="white", shape="diamond", size=70, opacity=1, strokeWidth=2
-        )
+        point = plot([mark]).mark_point(**(DIAMOND | {"stroke": ORANGE, "size": 70, "strokeWidth": 2}))
         layers.append(point.encode(x=alt.X("age:Q", scale=axes.age), y=y, tooltip=tips))
     return layers
 
@@ -135,9 +130,8 @@ def _age(told: AgeAtLimit, height: float, axes: _Axes, title: str | None) -> lis
 def _heading(growth: Growth, ages: AgesAtLimit | None) -> list[str]:
     words = ["points: runs; lines and bands: each unit without the scatter of runs, 90 %"]
     if ages:
-        where = (
-            "at the dashed limit" if not ages.accumulates else "at which its sum over age reaches the limit"
-        )
+        summed = "at which its sum over age reaches the limit"
+        where = summed if ages.accumulates else "at the dashed limit"
         words.append(f"diamonds: the age {where}, with its 90 % interval")
     if len(growth.units) > _SHOWN:
         words.append(f"{_SHOWN} of {len(growth.units)} units are shown")

@@ -6,8 +6,8 @@ import math
 
 import altair as alt
 
-from hersey.charts.operating_map.regions import REGIONS
-from hersey.charts.style import INK, RIM, WIDTH, Chart, Row, plot
+from hersey.charts.operating_map.regions import REGIONS, region_color
+from hersey.charts.style import INK, WIDTH, Chart, Row, plot, rimmed
 from hersey.stability.hysteresis import HysteresisBand
 
 #: Beyond the outermost of the three speeds the axis goes on by this factor.
@@ -25,13 +25,10 @@ def band_chart(band: HysteresisBand, *, unit: str = "m/s") -> Chart:
         scale=alt.Scale(type="log", domain=[low, high], nice=False),
         axis=alt.Axis(grid=False, format="~g"),
     )
-    title = alt.Title("Hysteresis band", subtitle=[*_sentences(band.verdict()), f"closure: {band.closure}"])
+    sentences = [part.rstrip(".") + "." for part in band.verdict().split(". ")]
+    title = alt.Title("Hysteresis band", subtitle=[*sentences, f"closure: {band.closure}"])
     layers = [_states(band, low, high, x), *_edges(band, x, high)]
     return alt.layer(*layers, title=title, width=WIDTH, height=_HEIGHT)
-
-
-def _sentences(text: str) -> list[str]:
-    return [part if part.endswith(".") else part + "." for part in text.split(". ")]
 
 
 def _states(band: HysteresisBand, low: float, high: float, x: alt.X) -> alt.Chart:
@@ -49,13 +46,8 @@ def _states(band: HysteresisBand, low: float, high: float, x: alt.X) -> alt.Char
     rows: list[Row] = [
         {"from": max(a, low), "to": b, "state": looks[name][0]} for name, (a, b) in spans.items() if b > a
     ]
-    names = [row["state"] for row in rows]
-    colors = [color for text, color in looks.values() if text in names]
-    scale = alt.Scale(domain=[text for text, _ in looks.values() if text in names], range=colors)
-    legend = alt.Legend(
-        orient="bottom", title=None, symbolType="square", symbolStrokeColor="#666", labelLimit=260
-    )
-    color = alt.Color("state:N", scale=scale, legend=legend)
+    seen = {row["state"] for row in rows}
+    color = region_color("state", [name for name, text, _, _ in REGIONS if text in seen])
     chart: alt.Chart = plot(rows).mark_rect(clip=True).encode(x=x, x2=alt.X2("to:Q"), color=color)
     return chart
 
@@ -78,13 +70,8 @@ def _edges(band: HysteresisBand, x: alt.X, high: float) -> list[alt.Chart]:
     span = plot([r for r in rows if r["high"] > r["low"]]).mark_rule(color=INK, strokeWidth=5, opacity=0.6)
     middle = math.sqrt(max(r["from"] for r in rows) * min(r["from"] for r in rows)) if rows else 0.0
     texts: list[alt.Chart] = []
-    for side, of_side in (
-        ("left", [r for r in rows if r["from"] < middle]),
-        ("right", [r for r in rows if r["from"] >= middle]),
-    ):
-        # Words stand on the side of their line where the chart is.
-        shift = 6 if side == "left" else -6
-        for look in (RIM, {"color": INK}):
-            mark = plot(of_side).mark_text(align=side, dx=shift, fontSize=12, **look)  # type: ignore[arg-type]
-            texts.append(mark.encode(x=x, y=y, text=alt.Text("text:N")))
+    # Words stand on the side of their line where the chart is.
+    for left in (True, False):
+        words = plot([r for r in rows if (r["from"] < middle) == left]).encode(x=x, y=y, text="text:N")
+        texts += rimmed(words, align="left" if left else "right", dx=6 if left else -6, fontSize=12)
     return [rule, span.encode(x=alt.X("low:Q"), x2=alt.X2("high:Q"), y=y), *texts]

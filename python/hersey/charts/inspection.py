@@ -35,8 +35,7 @@ def inspection_chart(paths: Sequence[str | Path], inspection: Inspection) -> Cha
     if not panels:
         raise InsufficientDataError("there is no channel to draw")
     title = alt.Title("Channels as recorded", subtitle=", ".join(file.name for file in inspection.files[:4]))
-    stacked: Chart = alt.vconcat(*panels, spacing=10).properties(title=title)
-    return stacked
+    return alt.vconcat(*panels, spacing=10, title=title)
 
 
 def channels_chart(inspection: Inspection, *, paths: Sequence[str | Path] = ()) -> Chart:
@@ -78,12 +77,8 @@ def _findings(report: FileReport) -> Chart:
         for name, channel in zip(names, report.channels, strict=True)
         for fault in channel.traits.faults
     ]
-    x = alt.X(
-        "row:Q",
-        title="Row (number)",
-        scale=alt.Scale(domain=[0, max(report.rows, 1)], nice=False),
-        axis=alt.Axis(tickCount=8),
-    )
+    scale = alt.Scale(domain=[0, max(report.rows, 1)], nice=False)
+    x = alt.X("row:Q", title="Row (number)", scale=scale, axis=alt.Axis(tickCount=8))
     # A domain, not a sort: Vega-Lite makes an expression of a sort, and these are names from a file.
     order = alt.Scale(domain=list(dict.fromkeys(names)))
     y = alt.Y("channel:N", title=None, scale=order, axis=alt.Axis(labelLimit=220))
@@ -100,9 +95,8 @@ def _findings(report: FileReport) -> Chart:
         dots.encode(x=x, y=y, shape=shape, tooltip=tips),
     ]
     clean = "" if faults else ", no fault found"
-    heading = alt.Title(
-        report.name, subtitle=f"{report.rows} rows{clean}; right: least to greatest", fontSize=12
-    )
+    words = f"{report.rows} rows{clean}; right: least to greatest"
+    heading = alt.Title(report.name, subtitle=words, fontSize=12)
     return alt.layer(*layers, title=heading, width=WIDTH, height=26 * len(names))
 
 
@@ -119,14 +113,10 @@ def _panels(path: Path, report: FileReport) -> list[alt.LayerChart]:
     channels = [c for c in channels if c.role != "time" and c.name != c.clock][:_PANELS]
     panels = []
     for channel in channels:
-        values = raw[channel.name].values
-        clock = raw[channel.name].clock
-        time = clock if clock is not None else getattr(raw.get(channel.clock), "values", None)
-        unit = (
-            "s"
-            if clock is not None
-            else next((c.unit for c in report.channels if c.name == channel.clock), "")
-        )
+        values, time, unit = raw[channel.name].values, raw[channel.name].clock, "s"
+        if time is None:
+            time = getattr(raw.get(channel.clock), "values", None)
+            unit = next((c.unit for c in report.channels if c.name == channel.clock), "")
         if np.isfinite(values).any():
             panels.append(_panel(channel, values, time, f"Time ({unit})" if time is not None else "Row"))
     return panels
@@ -148,19 +138,12 @@ def _panel(channel: ChannelReport, values: FloatArray, time: FloatArray | None, 
     role = f", {channel.role}" if channel.role else ""
     y = alt.Y("y:Q", title=None, scale=alt.Scale(zero=False), axis=alt.Axis(minExtent=_AXIS, tickCount=4))
     at = alt.X("x:Q", title=title, scale=alt.Scale(nice=False))
-    line = (
-        plot(rows)
-        .mark_line(color=BLUE, strokeWidth=1, clip=True)
-        .encode(x=at, y=y, order="index:Q", tooltip=[alt.Tooltip("x:Q"), alt.Tooltip("y:Q")])
-    )
-    point = (
-        plot(marks)
-        .mark_point(color=ORANGE, size=90, strokeWidth=2)
-        .encode(x="x:Q", y="y:Q", tooltip=[alt.Tooltip("kind:N")])
-    )
+    line = plot(rows).mark_line(color=BLUE, strokeWidth=1, clip=True)
+    layers = [line.encode(x=at, y=y, order="index:Q", tooltip=[alt.Tooltip("x:Q"), alt.Tooltip("y:Q")])]
+    if marks:
+        points = plot(marks).mark_point(color=ORANGE, size=90, strokeWidth=2)
+        layers.append(points.encode(x="x:Q", y="y:Q", tooltip=[alt.Tooltip("kind:N")]))
+    look: Row = {"anchor": "start", "fontSize": 11, "subtitleFontSize": 10}
     said = "; ".join(channel.findings)
-    heading = alt.Title(
-        name + role, subtitle=said[:110] or "nothing found", anchor="start", fontSize=11, subtitleFontSize=10
-    )
-    layers = [line, point] if marks else [line]
+    heading = alt.Title(name + role, subtitle=said[:110] or "nothing found", **look)
     return alt.LayerChart(layer=layers, width=WIDTH, height=_HEIGHT, title=heading)

@@ -7,7 +7,20 @@ from collections.abc import Sequence
 
 import altair as alt
 
-from hersey.charts.style import BLUE, INK, RED, RIM, SECONDARY, SHADE, WIDTH, Chart, Row, plot, tip
+from hersey.charts.style import (
+    BLUE,
+    INK,
+    RED,
+    SECONDARY,
+    SHADE,
+    WIDTH,
+    Chart,
+    Row,
+    categories,
+    plot,
+    rimmed,
+    tip,
+)
 from hersey.units import celsius, rpm
 from hersey.verdict.regime import BranchExponent, Regime
 
@@ -41,7 +54,7 @@ def regime_chart(result: Regime) -> Chart:
     return exponent_chart(rows, [(h.name, h.low, h.high) for h in result.hypotheses])
 
 
-def exponent_row(branch: BranchExponent | BranchExponent) -> Row:
+def exponent_row(branch: BranchExponent) -> Row:
     """Return the row of an exponent at one temperature on one branch."""
     return {
         "where": "all" if branch.temperature is None else f"{celsius(branch.temperature):.0f} °C",
@@ -73,13 +86,8 @@ def exponent_chart(
     order = [where for _, where in places]
     nip: list[Row] = []
     if solved is not None:
-        nip = [
-            {
-                "where": "this nip",
-                "value": solved,
-                "text": f"{solved:.2f}, film solved".replace("-", "\u2212"),
-            }
-        ]
+        text = f"{solved:.2f}, film solved".replace("-", "\u2212")
+        nip = [{"where": "this nip", "value": solved, "text": text}]
         order.append("this nip")
     scale = alt.Scale(domain=[low, high], nice=False)
     x = alt.X("value:Q", title="Exponent of damping in speed (no unit)", scale=scale, axis=_AXIS)
@@ -137,13 +145,9 @@ def _regimes(
 
 
 def _exponents(rows: list[Row], x: alt.X, y: alt.Y, scale: alt.Scale, middle: float) -> list[alt.Chart]:
-    branches = [name for name in _LOOKS if any(r["branch"] == name for r in rows)]
-    color = alt.Color(
-        "branch:N", scale=alt.Scale(domain=branches, range=[_LOOKS[b][0] for b in branches]), legend=None
-    )
-    shape = alt.Shape(
-        "branch:N", scale=alt.Scale(domain=branches, range=[_LOOKS[b][1] for b in branches]), legend=None
-    )
+    seen = [name for name in _LOOKS if any(r["branch"] == name for r in rows)]
+    color = categories(alt.Color, "branch", {name: _LOOKS[name][0] for name in seen}, None)
+    shape = categories(alt.Shape, "branch", {name: _LOOKS[name][1] for name in seen}, None)
     tips = [
         alt.Tooltip("where:N", title="where"),
         alt.Tooltip("branch:N", title="branch"),
@@ -161,8 +165,7 @@ def _exponents(rows: list[Row], x: alt.X, y: alt.Y, scale: alt.Scale, middle: fl
     return [
         bars.encode(x=alt.X("low:Q", scale=scale), x2=alt.X2("high:Q"), y=y),
         dots.encode(x=x, y=y, color=color, shape=shape, tooltip=tips),
-        words.mark_text(**(look | RIM)),
-        words.mark_text(color=INK, **look),
+        *rimmed(words, **look),
     ]
 
 

@@ -7,7 +7,7 @@ import math
 import altair as alt
 import numpy as np
 
-from hersey.charts.style import INK, RIM, WIDTH, Chart, Row, logarithmic_axis, plot, rows_of, tip
+from hersey.charts.style import DIAMOND, INK, WIDTH, Chart, Row, logarithmic_axis, plot, rimmed, rows_of, tip
 from hersey.decision.behaviour import StickSpeeds
 from hersey.document.analysis import Analysis
 from hersey.units import celsius
@@ -21,41 +21,32 @@ def stick_speed_chart(document: Analysis) -> Chart:
     """Return what the belt does at which drive speed, over the range of the stick speed."""
     sweep = document.stick_speed_sweep
     assert sweep is not None
-    stick = [1e3 * v for v in sweep.stick_speed]
-    transition = [1e3 * v for v in sweep.transition]
+    stick, transition = ([1e3 * v for v in each] for each in (sweep.stick_speed, sweep.transition))
     upper = [1e3 * v if math.isfinite(v) else None for v in sweep.upper]
     known = [v for v in upper if v is not None] or transition
     top = 1.25 * max(*known, *transition)
-    rows = rows_of(
-        stick=stick, transition=transition, upper=upper, edge=[top if v is None else v for v in upper]
-    )
+    edge = [top if v is None else v for v in upper]
+    base = plot(rows_of(stick=stick, transition=transition, upper=upper, edge=edge))
     sides = logarithmic_axis((min(stick), max(stick)))
     x = alt.X("stick:Q", title="Stick speed (mm/s), never measured", **sides)
     y_scale = alt.Scale(domain=[0, top], nice=False)
-    y = {
-        name: alt.Y(f"{name}:Q", title="Drive speed (mm/s)", scale=y_scale)
+    turns, folds, ends = (
+        alt.Y(f"{name}:Q", title="Drive speed (mm/s)", scale=y_scale)
         for name in ("transition", "upper", "edge")
-    }
-    base = plot(rows)
-    ground: list[Row] = [{"low": min(stick), "high": max(stick)}]
+    )
+    names = {"stick": "stick speed (mm/s)", "transition": "transition (mm/s)", "upper": "V* (mm/s)"}
+    line = base.mark_line(color=INK, strokeWidth=1.8, strokeDash=[7, 4])
+    ground = plot([{"low": min(stick), "high": max(stick)}]).mark_rect(color=_SMOOTH)
     layers = [
-        plot(ground).mark_rect(color=_SMOOTH).encode(x=alt.X("low:Q", **sides), x2="high:Q"),
-        base.mark_area(color=_DEPENDS, line=False).encode(x=x, y=y["edge"], y2="transition:Q"),
-        base.mark_area(color=_STICKS, line=False).encode(x=x, y=y["transition"]),
-        base.mark_line(color=INK, strokeWidth=1.8).encode(x=x, y=y["transition"]),
-        base.mark_line(color=INK, strokeWidth=1.8, strokeDash=[7, 4]).encode(
-            x=x,
-            y=y["upper"],
-            tooltip=[
-                tip("stick", "stick speed (mm/s)"),
-                tip("transition", "transition (mm/s)"),
-                tip("upper", "V* (mm/s)"),
-            ],
-        ),
+        ground.encode(x=alt.X("low:Q", **sides), x2="high:Q"),
+        base.mark_area(color=_DEPENDS, line=False).encode(x=x, y=ends, y2="transition:Q"),
+        base.mark_area(color=_STICKS, line=False).encode(x=x, y=turns),
+        base.mark_line(color=INK, strokeWidth=1.8).encode(x=x, y=turns),
+        line.encode(x=x, y=folds, tooltip=[tip(*each) for each in names.items()]),
+        *_words(stick, transition, known, top, sides, y_scale),
+        *_points(document, top, y_scale),
+        *_stated(sweep, x, folds),
     ]
-    layers += _words(stick, transition, known, top, sides, y_scale)
-    layers += _points(document, top, y_scale)
-    layers += _stated(sweep, x, y["upper"])
     at = "" if sweep.temperature is None else f" at {celsius(sweep.temperature):.0f} °C"
     title = alt.Title(
         f"V* against the stick speed{at}",
@@ -100,7 +91,6 @@ def _stated(sweep: StickSpeeds, x: alt.X, y: alt.Y) -> list[alt.Chart]:
         return []
     upper = 1e3 * float(np.interp(sweep.stated, [v for v, _ in known], [u for _, u in known]))
     row = plot([{"stick": 1e3 * sweep.stated, "upper": upper, "text": f"as stated: {upper:.3g}"}])
-    mark = row.mark_point(shape="diamond", fill="white", stroke=INK, strokeWidth=1.8, size=85, opacity=1)
-    text = row.encode(x=x, y=y, text="text:N")
     look: Row = {"align": "left", "dx": 9, "dy": -9, "fontSize": 12, "fontWeight": "bold"}
-    return [mark.encode(x=x, y=y), text.mark_text(**(look | RIM)), text.mark_text(color=INK, **look)]
+    mark = row.mark_point(**DIAMOND).encode(x=x, y=y)
+    return [mark, *rimmed(row.encode(x=x, y=y, text="text:N"), **look)]

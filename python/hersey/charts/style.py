@@ -22,8 +22,6 @@ SECONDARY, SHADE, EDGE, RED, GREEN = "#4b5965", "#eaeef1", "#73808c", "#a5301a",
 _RAMP = ((0x2B, 0x4F, 0x9E), (0x7A, 0x3F, 0x9D), (0xB3, 0x2C, 0x66), (0xB8, 0x50, 0x0C))
 #: Shares of greatest over least beyond which an axis names decades alone, and below which it has even steps.
 _WIDE, _CLOSE = 1e4, 5.0
-#: Names at the ends of lines are as far apart, pixels.
-APART = 16.0
 SHAPES = ("circle", "square", "triangle-up", "diamond", "cross", "triangle-down")
 Row = dict[str, Any]
 #: A pale rim around words, so that lines do not run through them.
@@ -161,7 +159,7 @@ def span(values: Sequence[float], room: float = 0.05) -> tuple[float, float]:
     return float(np.exp(low - pad)), float(np.exp(high + pad))
 
 
-def logarithmic_axis(domain: tuple[float, float]) -> Row:
+def logarithmic_axis(domain: tuple[float, float], **look: Any) -> Row:
     """Return scale and axis of a channel from a least to a greatest value, with round numbers along it."""
     low, high = domain
     decades = range(int(np.floor(np.log10(low))), int(np.ceil(np.log10(high))) + 1)
@@ -175,7 +173,7 @@ def logarithmic_axis(domain: tuple[float, float]) -> Row:
         values = [each * 10.0**decade for decade in decades for each in steps]
     return {
         "scale": alt.Scale(type="log", domain=list(domain), nice=False),
-        "axis": alt.Axis(values=[v for v in values if low <= v <= high], format="~g"),
+        "axis": alt.Axis(values=[v for v in values if low <= v <= high], format="~g", **look),
     }
 
 

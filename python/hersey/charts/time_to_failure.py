@@ -7,7 +7,8 @@ import math
 import altair as alt
 
 from hersey.charts.growth import age_axis, axis_end
-from hersey.charts.style import BLUE, INK, SHAPES, WIDTH, Chart, Row, plot, ramp, rows_of, tip
+from hersey.charts.style import BLUE, INK, SHAPES, WIDTH, Chart, Row, categories, plot, ramp, rows_of, tip
+from hersey.charts.weibull import not_failed
 from hersey.life.time_to_failure.estimate import TimeToFailure
 
 #: Units shown; pixels of each way in the row of a unit, and of the share ended.
@@ -50,54 +51,48 @@ def _heading(found: TimeToFailure, end: float) -> list[str]:
 
 def _units(found: TimeToFailure, order: list[str], end: float, scale: alt.Scale) -> Chart:
     seen = [mode for mode in found.modes if any(a.unit in order and a.age.low < end for a in mode.ages.units)]
-    named = [mode.name + (" (precursor)" if mode.sign else "") for mode in seen]
-    likely = {each.unit: max(each.first, key=lambda name: each.first[name]) for each in found.units}
-    rows: list[Row] = []
-    for name, mode in zip(named, seen, strict=True):
-        for told in mode.ages.units:
-            if told.unit in order and told.age.low < end:
-                inside = told.age.value <= end
-                first = likely[told.unit] == mode.name
-                rows.append(
-                    {
-                        "unit": told.unit,
-                        "way": name,
-                        "age": told.age.value if inside else None,
-                        "low": told.age.low,
-                        "high": min(told.age.high, end),
-                        "to": told.age.high if math.isfinite(told.age.high) else None,
-                        "first": name if first and inside else None,
-                    }
-                )
+    named = {mode.name: mode.name + (" (precursor)" if mode.sign else "") for mode in seen}
     last = [{"unit": each.unit, "last": each.age.last} for each in found.units if each.unit in order]
+    names = list(named.values())
     y = alt.Y("unit:N", title=None, sort=order, scale=alt.Scale(domain=order))
-    apart = alt.YOffset("way:N", sort=named, scale=alt.Scale(domain=named, paddingOuter=0.5))
+    apart = alt.YOffset("way:N", sort=names, scale=alt.Scale(domain=names, paddingOuter=0.5))
     legend = alt.Legend(title=None, orient="top", columns=3, labelLimit=400, symbolOpacity=1)
-    shades = alt.Scale(domain=named, range=ramp(len(named)))
-    shapes = alt.Scale(domain=named, range=[SHAPES[i % len(SHAPES)] for i in range(len(named))])
-    colour, shape = (
-        alt.Color("way:N", scale=shades, legend=legend),
-        alt.Shape("way:N", scale=shapes, legend=legend),
-    )
+    shapes = [SHAPES[i % len(SHAPES)] for i in range(len(names))]
+    colour = categories(alt.Color, "way", dict(zip(names, ramp(len(names)), strict=True)), legend)
+    shape = categories(alt.Shape, "way", dict(zip(names, shapes, strict=True)), legend)
     tips = ["unit:N", "way:N", tip("age", "age"), tip("low", "from"), tip("to", "to")]
-    unit = found.age_unit
-    base = plot(rows).encode(y=y, yOffset=apart)
-    x = age_axis("age", unit, scale)
+    marks = {"x": age_axis("age", found.age_unit, scale), "color": colour, "shape": shape, "tooltip": tips}
+    base = plot(_rows(found, named, order, end)).encode(y=y, yOffset=apart)
+    spans, low = base.mark_rule(strokeWidth=2, clip=True), age_axis("low", found.age_unit, scale)
+    ticks = plot(last).mark_tick(color=INK, thickness=2, size=_row(len(names)) - 6)
+    first = base.transform_filter("datum.first != null").mark_point(filled=True, opacity=1, size=60)
     layers = [
-        plot(last)
-        .mark_tick(color=INK, thickness=2, size=_row(len(named)) - 6)
-        .encode(y=y, x=age_axis("last", unit, scale)),
-        base.mark_rule(strokeWidth=2, clip=True).encode(
-            x=age_axis("low", unit, scale), x2="high:Q", color=colour
-        ),
-        base.mark_point(fill="white", opacity=1, size=52, strokeWidth=1.6).encode(
-            x=x, color=colour, shape=shape, tooltip=tips
-        ),
-        base.transform_filter("datum.first != null")
-        .mark_point(filled=True, opacity=1, size=60)
-        .encode(x=x, color=colour, shape=shape, tooltip=tips),
+        ticks.encode(y=y, x=age_axis("last", found.age_unit, scale)),
+        spans.encode(x=low, x2="high:Q", color=colour),
+        base.mark_point(fill="white", opacity=1, size=52, strokeWidth=1.6).encode(**marks),
+        first.encode(**marks),
     ]
-    return alt.layer(*layers, width=WIDTH, height=_row(len(named)) * len(order))
+    return alt.layer(*layers, width=WIDTH, height=_row(len(names)) * len(order))
+
+
+def _rows(found: TimeToFailure, named: dict[str, str], order: list[str], end: float) -> list[Row]:
+    """The age of each unit by each failure mode, as far as it is on the axis."""
+    likely = {each.unit: max(each.first, key=lambda name: each.first[name]) for each in found.units}
+    return [
+        {
+            "unit": told.unit,
+            "way": named[mode.name],
+            "age": told.age.value if told.age.value <= end else None,
+            "low": told.age.low,
+            "high": min(told.age.high, end),
+            "to": told.age.high if math.isfinite(told.age.high) else None,
+            "first": named[mode.name] if likely[told.unit] == mode.name and told.age.value <= end else None,
+        }
+        for mode in found.modes
+        if mode.name in named
+        for told in mode.ages.units
+        if told.unit in order and told.age.low < end
+    ]
 
 
 def _row(ways: int) -> int:
@@ -121,23 +116,16 @@ def _share(found: TimeToFailure, scale: alt.Scale) -> Chart:
     population = found.population
     ages, ranks = population.median_ranks
     if len(ages):
-        points = plot(rows_of(age=ages, share=100 * ranks)).mark_point(
-            color=INK, filled=True, opacity=1, size=50
-        )
-        seen = [tip("age", "age"), tip("share", "median rank (%)")]
-        layers.append(
-            points.encode(x=x, y=alt.Y("share:Q", title="Share ended (%)", scale=shares), tooltip=seen)
-        )
+        points = plot(rows_of(age=ages, share=100 * ranks))
+        dots = points.mark_point(color=INK, filled=True, opacity=1, size=50)
+        at = alt.Y("share:Q", title="Share ended (%)", scale=shares)
+        layers.append(dots.encode(x=x, y=at, tooltip=[tip("age", "age"), tip("share", "median rank (%)")]))
     others = population.ages[~population.failed]
     if others.size:
-        ticks = plot(rows_of(age=others)).mark_rule(color=INK, strokeWidth=2)
-        layers.append(
-            ticks.encode(x=x, y=alt.value(_SHARES - 14), y2=alt.value(_SHARES), tooltip=[tip("age", "age")])
-        )
+        layers.append(not_failed(others, x, _SHARES))
     words = (
         "line and band: new units as foretold, 90 %; points: units that have ended, at median ranks; "
         "ticks: the others"
     )
-    return alt.layer(
-        *layers, width=WIDTH, height=_SHARES, title=alt.Title("New units", subtitle=words, fontSize=13)
-    )
+    title = alt.Title("New units", subtitle=words, fontSize=13)
+    return alt.layer(*layers, width=WIDTH, height=_SHARES, title=title)

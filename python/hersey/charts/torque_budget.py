@@ -7,8 +7,11 @@ import altair as alt
 from hersey.charts.style import (
     HEIGHT,
     INK,
+    ROLL_SPEED,
     WIDTH,
     Chart,
+    Row,
+    categories,
     logarithmic_axis,
     plot,
     rows_of,
@@ -31,41 +34,24 @@ _PARTS = (
 def torque_budget_chart(part: TorqueBudgetPart) -> Chart:
     """Return the parts of the torque as areas, one upon another, and the whole torque of the dwells."""
     factor, unit = torque_unit(max(part.measured_torque))
-    names, shades = [name for _, name, _ in _PARTS], [shade for _, _, shade in _PARTS]
     rows = [
         {"speed": rpm(speed), "torque": factor * torque, "part": name, "order": order}
         for order, (field, name, _) in enumerate(_PARTS)
         for speed, torque in zip(part.speed, getattr(part, field), strict=True)
     ]
-    dwells = rows_of(
-        speed=[rpm(speed) for speed in part.measured_speed],
-        whole=[factor * torque for torque in part.measured_torque],
-    )
-    x = alt.X("speed:Q", title="Roll speed (rpm)", **logarithmic_axis(span([row["speed"] for row in rows])))
-    areas = (
-        plot(rows)
-        .mark_area(line=False)
-        .encode(
-            x=x,
-            y=alt.Y("torque:Q", title=f"Torque ({unit})", stack="zero", axis=alt.Axis(tickCount=6)),
-            order="order:Q",
-            color=alt.Color(
-                "part:N",
-                scale=alt.Scale(domain=names, range=shades),
-                legend=alt.Legend(title=None, orient="bottom", columns=2, symbolOpacity=1),
-            ),
-            tooltip=[
-                alt.Tooltip("part:N", title="part"),
-                tip("speed", "roll (rpm)"),
-                tip("torque", f"torque ({unit})"),
-            ],
-        )
-    )
-    dots = (
-        plot(dwells)
-        .mark_point(filled=True, fill="white", stroke=INK, strokeWidth=1.2, size=45, opacity=1)
-        .encode(x=x, y="whole:Q", tooltip=[tip("speed", "roll (rpm)"), tip("whole", f"torque ({unit})")])
-    )
+    whole = [factor * torque for torque in part.measured_torque]
+    dwells = rows_of(speed=[rpm(speed) for speed in part.measured_speed], whole=whole)
+    x = alt.X("speed:Q", title=ROLL_SPEED, **logarithmic_axis(span([row["speed"] for row in rows])))
+    y = alt.Y("torque:Q", title=f"Torque ({unit})", stack="zero", axis=alt.Axis(tickCount=6))
+    legend = alt.Legend(title=None, orient="bottom", columns=2, symbolOpacity=1)
+    color = categories(alt.Color, "part", {name: shade for _, name, shade in _PARTS}, legend)
+    at = tip("speed", "roll (rpm)")
+    tips = [alt.Tooltip("part:N", title="part"), at, tip("torque", f"torque ({unit})")]
+    areas = plot(rows).mark_area(line=False)
+    areas = areas.encode(x=x, y=y, order="order:Q", color=color, tooltip=tips)
+    look: Row = {"fill": "white", "stroke": INK, "strokeWidth": 1.2, "size": 45, "opacity": 1}
+    dots = plot(dwells).mark_point(filled=True, **look)
+    dots = dots.encode(x=x, y="whole:Q", tooltip=[at, tip("whole", f"torque ({unit})")])
     title = alt.Title(
         f"What carries the torque at {celsius(part.temperature):.0f} °C",
         subtitle="areas: by the machine's file, the film sheared over the nip, its inlet with the pressure; "

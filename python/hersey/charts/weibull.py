@@ -22,17 +22,18 @@ def weibull_chart(population: Population) -> Chart:
     A unit that has not failed is a tick on the axis of ages.
     """
     x = _ages_axis(population, "age:Q")
-    ends = [float(end) for end in _place([_SHARES[0], _SHARES[-1]])]
+    ends = _place([_SHARES[0], _SHARES[-1]]).tolist()
     share = "1 - exp(-exp(datum.value))"
     y = alt.Y(
         "place:Q",
         title="Share failed (%)",
         scale=alt.Scale(domain=ends, nice=False),
-        axis=alt.Axis(
-            values=[float(place) for place in _place(_SHARES)], labelExpr=f"format(100 * ({share}), '.3~g')"
-        ),
+        axis=alt.Axis(values=_place(_SHARES).tolist(), labelExpr=f"format(100 * ({share}), '.3~g')"),
     )
-    layers: list[alt.Chart] = [*_law(population, x, y), _failures(population, x, y), *_others(population, x)]
+    layers = [*_law(population, x, y), _failures(population, x, y)]
+    others = population.ages[~population.failed]
+    if others.size:
+        layers.append(not_failed(others, x, HEIGHT))
     title = alt.Title("Weibull plot", subtitle=_heading(population))
     return alt.layer(*layers, title=title, width=WIDTH, height=HEIGHT)
 
@@ -95,9 +96,8 @@ def _failures(population: Population, x: alt.X, y: alt.Y) -> alt.Chart:
     return chart
 
 
-def _others(population: Population, x: alt.X) -> list[alt.Chart]:
-    ages = population.ages[~population.failed]
-    if not ages.size:
-        return []
-    ticks = plot(rows_of(age=ages)).mark_rule(color=INK, strokeWidth=2)
-    return [ticks.encode(x=x, y=alt.value(HEIGHT - 14), y2=alt.value(HEIGHT), tooltip=[tip("age", "age")])]
+def not_failed(ages: FloatArray, x: alt.X, height: float) -> alt.Chart:
+    """Return the units that have not failed, as ticks on the axis of ages of a chart so many pixels high."""
+    ticks: alt.Chart = plot(rows_of(age=ages)).mark_rule(color=INK, strokeWidth=2)
+    ends = {"y": alt.value(height - 14), "y2": alt.value(height)}
+    return ticks.encode(x=x, tooltip=[tip("age", "age")], **ends)

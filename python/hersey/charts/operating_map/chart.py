@@ -6,7 +6,7 @@ import altair as alt
 import numpy as np
 
 from hersey.charts.labels import Labels
-from hersey.charts.operating_map.frame import HEIGHT, WIDTH, Frame, decades, speed_axis, temperature_axis
+from hersey.charts.operating_map.frame import HEIGHT, WIDTH, Frame, speed_axis, temperature_axis
 from hersey.charts.operating_map.lines import VISIBLE, contours, edges, speed_limit
 from hersey.charts.operating_map.points import pointer, points
 from hersey.charts.operating_map.regions import (
@@ -17,7 +17,7 @@ from hersey.charts.operating_map.regions import (
     name_regions,
     regions,
 )
-from hersey.charts.style import BLUE, INK, RIM, Chart, Row, plot
+from hersey.charts.style import BLUE, INK, ROLL_SPEED, Chart, Row, logarithmic_axis, plot, rimmed
 from hersey.stability.operating_map import OperatingMap
 from hersey.units import rpm
 
@@ -65,7 +65,7 @@ def _texts(labels: Labels, frame: Frame) -> list[alt.Chart]:
                 rows.append({"x": x, "y": 1e3 * y, "text": text.text})
         if rows:
             base = plot(rows).encode(x=temperature_axis(frame), y=speed_axis(frame), text="text:N")
-            layers += [base.mark_text(**(look | RIM)), base.mark_text(**look)]
+            layers += rimmed(base, **look)
     return layers
 
 
@@ -89,13 +89,7 @@ def _subtitle(result: OperatingMap) -> list[str]:
 def _revolutions(result: OperatingMap, frame: Frame) -> alt.Chart:
     """The second axis: revolutions of the roll."""
     low, high = (rpm(v / result.roll_radius) for v in (frame.low, frame.high))
-    axis = alt.Axis(orient="right", grid=False, values=decades(low, high), format="~g")
-    y = alt.Y(
-        "rpm:Q",
-        title="Roll speed (rpm)",
-        scale=alt.Scale(type="log", domain=[low, high], nice=False),
-        axis=axis,
-    )
+    y = alt.Y("rpm:Q", title=ROLL_SPEED, **logarithmic_axis((low, high), orient="right", grid=False))
     rows: list[Row] = [{"x": float(frame.x[0]), "rpm": low}]
     chart: alt.Chart = plot(rows).mark_point(opacity=0, size=0).encode(x=temperature_axis(frame), y=y)
     return chart

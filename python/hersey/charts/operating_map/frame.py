@@ -8,6 +8,7 @@ import altair as alt
 import numpy as np
 
 from hersey.arrays import FloatArray
+from hersey.charts.style import TEMPERATURE, logarithmic_axis
 from hersey.stability.operating_map import OperatingMap
 from hersey.units import celsius
 
@@ -63,7 +64,7 @@ def temperature_axis(frame: Frame, field: str = "x:Q") -> alt.X:
     domain = [float(frame.x[0]), float(frame.x[-1])]
     return alt.X(
         field,
-        title="Temperature (°C)" if frame.thermal else None,
+        title=TEMPERATURE if frame.thermal else None,
         scale=alt.Scale(domain=domain, nice=False),
         axis=alt.Axis(grid=False, tickCount=8) if frame.thermal else None,
     )
@@ -71,17 +72,5 @@ def temperature_axis(frame: Frame, field: str = "x:Q") -> alt.X:
 
 def speed_axis(frame: Frame, field: str = "y:Q") -> alt.Y:
     """Return the axis up, in mm/s at the belt."""
-    low, high = 1e3 * frame.low, 1e3 * frame.high
-    return alt.Y(
-        field,
-        title="Drive speed at the belt (mm/s)",
-        scale=alt.Scale(type="log", domain=[low, high], nice=False),
-        axis=alt.Axis(grid=False, values=decades(low, high), format="~g"),
-    )
-
-
-def decades(low: float, high: float) -> list[float]:
-    """Return 1, 2 and 5 of every power of ten between two numbers."""
-    powers = range(int(np.floor(np.log10(low))), int(np.ceil(np.log10(high))) + 1)
-    values = [float(f"{m}e{p}") for p in powers for m in (1, 2, 5)]
-    return [v for v in values if low <= v <= high]
+    domain = logarithmic_axis((1e3 * frame.low, 1e3 * frame.high), grid=False)
+    return alt.Y(field, title="Drive speed at the belt (mm/s)", **domain)

@@ -24,11 +24,8 @@ def edges(result: OperatingMap, frame: Frame) -> list[alt.Chart]:
         {"x": x, "y": 1e3 * a, "top": 1e3 * b}
         for x, a, b in zip(*map(np.ndarray.tolist, (frame.x, low, high)), strict=True)
     ]
-    interval = (
-        plot(shade)
-        .mark_area(color=INK, opacity=0.35, clip=True)
-        .encode(x=temperature_axis(frame), y=speed_axis(frame), y2="top:Q")
-    )
+    area = plot(shade).mark_area(color=INK, opacity=0.35, clip=True)
+    interval = area.encode(x=temperature_axis(frame), y=speed_axis(frame), y2="top:Q")
     beyond = VISIBLE * result.transition_interval[1]
     fold = np.where(result.upper > VISIBLE * result.transition, result.upper, 0.0)
     charts = [
@@ -51,12 +48,8 @@ def _line(
     rows: list[Row] = [{"x": x, "y": 1e3 * v} for x, v in columns if 0.5 * frame.low < v < 2.0 * frame.high]
     if len(rows) < 2:
         return None
-    chart: alt.Chart = (
-        plot(rows)
-        .mark_line(color=color, strokeDash=dash, strokeWidth=width, clip=True)
-        .encode(x=temperature_axis(frame), y=speed_axis(frame))
-    )
-    return chart
+    line: alt.Chart = plot(rows).mark_line(color=color, strokeDash=dash, strokeWidth=width, clip=True)
+    return line.encode(x=temperature_axis(frame), y=speed_axis(frame))
 
 
 def contours(result: OperatingMap, frame: Frame, labels: Labels) -> list[alt.Chart]:

@@ -7,7 +7,7 @@ import numpy as np
 
 from hersey.charts.labels import Labels
 from hersey.charts.operating_map.frame import Frame, speed_axis, temperature_axis
-from hersey.charts.style import INK, Row, plot
+from hersey.charts.style import DIAMOND, Row, plot
 from hersey.stability.operating_map import OperatingMap
 from hersey.units import ZERO_CELSIUS, celsius, rpm
 
@@ -36,18 +36,9 @@ def points(result: OperatingMap, frame: Frame, labels: Labels) -> list[alt.Chart
         )
     if not rows:
         return []
-    marks = (
-        plot(rows)
-        .mark_point(
-            shape="diamond", filled=True, fill="white", stroke=INK, strokeWidth=2, size=110, opacity=1
-        )
-        .encode(
-            x=temperature_axis(frame),
-            y=speed_axis(frame),
-            tooltip=[alt.Tooltip("name:N", title="point"), *_tips(result)],
-        )
-    )
-    return [marks]
+    marks = plot(rows).mark_point(filled=True, **(DIAMOND | {"strokeWidth": 2, "size": 110}))
+    tips = [alt.Tooltip("name:N", title="point"), *_tips(result)]
+    return [marks.encode(x=temperature_axis(frame), y=speed_axis(frame), tooltip=tips)]
 
 
 def _tips(result: OperatingMap) -> list[alt.Tooltip]:
@@ -86,15 +77,11 @@ def pointer(result: OperatingMap, frame: Frame) -> alt.Chart:
                 "state": state.verdict() + (" (extrapolated)" if state.extrapolated else ""),
             }
         )
-    chart: alt.Chart = (
-        plot(rows)
-        .mark_rect(opacity=0, clip=True)
-        .encode(
-            x=temperature_axis(frame, "left:Q"),
-            x2="right:Q",
-            y=speed_axis(frame, "bottom:Q"),
-            y2="top:Q",
-            tooltip=_tips(result),
-        )
+    chart: alt.Chart = plot(rows).mark_rect(opacity=0, clip=True)
+    return chart.encode(
+        x=temperature_axis(frame, "left:Q"),
+        x2="right:Q",
+        y=speed_axis(frame, "bottom:Q"),
+        y2="top:Q",
+        tooltip=_tips(result),
     )
-    return chart

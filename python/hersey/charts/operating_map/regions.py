@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
+from typing import Any
+
 import altair as alt
 import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.charts.labels import Box, Labels
 from hersey.charts.operating_map.frame import HEIGHT, WIDTH, Frame, side_to_side, speed_axis, temperature_axis
-from hersey.charts.style import INK, Row, plot
+from hersey.charts.style import INK, Row, categories, plot
 from hersey.stability.operating_map import OperatingMap
 from hersey.units import celsius
 
@@ -66,36 +69,35 @@ def regions(bands: Bands, frame: Frame) -> alt.Chart:
         if HEIGHT * np.log(edges[1] / edges[0]).max() > _THIN * np.log(frame.high / frame.low)
         for x, low, high in zip(*map(np.ndarray.tolist, (frame.x, *edges)), strict=True)
     ]
-    entries = [r for r in REGIONS if any(row["region"] == r[1] for row in rows)]
-    scale = alt.Scale(domain=[r[1] for r in entries], range=[r[3] for r in entries])
-    legend = alt.Legend(
-        orient="bottom",
-        title=None,
-        symbolType="square",
-        symbolSize=160,
-        symbolStrokeColor="#666",
-        labelLimit=260,
+    seen = {row["region"] for row in rows}
+    chart: alt.Chart = plot(rows).mark_area(clip=True)
+    return chart.encode(
+        x=temperature_axis(frame),
+        y=speed_axis(frame),
+        y2="top:Q",
+        color=region_color("region", [name for name, text, _, _ in REGIONS if text in seen], symbolSize=160),
+        detail="part:N",
     )
-    chart: alt.Chart = (
-        plot(rows)
-        .mark_area(clip=True)
-        .encode(
-            x=temperature_axis(frame),
-            y=speed_axis(frame),
-            y2="top:Q",
-            color=alt.Color("region:N", scale=scale, legend=legend),
-            detail="part:N",
-        )
-    )
-    return chart
+
+
+def region_color(field: str, names: Collection[str], **legend: Any) -> alt.Color:
+    """Return the colours of regions by these ``names``, with their legend below."""
+    looks = {text: color for name, text, _, color in REGIONS if name in names}
+    look: Row = {"symbolType": "square", "symbolStrokeColor": "#666", "labelLimit": 260} | legend
+    color: alt.Color = categories(alt.Color, field, looks, alt.Legend(orient="bottom", title=None, **look))
+    return color
 
 
 def hatches(result: OperatingMap, frame: Frame) -> list[alt.Chart]:
     """Return diagonals across all that is extrapolated, pale ones between them for dark regions."""
     looks = ((0.0, "#555", 0.45), (_HATCH / 2, "white", 0.3))
-    return [
-        _hatch(_diagonals(result, frame, start), frame, color, opacity) for start, color, opacity in looks
-    ]
+    charts = []
+    for start, color, opacity in looks:
+        mark = plot(_diagonals(result, frame, start)).mark_rule(
+            color=color, opacity=opacity, strokeWidth=0.7, clip=True
+        )
+        charts.append(mark.encode(x=temperature_axis(frame), y=speed_axis(frame), x2="x2:Q", y2="y2:Q"))
+    return charts
 
 
 def _diagonals(result: OperatingMap, frame: Frame, offset: float) -> list[Row]:
@@ -111,15 +113,6 @@ def _diagonals(result: OperatingMap, frame: Frame, offset: float) -> list[Row]:
                 (x, y), (x2, y2) = frame.at(a, a - shift), frame.at(b, b - shift)
                 rows.append({"x": x, "y": 1e3 * y, "x2": x2, "y2": 1e3 * y2})
     return rows
-
-
-def _hatch(rows: list[Row], frame: Frame, color: str, opacity: float) -> alt.Chart:
-    chart: alt.Chart = (
-        plot(rows)
-        .mark_rule(color=color, opacity=opacity, strokeWidth=0.7, clip=True)
-        .encode(x=temperature_axis(frame), y=speed_axis(frame), x2="x2:Q", y2="y2:Q")
-    )
-    return chart
 
 
 def measured_box(result: OperatingMap, frame: Frame) -> Box:
