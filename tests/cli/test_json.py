@@ -179,7 +179,7 @@ def parts_in(annotation: Any) -> list[type[Part]]:
 
 
 def test_fit_builds_no_simulation(files: dict[str, str], monkeypatch: pytest.MonkeyPatch) -> None:
-    import hersey.study.simulation as simulation
+    from hersey.study import simulation
 
     def refuse(*_: object, **__: object) -> None:
         raise AssertionError("a fit needs no simulation")

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from hersey import Drag, Drivetrain, Schedule, simulate, stick_slip
-from hersey.cli.profile import read_profile
+from hersey.cli.columns import read_profile
 from hersey.errors import HerseyError
 from tests.cli.command import run
 

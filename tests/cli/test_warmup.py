@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import hersey
-from hersey.cli.options import warming_drag
+from hersey.cli.warming import warming_drag
 from hersey.document.saved_fit import read_fit
 from hersey.errors import ParameterError
 from hersey.machine import read_temperature_profile

@@ -7,8 +7,13 @@ streams       stdin, stdout and stderr: those that are closed, a result that can
 asking        questions in a terminal, or answers from a pipe
 amounts       numbers of a belt: with units, bare, or from the machine's file
 loading       what a verb needs, loaded at once
-profile       a drive's speed over time, from a CSV
+belt          the options that describe a belt, its spring and its drag
+columns       columns of a small CSV: a drive's speed over time, a drag curve
+groups        an option with its help, and options that belong together as a data class
 options       options that several verbs share, and the reading of a log by them
+quantities    shares, ranges, temperatures and speeds that options name as text
+warming       a machine that warms up: its heat and its drag
+workers       who works: this process, others of this machine, or a scheduler's
 outputs       files that a verb writes: refused early, never replaced unasked
 progress      spinner and bar on a terminal
 terminal      the one way to print for people: nothing that steers a terminal passes

@@ -6,20 +6,16 @@ import sys
 from pathlib import Path
 from typing import Annotated
 
-import typer
-
+from hersey.cli.groups import option
 from hersey.cli.terminal import say
+
+_REPORTS = "Where reports are kept.  [default: hersey-reports]"
 
 
 def app_(
-    port: Annotated[int, typer.Option("--port", help="Port on 127.0.0.1.  [default: one that is free]")] = 0,
-    reports: Annotated[
-        Path | None,
-        typer.Option("--reports", metavar="DIR", help="Where reports are kept.  [default: hersey-reports]"),
-    ] = None,
-    no_browser: Annotated[
-        bool, typer.Option("--no-browser", help="Print the address and open nothing.")
-    ] = False,
+    port: Annotated[int, option("Port on 127.0.0.1.  [default: one that is free]")] = 0,
+    reports: Annotated[Path | None, option(_REPORTS, metavar="DIR")] = None,
+    no_browser: Annotated[bool, option("Print the address and open nothing.", "--no-browser")] = False,
 ) -> None:
     """Open a page on this computer: drop logs, choose channels, describe the machine, read the report.
 

@@ -10,6 +10,7 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperCommand, TyperGroup
 
+from hersey.cli.groups import option
 from hersey.cli.interruption import INTERRUPTED
 from hersey.cli.terminal import say, warnings_said
 from hersey.errors import HerseyError, speak
@@ -139,7 +140,7 @@ def _fail(message: str) -> None:
 
 
 @app.callback(invoke_without_command=True)
-def _root(version: Annotated[bool, typer.Option("--version", help="Print the version.")] = False) -> None:
+def _root(version: Annotated[bool, option("Print the version.", "--version")] = False) -> None:
     if version:
         from hersey import __version__
 

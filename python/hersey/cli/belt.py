@@ -6,7 +6,9 @@ from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-import typer
+from hersey.cli.groups import option
+from hersey.cli.options import BristleDamping, BristleStiffness
+from hersey.errors import ParameterError
 
 if TYPE_CHECKING:
     from hersey.cli.amounts import Amounts
@@ -22,6 +24,15 @@ _EXPONENTS = {"ehl_exponent": -0.7, "mixed_exponent": -1.2}
 _OPTIONAL = ("bristle_stiffness", "bristle_damping", "static_force")
 
 
+_TRANSITION_FORCE = "Drag at the transition speed (B0 of the paper), as '14 N'.  [default: 50]"
+_TRANSITION_SPEED = "Speed where the branches meet, as '25 mm/s'.  [default: 1]"
+_STICK_SPEED = "Speed below which the belt sticks, as '0.3 mm/s'.  [default: 0.01]"
+_STATIC_FORCE = "Break-away drag, e.g. '40 N'.  [default: e times that at the stick speed]"
+_TABLE = "In place of the branches: a CSV of the drag curve, columns 'speed (mm/s)' and 'force (N)'."
+_CLOSURE = "What happens below it: retained, stiction, stribeck or lugre."
+_MACHINE = "Machine's file: stiffness, mass and stick speed where they are not given."
+
+
 @dataclass(frozen=True)
 class Belt:
     """The options that describe a belt, its spring and its drag; the defaults are the paper's baseline.
@@ -29,56 +40,19 @@ class Belt:
     Numbers are texts: with a unit, or bare in any consistent set of units (see `hersey.cli.amounts`).
     """
 
-    stiffness: Annotated[
-        str | None, typer.Option(help="Spring stiffness k, as '11 N/mm'.  [default: 1000]")
-    ] = None
-    mass: Annotated[str | None, typer.Option(help="Belt mass m, as '11 kg'.  [default: 1]")] = None
-    transition_force: Annotated[
-        str | None,
-        typer.Option(help="Drag at the transition speed (B0 of the paper), as '14 N'.  [default: 50]"),
-    ] = None
-    transition_speed: Annotated[
-        str | None, typer.Option(help="Speed where the branches meet, as '25 mm/s'.  [default: 1]")
-    ] = None
-    ehl_exponent: Annotated[
-        float | None, typer.Option(help="Damping exponent above it.  [default: -0.7]")
-    ] = None
-    mixed_exponent: Annotated[
-        float | None, typer.Option(help="Damping exponent below it.  [default: -1.2]")
-    ] = None
-    stick_speed: Annotated[
-        str | None,
-        typer.Option(help="Speed below which the belt sticks, as '0.3 mm/s'.  [default: 0.01]"),
-    ] = None
-    static_force: Annotated[
-        str | None,
-        typer.Option(help="Break-away drag, e.g. '40 N'.  [default: e times that at the stick speed]"),
-    ] = None
-    drag_table: Annotated[
-        Path | None,
-        typer.Option(
-            "--drag-table",
-            metavar="FILE",
-            help="In place of the branches: a CSV of the drag curve, columns 'speed (mm/s)' and 'force (N)'.",
-        ),
-    ] = None
-    closure: Annotated[
-        str, typer.Option(help="What happens below it: retained, stiction, stribeck or lugre.")
-    ] = "retained"
-    bristle_stiffness: Annotated[
-        str | None, typer.Option(help="Of lugre: force per deflection of the bristles, as '1000 N/mm'.")
-    ] = None
-    bristle_damping: Annotated[
-        str | None, typer.Option(help="Of lugre: force per rate of deflection, as '10 N*s/m'.")
-    ] = None
-    machine: Annotated[
-        Path | None,
-        typer.Option(
-            "--machine",
-            metavar="TOML",
-            help="Machine's file: stiffness, mass and stick speed where they are not given.",
-        ),
-    ] = None
+    stiffness: Annotated[str | None, option("Spring stiffness k, as '11 N/mm'.  [default: 1000]")] = None
+    mass: Annotated[str | None, option("Belt mass m, as '11 kg'.  [default: 1]")] = None
+    transition_force: Annotated[str | None, option(_TRANSITION_FORCE)] = None
+    transition_speed: Annotated[str | None, option(_TRANSITION_SPEED)] = None
+    ehl_exponent: Annotated[float | None, option("Damping exponent above it.  [default: -0.7]")] = None
+    mixed_exponent: Annotated[float | None, option("Damping exponent below it.  [default: -1.2]")] = None
+    stick_speed: Annotated[str | None, option(_STICK_SPEED)] = None
+    static_force: Annotated[str | None, option(_STATIC_FORCE)] = None
+    drag_table: Annotated[Path | None, option(_TABLE, metavar="FILE")] = None
+    closure: Annotated[str, option(_CLOSURE)] = "retained"
+    bristle_stiffness: BristleStiffness = None
+    bristle_damping: BristleDamping = None
+    machine: Annotated[Path | None, option(_MACHINE, metavar="TOML")] = None
 
     def parts(
         self, *, needed: tuple[str, ...] = (), **further: str | None
@@ -88,8 +62,7 @@ class Belt:
         Of ``further`` those in ``needed`` are of the paper's baseline where they are not given.
         """
         from hersey.cli.amounts import amounts
-        from hersey.cli.drag_table import read_drag_table
-        from hersey.errors import ParameterError
+        from hersey.cli.columns import read_drag_table
         from hersey.motion.belt import Drivetrain
         from hersey.motion.drag import Drag
 
@@ -107,7 +80,7 @@ class Belt:
         drag: PowerDrag
         if self.drag_table is None:
             stated = {name: getattr(self, name) for name in _EXPONENTS}
-            exponents = {n: _EXPONENTS[n] if value is None else value for n, value in stated.items()}
+            exponents = _EXPONENTS | {name: value for name, value in stated.items() if value is not None}
             drag = Drag(**of_belt, **exponents, closure=self.closure)
         else:
             if not numbers.in_si:
@@ -121,8 +94,6 @@ class Belt:
 
     def _check_table(self, texts: dict[str, str | None]) -> None:
         """Refuse numbers of the branches beside a drag table, and a table without a stick speed."""
-        from hersey.errors import ParameterError
-
         of_branches = {name: texts.pop(name) for name in ("transition_force", "transition_speed")}
         for name, value in {**of_branches, **{n: getattr(self, n) for n in _EXPONENTS}}.items():
             if value is not None:

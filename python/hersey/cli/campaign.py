@@ -3,24 +3,26 @@
 from __future__ import annotations
 
 import sys
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from hersey.cli.options import AsJson, Force, KeepGoing, Reading, reads_logs
+from hersey.cli.groups import argument, grouped, option
+from hersey.cli.options import AsJson, Force, KeepGoing, Reading, SensorsFile
 from hersey.cli.outputs import NOT_FOUND, may_write, print_json
 from hersey.cli.progress import bar, working
 from hersey.cli.terminal import say
-from hersey.cli.workers import Scheduler, Workers, workers
+from hersey.cli.workers import Crew
 from hersey.errors import HerseyError, OutputError, ParameterError
 from hersey.files.tables import TABLES
 
 if TYPE_CHECKING:
-    from distributed import Client
-
-    from hersey.life.campaign import Added, Campaign, RunToAdd
-    from hersey.scale.local import LocalWorkers
+    from hersey.cli.workers import AtWork
+    from hersey.life.campaign import Added, Campaign, Entry, RunToAdd
 
 campaign = typer.Typer(
     no_args_is_help=True,
@@ -33,40 +35,27 @@ campaign = typer.Typer(
         "Steady points, fit, hash and settings of each log are kept; logs stay where they are."
     ),
 )
-_File = Annotated[Path, typer.Argument(metavar="CAMPAIGN", help="File of the campaign, as life.hersey.")]
+_File = Annotated[Path, argument("CAMPAIGN", "File of the campaign, as life.hersey.")]
+
+
+_RUNS = "Log of one run, or of several of one unit at one age, or a pattern as 'logs/*.csv'."
+_AGE = "Age of the unit, as '120000 pages', '310 h' or '2e6 cycles'."
+_TABLE = "Instead of unit and age: a table of runs with columns log, unit and age."
 
 
 @campaign.command("add")
-@reads_logs
+@grouped
 def add(
     file: _File,
-    reading: Reading,
-    runs: Annotated[
-        list[Path] | None,
-        typer.Argument(
-            metavar="[RUN]...",
-            help="Log of one run, or of several of one unit at one age, or a pattern as 'logs/*.csv'.",
-        ),
-    ] = None,
-    unit: Annotated[str, typer.Option("--unit", help="Name of the unit, as F12.")] = "",
-    age: Annotated[
-        str, typer.Option("--age", help="Age of the unit, as '120000 pages', '310 h' or '2e6 cycles'.")
-    ] = "",
-    table: Annotated[
-        Path | None,
-        typer.Option(
-            "--table",
-            metavar="CSV",
-            help="Instead of unit and age: a table of runs with columns log, unit and age.",
-        ),
-    ] = None,
-    machine: Annotated[
-        Path | None,
-        typer.Option("--machine", metavar="TOML", help="Machine's file: rest of the drive, sensors."),
-    ] = None,
+    *,
+    runs: Annotated[list[Path] | None, argument("[RUN]...", _RUNS)] = None,
+    unit: Annotated[str, option("Name of the unit, as F12.")] = "",
+    age: Annotated[str, option(_AGE)] = "",
+    table: Annotated[Path | None, option(_TABLE, metavar="CSV")] = None,
+    machine: SensorsFile = None,
     keep_going: KeepGoing = False,
-    scheduler: Scheduler = None,
-    count: Workers = None,
+    crew: Crew,
+    reading: Reading,
     force: Force = False,
 ) -> None:
     """Add runs, and make the campaign if there is none: all the logs given or none, of a table each.
@@ -96,12 +85,13 @@ def add(
         parsed = Age.parse(age)
         wanted = [RunToAdd(path, unit, parsed) for path in runs or []]
     Campaign.refuse_unless_writable(file)
-    with workers(scheduler, count) as client:
+    with crew.at_work() as client:
+        adding = _Adding(reading, machine, force, client)
         if table is None and not keep_going:
-            _add_all(file, wanted, reading, machine, force, client)
+            adding.all(file, wanted)
             return
         with Campaign.create(file) as opened:
-            _add_each(opened, wanted, reading, machine, force, client, failed)
+            adding.each(opened, wanted, failed)
 
 
 def _of_table(table: Path, logs: list[Path] | None, failed: list[str]) -> list[RunToAdd]:
@@ -119,88 +109,88 @@ def _of_table(table: Path, logs: list[Path] | None, failed: list[str]) -> list[R
     return named
 
 
-def _add_all(
-    file: Path,
-    wanted: list[RunToAdd],
-    reading: Reading,
-    machine: Path | None,
-    force: bool,
-    client: Client | LocalWorkers | None,
-) -> None:
-    from hersey.cli.campaign_reading import entries, settings_of
-    from hersey.life.campaign import Campaign
+@dataclass(frozen=True)
+class _Adding:
+    """How runs are read, by whom, and whether they replace what is there."""
 
-    logs = [(run.log, settings_of(reading, run.log, machine)) for run in wanted]
-    read = []
-    with bar("reading", unit="runs") as progress:
-        for run, result in zip(wanted, entries(reading, logs, machine, client), strict=True):
-            if isinstance(result, HerseyError):
-                raise result
-            read.append((result, run.unit, run.age))
-            progress(len(read), len(wanted))
-    with Campaign.create(file) as opened:
-        for added in opened.add_entries(read, force=force):
-            say(added.summary())
+    reading: Reading
+    machine: Path | None
+    force: bool
+    client: AtWork
 
+    def all(self, file: Path, wanted: list[RunToAdd]) -> None:
+        """Add all runs or none."""
+        from hersey.life.campaign import Campaign
 
-def _add_each(
-    opened: Campaign,
-    wanted: list[RunToAdd],
-    reading: Reading,
-    machine: Path | None,
-    force: bool,
-    client: Client | LocalWorkers | None,
-    failed: list[str],
-) -> None:
-    from hersey.cli.campaign_reading import entries
-
-    counts: dict[str, int] = {}
-    new: list[tuple[RunToAdd, str]] = []
-
-    def done(added: Added) -> None:
-        counts[added.outcome] = counts.get(added.outcome, 0) + 1
-        for note in added.notes:
-            say(f"{added.path}: {note}", file=sys.stderr)
-
-    for run in wanted:
-        try:
-            settled = _there(opened, run, reading, machine, force)
-        except HerseyError as error:
-            failed.append(f"{run.log}: {error}")
-            continue
-        if isinstance(settled, str):
-            new.append((run, settled))
-        else:
-            done(settled)
-    with bar("adding", unit="runs") as progress:
-        read = entries(reading, [(run.log, settings) for run, settings in new], machine, client)
-        for number, ((run, _), result) in enumerate(zip(new, read, strict=True), 1):
-            try:
+        read = []
+        with bar("reading", unit="runs") as progress:
+            for run, result in self._read([(run, self._settings(run)) for run in wanted]):
                 if isinstance(result, HerseyError):
                     raise result
-                done(opened.add_entries([(result, run.unit, run.age)], force=force)[0])
-            except OutputError:  # what the next run would meet too
-                raise
+                read.append((result, run.unit, run.age))
+                progress(len(read), len(wanted))
+        with Campaign.create(file) as opened:
+            for added in opened.add_entries(read, force=self.force):
+                say(added.summary())
+
+    def each(self, opened: Campaign, wanted: list[RunToAdd], failed: list[str]) -> None:
+        """Add the runs that can be; those that cannot join the ``failed``, and end the command."""
+        counts: Counter[str] = Counter()
+        new: list[tuple[RunToAdd, str]] = []
+        for run in wanted:
+            try:
+                settled = self._there(opened, run)
             except HerseyError as error:
                 failed.append(f"{run.log}: {error}")
-            progress(number, len(new))
-    said = [f"{counts[outcome]} {outcome}" for outcome in sorted(counts)]
-    say(f"{opened.path.name}: {', '.join([*said, *([f'{len(failed)} failed'] if failed else [])])}")
-    if failed:
-        say(*(f"- {each}" for each in failed), file=sys.stderr)
-        raise typer.Exit(NOT_FOUND)
+                continue
+            if isinstance(settled, str):
+                new.append((run, settled))
+            else:
+                counts[_noted(settled)] += 1
+        with bar("adding", unit="runs") as progress:
+            for number, (run, result) in enumerate(self._read(new), 1):
+                try:
+                    if isinstance(result, HerseyError):
+                        raise result
+                    entry = (result, run.unit, run.age)
+                    counts[_noted(opened.add_entries([entry], force=self.force)[0])] += 1
+                except OutputError:  # what the next run would meet too
+                    raise
+                except HerseyError as error:
+                    failed.append(f"{run.log}: {error}")
+                progress(number, len(new))
+        said = [f"{counts[outcome]} {outcome}" for outcome in sorted(counts)]
+        say(f"{opened.path.name}: {', '.join([*said, *([f'{len(failed)} failed'] if failed else [])])}")
+        if failed:
+            say(*(f"- {each}" for each in failed), file=sys.stderr)
+            raise typer.Exit(NOT_FOUND)
+
+    def _read(self, runs: list[tuple[RunToAdd, str]]) -> Iterator[tuple[RunToAdd, Entry | HerseyError]]:
+        """Each run, with what is kept of it or why nothing is."""
+        from hersey.cli.campaign_reading import entries
+
+        logs = [(run.log, settings) for run, settings in runs]
+        read = entries(self.reading, logs, self.machine, self.client)
+        return zip((run for run, _ in runs), read, strict=True)
+
+    def _settings(self, run: RunToAdd) -> str:
+        from hersey.cli.campaign_reading import settings_of
+
+        return settings_of(self.reading, run.log, self.machine)
+
+    def _there(self, opened: Campaign, run: RunToAdd) -> Added | str:
+        """The run if adding it would change nothing, else how its log is to be read."""
+        from hersey.files.reading import hash_of
+
+        settings, sha256 = self._settings(run), hash_of(run.log)
+        return (None if self.force else opened.there(sha256, run.unit, run.age, settings)) or settings
 
 
-def _there(
-    opened: Campaign, run: RunToAdd, reading: Reading, machine: Path | None, force: bool
-) -> Added | str:
-    """The run if adding it would change nothing, else how its log is to be read."""
-    from hersey.cli.campaign_reading import settings_of
-    from hersey.files.reading import hash_of
-
-    settings = settings_of(reading, run.log, machine)
-    sha256 = hash_of(run.log)
-    return (None if force else opened.there(sha256, run.unit, run.age, settings)) or settings
+def _noted(added: Added) -> str:
+    """The outcome of a run that was added, whose notes are said."""
+    for note in added.notes:
+        say(f"{added.path}: {note}", file=sys.stderr)
+    return added.outcome
 
 
 @campaign.command("list")
@@ -220,9 +210,7 @@ def list_(file: _File, as_json: AsJson = False) -> None:
 
 @campaign.command("show")
 def show(
-    file: _File,
-    unit: Annotated[str, typer.Argument(metavar="UNIT", help="Name of the unit.")],
-    as_json: AsJson = False,
+    file: _File, unit: Annotated[str, argument("UNIT", "Name of the unit.")], as_json: AsJson = False
 ) -> None:
     """Show every run of a unit by age: its log, dwells, exponent and transition.
 
@@ -261,7 +249,7 @@ def check(file: _File, as_json: AsJson = False) -> None:
         with bar("checking", unit="runs") as progress:
             found = opened.check(progress)
         if as_json:
-            print_json("campaign", opened.to_dict() | {"findings": found.to_dict()["findings"]})
+            print_json("campaign", opened.to_dict(), findings=found.findings)
         else:
             say(found.summary())
     if not found.ok:
@@ -271,20 +259,17 @@ def check(file: _File, as_json: AsJson = False) -> None:
 @campaign.command("export")
 def export(
     file: _File,
-    out: Annotated[
-        Path, typer.Option("--out", metavar="FILE", help="Table to write: .parquet or .csv, a row per dwell.")
-    ],
+    out: Annotated[Path, option("Table to write: .parquet or .csv, a row per dwell.", metavar="FILE")],
     force: Force = False,
 ) -> None:
     """Write every dwell as a row, with unit, age and run.
 
     Example: [bold]hersey campaign export life.hersey --out dwells.parquet[/bold]
     """
-    overwrite = may_write(out, force, inputs=[file], ends=TABLES)
+    table = may_write(out, force, inputs=[file], ends=TABLES)
 
-    from hersey.files.writing import write_atomically
     from hersey.life.campaign import Campaign
 
     with Campaign.open(file, write=False) as opened, working("writing the dwells"):
-        write_atomically(out, opened.export(out.suffix), overwrite=overwrite)
+        table.write(opened.export(out.suffix))
     say(f"dwells: {out}")

@@ -24,9 +24,7 @@ from hersey.life.campaign.conversion import entry_of
 from hersey.processes.child import Child, FailedError, LostError
 
 if TYPE_CHECKING:
-    from distributed import Client
-
-    from hersey.scale.local import LocalWorkers
+    from hersey.cli.workers import AtWork
 
 #: Processes that read, runs that are read ahead of the one that is added, and those that are read here.
 _PROCESSES, _AHEAD, _FEW = 2, 6, 8
@@ -73,7 +71,7 @@ def entries(
     reading: Reading,
     logs: Sequence[tuple[Path, str]],
     machine: Path | None,
-    client: Client | LocalWorkers | None = None,
+    client: AtWork = None,
 ) -> Iterator[Entry | HerseyError]:
     """Read logs, each with its settings, many several at a time; yield what is kept of each, or why not."""
     if client is not None:
@@ -86,6 +84,13 @@ def entries(
     if len(logs) < _FEW:
         yield from (_tried(reading, machine, run) for run in logs)
         return
+    yield from _in_processes(reading, logs, machine)
+
+
+def _in_processes(
+    reading: Reading, logs: Sequence[tuple[Path, str]], machine: Path | None
+) -> Iterator[Entry | HerseyError]:
+    """Read logs in processes of their own, some ahead of the one that is yielded."""
     children: SimpleQueue[Child] = SimpleQueue()
     for _ in range(_PROCESSES):
         children.put(Child(Path(__file__)))

@@ -1,4 +1,4 @@
-"""Columns of numbers from a small CSV whose heads name quantity and unit."""
+"""Columns of numbers from a small CSV whose heads name quantity and unit: a profile, a drag curve."""
 
 from __future__ import annotations
 
@@ -6,9 +6,61 @@ import csv
 import io
 import re
 from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from hersey.errors import ParameterError, UnitError
+
+if TYPE_CHECKING:
+    from hersey.motion.drag import DragTable
+    from hersey.motion.schedule import Schedule
+
+_TIME = ("time", "time (s)")
+_SPEED = ("belt speed", "speed (mm/s)")
+_FORCE = ("force", "force (N)")
+
+
+def read_profile(file: Path) -> Schedule:
+    """Return the drive speed (m/s) over time (s) of a CSV, joined by straight lines; the last speed stays.
+
+    Raises
+    ------
+    ParameterError
+        If a column is missing or has no unit, or a row no two numbers, or times run backwards.
+    """
+    from hersey.motion.schedule import Schedule
+
+    times, speeds = read_columns(file, {"time": _TIME, "speed": _SPEED})
+    with _naming(file):
+        profile = Schedule(times, speeds)
+    if min(speeds) < 0 or speeds[-1] == 0:
+        raise ParameterError(f"{file.name}: no speed may be less than 0, and the last must be greater than 0")
+    return profile
+
+
+def read_drag_table(file: Path, **beside: Any) -> DragTable:
+    """Return the drag through the points of a CSV; ``beside`` is what `DragTable` takes beside them.
+
+    Raises
+    ------
+    ParameterError
+        If a column is missing or has no unit, a row no two numbers, or the points are no drag curve.
+    """
+    from hersey.motion.drag import DragTable
+
+    speeds, forces = read_columns(file, {"speed": _SPEED, "force": _FORCE})
+    with _naming(file):
+        return DragTable(speeds, forces, **beside)
+
+
+@contextmanager
+def _naming(file: Path) -> Iterator[None]:
+    """Let what is wrong with the numbers of a file begin with its name."""
+    try:
+        yield
+    except ParameterError as error:
+        raise ParameterError(f"{file.name}: {error}") from None
 
 
 def read_columns(file: Path, wanted: Mapping[str, tuple[str, str]]) -> list[tuple[float, ...]]:

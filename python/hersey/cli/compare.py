@@ -5,22 +5,17 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated
 
-import typer
-
-from hersey.cli.options import (
-    AsJson,
-    Reading,
-    reads_logs,
-)
-from hersey.cli.outputs import print_json
+from hersey.cli.groups import argument, grouped
+from hersey.cli.options import AsJson, Reading
+from hersey.cli.outputs import show
 from hersey.cli.progress import working
-from hersey.cli.terminal import say
 
 
-@reads_logs
+@grouped
 def compare(
-    a: Annotated[Path, typer.Argument(metavar="A", help="Log of one lubricant, age or unit.")],
-    b: Annotated[Path, typer.Argument(metavar="B", help="Log of the other; read in the same way.")],
+    a: Annotated[Path, argument("A", "Log of one lubricant, age or unit.")],
+    b: Annotated[Path, argument("B", "Log of the other; read in the same way.")],
+    *,
     reading: Reading,
     as_json: AsJson = False,
 ) -> None:
@@ -35,7 +30,4 @@ def compare(
     of_a, of_b = (reading.points_of([path]) for path in (a, b))
     with working("comparing"):
         comparison = compared(of_a, of_b, names=(str(a), str(b)))
-    if as_json:
-        print_json("compare", comparison.to_dict())
-        return
-    say(comparison.summary())
+    show("compare", comparison, as_json)

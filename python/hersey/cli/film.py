@@ -2,24 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
-import typer
-
-from hersey.cli.options import (
-    AsJson,
-    Force,
-    Reading,
-    reads_logs,
-    temperature_of,
-)
-from hersey.cli.outputs import may_draw, print_json
+from hersey.cli.groups import argument, grouped, option
+from hersey.cli.options import AsJson, Force, Reading, drawn
+from hersey.cli.outputs import may_draw, print_json, say_written
 from hersey.cli.progress import working
+from hersey.cli.quantities import belt_speed_of, temperature_of
 from hersey.cli.terminal import say
 from hersey.errors import ParameterError
 
 if TYPE_CHECKING:
+    from hersey.damping.surface import DampingSurface
     from hersey.lubrication.film_result import Film
     from hersey.machine.machine import Machine
     from hersey.study.nip import SharedLoad
@@ -40,24 +36,19 @@ _EXAMPLES = {
 }
 
 
-@reads_logs
+_AT = "Temperature of the film, as '180 degC', where log or points give none."
+_BELT_SPEED = "Speed of the belt, as '120 mm/s', instead of the points of the file."
+
+
+@grouped
 def film(
-    machine_file: Annotated[
-        Path, typer.Argument(metavar="MACHINE", help="TOML file with the tables contact and lubricant.")
-    ],
+    machine_file: Annotated[Path, argument("MACHINE", "TOML file with the tables contact and lubricant.")],
+    *,
+    log: Annotated[list[Path] | None, option("A log to compare with; may be given again.")] = None,
+    at: Annotated[str, option(_AT)] = "",
+    belt_speed: Annotated[str, option(_BELT_SPEED)] = "",
+    figure: Annotated[Path | None, drawn("the regime chart")] = None,
     reading: Reading,
-    log: Annotated[
-        list[Path] | None, typer.Option("--log", help="A log to compare with; may be given again.")
-    ] = None,
-    at: Annotated[
-        str, typer.Option(help="Temperature of the film, as '180 degC', where log or points give none.")
-    ] = "",
-    belt_speed: Annotated[
-        str, typer.Option(help="Speed of the belt, as '120 mm/s', instead of the points of the file.")
-    ] = "",
-    figure: Annotated[
-        Path | None, typer.Option("--figure", help="Draw the regime chart: .html, .png, .svg or .pdf.")
-    ] = None,
     as_json: AsJson = False,
     force: Force = False,
 ) -> None:
@@ -67,66 +58,73 @@ def film(
 
     Without a log the film is computed at the points of the file.
     """
-    overwrite = figure is not None and may_draw(figure, force, inputs=reading.inputs(machine_file, log))
+    drawing = may_draw(figure, force, inputs=reading.inputs(machine_file, log))
 
-    from hersey.files.writing import write_atomically
     from hersey.machine.machine import read_machine
     from hersey.study.nip import film_document, shared_load
-    from hersey.verdict.cautions import cautions
     from hersey.verdict.checks import misfits, remarks
+
+    machine = read_machine(machine_file)
+    _refuse_incomplete(machine, machine_file.name)
+    kelvin = temperature_of(at)
+    if not log and reading != Reading():
+        raise ParameterError("options that say how to read a log need --log")
+    found = _compared(log, reading, machine, kelvin) if log else _OfALog()
+    predicted, names = _predicted(machine, found.measured, kelvin, belt_speed)
+    notes = (*remarks(machine, predicted), *found.doubts)
+    shared = shared_load(machine, predicted, found.measured, found.surface)
+    turn = None if shared is None else shared.transition
+    off = misfits(machine, predicted, found.measured, found.says, turn)
+    chart: dict[str, Any] = {
+        "names": names,
+        "measured": found.measured,
+        "transition": turn,
+        "mixed": machine.mixed,
+    }
+    drawing.draw(predicted, **chart)
+    if as_json:
+        print_json("film", film_document(predicted, names, found.measured, found.says, notes, shared, off))
+        return
+    say(*_lines(predicted, names, found, shared), *(f"- {each}" for each in (*(o.text for o in off), *notes)))
+    say_written(figure=figure)
+
+
+class _OfALog(NamedTuple):
+    """What a log says of the film, and its fit; nothing without one."""
+
+    surface: DampingSurface | None = None
+    measured: MeasuredFilm | None = None
+    says: Verdict | None = None
+    doubts: Sequence[str] = ()
+
+
+def _compared(logs: list[Path], reading: Reading, machine: Machine, kelvin: float | None) -> _OfALog:
+    from hersey.damping.fit import fit
+    from hersey.verdict.cautions import cautions
     from hersey.verdict.contact_verdict import verdict
     from hersey.verdict.evidence import measured_film
     from hersey.verdict.regime import regime
 
-    machine = read_machine(machine_file)
-    if machine.contact is None or machine.lubricant is None:
-        missing = "contact" if machine.contact is None else "lubricant"
-        raise ParameterError(
-            f"{machine_file.name}: the film needs a table [{missing}]: write [{missing}] and below it yours "
-            f"of {_EXAMPLES[missing]}"
-        )
-    kelvin = temperature_of(at)
-    if not log and reading != Reading():
-        raise ParameterError("options that say how to read a log need --log")
-    measured, says, surface, doubts = None, None, None, []
-    if log:
-        from hersey.damping.fit import fit
+    nip, lubricant = machine.contact, machine.lubricant
+    assert nip is not None
+    assert lubricant is not None
+    points = reading.points(reading.log(logs, machine), machine)
+    with working("fitting the surface"):
+        surface = fit(points, temperature_scale=reading.temperature_scale)
+    grip = machine.limits.roll_friction
+    measured = measured_film(points, surface, nip, lubricant, temperature=kelvin, grip=grip)
+    seen = regime(points, surface, contact=nip, lubricant=lubricant, temperature=kelvin)
+    says = verdict(measured, surface, nip, lubricant, seen)
+    return _OfALog(surface, measured, says, cautions(points, surface))
 
-        points = reading.points(reading.log(log, machine), machine)
-        with working("fitting the surface"):
-            surface = fit(points, temperature_scale=reading.temperature_scale)
-        measured = measured_film(
-            points,
-            surface,
-            machine.contact,
-            machine.lubricant,
-            temperature=kelvin,
-            grip=machine.limits.roll_friction,
-        )
-        seen = regime(
-            points, surface, contact=machine.contact, lubricant=machine.lubricant, temperature=kelvin
-        )
-        says = verdict(measured, surface, machine.contact, machine.lubricant, seen)
-        doubts = cautions(points, surface)
-    predicted, names = _predicted(machine, measured, kelvin, belt_speed)
-    notes = (*remarks(machine, predicted), *doubts)
-    shared = shared_load(machine, predicted, measured, surface)
-    off = misfits(machine, predicted, measured, says, None if shared is None else shared.transition)
-    if figure is not None:
-        from hersey.charts import chart_of
-        from hersey.charts.render import picture
 
-        with working("drawing"):
-            turn = None if shared is None else shared.transition
-            chart = chart_of(predicted, names=names, measured=measured, transition=turn, mixed=machine.mixed)
-            content = picture(chart, figure.suffix)
-        write_atomically(figure, content, overwrite=overwrite)
-    if as_json:
-        print_json("film", film_document(predicted, names, measured, says, notes, shared, off))
-        return
-    say(_text(predicted, names, measured, says, (*(each.text for each in off), *notes), shared))
-    if figure is not None:
-        say(f"figure: {figure}")
+def _refuse_incomplete(machine: Machine, file: str) -> None:
+    """Refuse a machine's file without the tables that a film needs."""
+    for table, example in _EXAMPLES.items():
+        if getattr(machine, table) is None:
+            raise ParameterError(
+                f"{file}: the film needs a table [{table}]: write [{table}] and below it yours of {example}"
+            )
 
 
 def _predicted(
@@ -135,16 +133,13 @@ def _predicted(
     """The film at the points of interest, and their names."""
     from hersey.lubrication.film import film_thickness
     from hersey.lubrication.film_temperature import film_temperature
-    from hersey.units import parse
 
     assert machine.contact is not None
     assert machine.lubricant is not None
     if belt_speed:
         if kelvin is None:
             raise ParameterError("--belt-speed needs a temperature: --at '180 degC'")
-        states = [(belt_speed, parse("belt speed", belt_speed), kelvin)]
-        if not states[0][1] > 0:
-            raise ParameterError(f"--belt-speed is {belt_speed}: it must be greater than 0")
+        states = [(belt_speed, belt_speed_of(belt_speed, "--belt-speed"), kelvin)]
     elif machine.points:
         states = [(p.name, p.speed, kelvin or p.temperature) for p in machine.points]
     elif measured is not None:
@@ -159,20 +154,9 @@ def _predicted(
     return film, [name for name, _, _ in states]
 
 
-def _text(
-    predicted: Film,
-    names: list[str],
-    measured: MeasuredFilm | None,
-    says: Verdict | None,
-    notes: tuple[str, ...],
-    shared: SharedLoad | None,
-) -> str:
+def _lines(predicted: Film, names: list[str], found: _OfALog, shared: SharedLoad | None) -> list[str]:
+    """The film, and what asperities and the log say of it, below each other."""
     lines = [predicted.summary(names)]
-    if shared is not None:
-        lines += ["", shared.summary(names)]
-    if measured is not None:
-        lines += ["", measured.summary()]
-    if says is not None:
-        lines += ["", says.text]
-    lines += [f"- {note}" for note in notes]
-    return "\n".join(lines)
+    lines += [] if shared is None else ["", shared.summary(names)]
+    lines += [] if found.measured is None else ["", found.measured.summary()]
+    return lines + ([] if found.says is None else ["", found.says.text])

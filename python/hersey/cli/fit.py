@@ -3,43 +3,32 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
-import typer
-
-from hersey.cli.options import (
-    AsJson,
-    Force,
-    KeepGoing,
-    Logs,
-    Reading,
-    reads_logs,
-)
+from hersey.cli.groups import grouped, option
+from hersey.cli.options import AsJson, Force, KeepGoing, Logs, Reading, SensorsFile
 from hersey.cli.outputs import may_write, print_json
 from hersey.cli.progress import working
 from hersey.cli.terminal import say
-from hersey.cli.workers import Scheduler, Workers
+from hersey.cli.workers import Crew
 from hersey.errors import ParameterError
 from hersey.files.tables import TABLES
 
+if TYPE_CHECKING:
+    from hersey.machine.machine import Machine
 
-@reads_logs
+_EACH = "Fit each log by itself: a row per log, in a .csv or .parquet."
+
+
+@grouped
 def fit(
     logs: Logs,
-    reading: Reading,
-    each: Annotated[
-        Path | None,
-        typer.Option(
-            "--each", metavar="TABLE", help="Fit each log by itself: a row per log, in a .csv or .parquet."
-        ),
-    ] = None,
-    machine_file: Annotated[
-        Path | None,
-        typer.Option("--machine", metavar="TOML", help="Machine's file: rest of the drive, sensors."),
-    ] = None,
+    *,
+    each: Annotated[Path | None, option(_EACH, metavar="TABLE")] = None,
+    machine_file: SensorsFile = None,
     keep_going: KeepGoing = False,
-    scheduler: Scheduler = None,
-    count: Workers = None,
+    crew: Crew,
+    reading: Reading,
     as_json: AsJson = False,
     force: Force = False,
 ) -> None:
@@ -52,19 +41,24 @@ def fit(
     """
     if each is not None and as_json:
         raise ParameterError("--each writes a table, and --json prints one fit: leave one of them out")
-    if each is None and (keep_going or force or scheduler or count):
+    if each is None and (keep_going or force or crew.scheduler or crew.count):
         raise ParameterError("--keep-going, --scheduler, --workers and --force go with --each TABLE")
     machine = None
     if machine_file is not None:
         from hersey.machine.machine import read_machine
 
         machine = read_machine(machine_file)
-    if each is not None:
-        from hersey.cli.fitting_each import fit_each
-
-        overwrite = may_write(each, force, reading.inputs(logs, machine_file), flag="--each", ends=TABLES)
-        fit_each(logs, reading, machine, each, overwrite, keep_going, scheduler, count)
+    if each is None:
+        _fit_one(logs, reading, machine, as_json)
         return
+    from hersey.cli.fitting_each import fit_each
+
+    table = may_write(each, force, reading.inputs(logs, machine_file), flag="--each", ends=TABLES)
+    fit_each(logs, reading, machine, table, keep_going, crew)
+
+
+def _fit_one(logs: list[Path], reading: Reading, machine: Machine | None, as_json: bool) -> None:
+    """Fit the logs as one."""
     log = reading.log(logs, machine)
 
     from hersey.damping.curves import fit_curves
@@ -81,8 +75,5 @@ def fit(
     if as_json:
         print_json("fit", fit_document(log, points, surface, curves))
         return
-    say(surface.summary())
-    say(drag_curves(curves.table))
-    say(regime(points, surface).verdict)
-    for caution in cautions(points, surface):
-        say(f"- {caution}")
+    doubts = [f"- {caution}" for caution in cautions(points, surface)]
+    say(surface.summary(), drag_curves(curves.table), regime(points, surface).verdict, *doubts)

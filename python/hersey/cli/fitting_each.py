@@ -11,10 +11,10 @@ import typer
 
 from hersey.arrays import one_thread
 from hersey.cli.options import Reading
-from hersey.cli.outputs import NOT_FOUND
+from hersey.cli.outputs import NOT_FOUND, Output
 from hersey.cli.progress import bar
 from hersey.cli.terminal import say
-from hersey.cli.workers import workers
+from hersey.cli.workers import Crew
 from hersey.errors import HerseyError
 
 if TYPE_CHECKING:
@@ -23,28 +23,20 @@ if TYPE_CHECKING:
 
 
 def fit_each(
-    logs: list[Path],
-    reading: Reading,
-    machine: Machine | None,
-    out: Path,
-    overwrite: bool,
-    keep_going: bool,
-    scheduler: str | None,
-    count: int | None,
+    logs: list[Path], reading: Reading, machine: Machine | None, table: Output, keep_going: bool, crew: Crew
 ) -> None:
     """Fit each log by itself and write a table with a row for each, in their order."""
-    from hersey.files.writing import write_atomically
     from hersey.log.many import collected, each_of, told
 
-    task = partial(row, reading if scheduler is None else reading.anywhere(), machine)
-    files = logs if scheduler is None else [log.absolute() for log in logs]
-    with workers(scheduler, count) as client, bar("fitting", unit="logs") as progress:
+    task = partial(row, reading if crew.scheduler is None else reading.anywhere(), machine)
+    files = logs if crew.scheduler is None else [log.absolute() for log in logs]
+    with crew.at_work() as client, bar("fitting", unit="logs") as progress:
         results = each_of(task, files, client=client, progress=progress)
         fits = collected(logs, results, keep_going)
     rows = [{"log": str(log), **fits[log]} for log in fits]
-    if rows:
-        write_atomically(out, _table(rows, out.suffix), overwrite=overwrite)
-        say(f"fits of {len(rows)} logs: {out}")
+    if rows and table.path is not None:
+        table.write(_table(rows, table.path.suffix))
+        say(f"fits of {len(rows)} logs: {table.path}")
     if fits.failures:
         say(*(f"- {told(*failed)}" for failed in fits.failures.items()), file=sys.stderr)
         raise typer.Exit(NOT_FOUND)

@@ -5,33 +5,21 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated
 
-import typer
-
-from hersey.cli.options import (
-    AsJson,
-    Force,
-    Logs,
-    Reading,
-    reads_logs,
-)
-from hersey.cli.outputs import may_draw, may_write, print_json
+from hersey.cli.groups import grouped, option
+from hersey.cli.options import AsJson, Force, Logs, Reading, drawn
+from hersey.cli.outputs import may_draw, may_write, show
 from hersey.cli.progress import working
-from hersey.cli.terminal import say
+
+_SAVE_MAPPING = "Write a proposal for the channels as hersey.toml beside the log."
 
 
-@reads_logs
+@grouped
 def inspect(
     logs: Logs,
+    *,
+    save_mapping: Annotated[bool, option(_SAVE_MAPPING, "--save-mapping")] = False,
+    figure: Annotated[Path | None, drawn("every channel")] = None,
     reading: Reading,
-    save_mapping: Annotated[
-        bool,
-        typer.Option(
-            "--save-mapping", help="Write a proposal for the channels as hersey.toml beside the log."
-        ),
-    ] = False,
-    figure: Annotated[
-        Path | None, typer.Option("--figure", help="Draw every channel: .html, .png, .svg or .pdf.")
-    ] = None,
     as_json: AsJson = False,
     force: Force = False,
 ) -> None:
@@ -41,15 +29,14 @@ def inspect(
 
     It works on logs that cannot be fitted too, and says why they cannot.
     """
-    kept, replace_mapping, inputs = None, False, reading.inputs(logs)
+    kept, inputs = None, reading.inputs(logs)
     if save_mapping:
         from hersey.log.mapping import FILE_NAME
 
         kept = logs[0].with_name(FILE_NAME)
-        replace_mapping = may_write(kept, force, inputs=inputs)
-    replace_figure = figure is not None and may_draw(figure, force, inputs)
+    written = may_write(kept, force, inputs=inputs)
+    drawing = may_draw(figure, force, inputs)
 
-    from hersey.files.writing import write_atomically
     from hersey.inspection import inspect as inspected
     from hersey.log import memory_limit
     from hersey.log.proposal import propose_mapping
@@ -58,22 +45,9 @@ def inspect(
     with working("looking at the channels"), memory_limit(reading.max_memory):
         given = {name: value for name, value in vars(recipe).items() if name not in ("logs", "no_load")}
         inspection = inspected(logs, **(given | {"means": recipe.are_means}))
-    if kept is not None:
-        with memory_limit(reading.max_memory):
+    with memory_limit(reading.max_memory):
+        if kept is not None:
             proposal = propose_mapping(logs[0], channels=recipe.channels, units=recipe.units)
-        write_atomically(kept, proposal, overwrite=replace_mapping)
-    if figure is not None:
-        from hersey.charts import chart_of
-        from hersey.charts.render import picture
-
-        with working("drawing the channels"), memory_limit(reading.max_memory):
-            chart = chart_of(inspection, paths=logs)
-            write_atomically(figure, picture(chart, figure.suffix), overwrite=replace_figure)
-    if as_json:
-        print_json("inspect", inspection.to_dict())
-        return
-    say(inspection.summary())
-    if kept is not None:
-        say(f"mapping: {kept}")
-    if figure is not None:
-        say(f"figure: {figure}")
+            written.write(proposal)
+        drawing.draw(inspection, "drawing the channels", paths=logs)
+    show("inspect", inspection, as_json, mapping=kept, figure=figure)

@@ -5,33 +5,23 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated
 
-import typer
-
-from hersey.cli.options import AsJson, Force
-from hersey.cli.outputs import PAGES, command, may_write, may_write_folder, print_json
+from hersey.cli.groups import argument, grouped, option
+from hersey.cli.options import AsJson, Figures, Force
+from hersey.cli.outputs import PAGES, command, may_write, may_write_folder, show
 from hersey.cli.progress import steps, working
-from hersey.cli.terminal import say
+
+_MACHINE = "Machine's file: limits, operating points, film."
 
 
+@grouped
 def life(
-    file: Annotated[
-        Path, typer.Argument(metavar="CAMPAIGN", help="File of the campaign, see 'hersey campaign'.")
-    ],
-    machine_file: Annotated[
-        Path,
-        typer.Option("--machine", metavar="TOML", help="Machine's file: limits, operating points, film."),
-    ],
-    out: Annotated[
-        Path | None, typer.Option("--out", help="The page to write, .html.  [default: life.html]")
-    ] = None,
-    figures: Annotated[
-        Path | None,
-        typer.Option("--figures", metavar="DIR", help="Also write each chart as SVG, PNG and PDF."),
-    ] = None,
-    unit: Annotated[
-        str, typer.Option("--unit", help="Whose maps are drawn.  [default: the unit that ends next]")
-    ] = "",
-    seed: Annotated[int, typer.Option("--seed", min=0, help="Of all draws.")] = 0,
+    file: Annotated[Path, argument("CAMPAIGN", "File of the campaign, see 'hersey campaign'.")],
+    *,
+    machine_file: Annotated[Path, option(_MACHINE, "--machine", metavar="TOML")],
+    out: Annotated[Path | None, option("The page to write, .html.  [default: life.html]")] = None,
+    figures: Figures = None,
+    unit: Annotated[str, option("Whose maps are drawn.  [default: the unit that ends next]")] = "",
+    seed: Annotated[int, option("Of all draws.", min=0)] = 0,
     as_json: AsJson = False,
     force: Force = False,
 ) -> None:
@@ -42,11 +32,9 @@ def life(
     With --json the whole answer goes to stdout, and a page is written only if --out is given.
     """
     page = out or (None if as_json else Path("life.html"))
-    overwrite = page is not None and may_write(page, force, inputs=[file, machine_file], ends=PAGES)
-    if figures is not None:
-        may_write_folder(figures, force)
+    written = may_write(page, force, inputs=[file, machine_file], ends=PAGES)
+    may_write_folder(figures, force)
 
-    from hersey.files.writing import write_atomically
     from hersey.life.campaign import Campaign
     from hersey.life.following import follow
     from hersey.machine.machine import read_machine
@@ -60,16 +48,10 @@ def life(
         from hersey.report.life_page import render_life
 
         with working("drawing the page"):
-            write_atomically(page, render_life(answer, runs, command()), overwrite=overwrite)
+            written.write(render_life(answer, runs, command()))
     if figures is not None:
         from hersey.charts.life import write_life_figures
 
         with working("writing the figures"):
             write_life_figures(answer, figures, overwrite=force)
-    if as_json:
-        print_json("life", answer.to_dict())
-        return
-    say(answer.summary())
-    say(f"seed {seed}")
-    if page is not None:
-        say(f"report: {page}")
+    show("life", answer, as_json, f"seed {seed}", report=page)

@@ -6,30 +6,24 @@ import sys
 from pathlib import Path
 from typing import Annotated
 
-import typer
-
-from hersey.cli.options import (
-    AsJson,
-    Logs,
-    Reading,
-    reads_logs,
-)
+from hersey.cli.groups import grouped, option
+from hersey.cli.options import AsJson, Logs, Reading
 from hersey.cli.outputs import print_json
 from hersey.cli.progress import bar, working
 from hersey.cli.terminal import say
 
+_MACHINE = "What shares the load there makes candidates of its own."
+_BOOTSTRAP = "Resampled fits for that interval; 0 leaves it out."
 
-@reads_logs
+
+@grouped
 def models(
     logs: Logs,
+    *,
+    machine_file: Annotated[Path | None, option(_MACHINE, "--machine")] = None,
+    bootstrap: Annotated[int, option(_BOOTSTRAP, min=0)] = 300,
+    seed: Annotated[int, option("Of the resampling.", min=0)] = 1,
     reading: Reading,
-    machine_file: Annotated[
-        Path | None, typer.Option("--machine", help="What shares the load there makes candidates of its own.")
-    ] = None,
-    bootstrap: Annotated[
-        int, typer.Option("--bootstrap", help="Resampled fits for that interval; 0 leaves it out.", min=0)
-    ] = 300,
-    seed: Annotated[int, typer.Option("--seed", help="Of the resampling.", min=0)] = 1,
     as_json: AsJson = False,
 ) -> None:
     """Fit every candidate law to the same dwells, choose one, and say why; energies and Hersey collapse.
@@ -53,9 +47,7 @@ def models(
     with working("reducing to dwells"):
         points = reading.points(log, machine)
     with bar("fitting", unit="candidates") as progress:
-        comparison = compare_models(
-            points, contact=contact, bootstrap=bootstrap, seed=seed, progress=progress
-        )
+        compared = compare_models(points, contact=contact, bootstrap=bootstrap, seed=seed, progress=progress)
     try:
         surface = fit(points, temperature_scale=reading.temperature_scale)
     except InsufficientDataError:  # other laws may hold where the surface has no meaning
@@ -63,11 +55,7 @@ def models(
     doubts = cautions(points, surface)
     curves = () if surface is None else fit_curves(points, surface, contact).table
     if as_json:
-        laws = [vars(law) for law in curves]
-        print_json("models", {**comparison.to_dict(), "warnings": doubts, "drag_curves": laws})
+        print_json("models", compared, warnings=doubts, drag_curves=curves)
         return
-    say(comparison.summary())
-    if curves:
-        say(drag_curves(curves))
-    for doubt in doubts:
-        say(f"- {doubt}")
+    words = [drag_curves(curves)] if curves else []
+    say(compared.summary(), *words, *(f"- {doubt}" for doubt in doubts))

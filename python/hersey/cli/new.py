@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import shlex
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import typer
-
+from hersey.cli.groups import argument, option
 from hersey.cli.options import Force
 from hersey.cli.outputs import may_write
 from hersey.cli.terminal import say
@@ -17,28 +16,22 @@ from hersey.errors import HerseyError, ParameterError
 
 if TYPE_CHECKING:
     from hersey.cli.asking import Asking
+    from hersey.log.text.column import Column
     from hersey.machine.questions import Question
 
 _ROLES = ("torque", "speed", "temperature", "time")
 
 
+_MACHINE = "Machine's file to write.  [default: machine.toml]"
+_MAPPING = "Mapping to write.  [default: hersey.toml beside the log]"
+_ALL = "Ask also for limits, nip, lubricant and the rest of the drive."
+
+
 def new(
-    log: Annotated[
-        Path | None, typer.Argument(metavar="[LOG]", help="Log whose channels are proposed.")
-    ] = None,
-    machine: Annotated[
-        Path | None,
-        typer.Option("--machine", metavar="TOML", help="Machine's file to write.  [default: machine.toml]"),
-    ] = None,
-    mapping: Annotated[
-        Path | None,
-        typer.Option(
-            "--mapping", metavar="TOML", help="Mapping to write.  [default: hersey.toml beside the log]"
-        ),
-    ] = None,
-    everything: Annotated[
-        bool, typer.Option("--all", help="Ask also for limits, nip, lubricant and the rest of the drive.")
-    ] = False,
+    log: Annotated[Path | None, argument("[LOG]", "Log whose channels are proposed.")] = None,
+    machine: Annotated[Path | None, option(_MACHINE, metavar="TOML")] = None,
+    mapping: Annotated[Path | None, option(_MAPPING, metavar="TOML")] = None,
+    everything: Annotated[bool, option(_ALL, "--all")] = False,
     force: Force = False,
 ) -> None:
     """Ask the few things that a log cannot tell, and write hersey.toml and the machine's file.
@@ -50,40 +43,52 @@ def new(
     if mapping is not None and log is None:
         raise ParameterError("--mapping is about the channels of a log: name the LOG too")
     machine = machine or Path("machine.toml")
-    inputs = [] if log is None else [log]
-    replace = {machine: may_write(machine, force, inputs, flag="--machine", ends=[".toml"])}
+    inputs = [log] if log else []
+    outputs = [may_write(machine, force, inputs, flag="--machine", ends=[".toml"])]
     if log is not None:
         from hersey.log.mapping import FILE_NAME
 
         mapping = mapping or log.with_name(FILE_NAME)
-        replace[mapping] = may_write(mapping, force, inputs, flag="--mapping", ends=[".toml"])
+        outputs.append(may_write(mapping, force, inputs, flag="--mapping", ends=[".toml"]))
 
-    from hersey.cli.asking import Asking
     from hersey.files.writing import write_all
-    from hersey.machine.questions import MACHINE, POINT
+    from hersey.machine.questions import MACHINE
 
-    asked = [q for q in MACHINE if q.first or everything]
-    order = [f"{field} of {role}" for role in _ROLES if log for field in ("channel", "unit")]
-    order += [q.name for q in asked]
-    asking = Asking([*order, f"{', '.join(q.field for q in POINT)} of each operating point"])
-    contents: dict[Path, bytes] = {}
+    questions = [q for q in MACHINE if q.first or everything]
+    asking = _asking(_ROLES if log else (), questions)
+    texts, options = {}, list[str]()
     if log is not None and mapping is not None:
-        told, given = _mapping(log, asking)
-        contents[mapping] = told.encode()
-    text = _machine(asked, asking, machine)
-    if text:
-        contents[machine] = text.encode()
-    write_all(contents, overwrite=replace)
-    for path in contents:
+        texts[mapping], options = _mapping(log, asking)
+    if text := _machine(questions, asking, machine):
+        texts[machine] = text
+    write_all(
+        {path: text.encode() for path, text in texts.items()},
+        overwrite={each.path: each.replace for each in outputs if each.path},
+    )
+    for path in texts:
         say(f"{'mapping' if path == mapping else 'machine'}: {path}")
     if log is not None and mapping is not None:
-        to_complete = _to_complete(contents[mapping].decode())
-        if to_complete:
-            say(f"complete first: {mapping}, {', '.join(to_complete)}")
-        parts = ["hersey", "report", str(log), *given]
-        parts += [] if mapping == log.with_name("hersey.toml") else ["--mapping", str(mapping)]
-        parts += ["--machine", str(machine)] if text else []
-        say(f"{'then' if to_complete else 'now'}: {shlex.join(parts)}")
+        options += [] if mapping == log.with_name("hersey.toml") else ["--mapping", str(mapping)]
+        options += ["--machine", str(machine)] if text else []
+        _say_next(mapping, texts[mapping], ["hersey", "report", str(log), *options])
+
+
+def _asking(roles: Sequence[str], questions: list[Question]) -> Asking:
+    """What asks for the channels of these roles, what the questions ask, and operating points."""
+    from hersey.cli.asking import Asking
+    from hersey.machine.questions import POINT
+
+    channels = [f"{field} of {role}" for role in roles for field in ("channel", "unit")]
+    point = f"{', '.join(q.field for q in POINT)} of each operating point"
+    return Asking([*channels, *(q.name for q in questions), point])
+
+
+def _say_next(mapping: Path, text: str, command: list[str]) -> None:
+    """Say what is to be completed in a mapping, and the command that reads it."""
+    to_complete = _to_complete(text)
+    if to_complete:
+        say(f"complete first: {mapping}, {', '.join(to_complete)}")
+    say(f"{'then' if to_complete else 'now'}: {shlex.join(command)}")
 
 
 def _to_complete(mapping: str) -> list[str]:
@@ -104,51 +109,55 @@ def _mapping(log: Path, asking: Asking) -> tuple[str, list[str]]:
     What the log does not tell and nobody answered is left to be completed in the file.
     """
     from hersey.app.looking import look
-    from hersey.log.channels import ChannelChoice, find_channel, role_conversion
     from hersey.log.reading import list_channels
     from hersey.log.text.column import Column
     from hersey.machine.writing import mapping_text
 
     seen = look(log)
     columns = tuple(Column(i, name, unit) for i, (name, unit) in enumerate(list_channels(log)))
-    known = {channel["name"]: channel for channel in seen["channels"]}
+    units = {channel["name"]: channel.get("unit", "") for channel in seen["channels"]}
     say(f"{log.name}: {', '.join(map(str, columns[:40]))}", file=sys.stderr)
     answers: dict[str, str] = {}
     lacking: list[str] = []
     options: list[str] = []
     for role in _ROLES:
-
-        def named(text: str, role: str = role) -> str:
-            unit = known.get(text, {}).get("unit", "")
-            choice = ChannelChoice(text, unit or _any_unit(role))
-            found = find_channel(role, columns, choice, log.name)
-            return text if found is None or text in known else found[0].path
-
-        def unit(text: str, role: str = role) -> str:
-            role_conversion(role, text)
-            return text
-
         claims = seen["claims"].get(role, [])
         proposed = seen["found"].get(role, "") or (claims[0] if len(claims) == 1 else "")
         why = seen["without"].get(role, "")
         if why:
             say(f"  {why}", file=sys.stderr)
-        name = asking.ask(f"channel of the {role}", named, proposed=proposed)
-        told = known.get(name or "", {}).get("unit", "")
-        of = asking.ask(f"unit of the {role}", unit, proposed=told if _is_of(role, told) else "")
-        if name:
-            answers[f"{role}.channel"] = name
-        if name and of:
-            answers[f"{role}.unit"] = of
-        if name is None and not claims and not proposed and role == "temperature":
+        given = _channel(role, proposed, columns, units, log.name, asking)
+        answers |= given
+        known = proposed or (role == "time" and (seen["own_clock"] or seen["means"]))
+        if not given and role == "temperature" and not (claims or proposed):
             options.append("--isothermal")
-        elif name is None and (proposed or (role == "time" and (seen["own_clock"] or seen["means"]))):
-            continue
-        else:
-            lacking += [key for field in ("channel", "unit") if (key := f"{role}.{field}") not in answers]
-    return mapping_text(
-        answers, title=f"Channels of {log.name}, as told to hersey new.", lacking=lacking
-    ), options
+        elif given or not known:
+            lacking += [key for field in ("channel", "unit") if (key := f"{role}.{field}") not in given]
+    title = f"Channels of {log.name}, as told to hersey new."
+    return mapping_text(answers, title=title, lacking=lacking), options
+
+
+def _channel(
+    role: str, proposed: str, columns: tuple[Column, ...], units: Mapping[str, str], file: str, asking: Asking
+) -> dict[str, str]:
+    """Channel of a role and its unit, as answered; nothing without a channel."""
+    from hersey.log.channels import ChannelChoice, find_channel, role_conversion
+    from hersey.units import KINDS
+
+    def named(text: str) -> str:
+        choice = ChannelChoice(text, units.get(text) or KINDS[role][1])
+        found = find_channel(role, columns, choice, file)
+        return text if found is None or text in units else found[0].path
+
+    def unit(text: str) -> str:
+        role_conversion(role, text)
+        return text
+
+    name = asking.ask(f"channel of the {role}", named, proposed=proposed)
+    told = units.get(name or "", "")
+    of = asking.ask(f"unit of the {role}", unit, proposed=told if _is_of(role, told) else "")
+    given = {f"{role}.channel": name, f"{role}.unit": of if name else None}
+    return {key: text for key, text in given.items() if text}
 
 
 def _is_of(role: str, unit: str) -> bool:
@@ -164,21 +173,19 @@ def _is_of(role: str, unit: str) -> bool:
 
 def _machine(asked: list[Question], asking: Asking, path: Path) -> str:
     """The machine's file, empty where the first answer is left out."""
-    from hersey.machine.questions import POINT, lacking
+    from hersey.machine.questions import lacking
     from hersey.machine.writing import machine_text
 
     answers: dict[str, str] = {}
     for question in asked:
-        needed = bool(answers) and question in lacking(answers)
 
-        def read(text: str, question: Question = question) -> str:
-            _with_unit(question, text)
-            question.values(text)
+        def fits(text: str, question: Question = question) -> None:
             with_it = {**answers, question.key: text}
             if not lacking(with_it):  # what fits no other answer is said here
                 _refuse_wrong(machine_text(with_it))
-            return text
 
+        read = _reader(question, fits)
+        needed = bool(answers) and question in lacking(answers)
         text = asking.ask(question.name, read, words=_words(question), needed=needed)
         if text:
             answers[question.key] = text
@@ -189,36 +196,51 @@ def _machine(asked: list[Question], asking: Asking, path: Path) -> str:
         elif not answers:
             say(f"no machine's file is written: {path} would begin with it", file=sys.stderr)
             return ""
+    return machine_text(answers, _points(asking))
+
+
+def _points(asking: Asking) -> list[dict[str, str]]:
+    """The operating points, until one is left out."""
     points: list[dict[str, str]] = []
-    while True:
-        point: dict[str, str] = {}
-        for question in sorted(POINT, key=lambda q: not q.needed):
-
-            def read(text: str, question: Question = question) -> str:
-                _with_unit(question, text)
-                question.values(text)
-                return text
-
-            what = f"operating point {len(points) + 1}, {question.name}"
-            needed = bool(point) and question.needed
-            name = "" if question.needed else f"{point['speed']} at {point['temperature']}"
-            text = asking.ask(what, read, words=_words(question), proposed=name, needed=needed)
-            if text:
-                point[question.field] = text
-            elif not point:
-                return machine_text(answers, points)
+    while point := _point(len(points) + 1, asking):
         points.append(point)
+    return points
+
+
+def _point(number: int, asking: Asking) -> dict[str, str]:
+    """An operating point, empty where the first answer is left out."""
+    from hersey.machine.questions import POINT
+
+    point: dict[str, str] = {}
+    for question in sorted(POINT, key=lambda q: not q.needed):
+        what = f"operating point {number}, {question.name}"
+        needed = bool(point) and question.needed
+        name = "" if question.needed else f"{point['speed']} at {point['temperature']}"
+        text = asking.ask(what, _reader(question), words=_words(question), proposed=name, needed=needed)
+        if text:
+            point[question.field] = text
+        elif not point:
+            return {}
+    return point
+
+
+def _reader(question: Question, fits: Callable[[str], None] | None = None) -> Callable[[str], str]:
+    """What refuses an answer that has no unit where one is needed, cannot be read, or does not fit."""
+
+    def read(text: str) -> str:
+        if question.with_unit(text) != text:
+            raise ParameterError(f"'{text}' has no unit: write one, as in '{question.with_unit(text)}'")
+        question.values(text)
+        if fits is not None:
+            fits(text)
+        return text
+
+    return read
 
 
 def _known(value: str, read: Callable[[str], str]) -> Callable[[str], str]:
     """Read a range in the place of a value, or a share behind it."""
     return lambda told: read(f"{value} {told}" if told.startswith(("±", "+")) else told)
-
-
-def _with_unit(question: Question, text: str) -> None:
-    """Refuse a bare number where a unit is needed, with the one that is usual there."""
-    if question.with_unit(text) != text:
-        raise ParameterError(f"'{text}' has no unit: write one, as in '{question.with_unit(text)}'")
 
 
 def _refuse_wrong(text: str) -> None:
@@ -235,9 +257,3 @@ def _refuse_wrong(text: str) -> None:
 
 def _words(question: Question) -> str:
     return f"{question.words}; as {question.example}"
-
-
-def _any_unit(role: str) -> str:
-    from hersey.units import KINDS
-
-    return KINDS[role][1]

@@ -6,7 +6,9 @@ import json
 import os
 import shlex
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -20,6 +22,7 @@ from hersey.errors import ExistingFileError, OutputError, printable
 if TYPE_CHECKING:
     from pydantic import BaseModel
 
+    from hersey.result import Result
     from hersey.stability.plan import Plan
     from hersey.stability.warm_up_result import WarmUp
 
@@ -34,14 +37,19 @@ def command() -> str:
     return " ".join(["hersey", *(shlex.quote(part) for part in sys.argv[1:])])
 
 
-def print_json(name: str, result: object) -> None:
-    """Print what a command of that name found: its part of the document, with versions and command."""
+def print_json(name: str, result: Any, **beside: Any) -> None:
+    """Print what a command of that name found: its part of the document, with versions and command.
+
+    ``beside`` are fields of the part that the result does not have.
+    """
     from hersey import _core
     from hersey.document.printed import PRINTED
+    from hersey.result import json_record, json_value
     from hersey.schema.part import SCHEMA_VERSION
     from hersey.schema.record import part_of
 
-    part = part_of(PRINTED[name]).model_validate(result)
+    found = json_value(result)
+    part = part_of(PRINTED[name]).model_validate(found | json_record(beside) if beside else found)
     header = {"schema_version": SCHEMA_VERSION, "hersey_version": _core.VERSION, "command": command()}
     print(json.dumps(header | part.model_dump(mode="json"), indent=1, allow_nan=False))
 
@@ -51,15 +59,47 @@ def print_document(document: BaseModel) -> None:
     print(json.dumps(document.model_dump(mode="json"), indent=1, allow_nan=False))
 
 
+@dataclass(frozen=True)
+class Output:
+    """A file that a command may write, or none: then nothing is written."""
+
+    path: Path | None
+    replace: bool = False
+
+    def write(self, content: str | bytes) -> None:
+        """Write the file, whole or not at all."""
+        if self.path is not None:
+            from hersey.files.writing import write_atomically
+
+            write_atomically(self.path, content, overwrite=self.replace)
+
+    def draw(self, result: Result, doing: str = "drawing", **chart: Any) -> None:
+        """Write the chart of a result; ``chart`` is what else the chart takes."""
+        if self.path is not None:
+            from hersey.charts import chart_of
+            from hersey.charts.render import picture
+
+            with working(doing):
+                content = picture(chart_of(result, **chart), self.path.suffix)
+            self.write(content)
+
+
 def may_write(
-    path: Path, force: bool, inputs: Sequence[Path] = (), *, flag: str = "--out", ends: Sequence[str] = ()
-) -> bool:
+    path: Path | None,
+    force: bool,
+    inputs: Sequence[Path] = (),
+    *,
+    flag: str = "--out",
+    ends: Sequence[str] = (),
+) -> Output:
     """Refuse early what cannot be written, and ask before replacing anything.
 
-    ``ends`` are the kinds of file that can be written, any if there are none. Return whether a file of that
-    name may be replaced at the end: one that appears meanwhile may not, unless --force says so.
+    ``ends`` are the kinds of file that can be written, any if there are none. A file that is not there now is
+    not replaced at the end if it appears meanwhile, unless --force says so.
     """
-    try:
+    if path is None:
+        return Output(None)
+    with _said_why(path):
         exists = os.path.lexists(path)
         if path.is_dir():
             raise OutputError(f"{path} is a directory: name a file in it")
@@ -69,17 +109,13 @@ def may_write(
             raise OutputError(f"{path} is no ordinary file: name another")
         if any(exists and other.exists() and path.samefile(other) for other in inputs):
             raise OutputError(f"{path} is an input: name another file for the output")
-    except OSError as error:
-        if isinstance(error, OutputError):
-            raise
-        raise OutputError(f"{path} cannot be written: {error.strerror}") from None
     if ends and path.suffix not in ends:
         raise OutputError(f"{flag} {path}: name a file that ends in {_either(ends)}")
     if exists and not force:
         asked = sys.stdin.isatty() and typer.confirm(printable(f"{path} exists. Replace it?"), err=True)
         if not asked:
             raise ExistingFileError(f"{path} exists: use --force to replace it, or name another file")
-    return force or exists
+    return Output(path, force or exists)
 
 
 def _either(ends: Sequence[str]) -> str:
@@ -87,19 +123,28 @@ def _either(ends: Sequence[str]) -> str:
     return f"{', '.join(first)} or {last}" if first else last
 
 
-def may_write_folder(folder: Path, force: bool, flag: str = "--figures") -> None:
-    """Refuse early a folder that cannot take the figures, or that holds something."""
+@contextmanager
+def _said_why(path: Path) -> Iterator[None]:
+    """Let what the system says of a path name it."""
     try:
+        yield
+    except OSError as error:
+        if isinstance(error, OutputError):
+            raise
+        raise OutputError(f"{path} cannot be written: {error.strerror}") from None
+
+
+def may_write_folder(folder: Path | None, force: bool, flag: str = "--figures") -> None:
+    """Refuse early a folder that cannot take the figures, or that holds something."""
+    if folder is None:
+        return
+    with _said_why(folder):
         if folder.exists() and not folder.is_dir():
             raise OutputError(f"{folder} is a file: {flag} needs a directory")
         if folder.is_dir() and any(map(_counts, folder.iterdir())) and not force:
             raise OutputError(f"{folder} is not empty: use --force to write into it")
         if not folder.parent.is_dir():
             raise OutputError(f"{folder}: there is no directory {folder.parent}")
-    except OSError as error:
-        if isinstance(error, OutputError):
-            raise
-        raise OutputError(f"{folder} cannot be written: {error.strerror}") from None
 
 
 def _counts(file: Path) -> bool:
@@ -110,64 +155,51 @@ def _counts(file: Path) -> bool:
 
 
 def may_draw(
-    path: Path,
-    force: bool,
-    inputs: Sequence[Path] = (),
-    *,
-    flag: str = "--figure",
-) -> bool:
-    """Refuse early a figure of an unknown kind, or one that cannot be written; return as `may_write`."""
+    path: Path | None, force: bool, inputs: Sequence[Path] = (), *, flag: str = "--figure"
+) -> Output:
+    """Refuse early a figure of an unknown kind, or one that cannot be written."""
     return may_write(path, force, inputs, flag=flag, ends=PICTURES)
 
 
 def may_write_table_and_figure(
     table: Path | None, figure: Path | None, force: bool, inputs: Sequence[Path]
-) -> dict[Path, bool]:
-    """Refuse early what ``--out`` and ``--figure`` name, if it cannot be written; return as `may_write`."""
+) -> tuple[Output, Output]:
+    """Refuse early what ``--out`` and ``--figure`` name, if it cannot be written."""
     if table is not None and figure is not None and table.absolute() == figure.absolute():
         raise OutputError(f"--out and --figure both name {table}: name two files")
-    replace = {}
-    if figure is not None:
-        replace[figure] = may_draw(figure, force, inputs)
-    if table is not None:
-        replace[table] = may_write(table, force, inputs, ends=[".csv"])
-    return replace
+    drawing = may_draw(figure, force, inputs)
+    return may_write(table, force, inputs, ends=[".csv"]), drawing
+
+
+def show(name: str, result: Result, as_json: bool, *notes: str, **files: Path | None) -> None:
+    """Print a result: as JSON, or in words with notes below, and the files that were written."""
+    if as_json:
+        print_json(name, result)
+    else:
+        say(result.summary(), *notes)
+        say_written(**files)
+
+
+def say_written(**files: Path | None) -> None:
+    """Name the files that were written, each by what it is."""
+    for what, path in files.items():
+        if path is not None:
+            say(f"{what}: {path}")
 
 
 def give(
-    name: str,
-    result: Plan | WarmUp,
-    *,
-    called: str,
-    table: Path | None,
-    figure: Path | None,
-    replace: Mapping[Path, bool],
-    as_json: bool,
-    **chart: Any,
+    name: str, result: Plan | WarmUp, outputs: tuple[Output, Output], as_json: bool, called: str, **chart: Any
 ) -> None:
     """Write table and figure of a course that a command has found, and print the result.
 
-    ``called`` is what the command calls its table, ``replace`` what `may_write_table_and_figure` returned,
-    ``chart`` what else the chart takes. Where nothing was
+    ``called`` is what the command calls its table, ``chart`` what else the chart takes. Where nothing was
     found nothing is written, and the command ends with `NOT_FOUND`.
     """
-    from hersey.files.writing import write_atomically
-
-    if result.found and figure is not None:
-        from hersey.charts import chart_of
-        from hersey.charts.render import picture
-
-        with working("drawing"):
-            content = picture(chart_of(result, **chart), figure.suffix)
-        write_atomically(figure, content, overwrite=replace[figure])
-    if result.found and table is not None:
-        write_atomically(table, result.table(), overwrite=replace[table])
-    if as_json:
-        print_json(name, result.to_dict())
-    else:
-        say(result.summary())
-        for what, written in ((called, table), ("figure", figure)):
-            if result.found and written is not None:
-                say(f"{what}: {written}")
     if not result.found:
+        show(name, result, as_json)
         raise typer.Exit(NOT_FOUND)
+    table, figure = outputs
+    figure.draw(result, **chart)
+    if table.path is not None:
+        table.write(result.table())
+    show(name, result, as_json, **{called: table.path, "figure": figure.path})

@@ -6,12 +6,10 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import typer
-
-from hersey.cli.options import AsJson, Force, Logs, Reading, Traces, reads_logs
-from hersey.cli.outputs import may_write, print_json
+from hersey.cli.groups import grouped, option
+from hersey.cli.options import AsJson, Force, Logs, Reading, Traces
+from hersey.cli.outputs import may_write, show
 from hersey.cli.progress import bar
-from hersey.cli.terminal import say
 from hersey.files.tables import TABLES
 
 if TYPE_CHECKING:
@@ -19,21 +17,19 @@ if TYPE_CHECKING:
 
 #: Steps of the progress bar.
 _STEPS = 100
+_MACHINE = "TOML file of the drivetrain and its limits."
 
 
-@reads_logs
+@grouped
 def posterior(
     logs: Logs,
-    reading: Reading,
-    machine_file: Annotated[
-        Path, typer.Option("--machine", metavar="FILE", help="TOML file of the drivetrain and its limits.")
-    ],
+    *,
+    machine_file: Annotated[Path, option(_MACHINE, "--machine", metavar="FILE")],
     trace: Traces = None,
-    draws: Annotated[int, typer.Option("--draws", help="Number of draws.")] = 4000,
-    seed: Annotated[int, typer.Option("--seed", help="Random seed.")] = 1,
-    out: Annotated[
-        Path | None, typer.Option("--out", help="Also write one row per draw: .csv, .parquet or .nc.")
-    ] = None,
+    draws: Annotated[int, option("Number of draws.")] = 4000,
+    seed: Annotated[int, option("Random seed.")] = 1,
+    out: Annotated[Path | None, option("Also write one row per draw: .csv, .parquet or .nc.")] = None,
+    reading: Reading,
     as_json: AsJson = False,
     force: Force = False,
 ) -> None:
@@ -41,10 +37,7 @@ def posterior(
 
     Example: [bold]hersey posterior examples/bench.csv --machine examples/machine.toml --tare standing[/bold]
     """
-    overwrite = False
-    if out is not None:
-        inputs = reading.inputs(logs, machine_file, trace)
-        overwrite = may_write(out, force, inputs, ends=[*TABLES, ".nc"])
+    table = may_write(out, force, reading.inputs(logs, machine_file, trace), ends=[*TABLES, ".nc"])
 
     from hersey.machine.machine import read_machine
     from hersey.posterior.sampling import posterior as drawn
@@ -64,27 +57,19 @@ def posterior(
             threads=os.cpu_count() or 1,
         )
     if out is not None:
-        _write(found, out, overwrite)
-    if as_json:
-        print_json("posterior", found.to_dict())
-        return
-    say(found.summary())
-    if out is not None:
-        say(f"draws: {out}")
+        table.write(_content(found, out))
+    show("posterior", found, as_json, draws=out)
 
 
-def _write(found: Posterior, out: Path, overwrite: bool) -> None:
-    """Write a row per draw, or with ``.nc`` what ArviZ reads."""
+def _content(found: Posterior, out: Path) -> bytes:
+    """A row per draw, or with ``.nc`` what ArviZ reads."""
     from tempfile import TemporaryDirectory
 
     from hersey.files.tables import table
-    from hersey.files.writing import write_atomically
 
     if out.suffix in TABLES:
-        content = table(found.to_frame(), out.suffix)
-    else:
-        with TemporaryDirectory() as folder:
-            netcdf = Path(folder) / out.name
-            found.dataset().to_netcdf(netcdf, engine="scipy")
-            content = netcdf.read_bytes()
-    write_atomically(out, content, overwrite=overwrite)
+        return table(found.to_frame(), out.suffix)
+    with TemporaryDirectory() as folder:
+        netcdf = Path(folder) / out.name
+        found.dataset().to_netcdf(netcdf, engine="scipy")
+        return netcdf.read_bytes()

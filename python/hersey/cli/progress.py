@@ -33,18 +33,13 @@ def bar(what: str, unit: str = "") -> Iterator[Callable[[int, int], None]]:
     if not sys.stderr.isatty():
         yield lambda _done, _total: None
         return
+    from rich import progress as parts
     from rich.console import Console
-    from rich.progress import (
-        BarColumn,
-        DownloadColumn,
-        MofNCompleteColumn,
-        Progress,
-        TextColumn,
-        TimeRemainingColumn,
-    )
 
-    amount = MofNCompleteColumn() if unit else DownloadColumn()
-    columns = (TextColumn(what), BarColumn(), amount, TextColumn(unit), TimeRemainingColumn())
-    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
+    amount = parts.MofNCompleteColumn() if unit else parts.DownloadColumn()
+    shown = (parts.TextColumn(what), parts.BarColumn(), amount, parts.TextColumn(unit))
+    with parts.Progress(
+        *shown, parts.TimeRemainingColumn(), console=Console(stderr=True), transient=True
+    ) as progress:
         task = progress.add_task(what, total=None)
         yield lambda done, total: progress.update(task, completed=done, total=total)

@@ -4,46 +4,32 @@ from __future__ import annotations
 
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
-import typer
-
+from hersey.cli.groups import grouped, option
 from hersey.cli.loading import loading
-from hersey.cli.options import (
-    AsJson,
-    Force,
-    Logs,
-    MachineFile,
-    Reading,
-    Traces,
-    reads_logs,
-)
+from hersey.cli.options import AsJson, Figures, Force, Logs, Reading, Traces
 from hersey.cli.outputs import PAGES, command, may_write, may_write_folder, print_document
 from hersey.cli.progress import steps, working
 from hersey.cli.terminal import say
 
+if TYPE_CHECKING:
+    from hersey.study import Study
 
-@reads_logs
+_MACHINE = "Drivetrain of the machine, for the simulation."
+_AGAINST = "An earlier log, read alike, to compare this one with; again for each further file of it."
+
+
+@grouped
 def report(
     logs: Logs,
-    reading: Reading,
-    out: Annotated[
-        Path | None, typer.Option("--out", help="The page to write, .html.  [default: report.html]")
-    ] = None,
-    figures: Annotated[
-        Path | None,
-        typer.Option("--figures", metavar="DIR", help="Also write each chart as SVG, PNG and PDF."),
-    ] = None,
-    machine_file: MachineFile = None,
-    against: Annotated[
-        list[Path] | None,
-        typer.Option(
-            "--against",
-            metavar="LOG",
-            help="An earlier log, read alike, to compare this one with; again for each further file of it.",
-        ),
-    ] = None,
+    *,
+    out: Annotated[Path | None, option("The page to write, .html.  [default: report.html]")] = None,
+    figures: Figures = None,
+    machine_file: Annotated[Path | None, option(_MACHINE, "--machine", metavar="TOML")] = None,
+    against: Annotated[list[Path] | None, option(_AGAINST, metavar="LOG")] = None,
     trace: Traces = None,
+    reading: Reading,
     as_json: AsJson = False,
     force: Force = False,
 ) -> None:
@@ -54,40 +40,18 @@ def report(
     With --json the analysis document goes to stdout, and a page is written only if --out is given.
     """
     page = out or (None if as_json else Path("report.html"))
-    overwrite = False
-    if page is not None:
-        inputs = reading.inputs(logs, machine_file, [*(against or []), *(trace or [])])
-        overwrite = may_write(page, force, inputs, ends=PAGES)
-    if figures is not None:
-        may_write_folder(figures, force)
+    written = may_write(page, force, reading.inputs(logs, machine_file, against, trace), ends=PAGES)
+    may_write_folder(figures, force)
 
     with loading():
         from hersey.document.assembly import document_of
-        from hersey.files.writing import write_atomically
-        from hersey.machine.machine import read_machine
         from hersey.report.page import render
-        from hersey.study import study
 
-    machine = None if machine_file is None else read_machine(machine_file)
-    log = reading.log(logs, machine)
-    other = reading.points_of(against, machine) if against else None
-    traces = [reading.trace(path, machine) for path in trace or []]
-    with steps() as step:
-        step("finding the dwells")
-        points = reading.points(log, machine)
-        found = study(
-            points,
-            machine,
-            against=other,
-            traces=traces,
-            temperature_scale=reading.temperature_scale,
-            machine_file=machine_file,
-            step=step,
-        )
+    found = _studied(logs, reading, machine_file, against, trace)
     document = document_of(found, command=command(), made=datetime.now(UTC).isoformat(timespec="seconds"))
     if page is not None:
         with working("drawing the page"):
-            write_atomically(page, render(document), overwrite=overwrite)
+            written.write(render(document))
     if figures is not None:
         from hersey.charts.analysis import write_figures
 
@@ -98,3 +62,32 @@ def report(
         return
     say(*found.summary().splitlines())
     say(f"report: {page}")
+
+
+def _studied(
+    logs: list[Path],
+    reading: Reading,
+    machine_file: Path | None,
+    against: list[Path] | None,
+    trace: list[Path] | None,
+) -> Study:
+    """Everything for one log and one machine."""
+    from hersey.machine.machine import read_machine
+    from hersey.study import study
+
+    machine = None if machine_file is None else read_machine(machine_file)
+    log = reading.log(logs, machine)
+    other = reading.points_of(against, machine) if against else None
+    traces = [reading.trace(path, machine) for path in trace or []]
+    with steps() as step:
+        step("finding the dwells")
+        points = reading.points(log, machine)
+        return study(
+            points,
+            machine,
+            against=other,
+            traces=traces,
+            temperature_scale=reading.temperature_scale,
+            machine_file=machine_file,
+            step=step,
+        )

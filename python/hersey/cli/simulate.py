@@ -2,75 +2,87 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
-
-import typer
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 from hersey.cli.belt import Belt
-from hersey.cli.options import (
-    AsJson,
-    FitFile,
-    Force,
-    Reading,
-    beyond_the_log,
-    heat_of,
-    takes,
-    target_of,
-    warming_drag,
-)
+from hersey.cli.groups import grouped, option
+from hersey.cli.options import AsJson, FitFile, Force, Start, drawn, finished_fit
 from hersey.cli.outputs import may_draw, may_write, print_json
 from hersey.cli.progress import working
+from hersey.cli.quantities import target_of
 from hersey.cli.terminal import say
+from hersey.cli.warming import beyond_the_log, heat_of, warming_drag
 from hersey.errors import ParameterError
 
 if TYPE_CHECKING:
+    from hersey.machine.motor import MotorUse
+    from hersey.motion.schedule import Schedule
+    from hersey.motion.simulation import StickSlipCycle
     from hersey.motion.trajectory import Trajectory
 
 #: Time simulated with temperature as a state if none is given.
 _WARMING = "60 s"
+_PROFILE = "Instead of it: a CSV of drive speeds, columns 'time (s)' and 'speed (mm/s)'."
+_DURATION = "Time simulated, for --csv and --check, as '2 s'.  [default: 2]"
+_HEAT = "Temperature as a state, by \\[heat] of --machine and the drag of --fit, from cold."
+_FROM = "With --heat: temperature at the start.  [default: that of \\[heat]]"
 
 
-@takes(Belt, "belt")
+@dataclass(frozen=True)
+class _Drive:
+    """How the drive moves, from what start and for how long."""
+
+    drive_speed: Annotated[str | None, option("Speed of the drive, as '30 mm/s'.  [default: 1]")] = None
+    profile: Annotated[Path | None, option(_PROFILE, metavar="FILE")] = None
+    start: Start = "rest"
+    duration: Annotated[str | None, option(_DURATION)] = None
+    check: Annotated[bool, option("Simulate with a second integrator too, and compare.", "--check")] = False
+
+    def course(self) -> Schedule | None:
+        """Return the profile, if there is one."""
+        if self.profile is None:
+            return None
+        from hersey.cli.columns import read_profile
+
+        return read_profile(self.profile)
+
+
+@dataclass(frozen=True)
+class _Heat:
+    """Whether temperature is a state, and what then makes it."""
+
+    heat: Annotated[bool, option(_HEAT, "--heat")] = False
+    fit_file: FitFile = None
+    begin: Annotated[str, option(_FROM, "--from")] = ""
+
+    def refuse_beside(self, drive: _Drive) -> None:
+        """Refuse options that exclude each other."""
+        if drive.profile is not None and (self.heat or drive.drive_speed is not None):
+            other = "--heat" if self.heat else "--drive-speed"
+            raise ParameterError(f"--profile and {other} exclude each other")
+        if not self.heat and (self.fit_file is not None or self.begin):
+            raise ParameterError(f"{'--from' if self.begin else '--fit'} goes with --heat")
+
+
+class _Motion(NamedTuple):
+    """A motion that was simulated, what it settles to, what JSON says beside, and all of it in lines."""
+
+    run: Trajectory | None
+    cycle: StickSlipCycle
+    beside: dict[str, Any]
+    lines: list[str]
+
+
+@grouped
 def simulate(
+    *,
+    drive: _Drive,
+    csv: Annotated[Path | None, option("Write the motion as CSV.", metavar="FILE")] = None,
+    heat: _Heat,
+    figure: Annotated[Path | None, drawn("the motion")] = None,
     belt: Belt,
-    drive_speed: Annotated[
-        str | None, typer.Option(help="Speed of the drive, as '30 mm/s'.  [default: 1]")
-    ] = None,
-    profile: Annotated[
-        Path | None,
-        typer.Option(
-            "--profile",
-            metavar="FILE",
-            help="Instead of it: a CSV of drive speeds, columns 'time (s)' and 'speed (mm/s)'.",
-        ),
-    ] = None,
-    start: Annotated[str, typer.Option(help="rest, or steady (sliding with the drive).")] = "rest",
-    duration: Annotated[
-        str | None, typer.Option(help="Time simulated, for --csv and --check, as '2 s'.  [default: 2]")
-    ] = None,
-    check: Annotated[
-        bool, typer.Option("--check", help="Simulate with a second integrator too, and compare.")
-    ] = False,
-    csv: Annotated[
-        Path | None, typer.Option("--csv", metavar="FILE", help="Write the motion as CSV.")
-    ] = None,
-    heat: Annotated[
-        bool,
-        typer.Option(
-            "--heat",
-            help="Temperature as a state, by \\[heat] of --machine and the drag of --fit, from cold.",
-        ),
-    ] = False,
-    fit_file: FitFile = None,
-    begin: Annotated[
-        str,
-        typer.Option("--from", help="With --heat: temperature at the start.  [default: that of \\[heat]]"),
-    ] = "",
-    figure: Annotated[
-        Path | None, typer.Option("--figure", help="Draw the motion: .html, .png, .svg or .pdf.")
-    ] = None,
     as_json: AsJson = False,
     force: Force = False,
 ) -> None:
@@ -81,110 +93,80 @@ def simulate(
 
     Example: [bold]hersey simulate --stiffness 2000 --drive-speed 1.3[/bold]
     """
-    inputs = [path for path in (belt.machine, fit_file, profile) if path is not None]
-    replace = {}
-    if csv is not None:
-        replace[csv] = may_write(csv, force, inputs, flag="--csv", ends=[".csv"])
-    if figure is not None:
-        replace[figure] = may_draw(figure, force, inputs)
-    if profile is not None and (heat or drive_speed is not None):
-        raise ParameterError(f"--profile and {'--heat' if heat else '--drive-speed'} exclude each other")
-    if heat:
-        _warming(belt, fit_file, drive_speed, duration, start, begin, check, csv, figure, replace, as_json)
+    inputs = [path for path in (belt.machine, heat.fit_file, drive.profile) if path is not None]
+    table = may_write(csv, force, inputs, flag="--csv", ends=[".csv"])
+    drawing = may_draw(figure, force, inputs)
+    heat.refuse_beside(drive)
+    found = _warmed(belt, drive, heat) if heat.heat else _settled(belt, drive, bool(csv or figure))
+    if found.run is not None:
+        if csv is not None:
+            table.write(_rows(found.run))
+        drawing.draw(found.run)
+    if as_json:
+        print_json("simulate", found.cycle, **found.beside)
         return
-    if fit_file is not None or begin:
-        raise ParameterError(f"{'--from' if begin else '--fit'} goes with --heat")
+    say(*found.lines)
 
-    from hersey.motion import simulation as motion
-    from hersey.result import json_value
 
-    course = None
-    if profile is not None:
-        from hersey.cli.profile import read_profile
+def _settled(belt: Belt, drive: _Drive, written: bool) -> _Motion:
+    """What the belt settles to, and the run from its start if it is written or says more."""
+    from hersey.motion.simulation import simulate as moved
+    from hersey.motion.simulation import stick_slip
 
-        course = read_profile(profile)
-        # the last speed stays, and has a unit: so must all others
-        drive_speed = f"{course.at(float('inf'))} m/s"
+    course, speed_given = drive.course(), drive.drive_speed
+    if course is not None:  # the last speed stays, and has a unit: so must all others
+        speed_given = f"{course.at(float('inf'))} m/s"
     train, drag, numbers = belt.parts(
-        needed=("drive_speed", "duration"), drive_speed=drive_speed, duration=duration
+        needed=("drive_speed", "duration"), drive_speed=speed_given, duration=drive.duration
     )
     speed, time = (numbers.values[name] or 0.0 for name in ("drive_speed", "duration"))
-    run = None
-    motor = None
-    if any((csv, check, figure, belt.machine, course)):
-        run = motion.simulate(
-            train, drag, drive_speed=course or speed, duration=time, start=start, check=check
+    run, motor = None, None
+    if written or any((drive.check, belt.machine, course)):
+        run = moved(
+            train, drag, drive_speed=course or speed, duration=time, start=drive.start, check=drive.check
         )
-    state: str | tuple[float, float] = start
-    if course is not None and run is not None:
-        state = float(run.belt_speed[-1]), float(run.stretch[-1])
-    cycle = motion.stick_slip(train, drag, drive_speed=speed, start=state)
-    if run is not None:
         motor = belt.motor_use(run)
-        _write(run, csv, figure, replace)
-    if as_json:
-        ran = {} if run is None else {"energy": json_value(run.energy), "check": json_value(run.check)}
-        ran |= {} if motor is None else {"motor": json_value(motor)}
-        print_json("simulate", cycle.to_dict() | ran)
-        return
-    lines = [
-        cycle.summary()
-        if course is None
-        else f"After {time:g} s of the profile it settles:\n{cycle.summary()}"
-    ]
-    if run is not None:
-        lines.append(f"energy balance: {run.energy.residual:.1e} of the energy turned over is missing")
-    if run is not None and run.check is not None:
-        lines.append(str(run.check))
-    if run is not None and run.roll_slips:
-        lines.append(f"over {time:g} s {run.slipping_in_words()}")
-    if motor is not None:
-        lines.append(str(motor))
-    say("\n".join([*lines, *numbers.words]))
+    ended = None if course is None or run is None else _end(run)
+    cycle = stick_slip(train, drag, drive_speed=speed, start=ended or drive.start)
+    before = "" if course is None else f"After {time:g} s of the profile it settles:\n"
+    beside = {} if run is None else {"energy": run.energy, "check": run.check, "motor": motor}
+    lines = [] if run is None else _of_run(run, motor, time)
+    return _Motion(run, cycle, beside, [before + cycle.summary(), *lines, *numbers.words])
 
 
-def _write(run: Trajectory, csv: Path | None, figure: Path | None, replace: Mapping[Path, bool]) -> None:
+def _of_run(run: Trajectory, motor: MotorUse | None, time: float) -> list[str]:
+    lines = [f"energy balance: {run.energy.residual:.1e} of the energy turned over is missing"]
+    lines += [] if run.check is None else [str(run.check)]
+    lines += [f"over {time:g} s {run.slipping_in_words()}"] if run.roll_slips else []
+    return lines + ([] if motor is None else [str(motor)])
+
+
+def _end(run: Trajectory) -> tuple[float, float]:
+    """Belt speed and stretch at the end of a run."""
+    return float(run.belt_speed[-1]), float(run.stretch[-1])
+
+
+def _rows(run: Trajectory) -> bytes:
+    """A motion as a CSV, a row per step."""
+    import polars as pl
+
     from hersey.files.tables import table
-    from hersey.files.writing import write_atomically
 
-    if csv is not None:
-        import polars as pl
-
-        names = ("time", "belt_speed", "stretch", "spring_force", "mode")
-        columns = {name: getattr(run, name) for name in names} | {"roll_slips": run.slipping}
-        bodies = {name: getattr(run, name) for name in ("film_temperature", "roll_temperature")}
-        columns |= {name: kelvin for name, kelvin in bodies.items() if kelvin is not None}
-        write_atomically(csv, table(pl.DataFrame(columns), ".csv"), overwrite=replace[csv])
-    if figure is not None:
-        from hersey.charts import chart_of
-        from hersey.charts.render import picture
-
-        with working("drawing"):
-            content = picture(chart_of(run), figure.suffix)
-        write_atomically(figure, content, overwrite=replace[figure])
+    names = ("time", "belt_speed", "stretch", "spring_force", "mode")
+    columns = {name: getattr(run, name) for name in names} | {"roll_slips": run.slipping}
+    bodies = {name: getattr(run, name) for name in ("film_temperature", "roll_temperature")}
+    columns |= {name: kelvin for name, kelvin in bodies.items() if kelvin is not None}
+    return table(pl.DataFrame(columns), ".csv")
 
 
-def _warming(
-    belt: Belt,
-    fit_file: Path | None,
-    drive_speed: str | None,
-    duration: str | None,
-    start: str,
-    begin: str,
-    check: bool,
-    csv: Path | None,
-    figure: Path | None,
-    replace: Mapping[Path, bool],
-    as_json: bool,
-) -> None:
-    """Simulate with temperature as a state, and say what the motion settles to where it ends."""
+def _warmed(belt: Belt, drive: _Drive, heat: _Heat) -> _Motion:
+    """The motion with temperature as a state, and what it settles to where it ends."""
     from hersey.machine.machine import read_machine
     from hersey.motion.simulation import simulate as moved
     from hersey.motion.simulation import stick_slip
-    from hersey.result import json_value
     from hersey.units import celsius, parse
 
-    if belt.machine is None or fit_file is None:
+    if belt.machine is None or heat.fit_file is None:
         raise ParameterError(
             "--heat needs --machine with [heat], and --fit with what hersey fit --json printed"
         )
@@ -192,32 +174,22 @@ def _warming(
         raise ParameterError(
             "--heat takes belt and drag from --machine and --fit: leave the other numbers out"
         )
-    if drive_speed is None:
+    if drive.drive_speed is None:
         raise ParameterError("give the speed of the drive: --drive-speed '30 mm/s'")
     machine = read_machine(belt.machine)
-    warmth = heat_of(machine, belt.machine, begin)
-    speed, time = target_of(drive_speed, machine, "--drive-speed"), parse("time", duration or _WARMING)
-    surface = Reading().surface(None, fit_file, machine)
-    drag = warming_drag(surface, machine)
+    warmth = heat_of(machine, belt.machine, heat.begin)
+    speed = target_of(drive.drive_speed, machine, "--drive-speed")
+    time = parse("time", drive.duration or _WARMING)
+    surface = finished_fit(heat.fit_file, machine)
+    train, drag = machine.train, warming_drag(surface, machine)
+    asked: dict[str, Any] = {"duration": time, "start": drive.start, "check": drive.check}
     with working("simulating"):
-        run = moved(
-            machine.train,
-            drag,
-            drive_speed=speed,
-            temperature=warmth,
-            duration=time,
-            start=start,
-            check=check,
-        )
+        run = moved(train, drag, drive_speed=speed, temperature=warmth, **asked)
     film = run.film_temperature
     assert film is not None
-    state = float(run.belt_speed[-1]), float(run.stretch[-1])
-    cycle = stick_slip(machine.train, drag, drive_speed=speed, temperature=float(film[-1]), start=state)
-    _write(run, csv, figure, replace)
-    if as_json:
-        beside = {"energy": json_value(run.energy), "check": json_value(run.check), "warming": run.to_dict()}
-        print_json("simulate", cycle.to_dict() | beside)
-        return
-    said = beyond_the_log(surface, float(film.min()), float(film.max()))
-    settled = f"At {celsius(float(film[-1])):.4g} degC it settles to {cycle.headline()}."
-    say("\n".join([run.summary(), settled, *(f"- {each}" for each in said)]))
+    last = float(film[-1])
+    cycle = stick_slip(train, drag, drive_speed=speed, temperature=last, start=_end(run))
+    said = [f"- {each}" for each in beyond_the_log(surface, film)]
+    settled = f"At {celsius(last):.4g} degC it settles to {cycle.headline()}."
+    beside = {"energy": run.energy, "check": run.check, "warming": run}
+    return _Motion(run, cycle, beside, [run.summary(), settled, *said])

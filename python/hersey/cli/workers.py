@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated
 
-import typer
-
+from hersey.cli.groups import option
 from hersey.errors import ParameterError
 
 if TYPE_CHECKING:
@@ -15,22 +15,32 @@ if TYPE_CHECKING:
 
     from hersey.scale.local import LocalWorkers
 
-Scheduler = Annotated[
-    str | None,
-    typer.Option(
-        "--scheduler",
-        metavar="ADDRESS",
-        help="Let the workers of this scheduler of Dask work, as tcp://host:8786.",
-    ),
-]
-Workers = Annotated[
-    int | None,
-    typer.Option("--workers", metavar="N", help="Use N worker processes on this machine.", min=1),
-]
+    #: Who works; None is this process alone.
+    AtWork = Client | LocalWorkers | None
+
+_SCHEDULER = "Let the workers of this scheduler of Dask work, as tcp://host:8786."
+_WORKERS = "Use N worker processes on this machine."
+
+
+@dataclass(frozen=True)
+class Crew:
+    """Who works, if not this process alone."""
+
+    scheduler: Annotated[str | None, option(_SCHEDULER, metavar="ADDRESS")] = None
+    count: Annotated[int | None, option(_WORKERS, "--workers", metavar="N", min=1)] = None
+
+    @property
+    def asked(self) -> bool:
+        """Whether anybody is asked."""
+        return self.scheduler is not None or self.count is not None
+
+    def at_work(self) -> AbstractContextManager[AtWork]:
+        """Yield as `workers` does."""
+        return workers(self.scheduler, self.count)
 
 
 @contextmanager
-def workers(scheduler: str | None, count: int | None) -> Iterator[Client | LocalWorkers | None]:
+def workers(scheduler: str | None, count: int | None) -> Iterator[AtWork]:
     """Yield the client of a scheduler, or so many processes on this machine; None where neither is asked.
 
     Raises

@@ -1,0 +1,65 @@
+"""Options of a command: one with its help, and those that belong together as a frozen data class."""
+
+from __future__ import annotations
+
+import functools
+import inspect
+from collections.abc import Callable
+from dataclasses import MISSING, fields, is_dataclass
+from typing import Any, get_type_hints
+
+import typer
+
+from hersey.files.patterns import files_of
+
+#: Arguments that name logs: patterns among them stand for files.
+_LOGS = {"logs", "runs"}
+
+
+def option(words: str, *flags: str, **more: Any) -> Any:
+    """Return an option with its help; its flag is the name of the parameter unless there are others."""
+    return typer.Option(*flags, help=words, **more)
+
+
+def argument(name: str, words: str) -> Any:
+    """Return an argument, as help calls it, with its help."""
+    return typer.Argument(metavar=name, help=words)
+
+
+def grouped(command: Callable[..., None]) -> Callable[..., None]:
+    """Give a command the options of each of its parameters that is a data class, in the place of that."""
+    given = inspect.signature(command, eval_str=True).parameters
+    groups: dict[str, Any] = {n: p.annotation for n, p in given.items() if is_dataclass(p.annotation)}
+
+    @functools.wraps(command)
+    def run(**typed: Any) -> None:
+        for logs in _LOGS & typed.keys():
+            typed[logs] = typed[logs] and files_of(typed[logs])
+        taken = {
+            name: group(**{field.name: typed.pop(field.name) for field in fields(group)})
+            for name, group in groups.items()
+        }
+        command(**typed, **taken)
+
+    shown = [
+        each
+        for name, parameter in given.items()
+        for each in (_options(groups[name]) if name in groups else [parameter])
+    ]
+    keyword = inspect.Parameter.KEYWORD_ONLY
+    run.__signature__ = inspect.Signature([each.replace(kind=keyword) for each in shown])  # type: ignore[attr-defined]
+    return run
+
+
+def _options(group: Any) -> list[inspect.Parameter]:
+    """The fields of a group, as parameters of a command."""
+    types = get_type_hints(group, include_extras=True)
+    return [
+        inspect.Parameter(
+            field.name,
+            inspect.Parameter.KEYWORD_ONLY,
+            default=inspect.Parameter.empty if field.default is MISSING else field.default,
+            annotation=types[field.name],
+        )
+        for field in fields(group)
+    ]

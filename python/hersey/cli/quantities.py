@@ -1,0 +1,67 @@
+"""What options name as text: shares, ranges, temperatures and speeds, in SI."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from hersey.errors import ParameterError, WrongKindError
+
+if TYPE_CHECKING:
+    from hersey.machine.machine import Machine
+
+
+def share(flag: str, text: str) -> float:
+    """Return the share that an option such as ``'2 %'`` names."""
+    match = re.fullmatch(r"\s*([0-9]+(?:\.[0-9]*)?)\s*%\s*", text[:60])
+    if match is None:
+        raise ParameterError(f"{flag} is '{text}': write a share such as '2 %'")
+    return float(match[1]) / 100
+
+
+def range_of(kind: str, flag: str, text: str) -> tuple[float, float] | None:
+    """Return two values with one unit, 'low to high unit'; None if the text is empty."""
+    from hersey.units import parse
+
+    if not text:
+        return None
+    match = re.fullmatch(r"\s*(\S+)\s+to\s+([-+.\deE]+)\s+(\S.*?)\s*", text)
+    if match is None:
+        raise ParameterError(f"{flag} '{text}' is no range: write it as '2 to 200 rpm' or '60 to 200 degC'")
+    low, high, unit = match.groups()
+    return parse(kind, f"{low} {unit}"), parse(kind, f"{high} {unit}")
+
+
+def temperature_of(text: str, flag: str = "--at") -> float | None:
+    """Return the temperature that ``--at``, or another flag, names, K; None if it is not given."""
+    from hersey.units import parse
+
+    if not text:
+        return None
+    return _positive(parse("temperature", text), f"{flag} is {text}: it must be above absolute zero")
+
+
+def target_of(text: str, machine: Machine, flag: str = "--target") -> float:
+    """Return the speed that ``--target``, or another flag, names, of belt or roll, m/s at the belt."""
+    from hersey.units import parse
+
+    if not text:
+        raise ParameterError("give the target: --target '60 mm/s'")
+    try:
+        target = parse("belt speed", text)
+    except WrongKindError:
+        target = parse("speed", text) * machine.roll_radius
+    return _positive(target, f"{flag} is {text}: it must be greater than 0")
+
+
+def belt_speed_of(text: str, flag: str, kind: str = "belt speed") -> float:
+    """Return a speed of the belt, or of another kind."""
+    from hersey.units import parse
+
+    return _positive(parse(kind, text), f"{flag} is {text}: it must be greater than 0")
+
+
+def _positive(value: float, otherwise: str) -> float:
+    if not value > 0:
+        raise ParameterError(otherwise)
+    return value
