@@ -30,12 +30,12 @@ AGEINGS = {
     "film": ("film",),
     "roughness": ("contact",),
     "boundary friction": ("contact",),
-    "rest of the drive": ("rest of the drive",),
+    "no-load torque": ("no-load torque",),
 }
 #: Of the other source alone.
 BESIDE = {
     "load": ("load or grip",),
-    "film and rest": ("film", "rest of the drive"),
+    "film and rest": ("film", "no-load torque"),
     "lubricant and wear": ("lubricant", "contact"),
 }
 
@@ -79,7 +79,7 @@ def other(kind: str, seed: int, units: int = 8, logs: int = 6) -> list[tuple[str
         "film": ("film",),
         "roughness": ("roughness",),
         "boundary friction": ("boundary",),
-        "rest of the drive": ("rest",),
+        "no-load torque": ("rest",),
         "load": ("load",),
         "film and rest": ("film", "rest"),
         "lubricant and wear": ("lubricant", "roughness", "boundary"),
@@ -144,7 +144,7 @@ def stand(kind: str, seed: int, units: int = 8) -> list[tuple[str, float, np.nda
         "film": {"side_flow": 3e4},
         "roughness": {"roughening": 2e-6},
         "boundary friction": {"boundary_growth": 2e-6},
-        "rest of the drive": {"rest_growth": 1e-6},
+        "no-load torque": {"rest_growth": 1e-6},
     }[kind]
     steps = [*STAND.speeds_rpm, *STAND.speeds_rpm[-2::-1]]
     speed = np.tile(steps, len(STAND.temperatures_degC)) * RPM

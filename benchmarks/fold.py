@@ -24,7 +24,7 @@ from hersey.motion.parameters import MOST_STEPS
 SIDE, RUNS, DURATION = 64, 15, 5.0
 #: Temperatures (K) and draws of the machine's law.
 LEVELS, DRAWS = np.linspace(363.15, 455.15, 13), 200
-#: Seconds for the same before half laps knew a rest of the drive: all draws (from 5 at each level), one belt.
+#: Seconds for the same before half laps knew a no-load torque: all draws (from 5 at each level), one belt.
 BEFORE = {1e-13: (15.3, 8.9e-3), 1e-11: (27.0, 6.7e-3), 1e-8: (69.0, 4.8e-3)}
 
 

@@ -3,7 +3,7 @@
 The generator stands in this file and shares no code with the fitter: it steps the growth of each unit in time
 and looks up when the indicator crosses the limit. Every campaign has units that differ by 10 to 40 % (growth)
 and 5 to 15 % (level), runs that scatter by 1 to 3 %, and one of five truths: linear, side flow, exponential,
-saturating above the limit, or a film that side flow and evaporation thin while the rest of the drive stays.
+saturating above the limit, or a film that side flow and evaporation thin while the no-load torque stays.
 
 Usage: python -m benchmarks.growth [--campaigns 200] [--first 1001]
 [--units 8] [--logs 10] [--laws linear,...] [--workers 2] [--scheduler ADDRESS]

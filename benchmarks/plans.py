@@ -1,6 +1,6 @@
 """Plans against grip and motor: random machines, each plan followed again by other means.
 
-Every machine has a roll that grips so far, a motor that gives so much, a rest of the drive, and for some a
+Every machine has a roll that grips so far, a motor that gives so much, a no-load torque, and for some a
 static force or a closure of its own; grip and motor lie between too little to start the belt and plenty. One
 in four is known but for shares of its parameters, the others are known.
 

@@ -34,7 +34,7 @@ RADIUS, LENGTH, WIDTH, LOAD, MODULUS, POISSON, ROUGHNESS, FRICTION = (
     5e-7,
     0.05,
 )
-#: The rest of the drive: N m, N m s/rad.
+#: The no-load torque: N m, N m s/rad.
 REST = (0.18, 1e-3)
 #: Speeds (rpm) up and down again, and temperatures (K).
 SPEEDS, HEATS = (5, 7, 10, 14, 20, 30, 45, 65, 95, 140), (333.15, 363.15, 393.15, 423.15, 453.15)

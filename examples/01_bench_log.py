@@ -1,4 +1,4 @@
-"""Fit the shipped log of the virtual test stand, and compare rest of the drive and transition with the truth.
+"""Fit the shipped log of the virtual test stand, and compare no-load torque and transition with the truth.
 
 Usage: python examples/01_bench_log.py [FOLDER]: the figures are written into FOLDER (build/examples).
 """
@@ -25,7 +25,7 @@ told = json.loads((HERE / "bench-truth.json").read_text())
 
 print(*document.verdict, sep="\n")
 for name in ("constant", "per_speed"):
-    print(f"rest of the drive, {name}: {getattr(machine.rest, name)}, in truth {told['truth']['rest'][name]}")
+    print(f"no-load torque, {name}: {getattr(machine.rest, name)}, in truth {told['truth']['rest'][name]}")
 transition = document.film.transition
 ends = zip(transition.measured, transition.low, transition.high, strict=True)
 for speeds, true in zip(ends, told["transition_speeds_rpm"], strict=True):

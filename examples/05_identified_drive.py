@@ -24,7 +24,7 @@ drive = identify(record)
 print(f"\nclosure {drive.closure}, {'decided' if drive.decided else 'not decided'}")
 for name, value in truth.items():
     print(f"{name}: {drive.estimates.get(name, 'not told by this record')}, in truth {float(value):g}")
-for text in drive.not_told:
+for text in drive.not_estimable:
     print(f"- {text}")
 
 FOLDER.mkdir(parents=True, exist_ok=True)

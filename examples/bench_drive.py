@@ -4,7 +4,7 @@ The virtual test stand makes the torque of three parts, and the truth holds all 
 
 - film and contact share the load of ``[contact]``, with ``[lubricant]``, ``[asperities]`` and ``[boundary]``,
   as a full numerical solution has it (benchmarks/MIXED.md), not by the law that is fitted to the log;
-- the rest of the drive is what an engineer would expect of such a drive: two plain bearings of 4 mm radius
+- the no-load torque is what an engineer would expect of such a drive: two plain bearings of 4 mm radius
   that carry the 300 N at a friction of 0.1 (120 mN m), the loss of the rubber rolled over, 1 % of the load at
   15 mm (45 mN m), and the gears (15 mN m, and 1 mN m s/rad).
 
@@ -21,12 +21,12 @@ from dataclasses import replace
 from pathlib import Path
 
 from hersey import testbench
-from hersey.damping.rest import RestOfDrive
+from hersey.damping.no_load_torque import NoLoadTorque
 from hersey.machine.machine import read_machine
 
 HERE = Path(__file__).parent
 SEED, NO_LOAD_SEED = 2016, 2017
-REST = RestOfDrive.stated(constant="180 mN*m", per_speed="1 mN*m*s/rad")
+REST = NoLoadTorque.stated(constant="180 mN*m", per_speed="1 mN*m*s/rad")
 #: A stand whose dwells repeat within 0.5 %, and whose torque sensor was zeroed.
 STAND = testbench.Stand(repeatability=0.005, torque_offset=0.001)
 #: Coarser in speed and time, and back to the first temperature at the end.

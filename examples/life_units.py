@@ -3,7 +3,7 @@
 Each is followed over 170,000 pages, about 60 % of the life of the middle unit. What they end by, in truth:
 most reach the torque of the motor cold and fast, some starve of oil before, and one wears into stick-slip at
 the speed of thick paper. ``life/truth.json`` holds every number and every age at which a limit is reached;
-``life/runs.csv`` names the tables of means, unit and age. The rest of the drive is that of bench_drive.py.
+``life/runs.csv`` names the tables of means, unit and age. The no-load torque is that of bench_drive.py.
 
 Usage: python examples/life_units.py [FOLDER]
 """
@@ -13,7 +13,7 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from hersey.damping.rest import RestOfDrive
+from hersey.damping.no_load_torque import NoLoadTorque
 from hersey.machine.machine import read_machine
 from hersey.testbench import VirtualCampaign, population
 
@@ -21,7 +21,7 @@ HERE = Path(__file__).parent
 #: One of a few seeds tried, in which units end in three ways.
 SEED = 3
 AGES = (0.0, 35e3, 70e3, 105e3, 140e3, 170e3)
-REST = RestOfDrive.stated(constant="180 mN*m", per_speed="1 mN*m*s/rad")
+REST = NoLoadTorque.stated(constant="180 mN*m", per_speed="1 mN*m*s/rad")
 
 
 def campaign() -> VirtualCampaign:

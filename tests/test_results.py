@@ -17,7 +17,7 @@ from benchmarks.drift import other, table
 import hersey
 from hersey import testbench
 from hersey.damping.compare import LogComparison
-from hersey.damping.rest import RestOfDrive
+from hersey.damping.no_load_torque import NoLoadTorque
 from hersey.document.parts.cycles import CyclesPart
 from hersey.document.parts.drift import DriftPart
 from hersey.document.parts.fit import FitPart
@@ -164,7 +164,7 @@ RESULTS: dict[str, tuple[Callable[[], Any], type]] = {
     "TorqueLog": (log, LogPart),
     "SteadyPoints": (points, PointsPart),
     "DampingSurface": (surface, FitPart),
-    "RestOfDrive": (lambda: hersey.RestOfDrive.stated(constant=0.02, uncertainty=0.1), RestOfDrive),
+    "NoLoadTorque": (lambda: hersey.NoLoadTorque.stated(constant=0.02, uncertainty=0.1), NoLoadTorque),
     "Regime": (lambda: hersey.regime(points(), surface()), Regime),
     "Film": (film, FilmPart),
     "MixedFilm": (mixed, MixedPart),

@@ -56,7 +56,7 @@ def figure_8(machine: Machine, measured: Measured | None = None) -> PaperFigure:
 
 
 def motor_friction(machine: Machine) -> float | None:
-    """Return the friction coefficient at which the motor gives no more, the rest of the drive taken off."""
+    """Return the friction coefficient at which the motor gives no more, the no-load torque taken off."""
     contact = machine.contact
     if machine.limits.motor_torque is None or contact is None:
         return None

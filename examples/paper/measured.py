@@ -80,7 +80,7 @@ class Measured:
     def name(self) -> str:
         """The file, as titles name it, and whether its torque is that of the film alone."""
         name = self.points.log.files[0].name
-        return name if self.points.rest is None else f"{name}, rest of the drive taken off"
+        return name if self.points.rest is None else f"{name}, no-load torque taken off"
 
     @cached_property
     def groups(self) -> list[tuple[float | None, IntArray]]:

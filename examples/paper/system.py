@@ -49,16 +49,14 @@ def forces_of(machine: Machine, measured: Measured | None) -> list[tuple[str, fl
         found.append(("grip of the roll, µ N", limits.grip))
     if limits.motor_torque is not None:
         left = motor_left(machine)
-        found.append(
-            ("motor" if machine.rest is None else "motor, less the rest of the drive", left / radius)
-        )
+        found.append(("motor" if machine.rest is None else "motor, less the no-load torque", left / radius))
     if limits.spring_force is not None:
         found.append(("spring at most", limits.spring_force))
     return found
 
 
 def motor_left(machine: Machine) -> float:
-    """Return the torque of the motor that the rest of the drive leaves, N m, at the first operating point."""
+    """Return the torque of the motor that the no-load torque leaves, N m, at the first operating point."""
     assert machine.limits.motor_torque is not None
     if machine.rest is None or not machine.points:
         return machine.limits.motor_torque

@@ -11,9 +11,9 @@ from .damping.design import design as design
 from .damping.dwells import SteadyPoints as SteadyPoints
 from .damping.estimate import Estimate as Estimate
 from .damping.fit import fit as fit
-from .damping.no_load import rest_of_drive as rest_of_drive
+from .damping.no_load import no_load_torque as no_load_torque
+from .damping.no_load_torque import NoLoadTorque as NoLoadTorque
 from .damping.recipe import Recipe as Recipe
-from .damping.rest import RestOfDrive as RestOfDrive
 from .damping.surface import DampingSurface as DampingSurface
 from .errors import HerseyError as HerseyError
 from .exchange.unit import ExportedUnit as ExportedUnit

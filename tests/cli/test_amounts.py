@@ -165,5 +165,5 @@ def test_a_machine_brings_grip_motor_and_rest(tmp_path: Path) -> None:
     for file, kind in (("weak.toml", "stalled"), ("free.toml", "stick slip")):
         done = run("sweep", scenario, "--machine", file, cwd=tmp_path).stdout
         assert done.startswith(kind)
-        assert "the rest of the drive acts beside the drag: 1.333 N and 0 N s/m" in done
+        assert "the no-load torque acts beside the drag: 1.333 N and 0 N s/m" in done
         assert ("the roll grips the belt with up to 18 N" in done) == (file == "weak.toml")

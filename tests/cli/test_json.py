@@ -27,7 +27,7 @@ from tests.life import shipped
 
 EXAMPLES = ROOT / "examples"
 BENCH = str(EXAMPLES / "bench.csv")
-MACHINE = str(ROOT / "tests" / "stand" / "machine.toml")  # without a rest of the drive
+MACHINE = str(ROOT / "tests" / "stand" / "machine.toml")  # without a no-load torque
 TRACE = str(EXAMPLES / "stick-slip.csv")
 TARE = ["--tare", "standing"]
 #: Arguments that make each command print its part, all of it and quickly.

@@ -131,7 +131,7 @@ def test_a_mistake_in_a_saved_recipe_is_named(
 
 def test_no_load_is_said_once(tmp_path: Path) -> None:
     log = friction(tmp_path)
-    rest = hersey.RestOfDrive.stated(constant=0.01, source="[rest] of machine.toml")
+    rest = hersey.NoLoadTorque.stated(constant=0.01, source="[rest] of machine.toml")
     drive: Any = SimpleNamespace(sensors=Sensors(), rest=rest)
     with pytest.raises(ParameterError, match=r"^.*no_load and \[rest\] of machine.toml both say"):
         Recipe(logs=(log,), no_load=log).points(drive)

@@ -104,7 +104,7 @@ def test_two_visits_tell_the_exponent_of_speed_and_not_that_of_temperature() -> 
     a, b, c = surface.a, surface.b, surface.c
     assert b is not None
     assert b.value == pytest.approx(-0.9, abs=1e-9)
-    assert (b.told, a.told, c.told) == (False, False, True)
+    assert (b.estimable, a.estimable, c.estimable) == (False, False, True)
     assert (b.low, b.high) == (-np.inf, np.inf)
     assert (c.high - c.value) / c.error == pytest.approx(float(stats.t.ppf(0.975, 3)), rel=1e-9)
     assert [s.told for s in surface.statistics.shared] == [False]
@@ -113,7 +113,7 @@ def test_two_visits_tell_the_exponent_of_speed_and_not_that_of_temperature() -> 
     speed = np.tile([1.0, 3.0, 9.0], 3)
     visited = hersey.fit(points_of(speed, 5.0 * again**-0.9 * speed**0.3, again, error=0.02))
     assert visited.b is not None
-    assert visited.b.told
+    assert visited.b.estimable
     assert [s.told for s in visited.statistics.shared] == [True]
 
 

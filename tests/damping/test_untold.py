@@ -25,8 +25,8 @@ def test_limits_of_two_visits_say_that_they_are_those_of_these_visits() -> None:
     two = points(100.0, 160.0)
     surface = hersey.fit(two)
     assert surface.b is not None
-    assert not surface.b.told
-    assert surface.c.told
+    assert not surface.b.estimable
+    assert surface.c.estimable
     assert "interval not told" in surface.summary()
     assert "by the dwells of a visit: not told, they are too few" in surface.summary()
     with pytest.warns(UntoldWarning, match="visits recorded"):
@@ -39,7 +39,7 @@ def test_limits_of_two_visits_say_that_they_are_those_of_these_visits() -> None:
 def test_a_third_temperature_tells_it() -> None:
     surface = hersey.fit(points(100.0, 130.0, 160.0))
     assert surface.b is not None
-    assert surface.b.told
+    assert surface.b.estimable
     surface.predict("20 rpm", "120 degC")
 
 
@@ -62,8 +62,8 @@ def test_a_transition_that_moves_does_not_tell_how_far_two_visits_scatter() -> N
         )
         assert surface.transition is not None
         assert surface.b is not None
-        assert not surface.b.told
-        assert not surface.transition.speed.told
+        assert not surface.b.estimable
+        assert not surface.transition.speed.estimable
 
 
 def test_two_runs_without_temperatures_tell_by_how_much_they_stand_apart() -> None:

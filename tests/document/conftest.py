@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import hersey
-from hersey.damping.rest import RestOfDrive
+from hersey.damping.no_load_torque import NoLoadTorque
 from hersey.damping.surface import DampingSurface
 from hersey.decision.behaviour import Behaviour, Working
 from hersey.decision.judge import judge
@@ -51,7 +51,7 @@ POINTS = {"crawl": SLOW, "thick paper": BETWEEN, "near": 0.1, "full speed": FAST
 @pytest.fixture(scope="session")
 def found(points: hersey.SteadyPoints, surface: DampingSurface) -> Behaviour:
     """What the machine of the stand does, of few draws."""
-    known = replace(points, rest=RestOfDrive.stated(constant=1e-9))
+    known = replace(points, rest=NoLoadTorque.stated(constant=1e-9))
     return Working(known, replace(surface, rest=None), _machine(), draws=240).result()
 
 
@@ -77,7 +77,7 @@ Decide = Callable[..., DecisionPart]
 
 @pytest.fixture(scope="module")
 def decide(points: hersey.SteadyPoints, surface: DampingSurface, seen: Regime, machine: Machine) -> Decide:
-    known = replace(points, rest=RestOfDrive.stated(constant=1e-9))
+    known = replace(points, rest=NoLoadTorque.stated(constant=1e-9))
 
     def decided(
         found: Behaviour,

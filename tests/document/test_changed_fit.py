@@ -62,7 +62,7 @@ def saved(points: hersey.SteadyPoints, scale: str) -> dict[str, Any]:
 def documents() -> dict[str, dict[str, Any]]:
     """Fits of several kinds, with three dwells each in the part that is changed."""
     points = hersey.read("examples/bench.csv").steady(tare="standing")
-    rest = hersey.RestOfDrive.stated(
+    rest = hersey.NoLoadTorque.stated(
         constant=0.005, per_speed=1e-4, temperature_slope=-1e-3, reference_temperature=400.0, uncertainty=0.1
     )
     table = {"speed [rpm]": [10, 20, 40, 80], "torque [mN*m]": [5.0, 5.6, 6.3, 7.2]}
@@ -130,7 +130,7 @@ def may_be(key: str, change: Any) -> bool:
     return not isinstance(change, str | list) and change != 1e308 and any(p.fullmatch(key) for p, _ in WORDS)
 
 
-#: A fit less the rest of the drive has every part that a fit may have, one power of speed the fewest.
+#: A fit less the no-load torque has every part that a fit may have, one power of speed the fewest.
 KINDS = ["corner or bend", "shared scatter", "less the rest", "one power of speed"]
 
 

@@ -66,7 +66,7 @@ def test_no_document(text: str, tmp_path: Path) -> None:
 def test_fits_of_all_kinds_are_read_again(tmp_path: Path) -> None:
     """Also with a dwell held to the branch on the other side, and with a film that friction heats."""
     points = hersey.read("examples/bench.csv").steady(tare="standing")
-    rest = hersey.rest_of_drive(hersey.read("examples/no-load.csv").steady(tare="standing"))
+    rest = hersey.no_load_torque(hersey.read("examples/no-load.csv").steady(tare="standing"))
     heated = replace(points, log=replace(points.log, sensors=Sensors(film_heating=3.0)))
     for each in (points, points.without(rest), heated, heated.without(rest)):
         surface = hersey.fit(each)

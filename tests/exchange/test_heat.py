@@ -118,7 +118,7 @@ def test_heat_is_never_negative_and_what_is_given_back_is_set_off(tmp_path: Path
 
 @pytest.mark.parametrize("fmi", VERSIONS)
 def test_steady_sliding_heats_by_drag_times_speed(fmi: str, tmp_path: Path) -> None:
-    """At 80 mm/s: drag of the law, of which the rest of the drive heats no film."""
+    """At 80 mm/s: drag of the law, of which the no-load torque heats no film."""
     drag = replace(DRAG, rest_force=6.0, rest_damping=4.0)
     with opened(tmp_path, drag, drive_speed=0.08, start="steady", fmi=fmi) as found:
         found.to(0.5)

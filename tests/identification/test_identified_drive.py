@@ -98,7 +98,7 @@ def test_the_closure_is_chosen_or_left_open(closure: str) -> None:
 def test_what_a_noisy_record_cannot_tell_is_said_and_not_given() -> None:
     drive = identify(record(3, noise=15.0), closures=("retained",))
     assert "stick_speed" not in drive.estimates
-    assert any("stick speed" in text for text in drive.not_told)
+    assert any("stick speed" in text for text in drive.not_estimable)
     assert "not told by this record" in drive.summary()
     assert drive.derived["free_period"].low < 2 * np.pi / np.sqrt(1000) < drive.derived["free_period"].high
 

@@ -30,7 +30,7 @@ def test_an_exponent_whose_interval_a_fit_does_not_tell_is_not_promised() -> Non
     two = points(90.0, 150.0)
     surface = hersey.fit(two)
     assert surface.b is not None
-    assert not surface.b.told
+    assert not surface.b.estimable
     found = support_of_points(two)
     assert not any(said.startswith("exponent b") for said in found.can)
     assert any("90, 150 degC were visited once each" in said for said in found.cannot)

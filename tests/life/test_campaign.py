@@ -84,7 +84,7 @@ def test_the_numbers_for_computing_are_those_of_the_dwells(campaign: Campaign, r
 
 
 def test_points_come_back_whole(campaign: Campaign, points: hersey.SteadyPoints, bench_csv: Path) -> None:
-    rest = hersey.RestOfDrive.stated(constant=1e-4, uncertainty=0.1)
+    rest = hersey.NoLoadTorque.stated(constant=1e-4, uncertainty=0.1)
     for number, each in enumerate((points, points.without(rest)), 1):
         surface = hersey.fit(each)
         fresh = replace(each.log.files[0], sha256=f"{number:064x}")
@@ -247,7 +247,7 @@ def test_export_has_a_row_per_dwell(campaign: Campaign, run_csv: Path, tmp_path:
 def test_dwells_say_what_was_taken_off_as_the_rest(campaign: Campaign) -> None:
     hot = [380.0, 380.0, 420.0, 420.0]
     table = {"speed [rad/s]": [1, 2, 4, -8], "torque [N*m]": [5, 6, 7, -8], "temperature [K]": hot}
-    rest = hersey.RestOfDrive.stated(
+    rest = hersey.NoLoadTorque.stated(
         constant=1.0, per_speed=0.1, temperature_slope=-0.01, reference_temperature=400.0
     )
     whole = hersey.SteadyPoints.from_table(table)

@@ -30,22 +30,22 @@ def drift_of(source: str, kind: str, units: int = 4) -> Drift:
         ("film", "film"),
         ("roughness", "contact"),
         ("boundary friction", "contact"),
-        ("rest of the drive", "rest of the drive"),
+        ("no-load torque", "no-load torque"),
     ],
 )
 def test_what_ages_alone_is_read(kind: str, name: str) -> None:
     assert said(drift_of("stand", kind).reading) == name
 
 
-@pytest.mark.parametrize("kind", ["nothing", "lubricant", "rest of the drive"])
+@pytest.mark.parametrize("kind", ["nothing", "lubricant", "no-load torque"])
 def test_what_ages_in_a_drive_of_other_laws_is_read(kind: str) -> None:
     assert said(drift_of("other", kind).reading) == kind
 
 
 def test_the_rest_that_grows_is_told_in_newton_metres() -> None:
-    drift = drift_of("stand", "rest of the drive")
+    drift = drift_of("stand", "no-load torque")
     units = population(*example_drive(), ageing=Ageing(rest_growth=1e-6), units=4, seed=2)
-    told = drift["rest of the drive"]
+    told = drift["no-load torque"]
     true = [1e3 * 0.18 * 170e3 * unit.ageing.rest_growth for unit in units]
     found = np.array([[1e3 * each.low, 1e3 * each.high] for each in told.units])
     assert np.sum((found[:, 0] < true) & (true < found[:, 1])) >= 3
@@ -81,7 +81,7 @@ def test_many_units_are_read_as_few_are() -> None:
     runs = table(other("film and rest", 1, units=64, logs=4)).filter(pl.int_range(pl.len()) % 2 == 0)
     drift = fit_drift(runs)
     assert drift.fitted.settled
-    assert said(drift.reading) == "film+rest of the drive"
+    assert said(drift.reading) == "film+no-load torque"
 
 
 def test_without_stated_errors_their_scatter_tells_them() -> None:

@@ -307,7 +307,7 @@ def test_a_corrected_log_is_fitted_to_the_truth() -> None:
 
 
 def test_no_load_torque_where_the_roll_drives_the_motor() -> None:
-    """The rest of the drive brakes the motion, whichever way torque acts."""
+    """The no-load torque brakes the motion, whichever way torque acts."""
     speed = staircase(-4.0, 4.0)
     after = torque_of(corrections.no_load(log_of(-0.5 * np.sign(speed), speed), torque=0.1))
     np.testing.assert_allclose(after, -0.6 * np.sign(speed), atol=1e-12)

@@ -1,4 +1,4 @@
-"""Grip, static force, rest of the drive, bristles and temperature against a solution that shares no code."""
+"""Grip, static force, no-load torque, bristles and temperature against a solution that shares no code."""
 
 from __future__ import annotations
 

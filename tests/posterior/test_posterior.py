@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import hersey
-from hersey.damping.rest import RestOfDrive
+from hersey.damping.no_load_torque import NoLoadTorque
 from hersey.log import TorqueLog
 from hersey.log.torque_log import Run
 from hersey.machine.uncertainty import Uncertainty
@@ -356,7 +356,7 @@ def test_a_belt_at_rest_bears_the_no_load_drag_too(alone: Posterior) -> None:
     few = alone.drives.take(np.arange(0, 400, 40))
     forces = [
         break_away_force(replace(alone.model, surface=replace(alone.model.surface, rest=rest)), few, HOT)
-        for rest in (None, RestOfDrive.stated(constant=0.03))
+        for rest in (None, NoLoadTorque.stated(constant=0.03))
     ]
     assert forces[1] - forces[0] == pytest.approx(np.full(10, 0.03 / 0.015), rel=1e-9)
 

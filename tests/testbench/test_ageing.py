@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import hersey
-from hersey.damping.rest import RestOfDrive
+from hersey.damping.no_load_torque import NoLoadTorque
 from hersey.errors import ParameterError
 from hersey.log.means import is_means_table
 from hersey.lubrication.film import drag_torque
@@ -48,7 +48,7 @@ SMALL = Stand(temperatures_degC=(60.0, 180.0), speeds_rpm=(10.0, 30.0, 130.0))
 
 
 @pytest.fixture(scope="module")
-def drive() -> tuple[Machine, RestOfDrive]:
+def drive() -> tuple[Machine, NoLoadTorque]:
     return example_drive()
 
 
@@ -58,7 +58,7 @@ def told() -> dict[str, object]:
     return document
 
 
-def unit(drive: tuple[Machine, RestOfDrive], **ageing: object) -> Unit:
+def unit(drive: tuple[Machine, NoLoadTorque], **ageing: object) -> Unit:
     return Unit("U", *drive, replace(STILL, **ageing))  # type: ignore[arg-type]
 
 
@@ -69,7 +69,7 @@ def exponent(truth: PhysicalTruth, speed: float, level: float) -> float:
     return float(np.diff(np.log(torque))[0] / np.diff(np.log(near))[0]) - 1.0
 
 
-def test_the_drive_is_that_of_the_examples(drive: tuple[Machine, RestOfDrive]) -> None:
+def test_the_drive_is_that_of_the_examples(drive: tuple[Machine, NoLoadTorque]) -> None:
     machine, rest = drive
     read = read_machine(ROOT / "examples" / "machine.toml")
     for name in ("contact", "lubricant", "asperities", "boundary", "limits", "points", "train"):
@@ -78,7 +78,7 @@ def test_the_drive_is_that_of_the_examples(drive: tuple[Machine, RestOfDrive]) -
     assert rest.to_dict() == generator["REST"].to_dict()
 
 
-def test_a_new_unit_is_the_physical_truth_of_its_machine(drive: tuple[Machine, RestOfDrive]) -> None:
+def test_a_new_unit_is_the_physical_truth_of_its_machine(drive: tuple[Machine, NoLoadTorque]) -> None:
     truth, new = PhysicalTruth(drive[0].mixed, drive[1]), unit(drive).at(1e5)
     assert new.torque(SPEED, LEVEL) == pytest.approx(truth.torque(SPEED, LEVEL), rel=1e-12)
     assert new.transition_speed(LEVEL) == pytest.approx(truth.transition_speed(LEVEL), rel=1e-12)
@@ -88,7 +88,7 @@ def test_a_new_unit_is_the_physical_truth_of_its_machine(drive: tuple[Machine, R
     assert flooded.transition_speed(LEVEL) == pytest.approx(truth.transition_speed(LEVEL), rel=1e-4)
 
 
-def test_the_drag_of_an_old_unit_has_its_rest(drive: tuple[Machine, RestOfDrive]) -> None:
+def test_the_drag_of_an_old_unit_has_its_rest(drive: tuple[Machine, NoLoadTorque]) -> None:
     old, speed = population(*drive, units=1, seed=3)[0].at(150e3), np.array([1.0, 5.0, 13.0])
     force = old.drag(180.0, 0.015, 3e-4).force(speed * 0.015)
     assert force * 0.015 == pytest.approx(old.torque(speed, np.array(180.0)), rel=1e-3)
@@ -108,7 +108,7 @@ def test_side_flow_and_evaporation_are_their_closed_forms() -> None:
     assert both.supply_at(3e5) == pytest.approx(h, rel=1e-5)
 
 
-def test_a_starved_film_is_that_of_the_film_solver(drive: tuple[Machine, RestOfDrive]) -> None:
+def test_a_starved_film_is_that_of_the_film_solver(drive: tuple[Machine, NoLoadTorque]) -> None:
     """Where no asperity touches: shear and rolling as `drag_torque` has them, by another way."""
     machine, _ = drive
     assert machine.contact is not None
@@ -123,7 +123,7 @@ def test_a_starved_film_is_that_of_the_film_solver(drive: tuple[Machine, RestOfD
         assert torque == pytest.approx(solved, rel=0.01)
 
 
-def test_a_starving_film_stays_as_thick_as_its_layer(drive: tuple[Machine, RestOfDrive]) -> None:
+def test_a_starving_film_stays_as_thick_as_its_layer(drive: tuple[Machine, NoLoadTorque]) -> None:
     """Its damping no longer falls with speed: the exponent goes from that of the soft film to 0."""
     exponents = [
         exponent(unit(drive, supply=supply).at(0.0), 13.0, 60.0) for supply in (1e-3, 2e-5, 1e-5, 4e-6)
@@ -133,7 +133,7 @@ def test_a_starving_film_stays_as_thick_as_its_layer(drive: tuple[Machine, RestO
     assert exponents[-1] == pytest.approx(0.0, abs=0.02)
 
 
-def test_what_ages_moves_the_way_it_must(drive: tuple[Machine, RestOfDrive]) -> None:
+def test_what_ages_moves_the_way_it_must(drive: tuple[Machine, NoLoadTorque]) -> None:
     ages = (0.0, 5e4, 1e5, 2e5)
     cold, hot = (np.array(13.3), np.array(60.0)), (np.array(1.0), np.array(180.0))
     moved = {
@@ -166,7 +166,7 @@ def test_what_ages_moves_the_way_it_must(drive: tuple[Machine, RestOfDrive]) -> 
     )
 
 
-def test_an_age_at_a_limit(drive: tuple[Machine, RestOfDrive]) -> None:
+def test_an_age_at_a_limit(drive: tuple[Machine, NoLoadTorque]) -> None:
     one = unit(drive, supply=2e-5, side_flow=1e5, thickening=2e-6)
     at = {"speed": 13.3, "temperature": 60.0}
     age = one.age_at(0.6, **at, within=1e6)
@@ -177,7 +177,7 @@ def test_an_age_at_a_limit(drive: tuple[Machine, RestOfDrive]) -> None:
     assert one.age_at(0.1, **at, within=1e6) == 0.0
 
 
-def test_a_seed_and_its_units(drive: tuple[Machine, RestOfDrive]) -> None:
+def test_a_seed_and_its_units(drive: tuple[Machine, NoLoadTorque]) -> None:
     eight, two = (population(*drive, units=count, seed=4) for count in (8, 2))
     assert [u.ageing for u in eight[:2]] == [u.ageing for u in two]
     assert eight[0].ageing != eight[1].ageing != population(*drive, units=2, seed=5)[1].ageing
@@ -189,7 +189,7 @@ def test_a_seed_and_its_units(drive: tuple[Machine, RestOfDrive]) -> None:
     assert VirtualCampaign(two, (5e4,), 4, SMALL).files()["U2-50000.csv"] == first["U2-50000.csv"]
 
 
-def test_a_drive_that_stalls_has_no_such_dwell(drive: tuple[Machine, RestOfDrive]) -> None:
+def test_a_drive_that_stalls_has_no_such_dwell(drive: tuple[Machine, NoLoadTorque]) -> None:
     old = Unit("U1", *drive, replace(STILL, supply=2e-6))
     files = VirtualCampaign((old,), (0.0,), 0, SMALL).files()
     truth = json.loads(files["truth.json"])["units"][0]
@@ -202,7 +202,7 @@ def test_a_drive_that_stalls_has_no_such_dwell(drive: tuple[Machine, RestOfDrive
     assert files["runs.csv"] == "log,unit,age\n"
 
 
-def test_the_shipped_units(told: dict[str, object], drive: tuple[Machine, RestOfDrive]) -> None:
+def test_the_shipped_units(told: dict[str, object], drive: tuple[Machine, NoLoadTorque]) -> None:
     rows = list(csv.DictReader((LIFE / "runs.csv").open()))
     assert set(rows[0]) == {"log", "unit", "age"}
     assert len(rows) == 48
@@ -280,7 +280,7 @@ def test_what_the_command_refuses(typed: tuple[str, ...], said: str, tmp_path: P
     assert not list(tmp_path.iterdir())
 
 
-def test_bad_numbers_are_named(drive: tuple[Machine, RestOfDrive]) -> None:
+def test_bad_numbers_are_named(drive: tuple[Machine, NoLoadTorque]) -> None:
     assert ages_of("0, 50, 100 kpages") == (0.0, 5e4, 1e5)
     assert ages_of("0 pages, 2 kpages, 1 Mpages") == (0.0, 2e3, 1e6)
     with pytest.raises(ParameterError, match="side_flow is -1"):

@@ -13,7 +13,7 @@ import pytest
 
 import hersey
 from hersey import testbench
-from hersey.damping.rest import RestOfDrive
+from hersey.damping.no_load_torque import NoLoadTorque
 from hersey.document.analysis import Analysis
 from hersey.document.assembly import document_of
 from hersey.errors import ParameterError
@@ -25,7 +25,7 @@ from hersey.units import ZERO_CELSIUS
 from tests.conftest import ROOT
 
 EXAMPLES = ROOT / "examples"
-REST = RestOfDrive.stated(constant=0.18, per_speed=1e-3)
+REST = NoLoadTorque.stated(constant=0.18, per_speed=1e-3)
 
 
 @pytest.fixture(scope="module")

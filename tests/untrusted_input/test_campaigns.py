@@ -264,7 +264,7 @@ def rest(**changes: object) -> dict[str, object]:
         "systematic": 0.0,
     }
     whole = {
-        "kind": "RestOfDrive",
+        "kind": "NoLoadTorque",
         "constant": {**estimate, "value": 1e-4, "low": 1e-4, "high": 1e-4},
         "per_speed": estimate,
         "temperature_slope": estimate,
@@ -283,7 +283,7 @@ WRONG_REST = {
     "unknown record": {"rest": {"kind": "Path", "x": 1}},
     "kind is a list": {"rest": {"kind": []}},
     "text for a number": {"rest": rest(constant="no")},
-    "missing key": {"rest": {"kind": "RestOfDrive"}},
+    "missing key": {"rest": {"kind": "NoLoadTorque"}},
     "unknown key": {"rest": rest(mine=1)},
     "NaN": {"rest": rest(reference_temperature=float("nan"))},
     "below 0 K": {"rest": rest(reference_temperature=-1.0)},

@@ -19,7 +19,7 @@ friction         the Stribeck curve: dwells, model, regimes, stall
 mixed            torque of film and asperities against speed
 transition       transition speed against temperature
 stick_speed      V* against the stick speed
-torque_budget    what film, contact and rest of the drive take, stacked
+torque_budget    what film, contact and no-load torque take, stacked
 motion           a trajectory, and the lap to which it settles
 cycles           trace, cycles and fitted motion
 hysteresis       what the belt does at which drive speed
@@ -56,7 +56,7 @@ CHARTS = {
     "Inspection": ("inspection", "channels_chart"),
     "SteadyPoints": ("damping", "steady_chart"),
     "DampingSurface": ("damping", "surface_chart"),
-    "RestOfDrive": ("damping", "rest_chart"),
+    "NoLoadTorque": ("damping", "rest_chart"),
     "ModelComparison": ("damping", "models_chart"),
     "LogComparison": ("damping", "logs_chart"),
     "TestDesign": ("damping", "design_chart"),

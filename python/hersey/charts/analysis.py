@@ -89,7 +89,7 @@ def torque(document: Analysis) -> Chart:
     """Torque against speed per temperature, with the drag curves (the paper's Fig. 2)."""
     _, unit = _torque_unit(document)
     subtitle = "filled: reached from below, open: from above, bars: two standard errors; lines: drag curves"
-    subtitle += "" if document.fit.rest is None else "; the rest of the drive is taken off"
+    subtitle += "" if document.fit.rest is None else "; the no-load torque is taken off"
     title = alt.Title("Drag torque against speed", subtitle=subtitle)
     return _against_speed(document, "torque", f"Torque ({unit})", turns=True).properties(title=title)
 

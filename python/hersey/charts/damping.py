@@ -34,13 +34,13 @@ from hersey.damping.candidates.intervals import Band
 from hersey.damping.compare import LogComparison
 from hersey.damping.design import TestDesign
 from hersey.damping.dwells import SteadyPoints, groups_of_temperature
-from hersey.damping.rest import RestOfDrive
+from hersey.damping.no_load_torque import NoLoadTorque
 from hersey.damping.surface import DampingSurface
 from hersey.units import celsius, rpm
 
 #: Speeds at which a law is drawn, temperatures at which a surface is, and candidates that are listed.
 _SPEEDS, _TEMPERATURES, _LISTED = 60, 4, 10
-#: Speeds (rad/s) of a rest of the drive that is stated.
+#: Speeds (rad/s) of a no-load torque that is stated.
 _STATED = (0.1, 30.0)
 #: Share of the speed by which marks of two temperatures stand apart.
 _APART = 0.045
@@ -86,7 +86,7 @@ def surface_chart(surface: DampingSurface) -> Chart:
     )
 
 
-def rest_chart(rest: RestOfDrive) -> Chart:
+def rest_chart(rest: NoLoadTorque) -> Chart:
     """Return what the drive takes without the film: torque against speed at temperatures, with its limits."""
     speed = np.geomspace(*(rest.speed_range or _STATED), _SPEEDS)
     hot: list[float | None] = [rest.reference_temperature]
@@ -99,7 +99,7 @@ def rest_chart(rest: RestOfDrive) -> Chart:
         reach = 2.0 * factor * np.linalg.norm(rest.errors(speed, t), axis=1)
         low = np.maximum(torque - reach, 1e-2 * torque)  # a logarithm has no place for nothing
         rows += curve_rows(speed, torque, t, (low, torque + reach))
-    title = alt.Title("Rest of the drive", subtitle="lines: the law; shaded: two standard errors")
+    title = alt.Title("No-load torque", subtitle="lines: the law; shaded: two standard errors")
     return against_speed([], rows, f"Torque ({unit})").properties(title=title)
 
 

@@ -24,7 +24,7 @@ from hersey.units import celsius, rpm
 
 #: Parts from below, with their names and shades that stay apart in grey.
 _PARTS = (
-    ("rest", "rest of the drive", "#c9d1d6"),
+    ("rest", "no-load torque", "#c9d1d6"),
     ("contact", "contact", "#b8500c"),
     ("shear", "film, sheared", "#0a5c8f"),
     ("inlet", "film, inlet", "#74a9cf"),
@@ -55,6 +55,6 @@ def torque_budget_chart(part: TorqueBudgetPart) -> Chart:
     title = alt.Title(
         f"What carries the torque at {celsius(part.temperature):.0f} °C",
         subtitle="areas: by the machine's file, the film sheared over the nip, its inlet with the pressure; "
-        "circles: dwells of the log, rest of the drive included",
+        "circles: dwells of the log, no-load torque included",
     )
     return alt.layer(areas, dots, title=title, width=WIDTH, height=HEIGHT)

@@ -114,7 +114,7 @@ def amounts(
 
 
 def of_a_machine(file: Path) -> dict[str, float]:
-    """Return what a machine's file states of a belt, in SI, its roll's grip and the rest of its drive."""
+    """Return what a machine's file states of a belt, in SI, its roll's grip and its no-load torque."""
     from hersey.machine.machine import read_machine
 
     machine = read_machine(file)

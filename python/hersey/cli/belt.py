@@ -119,8 +119,8 @@ class Belt:
 def _of_the_machine(
     train: Drivetrain, film: PowerDrag, numbers: Amounts, machine: Machine
 ) -> tuple[Drivetrain, PowerDrag, Amounts]:
-    """The belt given and, beside it, what the machine says of its roll's grip and the rest of its drive."""
-    from hersey.damping.rest import with_rest
+    """The belt given and, beside it, what the machine says of its roll's grip and its no-load torque."""
+    from hersey.damping.no_load_torque import with_rest
     from hersey.motion.drag import DragTable
     from hersey.units import celsius
 
@@ -132,7 +132,7 @@ def _of_the_machine(
         drag = with_rest(film, machine.rest, machine.roll_radius, kelvin)
     if drag != film:
         at = "" if kelvin is None else f" (at {celsius(kelvin):.0f} degC)"
-        notes.append(f"the rest of the drive acts beside the drag given: {machine.rest}{at}")
+        notes.append(f"the no-load torque acts beside the drag given: {machine.rest}{at}")
     if train.grip is not None:
         notes.append(f"the roll grips the belt with up to {train.grip:.4g} N")
     if train.grip is not None and drag.holding_force > train.grip:

@@ -24,7 +24,7 @@ _ROLES = ("torque", "speed", "temperature", "time")
 
 _MACHINE = "Machine's file to write.  [default: machine.toml]"
 _MAPPING = "Mapping to write.  [default: hersey.toml beside the log]"
-_ALL = "Ask also for limits, nip, lubricant and the rest of the drive."
+_ALL = "Ask also for limits, nip, lubricant and the no-load torque."
 
 
 def new(

@@ -31,7 +31,7 @@ _FIT = "Instead of a log: what hersey fit --json printed."
 FitFile = Annotated[Path | None, option(_FIT, "--fit", metavar="JSON")]
 _TRACE = "Recording of starts from rest or stick-slip of this machine; repeat for more files."
 Traces = Annotated[list[Path] | None, option(_TRACE, metavar="FILE")]
-_SENSORS = "Machine's file: rest of the drive, sensors."
+_SENSORS = "Machine's file: no-load torque, sensors."
 SensorsFile = Annotated[Path | None, option(_SENSORS, "--machine", metavar="TOML")]
 Figures = Annotated[Path | None, option("Also write each chart as SVG, PNG and PDF.", metavar="DIR")]
 Start = Annotated[str, option("rest, or steady (sliding with the drive).")]
@@ -228,7 +228,7 @@ def finished_fit(file: Path, machine: Machine | None = None) -> DampingSurface:
             f"{file.name} is fitted to the whole torque, and {machine.rest.source} says what the drive takes "
             "besides the film: write the fit anew with hersey fit LOG --machine, or leave [rest] out"
         )
-    _warn("rest of the drive: that of the fit is used, not that of the machine's file")
+    _warn("no-load torque: that of the fit is used, not that of the machine's file")
     return surface
 
 

@@ -137,7 +137,7 @@ def _of_the_machine(described: Scenario) -> Iterator[str]:
         yield f"the roll grips the belt with up to {described.grip:.4g} N"
     if described.rest_force or described.rest_damping:
         yield (
-            f"the rest of the drive acts beside the drag: {described.rest_force:.4g} N and "
+            f"the no-load torque acts beside the drag: {described.rest_force:.4g} N and "
             f"{described.rest_damping:.4g} N s/m"
         )
 

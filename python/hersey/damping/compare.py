@@ -304,7 +304,7 @@ def _changes(a: CandidateFit, b: CandidateFit, of_a: Observations, of_b: Observa
         if not energy and name not in _QUOTED and not name.startswith("c at"):
             continue
         p, q = in_a[name], in_b[name]
-        if any(r.fit.untold(r.fit.law.names[k.parameter]) for r, k in ((a, p), (b, q))):
+        if any(r.fit.not_estimable(r.fit.law.names[k.parameter]) for r, k in ((a, p), (b, q))):
             continue
         u, v = float(a.fit.values[p.parameter]), float(b.fit.values[q.parameter])
         is_ratio = name.endswith("speed")

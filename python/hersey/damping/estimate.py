@@ -29,7 +29,7 @@ class Estimate(Record):
     systematic: Annotated[float, OPEN] = 0.0
 
     @property
-    def told(self) -> bool:
+    def estimable(self) -> bool:
         """Whether the interval is bounded."""
         return bool(np.isfinite(self.low) and np.isfinite(self.high))
 
@@ -39,7 +39,7 @@ class Estimate(Record):
 
     def __str__(self) -> str:
         """Return value and interval with sensible digits."""
-        if not self.told:
+        if not self.estimable:
             return f"{self.value:.4g} (interval not told)"
         return f"{self.value:.4g} [{self.low:.4g}, {self.high:.4g}]"
 

@@ -171,7 +171,7 @@ def _coefficients(
             out[name] = estimate(float(values[i]), error, fit.freedom_of(parameter)).with_systematic(
                 _together(moved[:, i])
             )
-    if law.thermal and fit.untold("e"):
+    if law.thermal and fit.not_estimable("e"):
         out |= {name: replace(out[name], low=-np.inf, high=np.inf) for name in ("a", "b")}
     return out
 
@@ -183,7 +183,7 @@ def _together(shifts: FloatArray) -> float:
 
 def _with_sensors(transition: Transition, fit: LawFit, shifts: FloatArray) -> Transition:
     law, speed, mixed = law_of(fit), transition.speed, transition.mixed_exponent
-    if fit.untold("at"):
+    if fit.not_estimable("at"):
         speed = replace(speed, low=-np.inf, high=np.inf)
     moved = speed.value * _together(shifts[:, law.index("at")])
     return replace(

@@ -19,7 +19,7 @@ from hersey.damping.candidates.observations import Inputs
 from hersey.damping.candidates.shared_errors import Freedom, SharedScatter
 from hersey.damping.candidates.thermal import CELSIUS, KELVIN, Thermal
 from hersey.damping.estimate import Estimate
-from hersey.damping.rest import RestOfDrive
+from hersey.damping.no_load_torque import NoLoadTorque
 from hersey.errors import ExtrapolationWarning, ParameterError, UntoldWarning
 from hersey.result import Result
 from hersey.units import takes_si
@@ -73,7 +73,7 @@ class FittedLaw(Result):
     rejected_transition: str  #: why a second branch is not announced, empty if it is
     data_sha256: tuple[str, ...]
     sensors: str = ""  #: their errors in words, which the systematic parts stand for
-    rest: RestOfDrive | None = None  #: taken off the torque before the fit
+    rest: NoLoadTorque | None = None  #: taken off the torque before the fit
     version: str = field(default=_core.VERSION)
 
     @takes_si(speed="speed", temperature="temperature")
@@ -160,7 +160,7 @@ class FittedLaw(Result):
         return band_of(self._law, self._law_values, self.freedoms, dwell, inputs)
 
     def _warn_untold(self) -> None:
-        if self.b is not None and not self.b.told:
+        if self.b is not None and not self.b.estimable:
             warnings.warn(UntoldWarning(), stacklevel=4)
 
     @property

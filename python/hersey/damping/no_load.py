@@ -1,4 +1,4 @@
-"""The rest of the drive from a log recorded without the film: roll lifted, or belt taken off.
+"""The no-load torque from a log recorded without the film: roll lifted, or belt taken off.
 
 Fitted in the likelihood of the candidate laws, to torque itself: dwells with their errors, a scatter between
 them, and what they share (the zero of torque, visits to a temperature, runs).
@@ -13,10 +13,10 @@ import numpy as np
 
 from hersey.damping.candidates.fitting import LawFit, fit_law
 from hersey.damping.candidates.lack_of_fit import DOES_NOT_HOLD, lack_of_fit
+from hersey.damping.candidates.no_load_law import KELVIN, RestLaw
 from hersey.damping.candidates.observations import Observations
-from hersey.damping.candidates.rest_law import KELVIN, RestLaw
 from hersey.damping.dwells import SteadyPoints, distinct_speeds
-from hersey.damping.rest import RestOfDrive, estimates_of
+from hersey.damping.no_load_torque import NoLoadTorque, estimates_of
 from hersey.errors import TARE, InsufficientDataError, ParameterError, turned
 from hersey.log.sensors import SHARE_OF_LARGEST, Sensors
 from hersey.units import celsius, rpm
@@ -29,8 +29,8 @@ _LITTLE = 0.1
 _SEEN = 1e-3
 
 
-def rest_of_drive(points: SteadyPoints) -> RestOfDrive:
-    """Fit what the drive takes without the film: constant plus speed-proportional, and its warmth.
+def no_load_torque(points: SteadyPoints) -> NoLoadTorque:
+    """Fit what the drive takes without the film: constant, by speed, and its change with temperature.
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ def rest_of_drive(points: SteadyPoints) -> RestOfDrive:
 
     Returns
     -------
-    RestOfDrive
+    NoLoadTorque
         What the log cannot tell is taken as nothing, with an unbounded interval and a note: with one speed
         the part that rises with speed, with one temperature the slope in temperature.
 
@@ -51,7 +51,7 @@ def rest_of_drive(points: SteadyPoints) -> RestOfDrive:
     Examples
     --------
     >>> table = {"speed [rpm]": [10, 20, 40, 80, 160], "torque [mN*m]": [21.1, 21.9, 24.3, 28.3, 36.8]}
-    >>> print(rest_of_drive(SteadyPoints.from_table(table)))
+    >>> print(no_load_torque(SteadyPoints.from_table(table)))
     20 mN m + 1 mN m s/rad times speed (table)
     """
     name = points.log.files[0].name
@@ -78,7 +78,7 @@ def rest_of_drive(points: SteadyPoints) -> RestOfDrive:
     if zero is None:
         zero = SHARE_OF_LARGEST * scale * float(np.max(np.abs(data.log_torque)))
     by_speed = abs(per_speed.value) * float(np.hypot(sensors.torque_gain, sensors.speed_gain))
-    return RestOfDrive(
+    return NoLoadTorque(
         constant=constant.with_systematic(float(np.hypot(sensors.torque_gain * constant.value, zero))),
         per_speed=per_speed.with_systematic(by_speed),
         temperature_slope=slope,
@@ -109,7 +109,7 @@ def _law(name: str, data: Observations) -> RestLaw:
     )
     if len(data) < len(law.names) + _SPARE:
         raise InsufficientDataError(
-            f"{name}: {len(data)} steady points cannot tell the rest of the drive with its error: "
+            f"{name}: {len(data)} steady points cannot tell the no-load torque with its error: "
             f"at least {len(law.names) + _SPARE} are needed"
         )
     return law

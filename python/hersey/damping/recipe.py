@@ -17,8 +17,8 @@ import pydantic.dataclasses
 from pydantic import ValidationInfo
 
 from hersey.damping.dwells import SteadyPoints
-from hersey.damping.no_load import rest_of_drive
-from hersey.damping.rest import RestOfDrive
+from hersey.damping.no_load import no_load_torque
+from hersey.damping.no_load_torque import NoLoadTorque
 from hersey.errors import TARE, HerseyError, ParameterError, Setting
 from hersey.files.toml import Quantity, Table, quoted, read_tables
 from hersey.log import TorqueLog
@@ -40,7 +40,7 @@ class KnownDrive(Protocol):
         """Errors of its sensors."""
 
     @property
-    def rest(self) -> RestOfDrive | None:
+    def rest(self) -> NoLoadTorque | None:
         """What it takes without the film."""
 
 
@@ -171,7 +171,7 @@ class Recipe:
         with naming_logs(self.logs):
             return self.dwells(self.log(drive, progress=progress), drive)
 
-    def rest(self, stated: RestOfDrive | None = None) -> RestOfDrive | None:
+    def rest(self, stated: NoLoadTorque | None = None) -> NoLoadTorque | None:
         """Return what the log without the film shows, or what is ``stated`` where there is none.
 
         Raises
@@ -188,7 +188,7 @@ class Recipe:
             )
         channels, units = _without("load", self.channels), _without("load", self.units)
         alone = replace(self, logs=(self.no_load,), no_load=None, load=None, channels=channels, units=units)
-        return rest_of_drive(alone._dwells(alone.log()))
+        return no_load_torque(alone._dwells(alone.log()))
 
     @property
     def chosen(self) -> LogMapping:

@@ -11,7 +11,7 @@ import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.damping.estimate import Estimate, quantile
-from hersey.damping.rest import NUMBERS, RestOfDrive
+from hersey.damping.no_load_torque import NUMBERS, NoLoadTorque
 
 #: How far a number may be from the one that it follows from, relative.
 AGREES = 1e-6
@@ -81,8 +81,8 @@ def faults_of_range(name: str, ends: tuple[float, float] | None) -> Iterator[Fau
         yield name, "ascending and greater than 0"
 
 
-def faults_of_rest(rest: RestOfDrive) -> Iterator[Fault]:
-    """Yield what is wrong with the rest of the drive."""
+def faults_of_rest(rest: NoLoadTorque) -> Iterator[Fault]:
+    """Yield what is wrong with the no-load torque."""
     parts = [getattr(rest, name) for name in NUMBERS]
     for name, part in zip(NUMBERS, parts, strict=True):
         yield from faults_of_estimate(name, part)

@@ -22,7 +22,7 @@ from hersey.damping.candidates.branched import LEAST_POWER, transition_exponent
 from hersey.damping.distributions import square_quantile
 from hersey.damping.estimate import Estimate, quantile
 from hersey.damping.fitted_law import FittedLaw
-from hersey.damping.rest import with_rest
+from hersey.damping.no_load_torque import with_rest
 from hersey.damping.surface_words import headline_of, record_of, summary_of, table_of
 from hersey.errors import InsufficientDataError, ParameterError, UntoldWarning
 from hersey.motion.drag import Drag
@@ -97,7 +97,7 @@ class DampingSurface(FittedLaw):
         error = float(np.sqrt(away @ covariance @ away))
         speed, freedom = self.transition_speed(temperature), self.freedoms.of(away)
         reach = np.exp(quantile(freedom) * error)
-        told = self.transition.speed.told and self.b.told
+        told = self.transition.speed.estimable and self.b.estimable
         low, high = (speed / reach, speed * reach) if told else (-np.inf, np.inf)
         return Estimate(speed, speed * error, low, high, freedom)
 
@@ -287,7 +287,7 @@ class DampingSurface(FittedLaw):
         if temperature is not None and self.reference_temperature is not None:
             x = self._checked_temperature(temperature)
         slowest = np.log(at.stick_speed / roll_radius / self.reference_speed)
-        said: list[Warning] = [UntoldWarning()] if self.b is not None and not self.b.told else []
+        said: list[Warning] = [UntoldWarning()] if self.b is not None and not self.b.estimable else []
         kept, total, failed = self._draws(count, seed, x, slowest)
         if failed:
             again = (

@@ -41,11 +41,7 @@ def summary_of(s: FittedLaw) -> str:
         f"    # scatter added    = {st.scatter:.3%} between dwells, beyond the errors of their means",
         *(f"    # scatter shared   = {_shared_text(shared)}" for shared in st.shared),
         *(_wrapped(f"    # sensors +/-      = {s.sensors}") if s.sensors else []),
-        *(
-            _wrapped(f"    # torque of film   = measured less the rest of the drive: {s.rest}")
-            if s.rest
-            else []
-        ),
+        *(_wrapped(f"    # torque of film   = measured less the no-load torque: {s.rest}") if s.rest else []),
         f"    # data points      = {st.points}",
         f"    # variables        = {st.variables}",
         f"    chi-square         = {st.chi_square:.6g}  (against the errors of the dwells alone)",
@@ -130,7 +126,7 @@ def table_of(s: FittedLaw) -> pl.DataFrame:
 
 
 def _variable(name: str, e: Estimate) -> str:
-    if not e.told:
+    if not e.estimable:
         return f"    {name:8s} {e.value: .7g}, interval not told"
     share = f"({abs(e.error / e.value):.2%})" if e.value else ""
     ends = f"[{e.low:.6g}, {e.high:.6g}]"

@@ -25,7 +25,7 @@ class Edge(Record):
     high: float
 
     @property
-    def told(self) -> bool:
+    def estimable(self) -> bool:
         """Whether the interval has an upper end."""
         return math.isfinite(self.high)
 

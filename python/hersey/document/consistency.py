@@ -143,7 +143,7 @@ def _transition(surface: DampingSurface) -> Iterator[Fault]:
     part = found.mixed_exponent
     if np.isfinite(part.freedom) and not agree(part.freedom, surface.freedoms.of(mixed)):
         yield "transition.mixed_exponent.freedom", "what the covariance and its parts give"
-    if part.told and not agree(part.error, (part.high - part.low) / (2.0 * quantile(part.freedom))):
+    if part.estimable and not agree(part.error, (part.high - part.low) / (2.0 * quantile(part.freedom))):
         yield "transition.mixed_exponent.error", "what its interval gives"
     error = max(float(mixed @ surface.covariance @ mixed), 0.0) ** 0.5
     if found.closure is not None and not agree(part.error, error):
@@ -165,7 +165,9 @@ def _closure(surface: DampingSurface) -> Iterator[Fault]:
         yield "transition.closure.values", "the exponents of values"
     if not abs(closure.values[0] - surface.values[0]) <= _MOST_LIFT:
         yield "transition.closure.values", "a torque near that of values"
-    if speed.told and not agree(float(np.sqrt(abs(closure.covariance[-1, -1]))), speed.error / speed.value):
+    if speed.estimable and not agree(
+        float(np.sqrt(abs(closure.covariance[-1, -1]))), speed.error / speed.value
+    ):
         yield "transition.closure.covariance", "the error of transition.speed at its end"
 
 

@@ -16,7 +16,7 @@ from hersey.damping.candidates.shared_errors import Freedom, SharedScatter
 from hersey.damping.estimate import Estimate
 from hersey.damping.fitted_law import FitStatistics
 from hersey.damping.gradual import Closure
-from hersey.damping.rest import RestOfDrive
+from hersey.damping.no_load_torque import NoLoadTorque
 from hersey.damping.soundness import LARGEST
 from hersey.damping.surface import DampingSurface
 from hersey.document.consistency import faults_of_fit
@@ -169,7 +169,7 @@ def _check_closure(path: Path, closure: Closure, size: int) -> None:
         raise _broken(path, "fit.transition.closure", "it is not symmetric with no negative variance")
 
 
-def _check_rest(path: Path, rest: RestOfDrive) -> None:
+def _check_rest(path: Path, rest: NoLoadTorque) -> None:
     shape = [len(row) for row in rest.covariance]
     if shape != [3, 3, 3] or not _is_covariance(np.array(rest.covariance)):
         raise _broken(path, "fit.rest.covariance", "it is no covariance of three numbers")
@@ -179,13 +179,13 @@ def _check_rest(path: Path, rest: RestOfDrive) -> None:
             raise _broken(path, f"fit.rest.{name}", "it must be ascending, greater than 0")
 
 
-def _rest(part: RestOfDrive | None) -> RestOfDrive | None:
+def _rest(part: NoLoadTorque | None) -> NoLoadTorque | None:
     if part is None:
         return None
     numbers = {
         name: _estimate(getattr(part, name)) for name in ("constant", "per_speed", "temperature_slope")
     }
-    return RestOfDrive(
+    return NoLoadTorque(
         **numbers,
         reference_temperature=part.reference_temperature,
         covariance=np.array(part.covariance),

@@ -60,7 +60,7 @@ class IdentifiedDrive(Result):
     single parameter; the drive speed is among them where what is known tells it better than stated.
     ``systematic`` is the half width, in the unit of each quantity, that the uncertainty of the stated drive
     speed adds to its interval. ``closure`` is the best; ``decided`` whether the others are worse by more than
-    chance. ``not_told`` says in words what the record leaves open.
+    chance. ``not_estimable`` says in words what the record leaves open.
     """
 
     also_stated = ("closure_decided", "best_fit")
@@ -75,7 +75,7 @@ class IdentifiedDrive(Result):
     systematic: Annotated[
         Mapping[str, float], Means("half width that the uncertainty of the drive speed adds to an interval")
     ]
-    not_told: tuple[str, ...]
+    not_estimable: tuple[str, ...]
     closures: tuple[ClosureFit, ...]
     misfit: float
     drive_speed: Annotated[float, Means(unit="m/s")]
@@ -140,7 +140,7 @@ class IdentifiedDrive(Result):
             f"within {100 * self.drive_speed_uncertainty:.2g} %"
         )
         lines.append(f"mean cycle within {self.misfit:.2%} of the drop")
-        return "\n".join([*lines, *(f"- {text}" for text in (*self.not_told, *self.notes))])
+        return "\n".join([*lines, *(f"- {text}" for text in (*self.not_estimable, *self.notes))])
 
 
 #: Units of what is identified from a force, and from a torque.
@@ -198,8 +198,8 @@ def identify(
     covariances = [fit.covariance(scale) for fit in near]
     intervals, systematic = _intervals(near, covariances, scale, wave.number)
     notes = _implausible(record, best, intervals)
-    not_told = in_words(best.names[:-1], covariances[0][:-1, :-1])
-    not_told += _lost(best, covariances[0], intervals)
+    not_estimable = in_words(best.names[:-1], covariances[0][:-1, :-1])
+    not_estimable += _lost(best, covariances[0], intervals)
     if best.misfit > POOR:
         missed = f"the model misses the mean cycle by {best.misfit:.0%} of the drop"
         notes.append(f"{missed}: take parameters as rough")
@@ -215,7 +215,7 @@ def identify(
         known=given,
         derived={name: each for name, each in intervals.items() if name not in OF_THE_BELT},
         systematic={name: systematic[name] for name in intervals},
-        not_told=tuple(not_told),
+        not_estimable=tuple(not_estimable),
         closures=tuple(ClosureFit(f.closure, f.chi_square, f.misfit) for f in fits),
         misfit=best.misfit,
         drive_speed=record.drive_speed,

@@ -138,7 +138,7 @@ def _temperature(levels: tuple[float, ...], points: SteadyPoints, fitted: Dampin
         span = f"only {levels[-1] - levels[0]:.0f} K ({temperatures})"
         return [], [f"exponent b of temperature, well: the dwells span {span}; go beyond 30 K"]
     can, cannot = [f"exponent b of temperature: {len(levels)} temperatures, {temperatures}"], []
-    if isinstance(fitted, DampingSurface) and fitted.b is not None and not fitted.b.told:
+    if isinstance(fitted, DampingSurface) and fitted.b is not None and not fitted.b.estimable:
         once = f"{temperatures} were visited once each; visit one again, or record another"
         can, cannot = [], [f"how far exponent b of temperature may be off: {once}"]
     laws = "which law of temperature holds (power, Arrhenius, VFT)"
@@ -211,7 +211,7 @@ def _one_exponent(branch: Rising, cannot: list[str]) -> Said:
 
 
 def _in_rpm(speed: Estimate) -> str:
-    ends = f"[{rpm(speed.low):.3g}, {rpm(speed.high):.3g}]" if speed.told else "(interval not told)"
+    ends = f"[{rpm(speed.low):.3g}, {rpm(speed.high):.3g}]" if speed.estimable else "(interval not told)"
     return f"{rpm(speed.value):.3g} rpm {ends}"
 
 

@@ -29,7 +29,7 @@ class MixedDrag(BesideShape):
     static_force
         N, that breaks a belt at rest away; if not given e times the drag at the stick speed (Eq. 29).
     rest_force, rest_damping, rest_temperature_slope
-        The rest of the drive, N, N s/m and 1/K, as of `Drag`.
+        The no-load torque, N, N s/m and 1/K, as of `Drag`.
 
     Raises
     ------

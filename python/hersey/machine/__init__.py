@@ -7,7 +7,7 @@ motor                what a motion asks of the motor
 nip                  the tables of contact and lubricant
 heat                 the table of what warms the nip, and what the rest takes away
 duty                 the tables of how the machine is used, and of a gear that fatigues
-rest                 the table of what the drive takes without the film
+no_load              the table of what the drive takes without the film
 sharing              the tables of what shares the load with the film
 uncertainty          how far a parameter is known
 temperature_profile  temperature against time, from a file

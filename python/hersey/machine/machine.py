@@ -12,7 +12,7 @@ import numpy as np
 from pydantic import BeforeValidator
 from pydantic.dataclasses import dataclass
 
-from hersey.damping.rest import RestOfDrive, with_rest
+from hersey.damping.no_load_torque import NoLoadTorque, with_rest
 from hersey.damping.surface import WITH_TRANSITION
 from hersey.errors import MAPPING, ParameterError, printable
 from hersey.files.toml import Quantity, Table, naming, read_tables, read_toml
@@ -27,7 +27,7 @@ from hersey.machine.duty import GearTable, LifeTable, refuse_other_than_all
 from hersey.machine.heat import HeatTable
 from hersey.machine.limits import Limits, OperatingPoint
 from hersey.machine.nip import ContactTable, LubricantTable
-from hersey.machine.rest import RestTable
+from hersey.machine.no_load import RestTable
 from hersey.machine.sharing import NEEDED, AsperitiesTable, BoundaryTable
 from hersey.machine.uncertainty import Uncertainty, read_uncertainty
 from hersey.motion.belt import Drivetrain
@@ -75,7 +75,7 @@ class Machine:
     contact: Contact | None = None
     lubricant: Lubricant | None = None
     sensors: Sensors = field(default_factory=Sensors)
-    rest: RestOfDrive | None = None
+    rest: NoLoadTorque | None = None
     asperities: Asperities | None = None
     boundary: BoundaryFriction | None = None
     static_friction: float | None = None
@@ -124,7 +124,7 @@ class Machine:
 
     @takes_si(temperature="temperature")
     def mixed_drag(self, temperature: float) -> MixedDrag:
-        """Return the drag of the belt by `mixed` at a temperature (K), with the rest of the drive.
+        """Return the drag of the belt by `mixed` at a temperature (K), with the no-load torque.
 
         The stick speed is that of the machine, moved to this temperature as the transition speed is; a belt
         at rest breaks away at ``static_friction`` times load.

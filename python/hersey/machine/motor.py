@@ -43,7 +43,7 @@ class MotorUse(Record):
 def motor_use(run: Trajectory, *, motor_torque: float, roll_radius: float) -> MotorUse:
     """Return what a motion asks of a motor that gives ``motor_torque`` (N m) at a roll of a radius (m).
 
-    The motor bears the spring force: film, contact and the rest of the drive act beyond the spring. The
+    The motor bears the spring force: film, contact and the no-load torque act beyond the spring. The
     inertia of the drive itself is not in the model. Between samples the torque is a straight line.
 
     Raises

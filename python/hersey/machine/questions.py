@@ -19,7 +19,7 @@ from hersey.lubrication.lubricant import MODELS
 from hersey.machine.limits import Limits, OperatingPoint
 from hersey.machine.machine import DrivetrainTable
 from hersey.machine.nip import ContactTable, LubricantTable
-from hersey.machine.rest import RestTable
+from hersey.machine.no_load import RestTable
 from hersey.machine.uncertainty import read_uncertainty
 from hersey.motion.parameters import KINDS as PARAMETERS
 from hersey.units import KINDS, convert, parse

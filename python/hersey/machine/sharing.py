@@ -9,7 +9,7 @@ from pydantic.dataclasses import dataclass
 from hersey.errors import ParameterError
 from hersey.files.toml import Quantity, Table
 from hersey.lubrication.asperities import Asperities, BoundaryFriction
-from hersey.machine.rest import PerKelvin
+from hersey.machine.no_load import PerKelvin
 
 
 @dataclass(frozen=True)

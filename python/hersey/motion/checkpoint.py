@@ -112,7 +112,7 @@ def checkpointed(
     target = SweepFolder.of(out)
     path, kind = target.absolute, kind_of(Path(target.path))
     refuse_early(rules, sets)
-    scenario = {**rules.told(), "zip": sets.zip, "units": units, "parameters": sets.told()}
+    scenario = {**rules.described(), "zip": sets.zip, "units": units, "parameters": sets.described()}
     with _connected(work.client) as known:
         workers = work.threads if known is None else max(threads_of(known), 1)
         tried = trial(rules, sets)
@@ -295,7 +295,7 @@ def _layout(sets: Sets, rules: Rules, units: str, cut: Cut) -> Layout:
         axes = () if not values.ndim else sets.axes if sets.zip else (name,)
         laid = np.broadcast_to(values, sets.shape) if axes and sets.zip else values
         coordinates[name] = Coordinate(axes, laid, about)
-    told = {key: value for key, value in rules.told().items() if value is not None}
+    told = {key: value for key, value in rules.described().items() if value is not None}
     return Layout(
         sets.axes,
         cut,

@@ -65,7 +65,7 @@ class AnyDrag:
 
     @property
     def holding_force(self) -> float:
-        """The force that a belt at rest bears: ``breakaway_force`` and that of the rest of the drive."""
+        """The force that a belt at rest bears: ``breakaway_force`` and that of the no-load torque."""
         return self.law().holding_force
 
     @takes_si(force="force", temperature="temperature")
@@ -89,14 +89,14 @@ class AnyDrag:
 
 @dataclass(frozen=True, kw_only=True)
 class BesideShape(AnyDrag, Record):
-    """What drag laws take besides their shape: near rest, and the rest of the drive; all as of `Drag`."""
+    """What drag laws take besides their shape: near rest, and the no-load torque; all as of `Drag`."""
 
     closure: str = "retained"
     bristle_stiffness: Annotated[float | None, Means(unit="N/m")] = None
     bristle_damping: Annotated[float | None, Means(unit="N s/m")] = None
     static_force: Annotated[float | None, Means("what the contact bears at rest", "N")] = None
-    rest_force: Annotated[float, Means("of the rest of the drive", "N")] = 0.0
-    rest_damping: Annotated[float, Means("of the rest of the drive", "N s/m")] = 0.0
+    rest_force: Annotated[float, Means("of the no-load torque", "N")] = 0.0
+    rest_damping: Annotated[float, Means("of the no-load torque", "N s/m")] = 0.0
 
     def _shape(self) -> dict[str, Wire]:
         """The law and how it varies with temperature, in the wire form."""
@@ -201,7 +201,7 @@ class Drag(PowersOfTemperature):
     With temperature it varies as `PowersOfTemperature`.
 
     ``static_force`` is the drag that a belt at rest can bear; if not given it is such that drag falls by a
-    factor e up to the stick speed, continuously (Eqs. 28-30). The rest of the drive, what moves with the
+    factor e up to the stick speed, continuously (Eqs. 28-30). The no-load torque, what moves with the
     belt besides the lubricated contact, adds ``rest_force + rest_damping v``, which changes by
     ``rest_temperature_slope`` (relative, per K) with temperature; with ``lugre`` ``rest_damping`` is the
     viscous part beside the bristles.

@@ -77,7 +77,7 @@ class Rules:
             self.most_steps,
         )
 
-    def told(self) -> dict[str, Any]:
+    def described(self) -> dict[str, Any]:
         """Return what decides the bits, beside the sets."""
         drag = self.drag
         near = ("closure", "bristle_stiffness", "bristle_damping", "static_force")

@@ -39,7 +39,7 @@ class HeatBalance:
         film_capacity T_f' = P + q - film_load - exchange (T_f - T_r) - film_loss (T_f - surroundings)
         roll_capacity T_r' = exchange (T_f - T_r) - roll_load - roll_loss (T_r - surroundings)
 
-    q is the power of friction in the contact (drag without the rest of the drive, times belt speed); the drag
+    q is the power of friction in the contact (drag without the no-load torque, times belt speed); the drag
     law follows T_f. The heater gives ``heater_power``, or, with a ``setpoint``, ``heater_gain`` times what is
     missing to it, from nothing to ``heater_power``.
 

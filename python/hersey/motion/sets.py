@@ -80,7 +80,7 @@ class Sets:
 
         return Sets({name: of(name, values) for name, values in self.given.items()}, zip=True)
 
-    def told(self) -> dict[str, dict[str, Any]]:
+    def described(self) -> dict[str, dict[str, Any]]:
         """Return of each parameter what tells it from others: how many values, first, last, a hash."""
         return {
             name: {

@@ -39,7 +39,7 @@ class Energy(Record):
     The closure ``retained`` keeps the speed of a belt that it holds, even against a pull that points back:
     there the contact gives energy. With ``heat`` the film does not cool for that: what friction takes
     afterwards pays the debt before it heats. ``owed`` is what is left of the debt at the end, so the
-    contact has heated the film by dissipated plus owed, less what the rest of the drive took.
+    contact has heated the film by dissipated plus owed, less what the no-load torque took.
     """
 
     work: float

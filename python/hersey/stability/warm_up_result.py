@@ -71,7 +71,7 @@ class WarmUp(Result):
 
     def verdict(self) -> str:
         """Return the course in a sentence or two."""
-        end = _warmth(self, -1)
+        end = _temperature_words(self, -1)
         target = _speed(self.target_speed)
         if not math.isfinite(self.start):
             return (
@@ -85,7 +85,7 @@ class WarmUp(Result):
         at = int(np.searchsorted(self.time, self.full_speed))
         sliding = "" if math.isfinite(self.slides_from) else " The belt sticks at it."
         how = "" if self.full_speed - self.start <= self._least_ramp else ", slow until warm"
-        when = f"full speed {target} after {self.full_speed:.4g} s, at {_warmth(self, at)}"
+        when = f"full speed {target} after {self.full_speed:.4g} s, at {_temperature_words(self, at)}"
         return f"{first}{how}: {when}.{sliding}"
 
     @property
@@ -157,7 +157,7 @@ class WarmUp(Result):
         )
 
 
-def _warmth(warm: WarmUp, at: int) -> str:
+def _temperature_words(warm: WarmUp, at: int) -> str:
     film, roll = celsius(warm.film_temperature[at]), celsius(warm.roll_temperature[at])
     return f"{film:.4g} degC (roll {roll:.4g} degC)"
 

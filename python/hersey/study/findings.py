@@ -34,7 +34,7 @@ class Findings:
     machine, machine_file
         None without a machine, or where it was not read from a file.
     nip, torque_budget
-        Film theory of the nip, and what film, contact and the rest of the drive take; None where the machine
+        Film theory of the nip, and what film, contact and the no-load torque take; None where the machine
         does not state them.
     behaviour, simulation, why
         What the machine does, and its typical belt below the transition; None without a machine or where

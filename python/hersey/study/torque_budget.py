@@ -1,4 +1,4 @@
-"""What of the torque the film carries, what the contact, what the rest of the drive."""
+"""What of the torque the film carries, what the contact, what the no-load torque."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ def _shares(mixed: MixedContact, points: SteadyPoints, speed: FloatArray, level:
         shares = ((film, "film"), (float(state.boundary_torque[i]), "contact"), (float(rest[i]), "rest"))
         told = ", ".join(f"{name} {torque / whole:.0%}" for torque, name in shares)
         parts.append(f"{1e3 * whole:.3g} mN m at {rpm(float(speed[i])):.3g} rpm ({told})")
-    lead = "By the machine's file film, contact and the rest of the drive take"
+    lead = "By the machine's file film, contact and the no-load torque take"
     return f"{lead} {'; '.join(parts)}, at {celsius(level):.0f} degC."
 
 
@@ -126,7 +126,7 @@ def _paper(mixed: MixedContact, speed: float, level: float) -> list[str]:
 
 
 def _rest(points: SteadyPoints, speed: FloatArray, kelvin: FloatArray) -> FloatArray:
-    """What was taken off as the rest of the drive, N m."""
+    """What was taken off as the no-load torque, N m."""
     return np.zeros_like(speed) if points.rest is None else points.rest.torque(speed, kelvin)
 
 

@@ -2,7 +2,7 @@
 
 ============  ===============================================================
 truth         the damping surface behind a log, and how it varies
-physical      the truth made of film, contact and the rest of the drive
+physical      the truth made of film, contact and the no-load torque
 stand         the stand, its sensors and disturbances; the log it writes
 full_contact  a full numerical solution of that contact, as a table
 ageing        units whose oil goes and whose faces wear, with their truth

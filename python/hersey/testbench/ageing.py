@@ -3,7 +3,7 @@
 The layer of oil on the inlet side thins by side flow and by evaporation, and the film starves where the layer
 is thinner than the film of a flooded inlet: torque, exponent and transition follow. Side flow alone is
 ``h = (h0^-2 + K t)^(-1/2)`` (van Zoelen, Venner and Lugt, Proc. IMechE J 223 (2009) 541). Viscosity grows as
-``exp(g t)`` as light ends leave; roughness, boundary friction and the rest of the drive grow in proportion to
+``exp(g t)`` as light ends leave; roughness, boundary friction and the no-load torque grow in proportion to
 age. The stand's own statements: no fit is used, and none of the laws that are fitted to a campaign.
 """
 
@@ -18,7 +18,7 @@ import numpy as np
 
 from hersey import _core
 from hersey.arrays import FloatArray, pointwise
-from hersey.damping.rest import RestOfDrive, with_rest
+from hersey.damping.no_load_torque import NoLoadTorque, with_rest
 from hersey.errors import ParameterError
 from hersey.lubrication.film import film_thickness
 from hersey.lubrication.mixed import MixedContact
@@ -147,7 +147,7 @@ class Ageing:
     thickening
         Growth of ln viscosity, 1/page.
     roughening, boundary_growth, rest_growth
-        Growth of roughness, of boundary friction and of the rest of the drive, of those when new, 1/page.
+        Growth of roughness, of boundary friction and of the no-load torque, of those when new, 1/page.
     spread
         Standard deviation of the logarithm of each from unit to unit, by name; none for those not named.
 
@@ -219,11 +219,11 @@ _RATES = tuple(each.name for each in fields(Ageing) if each.name != "spread")
 
 @dataclass(frozen=True)
 class Unit:
-    """A unit of a population: a machine, the rest of its drive, and how it ages."""
+    """A unit of a population: a machine, its no-load torque, and how it ages."""
 
     name: str
     machine: Machine
-    rest: RestOfDrive
+    rest: NoLoadTorque
     ageing: Ageing
 
     @cached_property
@@ -264,7 +264,7 @@ class Unit:
             shear=new.shear * shift / rough,
             rolling=new.rolling * shift**new.rolling_exponent,
         )
-        rest = RestOfDrive.stated(
+        rest = NoLoadTorque.stated(
             constant=stiff * self.rest.constant.value,
             per_speed=stiff * self.rest.per_speed.value,
             temperature_slope=self.rest.temperature_slope.value,
@@ -300,7 +300,7 @@ class Unit:
 
 
 def population(
-    machine: Machine, rest: RestOfDrive, *, ageing: Ageing | None = None, units: int, seed: int = 0
+    machine: Machine, rest: NoLoadTorque, *, ageing: Ageing | None = None, units: int, seed: int = 0
 ) -> tuple[Unit, ...]:
     """Return units U1, U2, ... whose ageing is drawn; a unit is the same however many there are.
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from hersey.damping.rest import RestOfDrive
+from hersey.damping.no_load_torque import NoLoadTorque
 from hersey.lubrication.asperities import Asperities, BoundaryFriction
 from hersey.lubrication.contact import Contact
 from hersey.lubrication.lubricant import Lubricant
@@ -11,8 +11,8 @@ from hersey.machine.machine import Machine
 from hersey.units import ZERO_CELSIUS
 
 
-def example_drive() -> tuple[Machine, RestOfDrive]:
-    """Return machine and rest of the drive of the shipped example, so far as the stand needs them."""
+def example_drive() -> tuple[Machine, NoLoadTorque]:
+    """Return machine and no-load torque of the shipped example, so far as the stand needs them."""
     cold, hot, density = 40.0 + ZERO_CELSIUS, 200.0 + ZERO_CELSIUS, 1900.0
     machine = Machine(
         stiffness=11e3,
@@ -46,4 +46,4 @@ def example_drive() -> tuple[Machine, RestOfDrive]:
         asperities=Asperities(modulus=2e9, sigma_beta_density=0.04, sigma_over_beta=0.001),
         boundary=BoundaryFriction(0.05),
     )
-    return machine, RestOfDrive.stated(constant=0.18, per_speed=1e-3)
+    return machine, NoLoadTorque.stated(constant=0.18, per_speed=1e-3)

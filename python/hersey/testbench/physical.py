@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from hersey.arrays import FloatArray
-from hersey.damping.rest import NUMBERS, RestOfDrive
+from hersey.damping.no_load_torque import NUMBERS, NoLoadTorque
 from hersey.errors import ParameterError
 from hersey.lubrication.mixed import MixedContact
 from hersey.lubrication.mixed_drag import MixedDrag
@@ -20,10 +20,10 @@ from hersey.units import ZERO_CELSIUS
 
 @dataclass(frozen=True)
 class PhysicalTruth:
-    """Torque of a `MixedContact` and of a `RestOfDrive`; without ``mixed`` of the rest alone."""
+    """Torque of a `MixedContact` and of a `NoLoadTorque`; without ``mixed`` of the rest alone."""
 
     mixed: MixedContact | None
-    rest: RestOfDrive
+    rest: NoLoadTorque
 
     def transition_speed(self, temperature: FloatArray) -> FloatArray:
         """Return the speed of least torque of the contact in rad/s (NaN without one) at degC."""

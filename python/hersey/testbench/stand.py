@@ -1,7 +1,7 @@
 """A virtual test stand: logs of a drive whose true damping surface is known, with what real logs suffer from.
 
 The lubricant follows B = a T^b w^c above a transition speed and a steeper exponent below it; the transition
-sits at a fixed Hersey number and so moves with temperature. Or film, contact and the rest of the drive make
+sits at a fixed Hersey number and so moves with temperature. Or film, contact and the no-load torque make
 the torque (`PhysicalTruth`). What it writes is synthetic, and says so.
 """
 

@@ -69,21 +69,21 @@ def cautions(points: SteadyPoints, surface: DampingSurface | None) -> list[str]:
 
 
 def _rest_warnings(points: SteadyPoints) -> list[str]:
-    """What was taken off for the rest of the drive, and what is not known of it."""
+    """What was taken off for the no-load torque, and what is not known of it."""
     rest = points.rest
     if rest is None:
         return []
     out = [f"Taken off, so that torque is that of the film: {rest}."]
-    out += [f"Of the rest of the drive: {note}." for note in rest.notes]
+    out += [f"Of the no-load torque: {note}." for note in rest.notes]
     if not points.log.has_temperature:
         if rest.reference_temperature is not None:
             at = f"{celsius(rest.reference_temperature):.0f} degC"
-            out.append(f"The log holds no temperatures: the rest of the drive is that at {at}.")
+            out.append(f"The log holds no temperatures: the no-load torque is that at {at}.")
     elif rest.temperature_range is not None:
         kelvin, (cold, hot) = points.column("temperature"), rest.temperature_range
         if float(kelvin.min()) < cold - FAR or float(kelvin.max()) > hot + FAR:
             out.append(
-                f"{rest.source} holds the rest of the drive at {celsius(cold):.0f} to {celsius(hot):.0f} "
+                f"{rest.source} holds the no-load torque at {celsius(cold):.0f} to {celsius(hot):.0f} "
                 f"degC, and the dwells lie at {celsius(float(kelvin.min())):.0f} to "
                 f"{celsius(float(kelvin.max())):.0f} degC: it is extrapolated."
             )
@@ -150,7 +150,7 @@ def _shared_warnings(surface: DampingSurface) -> list[str]:
     """What the dwells of a visit to a temperature, or of a run, have in common."""
     out = []
     for shared in surface.statistics.shared:
-        if not shared.told and surface.b is not None and not surface.b.told:
+        if not shared.told and surface.b is not None and not surface.b.estimable:
             out.append(
                 f"Exponent b is {surface.b.value:.3g}, its interval not told: each temperature was visited "
                 "once, so that an error of a whole visit would pass for temperature. Visit one again, "

@@ -219,7 +219,7 @@ def _check_exponents(says: Verdict) -> Iterator[Misfit]:
     if says.contradicted:
         text = f"damping goes as speed to the power {c}; the film of this nip gives {theory:.2f}"
         yield Misfit(text, _reaches(c.value, theory, c.low, c.high), grave=True)
-    if thermal is not None and thermal.told and not agrees(thermal, says.thermal_expected):
+    if thermal is not None and thermal.estimable and not agrees(thermal, says.thermal_expected):
         text = (
             f"with temperature (K) damping goes to the power {thermal}; the film of this lubricant predicts "
             f"{says.thermal_expected:.2f}"

@@ -185,7 +185,7 @@ def _text(
 
 def _agreement(measured: Estimate, expected: float) -> str:
     """Whether an exponent agrees with the one expected, errors of the sensors allowed for."""
-    if not measured.told:
+    if not measured.estimable:
         return "which these data do not test"
     return "which agrees" if agrees(measured, expected) else "which disagrees"
 

@@ -1,6 +1,6 @@
 """Everything that explains how torque varies with speed, and the one regime that may be named.
 
-A film of one regime, alone or beside a constant torque (the rest of the drive, or Coulomb friction), a
+A film of one regime, alone or beside a constant torque (the no-load torque, or Coulomb friction), a
 Stribeck curve, and what bends a film's exponent. An explanation is listed if the data do not exclude it: its
 law holds (`lack_of_fit`) and no other is likelier by `EVIDENCE` AICc. A regime is named only if it is the
 sole film listed and one exponent holds over all the speeds.
@@ -304,7 +304,7 @@ def _with_constant(regime: str, fit: LawFit, lack: LackOfFit, data: Observations
     if regime == "constant film":
         words = f"Coulomb friction or another constant torque, {share:.0%} of the whole, and a viscous part"
         return Explanation(COULOMB_VISCOUS, words, share, lack.curvature)
-    words = f"{regime} beside a constant torque (rest of the drive, Coulomb) of {share:.0%} of the whole"
+    words = f"{regime} beside a constant torque (no-load torque, Coulomb) of {share:.0%} of the whole"
     return Explanation(regime + CONSTANT, words, share, lack.curvature)
 
 

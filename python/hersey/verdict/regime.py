@@ -135,7 +135,7 @@ def _taken_off(points: SteadyPoints) -> str:
     """What was taken off before any of this was judged; empty if nothing was."""
     if points.rest is None:
         return ""
-    return f"This is of the film alone, the rest of the drive taken off: {points.rest}."
+    return f"This is of the film alone, the no-load torque taken off: {points.rest}."
 
 
 def branch_exponents(points: SteadyPoints, surface: DampingSurface) -> tuple[BranchExponent, ...]:
@@ -144,7 +144,7 @@ def branch_exponents(points: SteadyPoints, surface: DampingSurface) -> tuple[Bra
     torque = np.abs(points.column("torque"))
     error = np.hypot(points.column("torque_error") / torque, surface.statistics.scatter)
     hot = surface.b is not None
-    level = torque * np.exp(-_warmth(points, surface))
+    level = torque * np.exp(-_temperature_shift(points, surface))
     groups = list(groups_of_temperature(points.column("temperature"))) if hot else [np.arange(speed.size)]
     exponents = []
     for group in groups:
@@ -162,7 +162,7 @@ def branch_exponents(points: SteadyPoints, surface: DampingSurface) -> tuple[Bra
     return tuple(exponents)
 
 
-def _warmth(points: SteadyPoints, surface: DampingSurface) -> FloatArray:
+def _temperature_shift(points: SteadyPoints, surface: DampingSurface) -> FloatArray:
     """Logarithm of T^b of each dwell about the reference: dwells of a group differ by some kelvin."""
     if surface.b is None:
         return np.zeros(len(points))
@@ -185,7 +185,9 @@ def _verdict(surface: DampingSurface, by: Explained, table: tuple[RegimeRow, ...
         return f"{exponent} {_no_transition(surface, by, trend)}"
     t = surface.transition
     where = f"{rpm(t.speed.value):.3g} rpm"
-    where += f" [{rpm(t.speed.low):.3g}, {rpm(t.speed.high):.3g}]" if t.speed.told else " (interval not told)"
+    where += (
+        f" [{rpm(t.speed.low):.3g}, {rpm(t.speed.high):.3g}]" if t.speed.estimable else " (interval not told)"
+    )
     where += f" (sensors +/- {rpm(t.speed.systematic):.2g} rpm)" if t.speed.systematic else ""
     if surface.reference_temperature is not None:
         where += f" at {_degrees(surface.reference_temperature, surface.temperature_scale)}"

@@ -227,5 +227,5 @@ def test_energies_of_temperatures_visited_once_are_not_held_against_each_other()
     found = activation_energies(free, free, free, data)
     assert found.p_value is None
     assert found.viscosity is not None
-    assert not found.viscosity.told
+    assert not found.viscosity.estimable
     assert "is not told: each temperature was visited once" in found.verdict

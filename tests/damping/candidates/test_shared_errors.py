@@ -321,13 +321,13 @@ def test_satterthwaite_by_hand() -> None:
 def test_temperatures_visited_once_each_tell_no_more_than_the_law_takes_up() -> None:
     two = fit_law(THERMAL, visited([363.0, 453.0], seed=3))
     assert [s.told for s in two.shared] == [False]
-    assert "visited once" in two.untold("e")
-    assert two.untold("c") == two.untold("level") == ""
+    assert "visited once" in two.not_estimable("e")
+    assert two.not_estimable("c") == two.not_estimable("level") == ""
     b, c = two.estimate("e"), two.estimate("c")
-    assert (b.low, b.high, b.told) == (-np.inf, np.inf, False)
+    assert (b.low, b.high, b.estimable) == (-np.inf, np.inf, False)
     reach = float(stats.t.ppf(0.975, 12 - 3)) * c.error
     assert (c.low, c.high) == pytest.approx((c.value - reach, c.value + reach))
-    assert c.told
+    assert c.estimable
     again = fit_law(THERMAL, visited([363.0, 453.0, 363.0], seed=3))
-    assert again.untold("e") == ""
-    assert again.estimate("e").told
+    assert again.not_estimable("e") == ""
+    assert again.estimate("e").estimable

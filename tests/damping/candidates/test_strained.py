@@ -1,4 +1,4 @@
-"""A law that does not hold: the rest of the drive, off by tens of its errors, must not make up for it."""
+"""A law that does not hold: the no-load torque, off by tens of its errors, must not make up for it."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from hersey.damping.candidates.branched import ONE
 from hersey.damping.candidates.candidate import Candidate
 from hersey.damping.candidates.fitting import fit_law
 from hersey.damping.candidates.thermal import ARRHENIUS
-from hersey.damping.no_load import rest_of_drive
+from hersey.damping.no_load import no_load_torque
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 
@@ -21,7 +21,7 @@ EXAMPLES = Path(__file__).parents[3] / "examples"
 @pytest.fixture(scope="module")
 def data() -> Observations:
     """The film alone falls and rises, so that no one branch holds."""
-    rest = rest_of_drive(hersey.read(EXAMPLES / "no-load.csv").steady(tare="standing"))
+    rest = no_load_torque(hersey.read(EXAMPLES / "no-load.csv").steady(tare="standing"))
     return Observations.of(hersey.read(EXAMPLES / "bench.csv").steady(tare="standing").without(rest))
 
 

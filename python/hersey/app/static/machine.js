@@ -3,7 +3,7 @@
 import { button, draw, link, make, renew, sign, typed } from "./building.js";
 
 const open = new Set();
-const GROUPS = { limits: "Limits", contact: "Nip", lubricant: "Lubricant", rest: "Rest of the drive", drivetrain: "Stick speed" };
+const GROUPS = { limits: "Limits", contact: "Nip", lubricant: "Lubricant", rest: "No-load torque", drivetrain: "Stick speed" };
 
 export function showMachine(place, view, questions, act) {
   const machine = view.machine;
@@ -45,7 +45,7 @@ function form(view, questions, act) {
   const others = questions.machine.filter((q) => !q.first);
   const sections = [...new Set(others.map((q) => q.section))];
   const guilty = others.some((q) => of(view, `field:${q.key}`).length);
-  const summary = make("summary", { text: "Limits, nip, lubricant, rest of the drive", "data-control": "more" });
+  const summary = make("summary", { text: "Limits, nip, lubricant, no-load torque", "data-control": "more" });
   const more = make("details", { open: open.has("more") || guilty, ontoggle: () => (more.open ? open.add("more") : open.delete("more")) }, summary,
     ...sections.flatMap((section) => [make("h3", { text: GROUPS[section] }), ...others.filter((q) => q.section === section).map(line)]));
   const kept = machine.kept.length ? make("p", { class: "note", "data-kept": "", text: `Kept from the TOML as it is: ${machine.kept.join(", ")}. The form has no fields for it: change it in the TOML.` }) : null;

@@ -6,7 +6,7 @@ thermal               laws of temperature: power, Arrhenius, VFT
 named                 what every law has: parameters with names
 branched              laws of speed and temperature with one or two branches
 stribeck              the Stribeck curve
-rest_law              torque without a film
+no_load_law           torque without a film
 constant_plus         a constant torque beside a film or a viscous part
 shared_load           a known contact whose load film and asperities share
 candidate             which laws there are, and which the data cannot carry

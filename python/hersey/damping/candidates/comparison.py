@@ -73,7 +73,7 @@ def compare_models(
     --------
     >>> import hersey
     >>> points = hersey.read("examples/bench.csv").steady(tare="standing")
-    >>> rest = hersey.RestOfDrive.stated(constant="180 mN*m", per_speed="1 mN*m*s/rad")
+    >>> rest = hersey.NoLoadTorque.stated(constant="180 mN*m", per_speed="1 mN*m*s/rad")
     >>> found = compare_models(points.without(rest), bootstrap=0, cross_validate=False)
     >>> found.chosen.candidate.branches
     'two branches, one Hersey number'

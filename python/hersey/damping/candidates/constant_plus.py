@@ -1,4 +1,4 @@
-"""A constant torque beside the film: what the rest of the drive takes, and a power law or a viscous part.
+"""A constant torque beside the film: the no-load torque, and a power law or a viscous part.
 
     torque = F (exp(e s(T)) (w/w_ref)^(1 + c) + (exp(rest) + exp(viscous) w/w_ref) exp(r s(T)))
 
@@ -130,9 +130,9 @@ class ConstantPlusLaw(Named):
         """Logarithms of film, constant and viscous part over F, shape (3, points)."""
         s, z = self._shape(values, inputs)[0], inputs.log_speed
         film = self._value(values, "e") * s + (1.0 + self._exponent(values)) * z
-        warmth = self._value(values, "r") * s
-        rest = np.clip(self._value(values, "rest"), -_LOG_BOUND, _LOG_BOUND) + warmth + np.zeros_like(z)
+        factor = self._value(values, "r") * s
+        rest = np.clip(self._value(values, "rest"), -_LOG_BOUND, _LOG_BOUND) + factor + np.zeros_like(z)
         viscous = np.full_like(z, -np.inf)
         if self.viscous:
-            viscous = np.clip(self._value(values, "viscous"), -_LOG_BOUND, _LOG_BOUND) + warmth + z
+            viscous = np.clip(self._value(values, "viscous"), -_LOG_BOUND, _LOG_BOUND) + factor + z
         return np.array([film, rest, viscous])

@@ -55,7 +55,7 @@ class ActivationEnergies:
             if energy is None:
                 continue
             kj, cal = scaled(energy, 1e-3), scaled(energy, 1.0 / CALORIE)
-            if not energy.told:
+            if not energy.estimable:
                 lines.append(f"{name}: {kj.value:.4g} kJ/mol = {cal.value:.0f} cal/mol, interval not told")
             else:
                 lines.append(f"{name}: {kj} kJ/mol = {cal.value:.0f} [{cal.low:.0f}, {cal.high:.0f}] cal/mol")
@@ -98,7 +98,7 @@ def activation_energies(
     transition = p_value = None
     if free is not None:
         transition = _untold(free, _linear(free, {"d": -per_unit}))
-        p_value = None if free.untold("e") else _disagreement(free)
+        p_value = None if free.not_estimable("e") else _disagreement(free)
     verdict = _verdict(viscosity, transition, p_value, power)
     local = _local(chosen, data)
     return ActivationEnergies(torque, power, viscosity, transition, p_value, verdict, local, of_film)
@@ -111,7 +111,7 @@ def _held(fit: LawFit) -> float:
 
 def _untold(fit: LawFit, energy: Estimate) -> Estimate:
     """An energy without an interval where the law of temperature has none."""
-    return replace(energy, low=-np.inf, high=np.inf) if fit.untold("e") else energy
+    return replace(energy, low=-np.inf, high=np.inf) if fit.not_estimable("e") else energy
 
 
 def _linear(fit: LawFit, share: dict[str, float], offset: float = 0.0) -> Estimate:

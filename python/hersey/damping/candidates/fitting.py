@@ -20,8 +20,8 @@ from hersey.damping.candidates.branched import Law
 from hersey.damping.candidates.clustered import clustered_with_prior
 from hersey.damping.candidates.constant_plus import ConstantPlusLaw
 from hersey.damping.candidates.likelihood import HUBER, Minimum, aicc, bic, deviance, minimise, scatter_beyond
+from hersey.damping.candidates.no_load_law import RestLaw
 from hersey.damping.candidates.observations import Observations
-from hersey.damping.candidates.rest_law import RestLaw
 from hersey.damping.candidates.shared_errors import (
     Freedom,
     Grouping,
@@ -101,7 +101,7 @@ class LawFit:
         """Return the degrees of freedom of a parameter's interval."""
         return self.freedoms.of(np.eye(self.values.size)[self.law.index(name)])
 
-    def untold(self, name: str) -> str:
+    def not_estimable(self, name: str) -> str:
         """Return why a parameter has no interval though the dwells determine its value; empty if it has.
 
         A law of temperature that takes up every difference between the visits leaves nothing to say how
@@ -125,7 +125,7 @@ class LawFit:
     def estimate(self, name: str) -> Estimate:
         """Return a parameter of the law with its interval by covariance; unbounded if it is not told."""
         value, error = float(self.values[self.law.index(name)]), self.error(name)
-        if self.untold(name):
+        if self.not_estimable(name):
             return Estimate(value, error, -np.inf, np.inf)
         return estimate(value, error, self.freedom_of(name))
 

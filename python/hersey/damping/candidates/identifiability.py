@@ -8,8 +8,8 @@ from hersey.arrays import FloatArray
 from hersey.damping.candidates.branched import LEAST_POWER, Law
 from hersey.damping.candidates.constant_plus import ConstantPlusLaw
 from hersey.damping.candidates.fitting import LawFit
+from hersey.damping.candidates.no_load_law import RestLaw
 from hersey.damping.candidates.observations import Observations
-from hersey.damping.candidates.rest_law import RestLaw
 from hersey.damping.candidates.shared_load import BOUND, SharedLoadLaw
 from hersey.damping.candidates.stribeck import StribeckLaw
 
@@ -69,7 +69,7 @@ def _parts_shown(fit: LawFit, norms: FloatArray) -> dict[str, str]:
 def _contact_shown(fit: LawFit) -> dict[str, str]:
     """Which numbers of a contact the log hardly tells: a factor e of it is within the errors."""
     more = {
-        "viscosity": "speeds at which the film carries all, and the rest of the drive by itself",
+        "viscosity": "speeds at which the film carries all, and the no-load torque by itself",
         "roughness": "speeds on both sides of the transition",
         "boundary": "slower speeds, at which asperities carry more",
     }

@@ -162,7 +162,7 @@ def estimates(
     profile
         Whether to follow the profile likelihood.
     """
-    lost = not_identified(fit, data) | {n: why for n in fit.law.names if (why := fit.untold(n))}
+    lost = not_identified(fit, data) | {n: why for n in fit.law.names if (why := fit.not_estimable(n))}
     out = []
     for q in quantities(fit, data):
         name, value = fit.law.names[q.parameter], float(fit.values[q.parameter])

@@ -88,7 +88,7 @@ class ModelComparison(Result):
         hot = None
         if temperature is not None:
             speeds, hot = np.broadcast_arrays(speeds, np.asarray(temperature, dtype=np.float64))
-        if self.chosen.fit.law.thermal is not None and self.chosen.fit.untold("e"):
+        if self.chosen.fit.law.thermal is not None and self.chosen.fit.not_estimable("e"):
             warnings.warn(UntoldWarning(), stacklevel=4)
         return band(self.chosen.fit, self.data.at(speeds, hot))
 

@@ -13,7 +13,7 @@ from hersey.arrays import FloatArray
 from hersey.damping.dwells.reasons import NO_DWELL, Reason, joined
 from hersey.damping.dwells.relaxation import Relaxation
 from hersey.damping.dwells.resolution import Resolution
-from hersey.damping.rest import RestOfDrive
+from hersey.damping.no_load_torque import NoLoadTorque
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.log.means import MeanRow, MeansTable, read_means
 from hersey.log.torque_log import TorqueLog
@@ -22,7 +22,7 @@ from hersey.units import rpm
 
 #: Loads closer than this share count as the same.
 SAME_LOAD = 0.03
-#: Standard errors by which a torque must exceed the rest of the drive, so that a film is left.
+#: Standard errors by which a torque must exceed the no-load torque, so that a film is left.
 _BEYOND = 2.0
 
 
@@ -75,7 +75,7 @@ class SteadyPoints(Result):
     log
         What was reduced, or the table that states them.
     rest
-        The rest of the drive, taken off so that torque is that of the film (see `without`); None if none is.
+        The no-load torque, taken off so that torque is that of the film (see `without`); None if none is.
     rest_errors
         What one standard error of each independent error of it does to the torque of each dwell, N m, shape
         (points, errors).
@@ -97,7 +97,7 @@ class SteadyPoints(Result):
     log: TorqueLog | MeansTable
     tare_errors: FloatArray = field(default_factory=lambda: np.empty((0, 0)))
     notes: tuple[str, ...] = ()
-    rest: RestOfDrive | None = None
+    rest: NoLoadTorque | None = None
     rest_errors: FloatArray = field(default_factory=lambda: np.empty((0, 0)))
     resolutions: tuple[Resolution, ...] = ()
     relaxation: Relaxation | None = None
@@ -112,7 +112,7 @@ class SteadyPoints(Result):
 
     @property
     def zero_errors(self) -> FloatArray:
-        """What each independent error of tare, rest of the drive and relaxation does to each torque, N m."""
+        """What each independent error of tare, no-load torque and relaxation does to each torque, N m."""
         return np.hstack([self.tare_errors, self.rest_errors, self.relaxation_errors])
 
     @property
@@ -172,8 +172,8 @@ class SteadyPoints(Result):
         frame = pl.DataFrame(dwells, schema_overrides=kinds)
         return cls(frame, tuple(rejected), 0.0, None, table, notes=_notes_of_means(table))
 
-    def without(self, rest: RestOfDrive) -> SteadyPoints:
-        """Return the same dwells with the torque of the film alone, that of the rest of the drive taken off.
+    def without(self, rest: NoLoadTorque) -> SteadyPoints:
+        """Return the same dwells with the torque of the film alone, that of the no-load torque taken off.
 
         Its errors are errors that the dwells share, as those of the tare.
 
@@ -186,9 +186,9 @@ class SteadyPoints(Result):
 
         Examples
         --------
-        >>> from hersey import RestOfDrive
+        >>> from hersey import NoLoadTorque
         >>> table = {"speed [rpm]": [10, 20, 40], "torque [mN*m]": [25.0, 25.6, 26.3]}
-        >>> rest = RestOfDrive.stated(constant=0.020, uncertainty=0.05)
+        >>> rest = NoLoadTorque.stated(constant=0.020, uncertainty=0.05)
         >>> SteadyPoints.from_table(table).without(rest).column("torque").round(4).tolist()
         [0.005, 0.0056, 0.0063]
         """
@@ -196,7 +196,7 @@ class SteadyPoints(Result):
         if self.rest is not None or any(c.name.startswith("no-load") for c in self.log.corrections):
             raise ParameterError(
                 f"{name}: what the drive takes without the film is taken off already: leave out no_load of "
-                "the mapping, or the rest of the drive"
+                "the mapping, or the no-load torque"
             )
         speed, torque, error = (self.column(n) for n in ("speed", "torque", "torque_error"))
         kelvin = None
@@ -210,7 +210,7 @@ class SteadyPoints(Result):
         if not np.sign(speed[worst]) * film[worst] > _BEYOND * unsure[worst]:
             raise InsufficientDataError(
                 f"{name}: at {rpm(abs(float(speed[worst]))):.3g} rpm torque is "
-                f"{1e3 * abs(float(torque[worst])):.3g} mN m, and the rest of the drive takes "
+                f"{1e3 * abs(float(torque[worst])):.3g} mN m, and the no-load torque takes "
                 f"{1e3 * abs(float(taken[worst])):.3g} mN m of it ({rest.source}): nothing beyond the errors "
                 "is left for the film; was it stated in another unit, or recorded with the film?"
             )

@@ -9,7 +9,7 @@ from pydantic import Field
 from hersey.damping.branches import Transition
 from hersey.damping.candidates.shared_errors import SharedScatter
 from hersey.damping.curves.mixture import LawWeight
-from hersey.damping.rest import RestOfDrive
+from hersey.damping.no_load_torque import NoLoadTorque
 from hersey.document.parts.log import InputFile, Point
 from hersey.schema.part import Interval, Part
 from hersey.verdict.regime import Regime
@@ -81,7 +81,7 @@ class FitPart(Part):
     speed_range: tuple[float, float] = Field(description="rad/s")
     temperature_range: tuple[float, float] | None = Field(description="K")
     sensors: str = Field(default="", description="errors that the systematic parts stand for, in words")
-    rest: RestOfDrive | None = Field(
+    rest: NoLoadTorque | None = Field(
         default=None, description="taken off the torque before the fit, which is that of the film"
     )
     summary: str

@@ -6,7 +6,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from hersey.damping.rest import RestOfDrive
+from hersey.damping.no_load_torque import NoLoadTorque
 from hersey.log.torque_log import Channel, TorqueLog
 from hersey.schema.part import Part
 from hersey.schema.record import part_of
@@ -98,7 +98,7 @@ class PointsPart(Part):
     tare_errors: list[list[float]] = Field(description="N m, shape (points, disturbances)")
     notes: list[str]
     standing_torque: float | None
-    rest: RestOfDrive | None = Field(
+    rest: NoLoadTorque | None = Field(
         default=None, description="taken off, so that torque is that of the film"
     )
     rest_errors: list[list[float]] = Field(default=[], description="N m, shape (points, errors)")

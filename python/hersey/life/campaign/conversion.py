@@ -12,7 +12,7 @@ import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.damping.dwells import Rejection, SteadyPoints
-from hersey.damping.rest import RestOfDrive
+from hersey.damping.no_load_torque import NoLoadTorque
 from hersey.damping.soundness import LARGEST, faults_of_rest
 from hersey.errors import HerseyError, ParameterError
 from hersey.life.campaign.entry import COLUMNS, Entry
@@ -44,7 +44,7 @@ _REDUCTION = {
     "standing_torque": float | None,
     "tare_errors": FloatArray,
     "notes": tuple[str, ...],
-    "rest": RestOfDrive | None,
+    "rest": NoLoadTorque | None,
     "rest_errors": FloatArray,
 }
 
@@ -124,8 +124,8 @@ def points_of(reduction: str, dwells: Iterable[tuple[Any, ...]]) -> SteadyPoints
     return SteadyPoints(pl.DataFrame(table, schema=schema, orient="row"), log=log, **held)
 
 
-def rests_of(dwells: pl.DataFrame, rests: Mapping[int, RestOfDrive | None]) -> FloatArray:
-    """Return what was taken off as the rest of the drive of each dwell, N m with its sign; shape (dwells,).
+def rests_of(dwells: pl.DataFrame, rests: Mapping[int, NoLoadTorque | None]) -> FloatArray:
+    """Return what was taken off as the no-load torque of each dwell, N m with its sign; shape (dwells,).
 
     ``dwells`` holds ``run_id``, ``speed`` and ``temperature`` in SI; ``rests`` go with the runs, and
     equal ones are one object.
@@ -146,9 +146,9 @@ def rests_of(dwells: pl.DataFrame, rests: Mapping[int, RestOfDrive | None]) -> F
 
 
 def drive_of(
-    reduction: str, same: dict[str, tuple[RestOfDrive | None, Sensors]]
-) -> tuple[RestOfDrive | None, Sensors]:
-    """Return the rest of the drive that was taken off a run, and its sensors; ``same``: those met before.
+    reduction: str, same: dict[str, tuple[NoLoadTorque | None, Sensors]]
+) -> tuple[NoLoadTorque | None, Sensors]:
+    """Return the no-load torque that was taken off a run, and its sensors; ``same``: those met before.
 
     Raises
     ------
@@ -160,13 +160,13 @@ def drive_of(
     both = {"rest": held.get("rest"), "sensors": log.get("sensors") if isinstance(log, dict) else None}
     key = json.dumps(both)
     if key not in same:
-        found = restored(both, {"rest": RestOfDrive | None, "sensors": Sensors})
+        found = restored(both, {"rest": NoLoadTorque | None, "sensors": Sensors})
         _refuse_unsound(**found)
         same[key] = found["rest"], found["sensors"]
     return same[key]
 
 
-def _refuse_unsound(rest: RestOfDrive | None, sensors: Sensors) -> None:
+def _refuse_unsound(rest: NoLoadTorque | None, sensors: Sensors) -> None:
     """Refuse numbers that no rest of a drive and no sensor has."""
     for field, asked in () if rest is None else faults_of_rest(rest):
         raise ParameterError(f"'rest.{field}' must be {asked}")

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from hersey.arrays import FloatArray, IntArray
     from hersey.damping.dwells import SteadyPoints
-    from hersey.damping.rest import RestOfDrive
+    from hersey.damping.no_load_torque import NoLoadTorque
     from hersey.damping.surface import DampingSurface
     from hersey.log.sensors import Sensors
 
@@ -217,8 +217,8 @@ class Campaign:
         with self._naming(run, "reduction"):
             return points_of(reduction, dwells)
 
-    def drives(self) -> dict[int, tuple[RestOfDrive | None, Sensors]]:
-        """Return what was taken off the torque of each run as rest of the drive, and its sensors, by run.
+    def drives(self) -> dict[int, tuple[NoLoadTorque | None, Sensors]]:
+        """Return what was taken off the torque of each run as no-load torque, and its sensors, by run.
 
         Runs of the same rest share one object.
         """
@@ -226,7 +226,7 @@ class Campaign:
 
         with told(self.path):
             rows = self._database.execute("SELECT id, reduction FROM runs")
-            same: dict[str, tuple[RestOfDrive | None, Sensors]] = {}
+            same: dict[str, tuple[NoLoadTorque | None, Sensors]] = {}
             found = {}
             for number, reduction in rows:
                 with self._naming(number, "reduction"):
@@ -280,7 +280,7 @@ class Campaign:
         """Return a row per dwell of every run: ``run_id``, ``unit``, ``age``, ``log``, and all in SI.
 
         The age is in `age_unit`; its column, and those of the dwells, carry their units. ``rest`` is what was
-        taken off the torque as that of the rest of the drive, 0 if nothing was.
+        taken off the torque as that of the no-load torque, 0 if nothing was.
         """
         import polars as pl
 

@@ -16,7 +16,7 @@ from hersey.arrays import FloatArray
 from hersey.damping.dwells import Rejection
 from hersey.damping.dwells.reasons import Reason
 from hersey.damping.estimate import Estimate
-from hersey.damping.rest import RestOfDrive
+from hersey.damping.no_load_torque import NoLoadTorque
 from hersey.errors import ParameterError
 from hersey.log.sensors import Sensors
 from hersey.log.torque_log import Channel, Correction, Effect, LogFile
@@ -24,7 +24,7 @@ from hersey.log.torque_log import Channel, Correction, Effect, LogFile
 #: Records that are written and read back, by name.
 _RECORDS = {
     kind.__name__: kind
-    for kind in (Channel, Correction, Effect, Estimate, LogFile, Reason, Rejection, RestOfDrive, Sensors)
+    for kind in (Channel, Correction, Effect, Estimate, LogFile, Reason, Rejection, NoLoadTorque, Sensors)
 }
 #: The name of a record stands under "kind", a field of that name under this.
 _OWN_KIND = "its kind"
@@ -33,7 +33,7 @@ _UNBOUNDED = {
     ("Estimate", "low"),
     ("Estimate", "high"),
     ("Estimate", "freedom"),
-    ("RestOfDrive", "freedom"),
+    ("NoLoadTorque", "freedom"),
     ("Rejection", "speed"),
 }
 

@@ -145,7 +145,7 @@ def _kinds(scales: Scales, shared: FloatArray) -> list[_Kind]:
                 "temperature law", "J/mol", False, f"apparent activation energy of torque at {centre}", energy
             )
         )
-    found.append(_Kind("rest of the drive", "N m", False, f"at {rpm(middle):.3g} rpm", rest))
+    found.append(_Kind("no-load torque", "N m", False, f"at {rpm(middle):.3g} rpm", rest))
     return found
 
 

@@ -36,7 +36,7 @@ THICKER, STARVED, TOUCHING, LOADED, OTHER, LAWFUL = (
     "film",
     "contact",
     "load or grip",
-    "rest of the drive",
+    "no-load torque",
     "temperature law",
 )
 #: Words for each that grows and that falls.
@@ -45,7 +45,7 @@ WORDS = {
     STARVED: ("a thinner, starved film", "a film fed better"),
     TOUCHING: ("contact that grows", "contact that recedes"),
     LOADED: ("more load or grip", "less load or grip"),
-    OTHER: ("the rest of the drive taking more", "the rest of the drive taking less"),
+    OTHER: ("the no-load torque taking more", "the no-load torque taking less"),
     LAWFUL: ("a viscosity that hangs more on temperature", "a viscosity that hangs less on temperature"),
 }
 #: Gain in minus twice the log-likelihood that one more ageing must bring, and an ageing that runs backwards;

@@ -125,7 +125,7 @@ _WOULD = {
     "leaves the slow and hot alone",
     "contact": "faces that wear move torque where it is hot and slow, and the speed of least torque with it",
     "load or grip": "a load moves torque at all speeds and temperatures alike",
-    "rest of the drive": "bearings and gears move torque by as much at all temperatures",
+    "no-load torque": "bearings and gears move torque by as much at all temperatures",
     "temperature law": "another lubricant, or a sensor of temperature that drifts, does so",
 }
 
@@ -218,7 +218,7 @@ def _notes(found: Fitted, dwells: Dwells, units: tuple[str, ...]) -> tuple[str, 
     notes = []
     if not found.scales.thermal:
         notes.append(
-            "Temperatures tell nothing here: level, viscosity and the rest of the drive are told apart by "
+            "Temperatures tell nothing here: level, viscosity and the no-load torque are told apart by "
             "the shape over speed alone, and contact that recedes may be a lubricant that thickens. Record "
             "dwells at several temperatures."
         )

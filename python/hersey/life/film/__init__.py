@@ -2,7 +2,7 @@
 
 =============  ===============================================================
 filled_dwells  the dwells of all runs as arrays
-starved_drag   torque against viscosity, rest of the drive and layer of oil
+starved_drag   torque against viscosity, no-load torque and layer of oil
 layer          the layer of oil and the viscosity that each run tells
 depletion_law  how the layer thins over ages and specimens: draws
 of_runs        the film that each run shows, and starvation as an indicator

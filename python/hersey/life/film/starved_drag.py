@@ -1,4 +1,4 @@
-"""Torque of dwells where the film may lack oil, against viscosity, rest of the drive and layer of oil.
+"""Torque of dwells where the film may lack oil, against viscosity, no-load torque and layer of oil.
 
 A starved film is a share of the flooded one (`log_film_share`). Its shear is proportional to the inverse of
 that share, its rolling part to the third power, as in `Film`. All runs are computed at once, in arrays of
@@ -138,7 +138,7 @@ class StarvedDrag:
     def torque(self, free: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return torque (runs, dwells), N m, and its slopes (runs, free, dwells) at what is free (runs, 10).
 
-        Free are ln of the factor on viscosity at the middle temperature; the rest of the drive (N m, N m
+        Free are ln of the factor on viscosity at the middle temperature; the no-load torque (N m, N m
         s/rad, N m/K); ln of the factors on roughness and on boundary friction; the change of ln viscosity
         from the hot to the cold end; ln of the factors on the sharpness of starvation and on the rolling
         part; and ln of the layer over the flooded film at the reference.

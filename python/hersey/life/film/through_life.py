@@ -163,7 +163,7 @@ def film_life(
 ) -> FilmLife:
     """Return the film of the specimens of a campaign through their life.
 
-    Each run is fitted by the torque of film, asperities and rest of the drive, with viscosity, layer of oil,
+    Each run is fitted by the torque of film, asperities and no-load torque, with viscosity, layer of oil,
     rest, roughness and boundary friction free (`layer`); layer and viscosity of all runs then follow the law
     of `depletion_law`, specimens differing.
 

@@ -45,7 +45,7 @@ class Curves:
 class AtStates:
     """Torque of the belt alone and of the whole drive (N m) at each state, with relative errors.
 
-    Arrays of shape (runs, states), NaN where a run does not tell. Where the rest of the drive is not known
+    Arrays of shape (runs, states), NaN where a run does not tell. Where the no-load torque is not known
     both torques are that of the whole. ``curves`` are those at the temperatures asked for.
     """
 

@@ -15,7 +15,7 @@ from hersey.life.indicator import Runs
 from hersey.life.indicators.torque_surface import FEWEST, RunDwells
 
 if TYPE_CHECKING:
-    from hersey.damping.rest import RestOfDrive
+    from hersey.damping.no_load_torque import NoLoadTorque
     from hersey.life.campaign import Campaign
     from hersey.log.sensors import Sensors
 
@@ -30,7 +30,7 @@ class CampaignRuns:
 
     runs: Runs
     dwells: tuple[RunDwells, ...]
-    rests: tuple[RestOfDrive | None, ...]
+    rests: tuple[NoLoadTorque | None, ...]
     sensors: tuple[Sensors, ...]
     notes: tuple[str, ...]
 
@@ -43,7 +43,7 @@ class CampaignRuns:
         """Return specimen and age of a run."""
         return f"{self.runs.unit[place]} at {Age(float(self.runs.age[place]), self.runs.age_unit)}"
 
-    def told(self) -> Iterator[tuple[int, RunDwells, RestOfDrive | None]]:
+    def told(self) -> Iterator[tuple[int, RunDwells, NoLoadTorque | None]]:
         """Place, dwells and rest of each run that has enough of them."""
         for place in np.flatnonzero(self.enough).tolist():
             yield place, self.dwells[place], self.rests[place]
@@ -67,7 +67,7 @@ class CampaignRuns:
         return max(ends.values()) if least else min(ends.values())
 
 
-def read_runs_of(campaign: Campaign, rest: RestOfDrive | None = None) -> CampaignRuns:
+def read_runs_of(campaign: Campaign, rest: NoLoadTorque | None = None) -> CampaignRuns:
     """Return the runs of a campaign; ``rest`` is taken off those of which none was taken off before."""
     runs, drives = Runs.of(campaign), campaign.drives()
     numbers = runs.run
@@ -101,8 +101,8 @@ def _stretches(of_run: IntArray) -> dict[int, slice]:
     return {int(of_run[start]): slice(start, end) for start, end in zip(starts, ends, strict=True)}
 
 
-def _rest_of(of_run: IntArray, table: FloatArray, rests: dict[int, RestOfDrive | None]) -> FloatArray:
-    """Torque of the rest of the drive at each dwell, N m; where no temperature is, that of its reference."""
+def _rest_of(of_run: IntArray, table: FloatArray, rests: dict[int, NoLoadTorque | None]) -> FloatArray:
+    """Torque of the no-load torque at each dwell, N m; where no temperature is, that of its reference."""
     beside = np.zeros(of_run.size)
     runs_with: dict[int, list[int]] = {}
     for number, rest in rests.items():

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hersey.arrays import FloatArray
-from hersey.damping.rest import with_rest
+from hersey.damping.no_load_torque import with_rest
 from hersey.damping.surface import WITH_TRANSITION
 from hersey.errors import ParameterError, UnfinishedError
 from hersey.life.indicator import Indicator
@@ -25,7 +25,7 @@ from hersey.stability.hysteresis import hysteresis
 from hersey.units import celsius
 
 if TYPE_CHECKING:
-    from hersey.damping.rest import RestOfDrive
+    from hersey.damping.no_load_torque import NoLoadTorque
     from hersey.machine import Machine
     from hersey.motion.belt import Drivetrain
 
@@ -125,7 +125,7 @@ def drag_of(
 
 def belt_drag(
     machine: Machine,
-    rest: RestOfDrive | None,
+    rest: NoLoadTorque | None,
     speed: FloatArray,
     torque: FloatArray,
     temperature: float | None,
@@ -228,5 +228,5 @@ def _notes(told: AtStates, curves: Curves) -> tuple[str, ...]:
     if silent:
         notes.append(f"not told by {silent} of {enough.size} runs, of other temperatures")
     if any(rest is None for rest in told.runs.rests):
-        notes.append("least of all torque together: the rest of the drive is not known (add [rest])")
+        notes.append("least of all torque together: the no-load torque is not known (add [rest])")
     return tuple(notes)

@@ -7,7 +7,7 @@ drive, cold starved and hot flooded; here the dwells beside a point say what hol
 far they do. How much and over what lengths torque deviates from its trend is shared by all runs of a
 campaign: no run of few dwells tells it.
 
-The torque is that of the belt alone where the rest of the drive is known: above a large rest its logarithm is
+The torque is that of the belt alone where the no-load torque is known: above a large rest its logarithm is
 flat at one end and steep at the other, and no trend goes on from there. Noise may then be as large as torque
 itself; so the logarithm is taken about the smooth torque, not about that of the dwell, until they agree.
 """
@@ -54,7 +54,7 @@ class RunDwells:
     """The dwells of a run: arrays of shape (dwells,).
 
     ``speed`` in rad/s, positive; ``temperature`` in K (NaN throughout where none was recorded). ``torque`` in
-    N m is that of the belt alone so far as the rest of the drive is known, ``whole`` with that rest, both in
+    N m is that of the belt alone so far as the no-load torque is known, ``whole`` with that rest, both in
     the sense of rotation; ``error`` is the standard error of either.
     """
 

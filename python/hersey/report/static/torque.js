@@ -3,7 +3,7 @@
 function torqueNote() {
   const dwells = plural(data.points.length, "dwell");
   const level = radius === null ? "" : ` 10 rpm is ${perSecond((10 / TO_RPM) * radius)} mm/s at the belt.`;
-  return `${dwells}; filled: reached from below, open: from above, bars: two standard errors. Lines: ${curveNames()}.${data.fit.rest ? " The rest of the drive is taken off." : ""}${level}`;
+  return `${dwells}; filled: reached from below, open: from above, bars: two standard errors. Lines: ${curveNames()}.${data.fit.rest ? " The no-load torque is taken off." : ""}${level}`;
 }
 // The laws of the drag curves that carry most of the weight.
 function curveNames() {

@@ -33,7 +33,7 @@ class OperatingMap(Result):
     10,000 transition speeds; its interval counts the fit and the parameters in ``uncertain``, as does that of
     ``holding``. Drag exceeds ``torque_limit`` (set by ``limited_by``) from ``stall_above`` up (infinite if
     never) and, on the falling branch, up to ``stall_below`` (0 if never). The measured ranges bound the
-    dwells. Where ``holding``, the rest of the drive counted, exceeds ``torque_limit``, the drive does not
+    dwells. Where ``holding``, the no-load torque counted, exceeds ``torque_limit``, the drive does not
     start the belt. The bands are those of the roll with its grip (``train``), on which the belt slips
     where a lap asks for more; ``lower`` is zero where no belt sticks and slips in turn, as one that sticks is
     held for good. ``stick_speed_rule`` says how the stick speed depends on temperature. Where edges are

@@ -135,7 +135,7 @@ class Plan(Result):
             f"asked for {100 * self.confidence:g} %)."
         )
 
-    def warmth(self) -> str:
+    def temperature_words(self) -> str:
         """Return how warm the film is as the plan goes on, in a sentence; nothing where it is given."""
         if self.course is None:
             return ""
@@ -155,7 +155,7 @@ class Plan(Result):
             lines += [f"  {time:12.6g}  {1e3 * value:18.6g}" for time, value in self.rows()]
             lines.append("")
             lines += [f"{use.name.replace('_', ' ')}: {use.used:.4g} of {use.limit:.4g}" for use in self.uses]
-            lines += [self.warmth()] if self.course is not None else []
+            lines += [self.temperature_words()] if self.course is not None else []
             lines += [f"- {warning}" for warning in self.warnings]
             lines += [f"- {number} of {self.draws} draws: {why}" for why, number in self.failures.items()]
         speeds = (self.transition_speed, self.fold_speed, self.stick_speed)

@@ -73,7 +73,7 @@ def _speeds(found: Behaviour | None) -> dict[str, Any]:
     return {
         "temperature": found.temperature,
         "safe_speed": edges.safe if math.isfinite(edges.safe) else None,
-        "fold": fold if fold.told else None,
+        "fold": fold if fold.estimable else None,
         "closures": found.posterior.closures(),
         "measurement": advised(found),
     }

@@ -161,7 +161,7 @@ def of_log(surface: DampingSurface, trend: Trend) -> Instruction:
     found = surface.transition_estimate(kelvin)
     lead = at(kelvin)
     slower = "Below it torque rises as the drive slows, and the drive can stick and slip"
-    if not found.told:
+    if not found.estimable:
         text = _lead(lead, f"keep the roll well above {roll(found.value)} rpm")
         interval = f"torque is least at {roll(found.value)} rpm, interval not told"
         return Instruction("watch", text, interval, f"{slower}.")
@@ -179,7 +179,7 @@ def _one_branch(surface: DampingSurface, trend: Trend) -> Instruction:
     low, high = (roll(speed) for speed in surface.speed_range)
     c = surface.c
     interval = f"exponent of damping {signed(c.value)}"
-    interval += f" [{signed(c.low)}, {signed(c.high)}]" if c.told else ", interval not determined"
+    interval += f" [{signed(c.low)}, {signed(c.high)}]" if c.estimable else ", interval not determined"
     if trend.falls and not trend.rises:
         return Instruction(
             "watch",
@@ -197,7 +197,7 @@ def _one_branch(surface: DampingSurface, trend: Trend) -> Instruction:
         )
     if trend.constant:
         # the exponent of one law may exclude a level torque where no test without a law does
-        level = not c.told or c.low <= -1.0 <= c.high
+        level = not c.estimable or c.low <= -1.0 <= c.high
         what = "torque is constant within" if level else "torque stays about its mean within"
         return Instruction(
             "watch",
@@ -237,7 +237,7 @@ def _starting(edges: Edges, map_: OperatingMap, unit: str) -> str:
 
 
 def _interval(what: str, edge: Edge) -> str:
-    if edge.told:
+    if edge.estimable:
         return between(what, edge.value, edge.low, edge.high)
     least = figures(1e3 * edge.low, up=False)
     value = f"{mm(edge.value)} mm/s" if math.isfinite(edge.value) else "not found"

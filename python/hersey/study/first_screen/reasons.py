@@ -17,7 +17,7 @@ _NAMED = {
     "mass": "the mass",
     "transition_force": "the drag at the transition",
     "grip": "the grip of the roll",
-    "rest_force": "the drag of the rest of the drive",
+    "rest_force": "the drag of the no-load torque",
 }
 #: Where a value must lie, by `ParameterError.bound`.
 _BOUNDS = {"above": "be greater than", "at most": "not exceed", "below": "be less than"}

@@ -1,4 +1,4 @@
-"""The rest of the drive: what turning the roll takes besides the film (bearings, gears, the rubber).
+"""The no-load torque: what turning the roll takes besides the film (bearings, gears, the rubber).
 
     torque = (constant + per_speed w) (1 + temperature_slope (T - T_ref))
 
@@ -29,14 +29,14 @@ AnyLaw = TypeVar("AnyLaw", bound=AnyDrag)
 #: Factors beyond the speeds of a no-load log up to which its line is drawn on: where it tells the slope in
 #: speed, and where it does not.
 REACH, REACH_OF_ONE = 2.0, 1.1
-#: The numbers of the rest of the drive, in the order of their covariance.
+#: The numbers of the no-load torque, in the order of their covariance.
 NUMBERS = ("constant", "per_speed", "temperature_slope")
 #: Standard deviations that enclose 95 % of a normal distribution on either side.
 _DEVIATIONS = quantile(np.inf)
 
 
 @dataclass(frozen=True, repr=False)
-class RestOfDrive(Result):
+class NoLoadTorque(Result):
     """Torque beside the film, at the roll: ``(constant + per_speed w) (1 + temperature_slope (T - T_ref))``.
 
     ``constant`` is in N m, ``per_speed`` in N m s/rad, ``temperature_slope`` in 1/K about
@@ -67,8 +67,8 @@ class RestOfDrive(Result):
         reference_temperature: float | None = None,
         uncertainty: float = 0.0,
         source: str = "stated",
-    ) -> RestOfDrive:
-        """Return the rest of the drive as stated.
+    ) -> NoLoadTorque:
+        """Return the no-load torque as stated.
 
         Parameters
         ----------
@@ -86,7 +86,7 @@ class RestOfDrive(Result):
 
         Examples
         --------
-        >>> rest = RestOfDrive.stated(constant="20 mN*m", per_speed="1 mN*m*s/rad", uncertainty=0.1)
+        >>> rest = NoLoadTorque.stated(constant="20 mN*m", per_speed="1 mN*m*s/rad", uncertainty=0.1)
         >>> float(rest.torque(10.0).round(6))
         0.03
         """
@@ -94,9 +94,7 @@ class RestOfDrive(Result):
             if not (np.isfinite(value) and value >= 0):
                 raise ParameterError(f"{name} is {value:g}: it must not be negative")
         if constant == 0 and per_speed == 0:
-            raise ParameterError(
-                "the rest of the drive is nothing: give constant or per_speed, or leave it out"
-            )
+            raise ParameterError("the no-load torque is nothing: give constant or per_speed, or leave it out")
         if not np.isfinite(temperature_slope):
             raise ParameterError(f"temperature_slope is {temperature_slope}: it must be finite")
         if temperature_slope and reference_temperature is None:
@@ -127,7 +125,7 @@ class RestOfDrive(Result):
         """
         speeds = np.asarray(speed, dtype=float)
         at_reference = self.constant.value + self.per_speed.value * np.abs(speeds)
-        return np.asarray(np.sign(speeds) * at_reference * self._warmth(temperature))
+        return np.asarray(np.sign(speeds) * at_reference * self._at_temperature(temperature))
 
     @takes_si(speed="speed", temperature="temperature")
     def errors(self, speed: ArrayLike, temperature: ArrayLike | None = None) -> FloatArray:
@@ -136,12 +134,15 @@ class RestOfDrive(Result):
         Shape (speeds, errors); wider than the covariance has it where few degrees of freedom stand behind it.
         """
         speeds = np.atleast_1d(np.asarray(speed, dtype=float))
-        sign, warmth = np.sign(speeds), self._warmth(temperature) * np.ones_like(speeds)
+        sign, factor = (
+            np.sign(speeds),
+            self._at_temperature(temperature) * np.ones_like(speeds),
+        )
         away = np.zeros_like(speeds)
         if temperature is not None and self.reference_temperature is not None:
             away = away + (np.asarray(temperature, dtype=float) - self.reference_temperature)
         level = self.constant.value + self.per_speed.value * np.abs(speeds)
-        slopes = np.column_stack([sign * warmth, speeds * warmth, sign * level * away])
+        slopes = np.column_stack([sign * factor, speeds * factor, sign * level * away])
         size = np.sqrt(np.diag(self.covariance))
         scale = np.where(size > 0, size, 1.0)  # the three numbers differ by orders of magnitude
         spread, axes = np.linalg.eigh(self.covariance / np.outer(scale, scale))
@@ -156,11 +157,11 @@ class RestOfDrive(Result):
         A part fitted below nothing counts as nothing. ``rest_force`` in N, ``rest_damping`` in N s/m, and
         ``rest_temperature_slope``, their relative change from that temperature on, in 1/K.
         """
-        warmth = float(self._warmth(temperature))
+        factor = float(self._at_temperature(temperature))
         return {
-            "rest_temperature_slope": self.temperature_slope.value / warmth if warmth > 0 else 0.0,
-            "rest_force": max(self.constant.value, 0.0) / roll_radius * warmth,
-            "rest_damping": max(self.per_speed.value, 0.0) / roll_radius**2 * warmth,
+            "rest_temperature_slope": self.temperature_slope.value / factor if factor > 0 else 0.0,
+            "rest_force": max(self.constant.value, 0.0) / roll_radius * factor,
+            "rest_damping": max(self.per_speed.value, 0.0) / roll_radius**2 * factor,
         }
 
     @takes_si(roll_radius="length", temperature="temperature")
@@ -177,13 +178,13 @@ class RestOfDrive(Result):
         if np.isfinite(self.freedom):
             drawn *= np.sqrt(self.freedom / rng.chisquare(self.freedom, size=(count, 1)))
         level, by_speed = (np.array([self.constant.value, self.per_speed.value]) + drawn).T
-        warmth = float(self._warmth(temperature))
+        factor = float(self._at_temperature(temperature))
         return {
-            "rest_force": np.maximum(level, 0.0) / roll_radius * warmth,
-            "rest_damping": np.maximum(by_speed, 0.0) / roll_radius**2 * warmth,
+            "rest_force": np.maximum(level, 0.0) / roll_radius * factor,
+            "rest_damping": np.maximum(by_speed, 0.0) / roll_radius**2 * factor,
         }
 
-    def _warmth(self, temperature: ArrayLike | None) -> FloatArray:
+    def _at_temperature(self, temperature: ArrayLike | None) -> FloatArray:
         """By how much the torque is that of the reference temperature; it never turns negative."""
         if temperature is None or self.reference_temperature is None:
             return np.ones(())
@@ -195,13 +196,13 @@ class RestOfDrive(Result):
         if self.speed_range is None:
             return
         low, high = self.speed_range
-        reach = REACH if self.per_speed.told else REACH_OF_ONE
+        reach = REACH if self.per_speed.estimable else REACH_OF_ONE
         slow, fast = float(np.min(np.abs(speed))), float(np.max(np.abs(speed)))
         if slow < low / reach or fast > high * reach:
             covered = f"{rpm(low):.3g} to {rpm(high):.3g} rpm"
-            covered = covered if self.per_speed.told else f"{rpm(low):.3g} rpm"
+            covered = covered if self.per_speed.estimable else f"{rpm(low):.3g} rpm"
             raise InsufficientDataError(
-                f"{self.source} holds the rest of the drive at {covered}, and {what} goes from "
+                f"{self.source} holds the no-load torque at {covered}, and {what} goes from "
                 f"{rpm(slow):.3g} to {rpm(fast):.3g} rpm: record the drive without the film there too"
             )
 
@@ -217,7 +218,7 @@ class RestOfDrive(Result):
 
     def headline(self) -> str:
         """Return the law in numbers, and its source."""
-        return f"rest of the drive, {self}"
+        return f"no-load torque, {self}"
 
     def __str__(self) -> str:
         """Return the law in numbers, and its source, for a sentence."""
@@ -241,7 +242,7 @@ class RestOfDrive(Result):
         )
 
 
-def with_rest(film: AnyLaw, rest: RestOfDrive, roll_radius: float, temperature: float | None) -> AnyLaw:
+def with_rest(film: AnyLaw, rest: NoLoadTorque, roll_radius: float, temperature: float | None) -> AnyLaw:
     """Return the drag of film and rest together, the rest that of a temperature (K).
 
     Raises
@@ -253,7 +254,7 @@ def with_rest(film: AnyLaw, rest: RestOfDrive, roll_radius: float, temperature: 
     of_one = isinstance(film, DragTable) and not film.varies_with_temperature
     if of_one and at_the_belt["rest_temperature_slope"] and temperature is None:
         raise ParameterError(
-            "the rest of the drive changes with temperature, and a drag table holds at one: give temperature"
+            "the no-load torque changes with temperature, and a drag table holds at one: give temperature"
         )
     return replace(film, **at_the_belt)  # type: ignore[type-var]
 

@@ -9,9 +9,9 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, ValidationInfo
 from pydantic.dataclasses import dataclass
 
-from hersey.damping.no_load import rest_of_drive
+from hersey.damping.no_load import no_load_torque
+from hersey.damping.no_load_torque import NoLoadTorque
 from hersey.damping.recipe import Recipe
-from hersey.damping.rest import RestOfDrive
 from hersey.errors import MissingFileError, ParameterError
 from hersey.files.text import shown
 from hersey.files.toml import Quantity, Share, Table, Text
@@ -49,8 +49,8 @@ class RestTable(Table):
     log: Text | None = None
     tare: Text | None = None
 
-    def rest(self, path: Path) -> RestOfDrive:
-        """Return the rest of the drive; ``path`` is that of the machine's file."""
+    def rest(self, path: Path) -> NoLoadTorque:
+        """Return the no-load torque; ``path`` is that of the machine's file."""
         numbers = ("torque", "damping", "temperature_slope", "at", "uncertainty")
         stated = [name for name in numbers if getattr(self, name) is not None]
         if self.log is not None:
@@ -67,7 +67,7 @@ class RestTable(Table):
             raise ParameterError(
                 'has a temperature_slope and no temperature from which it counts: add at = "180 degC"'
             )
-        return RestOfDrive.stated(
+        return NoLoadTorque.stated(
             constant=self.torque or 0.0,
             per_speed=self.damping or 0.0,
             temperature_slope=self.temperature_slope or 0.0,
@@ -76,10 +76,10 @@ class RestTable(Table):
             source=f"[rest] of {path.name}",
         )
 
-    def _of_log(self, path: Path) -> RestOfDrive:
+    def _of_log(self, path: Path) -> NoLoadTorque:
         named = path.parent / str(self.log)
         if not named.is_file():
             raise MissingFileError(
                 f"{path.name}: [rest] names the log {self.log}, and there is no such file beside it"
             )
-        return rest_of_drive(Recipe(logs=(named,), tare=self.tare or "none").points())
+        return no_load_torque(Recipe(logs=(named,), tare=self.tare or "none").points())

@@ -1,4 +1,4 @@
-"""The rest of the drive by itself: torque without a film, which may be nothing or have either sign.
+"""The no-load torque by itself: torque without a film, which may be nothing or have either sign.
 
     torque = (k + p w/w_ref) (1 + s (T - T_ref)/100 K)
 
@@ -35,21 +35,23 @@ class RestLaw(Named):
 
     def predict(self, values: FloatArray, inputs: Inputs) -> FloatArray:
         """Return torque over that of reference."""
-        return np.asarray(self._level(values, inputs) * self._warmth(values, inputs))
+        return np.asarray(self._level(values, inputs) * self._at_temperature(values, inputs))
 
     def jacobian(self, values: FloatArray, inputs: Inputs) -> FloatArray:
         """Return its derivatives with respect to the parameters, shape (points, parameters)."""
-        warmth = self._warmth(values, inputs)
+        factor = self._at_temperature(values, inputs)
         columns = {
-            "constant": warmth,
-            "per_speed": np.exp(inputs.log_speed) * warmth,
+            "constant": factor,
+            "per_speed": np.exp(inputs.log_speed) * factor,
             "temperature_slope": self._level(values, inputs) * self._away(inputs),
         }
         return np.column_stack([columns[name] for name in self.names])
 
     def slopes(self, values: FloatArray, inputs: Inputs) -> tuple[FloatArray, FloatArray]:
         """Return its derivatives with respect to ln w and to T (1/K)."""
-        by_speed = self._value(values, "per_speed") * np.exp(inputs.log_speed) * self._warmth(values, inputs)
+        by_speed = (
+            self._value(values, "per_speed") * np.exp(inputs.log_speed) * self._at_temperature(values, inputs)
+        )
         by_heat = self._level(values, inputs) * self._value(values, "temperature_slope") / KELVIN
         return by_speed, by_heat
 
@@ -64,7 +66,7 @@ class RestLaw(Named):
     def _level(self, values: FloatArray, inputs: Inputs) -> FloatArray:
         return np.asarray(values[0] + self._value(values, "per_speed") * np.exp(inputs.log_speed))
 
-    def _warmth(self, values: FloatArray, inputs: Inputs) -> FloatArray:
+    def _at_temperature(self, values: FloatArray, inputs: Inputs) -> FloatArray:
         return np.asarray(1.0 + self._value(values, "temperature_slope") * self._away(inputs))
 
     def _away(self, inputs: Inputs) -> FloatArray:

@@ -1,4 +1,4 @@
-"""The rest of the drive: found again in logs without the film, taken off with its errors, or refused."""
+"""The no-load torque: found again in logs without the film, taken off with its errors, or refused."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ import numpy as np
 import pytest
 
 import hersey
-from hersey import RestOfDrive, testbench
+from hersey import NoLoadTorque, testbench
 from hersey.damping.candidates.branched import ONE
 from hersey.damping.candidates.candidate import Candidate
 from hersey.damping.candidates.fitting import fit_law
 from hersey.damping.candidates.observations import Observations
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.estimate import quantile
-from hersey.damping.rest import with_rest
+from hersey.damping.no_load_torque import with_rest
 from hersey.document.assembly import fit_document
 from hersey.document.saved_fit import read_fit
 from hersey.errors import InsufficientDataError, ParameterError, WrongKindError
@@ -54,8 +54,8 @@ def film(w: np.ndarray, t: np.ndarray) -> np.ndarray:
     return np.asarray(62.0 * t**-0.9 * w**0.4 / 10.0)
 
 
-def stated(uncertainty: float = 0.0) -> RestOfDrive:
-    return RestOfDrive.stated(
+def stated(uncertainty: float = 0.0) -> NoLoadTorque:
+    return NoLoadTorque.stated(
         constant=CONSTANT,
         per_speed=PER_SPEED,
         temperature_slope=SLOPE,
@@ -65,7 +65,7 @@ def stated(uncertainty: float = 0.0) -> RestOfDrive:
 
 
 def test_an_exact_rest_is_found_exactly() -> None:
-    rest = hersey.rest_of_drive(no_load())
+    rest = hersey.no_load_torque(no_load())
     w, t = np.array([0.7, 3.0, -9.0]), np.array([110.0, 150.0, 170.0])
     assert rest.torque(w, t + 273.15) == pytest.approx(rest_torque(w, t), rel=1e-9)
     assert rest.sha256 == ("0",)
@@ -78,7 +78,7 @@ def test_intervals_hold_the_truth() -> None:
     held = np.zeros(3)
     logs = 40
     for seed in range(logs):
-        rest = hersey.rest_of_drive(no_load(seed, tare=1e-3))
+        rest = hersey.no_load_torque(no_load(seed, tare=1e-3))
         assert rest.reference_temperature is not None
         warm = 1.0 + SLOPE * (rest.reference_temperature - AT)
         truth = CONSTANT * warm, PER_SPEED * warm, SLOPE / warm
@@ -104,7 +104,7 @@ def test_a_log_without_the_film_tells_the_rest() -> None:
         torque_noise=0.3,
     )
     table = testbench.run(seed=4, truth=Lifted(), stand=stand).table
-    rest = hersey.rest_of_drive(hersey.read(table).steady(tare="standing"))
+    rest = hersey.no_load_torque(hersey.read(table).steady(tare="standing"))
     w = np.array([1.0, 6.0, 12.0])
     found, true = rest.torque(w, AT), rest_torque(w, np.full(3, 150.0))
     assert np.all(np.abs(found - true) < 3.0 * np.linalg.norm(rest.errors(w, np.full(3, AT)), axis=1))
@@ -115,31 +115,35 @@ def test_a_log_without_the_film_tells_the_rest() -> None:
 
 def test_what_one_speed_or_one_temperature_does_not_tell_is_said() -> None:
     noise = np.array([1.0, -1.0, 0.5, -0.5, 0.0]) * 1e-4
-    slow = hersey.rest_of_drive(points_of(np.full(5, 2.0), 0.02 + noise))
-    assert (slow.constant.told, slow.per_speed.told, slow.per_speed.value) == (True, False, 0.0)
+    slow = hersey.no_load_torque(points_of(np.full(5, 2.0), 0.02 + noise))
+    assert (slow.constant.estimable, slow.per_speed.estimable, slow.per_speed.value) == (True, False, 0.0)
     assert "holds one speed, 19.1 rpm: how torque rises with speed is not told" in slow.summary()
-    one = hersey.rest_of_drive(points_of(SPEEDS[:5], 0.02 + 0.001 * SPEEDS[:5] + noise, np.full(5, 150.0)))
-    assert (one.per_speed.told, one.temperature_slope.told, one.reference_temperature) == (True, False, None)
+    one = hersey.no_load_torque(points_of(SPEEDS[:5], 0.02 + 0.001 * SPEEDS[:5] + noise, np.full(5, 150.0)))
+    assert (one.per_speed.estimable, one.temperature_slope.estimable, one.reference_temperature) == (
+        True,
+        False,
+        None,
+    )
     assert "holds one temperature, 150 degC" in one.notes[0]
     w, t = grid(SPEEDS, TEMPERATURES[:2])
-    each_once = hersey.rest_of_drive(points_of(w, rest_torque(w, t), t, error=0.01))
-    assert not each_once.temperature_slope.told
+    each_once = hersey.no_load_torque(points_of(w, rest_torque(w, t), t, error=0.01))
+    assert not each_once.temperature_slope.estimable
     assert "visit one again" in each_once.notes[0]
 
 
 def test_no_load_logs_that_tell_nothing_are_refused() -> None:
     with pytest.raises(InsufficientDataError, match="run: 3 steady points cannot tell the rest"):
-        hersey.rest_of_drive(points_of(SPEEDS[:3], 0.02 + 0.001 * SPEEDS[:3]))
+        hersey.no_load_torque(points_of(SPEEDS[:3], 0.02 + 0.001 * SPEEDS[:3]))
     with pytest.raises(InsufficientDataError, match=r"fitted as -35 mN m at its least.*signs={'torque': -1}"):
-        hersey.rest_of_drive(points_of(SPEEDS, -0.02 - 0.001 * SPEEDS))
+        hersey.no_load_torque(points_of(SPEEDS, -0.02 - 0.001 * SPEEDS))
     points = no_load()
     twice = replace(points.log, corrections=(Correction("no-load torque", (), ()),))
     with pytest.raises(ParameterError, match="leave out no_load of the mapping"):
-        hersey.rest_of_drive(replace(points, log=twice))
+        hersey.no_load_torque(replace(points, log=twice))
 
 
 def test_a_torque_that_bends_is_said_to() -> None:
-    bent = hersey.rest_of_drive(points_of(SPEEDS, 0.02 * SPEEDS**0.3, error=0.002))
+    bent = hersey.no_load_torque(points_of(SPEEDS, 0.02 * SPEEDS**0.3, error=0.002))
     assert "bends with speed as no line does" in bent.notes[0]
 
 
@@ -166,15 +170,14 @@ def test_what_was_taken_off_is_said() -> None:
     points = replace(points, table=with_approach).without(stated())
     surface = hersey.fit(points)
     assert "20 mN m + 1 mN m s/rad times speed, -0.2 %/K from 150 degC (stated)" in points.summary()
-    assert "measured less the rest of the drive: 20 mN m" in surface.summary()
+    assert "measured less the no-load torque: 20 mN m" in surface.summary()
     assert (
-        "of the film alone, the rest of the drive taken off: 20 mN m"
-        in hersey.regime(points, surface).verdict
+        "of the film alone, the no-load torque taken off: 20 mN m" in hersey.regime(points, surface).verdict
     )
 
 
 def test_a_rest_of_other_temperatures_is_said_to_be_extrapolated() -> None:
-    cold = hersey.rest_of_drive(
+    cold = hersey.no_load_torque(
         points_of(SPEEDS, rest_torque(SPEEDS, np.full(8, 25.0)), np.full(8, 25.0), error=0.01)
     )
     w, t = grid(SPEEDS, TEMPERATURES)
@@ -184,9 +187,7 @@ def test_a_rest_of_other_temperatures_is_said_to_be_extrapolated() -> None:
     assert "holds one temperature, 25 degC" in said
     assert "at 25 to 25 degC, and the dwells lie at 100 to 175 degC: it is extrapolated" in said
     blind = points_of(w, whole, error=1e-3).without(stated())
-    assert "The log holds no temperatures: the rest of the drive is that at 150 degC." in _rest_warnings(
-        blind
-    )
+    assert "The log holds no temperatures: the no-load torque is that at 150 degC." in _rest_warnings(blind)
 
 
 def test_errors_of_the_rest_widen_the_intervals() -> None:
@@ -215,26 +216,26 @@ def holds_exponent(points: SteadyPoints) -> bool:
 def test_what_cannot_be_taken_off_is_refused() -> None:
     w, t = grid(SPEEDS, TEMPERATURES)
     points = points_of(w, film(w, t) + rest_torque(w, t), t)
-    heavy = RestOfDrive.stated(constant="0.3 N*m")
+    heavy = NoLoadTorque.stated(constant="0.3 N*m")
     with pytest.raises(
         InsufficientDataError, match=r"at 4.77 rpm torque is .* takes 300 mN m of it \(stated\)"
     ):
         points.without(heavy)
-    slow = hersey.rest_of_drive(points_of(SPEEDS[:4], 0.02 + 0.001 * SPEEDS[:4], error=0.01))
+    slow = hersey.no_load_torque(points_of(SPEEDS[:4], 0.02 + 0.001 * SPEEDS[:4], error=0.01))
     with pytest.raises(
-        InsufficientDataError, match=r"run holds the rest of the drive at 4.77 to 20.5 rpm.*143 rpm"
+        InsufficientDataError, match=r"run holds the no-load torque at 4.77 to 20.5 rpm.*143 rpm"
     ):
         points.without(slow)
     with pytest.raises(ParameterError, match="taken off already"):
         points.without(stated()).without(stated())
     with pytest.raises(WrongKindError, match="unit 'N' is not a unit of torque"):
-        RestOfDrive.stated(constant="20 N")
-    with pytest.raises(ParameterError, match="rest of the drive is nothing"):
-        RestOfDrive.stated()
+        NoLoadTorque.stated(constant="20 N")
+    with pytest.raises(ParameterError, match="no-load torque is nothing"):
+        NoLoadTorque.stated()
     with pytest.raises(ParameterError, match="constant is -1: it must not be negative"):
-        RestOfDrive.stated(constant=-1.0)
+        NoLoadTorque.stated(constant=-1.0)
     with pytest.raises(ParameterError, match="needs the reference_temperature"):
-        RestOfDrive.stated(constant=0.02, temperature_slope=-0.002)
+        NoLoadTorque.stated(constant=0.02, temperature_slope=-0.002)
 
 
 def test_a_saved_fit_carries_the_rest(tmp_path: Path) -> None:
@@ -270,7 +271,7 @@ def test_beside_a_drag_table_it_is_that_of_one_temperature() -> None:
     assert drag.force(0.1) == pytest.approx(50.0 + added)
     with pytest.raises(ParameterError, match="a drag table holds at one: give temperature"):
         with_rest(table, stated(), 0.015, None)
-    even = RestOfDrive.stated(constant=CONSTANT, per_speed=PER_SPEED, uncertainty=0.1)
+    even = NoLoadTorque.stated(constant=CONSTANT, per_speed=PER_SPEED, uncertainty=0.1)
     assert with_rest(table, even, 0.015, None).rest_force == pytest.approx(CONSTANT / 0.015)
 
 
@@ -294,7 +295,7 @@ def test_motion_map_and_limits_count_film_and_rest() -> None:
 
 def test_draws_of_the_rest_have_its_errors() -> None:
     """As stated, 10 % at 95 %: both numbers go together, at the belt and at a temperature."""
-    rest = hersey.RestOfDrive.stated(
+    rest = hersey.NoLoadTorque.stated(
         constant=0.02, per_speed=1e-3, uncertainty=0.1, temperature_slope=-0.01, reference_temperature=400.0
     )
     drawn = rest.samples(20_000, 1, roll_radius=0.015, temperature=420.0)
@@ -316,7 +317,7 @@ def test_draws_of_the_rest_have_its_errors() -> None:
 
 def test_errors_have_the_sense_of_rotation() -> None:
     """A rest known to 10 % (95 %): 0.02 + 0.001 w is off by ln 1.1 over 1.96, backwards the other way."""
-    rest = RestOfDrive.stated(constant=0.02, per_speed=0.001, uncertainty=0.1)
+    rest = NoLoadTorque.stated(constant=0.02, per_speed=0.001, uncertainty=0.1)
     forward, backward = rest.errors(np.array([5.0, -5.0]))
     np.testing.assert_allclose(backward, -forward, rtol=1e-12)
     assert np.linalg.norm(forward) == pytest.approx(np.log(1.1) * 0.025 / 1.96, rel=1e-4)
