@@ -13,13 +13,7 @@ from typing import Any
 
 from hersey.app.channels import Fault
 from hersey.app.course import Course
-from hersey.app.machine import (
-    answer_faults,
-    form_text,
-    mapping_of_form,
-    mapping_said,
-    named_logs,
-)
+from hersey.app.machine import answer_faults, form_text, mapping_of_form, mapping_said, named_logs
 from hersey.errors import HerseyError
 from hersey.files.text import read_text
 from hersey.log.channels import OTHER_ROLES, ROLES, called

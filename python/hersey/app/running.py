@@ -55,11 +55,7 @@ def run(request: Mapping[str, Any], step: Step) -> dict[str, Any]:
     step("drawing the page", _DRAWING)
     write_atomically(Path(request["report"]), render(document), overwrite=True)
     decision = found.decision
-    return {
-        "signal": decision.signal,
-        "words": decision.instruction,
-        "warnings": len(found.warnings),
-    }
+    return {"signal": decision.signal, "words": decision.instruction, "warnings": len(found.warnings)}
 
 
 def _shared(step: Step, points: int) -> Callable[[str], None]:

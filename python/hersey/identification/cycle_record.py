@@ -281,11 +281,7 @@ def _stretch(samples: Samples, drive_speed: float | None) -> Samples:
 
 
 def _record(
-    samples: Samples,
-    quantity: str,
-    drive_speed: float | None,
-    uncertainty: float,
-    least_drop: float | None,
+    samples: Samples, quantity: str, drive_speed: float | None, uncertainty: float, least_drop: float | None
 ) -> CycleRecord:
     found, figures, motion, notes = _motion(samples)
     if least_drop is not None and least_drop > found.least:

@@ -161,10 +161,7 @@ _UNITS = {
 
 
 def identify(
-    record: CycleRecord,
-    *,
-    known: Mapping[str, float] | None = None,
-    closures: tuple[str, ...] = COMPARED,
+    record: CycleRecord, *, known: Mapping[str, float] | None = None, closures: tuple[str, ...] = COMPARED
 ) -> IdentifiedDrive:
     """Identify the drive from the cycles of a trace of force at known drive speed.
 

@@ -150,10 +150,7 @@ def _temperature(levels: tuple[float, ...], points: SteadyPoints, fitted: Dampin
 
 
 def _branches(
-    points: SteadyPoints,
-    groups: list[NDArray[np.intp]],
-    speed: FloatArray,
-    surface: DampingSurface | str,
+    points: SteadyPoints, groups: list[NDArray[np.intp]], speed: FloatArray, surface: DampingSurface | str
 ) -> Said:
     most = max(distinct_speeds(speed[group]) for group in groups)
     few = f"at most {most} speed{'s' if most > 1 else ''} at one temperature"

@@ -10,15 +10,7 @@ from typing import Any
 import numpy as np
 
 from hersey.arrays import FloatArray
-from hersey.errors import (
-    ISOTHERMAL,
-    ChannelError,
-    Setting,
-    UnitError,
-    WrongKindError,
-    meant,
-    printable,
-)
+from hersey.errors import ISOTHERMAL, ChannelError, Setting, UnitError, WrongKindError, meant, printable
 from hersey.log.text.column import Column
 from hersey.units import KINDS, Conversion, conversion, nearest_unit
 

@@ -126,11 +126,7 @@ class Reading:
 
 
 def impossible_rows(
-    readings: list[Reading],
-    file: str,
-    where: Callable[[int, Column], str],
-    *,
-    allowed: bool,
+    readings: list[Reading], file: str, where: Callable[[int, Column], str], *, allowed: bool
 ) -> tuple[BoolArray, tuple[Impossible, ...]]:
     """Return which rows hold a reading that cannot be right, and what was found, by channel and reason.
 
@@ -285,11 +281,7 @@ def _at(rows: IntArray, size: int) -> BoolArray:
 
 
 def _record(
-    reading: Reading,
-    kind: str,
-    reason: Reason,
-    mask: BoolArray,
-    where: Callable[[int, Column], str],
+    reading: Reading, kind: str, reason: Reason, mask: BoolArray, where: Callable[[int, Column], str]
 ) -> Impossible:
     written = as_written(reading.values[mask], reading.unit)
     distinct, counts = np.unique(np.array([float(f"{v:.10g}") for v in written[:10_000]]), return_counts=True)

@@ -17,24 +17,10 @@ from typing import Any
 import numpy as np
 from pydantic.dataclasses import dataclass
 
-from hersey.errors import (
-    MAPPING,
-    ChannelError,
-    ParameterError,
-    Setting,
-    UnitError,
-    printable,
-    turned,
-)
+from hersey.errors import MAPPING, ChannelError, ParameterError, Setting, UnitError, printable, turned
 from hersey.files.toml import Table, naming, read_tables, read_toml
 from hersey.log import corrections
-from hersey.log.channels import (
-    OTHER_ROLES,
-    ROLE_KINDS,
-    ROLES,
-    Stated,
-    role_conversion,
-)
+from hersey.log.channels import OTHER_ROLES, ROLE_KINDS, ROLES, Stated, role_conversion
 from hersey.log.corrections import Corrected
 from hersey.log.reading import read
 from hersey.log.role_tables import (

@@ -70,9 +70,7 @@ def as_long_as_torque(cells: CellTable, choices: dict[str, ChannelChoice]) -> Ce
             )
     kept = [i for i, column in enumerate(cells.columns) if size[column] == rows]
     return replace(
-        cells,
-        columns=tuple(cells.columns[i] for i in kept),
-        cells=tuple(cells.cells[i] for i in kept),
+        cells, columns=tuple(cells.columns[i] for i in kept), cells=tuple(cells.cells[i] for i in kept)
     )
 
 

@@ -225,11 +225,7 @@ def _is_one(tables: Any) -> bool:
 
 
 def _read(
-    cells: CellTable,
-    choices: dict[str, ChannelChoice],
-    said: Stated,
-    isothermal: bool,
-    before: list[MeanRow],
+    cells: CellTable, choices: dict[str, ChannelChoice], said: Stated, isothermal: bool, before: list[MeanRow]
 ) -> tuple[list[MeanRow], LogFile, bool]:
     """The rows of a table, its record, and whether it states errors; ``before`` are rows of other tables."""
     cells = as_long_as_torque(cells, choices)

@@ -18,10 +18,7 @@ from hersey.units import Conversion
 
 
 def propose_mapping(
-    path: str | Path,
-    *,
-    channels: Mapping[str, str] | None = None,
-    units: Mapping[str, str] | None = None,
+    path: str | Path, *, channels: Mapping[str, str] | None = None, units: Mapping[str, str] | None = None
 ) -> str:
     """Return a mapping for the channels of a log as TOML, to be looked at, mended and kept.
 

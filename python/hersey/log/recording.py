@@ -119,12 +119,7 @@ def library(module: str, reads: str) -> Any:
     try:
         return importlib.import_module(module)
     except ImportError:
-        raise missing_library(module, reads) from None
-
-
-def missing_library(module: str, reads: str) -> UnreadableLogError:
-    """Return the error for an optional library that is not installed."""
-    return UnreadableLogError(f"reading {reads} needs {module}: pip install 'hersey[formats]'")
+        raise UnreadableLogError(f"reading {reads} needs {module}: pip install 'hersey[formats]'") from None
 
 
 @contextlib.contextmanager

@@ -8,7 +8,6 @@ import queue
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -72,10 +71,6 @@ class LocalWorkers:
             f"{_WORKERS_PER_ITEM} worker processes ended at the same item, one after the other: it may need "
             f"more memory than there is; try fewer workers"
         )
-
-    def task(self, task: Callable[[Any], Any]) -> Callable[[Any], Any]:
-        """Return a function that does a task in a worker."""
-        return partial(self.do, task)
 
     def close(self) -> None:
         """End the processes, also those at work."""

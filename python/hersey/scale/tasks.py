@@ -72,7 +72,7 @@ def done(
         raise ParameterError(f"threads is {threads}: a whole number, at least 1, is needed")
     total, finished = sum(map(size, items)), 0
     if isinstance(client, LocalWorkers):
-        found = _by_threads(client.task(task), items, client.count)
+        found = _by_threads(partial(client.do, task), items, client.count)
     elif client is not None:
         found = _by_workers(task, items, client)
     elif threads == 1:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import partial
 from typing import BinaryIO
@@ -35,10 +35,8 @@ def open_excel(file: BinaryIO, _name: str) -> Iterator[Recording]:
         sheet_id=0,
         engine="calamine",
         has_header=False,
-        read_options={
-            "dtypes": "string",
-            "skip_rows": 0,
-        },  # as text: a word in a column of numbers costs its row alone
+        # as text: a word in a column of numbers costs its row alone
+        read_options={"dtypes": "string", "skip_rows": 0},
         drop_empty_rows=False,
         drop_empty_cols=False,
         raise_if_empty=False,
@@ -106,10 +104,11 @@ def _rows(recording: Recording, group: str, cells: pl.DataFrame, layout: Layout)
 
 
 def _signals(recording: Recording, group: str, table: pl.DataFrame, layout: Layout) -> Iterator[Signal]:
+    place = f"sheet '{group}', " if group else ""
     for column in layout.named:
         if column.index in layout.texts:
             continue
-        load = _numbers(recording, group, table.to_series(column.index), layout, column)
+        load = partial(_numbers, recording, place, table.to_series(column.index), layout, column)
         yield Signal(column.name, column.unit, table.height, load, group=group, line=layout.first_line)
 
 
@@ -128,14 +127,9 @@ def _texts(cells: pl.Series, layout: Layout) -> list[str]:
 
 
 def _numbers(
-    recording: Recording, group: str, cells: pl.Series, layout: Layout, column: Column
-) -> Callable[[], FloatArray]:
-    """What loads a column: a cell that is no number is missing, and noted."""
-    place = f"sheet '{group}', " if group else ""
-    return partial(_load, recording, place, cells, layout, column)
-
-
-def _load(recording: Recording, place: str, cells: pl.Series, layout: Layout, column: Column) -> FloatArray:
+    recording: Recording, place: str, cells: pl.Series, layout: Layout, column: Column
+) -> FloatArray:
+    """The numbers of a column: a cell that is none is missing, and noted."""
     style = layout.stamps.get(column.index)
     written = layout.style if style is None else Stamps(style)
     text = cells.fill_null("")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from typing import Any, BinaryIO
 
 import numpy as np
@@ -67,7 +68,7 @@ def _data_set(path: str, item: Any) -> Iterator[Signal]:
     if item.dtype.names:
         for field in item.dtype.names:
             if item.dtype[field].kind in "iufb" and not item.dtype[field].shape:
-                yield from array_signals(field, shape, _column(item, field), group=path)
+                yield from array_signals(field, shape, partial(item.__getitem__, field), group=path)
     elif item.dtype.kind in "iufb" and shape:
         yield from array_signals(name, shape, _numbers(path, item), unit, group)
 
@@ -82,10 +83,6 @@ def _check_place(path: str, item: Any) -> None:
     """Numbers in another file are not those that were hashed, nor those that a user means to give."""
     if item.external or item.is_virtual:
         raise UnreadableLogError(f"data set '{path}' keeps its numbers in another place: {_WAY_OUT}")
-
-
-def _column(item: Any, field: str) -> Callable[[], Any]:
-    return lambda: item[field]
 
 
 def _numbers(path: str, item: Any) -> Callable[[], Any]:

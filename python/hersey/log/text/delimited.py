@@ -31,11 +31,7 @@ from hersey.units import Conversion
 Progress = Callable[[int, int], None]
 
 
-def read_delimited(
-    path: Path,
-    wanted: Wanted,
-    progress: Progress | None = None,
-) -> list[tuple[Run, LogFile]]:
+def read_delimited(path: Path, wanted: Wanted, progress: Progress | None = None) -> list[tuple[Run, LogFile]]:
     """Read the runs in one file; ``progress`` is called with bytes done and bytes in all.
 
     Raises
