@@ -203,7 +203,7 @@ def list_(file: _File, as_json: AsJson = False) -> None:
 
     with Campaign.open(file, write=False) as opened:
         if as_json:
-            print_json("campaign", opened.to_dict())
+            print_json(opened.to_dict(), findings=None)
         else:
             say(opened.summary())
 
@@ -222,7 +222,7 @@ def show(
 
     with Campaign.open(file, write=False) as opened:
         if as_json:
-            print_json("campaign", opened.to_dict(unit))
+            print_json(opened.to_dict(unit), findings=None)
             return
         for row in opened.runs(unit).to_dicts():
             facts = [f"run {row['run']} at {Age(row['age'], opened.age_unit)}", f"{row['dwells']} dwells"]
@@ -249,7 +249,7 @@ def check(file: _File, as_json: AsJson = False) -> None:
         with bar("checking", unit="runs") as progress:
             found = opened.check(progress)
         if as_json:
-            print_json("campaign", opened.to_dict(), findings=found.findings)
+            print_json(opened.to_dict(), findings=found.findings)
         else:
             say(found.summary())
     if not found.ok:

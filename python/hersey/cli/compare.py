@@ -30,4 +30,4 @@ def compare(
     of_a, of_b = (reading.points_of([path]) for path in (a, b))
     with working("comparing"):
         comparison = compared(of_a, of_b, names=(str(a), str(b)))
-    show("compare", comparison, as_json)
+    show(comparison, as_json)

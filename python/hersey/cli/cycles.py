@@ -140,7 +140,7 @@ def cycles(
         shown = "share of the weight" if given.unit == "1" else unit
         drawing.draw(record, drive=drive, unit=shown)
         if as_json:
-            print_json("cycles", record, unit=given.unit, drive=drive)
+            print_json(record, unit=given.unit, drive=drive)
             continue
         say("\n" * (number != chosen[0]) + record.summary(unit))
         if drive is not None:

@@ -7,7 +7,7 @@ from typing import Annotated
 
 from hersey.cli.groups import grouped, option
 from hersey.cli.options import AsJson, Logs, Reading, Traces
-from hersey.cli.outputs import print_json, show
+from hersey.cli.outputs import print_json
 from hersey.cli.progress import working
 from hersey.cli.quantities import range_of
 from hersey.cli.terminal import say
@@ -54,7 +54,10 @@ def design(
     with working("fitting the candidates"):
         fitted = compare_models(points, bootstrap=0, cross_validate=False)
     found = designed(fitted, count=count, quantity=quantity, speeds=speed, temperatures=kelvin, seed=seed)
-    show("design", found, as_json)
+    if as_json:
+        print_json(found, fold=None, measurements=[])
+    else:
+        say(found.summary())
 
 
 def _for_the_machine(
@@ -70,6 +73,6 @@ def _for_the_machine(
     assert drawn is not None
     ranked = measurements(drawn)
     if as_json:
-        print_json("design", design_part(drawn, ranked))
+        print_json(design_part(drawn, ranked))
         return
     say(*ranking(drawn, ranked))

@@ -130,7 +130,7 @@ def fmu(
     made, tried = _made(file, train, drag, settings, check)
     kept = tried is None or tried.ok
     if as_json:
-        print_json("export", made.to_dict(), check=tried)
+        print_json(made.to_dict(), check=tried)
     else:
         say(*([made.summary()] if kept else []), *([] if tried is None else [tried.summary()]))
     if not kept:

@@ -83,7 +83,7 @@ def film(
     }
     drawing.draw(predicted, **chart)
     if as_json:
-        print_json("film", film_document(predicted, names, found.measured, found.says, notes, shared, off))
+        print_json(film_document(predicted, names, found.measured, found.says, notes, shared, off))
         return
     say(*_lines(predicted, names, found, shared), *(f"- {each}" for each in (*(o.text for o in off), *notes)))
     say_written(figure=figure)

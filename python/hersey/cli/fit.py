@@ -73,7 +73,7 @@ def _fit_one(logs: list[Path], reading: Reading, machine: Machine | None, as_jso
         surface = fitted(points, temperature_scale=reading.temperature_scale)
         curves = fit_curves(points, surface, None if machine is None else machine.mixed)
     if as_json:
-        print_json("fit", fit_document(log, points, surface, curves))
+        print_json(fit_document(log, points, surface, curves))
         return
     doubts = [f"- {caution}" for caution in cautions(points, surface)]
     say(surface.summary(), drag_curves(curves.table), regime(points, surface).verdict, *doubts)

@@ -51,7 +51,7 @@ def hysteresis(
         if before is not None and after is not None:
             step = safe_step(train, law, from_speed=before, to_speed=after)
     if as_json:
-        print_json("hysteresis", band, disturbance=bears, step=step)
+        print_json(band, disturbance=bears, step=step)
         return
     lines = [band.summary({**vars(train), **vars(law)})]
     lines += [] if bears is None else [_borne(bears)]

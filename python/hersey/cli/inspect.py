@@ -50,4 +50,4 @@ def inspect(
             proposal = propose_mapping(logs[0], channels=recipe.channels, units=recipe.units)
             written.write(proposal)
         drawing.draw(inspection, "drawing the channels", paths=logs)
-    show("inspect", inspection, as_json, mapping=kept, figure=figure)
+    show(inspection, as_json, mapping=kept, figure=figure)

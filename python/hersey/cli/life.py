@@ -54,4 +54,4 @@ def life(
 
         with working("writing the figures"):
             write_life_figures(answer, figures, overwrite=force)
-    show("life", answer, as_json, f"seed {seed}", report=page)
+    show(answer, as_json, f"seed {seed}", report=page)

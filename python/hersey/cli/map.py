@@ -49,4 +49,4 @@ def map_(
             found = operating_map(surface, machine, threads=threads)
     tooltips = path is not None and path.suffix == ".html"
     drawing.draw(found, "drawing the map", tooltips=tooltips)
-    show("map", found, as_json, *(f"- {warning}" for warning in found.warnings), map=path)
+    show(found, as_json, *(f"- {warning}" for warning in found.warnings), map=path)

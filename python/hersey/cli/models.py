@@ -55,7 +55,7 @@ def models(
     doubts = cautions(points, surface)
     curves = () if surface is None else fit_curves(points, surface, contact).table
     if as_json:
-        print_json("models", compared, warnings=doubts, drag_curves=curves)
+        print_json(compared, warnings=doubts, drag_curves=curves)
         return
     words = [drag_curves(curves)] if curves else []
     say(compared.summary(), *words, *(f"- {doubt}" for doubt in doubts))

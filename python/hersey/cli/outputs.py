@@ -37,21 +37,18 @@ def command() -> str:
     return " ".join(["hersey", *(shlex.quote(part) for part in sys.argv[1:])])
 
 
-def print_json(name: str, result: Any, **beside: Any) -> None:
-    """Print what a command of that name found: its part of the document, with versions and command.
+def print_json(result: Any, **beside: Any) -> None:
+    """Print what a command found as JSON, with versions and command.
 
-    ``beside`` are fields of the part that the result does not have.
+    ``beside`` are fields that the result itself does not have.
     """
     from hersey import _core
-    from hersey.document.printed import PRINTED
     from hersey.result import json_record, json_value
     from hersey.schema.part import SCHEMA_VERSION
-    from hersey.schema.record import part_of
 
-    found = json_value(result)
-    part = part_of(PRINTED[name]).model_validate(found | json_record(beside) if beside else found)
+    found = result.model_dump(mode="json") if hasattr(result, "model_dump") else json_value(result)
     header = {"schema_version": SCHEMA_VERSION, "hersey_version": _core.VERSION, "command": command()}
-    print(json.dumps(header | part.model_dump(mode="json"), indent=1, allow_nan=False))
+    print(json.dumps(header | found | json_record(beside), indent=1, allow_nan=False))
 
 
 def print_document(document: BaseModel) -> None:
@@ -171,10 +168,10 @@ def may_write_table_and_figure(
     return may_write(table, force, inputs, ends=[".csv"]), drawing
 
 
-def show(name: str, result: Result, as_json: bool, *notes: str, **files: Path | None) -> None:
+def show(result: Result, as_json: bool, *notes: str, **files: Path | None) -> None:
     """Print a result: as JSON, or in words with notes below, and the files that were written."""
     if as_json:
-        print_json(name, result)
+        print_json(result)
     else:
         say(result.summary(), *notes)
         say_written(**files)
@@ -188,7 +185,7 @@ def say_written(**files: Path | None) -> None:
 
 
 def give(
-    name: str, result: Plan | WarmUp, outputs: tuple[Output, Output], as_json: bool, called: str, **chart: Any
+    result: Plan | WarmUp, outputs: tuple[Output, Output], as_json: bool, called: str, **chart: Any
 ) -> None:
     """Write table and figure of a course that a command has found, and print the result.
 
@@ -196,10 +193,10 @@ def give(
     found nothing is written, and the command ends with `NOT_FOUND`.
     """
     if not result.found:
-        show(name, result, as_json)
+        show(result, as_json)
         raise typer.Exit(NOT_FOUND)
     table, figure = outputs
     figure.draw(result, **chart)
     if table.path is not None:
         table.write(result.table())
-    show(name, result, as_json, **{called: table.path, "figure": figure.path})
+    show(result, as_json, **{called: table.path, "figure": figure.path})

@@ -114,7 +114,7 @@ def plan(
     if course is not None:
         said = beyond_the_log(surface, course.values)
         planned = replace(planned, warnings=(*planned.warnings, *said))
-    give("plan", planned, outputs, as_json, called="profile", temperature=course)
+    give(planned, outputs, as_json, called="profile", temperature=course)
 
 
 def _of_a_fit(

@@ -58,7 +58,7 @@ def posterior(
         )
     if out is not None:
         table.write(_content(found, out))
-    show("posterior", found, as_json, draws=out)
+    show(found, as_json, draws=out)
 
 
 def _content(found: Posterior, out: Path) -> bytes:

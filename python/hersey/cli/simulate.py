@@ -66,6 +66,10 @@ class _Heat:
             raise ParameterError(f"{'--from' if self.begin else '--fit'} goes with --heat")
 
 
+#: What JSON says beside the cycle; null where it is not asked for.
+_BESIDE = ("energy", "check", "motor", "warming")
+
+
 class _Motion(NamedTuple):
     """A motion that was simulated, what it settles to, what JSON says beside, and all of it in lines."""
 
@@ -103,7 +107,7 @@ def simulate(
             table.write(_rows(found.run))
         drawing.draw(found.run)
     if as_json:
-        print_json("simulate", found.cycle, **found.beside)
+        print_json(found.cycle, **dict.fromkeys(_BESIDE) | found.beside)
         return
     say(*found.lines)
 

@@ -88,7 +88,7 @@ def sweep(
         with working("writing the rows"):
             table.write(rows(result, table.path.suffix))
     if as_json:
-        print_json("sweep", counted)
+        print_json(counted)
         return
     say(*_lines(counted), *(f"- {note}" for note in (*notes, *_of_the_machine(described))))
     say_written(sweep=out)

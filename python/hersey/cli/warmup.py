@@ -78,7 +78,7 @@ def warmup(
         warm = warm_up(machine.train, warming_drag(surface, machine), heat, **sought, **limits)
     said = (f"the limit is that of the {weakest}", *beyond_the_log(surface, warm.film_temperature))
     warm = replace(warm, warnings=(*warm.warnings, *said))
-    give("warmup", warm, outputs, as_json, called="course")
+    give(warm, outputs, as_json, called="course")
 
 
 def _limits(machine: Machine, file: str) -> tuple[str, dict[str, float]]:

@@ -11,22 +11,16 @@ from pydantic import Field
 
 from hersey.damping.compare import LogComparison
 from hersey.decision.behaviour import StickSpeeds
-from hersey.document.parts.campaign import CampaignPart
-from hersey.document.parts.cycles import CyclesPart
-from hersey.document.parts.exchange import UnitPart
 from hersey.document.parts.fit import FitPart
-from hersey.document.parts.life_test import LifeTestPart
 from hersey.document.parts.log import InputFile, MachineFilePart, Point, Quality, Timeline
 from hersey.document.parts.models import ModelsPart
-from hersey.document.parts.motion import StickSlipPart, SweepPart
 from hersey.document.parts.posterior import PosteriorPart
-from hersey.inspection.inspecting import Inspection
 from hersey.schema.part import SCHEMA_VERSION, Part
 from hersey.stability.hysteresis import HysteresisBand
 from hersey.stability.operating_map.result import OperatingMap
 from hersey.stability.plan.result import Plan
 from hersey.stability.warm_up_result import WarmUp
-from hersey.study.first_screen.result import DecisionPart, DesignPart
+from hersey.study.first_screen.result import DecisionPart
 from hersey.study.nip_film import FilmPart
 from hersey.study.simulation import SimulationPart
 from hersey.study.torque_budget import TorqueBudgetPart
@@ -60,16 +54,9 @@ class Analysis(Part):
         default=None, description="below the transition; null without a machine or a transition"
     )
     timeline: Timeline
-    inspection: Inspection | None = None
     models: ModelsPart | None = None
     compare: LogComparison | None = Field(default=None, description="this log (B) over another (A)")
     against: list[InputFile] | None = Field(default=None, description="files of the log compared with")
-    campaign: CampaignPart | None = None
-    life: LifeTestPart | None = None
-    design: DesignPart | None = None
-    cycles: CyclesPart | None = None
-    motion: StickSlipPart | None = None
-    sweep: SweepPart | None = None
     band: HysteresisBand | None = None
     map: OperatingMap | None = None
     uncertainty: dict[str, tuple[float, float]] = Field(
@@ -81,4 +68,3 @@ class Analysis(Part):
     )
     plan: Plan | None = None
     warm_up: WarmUp | None = None
-    unit: UnitPart | None = None

@@ -23,15 +23,6 @@ async function warmUp(parent) {
   data.warm_up.beside.forEach((text) => add(part, "p", pretty(text), "text"));
   checks(part, data.warm_up.warnings.map((text) => ["watch", pretty(text)]));
 }
-const SHOWN = new Set(["schema_version", "hersey_version", "title", "command", "made", "machine", "synthetic", "decision", "verdict", "warnings", "files", "quality", "points", "fit",
-  "regime", "film", "torque_budget", "simulation", "timeline", "stick_speed_sweep", "models", "compare", "against", "units", "band", "map", "posterior", "plan", "warm_up", "uncertainty"]);
-function others(parent) {
-  const left = Object.entries(data).filter(([name, part]) => part !== null && !SHOWN.has(name));
-  if (!left.length) return;
-  const part = section(parent, "others", "Further results", `The document also holds ${left.map(([name]) => name.replaceAll("_", " ")).join(", ")}.`);
-  for (const [name, each] of left) add(fold(part, name.replaceAll("_", " ")), "pre", JSON.stringify(each, null, 1));
-}
-
 function reproduce(parent) {
   const { rest } = data.fit;
   const inputs = [...data.files, ...(data.against ?? []), ...(data.machine ? [data.machine] : []), ...(rest?.sha256 ?? []).map((sha256) => ({ name: rest.source, sha256 }))];
@@ -82,7 +73,6 @@ async function main() {
   await planSection(parts);
   await comparison(parts);
   await warmUp(parts);
-  others(parts);
   reproduce(parts);
   contents(nav);
   linkFlags();
