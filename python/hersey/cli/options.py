@@ -119,7 +119,7 @@ class Reading:
         return named
 
     def log(self, paths: list[Path], machine: Machine | None = None) -> TorqueLog | MeansTable:
-        """Read the files as one log, or as tables of means, with a progress bar; say what is left out."""
+        """Read the files as one log, or as tables of means, with a progress bar; where rows are left out, say how it was read."""
         from hersey.log import memory_limit
 
         recipe = self.recipe(paths)
@@ -127,7 +127,7 @@ class Reading:
             log: TorqueLog | MeansTable = recipe.log(machine, progress=progress)
         for file in log.files:
             if file.missing_rows:
-                _warn(*(f"{file.name}: {note}" for note in file.notes if "left out" in note))
+                _warn(*(f"{file.name}: {note}" for note in file.notes))
         stated = set() if machine is None else set(machine.sensors.stated)
         for role in sorted(stated and stated & set(recipe.chosen.sensors.stated)):
             _warn(f"errors of the sensor of {role}: those of the mapping are used, {_NOT_OF_FILE}")

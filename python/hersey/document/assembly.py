@@ -62,7 +62,7 @@ def document_of(study: Study, *, command: str = "", made: str | None = None) -> 
         command=command,
         made=made,
         machine=None if study.machine_file is None else _machine_file(study.machine_file),
-        synthetic=any("synthetic" in text.lower() for file in log.files for text in file.comments),
+        synthetic=any(file.synthetic for file in log.files),
         units=study.units,
         decision=study.decision,
         verdict=study.verdict,

@@ -53,6 +53,11 @@ class LogFile(Record):
     notes: tuple[str, ...] = ()  #: what was done to read it: clocks aligned, time stamps, lines left out
     impossible: Annotated[tuple[Impossible, ...], Means("readings that cannot be right")] = ()
 
+    @property
+    def synthetic(self) -> bool:
+        """Whether the file says in a comment that it is no measurement."""
+        return any("synthetic" in comment.lower() for comment in self.comments)
+
 
 @dataclass(frozen=True)
 class Run(Record):

@@ -32,7 +32,7 @@ def cautions(points: SteadyPoints, surface: DampingSurface | None) -> list[str]:
     log = points.log
     out = [f"Corrected: {correction}." for correction in log.corrections]
     for file, run in zip(log.files, log.runs or (None,) * len(log.files), strict=True):
-        if any("synthetic" in comment.lower() for comment in file.comments):
+        if file.synthetic:
             out.append(f"{file.name} is synthetic, by its own words: no measurement.")
         if file.cut_off:
             out.append(f"{file.name}: the file ends before its time.")
