@@ -119,7 +119,7 @@ class Reading:
         return named
 
     def log(self, paths: list[Path], machine: Machine | None = None) -> TorqueLog | MeansTable:
-        """Read the files as one log, or as tables of means, with a progress bar; say what rows left out mean."""
+        """Read the files as one log, or as tables of means, with a progress bar; say what was left out."""
         from hersey.log import memory_limit
 
         recipe = self.recipe(paths)
