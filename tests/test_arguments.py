@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import cache, partial
 from typing import Any
 
@@ -62,7 +63,7 @@ def drag_of(**changed: Any) -> hersey.Drag:
 
 
 def contact_of(**changed: Any) -> hersey.Contact:
-    return hersey.Contact(**{**vars(ROLL), **changed})
+    return replace(ROLL, **changed)
 
 
 def at_speed(v: Any) -> float:

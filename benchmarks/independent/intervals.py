@@ -151,7 +151,7 @@ def table(results: dict[str, list[Row | str]]) -> list[str]:
 
 
 def _line(name: str, parameter: str, each: list[Interval]) -> str:
-    told = [i for i in each if i.estimable]
+    told = [i for i in each if i.told]
     share = f"{len(told) / len(each):.0%}"
     if not told:
         return f"| {name} | {len(each)} | {parameter} | {share} | | | |"

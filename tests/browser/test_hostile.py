@@ -65,7 +65,7 @@ def hostile_document(document: Analysis) -> Analysis:
         update={
             "name": NAMES[0],
             "comments": list(NAMES),
-            "channels": [file.channels[0].model_copy(update={"name": name, "unit": name}) for name in NAMES],
+            "channels": [replace(file.channels[0], name=name, unit=name) for name in NAMES],
         }
     )
     rejected = [

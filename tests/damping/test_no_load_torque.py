@@ -132,7 +132,7 @@ def test_what_one_speed_or_one_temperature_does_not_tell_is_said() -> None:
 
 
 def test_no_load_logs_that_tell_nothing_are_refused() -> None:
-    with pytest.raises(InsufficientDataError, match="run: 3 steady points cannot tell the rest"):
+    with pytest.raises(InsufficientDataError, match="run: 3 steady points cannot tell the no-load torque"):
         hersey.no_load_torque(points_of(SPEEDS[:3], 0.02 + 0.001 * SPEEDS[:3]))
     with pytest.raises(InsufficientDataError, match=r"fitted as -35 mN m at its least.*signs={'torque': -1}"):
         hersey.no_load_torque(points_of(SPEEDS, -0.02 - 0.001 * SPEEDS))

@@ -48,8 +48,8 @@ def test_intervals_hold_the_truth(setting: str) -> None:
 def test_two_visits_do_not_tell_b() -> None:
     row = intervals.one_log(SEED, "visit2", 0)
     assert not isinstance(row, str)
-    assert not row["b"].estimable
-    assert row["c"].estimable
+    assert not row["b"].told
+    assert row["c"].told
 
 
 #: Of each sign that tells a transition: none, scattered, and the weakest and the strongest there is.
