@@ -39,7 +39,6 @@ Nothing flows backwards: a log knows no fit, a fit knows no motion. Names are lo
 
 from __future__ import annotations
 
-import importlib.metadata
 from typing import Any
 
 import lazy_loader
@@ -51,5 +50,7 @@ __all__ += ["__version__"]
 def __getattr__(name: str) -> Any:
     """Load a public name when it is first used."""
     if name == "__version__":  # the core knows it, too, and loads NumPy
-        return importlib.metadata.version("hersey")
+        from importlib.metadata import version
+
+        return version("hersey")
     return _load(name)
