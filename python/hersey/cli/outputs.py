@@ -46,9 +46,8 @@ def print_json(result: Any, **beside: Any) -> None:
     from hersey.result import json_record, json_value
     from hersey.schema.part import SCHEMA_VERSION
 
-    found = result.model_dump(mode="json") if hasattr(result, "model_dump") else json_value(result)
     header = {"schema_version": SCHEMA_VERSION, "hersey_version": _core.VERSION, "command": command()}
-    print(json.dumps(header | found | json_record(beside), indent=1, allow_nan=False))
+    print(json.dumps(header | json_value(result) | json_record(beside), indent=1, allow_nan=False))
 
 
 def print_document(document: BaseModel) -> None:

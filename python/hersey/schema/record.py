@@ -86,10 +86,12 @@ def stated(record: Any, name: str) -> Any:
 def json_value(value: Any) -> Any:
     """Return the value with arrays as lists, and None for every number that is infinite or missing.
 
-    A record (data class or named tuple) becomes a dictionary of its fields, an error its words.
+    A record (data class or named tuple) or a part becomes a dictionary of its fields, an error its words.
     """
     if isinstance(value, Record):
         return value.to_dict()
+    if hasattr(value, "model_dump"):
+        return value.model_dump(mode="json")
     if is_dataclass(value) and not isinstance(value, type):
         return {field.name: json_value(getattr(value, field.name)) for field in fields(value)}
     if isinstance(value, Mapping):
@@ -131,16 +133,13 @@ def part_of(record: type) -> Any:
 
 def held(record: type, handler: Any) -> Any:
     """Return how pydantic holds a record: as it is, as its part where JSON is read, in JSON by `to_dict`."""
-    from pydantic import BaseModel
     from pydantic_core import core_schema
 
     part = handler.generate_schema(part_of(record))
     return core_schema.json_or_python_schema(
         json_schema=part,
         python_schema=core_schema.union_schema([core_schema.is_instance_schema(record), part]),
-        serialization=core_schema.plain_serializer_function_ser_schema(
-            lambda value: value.model_dump() if isinstance(value, BaseModel) else json_value(value)
-        ),
+        serialization=core_schema.plain_serializer_function_ser_schema(json_value),
     )
 
 

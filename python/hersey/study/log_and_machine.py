@@ -17,7 +17,7 @@ from hersey.decision.behaviour import Step, Working
 from hersey.errors import HerseyError, ParameterError
 from hersey.log import TorqueLog
 from hersey.machine.machine import Machine, read_machine
-from hersey.result import Result
+from hersey.result import Result, json_record
 from hersey.study.findings import Findings
 from hersey.study.first_screen.decision import decision
 from hersey.study.first_screen.reasons import in_words
@@ -71,15 +71,8 @@ class Study(Findings, Result):
 
     def to_dict(self) -> dict[str, Any]:
         """Return decision, verdict, warnings, fit, regime, nip and torque budget, in SI."""
-        parts = {"decision": self.decision, "nip": self.nip, "torque_budget": self.torque_budget}
-        return {
-            "verdict": self.verdict,
-            "warnings": list(self.warnings),
-            "fit": self.surface.to_dict(),
-            "regime": self.regime.to_dict(),
-            "comparison": None if self.comparison is None else self.comparison.to_dict(),
-            **{name: None if part is None else part.model_dump() for name, part in parts.items()},
-        }
+        names = ("verdict", "warnings", "regime", "comparison", "decision", "nip", "torque_budget")
+        return json_record({"fit": self.surface} | {name: getattr(self, name) for name in names})
 
     def to_frame(self) -> pl.DataFrame:
         """Return the dwells."""
