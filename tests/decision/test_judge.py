@@ -14,6 +14,7 @@ from hersey.decision.measurement import measurements
 from hersey.decision.start_up import _Asked, plan_start_up
 from hersey.machine.limits import Limits
 from hersey.posterior import Posterior
+from hersey.posterior.drives import Drives
 from hersey.posterior.likelihood import break_away_force
 from hersey.posterior.sampling import posterior
 from hersey.stability.plan.trial import Shape
@@ -161,3 +162,19 @@ def test_a_belt_let_go_later_than_two_laps_after_the_ramp_does_not_count(found: 
     ever = np.asarray(found.model.start_ups(drives, HOT, [(0.0, 0.0), (1e-3, 0.12)]).slides)
     assert np.count_nonzero(ever & ~soon) > 5
     np.testing.assert_array_equal(slides, ever & soon)
+
+
+def test_a_plan_says_what_its_draws_take(found: Posterior, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Every draw slides, the i-th with a peak of i newtons: 80 % take no more than 0.8 of the last."""
+
+    def tried(_: _Asked, drives: Drives, _shape: object) -> tuple[np.ndarray, np.ndarray]:
+        return np.full(len(drives), True), np.arange(float(len(drives)))
+
+    monkeypatch.setattr(_Asked, "tried", tried)
+    plan = plan_start_up(found, HOT, 0.045, confidence=0.8)
+    assert plan.peak_force == pytest.approx(0.8 * (plan.draws - 1))
+    turns = sorted(found.edges(HOT).transition.tolist())
+    middle = len(turns) // 2
+    typical = turns[middle] if len(turns) % 2 else 0.5 * (turns[middle - 1] + turns[middle])
+    assert plan.transition_speed == pytest.approx(typical)
+    assert turns[0] < 0.95 * typical

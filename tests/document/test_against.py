@@ -93,6 +93,12 @@ def test_what_did_not_change_has_its_place_too(folder: Path) -> None:
     told = flags(Findings(points=now, surface=surface, regime=seen, comparison=other))
     assert [flag.signal for flag in told if flag.section == "compare"] == ["watch"]
     assert any(flag.title == "The law has changed since again.csv." for flag in told)
+    # more drag by a twentieth somewhere, its limits above 1
+    more = replace(found, low=np.full_like(found.low, 1.05), high=np.full_like(found.high, 1.15), changes=())
+    told = flags(Findings(points=now, surface=surface, regime=seen, comparison=more))
+    assert [flag.title for flag in told if flag.section == "compare"] == [
+        "Damping has changed since again.csv."
+    ]
 
 
 def test_logs_of_one_name_are_told_apart_and_one_file_is_refused(folder: Path) -> None:
