@@ -23,6 +23,13 @@ def turned(text):
     return re.sub(r"[a-z]{3,}", lambda word: word[0][::-1], text)
 
 
+def words_turned(node):
+    for each in ast.walk(node):
+        if isinstance(each, ast.Constant) and isinstance(each.value, str):
+            parts = re.split(r"(\\{[^}]*\\})", each.value)
+            each.value = "".join(part if part[:1] == "{" else turned(part) for part in parts)
+
+
 class Reword(ast.NodeTransformer):
     def visit_JoinedStr(self, node):
         texts = [part.value for part in node.values if isinstance(part, ast.Constant)]
@@ -38,6 +45,13 @@ class Reword(ast.NodeTransformer):
             for each in node.exc.args:
                 if isinstance(each, ast.Constant) and isinstance(each.value, str):
                     each.value = turned(each.value)
+        return self.generic_visit(node)
+
+    def visit_Call(self, node):
+        if getattr(node.func, "id", "") == "Warning":
+            shown = [each.value for each in node.keywords if each.arg in ("remedy", "title")]
+            for words in [*node.args[1:], *shown]:
+                words_turned(words)
         return self.generic_visit(node)
 
     def visit_Expr(self, node):  # docstrings stay: the JSON schema and the tests of the docs are made of them

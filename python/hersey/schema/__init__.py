@@ -1,7 +1,8 @@
-"""What the document is made of: parts, and the schema of records.
+"""What results and the document are made of: parts, records and their schema, and warnings.
 
-======  =====================================================================
-part    `Part`, a frozen piece of the document that refuses what it does not know
-record  `Record`, a data class that describes itself, and the part that holds it
-======  =====================================================================
+=======  =====================================================================
+part     `Part`, a frozen piece of the document that refuses what it does not know
+record   `Record`, a data class that describes itself, and the part that holds it
+warning  `Warning`, what is to be known of a result: kind, numbers, where, how grave, words
+=======  =====================================================================
 """
