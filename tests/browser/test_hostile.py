@@ -17,6 +17,7 @@ from hersey.charts.render import picture
 from hersey.document.analysis import Analysis
 from hersey.machine.machine import read_machine
 from hersey.report.page import render
+from hersey.schema.warning import Warning
 from hersey.stability.operating_map import OperatingMap
 from tests.browser.hostile import NAMES, ON_A_LINE
 from tests.browser.opening import Opened
@@ -75,14 +76,20 @@ def hostile_document(document: Analysis) -> Analysis:
     film, simulation = document.film, document.simulation
     assert film is not None
     assert simulation is not None
+    hostile = [Warning("hostile", "{name}", title="{name}", where=name, name=name) for name in NAMES]
     update = {
         "title": NAMES[1],
         "files": [changed],
-        "warnings": list(NAMES),
+        "warnings": hostile,
         "command": " ".join(NAMES),
         "quality": document.quality.model_copy(update={"rejected": rejected}),
         "simulation": simulation.model_copy(update={"title": NAMES[3], "force_unit": NAMES[28]}),
-        "film": film.model_copy(update={"verdict": NAMES[5], "notes": list(NAMES)}),
+        "film": film.model_copy(
+            update={
+                "verdict": NAMES[5],
+                "warnings": hostile,
+            }
+        ),
     }
     return document.model_copy(update=update)
 

@@ -74,7 +74,7 @@ def test_a_log_of_the_machine_is_found_beside_it(folder: Path) -> None:
     stated = read_machine(folder / "machine.toml").rest
     assert stated is not None
     assert stated.source == "[rest] of machine.toml"
-    assert "its uncertainty is not stated" in stated.notes[0]
+    assert [each.kind for each in stated.warnings] == ["counts as exact"]
 
 
 @pytest.mark.parametrize(

@@ -274,7 +274,7 @@ def test_no_difference_is_bounded() -> None:
         assert found.verdict == (
             f"No difference of damping is proven: any there is stays within {100 * widest:.1f}%."
         )
-        assert found.notes == ()
+        assert found.warnings == ()
 
 
 def test_what_each_alone_would_be_given_is_noted() -> None:
@@ -289,12 +289,15 @@ def test_what_each_alone_would_be_given_is_noted() -> None:
     ):
         found = compare(a, b)
         lost = [
-            f"{n} alone would be given {candidate}."
+            f"{n} alone would be given {candidate}"
             for n, candidate in shown.items()
             if candidate != found.candidate
         ]
         assert lost
-        assert found.notes == (*lost, "Only one of the two shows a falling branch within its range.")
+        assert [str(each) for each in found.warnings] == [
+            *lost,
+            "only one of the two shows a falling branch within its range",
+        ]
 
 
 def test_speeds_are_shared_from_a_factor_of_1_2_on() -> None:

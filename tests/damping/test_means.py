@@ -77,7 +77,7 @@ def test_errors_in_percent_and_from_deviations() -> None:
     del deviations["samples"]  # a deviation without a count is no error of a mean
     points = hersey.SteadyPoints.from_table(deviations)
     assert points.column("torque_error").tolist() == [0.0, 0.0]
-    assert "none are stated" in points.notes[0]
+    assert "none are stated" in str(points.warnings[0])
 
 
 def test_the_law_of_a_table_is_found(tmp_path: Path) -> None:

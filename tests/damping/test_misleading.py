@@ -11,13 +11,14 @@ import polars as pl
 import pytest
 
 import hersey
-from hersey.damping.dwells.misleading import Kind, Misleading, in_words, misleading
+from hersey.damping.dwells.misleading import misleading
 from hersey.damping.dwells.relaxation import Trend, relaxation
 from hersey.damping.dwells.shared_noise import Powers, shared_noise
 from hersey.inspection import inspect
 from hersey.log.corrections import thermal_lag
 from hersey.log.sensors import HYSTERESIS_OF_LARGEST, TEMPERATURE_LAG
-from hersey.verdict.cautions import cautions
+from hersey.schema.warning import Warning
+from hersey.verdict.warnings import warnings_of
 from tests.cli.command import run
 from tests.conftest import mostly_nightly
 from tests.damping.bench_logs import RPM, B, Bench, C
@@ -42,13 +43,13 @@ def days(
     return hersey.read([first, later]).steady(tare="standing")
 
 
-def found(points: hersey.SteadyPoints, kind: Kind) -> Misleading | None:
+def found(points: hersey.SteadyPoints, kind: str) -> Warning | None:
     return next((each for each in misleading(points) if each.kind == kind), None)
 
 
 RISING = replace(BENCH, sweep="up")
 LATE = replace(BENCH, lag=20.0, soak=30.0)
-STRUCTURES: dict[str, tuple[Kind, Callable[[int], hersey.SteadyPoints]]] = {
+STRUCTURES: dict[str, tuple[str, Callable[[int], hersey.SteadyPoints]]] = {
     "hysteresis": ("one direction", replace(RISING, hysteresis=0.01).points),
     "hysteresis of a wide range": ("one direction", replace(RISING, hysteresis=0.01, span=1.5).points),
     "relaxing, rising": ("relaxation", replace(RISING, relaxing=0.2).points),
@@ -79,7 +80,7 @@ def test_the_interval_holds_the_truth_and_a_finding_names_the_cause(name: str) -
         inside["b"] += holds(surface.b, B)
         structure = found(points, kind)
         assert structure is not None, f"seed {seed}"
-        assert in_words(structure, points) in cautions(points, surface)
+        assert structure in warnings_of(points, surface)
     assert min(inside.values()) >= 11, inside
 
 
@@ -97,7 +98,7 @@ def test_speeds_in_both_directions_check_for_hysteresis() -> None:
     assert found(RISING.points(1), "one direction") is not None
     falling = found(replace(BENCH, sweep="down").points(1), "one direction")
     assert falling is not None
-    assert falling.scale == -1.0
+    assert falling.number("direction") == -1.0
     assert found(BENCH.points(1), "one direction") is None
 
 
@@ -143,8 +144,10 @@ def test_lag_counts_where_the_temperature_changes() -> None:
     points = LATE.points(1)
     structure = found(points, "temperature lag")
     assert structure is not None
-    assert structure.size == pytest.approx(TEMPERATURE_LAG * np.max(np.abs(points.temperature_rates)))
-    assert structure.size > 2.0
+    assert structure.number("off") == pytest.approx(
+        TEMPERATURE_LAG * np.max(np.abs(points.temperature_rates))
+    )
+    assert structure.number("off") > 2.0
     steady = replace(points, temperature_rates=np.zeros(len(points)))
     with_lag, without = hersey.fit(points), hersey.fit(steady)
     assert with_lag.c.systematic > 1.05 * without.c.systematic

@@ -25,7 +25,7 @@ from hersey.errors import InsufficientDataError, ParameterError, WrongKindError
 from hersey.log.torque_log import Correction
 from hersey.stability.plan.draws import drawn as machines_drawn
 from hersey.testbench.truth import Truth
-from hersey.verdict.cautions import _rest_warnings
+from hersey.verdict.warnings import warnings_of
 from tests.damping.test_surface import grid, points_of
 from tests.machines import map_of
 
@@ -70,7 +70,7 @@ def test_an_exact_rest_is_found_exactly() -> None:
     assert rest.torque(w, t + 273.15) == pytest.approx(rest_torque(w, t), rel=1e-9)
     assert rest.sha256 == ("0",)
     assert rest.speed_range == pytest.approx((0.5, 15.0))
-    assert not rest.notes
+    assert not rest.warnings
 
 
 def test_intervals_hold_the_truth() -> None:
@@ -117,18 +117,18 @@ def test_what_one_speed_or_one_temperature_does_not_tell_is_said() -> None:
     noise = np.array([1.0, -1.0, 0.5, -0.5, 0.0]) * 1e-4
     slow = hersey.no_load_torque(points_of(np.full(5, 2.0), 0.02 + noise))
     assert (slow.constant.estimable, slow.per_speed.estimable, slow.per_speed.value) == (True, False, 0.0)
-    assert "holds one speed, 19.1 rpm: how torque rises with speed is not told" in slow.summary()
+    assert "holds one speed, 19.1 rpm: how torque rises with speed is not known" in slow.summary()
     one = hersey.no_load_torque(points_of(SPEEDS[:5], 0.02 + 0.001 * SPEEDS[:5] + noise, np.full(5, 150.0)))
     assert (one.per_speed.estimable, one.temperature_slope.estimable, one.reference_temperature) == (
         True,
         False,
         None,
     )
-    assert "holds one temperature, 150 degC" in one.notes[0]
+    assert "holds one temperature, 150 degC" in str(one.warnings[0])
     w, t = grid(SPEEDS, TEMPERATURES[:2])
     each_once = hersey.no_load_torque(points_of(w, rest_torque(w, t), t, error=0.01))
     assert not each_once.temperature_slope.estimable
-    assert "visit one again" in each_once.notes[0]
+    assert [each.kind for each in each_once.warnings] == ["each temperature once"]
 
 
 def test_no_load_logs_that_tell_nothing_are_refused() -> None:
@@ -144,7 +144,8 @@ def test_no_load_logs_that_tell_nothing_are_refused() -> None:
 
 def test_a_torque_that_bends_is_said_to() -> None:
     bent = hersey.no_load_torque(points_of(SPEEDS, 0.02 * SPEEDS**0.3, error=0.002))
-    assert "bends with speed as no line does" in bent.notes[0]
+    assert [each.kind for each in bent.warnings] == ["no line"]
+    assert bent.warnings[0].number("p_value") < 0.01
 
 
 def test_the_film_is_what_is_left() -> None:
@@ -183,11 +184,13 @@ def test_a_rest_of_other_temperatures_is_said_to_be_extrapolated() -> None:
     w, t = grid(SPEEDS, TEMPERATURES)
     whole = film(w, t) + rest_torque(w, t)
     points = points_of(w, whole, t, error=1e-3).without(cold)
-    said = " ".join(_rest_warnings(points))
+    said = " ".join(str(each) for each in warnings_of(points, None))
     assert "holds one temperature, 25 degC" in said
-    assert "at 25 to 25 degC, and the dwells lie at 100 to 175 degC: it is extrapolated" in said
+    assert "at 25 degC to 25 degC, and the dwells lie at 100 degC to 175 degC: it is extrapolated" in said
     blind = points_of(w, whole, error=1e-3).without(stated())
-    assert "The log holds no temperatures: the no-load torque is that at 150 degC." in _rest_warnings(blind)
+    [found] = [each for each in warnings_of(blind, None) if each.kind == "no-load torque of one temperature"]
+    assert found.sentence == "The log holds no temperatures: the no-load torque is that at 150 degC."
+    assert found.number("temperature") == AT
 
 
 def test_errors_of_the_rest_widen_the_intervals() -> None:

@@ -54,15 +54,16 @@ def test_corrected_torque_is_covered(drift: str, every: int) -> None:
 def test_a_zero_that_holds_costs_next_to_nothing() -> None:
     points, _ = drifting(1, "none", 4)
     assert np.median(errors(points) / points.column("torque_error")) < 1.15
-    assert points.notes == ()
+    assert points.warnings == ()
 
 
 def test_a_drift_is_said_with_its_size() -> None:
     points, _ = drifting(2, "linear", 4)
-    (note,) = points.notes
-    assert note.startswith("The tare drifts by 0.02")
-    assert "7 standing stretches" in note
-    assert note in points.summary()
+    (drift,) = points.warnings
+    assert drift.kind == "zero drifts"
+    assert drift.number("rise") == pytest.approx(0.0275, abs=0.0025)
+    assert "7 standing stretches" in str(drift)
+    assert drift.sentence in points.summary()
     tares = points.table["tare"].to_numpy()
     assert tares[-1] - tares[0] == pytest.approx(0.03 * 28 / 31, abs=0.003)
     assert points.tare == pytest.approx(np.mean(tares))
@@ -71,9 +72,9 @@ def test_a_drift_is_said_with_its_size() -> None:
 def test_one_standing_stretch_cannot_see_a_drift() -> None:
     torque = np.concatenate([np.full(350, v) for v in (0.1, 1.0, 1.1)])
     log = log_of(dwells(0, 30, 60, seconds=7.0), torque)
-    (note,) = log.steady(tare="standing").notes
-    assert note.startswith("One standing stretch: a drift of the zero cannot be seen")
-    assert log.steady().notes == ()
+    (once,) = log.steady(tare="standing").warnings
+    assert once.sentence.startswith("One standing stretch: a drift of the zero cannot be seen")
+    assert log.steady().warnings == ()
 
 
 def test_two_standing_stretches_show_only_a_difference() -> None:
@@ -82,7 +83,7 @@ def test_two_standing_stretches_show_only_a_difference() -> None:
     zero = np.repeat([0.1, 0.1, 0.1, 0.1, 0.1, 0.2], 350)
     torque = (speed > 0) * 1.0 + zero + 0.001 * random.standard_normal(speed.size)
     points = log_of(speed, torque).steady(tare="standing")
-    assert any(note.startswith("Two standing stretches") for note in points.notes)
+    assert any(each.kind == "two standing stretches" for each in points.warnings)
     middle = np.linalg.norm(points.tare_errors, axis=1)[1:3]
     assert (middle > 0.015).all()  # a third of the difference either way, and no more than all of it
     assert (middle < 0.1).all()
@@ -93,8 +94,9 @@ def test_a_drift_that_is_not_subtracted_is_asked_about() -> None:
     speed = dwells(0, 30, 0, 60, 0, seconds=7.0)
     torque = (speed > 0) * 1.0 + np.repeat([0.1, 0.1, 0.12, 0.12, 0.14], 350)
     points = log_of(speed, torque + 0.001 * random.standard_normal(speed.size)).steady()
-    (note,) = points.notes
-    assert "the zero drifts. It is not subtracted" in note
+    (drift,) = points.warnings
+    assert drift.kind == "zero drifts, not subtracted"
+    assert "the zero drifts. It is not subtracted" in str(drift)
     assert points.tare_errors.shape == (2, 0)
 
 

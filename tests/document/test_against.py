@@ -72,8 +72,8 @@ def test_it_is_the_comparison_of_the_two_logs_the_earlier_one_first(less: Analys
 def test_what_changed_stands_on_the_first_screen(less: Analysis) -> None:
     assert less.decision is not None
     flag = less.decision.flags[0]
-    assert (flag.signal, flag.section) == ("watch", "compare")
-    assert flag.title == "Damping has changed since more.csv."
+    assert (flag.severity, flag.where) == ("watch", "compare")
+    assert flag.title == "Damping has changed since more.csv"
     assert re.match(r"new\.csv drags less than more\.csv throughout the shared range, -(19|20)", flag.text)
 
 
@@ -86,19 +86,17 @@ def test_what_did_not_change_has_its_place_too(folder: Path) -> None:
     unnamed = replace(seen, named=None)
     told = flags(Findings(points=now, surface=surface, regime=unnamed, why="no band", comparison=found))
     assert len(told) == MOST
-    assert (told[-1].signal, told[-1].title) == ("good", "Nothing really changed since again.csv.")
+    assert (told[-1].severity, told[-1].title) == ("good", "Nothing really changed since again.csv")
     # nothing of the drag, but an exponent
     moved = replace(found.changes[0], p_value=0.01)
     other = replace(found, changes=(moved,))
     told = flags(Findings(points=now, surface=surface, regime=seen, comparison=other))
-    assert [flag.signal for flag in told if flag.section == "compare"] == ["watch"]
-    assert any(flag.title == "The law has changed since again.csv." for flag in told)
+    assert [flag.severity for flag in told if flag.where == "compare"] == ["watch"]
+    assert any(flag.title == "The law has changed since again.csv" for flag in told)
     # more drag by a twentieth somewhere, its limits above 1
     more = replace(found, low=np.full_like(found.low, 1.05), high=np.full_like(found.high, 1.15), changes=())
     told = flags(Findings(points=now, surface=surface, regime=seen, comparison=more))
-    assert [flag.title for flag in told if flag.section == "compare"] == [
-        "Damping has changed since again.csv."
-    ]
+    assert [flag.title for flag in told if flag.where == "compare"] == ["Damping has changed since again.csv"]
 
 
 def test_logs_of_one_name_are_told_apart_and_one_file_is_refused(folder: Path) -> None:

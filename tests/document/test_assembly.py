@@ -68,12 +68,13 @@ def test_the_drag_curves_are_those_of_the_stand(document: Analysis) -> None:
 
 
 def test_warnings_name_what_matters(document: Analysis, log: hersey.TorqueLog) -> None:
-    text = " ".join(document.warnings)
-    assert "synthetic" in text
-    assert "Stick-slip was recorded" in text
+    kinds = {warning.kind: warning for warning in document.warnings}
+    assert kinds["synthetic"].severity == "watch"
+    rejected = [each for each in document.quality.rejected if each.kind == "stick-slip"]
+    assert kinds["stick-slip"].values == {"count": len(rejected)}
     untared = document_of(study(log.steady()))
-    assert any("tare='standing'" in w for w in untared.warnings)
-    assert not any("paper's baseline" in w for w in untared.warnings)
+    assert any("tare='standing'" in str(w) for w in untared.warnings)
+    assert not any("paper's baseline" in str(w) for w in untared.warnings)
 
 
 def test_the_simulation_is_of_this_machine(document: Analysis) -> None:
@@ -106,14 +107,18 @@ def test_the_film_of_the_nip_is_part_of_it(document: Analysis) -> None:
     assert "Solved numerically" in part.verdict
     assert [point.name for point in part.points] == ["full speed", "thick paper"]
     assert len(part.dwells) == len(document.points)
-    assert any("alpha p" in note for note in part.notes)
+    assert any(each.kind == "no thickening" for each in part.warnings)
 
 
 def test_what_does_not_fit_is_told_once_and_the_farthest_off_first(document: Analysis) -> None:
     assert document.film is not None
-    off = document.film.misfits
-    assert [each.size for each in off] == sorted((each.size for each in off), reverse=True)
-    assert not {each.text for each in off} & set(document.film.notes)
+    found = document.film.warnings
+    off = [each for each in found if each.severity != "note"]
+    assert off
+    assert found[: len(off)] == off
+    sizes = [each.values["off"] for each in off]
+    assert sizes == sorted(sizes, reverse=True)
+    assert len({(each.where, each.text) for each in found}) == len(found)
 
 
 def test_runs_of_the_timeline_follow_a_sample_apart() -> None:

@@ -25,12 +25,12 @@ from hersey.errors import HerseyError, ParameterError, UnfinishedError
 from hersey.log.means import read_means
 from hersey.machine.limits import Limits, OperatingPoint
 from hersey.machine.machine import Machine, read_machine
+from hersey.schema.warning import Warning
 from hersey.stability.operating_map import OperatingMap
 from hersey.study import study
 from hersey.study.findings import Findings
 from hersey.study.first_screen.reasons import in_words
 from hersey.study.first_screen.words import figures, within
-from hersey.study.nip_film import MisfitPart
 from hersey.verdict.regime import Regime
 from tests.conftest import ROOT
 from tests.document.conftest import BETWEEN, HOT, POINTS, ROOMY, Decide, with_draws
@@ -107,8 +107,8 @@ def test_a_plan_that_is_impossible_is_something_to_act_on(decide: Decide, found:
         == "may stick from rest, smooth once it slides: no start-up within the limits works"
     )
     assert said.instruction == "45 mm/s may stick from rest, and is smooth once it slides"
-    assert said.flags[0].title == "No start for thick paper."
-    assert said.flags[0].section == "plan"
+    assert said.flags[0].title == "No start for thick paper"
+    assert said.flags[0].where == "plan"
 
 
 def test_a_point_that_may_lie_below_the_transition_is_not_blamed_on_a_limit(
@@ -124,7 +124,7 @@ def test_a_point_that_may_lie_below_the_transition_is_not_blamed_on_a_limit(
     assert said.points[0].verdict == "unknown"
     assert said.points[0].words == "may stick: lies below the speed of least drag with 50 %"
     assert said.instruction == "45 mm/s may stick"
-    assert said.flags[0].title == "No plan for thick paper."
+    assert said.flags[0].title == "No plan for thick paper"
 
 
 def test_v_star_without_an_upper_end_gives_no_speed(decide: Decide, found: Behaviour) -> None:
@@ -174,14 +174,14 @@ def test_a_start_is_as_sure_as_the_force_that_it_takes(
     assert (said.points[0].verdict, said.points[0].signal) == (kind, signal)
     if kind == "unknown":
         assert said.points[0].words.startswith("may not start: starting from rest takes ")
-        assert said.flags[0].title == "The motor may not start the belt."
+        assert said.flags[0].title == "The motor may not start the belt"
 
 
 def test_a_motor_that_is_too_weak_is_named(decide: Decide, found: Behaviour) -> None:
     said = decide(_with_motor(found, -0.1))
     assert said.signal == "act"
     assert "give the roll more than" in said.instruction
-    assert said.flags[0].title == "The motor does not start the belt."
+    assert said.flags[0].title == "The motor does not start the belt"
 
 
 def test_without_a_machine_it_speaks_of_the_roll(log: hersey.TorqueLog, tmp_path: Path) -> None:
@@ -190,7 +190,7 @@ def test_without_a_machine_it_speaks_of_the_roll(log: hersey.TorqueLog, tmp_path
     said = document.decision
     assert said is not None
     assert document.simulation is document.map is None
-    assert not any("paper" in warning for warning in document.warnings)
+    assert not any("paper" in str(warning) for warning in document.warnings)
     high = fit(points).transition_estimate(fit(points).temperature_range[1]).high  # type: ignore[index]
     assert f"keep the roll above {figures(high * 60 / math.tau, up=True)} rpm" in said.instruction
     file = tmp_path / "machine.toml"
@@ -338,8 +338,9 @@ def test_how_the_belt_stops_is_said_where_it_moves_v_star(decide: Decide, found:
     open_.posterior._edges.update(apart.posterior._edges)
     said = decide(replace(open_, points=()))
     [flag] = [flag for flag in said.flags if "comes to rest" in flag.title]
-    assert flag.title == "The safe speed depends on how the belt comes to rest."
-    assert flag.text.endswith("V* is 60 or 200 mm/s.")
+    assert flag.title == "The safe speed depends on how the belt comes to rest"
+    assert flag.text.endswith("V* is 60 or 200 mm/s")
+    assert (flag.number("retained"), flag.number("stiction")) == (0.06, 0.2)
     # where the evidence decides, or both are nearly the same, nothing is said
     same = with_draws(open_, fold=np.where(closure == 0, 0.06, 0.065))
     assert not any("comes to rest" in flag.title for flag in decide(replace(same, points=())).flags)
@@ -354,7 +355,7 @@ def test_torque_of_the_whole_drive_is_never_good(
     whole = decide(near, dwells=points)
     assert whole.signal == whole.points[0].signal == "watch"
     assert whole.points[0].words == "smooth from any start, over 99 %, if all torque is the film's"
-    assert whole.flags[0].title == "Torque may hold more than the film."
+    assert whole.flags[0].title == "Torque may hold more than the film"
     assert decide(replace(found, points=())).signal == "watch"  # good for what?
 
 
@@ -446,14 +447,14 @@ def test_torque_has_one_unit(
 def test_what_of_the_nip_cannot_be_is_a_warning(decide: Decide, found: Behaviour, document: Analysis) -> None:
     """The farthest off, where no exponent and no torque is flagged already; a formula's range is none."""
     assert document.film is not None
-    off = MisfitPart(signal="act", text="friction coefficient 0.5 is not a fluid film", size=1.7)
-    film = document.film.model_copy(update={"misfits": [off], "contradicted": False})
-    shown = [flag for flag in decide(found, film=film).flags if flag.section == "regime"]
+    off = Warning("friction above a film", "friction coefficient 0.5 is no film", severity="act", off=1.7)
+    film = document.film.model_copy(update={"warnings": [off], "contradicted": False})
+    shown = [flag for flag in decide(found, film=film).flags if flag.where == "regime"]
     assert [(flag.title, flag.text) for flag in shown] == [
-        ("Nip and log disagree.", "Friction coefficient 0.5 is not a fluid film.")
+        ("Nip and log disagree", "friction coefficient 0.5 is no film")
     ]
-    mild = film.model_copy(update={"misfits": [off.model_copy(update={"signal": "watch"})]})
-    assert "Nip and log disagree." not in {flag.title for flag in decide(found, film=mild).flags}
+    mild = film.model_copy(update={"warnings": [Warning("friction above a film", "", off=1.7)]})
+    assert "Nip and log disagree" not in {flag.title for flag in decide(found, film=mild).flags}
 
 
 def test_the_laws_tried_stand_in_their_order(document: Analysis) -> None:

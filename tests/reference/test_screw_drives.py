@@ -82,7 +82,7 @@ def test_through_the_command(tmp_path: Path) -> None:
     assert "torque rises as the drive slows" in result.stdout
     assert (tmp_path / "report.html").stat().st_size < 2_000_000
     document = json.loads(run("report", *files(1), *options, "--json", cwd=tmp_path).stdout)
-    assert any("reverse rotation" in w and "--rotation" in w for w in document["warnings"])
+    assert any("reverse rotation" in w["text"] and "--rotation" in w["text"] for w in document["warnings"])
 
 
 def test_percent_is_asked_about(tmp_path: Path) -> None:

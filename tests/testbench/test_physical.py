@@ -116,7 +116,7 @@ def test_the_page_does_not_contradict_itself(page: Analysis) -> None:
     assert film.measured is not None
     assert 0.9 < film.measured.calibration.value < 1.1
     assert not any(
-        word in note for note in film.notes for word in ("times the predicted", "exceeds", "strained")
+        word in each.text for each in film.warnings for word in ("times the predicted", "exceeds", "strained")
     )
 
 

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from hersey.damping.surface import DampingSurface
     from hersey.lubrication.film_result import Film
     from hersey.machine.machine import Machine
+    from hersey.schema.warning import Warning
     from hersey.study.nip import SharedLoad
     from hersey.verdict.contact_verdict import Verdict
     from hersey.verdict.evidence import MeasuredFilm
@@ -62,7 +63,7 @@ def film(
 
     from hersey.machine.machine import read_machine
     from hersey.study.nip import film_document, shared_load
-    from hersey.verdict.checks import misfits, remarks
+    from hersey.verdict.checks import nip_warnings
 
     machine = read_machine(machine_file)
     _refuse_incomplete(machine, machine_file.name)
@@ -71,10 +72,10 @@ def film(
         raise ParameterError("options that say how to read a log need --log")
     found = _compared(log, reading, machine, kelvin) if log else _OfALog()
     predicted, names = _predicted(machine, found.measured, kelvin, belt_speed)
-    notes = (*remarks(machine, predicted), *found.doubts)
     shared = shared_load(machine, predicted, found.measured, found.surface)
     turn = None if shared is None else shared.transition
-    off = misfits(machine, predicted, found.measured, found.says, turn)
+    own = nip_warnings(machine, predicted, found.measured, found.says, turn)
+    warnings = (*own, *found.doubts)
     chart: dict[str, Any] = {
         "names": names,
         "measured": found.measured,
@@ -83,9 +84,9 @@ def film(
     }
     drawing.draw(predicted, **chart)
     if as_json:
-        print_json(film_document(predicted, names, found.measured, found.says, notes, shared, off))
+        print_json(film_document(predicted, names, found.measured, found.says, warnings, shared))
         return
-    say(*_lines(predicted, names, found, shared), *(f"- {each}" for each in (*(o.text for o in off), *notes)))
+    say(*_lines(predicted, names, found, shared), *(f"- {each.sentence}" for each in warnings))
     say_written(figure=figure)
 
 
@@ -95,15 +96,15 @@ class _OfALog(NamedTuple):
     surface: DampingSurface | None = None
     measured: MeasuredFilm | None = None
     says: Verdict | None = None
-    doubts: Sequence[str] = ()
+    doubts: Sequence[Warning] = ()
 
 
 def _compared(logs: list[Path], reading: Reading, machine: Machine, kelvin: float | None) -> _OfALog:
     from hersey.damping.fit import fit
-    from hersey.verdict.cautions import cautions
     from hersey.verdict.contact_verdict import verdict
     from hersey.verdict.evidence import measured_film
     from hersey.verdict.regime import regime
+    from hersey.verdict.warnings import warnings_of
 
     nip, lubricant = machine.contact, machine.lubricant
     assert nip is not None
@@ -115,7 +116,7 @@ def _compared(logs: list[Path], reading: Reading, machine: Machine, kelvin: floa
     measured = measured_film(points, surface, nip, lubricant, temperature=kelvin, grip=grip)
     seen = regime(points, surface, contact=nip, lubricant=lubricant, temperature=kelvin)
     says = verdict(measured, surface, nip, lubricant, seen)
-    return _OfALog(surface, measured, says, cautions(points, surface))
+    return _OfALog(surface, measured, says, warnings_of(points, surface))
 
 
 def _refuse_incomplete(machine: Machine, file: str) -> None:

@@ -65,8 +65,8 @@ def _fit_one(logs: list[Path], reading: Reading, machine: Machine | None, as_jso
     from hersey.damping.curves.words import drag_curves
     from hersey.damping.fit import fit as fitted
     from hersey.document.assembly import fit_document
-    from hersey.verdict.cautions import cautions
     from hersey.verdict.regime import regime
+    from hersey.verdict.warnings import warnings_of
 
     with working("fitting the surface"):
         points = reading.points(log, machine)
@@ -75,5 +75,5 @@ def _fit_one(logs: list[Path], reading: Reading, machine: Machine | None, as_jso
     if as_json:
         print_json(fit_document(log, points, surface, curves))
         return
-    doubts = [f"- {caution}" for caution in cautions(points, surface)]
+    doubts = [f"- {warning.sentence}" for warning in warnings_of(points, surface)]
     say(surface.summary(), drag_curves(curves.table), regime(points, surface).verdict, *doubts)

@@ -36,7 +36,7 @@ def models(
     from hersey.damping.fit import fit
     from hersey.errors import InsufficientDataError
     from hersey.machine.machine import read_machine
-    from hersey.verdict.cautions import cautions
+    from hersey.verdict.warnings import warnings_of
 
     machine = None if machine_file is None else read_machine(machine_file)
     contact = None if machine is None else machine.mixed
@@ -52,10 +52,10 @@ def models(
         surface = fit(points, temperature_scale=reading.temperature_scale)
     except InsufficientDataError:  # other laws may hold where the surface has no meaning
         surface = None
-    doubts = cautions(points, surface)
+    doubts = warnings_of(points, surface)
     curves = () if surface is None else fit_curves(points, surface, contact).table
     if as_json:
         print_json(compared, warnings=doubts, drag_curves=curves)
         return
     words = [drag_curves(curves)] if curves else []
-    say(compared.summary(), *words, *(f"- {doubt}" for doubt in doubts))
+    say(compared.summary(), *words, *(f"- {doubt.sentence}" for doubt in doubts))

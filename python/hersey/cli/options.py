@@ -148,7 +148,7 @@ class Reading:
         """Reduce the log to dwells; say what a log of the drive without the film shows."""
         points = self.recipe().dwells(log, machine)
         if self.no_load and points.rest is not None:
-            _warn(points.rest.headline(), *(f"- {note}" for note in points.rest.notes))
+            _warn(points.rest.headline(), *(f"- {warning}" for warning in points.rest.warnings))
         return points
 
     def points_of(self, paths: list[Path], machine: Machine | None = None) -> SteadyPoints:

@@ -28,6 +28,7 @@ from hersey.damping.dwells import SteadyPoints
 from hersey.damping.estimate import CONFIDENCE, Estimate
 from hersey.errors import ISOTHERMAL, HerseyError, InsufficientDataError
 from hersey.result import Means, Record, Result
+from hersey.schema.warning import Warning
 from hersey.units import convert, rpm
 
 if TYPE_CHECKING:
@@ -81,7 +82,7 @@ class LogComparison(Result):
     mean_ratio: Annotated[Estimate, Means("geometric mean over the range")]
     changes: tuple[Change, ...]
     verdict: str
-    notes: tuple[str, ...]
+    warnings: tuple[Warning, ...]
     names: tuple[str, str]
 
     @property
@@ -112,7 +113,7 @@ class LogComparison(Result):
                 f"  {change.name}: {_value(change, change.of_a)} and {_value(change, change.of_b)}, "
                 f"{how} = {change.change}, p = {change.p_value:.2g}"
             )
-        return "\n".join([*lines, *(f"- {note}" for note in self.notes)])
+        return "\n".join([*lines, *(f"- {warning.sentence}" for warning in self.warnings)])
 
     def headline(self) -> str:
         """Return the mean ratio of damping."""
@@ -185,7 +186,7 @@ def compare(
         mean_ratio=mean,
         changes=changes,
         verdict=_verdict(mean, low, high, changes, names, of_visits=bool(once)),
-        notes=(*_notes(first, second, of_a), *([_of_visits(once)] if once else [])),
+        warnings=(*_warnings(first, second, of_a), *([_of_visits(once)] if once else [])),
         names=names,
     )
 
@@ -209,12 +210,12 @@ def _once(candidate: CandidateFit, data: Observations) -> bool:
     return np.unique(data.visit).size == 1 or any(not shared.told for shared in candidate.fit.shared)
 
 
-def _of_visits(names: list[str]) -> str:
-    verb = "does" if len(names) == 1 else "do"
-    return (
-        f"{' and '.join(names)} {verb} not tell how far one visit to a temperature differs from the next: "
-        "limits are those of the visits recorded; record one again."
+def _of_visits(names: list[str]) -> Warning:
+    words = (
+        "{logs} {count:does|do} not show how far one visit to a temperature differs from the next: limits "
+        "are those of the visits recorded; record one again"
     )
+    return Warning("visited once", words, severity="watch", logs=" and ".join(names), count=len(names))
 
 
 def _shared(a: Observations, b: Observations, names: tuple[str, str]) -> tuple[FloatArray, FloatArray]:
@@ -300,14 +301,14 @@ def _changes(a: CandidateFit, b: CandidateFit, of_a: Observations, of_b: Observa
     in_a = {q.name: q for q in quantities(a.fit, of_a)}
     in_b = {q.name: q for q in quantities(b.fit, of_b)}
     for name in in_a.keys() & in_b.keys():
-        energy = name.startswith("activation energy")
+        energy = in_a[name].unit == "kJ/mol"
         if not energy and name not in _QUOTED and not name.startswith("c at"):
             continue
         p, q = in_a[name], in_b[name]
         if any(r.fit.not_estimable(r.fit.law.names[k.parameter]) for r, k in ((a, p), (b, q))):
             continue
         u, v = float(a.fit.values[p.parameter]), float(b.fit.values[q.parameter])
-        is_ratio = name.endswith("speed")
+        is_ratio = p.unit == "rad/s"
         values = p.of(u), q.of(v)
         error = math.hypot(
             *(
@@ -378,14 +379,17 @@ def _verdict(
     return said + "."
 
 
-def _notes(a: ModelComparison, b: ModelComparison, common: CandidateFit) -> tuple[str, ...]:
-    notes = []
+def _warnings(a: ModelComparison, b: ModelComparison, common: CandidateFit) -> list[Warning]:
+    found = []
     for name, comparison in (("A", a), ("B", b)):
-        if comparison.chosen.candidate != common.candidate:
-            notes.append(f"{name} alone would be given {comparison.chosen.candidate.name}.")
+        own = comparison.chosen.candidate
+        if own != common.candidate:
+            words = "{log} alone would be given {law}"
+            found.append(Warning("another law alone", words, log=name, law=own.name))
     if a.chosen.fit.law.broken != b.chosen.fit.law.broken:
-        notes.append("Only one of the two shows a falling branch within its range.")
-    return tuple(notes)
+        words = "only one of the two shows a falling branch within its range"
+        found.append(Warning("one falling branch", words, severity="watch"))
+    return found
 
 
 def _value(change: Change, value: float) -> str:

@@ -19,7 +19,7 @@ from hersey.damping.dwells import SteadyPoints, distinct_speeds
 from hersey.damping.no_load_torque import NoLoadTorque, estimates_of
 from hersey.errors import TARE, InsufficientDataError, ParameterError, turned
 from hersey.log.sensors import SHARE_OF_LARGEST, Sensors
-from hersey.units import celsius, rpm
+from hersey.schema.warning import Warning
 
 #: Dwells beyond the numbers fitted.
 _SPARE = 2
@@ -89,7 +89,7 @@ def no_load_torque(points: SteadyPoints) -> NoLoadTorque:
         sha256=tuple(file.sha256 for file in points.log.files),
         speed_range=(float(speed.min()), float(speed.max())),
         temperature_range=None if kelvin is None else (float(kelvin.min()), float(kelvin.max())),
-        notes=_notes(law, fit, data),
+        warnings=_warnings(law, fit, data),
     )
 
 
@@ -138,27 +138,31 @@ def _of_visits(fit: LawFit) -> bool:
     return bool(moved.size and moved[fit.law.index("temperature_slope")] >= _LITTLE)
 
 
-def _notes(law: RestLaw, fit: LawFit, data: Observations) -> tuple[str, ...]:
-    """What the log does not tell, in sentences."""
+def _warnings(law: RestLaw, fit: LawFit, data: Observations) -> tuple[Warning, ...]:
+    """What the log leaves open."""
     kelvin = data.inputs.kelvin
-    notes = []
+    found = []
     if not law.with_speed:
-        at = rpm(float(np.mean(data.speed)))
-        notes.append(
-            f"the no-load log holds one speed, {at:.3g} rpm: how torque rises with speed is not told and "
+        words = (
+            "the no-load log holds one speed, {speed:.3g rpm}: how torque rises with speed is not known and "
             "taken as nothing; record other speeds"
         )
+        found.append(Warning("one speed", words, severity="watch", speed=float(np.mean(data.speed))))
     if kelvin is not None and law.reference is None:
-        notes.append(
-            f"the no-load log holds one temperature, {celsius(float(np.mean(kelvin))):.0f} degC: how torque "
-            "varies with it is not told and taken as nothing; record another"
+        words = (
+            "the no-load log holds one temperature, {temperature:.0f degC}: how torque varies with it is not "
+            "known and taken as nothing; record another"
         )
+        temperature = float(np.mean(kelvin))
+        found.append(Warning("one temperature", words, severity="watch", temperature=temperature))
     if law.reference is not None and _of_visits(fit):
-        notes.append(
+        words = (
             "the no-load log visits each temperature once: the interval of the temperature slope is not "
-            "told; visit one again"
+            "known; visit one again"
         )
+        found.append(Warning("each temperature once", words, severity="watch"))
     lack = lack_of_fit(fit, data)
     if lack.curvature is not None and lack.curvature < DOES_NOT_HOLD and np.std(fit.residuals) > _SEEN:
-        notes.append(f"without the film torque bends with speed as no line does (p = {lack.curvature:.1g})")
-    return tuple(notes)
+        words = "without the film torque bends with speed as no line does ({p_value:p})"
+        found.append(Warning("no line", words, severity="watch", p_value=lack.curvature))
+    return tuple(found)

@@ -19,6 +19,7 @@ from hersey.damping.estimate import Estimate, estimate, quantile
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.motion.drag import AnyDrag, DragTable
 from hersey.result import Means, Result, table_of
+from hersey.schema.warning import Warning
 from hersey.units import celsius, rpm, takes_si
 
 if TYPE_CHECKING:
@@ -54,7 +55,7 @@ class NoLoadTorque(Result):
     sha256: tuple[str, ...] = ()
     speed_range: Annotated[tuple[float, float] | None, Means("of the no-load log", "rad/s")] = None
     temperature_range: Annotated[tuple[float, float] | None, Means("of the no-load log", "K")] = None
-    notes: Annotated[tuple[str, ...], Means("what is not told")] = ()
+    warnings: Annotated[tuple[Warning, ...], Means("what is not known of it")] = ()
 
     @classmethod
     @takes_si(constant="torque", per_speed="rotational damping", reference_temperature="temperature")
@@ -104,7 +105,7 @@ class NoLoadTorque(Result):
         values = np.array([constant, per_speed, temperature_slope], dtype=float)
         error = np.log1p(uncertainty) / _DEVIATIONS * np.array([constant, per_speed, 0.0])
         covariance = np.outer(error, error)
-        notes = () if uncertainty else ("its uncertainty is not stated, so that it counts as exact",)
+        exact = Warning("counts as exact", "its uncertainty is not stated, so that it counts as exact")
         level, by_speed, slope = estimates_of(values, covariance, np.full(3, np.inf), NUMBERS)
         return cls(
             constant=level,
@@ -114,7 +115,7 @@ class NoLoadTorque(Result):
             covariance=covariance,
             freedom=np.inf,
             source=source,
-            notes=notes,
+            warnings=() if uncertainty else (exact,),
         )
 
     @takes_si(speed="speed", temperature="temperature")
@@ -214,7 +215,7 @@ class NoLoadTorque(Result):
             rows.append(("temperature slope", self.temperature_slope, about))
         lines = [self.headline()]
         lines += [f"  {name:18s}{value} {unit}{_sensors(value)}" for name, value, unit in rows]
-        return "\n".join([*lines, *(f"- {note}" for note in self.notes)])
+        return "\n".join([*lines, *(f"- {warning}" for warning in self.warnings)])
 
     def headline(self) -> str:
         """Return the law in numbers, and its source."""

@@ -16,6 +16,7 @@ from hersey.document.parts.log import InputFile, MachineFilePart, Point, Quality
 from hersey.document.parts.models import ModelsPart
 from hersey.document.parts.posterior import PosteriorPart
 from hersey.schema.part import SCHEMA_VERSION, Part
+from hersey.schema.warning import Warning
 from hersey.stability.hysteresis import HysteresisBand
 from hersey.stability.operating_map.result import OperatingMap
 from hersey.stability.plan.result import Plan
@@ -42,7 +43,7 @@ class Analysis(Part):
     )
     decision: DecisionPart | None = None
     verdict: list[str] = Field(description="in paragraphs; a contradiction first")
-    warnings: list[str]
+    warnings: list[Warning]
     files: list[InputFile]
     quality: Quality
     points: list[Point]

@@ -36,8 +36,8 @@ from hersey.log.means import MeansTable
 from hersey.log.torque_log import Channel
 from hersey.study import Study
 from hersey.study.thinning import kept
-from hersey.verdict.cautions import cautions
 from hersey.verdict.regime import regime
+from hersey.verdict.warnings import warnings_of
 
 #: Samples kept of each channel for display; extremes survive the thinning.
 DISPLAYED_SAMPLES = 2000
@@ -107,7 +107,7 @@ def fit_document(
 ) -> FitDocument:
     """Return what a fit needs to be read back: fit and drag curves, dwells and files, and the regime."""
     return FitDocument(
-        warnings=cautions(points, surface),
+        warnings=list(warnings_of(points, surface)),
         files=_files(log),
         points=_points(points, surface),
         fit=_fit_part(points, surface, curves or fit_curves(points, surface)),

@@ -25,6 +25,7 @@ from hersey.document.parts.log import InputFile, Point
 from hersey.errors import ParameterError, way_in
 from hersey.files.text import read_text
 from hersey.schema.part import Interval
+from hersey.schema.warning import Warning
 
 #: How far a number may be from the one it follows from, relative: JSON keeps all digits.
 _ROUNDING = 1e-9
@@ -194,7 +195,7 @@ def _rest(part: NoLoadTorque | None) -> NoLoadTorque | None:
         sha256=tuple(part.sha256),
         speed_range=part.speed_range,
         temperature_range=part.temperature_range,
-        notes=tuple(part.notes),
+        warnings=tuple(Warning.read(warning) for warning in part.warnings),
     )
 
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, TypedDict, Unpack
 from hersey.arrays import refuse_unknown
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.dwells.doubtful import doubtful_order, doubtful_tare
-from hersey.damping.dwells.misleading import in_words, misleading
+from hersey.damping.dwells.misleading import misleading
 from hersey.damping.dwells.reasons import LABELS
 from hersey.errors import DROP_MISSING, ISOTHERMAL, HerseyError, InsufficientDataError, Setting, way_in
 from hersey.inspection.file_report import MEANS, FileReport, file_lines, file_report
@@ -245,9 +245,9 @@ def _supported(reduce: Callable[[], SteadyPoints], temperature_scale: str) -> tu
         points = reduce()
     except InsufficientDataError as error:
         return Support(0, 0, None, (), {}, (), (str(error),)), ()
-    notes = () if isinstance(points.log, MeansTable) else points.notes  # what a table lacks, support says
-    structures = [in_words(found, points) for found in misleading(points)]
-    doubts = (*doubtful_tare(points), *notes, *(str(each) for each in doubtful_order(points)), *structures)
+    notes = () if isinstance(points.log, MeansTable) else points.warnings  # what a table lacks, support says
+    found = (*doubtful_tare(points), *notes, *doubtful_order(points), *misleading(points))
+    doubts = tuple(each.sentence for each in found)
     return support_of_points(points, temperature_scale=temperature_scale), doubts
 
 

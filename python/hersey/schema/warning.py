@@ -15,10 +15,13 @@ from hersey.units import celsius, rpm
 Severity = Literal["good", "note", "watch", "act"]
 #: What a warning is made of, as JSON holds it.
 Value = float | int | str | None
+#: A p-value below this is said to be below it.
+_LEAST_P = 1e-12
 #: From SI to the units in which words show a number.
 _UNITS: dict[str, Callable[[Any], Any]] = {
     "rpm": rpm,
     "degC": celsius,
+    "%": lambda value: 100.0 * value,
     "mm": lambda value: 1e3 * value,
     "mm/s": lambda value: 1e3 * value,
     "um": lambda value: 1e6 * value,
@@ -28,7 +31,10 @@ _UNITS: dict[str, Callable[[Any], Any]] = {
 
 
 class _Words(string.Formatter):
-    """Words with values: ``{speed:.3g rpm}`` is in that unit, ``{count:row|rows}`` one word of two."""
+    """Words with values, which may be shown in a unit, as a choice of words, with a capital or as a p-value.
+
+    Such as ``{speed:.3g rpm}``, ``{count:row|rows}``, ``{name:capital}`` and ``{chance:p}``.
+    """
 
     def format_field(self, value: Any, spec: str) -> str:
         if "|" in spec:
@@ -36,6 +42,10 @@ class _Words(string.Formatter):
             return one if value == 1 else many
         if isinstance(value, Setting):
             return value.to(spec)
+        if spec == "capital":
+            return f"{str(value)[:1].upper()}{str(value)[1:]}"
+        if spec == "p":
+            return f"p = {value:.1g}" if value > _LEAST_P else f"p < {_LEAST_P:.0e}"
         form, _, unit = spec.partition(" ")
         if not unit:
             return str(super().format_field(value, spec))
@@ -98,19 +108,24 @@ class Warning(Record):
         for name, value in (given | {"remedy": remedy, "heading": title}).items():
             object.__setattr__(self, name, value)
 
+    @classmethod
+    def read(cls, part: Any) -> Warning:
+        """Return one that a document holds; its words are those of the time at which it was written."""
+        own = dict(part.values) | {"title": part.title, "text": part.text}
+        return cls(part.kind, "{text}", severity=part.severity, title="{title}", where=part.where, **own)
+
+    def number(self, name: str) -> float:
+        """Return one of its numbers."""
+        return float(self.values[name] or 0.0)
+
     def within(self, where: str) -> Warning:
         """Return the same of what lies within ``where``, such as a file of a specimen."""
-        inside = f"{where}: {self.where}" if self.where else where
-        own: dict[str, Any] = dict(self.values)
-        return Warning(
-            self.kind,
-            self.words,
-            severity=self.severity,
-            title=self.heading,
-            where=inside,
-            remedy=self.remedy,
-            **own,
-        )
+        return self.titled(self.heading, where=f"{where}: {self.where}" if self.where else where)
+
+    def titled(self, title: str, *, where: str) -> Warning:
+        """Return the same under a title and in another place."""
+        own: dict[str, Any] = dict(self.values) | {"severity": self.severity, "remedy": self.remedy}
+        return Warning(self.kind, self.words, title=title, where=where, **own)
 
     @property
     def title(self) -> Annotated[str, Means("it in a few words, or empty")]:
@@ -140,7 +155,7 @@ class Warning(Record):
 
     def __str__(self) -> str:
         """Return what it concerns, what is wrong and what to do."""
-        return f"{self.where}: {self.text}" if self.where else self.text
+        return ": ".join(part for part in (self.where, self.title, self.text) if part)
 
     def __hash__(self) -> int:
         """Return a hash of what is shown."""

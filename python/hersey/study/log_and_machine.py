@@ -18,6 +18,7 @@ from hersey.errors import HerseyError, ParameterError
 from hersey.log import TorqueLog
 from hersey.machine.machine import Machine, read_machine
 from hersey.result import Result, json_record
+from hersey.schema.warning import Warning
 from hersey.study.findings import Findings
 from hersey.study.first_screen.decision import decision
 from hersey.study.first_screen.reasons import in_words
@@ -25,8 +26,8 @@ from hersey.study.first_screen.result import DecisionPart
 from hersey.study.nip import film_part
 from hersey.study.simulation import simulation
 from hersey.study.torque_budget import torque_budget
-from hersey.verdict.cautions import cautions
 from hersey.verdict.regime import regime
+from hersey.verdict.warnings import warnings_of
 
 if TYPE_CHECKING:
     import polars as pl
@@ -47,9 +48,9 @@ class Study(Findings, Result):
         return decision(self)
 
     @cached_property
-    def warnings(self) -> tuple[str, ...]:
+    def warnings(self) -> tuple[Warning, ...]:
         """What is doubtful of dwells and fit."""
-        return tuple(cautions(self.points, self.surface))
+        return warnings_of(self.points, self.surface)
 
     @property
     def verdict(self) -> list[str]:
@@ -66,7 +67,7 @@ class Study(Findings, Result):
         lines += [f"{point.name}: {point.words}" for point in told.points]
         if self.comparison is not None:
             lines.append(f"Against {self.comparison.names[0]}: {self.comparison.verdict}")
-        lines += [*self.verdict, *(f"- {warning}" for warning in self.warnings)]
+        lines += [*self.verdict, *(f"- {warning.sentence}" for warning in self.warnings)]
         return "\n".join([*lines, self.surface.summary()])
 
     def to_dict(self) -> dict[str, Any]:

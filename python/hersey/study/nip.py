@@ -14,8 +14,9 @@ from hersey.lubrication.film_result import REGIMES, Film
 from hersey.lubrication.film_temperature import film_temperature
 from hersey.lubrication.mixed import MixedFilm
 from hersey.machine.machine import Machine
+from hersey.schema.warning import Warning
 from hersey.study.nip_film import FilmPart, FilmPoint
-from hersey.verdict.checks import Misfit, misfits, remarks
+from hersey.verdict.checks import nip_warnings
 from hersey.verdict.contact_verdict import Verdict, verdict
 from hersey.verdict.evidence import MeasuredFilm, measured_film
 from hersey.verdict.regime import Regime
@@ -41,10 +42,10 @@ def film_part(
         film = film_thickness(contact, lubricant, speed=speed, temperature=inside)
     names = [point.name for point in machine.points]
     shared = shared_load(machine, film, measured, surface)
-    notes = [*remarks(machine, film), *(() if shared is None else shared.notes(names))]
     says = verdict(measured, surface, contact, lubricant, seen)
-    off = misfits(machine, film, measured, says, None if shared is None else shared.transition)
-    return film_document(film, names, measured, says, notes, shared, off)
+    found = nip_warnings(machine, film, measured, says, None if shared is None else shared.transition)
+    said = () if shared is None else shared.notes(names)
+    return film_document(film, names, measured, says, [*found, *said], shared)
 
 
 @dataclass(frozen=True)
@@ -58,13 +59,18 @@ class SharedLoad:
         """Return both as text; names of the points."""
         return f"{self.film.summary(names)}\n{self.transition.summary()}"
 
-    def notes(self, names: Sequence[str]) -> list[str]:
-        """Return both in sentences; names of the points."""
+    def notes(self, names: Sequence[str]) -> list[Warning]:
+        """Return both as notes, for a page; names of the points."""
+        words = (
+            "the film is {ratio:.3g} of the roughness (lambda), asperities carry {share:.2%} of the load, "
+            "and film and asperities take {torque:.3g mN m}"
+        )
         columns = (self.film.lambda_ratio, self.film.share, self.film.torque)
         points = [
-            f"{name}: the film is {ratio:.3g} of the roughness (lambda), asperities carry {share:.2%} of the "
-            f"load, and film and asperities take {1e3 * torque:.3g} mN m."
-            for name, ratio, share, torque in zip(names, *(np.ravel(each) for each in columns), strict=False)
+            Warning("load shared", words, where=name, ratio=ratio, share=share, torque=torque)
+            for name, ratio, share, torque in zip(
+                names, *(np.ravel(each).tolist() for each in columns), strict=False
+            )
         ]
         return [*points, *self.transition.notes()]
 
@@ -95,9 +101,8 @@ def film_document(
     names: list[str],
     measured: MeasuredFilm | None = None,
     says: Verdict | None = None,
-    notes: Sequence[str] = (),
+    warnings: Sequence[Warning] = (),
     shared: SharedLoad | None = None,
-    off: Sequence[Misfit] = (),
 ) -> FilmPart:
     """Return a film at named points, what a log says of it if there is one, and what does not fit."""
     document = film.to_dict()
@@ -111,11 +116,7 @@ def film_document(
             "contradicted": says is not None and says.contradicted,
             "mixed": None if shared is None else shared.film.to_dict(),
             "transition": None if shared is None else shared.transition,
-            "misfits": [
-                {"signal": "act" if each.grave else "watch", "text": each.text, "size": each.size}
-                for each in off
-            ],
-            "notes": list(notes),
+            "warnings": list(warnings),
             "points": film_points(film, names),
             "dwells": [] if measured is None else film_points(measured.predicted, [""] * measured.speed.size),
         }

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Literal
-
 from pydantic import Field
 
 from hersey.damping.estimate import Estimate
@@ -13,6 +11,7 @@ from hersey.lubrication.lubricant import Lubricant
 from hersey.lubrication.mixed import MixedContact, MixedFilm, MixedTransition
 from hersey.schema.part import Numbers, Part
 from hersey.schema.record import part_of
+from hersey.schema.warning import Warning
 from hersey.verdict.evidence import MeasuredFilm
 from hersey.verdict.regimes import Hypothesis
 from hersey.verdict.transition import ContactTransition
@@ -95,14 +94,6 @@ class VerdictPart(Part):
     text: str
 
 
-class MisfitPart(Part):
-    """A number of a nip that does not fit."""
-
-    signal: Literal["watch", "act"] = Field(description="act: it cannot be")
-    text: str
-    size: float = Field(description="how many times its bound, or its interval, it is off; 1: just not")
-
-
 class FilmPart(Part):
     """The film that theory gives this nip, and what a log says of it if there is one."""
 
@@ -117,8 +108,9 @@ class FilmPart(Part):
     contradicted: bool = Field(default=False, description="the log excludes the film of this nip")
     mixed: MixedPart | None = Field(default=None, description="who carries what, at the points")
     transition: ContactTransition | None = Field(default=None, description="where drag is least")
-    misfits: list[MisfitPart] = Field(default=[], description="what does not fit, the farthest off first")
-    notes: list[str] = Field(default=[], description="what else is to be known, and cautions of the log")
+    warnings: list[Warning] = Field(
+        default=[], description="what does not fit, the farthest off first, then notes and those of the log"
+    )
     points: list[FilmPoint] = Field(default=[], description="points of interest on the regime chart")
     dwells: list[FilmPoint] = Field(default=[], description="dwells on the regime chart")
 

@@ -8,7 +8,7 @@ regime           exponents against named regimes, and a verdict in words
 evidence         the film that a log measures
 contact_verdict  what the measured exponents say of a contact
 transition       where drag is least, by the contact and by a log
-cautions         what must be known before a fit is trusted
+warnings         what must be known before a fit is trusted
 held_values      channels that are clipped or stuck
 checks           what in the numbers of a nip does not fit, the farthest off first
 ===============  =======================================================================

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from hersey.lubrication.film import shear_heating
 from hersey.lubrication.film_result import REGIMES, Film
 from hersey.lubrication.lubricant import Lubricant
 from hersey.machine.machine import Machine
-from hersey.units import celsius, rpm
+from hersey.schema.warning import Warning
 from hersey.verdict.contact_verdict import Verdict, agrees
 from hersey.verdict.evidence import MeasuredFilm
 from hersey.verdict.transition import ContactTransition
@@ -37,26 +37,18 @@ _SAME = 0.01
 _WARM = 2.0
 
 
-@dataclass(frozen=True)
-class Misfit:
-    """What does not fit; ``size`` is how many times its bound, or its interval, it is off (1: just not).
-
-    ``grave`` is what cannot be, as against a formula outside its range or a number beside its interval.
-    """
-
-    text: str
-    size: float
-    grave: bool = False
-
-
-def misfits(
+def nip_warnings(
     machine: Machine,
     film: Film,
     measured: MeasuredFilm | None = None,
     says: Verdict | None = None,
     turn: ContactTransition | None = None,
-) -> tuple[Misfit, ...]:
-    """Return what does not fit, the farthest off first.
+) -> tuple[Warning, ...]:
+    """Return what does not fit, the farthest off first, then notes on numbers that fit.
+
+    ``off`` among the values of the first is how many times its bound, or its interval, a number is off (1:
+    just not). What cannot be is to be acted on; a formula outside its range, or a number beside its
+    interval, is to be watched.
 
     Parameters
     ----------
@@ -78,31 +70,41 @@ def misfits(
         found += _check_exponents(says)
     if turn is not None:
         found += _check_transition(turn)
-    return tuple(sorted(found, key=lambda each: -each.size))
+    notes = [*_on_thickening(lubricant, film), *_on_roughness(contact, film)]
+    return (*sorted(found, key=lambda each: -each.number("off")), *notes)
 
 
-def remarks(machine: Machine, film: Film) -> tuple[str, ...]:
-    """Return what is to be known of a film whose numbers fit; the arguments are those of `misfits`."""
-    contact, lubricant = _both(machine)
-    notes = []
-    if lubricant.pressure_viscosity:
-        thickening = float(np.max(lubricant.alpha(film.temperature)) * film.nip.pressure_max)
-        if thickening < MIN_THICKENING:
-            notes.append(
-                f"alpha p = {thickening:.2g}: pressure does not thicken this lubricant in this nip, so "
-                "Eqs. 5, 9 and 10 of the paper do not apply"
-            )
+def _on_thickening(lubricant: Lubricant, film: Film) -> Iterator[Warning]:
+    if not lubricant.pressure_viscosity:
+        return
+    thickening = float(np.max(lubricant.alpha(film.temperature)) * film.nip.pressure_max)
+    if thickening < MIN_THICKENING:
+        yield Warning(
+            "no thickening",
+            "pressure does not thicken this lubricant in this nip (alpha p = {thickening:.2g}), so Eqs. 5, 9 "
+            "and 10 of the paper do not apply",
+            thickening=thickening,
+        )
+
+
+def _on_roughness(contact: Contact, film: Film) -> Iterator[Warning]:
     if contact.roughness is not None:
         least = float(film.lambda_ratio(contact.roughness).min())
         if LAMBDA_BANDS[0] <= least < LAMBDA_BANDS[1]:
-            notes.append(_thin(least, "mixed", LAMBDA_BANDS[1]))
-    return tuple(notes)
+            yield _thin(least, "mixed", LAMBDA_BANDS[1])
 
 
-def _thin(least: float, kind: str, bound: float) -> str:
-    return (
-        f"predicted lambda ratio down to {least:.2g} (minimum film over composite rms roughness): by "
-        f"convention {kind} lubrication below {bound:g}"
+def _thin(least: float, kind: Literal["boundary", "mixed"], bound: float) -> Warning:
+    """A film that by convention surfaces pierce; below the lower band it does not fit."""
+    return Warning(
+        f"{kind} lubrication",
+        "predicted lambda ratio down to {ratio:.2g} (minimum film over composite rms roughness): by "
+        "convention {lubrication} lubrication below {bound:g}",
+        severity="watch" if kind == "boundary" else "note",
+        ratio=least,
+        lubrication=kind,
+        bound=bound,
+        off=bound / least,
     )
 
 
@@ -118,134 +120,202 @@ def _apart(one: float, other: float) -> float:
     return max(one / other, other / one)
 
 
-def _check_statements(machine: Machine, contact: Contact) -> Iterator[Misfit]:
+def _check_statements(machine: Machine, contact: Contact) -> Iterator[Warning]:
     if abs(contact.roll_radius / machine.roll_radius - 1.0) > _SAME:
-        text = (
-            f"[contact] roll_radius is {1e3 * contact.roll_radius:.4g} mm, [drivetrain] roll_radius "
-            f"{1e3 * machine.roll_radius:.4g} mm: one roll has one radius"
+        yield Warning(
+            "two roll radii",
+            "[contact] roll_radius is {contact:.4g mm}, [drivetrain] roll_radius {drivetrain:.4g mm}: one "
+            "roll has one radius",
+            severity="act",
+            contact=contact.roll_radius,
+            drivetrain=machine.roll_radius,
+            off=_apart(contact.roll_radius, machine.roll_radius),
         )
-        yield Misfit(text, _apart(contact.roll_radius, machine.roll_radius), grave=True)
     load = machine.limits.nip_load
     if load is not None and abs(contact.load / load - 1.0) > _SAME:
-        text = f"[contact] load is {contact.load:.4g} N, [limits] nip_load {load:.4g} N: say which"
-        yield Misfit(text, _apart(contact.load, load), grave=True)
+        yield Warning(
+            "two loads",
+            "[contact] load is {contact:.4g} N, [limits] nip_load {limits:.4g} N: say which",
+            severity="act",
+            contact=contact.load,
+            limits=load,
+            off=_apart(contact.load, load),
+        )
 
 
-def _check_contact(contact: Contact, film: Film) -> Iterator[Misfit]:
+def _check_contact(contact: Contact, film: Film) -> Iterator[Warning]:
     nip = film.nip
     if not nip.paper_in_range:
         low, high = _core.NIP_RATIO_RANGE
         ratio = nip.paper_width / contact.rubber_thickness
-        text = (
-            f"nip/h = {ratio:.2g} is outside the range of the "
-            f"regression of Eq. 8, {low:g} to {high:g}: "
-            f"it is {100 * (nip.paper_width / nip.width - 1):+.0f} % off the solved nip"
+        yield Warning(
+            "beyond the regression of the nip",
+            "nip/h = {ratio:.2g} is outside the range of the regression of Eq. 8, {low:g} to {high:g}: it is "
+            "{error:+.0f %} off the solved nip",
+            severity="watch",
+            ratio=ratio,
+            low=low,
+            high=high,
+            error=nip.paper_width / nip.width - 1.0,
+            off=max(low / ratio, ratio / high),
         )
-        yield Misfit(text, max(low / ratio, ratio / high))
     if nip.strain > MAX_STRAIN:
-        text = (
-            f"the rubber is strained by {100 * nip.strain:.0f} % (a^2/(2 R h)): linear elasticity ends near "
-            f"{100 * MAX_STRAIN:.0f} %"
+        yield Warning(
+            "large strain",
+            "the rubber is strained by {strain:.0f %} (a^2/(2 R h)): linear elasticity ends near {limit:.0f "
+            "%}",
+            severity="watch",
+            strain=nip.strain,
+            limit=MAX_STRAIN,
+            off=nip.strain / MAX_STRAIN,
         )
-        yield Misfit(text, nip.strain / MAX_STRAIN)
     if not np.all(film.inlet_short) and np.any(film.regime == REGIMES.index("isoviscous-elastic")):
-        text = "the inlet of the film is not short against rubber and nip: the soft law is rough there"
-        yield Misfit(text, 1.0)
+        words = "the inlet of the film is not short against rubber and nip: the soft law is rough there"
+        yield Warning("long inlet", words, severity="watch", off=1.0)
     if contact.roughness is not None:
         least = float(film.lambda_ratio(contact.roughness).min())
         if least < LAMBDA_BANDS[0]:
-            yield Misfit(_thin(least, "boundary", LAMBDA_BANDS[0]), LAMBDA_BANDS[0] / least)
+            yield _thin(least, "boundary", LAMBDA_BANDS[0])
 
 
-def _check_lubricant(lubricant: Lubricant, film: Film) -> Iterator[Misfit]:
+def _check_lubricant(lubricant: Lubricant, film: Film) -> Iterator[Warning]:
     low, high = lubricant.temperature_range
     hottest, coldest = float(film.temperature.max()), float(film.temperature.min())
     if hottest > high + 0.5 or coldest < low - 0.5:
-        text = (
-            f"viscosity is extrapolated: known from {celsius(low):.0f} to {celsius(high):.0f} degC, used "
-            f"from {celsius(coldest):.0f} to {celsius(hottest):.0f} degC"
+        yield Warning(
+            "viscosity extrapolated",
+            "viscosity is extrapolated: known from {low:.0f degC} to {high:.0f degC}, used from "
+            "{coldest:.0f degC} to {hottest:.0f degC}",
+            severity="watch",
+            low=low,
+            high=high,
+            coldest=coldest,
+            hottest=hottest,
+            off=1.0 + max(hottest - high, low - coldest) / max(high - low, _WARM),
         )
-        known = max(high - low, _WARM)
-        yield Misfit(text, 1.0 + max(hottest - high, low - coldest) / known)
     for name, correction in film.corrections.items():
         if not np.all(correction.valid):
             factor = float(correction.factor.min())
-            text = f"{name}: the factor (down to {factor:.3g}) is outside the validity of its rule"
-            yield Misfit(text, _apart(factor, 1.0))
+            yield Warning(
+                "correction beyond its range",
+                "{correction}: the factor (down to {factor:.3g}) is outside the validity of its rule",
+                severity="watch",
+                correction=name,
+                factor=factor,
+                off=_apart(factor, 1.0),
+            )
     if lubricant.conductivity is not None:
         sliding, kelvin = 2.0 * film.entrainment_speed, film.temperature
         rise = float(np.max(shear_heating(lubricant, sliding_speed=sliding, temperature=kelvin)))
         if rise > _WARM:
-            text = f"shear warms the film by up to {rise:.2g} K over its walls: it is thinner than stated"
-            yield Misfit(text, rise / _WARM)
+            words = "shear warms the film by up to {rise:.2g} K over its walls: it is thinner than stated"
+            yield Warning("shear heating", words, severity="watch", rise=rise, off=rise / _WARM)
 
 
-def _check_measured(measured: MeasuredFilm, contact: Contact) -> Iterator[Misfit]:
-    highest = float(measured.friction.max())
-    if highest > MAX_FILM_FRICTION:
-        text = (
-            f"friction coefficient {highest:.2g} is not a fluid film: above {MAX_FILM_FRICTION:g} surfaces "
-            "touch, or torque holds more than the nip's drag"
-        )
-        yield Misfit(text, highest / MAX_FILM_FRICTION, grave=True)
-    if measured.grip is not None and highest > measured.grip:
-        text = (
-            f"friction coefficient {highest:.2g} exceeds that of belt on roll, {measured.grip:g}: "
-            "it would slip"
-        )
-        yield Misfit(text, highest / measured.grip, grave=True)
+def _check_measured(measured: MeasuredFilm, contact: Contact) -> Iterator[Warning]:
+    yield from _check_friction(float(measured.friction.max()), measured.grip)
     factor = measured.calibration.value
     if not 1 / _FAR < factor < _FAR:
-        text = (
-            f"measured torque is {factor:.3g} times the predicted one: viscosity, nip or what the "
-            "torque holds besides the film is not as stated; the last of these moves exponents too"
+        yield Warning(
+            "torque off",
+            "measured torque is {factor:.3g} times the predicted one: viscosity, nip or what the torque "
+            "holds besides the film is not as stated; the last of these moves exponents too",
+            severity="act",
+            factor=factor,
+            off=_apart(factor, 1.0) / _FAR,
         )
-        yield Misfit(text, _apart(factor, 1.0) / _FAR, grave=True)
     if measured.lambda_ratio is not None:
         thin = measured.lambda_ratio[measured.on_film > 0.5]
         if thin.size and float(thin.min()) < LAMBDA_BANDS[0]:
             least = float(thin.min())
-            text = (
-                f"the measured film is down to {least:.2g} of the roughness "
-                f"({1e6 * (contact.roughness or 0.0):.2g} um) where torque rises with speed: not thickness "
-                "alone makes this drag"
+            yield Warning(
+                "measured film below roughness",
+                "the measured film is down to {ratio:.2g} of the roughness ({roughness:.2g um}) where torque "
+                "rises with speed: not thickness alone makes this drag",
+                severity="watch",
+                ratio=least,
+                roughness=contact.roughness or 0.0,
+                off=LAMBDA_BANDS[0] / least,
             )
-            yield Misfit(text, LAMBDA_BANDS[0] / least)
 
 
-def _check_exponents(says: Verdict) -> Iterator[Misfit]:
+def _check_friction(highest: float, grip: float | None) -> Iterator[Warning]:
+    if highest > MAX_FILM_FRICTION:
+        yield Warning(
+            "friction above a film",
+            "friction coefficient {friction:.2g} is not a fluid film: above {limit:g} surfaces touch, or "
+            "torque holds more than the nip's drag",
+            severity="act",
+            friction=highest,
+            limit=MAX_FILM_FRICTION,
+            off=highest / MAX_FILM_FRICTION,
+        )
+    if grip is not None and highest > grip:
+        yield Warning(
+            "friction above the grip",
+            "friction coefficient {friction:.2g} exceeds that of belt on roll, {grip:g}: it would slip",
+            severity="act",
+            friction=highest,
+            grip=grip,
+            off=highest / grip,
+        )
+
+
+def _check_exponents(says: Verdict) -> Iterator[Warning]:
     theory = says.expected if says.solved is None else says.solved
     c, thermal = says.exponent, says.thermal
     if says.contradicted:
-        text = f"damping goes as speed to the power {c}; the film of this nip gives {theory:.2f}"
-        yield Misfit(text, _reaches(c.value, theory, c.low, c.high), grave=True)
-    if thermal is not None and thermal.estimable and not agrees(thermal, says.thermal_expected):
-        text = (
-            f"with temperature (K) damping goes to the power {thermal}; the film of this lubricant predicts "
-            f"{says.thermal_expected:.2f}"
+        yield Warning(
+            "exponent of speed",
+            "damping goes as speed to the power {measured}; the film of this nip gives {predicted:.2f}",
+            severity="act",
+            measured=str(c),
+            exponent=c.value,
+            predicted=theory,
+            off=_reaches(c.value, theory, c.low, c.high),
         )
-        size = _reaches(thermal.value, says.thermal_expected, thermal.low, thermal.high)
-        yield Misfit(text, size)
+    if thermal is not None and thermal.estimable and not agrees(thermal, says.thermal_expected):
+        yield Warning(
+            "exponent of temperature",
+            "with temperature (K) damping goes to the power {measured}; the film of this lubricant predicts "
+            "{predicted:.2f}",
+            severity="watch",
+            measured=str(thermal),
+            exponent=thermal.value,
+            predicted=says.thermal_expected,
+            off=_reaches(thermal.value, says.thermal_expected, thermal.low, thermal.high),
+        )
 
 
-def _check_transition(turn: ContactTransition) -> list[Misfit]:
+def _check_transition(turn: ContactTransition) -> list[Warning]:
     """The temperature at which contact and log are farthest apart."""
-    worst = Misfit("", 1.0)
+    found = []
     for i, kelvin in enumerate(turn.temperature.tolist()):
-        value, low, high = (float(x[i]) for x in (turn.measured, turn.low, turn.high))
+        measured, low, high = (float(x[i]) for x in (turn.measured, turn.low, turn.high))
         if not (np.isfinite(low) and np.isfinite(high) and low > 0):
             continue
-        log = f"by the log at {rpm(value):.3g} rpm [{rpm(low):.3g}, {rpm(high):.3g}]"
-        at = f"at {celsius(kelvin):.0f} degC"
         speed = float(turn.speed[i])
-        if np.isnan(speed):
-            each = Misfit(f"by the contact as stated drag falls nowhere {at}, {log} it is least", _NONE)
-        else:
-            ends = (np.log(end) for end in (value, speed, low, high))
-            size = _reaches(*(float(end) for end in ends))
-            each = Misfit(f"by the contact as stated drag is least {at} at {rpm(speed):.3g} rpm, {log}", size)
-        worst = max(worst, each, key=lambda one: one.size)
-    return [worst] if worst.size > 1.0 else []
+        nowhere = np.isnan(speed)
+        ends = (float(np.log(end)) for end in (measured, speed, low, high))
+        found.append(
+            Warning(
+                "transition",
+                "by the contact as stated drag falls nowhere at {temperature:.0f degC}, by the log it is "
+                "least at {measured:.3g rpm} [{low:.3g rpm}, {high:.3g rpm}]"
+                if nowhere
+                else "by the contact as stated drag is least at {temperature:.0f degC} at {speed:.3g rpm}, "
+                "by the log at {measured:.3g rpm} [{low:.3g rpm}, {high:.3g rpm}]",
+                severity="watch",
+                temperature=kelvin,
+                speed=speed,
+                measured=measured,
+                low=low,
+                high=high,
+                off=_NONE if nowhere else _reaches(*ends),
+            )
+        )
+    worst = max(found, key=lambda one: one.number("off"), default=None)
+    return [] if worst is None or worst.number("off") <= 1.0 else [worst]
 
 
 def _reaches(value: float, other: float, low: float, high: float) -> float:

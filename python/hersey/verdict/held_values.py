@@ -7,31 +7,44 @@ from hersey.damping.dwells.resolution import quantisation_step
 from hersey.inspection.faults import Fault, clipping, stuck
 from hersey.log.means import MeansTable
 from hersey.log.torque_log import Run, TorqueLog
-from hersey.units import celsius
+from hersey.schema.warning import Warning
 
 
-def held_values(log: TorqueLog | MeansTable) -> list[str]:
-    """Return in sentences which channels of a log are clipped or stuck; often none."""
-    out = []
-    for file, run in zip(log.files, log.runs, strict=False):
-        for name, shown, fault in _faults(run):
-            rows = f"{fault.rows} rows"
-            why = (
-                "what it was there is not known"
-                if fault.kind == "stuck"
-                else "the range of sensor or logger ends there, and dwells at it are wrong"
-            )
-            out.append(f"{file.name}: {name} is {fault.kind} at {shown} for {rows}: {why}.")
-    return out
+def held_values(log: TorqueLog | MeansTable) -> list[Warning]:
+    """Return which channels of a log are clipped or stuck; often none."""
+    return [
+        _said(name, fault, file.name)
+        for file, run in zip(log.files, log.runs, strict=False)
+        for name, fault in _faults(run)
+    ]
 
 
-def _faults(run: Run) -> list[tuple[str, str, Fault]]:
-    """Name of the channel, the value in words, and the fault."""
-    torque = [("torque", f"{each.value:.4g} N m", each) for each in _of(run.torque, stands=True)]
+def _said(name: str, fault: Fault, file: str) -> Warning:
+    return Warning(
+        fault.kind,
+        "{channel} is {fault} at "
+        + ("{value:.4g degC}" if name == "temperature" else "{value:.4g} N m")
+        + " for {rows} rows: "
+        + (
+            "what it was there is not known"
+            if fault.kind == "stuck"
+            else "the range of sensor or logger ends there, and dwells at it are wrong"
+        ),
+        severity="watch",
+        where=file,
+        channel=name,
+        fault=fault.kind,
+        value=float(fault.value),
+        rows=int(fault.rows),
+    )
+
+
+def _faults(run: Run) -> list[tuple[str, Fault]]:
+    """Name of the channel, and the fault."""
+    torque = [("torque", each) for each in _of(run.torque, stands=True)]
     if run.temperature is None:
         return torque
-    heat = _of(run.temperature, stands=False)
-    return torque + [("temperature", f"{celsius(each.value):.4g} degC", each) for each in heat]
+    return torque + [("temperature", each) for each in _of(run.temperature, stands=False)]
 
 
 def _of(values: FloatArray, *, stands: bool) -> list[Fault]:

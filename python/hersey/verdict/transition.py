@@ -12,6 +12,7 @@ from hersey.damping.surface import DampingSurface
 from hersey.lubrication.film_temperature import film_temperature
 from hersey.lubrication.mixed import MixedContact
 from hersey.result import Means, Record
+from hersey.schema.warning import Warning
 from hersey.units import celsius, rpm
 
 
@@ -57,29 +58,44 @@ class ContactTransition(Record):
             )
         return "\n".join(line.rstrip() for line in lines)
 
-    def notes(self) -> list[str]:
-        """Return the same in sentences, for a page: the coldest and the hottest temperature."""
-        out = []
-        for i in sorted({int(np.argmin(self.temperature)), int(np.argmax(self.temperature))}):
-            at = f"at {celsius(float(self.temperature[i])):.0f} degC"
-            if np.isnan(self.speed[i]):
-                out.append(f"By the contact as stated drag falls nowhere {at}: there is no transition.")
-                continue
-            text = f"By the contact as stated drag is least {at} at {rpm(self.speed[i]):.3g} rpm"
-            if not np.isnan(self.measured[i]):
-                text += f", by the log at {self._seen(i)}: the contact has {self.ratio[i]:.2f} times that"
-            out.append(
-                f"{text}. It goes as roughness to the power {self.by_roughness[i]:.2f}, as boundary friction "
-                f"to {self.by_boundary[i]:.2f}, as the inverse of viscosity."
+    def notes(self) -> list[Warning]:
+        """Return the same as notes, for a page: the coldest and the hottest temperature."""
+        ends = sorted({int(np.argmin(self.temperature)), int(np.argmax(self.temperature))})
+        return [self._note(i) for i in ends]
+
+    def _note(self, i: int) -> Warning:
+        kelvin, speed = float(self.temperature[i]), float(self.speed[i])
+        if np.isnan(speed):
+            return Warning(
+                "no transition of the contact",
+                "by the contact as stated drag falls nowhere at {temperature:.0f degC}: there is no "
+                "transition",
+                temperature=kelvin,
             )
-        return out
+        return Warning(
+            "transition of the contact",
+            "by the contact as stated drag is least at {temperature:.0f degC} at {speed:.3g rpm}"
+            + (
+                ""
+                if np.isnan(self.measured[i])
+                else ", by the log at {measured}: the contact has {ratio:.2f} times that"
+            )
+            + ". It goes as roughness to the power {by_roughness:.2f}, as boundary friction to "
+            "{by_boundary:.2f}, as the inverse of viscosity",
+            temperature=kelvin,
+            speed=speed,
+            measured=self._seen(i),
+            ratio=float(self.ratio[i]),
+            by_roughness=float(self.by_roughness[i]),
+            by_boundary=float(self.by_boundary[i]),
+        )
 
     def _seen(self, i: int) -> str:
         if np.isnan(self.measured[i]):
             return "none shown"
         told = np.isfinite(self.low[i]) and np.isfinite(self.high[i])
         value, low, high = (rpm(x[i]) for x in (self.measured, self.low, self.high))
-        return f"{value:.3g}" + (f" [{low:.3g}, {high:.3g}]" if told else " (not told)")
+        return f"{value:.3g}" + (f" [{low:.3g}, {high:.3g}]" if told else " (not known)")
 
 
 def contact_transition(

@@ -1,21 +1,18 @@
 """Errors that the order of a log hides or that its sensors leave, found in the dwells before a fit.
 
-No scatter shows them, and no repetition averages them away. Each finding says what was found in numbers;
-`in_words` says what that means and what to do.
+No scatter shows them, and no repetition averages them away. Each warning says what was found in numbers, what
+it means and what to do.
 """
 
 from __future__ import annotations
-
-from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 
 from hersey.arrays import FloatArray, IntArray
 from hersey.damping.dwells.groups import SAME_SPEED, groups_of_temperature, levels_of_speed
 from hersey.damping.dwells.points import SteadyPoints
-from hersey.damping.dwells.relaxation import Relaxation
 from hersey.log.sensors import HYSTERESIS_OF_LARGEST, TEMPERATURE_LAG
+from hersey.schema.warning import Warning
 
 #: Fewest dwells of which anything is said.
 FEWEST = 5
@@ -36,27 +33,15 @@ TOO_COARSE = 0.1
 #: Name of the correction that undoes the lag of the temperature sensor.
 LAG_CORRECTION = "thermal lag"
 
-Kind = Literal["one direction", "relaxation", "temperature lag", "unlinked runs", "resolution"]
 
+def misleading(points: SteadyPoints) -> list[Warning]:
+    """Return the error structures of a log, often none.
 
-@dataclass(frozen=True)
-class Misleading:
-    """An error structure found in a log.
-
-    ``size`` is the largest error that it leaves in a dwell: relative for torque and speed, K for temperature.
-    ``scale`` belongs to the kind: time constant (s) of a relaxation or a lag, step (SI) of a resolution, the
-    direction (1 from below, -1 from above), the number of sets of runs without a temperature in common.
+    Each holds the ``quantity`` it concerns, the largest error that it leaves in a dwell (``off``: relative
+    for torque and speed, K for temperature), how many ``dwells`` it concerns, and what belongs to its kind:
+    time constant (s) of a relaxation or a lag, step (SI) of a resolution, direction (1 from below, -1 from
+    above), number of sets of runs without a temperature in common.
     """
-
-    kind: Kind
-    quantity: str
-    size: float
-    scale: float
-    dwells: int  #: how many it concerns
-
-
-def misleading(points: SteadyPoints) -> list[Misleading]:
-    """Return the error structures of a log, often none."""
     found = [_one_way(points), _relaxing(points), _late(points), _apart(points)]
     return [each for each in (*found, *_coarse(points)) if each is not None]
 
@@ -122,41 +107,95 @@ def _kelvin(points: SteadyPoints) -> FloatArray | None:
     return points.column("temperature") if points.log.has_temperature else None
 
 
-def _one_way(points: SteadyPoints) -> Misleading | None:
+def _one_way(points: SteadyPoints) -> Warning | None:
     sign = one_direction(points)
     if not sign.size:
         return None
     torque = np.abs(points.column("torque"))
     size = HYSTERESIS_OF_LARGEST * float(torque.max() / torque.min())
     way = 1.0 if float(np.sum(sign)) >= 0.0 else -1.0
-    return Misleading("one direction", "torque", size, way, int(np.count_nonzero(sign == way)))
+    return Warning(
+        "one direction",
+        "speeds were approached from {side} only, so hysteresis of the torque sensor cannot be checked: it "
+        "reads less while torque rises than while it falls. The sensor part of the interval of c allows for "
+        "{allowed:.2g %} of the largest torque. Record the same speeds on the way {other} too",
+        severity="watch",
+        side="below" if way > 0 else "above",
+        other="down" if way > 0 else "up",
+        allowed=HYSTERESIS_OF_LARGEST,
+        quantity="torque",
+        off=size,
+        direction=way,
+        dwells=int(np.count_nonzero(sign == way)),
+    )
 
 
-def _relaxing(points: SteadyPoints) -> Misleading | None:
+def _relaxing(points: SteadyPoints) -> Warning | None:
     found = points.relaxation
     if found is None:
         return None
     left = np.abs(found.left)
-    return Misleading("relaxation", "torque", float(left.max()), found.time, int(np.count_nonzero(left)))
+    low, high = found.possible
+    unsure = high > UNSURE * low
+    return Warning(
+        "relaxation",
+        (
+            "torque is still relaxing after each change of speed, with a time constant of "
+            "{shortest:.3g} to {longest:.3g} s"
+            if unsure
+            else "torque is still relaxing after each change of speed, with a time constant of about "
+            "{time:.3g} s"
+        )
+        + ". The mean of a dwell is off by up to {off:.2g %}, and the intervals allow for that. Hold each "
+        "speed for at least {hold:.3g} s",
+        severity="watch",
+        time=found.time,
+        shortest=low,
+        longest=high,
+        hold=RELAXED * found.time,
+        quantity="torque",
+        off=float(left.max()),
+        dwells=int(np.count_nonzero(left)),
+    )
 
 
-def _late(points: SteadyPoints) -> Misleading | None:
+def _late(points: SteadyPoints) -> Warning | None:
     off = TEMPERATURE_LAG * np.abs(lagging(points))
     if not off.size:
         return None
-    dwells = int(np.count_nonzero(off >= NOTABLE_LAG))
-    return Misleading("temperature lag", "temperature", float(off.max()), TEMPERATURE_LAG, dwells)
+    return Warning(
+        "temperature lag",
+        "temperature still changed during {dwells} {dwells:dwell|dwells}. There, a temperature sensor that "
+        "lags by {time:.0f} s is off by up to {off:.1f} K, which biases exponents b and c. Wait until the "
+        "temperature reading is steady, or set time_constant of the sensor under [temperature] in "
+        "hersey.toml",
+        severity="watch",
+        time=TEMPERATURE_LAG,
+        quantity="temperature",
+        off=float(off.max()),
+        dwells=int(np.count_nonzero(off >= NOTABLE_LAG)),
+    )
 
 
-def _apart(points: SteadyPoints) -> Misleading | None:
+def _apart(points: SteadyPoints) -> Warning | None:
     member = unlinked_runs(points)
     if not member.size:
         return None
-    sets = float(np.unique(member).size)
-    return Misleading("unlinked runs", "torque", points.log.sensors.torque_gain, sets, member.size)
+    return Warning(
+        "unlinked runs",
+        "the runs form {sets} sets without a common temperature. A torque gain that differs between them, or "
+        "any other change from day to day, cannot be separated from temperature in exponent b. The sensor "
+        "part of its interval allows for a gain error of {off:.2g %} in each. Repeat one temperature in "
+        "every run",
+        severity="watch",
+        sets=int(np.unique(member).size),
+        quantity="torque",
+        off=points.log.sensors.torque_gain,
+        dwells=member.size,
+    )
 
 
-def _coarse(points: SteadyPoints) -> list[Misleading]:
+def _coarse(points: SteadyPoints) -> list[Warning]:
     out = []
     for resolution in points.resolutions:
         if resolution.errors.size != points.table.height:
@@ -165,74 +204,33 @@ def _coarse(points: SteadyPoints) -> list[Misleading]:
         beside = 1.0 if name == "temperature" else np.abs(points.column(name))
         share = resolution.errors / beside
         if dwells := int(np.count_nonzero(share > NOTABLE_ROUNDING[name])):
-            out.append(Misleading("resolution", name, float(share.max()), resolution.step, dwells))
+            out.append(_resolution(name, resolution.step, float(share.max()), dwells))
     return out
 
 
-def in_words(found: Misleading, points: SteadyPoints) -> str:
-    """Return what an error structure means for the fit, and what to do about it."""
-    if found.kind == "relaxation" and points.relaxation is not None:
-        return _relaxation_words(found, points.relaxation)
-    words = {"one direction": _direction_words, "temperature lag": _lag_words, "unlinked runs": _runs_words}
-    return words.get(found.kind, _resolution_words)(found)
-
-
-def _direction_words(found: Misleading) -> str:
-    way, other = ("below", "down") if found.scale > 0 else ("above", "up")
-    return (
-        f"Speeds were approached from {way} only, so hysteresis of the torque sensor cannot be checked: it "
-        "reads less while torque rises than while it falls. The sensor part of the interval of c allows for "
-        f"{_percent(HYSTERESIS_OF_LARGEST)} of the largest torque. Record the same speeds on the way {other} "
-        "too."
+def _resolution(name: str, step: float, off: float, dwells: int) -> Warning:
+    """A sensor whose steps are coarser than its noise."""
+    torque, kelvin = name == "torque", name == "temperature"
+    return Warning(
+        "resolution",
+        "{quantity} is recorded with a resolution of "
+        + ("{step:.3g mN m}" if torque else "{step:.3g} K" if kelvin else "{step:.3g} rad/s")
+        + ", coarser than its noise in {dwells} {dwells:dwell|dwells}. The standard error by rounding is up "
+        "to "
+        + ("{off:.2g} K, " if kelvin else "{off:.2g %}, ")
+        + (
+            "and the intervals allow for that"
+            if kelvin or off <= TOO_COARSE
+            else "too much for reliable exponents"
+        ),
+        severity="watch",
+        remedy="record torque in a smaller measuring range"
+        if torque
+        else "record more decimals of temperature"
+        if kelvin
+        else "record speed with more decimals or more pulses",
+        quantity=name,
+        step=step,
+        off=off,
+        dwells=dwells,
     )
-
-
-def _relaxation_words(found: Misleading, relaxation: Relaxation) -> str:
-    low, high = relaxation.possible
-    time = f"{low:.3g} to {high:.3g} s" if high > UNSURE * low else f"about {found.scale:.3g} s"
-    return (
-        f"Torque is still relaxing after each change of speed, with a time constant of {time}. The mean of "
-        f"a dwell is off by up to {_percent(found.size)}, and the intervals allow for that. Hold each speed "
-        f"for at least {RELAXED * found.scale:.3g} s."
-    )
-
-
-def _lag_words(found: Misleading) -> str:
-    return (
-        f"Temperature still changed during {_dwells(found.dwells)}. There, a temperature sensor that lags by "
-        f"{found.scale:.0f} s is off by up to {found.size:.1f} K, which biases exponents b and c. Wait until "
-        "the temperature reading is steady, or set time_constant of the sensor under [temperature] in "
-        "hersey.toml."
-    )
-
-
-def _runs_words(found: Misleading) -> str:
-    return (
-        f"The runs form {found.scale:.0f} sets without a common temperature. A torque gain that differs "
-        "between them, or any other change from day to day, cannot be separated from temperature in exponent "
-        f"b. The sensor part of its interval allows for a gain error of {_percent(found.size)} in each. "
-        "Repeat one temperature in every run."
-    )
-
-
-def _resolution_words(found: Misleading) -> str:
-    step, cure = {
-        "torque": (f"{1e3 * found.scale:.3g} mN m", "Record torque in a smaller measuring range"),
-        "speed": (f"{found.scale:.3g} rad/s", "Record speed with more decimals or more pulses"),
-        "temperature": (f"{found.scale:.3g} K", "Record more decimals of temperature"),
-    }[found.quantity]
-    most = f"{found.size:.2g} K" if found.quantity == "temperature" else _percent(found.size)
-    too_much = found.quantity != "temperature" and found.size > TOO_COARSE
-    allowed = "too much for reliable exponents" if too_much else "and the intervals allow for that"
-    return (
-        f"{found.quantity.capitalize()} is recorded with a resolution of {step}, coarser than its noise in "
-        f"{_dwells(found.dwells)}. The standard error by rounding is up to {most}, {allowed}. {cure}."
-    )
-
-
-def _percent(share: float) -> str:
-    return f"{100.0 * share:.2g} %"
-
-
-def _dwells(count: int) -> str:
-    return "1 dwell" if count == 1 else f"{count} dwells"

@@ -18,6 +18,7 @@ from hersey.errors import InsufficientDataError, ParameterError
 from hersey.log.means import MeanRow, MeansTable, read_means
 from hersey.log.torque_log import TorqueLog
 from hersey.result import Result, json_record
+from hersey.schema.warning import Warning
 from hersey.units import rpm
 
 #: Loads closer than this share count as the same.
@@ -68,8 +69,8 @@ class SteadyPoints(Result):
     tare_errors
         What one standard error of each independent disturbance of the tare does to the torque of each dwell,
         N m, shape (points, disturbances); one column for a zero that is constant, none without a tare.
-    notes
-        What there is to say of the tare, in sentences.
+    warnings
+        What is to be known of the tare, or of a table of means.
     standing_torque
         Mean torque while the drive stood, N m, or None if it never did.
     log
@@ -96,7 +97,7 @@ class SteadyPoints(Result):
     standing_torque: float | None
     log: TorqueLog | MeansTable
     tare_errors: FloatArray = field(default_factory=lambda: np.empty((0, 0)))
-    notes: tuple[str, ...] = ()
+    warnings: tuple[Warning, ...] = ()
     rest: NoLoadTorque | None = None
     rest_errors: FloatArray = field(default_factory=lambda: np.empty((0, 0)))
     resolutions: tuple[Resolution, ...] = ()
@@ -170,7 +171,7 @@ class SteadyPoints(Result):
             raise InsufficientDataError(f"{table.files[0].name}: no row can be used: {rejected[0].reason}")
         kinds = dict.fromkeys(("temperature", "temperature_error", "load"), pl.Float64)
         frame = pl.DataFrame(dwells, schema_overrides=kinds)
-        return cls(frame, tuple(rejected), 0.0, None, table, notes=_notes_of_means(table))
+        return cls(frame, tuple(rejected), 0.0, None, table, warnings=(_of_means(table),))
 
     def without(self, rest: NoLoadTorque) -> SteadyPoints:
         """Return the same dwells with the torque of the film alone, that of the no-load torque taken off.
@@ -234,7 +235,13 @@ class SteadyPoints(Result):
         if self.rest is not None:
             lines.append(f"taken off, so that torque is that of the film: {self.rest}")
         lines += [f"  not used: {rows} rows, {why}" for why, rows in self._unused().items()]
-        return "\n".join([*lines, *self.notes, *([dropped] if (dropped := self.dropped()) else [])])
+        return "\n".join(
+            [
+                *lines,
+                *(warning.sentence for warning in self.warnings),
+                *([dropped] if (dropped := self.dropped()) else []),
+            ]
+        )
 
     def headline(self) -> str:
         """Return how many dwells, and the ranges of speed and torque."""
@@ -273,7 +280,7 @@ class SteadyPoints(Result):
 
     def to_dict(self) -> dict[str, Any]:
         """Return the dwells, what is not used, and the tare, in SI."""
-        plain = ("tare", "tare_error", "tare_errors", "notes", "standing_torque", "rest", "rest_errors")
+        plain = ("tare", "tare_error", "tare_errors", "warnings", "standing_torque", "rest", "rest_errors")
         return json_record(
             {"points": self.table.to_dicts(), "rejected": [_record(r) for r in self.rejected]}
             | {name: getattr(self, name) for name in plain}
@@ -346,15 +353,19 @@ def _no_mean(row: MeanRow, rotation: str) -> Reason | None:
     return None
 
 
-def _notes_of_means(table: MeansTable) -> tuple[str, ...]:
-    """What a table of means cannot tell, and what it leaves out, in sentences."""
-    name = table.files[0].name + (f" and {len(table.files) - 1} more" if len(table.files) > 1 else "")
-    errors = (
-        "as stated" if table.stated_errors else "none are stated: the scatter about the law stands for them"
-    )
-    return (
-        f"{name}: a table of means, one row per dwell. Without a trace, stick-slip, drift within a dwell, "
-        f"settling, the zero of the torque and the clock cannot be judged. Errors of torque: {errors}.",
+def _of_means(table: MeansTable) -> Warning:
+    """What a table of means cannot tell, and what it leaves out."""
+    return Warning(
+        "table of means",
+        "a table of means, one row per dwell. Without a trace, stick-slip, drift within a dwell, settling, "
+        "the zero of the torque and the clock cannot be judged. Errors of torque: "
+        + (
+            "as stated"
+            if table.stated_errors
+            else "none are stated: the scatter about the law stands for them"
+        ),
+        where=table.files[0].name + (f" and {len(table.files) - 1} more" if len(table.files) > 1 else ""),
+        files=len(table.files),
     )
 
 

@@ -147,7 +147,7 @@ class _Reduction:
             errors = table["torque_error"].to_numpy()
             disturbances, left = self.zero.disturbances(times, errors)
             table = table.with_columns(torque_error=np.hypot(errors, left))
-        notes = () if self.zero is None else self.zero.notes(subtracted=self.subtracted, times=times)
+        warnings = () if self.zero is None else self.zero.warnings(subtracted=self.subtracted, times=times)
         return SteadyPoints(
             table=table,
             rejected=rejected,
@@ -155,7 +155,7 @@ class _Reduction:
             standing_torque=None if self.zero is None else self.zero.mean,
             log=self.log,
             tare_errors=disturbances,
-            notes=notes,
+            warnings=warnings,
             resolutions=resolutions,
             relaxation=relaxing,
             relaxation_errors=_left(relaxing, table),

@@ -23,6 +23,7 @@ from hersey.damping.dwells.segments import Segment
 from hersey.damping.dwells.shared_noise import Powers, SharedNoise
 from hersey.errors import TARE
 from hersey.log.torque_log import Run
+from hersey.schema.warning import Warning
 
 #: Sizes of line and walk over the log that are weighed, as shares of what the stretches differ by.
 SIZES = (0.0, 0.1, 0.2, 0.4, 0.8, 1.6, 3.2)
@@ -198,44 +199,57 @@ class Zero:
         a, b = first[:, None] / self.duration, second[None, :] / self.duration
         return np.asarray(line**2 * (a - 0.5) * (b - 0.5) + walk**2 * np.minimum(a, b))
 
-    def notes(self, *, subtracted: bool, times: FloatArray) -> tuple[str, ...]:
-        """Return what there is to say of it, in sentences, for dwells at these times."""
+    def warnings(self, *, subtracted: bool, times: FloatArray) -> tuple[Warning, ...]:
+        """Return what is to be known of it, for dwells at these times."""
         count, p = len(self.stretches), self.p_value
         if count == 1:
-            return (_ONE,) if subtracted else ()
+            return (_seen_once(),) if subtracted else ()
         drifts = p < CHANCE
         if not subtracted:
             rise = float(np.ptp(self._torque))
-            return (
-                (
-                    f"While the drive stands, torque differs by {rise:.3g} N m from stretch to stretch "
-                    f"({_chance(p)}): the zero drifts. It is not subtracted; if the drive stands free, "
-                    f"use {TARE.to('standing')}.",
-                )
-                if drifts
-                else ()
-            )
+            return (_drifting_unsubtracted(rise, p),) if drifts else ()
         out = []
         if drifts:
             rise = float(np.ptp(self.at(times)))
-            out.append(
-                f"The tare drifts by {rise:.3g} N m over the dwells ({_chance(p)}, {count} standing "
-                "stretches). The zero of the sensor drifts, or its reading depends on whether torque rose or "
-                "fell before (hysteresis). Each dwell has the tare of its time, and its error."
-            )
+            out.append(_drifting(rise, p, count))
         if count == 2:
-            out.append(
-                "Two standing stretches: only by how much the zero differs between them is seen, not what it "
-                "did between and beyond them."
+            words = (
+                "two standing stretches: only by how much the zero differs between them is seen, not what it "
+                "did between and beyond them"
             )
+            out.append(Warning("two standing stretches", words))
         return tuple(out)
 
 
-def _chance(p_value: float) -> str:
-    return f"p = {p_value:.1g}" if p_value > 1e-12 else "p < 1e-12"
+def _drifting_unsubtracted(rise: float, p_value: float) -> Warning:
+    return Warning(
+        "zero drifts, not subtracted",
+        "while the drive stands, torque differs by {rise:.3g} N m from stretch to stretch ({p_value:p}): "
+        "the zero drifts. It is not subtracted; if the drive stands free, use {how:standing}",
+        severity="watch",
+        rise=rise,
+        p_value=p_value,
+        how=TARE,
+    )
 
 
-_ONE = (
-    "One standing stretch: a drift of the zero cannot be seen; it would shift torque more the later a dwell, "
-    "and tilt its exponents. Let the drive stand again at the end, better every few dwells."
-)
+def _drifting(rise: float, p_value: float, count: int) -> Warning:
+    return Warning(
+        "zero drifts",
+        "the tare drifts by {rise:.3g} N m over the dwells ({p_value:p}, {count} standing stretches). "
+        "The zero of the sensor drifts, or its reading depends on whether torque rose or fell before "
+        "(hysteresis). Each dwell has the tare of its time, and its error",
+        severity="watch",
+        rise=rise,
+        p_value=p_value,
+        count=count,
+    )
+
+
+def _seen_once() -> Warning:
+    return Warning(
+        "one standing stretch",
+        "one standing stretch: a drift of the zero cannot be seen; it would shift torque more the later a "
+        "dwell, and tilt its exponents. Let the drive stand again at the end, better every few dwells",
+        severity="watch",
+    )

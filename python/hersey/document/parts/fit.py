@@ -12,6 +12,7 @@ from hersey.damping.curves.mixture import LawWeight
 from hersey.damping.no_load_torque import NoLoadTorque
 from hersey.document.parts.log import InputFile, Point
 from hersey.schema.part import Interval, Part
+from hersey.schema.warning import Warning
 from hersey.verdict.regime import Regime
 
 
@@ -95,7 +96,7 @@ class FitPart(Part):
 class FitDocument(Part):
     """What ``hersey fit --json`` prints: all that a fit needs to be read back."""
 
-    warnings: list[str]
+    warnings: list[Warning]
     files: list[InputFile]
     points: list[Point]
     fit: FitPart

@@ -11,6 +11,7 @@ from hersey.damping.candidates.shared_errors import SharedScatter
 from hersey.damping.curves.mixture import LawWeight
 from hersey.damping.estimate import Estimate
 from hersey.schema.part import Holed, Part
+from hersey.schema.warning import Warning
 
 
 class CandidatePart(Part):
@@ -103,4 +104,4 @@ class ModelsPart(Part):
     errors_in_variables: OrthogonalFit
     activation_energy: ActivationPart
     hersey_collapse: CollapsePart | None
-    warnings: list[str] = Field(default=[], description="what must be known before a fit is trusted")
+    warnings: list[Warning] = Field(default=[], description="what must be known before a fit is trusted")

@@ -7,6 +7,7 @@ from pydantic import Field
 from hersey.damping.compare import LogComparison
 from hersey.document.parts.fit import FitPart
 from hersey.schema.part import Part
+from hersey.schema.warning import Warning
 from hersey.study.first_screen.result import DecisionPart
 from hersey.study.nip_film import FilmPart
 from hersey.study.torque_budget import TorqueBudgetPart
@@ -18,7 +19,7 @@ class StudyPart(Part):
 
     decision: DecisionPart
     verdict: list[str] = Field(description="in paragraphs; a contradiction first")
-    warnings: list[str]
+    warnings: list[Warning]
     fit: FitPart
     regime: Regime
     nip: FilmPart | None = None

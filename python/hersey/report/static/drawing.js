@@ -23,6 +23,9 @@ function sentence(text) {
   return `${set.slice(0, 1).toUpperCase()}${set.slice(1)}`;
 }
 
+// What a result is warned of, with what it concerns.
+const warned = (each) => sentence([each.where, each.title, each.text].filter(Boolean).join(": "));
+
 function add(parent, tag, text = "", className = "") {
   const element = document.createElement(tag);
   element.textContent = text;

@@ -60,12 +60,12 @@ function decision() {
     flags.id = "flags";
     for (const flag of told.flags) {
       const item = add(flags, "li");
-      const title = add(item, "b", "", flag.signal);
-      title.append(signal(flag.signal));
-      add(title, "span", `${SIGNALS[flag.signal]}: `, "sr-only");
-      title.append(pretty(flag.title.replace(/\.?$/, ".")));
-      item.append(` ${pretty(flag.text)} `);
-      item.dataset.section = sectionOf(flag.section);
+      const title = add(item, "b", "", flag.severity);
+      title.append(signal(flag.severity));
+      add(title, "span", `${SIGNALS[flag.severity]}: `, "sr-only");
+      title.append(sentence(flag.title));
+      item.append(` ${sentence(flag.text)} `);
+      item.dataset.section = sectionOf(flag.where);
     }
   }
 }

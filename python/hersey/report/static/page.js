@@ -13,8 +13,8 @@ async function comparison(parent) {
   table(part, ["Number", compare.a, compare.b, "Change", "95 % interval", "p-value", "Real"], compare.changes.map((c) => [
     ...of(c), `${c.is_ratio ? "× " : ""}${digits(c.change.value)}`, bounds(c.change), c.p_value === null ? "–" : digits(c.p_value, 2),
     c.real ? judged("watch", "yes") : "no"]), [1, 2, 3, 4, 5], { name: "comparison", label: "What changed" });
-  const all = compare.notes.length ? fold(part, "Notes") : part;
-  compare.notes.forEach((text) => add(all, "p", pretty(text), "note"));
+  const all = compare.warnings.length ? fold(part, "Notes") : part;
+  compare.warnings.forEach((each) => add(all, "p", warned(each), "note"));
 }
 async function warmUp(parent) {
   if (!data.warm_up) return;

@@ -15,7 +15,7 @@ function dataSection(parent) {
     add(part, "h3", "What to know before trusting the numbers");
     const list = add(part, "ul", "", "checks plain");
     list.id = "warnings";
-    for (const text of data.warnings) add(list, "li", pretty(text));
+    for (const each of data.warnings) add(list, "li", warned(each));
   }
   if (q.rejected.length) {
     const all = fold(part, `Every stretch that is not used, and why (${q.rejected.length})`);

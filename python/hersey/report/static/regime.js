@@ -19,7 +19,7 @@ async function regimeSection(parent) {
   await chart(columns, "regime", { heading: `1. What the log says: ${twoPlaces(c.value)}`, says: finding });
   const nip = data.film?.points[0]?.regime ?? data.film?.dwells[0]?.regime;
   await chart(columns, "film", { heading: `2. What the nip says: ${nip ?? ""}`, says: finding });
-  if (data.film) misfits(part);
+  if (data.film) ofTheNip(part);
   else explanations(columns);
   const more = add(part, "div", "", "columns");
   await chart(more, "transition");
@@ -36,16 +36,16 @@ async function regimeSection(parent) {
   hypotheses(all);
   if (data.film) explanations(all);
 }
-function misfits(parent) {
-  const given = data.film.misfits ?? [];
+function ofTheNip(parent) {
+  const [given, others] = [true, false].map((off) => data.film.warnings.filter((each) => (each.severity !== "note") === off));
   if (given.length) {
     add(parent, "h3", "3. What does not fit, largest first");
-    checks(parent, given.map((each) => [each.signal, sentence(each.text)]));
+    checks(parent, given.map((each) => [each.severity, warned(each)]));
   }
   add(parent, "h3", given.length ? "What else the film says" : "3. What the film of this nip says");
   const notes = add(parent, "ul", "", "checks plain");
   notes.id = "notes";
-  for (const text of data.film.notes) add(notes, "li", pretty(text));
+  for (const each of others) add(notes, "li", warned(each));
 }
 function hypotheses(parent) {
   const element = table(parent, ["Regime", "Exponent", "p-value", "Result", "Meaning"], data.regime.hypotheses.map((h) => {
@@ -93,7 +93,7 @@ function candidates(parent) {
   const part = section(parent, "candidates", "Model comparison",
     `Of ${plural(order.length, "law")} ${best?.name ?? models.chosen} is chosen${best?.cross_validation ? `: it misses dwells left out by ${digits(100 * best.cross_validation)} %` : ""}`
     + `${next ? `; the next is worse by ${digits(next.delta_aicc - (best?.delta_aicc ?? 0), 2)} in AICc` : ""}.`);
-  checks(part, models.warnings.map((text) => ["watch", pretty(text)]));
+  checks(part, models.warnings.map((each) => ["watch", warned(each)]));
   const all = fold(part, `The ${order.length} laws`);
   const percent = (value) => value === null ? "–" : digits(100 * value);
   const element = table(all, ["Law", "Numbers", "ΔAICc", "ΔBIC", "Left out, %", "Scatter, %"], order.map((each) => [

@@ -34,7 +34,11 @@ def decision(known: Findings) -> DecisionPart:
     of_points = _of_points(known, rises=trend.rises and not trend.falls)
     against = flags(known)
     signals: list[Signal] = [said.signal, *(point.signal for point in of_points)]
-    signals += [flag.signal for flag in against if flag.signal == "act" or flag.section == "compare"]
+    signals += [
+        "good" if flag.severity == "note" else flag.severity
+        for flag in against
+        if flag.severity == "act" or flag.where == "compare"
+    ]
     if (
         map_ is not None
         and known.behaviour is not None

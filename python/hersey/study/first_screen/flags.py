@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from hersey.damping.compare import LogComparison
@@ -12,14 +14,15 @@ from hersey.decision.behaviour import Behaviour
 from hersey.decision.edges import edges_of
 from hersey.log.doubtful import doubtful_units
 from hersey.posterior.result import SAFE
+from hersey.schema.warning import Warning
 from hersey.stability.operating_map import OperatingMap
 from hersey.study.findings import Findings
 from hersey.study.first_screen.reasons import in_words
-from hersey.study.first_screen.result import FlagPart, Signal
 from hersey.study.first_screen.words import at, figures, listed, mm, signed, starting
 from hersey.study.nip_film import FilmPart
 from hersey.study.torque_budget import TorqueBudgetPart
 from hersey.verdict.regime import Regime
+from hersey.verdict.warnings import SCATTER
 
 #: How many the first screen has room for.
 MOST = 3
@@ -29,12 +32,10 @@ _FAR = 2.0
 _FEW = 4
 #: Probability of a closure from which it counts as known, and ratio of V* of two from which they differ.
 _DECIDED, _APART = 0.95, 1.25
-#: Scatter between dwells that is spoken of.
-_SCATTER = 0.05
 
 
-def flags(known: Findings) -> list[FlagPart]:
-    """Return the gravest warnings, each with the section of the page that holds its evidence.
+def flags(known: Findings) -> list[Warning]:
+    """Return the gravest warnings, each with the section of the page that holds its evidence as ``where``.
 
     What a comparison says was asked for, and stands among them whatever it is, first of its kind.
     """
@@ -42,167 +43,267 @@ def flags(known: Findings) -> list[FlagPart]:
     out = [] if found is None else _unused(found)
     out += [*_contradictions(known.nip, known.torque_budget), *_of_log(points, surface)]
     if known.why:
-        out.append(FlagPart(signal="act", title="No band.", text=f"{_sentence(known.why)}.", section="band"))
+        out.append(Warning("no band", "{why}", severity="act", title="No band", where="band", why=known.why))
     if found is not None and map_ is not None:
         out += [*_whole(points), *_of_machine(found, map_, known.units["torque"])]
     if found is not None:
         out += [*_not_computed(found), *_plans(found)]
     scatter = surface.statistics.scatter if found is None else found.posterior.model.curves.scatter
     out += _left_open(points, known.regime, scatter)
-    grave = {"act": 0, "watch": 1, "good": 2}
+    grave = {"act": 0, "watch": 1, "note": 2, "good": 3}
     asked = [] if known.comparison is None else [_compared(known.comparison)]
-    kept = sorted(out, key=lambda flag: grave[flag.signal])[: MOST - len(asked)]
-    return sorted([*asked, *kept], key=lambda flag: grave[flag.signal])
+    kept = sorted(out, key=lambda flag: grave[flag.severity])[: MOST - len(asked)]
+    return sorted([*asked, *kept], key=lambda flag: grave[flag.severity])
 
 
-def _not_computed(found: Behaviour) -> list[FlagPart]:
+def _not_computed(found: Behaviour) -> Iterator[Warning]:
     """Why there is no band or no map."""
-    return [
-        FlagPart(signal="watch", title=title, text=f"{_sentence(in_words(error))}.", section="band")
-        for title, errors in (("No band.", found.no_band), ("No map.", found.no_map))
-        for error in errors
-    ]
+    for kind, errors in (("band", found.no_band), ("map", found.no_map)):
+        for error in errors:
+            yield Warning(
+                f"no {kind}",
+                "{why}",
+                severity="watch",
+                title="No {what}",
+                where="band",
+                what=kind,
+                why=in_words(error),
+            )
 
 
-def _compared(found: LogComparison) -> FlagPart:
+def _compared(found: LogComparison) -> Warning:
     """What really changed since an earlier log."""
-    differs = [each for each in found.changes if each.real]
+    differs = [each.name for each in found.changes if each.real]
     drags = any(low is not None and low > 1.0 for row in found.low for low in row)
     drags |= any(high is not None and high < 1.0 for row in found.high for high in row)
-    signal: Signal = "watch" if drags or differs else "good"
-    what = "Damping has changed" if drags else "The law has changed" if differs else "Nothing really changed"
-    return FlagPart(signal=signal, title=f"{what} since {found.a}.", text=found.verdict, section="compare")
+    return Warning(
+        "drag changed" if drags else "law changed" if differs else "nothing changed",
+        "{verdict}",
+        severity="watch" if drags or differs else "good",
+        title="Damping has changed since {log}"
+        if drags
+        else "The law has changed since {log}"
+        if differs
+        else "Nothing really changed since {log}",
+        where="compare",
+        log=found.a,
+        verdict=found.verdict,
+    )
 
 
-def _contradictions(film: FilmPart | None, torque_budget: TorqueBudgetPart | None) -> list[FlagPart]:
+def _contradictions(film: FilmPart | None, torque_budget: TorqueBudgetPart | None) -> list[Warning]:
     out = []
     if film is not None and film.contradicted and film.exponents is not None:
         e = film.exponents
         theory = e.expected if e.solved is None else e.solved
         value = e.exponent.value
-        measured = "" if value is None else f"Measured {signed(value)}; "
-        text = f"{measured}the film solved for this nip gives {signed(theory)}."
-        out.append(FlagPart(signal="watch", title="Exponent and nip disagree.", text=text, section="regime"))
+        out.append(
+            Warning(
+                "exponent and nip disagree",
+                "the film solved for this nip gives {gives}"
+                if value is None
+                else "measured {measured}; the film solved for this nip gives {gives}",
+                severity="watch",
+                title="Exponent and nip disagree",
+                where="regime",
+                exponent=value,
+                predicted=theory,
+                gives=signed(theory),
+                measured="" if value is None else signed(value),
+            )
+        )
     if torque_budget is not None and (torque_budget.ratio[0] < 1 / _FAR or torque_budget.ratio[2] > _FAR):
-        low, mean, high = (figures(ratio) for ratio in torque_budget.ratio)
-        text = f"Measured torque is {mean} times what the file states, {low} to {high} by dwell."
-        out.append(FlagPart(signal="watch", title="Torque and file disagree.", text=text, section="regime"))
-    if not out and film is not None and film.misfits and film.misfits[0].signal == "act":
-        text = f"{_sentence(film.misfits[0].text)}."
-        out.append(FlagPart(signal="watch", title="Nip and log disagree.", text=text, section="regime"))
+        low, mean, high = torque_budget.ratio
+        out.append(
+            Warning(
+                "torque and file disagree",
+                "measured torque is {shown} times what the file states, {least} to {most} by dwell",
+                severity="watch",
+                title="Torque and file disagree",
+                where="regime",
+                low=low,
+                ratio=mean,
+                high=high,
+                shown=figures(mean),
+                least=figures(low),
+                most=figures(high),
+            )
+        )
+    if not out and film is not None and film.warnings and film.warnings[0].severity == "act":
+        out.append(
+            Warning(
+                "nip and log disagree",
+                "{why}",
+                severity="watch",
+                title="Nip and log disagree",
+                where="regime",
+                why=film.warnings[0].text,
+            )
+        )
     return out
 
 
-def _whole(points: SteadyPoints) -> list[FlagPart]:
-    """Bearings and gears in the torque flatten its fall: V* is told too low."""
-    if points.rest is not None:
-        return []
-    text = "V* is of the whole torque, and too low if bearings, rubber or gears are in it: state [rest]."
-    return [FlagPart(signal="watch", title="Torque may hold more than the film.", text=text, section="data")]
+def _whole(points: SteadyPoints) -> Iterator[Warning]:
+    """Bearings and gears in the torque flatten its fall: V* is estimated too low."""
+    if points.rest is None:
+        yield Warning(
+            "torque of more than the film",
+            "V* is of the whole torque, and too low if bearings, rubber or gears are in it: state [rest]",
+            severity="watch",
+            title="Torque may hold more than the film",
+            where="data",
+        )
 
 
-def _of_machine(found: Behaviour, map_: OperatingMap, unit: str) -> list[FlagPart]:
-    edges, kelvin = edges_of(found.posterior, found.temperature), found.temperature
-    out = []
-    if edges.starts is not True:
-        held, motor = edges.holding, map_.limited_by == "motor torque"
-        needs = starting(held.low, held.value, held.high, edges.limit, map_.limited_by, unit)
-        surely = edges.starts is False
-        title = f"The roll {'slips' if surely else 'may slip'} at the start."
-        if motor:
-            title = f"The motor {'does' if surely else 'may'} not start the belt."
-        signal: Signal = "act" if surely else "watch"
-        text = _sentence(f"{at(kelvin)}{needs}.")
-        out.append(FlagPart(signal=signal, title=title, text=text, section="band"))
-    out += _closures(found)
+def _of_machine(found: Behaviour, map_: OperatingMap, unit: str) -> Iterator[Warning]:
+    yield from _start(found, map_, unit)
+    yield from _closures(found)
     if map_.train.grip is None:
         pulls = [p.plan.peak_force for p in found.points if p.plan is not None and p.plan.found]
-        force = f"The first slip pulls {figures(max(pulls))} N; " if pulls else ""
-        text = _sentence(f"{force}the roll's grip is not stated, so it is not in the model.")
-        out.append(
-            FlagPart(signal="watch", title="The roll may slip at the start.", text=text, section="plan")
+        yield Warning(
+            "grip not stated",
+            ("the first slip pulls {shown} N; " if pulls else "")
+            + "the roll's grip is not stated, so it is not in the model",
+            severity="watch",
+            title="The roll may slip at the start",
+            where="plan",
+            pull=max(pulls, default=None),
+            shown=figures(max(pulls)) if pulls else "",
         )
     far = [p.name for p in map_.points if p.at.extrapolated]
     if far:
-        text = f"No dwell lies as far out as {listed(far)}."
-        out.append(FlagPart(signal="watch", title="Points are extrapolated.", text=text, section="data"))
-    return out
+        words = "no dwell lies as far out as {points}"
+        title = "Points are extrapolated"
+        yield Warning(
+            "points extrapolated", words, severity="watch", title=title, where="data", points=listed(far)
+        )
 
 
-def _closures(found: Behaviour) -> list[FlagPart]:
+def _start(found: Behaviour, map_: OperatingMap, unit: str) -> Iterator[Warning]:
+    """That roll or motor may not start the belt."""
+    edges, kelvin = edges_of(found.posterior, found.temperature), found.temperature
+    if edges.starts is True:
+        return
+    held, surely = edges.holding, edges.starts is False
+    needs = starting(held.low, held.value, held.high, edges.limit, map_.limited_by, unit)
+    kind = "motor" if map_.limited_by == "motor torque" else "roll"
+    yield Warning(
+        f"start: {kind}",
+        "{at}{needs}",
+        severity="act" if surely else "watch",
+        title=("The motor does not start the belt" if surely else "The motor may not start the belt")
+        if kind == "motor"
+        else ("The roll slips at the start" if surely else "The roll may slip at the start"),
+        where="band",
+        temperature=kelvin,
+        held=held.value,
+        limit=edges.limit,
+        at=at(kelvin),
+        needs=needs,
+    )
+
+
+def _closures(found: Behaviour) -> Iterator[Warning]:
     """That V* depends on how the belt comes to rest, where the evidence does not decide that."""
     drawn, kelvin = found.posterior, found.temperature
     chances = drawn.closures()
     if max(chances.values()) >= _DECIDED:
-        return []
+        return
     fold, closure = drawn.edges(kelvin).fold, drawn.drives.closure
     medians = {
         name: float(np.median(fold[closure == i])) for i, name in enumerate(chances) if np.any(closure == i)
     }
     soft, dead = medians.get("retained"), medians.get("stiction")
     if soft is None or dead is None or dead < _APART * soft:
-        return []
-    text = (
-        f"It may come to rest gradually ({_chance(chances['retained'])}) or stop abruptly "
-        f"({_chance(chances['stiction'])}). V* is {mm(soft)} or {mm(dead)} mm/s."
+        return
+    yield Warning(
+        "closure undecided",
+        "it may come to rest gradually ({gradually:.0f %}) or stop abruptly ({abruptly:.0f %}). V* is {soft} "
+        "or {dead} mm/s",
+        severity="watch",
+        title="The safe speed depends on how the belt comes to rest",
+        where="band",
+        gradually=chances["retained"],
+        abruptly=chances["stiction"],
+        retained=soft,
+        stiction=dead,
+        soft=mm(soft),
+        dead=mm(dead),
     )
-    title = "The safe speed depends on how the belt comes to rest."
-    return [FlagPart(signal="watch", title=title, text=text, section="band")]
 
 
-def _chance(value: float) -> str:
-    return f"{100.0 * value:.0f} %"
-
-
-def _unused(found: Behaviour) -> list[FlagPart]:
+def _unused(found: Behaviour) -> list[Warning]:
     """Evidence that does not count, and draws that do not agree."""
     out = [
-        FlagPart(
-            signal="watch", title="A recording was not used.", text=f"{_sentence(text)}.", section="band"
+        Warning(
+            "recording not used",
+            "{why}",
+            severity="watch",
+            title="A recording was not used",
+            where="band",
+            why=str(each),
         )
-        for text in found.posterior.unused[:1]
+        for each in found.posterior.unused[:1]
     ]
     if not found.posterior.convergence.converged:
-        text = "Two runs of the sampler differ: take the intervals as rough, or run hersey posterior."
-        out.append(FlagPart(signal="watch", title="V* has not converged.", text=text, section="band"))
+        words = "two runs of the sampler differ: take the intervals as rough, or run hersey posterior"
+        title = "V* has not converged"
+        out.append(Warning("not converged", words, severity="watch", title=title, where="band"))
     return out
 
 
-def _plans(found: Behaviour) -> list[FlagPart]:
+def _plans(found: Behaviour) -> Iterator[Warning]:
     """Operating points that cannot be reached from rest."""
-    out = []
     for each in found.points:
         if each.plan is not None and not each.plan.found and each.verdict.starts >= SAFE:
-            text = _sentence("; ".join(obstacle.text for obstacle in each.plan.obstacles)) + "."
             below = any(obstacle.limit == "target_speed" for obstacle in each.plan.obstacles)
-            title = f"{'No plan' if below else 'No start'} for {each.point.name}."
-            out.append(FlagPart(signal="act", title=title, text=text, section="plan"))
-    return out
+            yield Warning(
+                "no plan" if below else "no start",
+                "{why}",
+                severity="act",
+                title="No plan for {point}" if below else "No start for {point}",
+                where="plan",
+                point=each.point.name,
+                why="; ".join(obstacle.text for obstacle in each.plan.obstacles),
+            )
 
 
-def _of_log(points: SteadyPoints, surface: DampingSurface) -> list[FlagPart]:
+def _of_log(points: SteadyPoints, surface: DampingSurface) -> Iterator[Warning]:
     """What is doubtful in the log itself: a unit or a zero shifts every number."""
-    titled = {
-        "A unit is doubtful.": doubtful_units(points.log),
-        "The zero is doubtful.": doubtful_tare(points),
-    }
-    out = [
-        FlagPart(signal="watch", title=title, text=text, section="data")
-        for title, texts in titled.items()
-        for text in texts[:1]
-    ]
+    for each in doubtful_units(points.log)[:1]:
+        yield each.titled("A unit is doubtful", where="data")
+    for each in doubtful_tare(points)[:1]:
+        yield each.titled("The zero is doubtful", where="data")
     if surface.transition is not None and (below := _below(points, surface)) <= _FEW:
-        text = f"{below} of {len(points)} dwells lie below the transition: measure slower ones."
-        title = "Few dwells hold the falling branch."
-        out.append(FlagPart(signal="watch", title=title, text=text, section="torque"))
+        yield Warning(
+            "few slow dwells",
+            "{below} of {dwells} dwells lie below the transition: measure slower ones",
+            severity="watch",
+            title="Few dwells hold the falling branch",
+            where="torque",
+            below=below,
+            dwells=len(points),
+        )
     if surface.transition is not None and surface.transition.freed is not None:
-        text = "The transition moves with temperature otherwise than viscosity does: it is fitted by itself."
-        title = "One Hersey number does not hold."
-        out.append(FlagPart(signal="watch", title=title, text=text, section="torque"))
+        yield Warning(
+            "transition apart from viscosity",
+            "the transition moves with temperature otherwise than viscosity does: it is fitted by itself",
+            severity="watch",
+            title="One Hersey number does not hold",
+            where="torque",
+        )
     if loads := points.varying_load:
-        text = f"From {figures(loads[0])} to {figures(loads[1])} N: fit each load alone."
-        out.append(FlagPart(signal="watch", title="The load differs.", text=text, section="data"))
-    return out
+        yield Warning(
+            "loads differ",
+            "from {least} to {most} N: fit each load alone",
+            severity="watch",
+            title="The load differs",
+            where="data",
+            low=loads[0],
+            high=loads[1],
+            least=figures(loads[0]),
+            most=figures(loads[1]),
+        )
 
 
 def _below(points: SteadyPoints, surface: DampingSurface) -> int:
@@ -214,22 +315,18 @@ def _below(points: SteadyPoints, surface: DampingSurface) -> int:
     return int(np.count_nonzero(speed < np.array(at)))
 
 
-def _left_open(points: SteadyPoints, seen: Regime, scatter: float) -> list[FlagPart]:
-    out = []
-    for each in doubtful_order(points)[:1]:
-        text = _sentence(each.advice)
-        out.append(FlagPart(signal="watch", title=f"{each.title}.", text=text, section="data"))
+def _left_open(points: SteadyPoints, seen: Regime, scatter: float) -> Iterator[Warning]:
+    yield from (each.titled(each.heading, where="data") for each in doubtful_order(points)[:1])
     if seen.named is None:
         why = seen.why_unnamed or "several explain the dwells"
-        text = f"{_sentence(why)}."
-        out.append(FlagPart(signal="watch", title="No regime is told.", text=text, section="regime"))
-    if scatter > _SCATTER:
-        text = "More than sensor noise explains. Something unrecorded varied, or the model is wrong."
-        title = f"Points scatter {100 * scatter:.0f} % about the fit."
-        out.append(FlagPart(signal="watch", title=title, text=text, section="torque"))
-    return out
-
-
-def _sentence(text: str) -> str:
-    """The text with a capital, unless it begins with the name of a parameter."""
-    return text if "_" in text.split(" ", 1)[0] else f"{text[:1].upper()}{text[1:]}"
+        title = "No regime is known"
+        yield Warning("no regime", "{why}", severity="watch", title=title, where="regime", why=why)
+    if scatter > SCATTER:
+        yield Warning(
+            "scatter",
+            "more than sensor noise explains. Something unrecorded varied, or the model is wrong",
+            severity="watch",
+            title="Points scatter {scatter:.0f %} about the fit",
+            where="torque",
+            scatter=scatter,
+        )

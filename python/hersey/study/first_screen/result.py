@@ -10,6 +10,7 @@ from hersey.damping.design import TestDesign
 from hersey.decision.edges import Edge
 from hersey.schema.part import Numbers, Part
 from hersey.schema.record import part_of
+from hersey.schema.warning import Warning
 from hersey.stability.disturbance import Disturbance, SafeStep
 from hersey.stability.plan.result import Plan
 
@@ -49,15 +50,6 @@ class PointDecisionPart(Part):
     reason: str = Field(default="", description="why there is no plan, or no figure, where one is wanted")
 
 
-class FlagPart(Part):
-    """A warning of the first screen, and the section that holds its evidence."""
-
-    signal: Signal
-    title: str
-    text: str
-    section: str = Field(description="name of a section of the page")
-
-
 class MissingPart(Part):
     """What would let the report say more: lines to add to a file."""
 
@@ -93,7 +85,9 @@ class DecisionPart(Part):
     closures: dict[str, float] = Field(default={}, description="probability of each closure")
     measurement: MeasurementPart | None = None
     points: list[PointDecisionPart]
-    flags: list[FlagPart] = Field(description="three at the most, the gravest first")
+    flags: list[Warning] = Field(
+        description="three at the most, the gravest first; ``where`` is a section of the page"
+    )
     missing: list[MissingPart]
 
 
