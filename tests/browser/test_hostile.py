@@ -15,6 +15,7 @@ import hersey
 from hersey.charts.inspection import inspection_chart
 from hersey.charts.render import picture
 from hersey.document.analysis import Analysis
+from hersey.document.parts.log import RecipePart
 from hersey.machine.machine import read_machine
 from hersey.report.page import render
 from hersey.stability.operating_map import OperatingMap
@@ -80,6 +81,7 @@ def hostile_document(document: Analysis) -> Analysis:
         "files": [changed],
         "warnings": list(NAMES),
         "command": " ".join(NAMES),
+        "recipe": RecipePart(settings={}, toml="\n".join(NAMES)),
         "quality": document.quality.model_copy(update={"rejected": rejected}),
         "simulation": simulation.model_copy(update={"title": NAMES[3], "force_unit": NAMES[28]}),
         "film": film.model_copy(update={"verdict": NAMES[5], "notes": list(NAMES)}),

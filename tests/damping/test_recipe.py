@@ -129,6 +129,33 @@ def test_a_mistake_in_a_saved_recipe_is_named(
         Recipe.from_file(tmp_path / "recipe.toml")
 
 
+def test_dwells_keep_the_recipe_that_made_them(tmp_path: Path) -> None:
+    log = friction(tmp_path)
+    recipe = Recipe(logs=(log,))
+    assert recipe.points().recipe is recipe
+    rest = hersey.NoLoadTorque.stated(constant=0.001)
+    assert recipe.dwells(recipe.log()).without(rest).recipe is recipe
+    assert hersey.SteadyPoints.from_table(log, radius="25 mm").recipe is None  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("logs", "named"),
+    [
+        (("/a/x.csv", "/b/y.csv"), ("x.csv", "y.csv")),
+        (("/a/1/log.csv", "/a/2/log.csv"), ("1/log.csv", "2/log.csv")),
+        (("log.csv", "/a/log.csv"), ("log.csv", "a/log.csv")),
+        (("/a/log.csv", "/a/log.csv"), ("log.csv", "log.csv")),
+        ((), ()),
+    ],
+)
+def test_a_recipe_by_name_holds_no_more_of_a_path_than_it_must(
+    logs: tuple[str, ...], named: tuple[str, ...]
+) -> None:
+    recipe = Recipe(logs=logs, mapping=Path("/a/b/map.toml"), no_load=Path("/a/free.csv")).by_name()  # type: ignore[arg-type]
+    assert recipe.logs == tuple(map(Path, named))
+    assert (recipe.mapping, recipe.no_load) == (Path("map.toml"), Path("free.csv"))
+
+
 def test_no_load_is_said_once(tmp_path: Path) -> None:
     log = friction(tmp_path)
     rest = hersey.NoLoadTorque.stated(constant=0.01, source="[rest] of machine.toml")
