@@ -30,7 +30,7 @@ function reproduce(parent) {
   const part = section(parent, "reproduce", "Reproduce", `One command, ${plural(inputs.length, "file")}${seed === undefined ? "" : `, one seed (${seed})`}.`);
   if (data.command) add(part, "pre", data.command).id = "command";
   if (data.recipe) {
-    add(part, "p", "Recipe: how the logs became dwells. Save it beside the files as recipe.toml, then type hersey report --recipe recipe.toml.", "text");
+    add(part, "p", "Recipe of the dwells. Save it beside the files as recipe.toml and use it with hersey report --recipe recipe.toml.", "note hint");
     add(part, "pre", data.recipe.toml).id = "recipe";
   }
   const all = inputs.length > 8 ? fold(part, `${inputs.length} files and their hashes`) : part;
