@@ -118,6 +118,9 @@ def test_amounts_of_a_recipe_take_units() -> None:
         ("load = ['2 N', '3 m']", UnitError, "recipe.toml: load: unit 'm' is not a unit of force"),
         ("signs = {torque = 'x'}", ParameterError, r"recipe\.toml: signs\.torque is 'x'"),
         ("logs = [3]", ParameterError, "recipe.toml: logs is 3: write the name of a file"),
+        ("logs = [['a.csv']]", ParameterError, r"recipe.toml: logs is \['a.csv'\]: write the name of a file"),
+        ("mapping = ['a.toml']", ParameterError, "recipe.toml: mapping is .*: write the name of a file"),
+        ("no_load = []", ParameterError, "recipe.toml: no_load is .*: write the name of a file"),
         ("mapping = ''", ParameterError, "recipe.toml: mapping is '': write the name of a file"),
     ],
 )

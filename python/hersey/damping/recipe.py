@@ -61,11 +61,18 @@ class _Path(Quantity):
 
     def checked(self, given: Any, info: ValidationInfo[Any]) -> Any:
         """Return the path."""
-        if isinstance(given, list | tuple):
-            return tuple(self.checked(each, info) for each in given)
         if not isinstance(given, str) or not given.strip():
             raise ParameterError(f"is {given!r}: write the name of a file")
         return info.context.path.parent / given
+
+
+class _Paths(_Path):
+    """Files in a list, or one alone."""
+
+    def checked(self, given: Any, info: ValidationInfo[Any]) -> Any:
+        """Return the paths."""
+        named = given if isinstance(given, list | tuple) else [given]
+        return tuple(super(_Paths, self).checked(each, info) for each in named)
 
 
 @dataclass(frozen=True)
@@ -96,7 +103,7 @@ class Recipe:
         Log of the drive without the film, read in the same way: its torque is subtracted.
     """
 
-    logs: Annotated[tuple[Path, ...], _Path(None)] = ()
+    logs: Annotated[tuple[Path, ...], _Paths(None)] = ()
     mapping: Annotated[Path | None, _Path(None)] = None
     channels: dict[str, str] = field(default_factory=dict)
     units: dict[str, str] = field(default_factory=dict)
