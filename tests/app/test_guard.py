@@ -245,6 +245,17 @@ def test_a_report_is_nobody_s(asked: Asked, tmp_path: Path) -> None:
     assert asked.ask("GET", "/report/other", x_hersey_token=None, origin=None).status == 404
 
 
+def test_a_recipe_is_that_of_the_report_that_is_shown(asked: Asked, tmp_path: Path) -> None:
+    path = f"/api/analyses/{asked.first}/recipe.toml"
+    assert asked.ask("GET", path).status == 404
+    (tmp_path / "r.html").write_text("report")
+    (tmp_path / "r.toml").write_text('logs = ["drive.csv"]\n')
+    asked.session.shown["number"] = tmp_path / "r.html"
+    asked.session.analyses[asked.first].report = "number"
+    assert asked.ask("GET", path).body == b'logs = ["drive.csv"]\n'
+    assert asked.ask("GET", path, x_hersey_token=None).status in (401, 403)
+
+
 def test_a_machine_s_file_names_only_what_was_dropped(asked: Asked) -> None:
     machine = (
         '[drivetrain]\nstiffness = "11 N/mm"\nmass = "11 kg"\nroll_radius = "15 mm"\nstick_speed = "3 mm/s"\n'

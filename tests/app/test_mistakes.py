@@ -466,6 +466,41 @@ def test_a_mapping_names_only_what_was_dropped(tmp_path: Path) -> None:
     assert 'no_load = "free.csv"' in one.mapping_file()
 
 
+def test_a_recipe_that_is_dropped_sets_the_options(tmp_path: Path) -> None:
+    """One of the app's own: its logs and mapping are here already, and no file that it names is opened."""
+    one = dropped(tmp_path, log())
+    text = 'logs = ["/etc/passwd"]\nmapping = "/etc/hersey.toml"\ntare = "standing"\nisothermal = true\n'
+    with pytest.raises(HerseyError, match=r"needs the mapping hersey\.toml: drop that file"):
+        toml(one, text)
+    assert one.options["tare"] == "none"
+    toml(one, "[torque]\ngear_ratio = 2\n")
+    toml(one, text)
+    assert (one.options["tare"], one.options["isothermal"]) == ("standing", True)
+    assert [file.name for file in one.logs] == ["log0.csv"]
+    assert "passwd" not in f"{one.command()}{one.mapping_file()}{view_of(one)}"
+    toml(one, 'logs = ["log0.csv"]\n')  # a recipe says all of its settings: these are the defaults
+    assert (one.options["tare"], one.options["isothermal"]) == ("none", False)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ('min_dwell = "3 s"\n[signs]\ntorque = -1\n', "sets min_dwell, signs, which the app cannot"),
+        ('no_load = "/etc/passwd"\n', "sets no_load, which the app cannot"),
+        ('load = "50 N"\ntare = "none"\n', "sets load, which the app cannot"),
+        ('tare = "halting"\n', "tare is 'halting': write none or standing"),
+        ("tare = 3\n", "tare is 3"),
+        ('logs = ["a.csv"]\ntara = "none"\n', "did you mean [tare]"),
+    ],
+)
+def test_a_recipe_that_the_page_cannot_hold_is_refused(text: str, said: str, tmp_path: Path) -> None:
+    one = dropped(tmp_path, log())
+    before = dict(one.options)
+    with pytest.raises(HerseyError, match=re.escape(said)):
+        toml(one, text)
+    assert one.options == before
+
+
 def test_a_file_of_other_tables_is_neither(tmp_path: Path) -> None:
     assert toml(Analysis(tmp_path), "[project]\n").state == "fault"
 

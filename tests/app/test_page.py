@@ -93,6 +93,7 @@ def test_from_drop_to_report(watched: Watched, started: Started) -> None:
     with page.expect_download() as mapping:
         page.click("text=Save mapping")
     assert 'channel = "Torque"' in mapping.value.path().read_text()
+    assert page.get_by_text("Save recipe").count() == 0  # before there is a report
     page.locator("#choose").focus()
     reached = []
     while "run" not in reached and len(reached) < 90:
@@ -116,6 +117,9 @@ def test_from_drop_to_report(watched: Watched, started: Started) -> None:
     assert report.evaluate("window.origin") == "null"
     with page.expect_download() as download:
         page.click("text=Save report")
+    with page.expect_download() as recipe:
+        page.click("text=Save recipe")
+    assert recipe.value.path().read_text() == 'logs = ["drive.csv"]\nmapping = "hersey.toml"\n'
     kept = started.folder / "hersey-reports" / "drive.html"
     assert download.value.path().read_bytes() == kept.read_bytes()
     assert "hersey-reports/drive.html" in page.inner_text("#analyses")

@@ -52,6 +52,7 @@ async def over(one: Analysis) -> None:
 async def drawn(request: dict[str, Any], said: Said) -> dict[str, Any]:
     said("drawing the page", 0.9)
     Path(request["report"]).write_text(f"report of {request['command']}")
+    Path(request["report"]).with_suffix(".toml").write_text('logs = ["drive.csv"]\n')
     return {"signal": "good", "words": "run", "warnings": 0}
 
 

@@ -37,9 +37,7 @@ def _demo() -> Analysis:
     """The example of the documentation, with its machine."""
     path = ROOT / "examples" / "machine.toml"
     machine = read_machine(path)
-    log = hersey.read(ROOT / "examples" / "bench.csv")
-    points = log.steady(tare="standing")
-    points = points if machine.rest is None else points.without(machine.rest)
+    points = hersey.Recipe(logs=(ROOT / "examples" / "bench.csv",), tare="standing").points(machine)
     command = "hersey report examples/bench.csv --machine examples/machine.toml --tare standing"
     return document_of(study(points, machine, machine_file=path), command=command)
 

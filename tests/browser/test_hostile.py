@@ -15,6 +15,7 @@ import hersey
 from hersey.charts.inspection import inspection_chart
 from hersey.charts.render import picture
 from hersey.document.analysis import Analysis
+from hersey.document.parts.log import RecipePart
 from hersey.machine.machine import read_machine
 from hersey.report.page import render
 from hersey.schema.warning import Warning
@@ -82,6 +83,7 @@ def hostile_document(document: Analysis) -> Analysis:
         "files": [changed],
         "warnings": hostile,
         "command": " ".join(NAMES),
+        "recipe": RecipePart(settings={}, toml="\n".join(NAMES)),
         "quality": document.quality.model_copy(update={"rejected": rejected}),
         "simulation": simulation.model_copy(update={"title": NAMES[3], "force_unit": NAMES[28]}),
         "film": film.model_copy(

@@ -138,6 +138,9 @@ def test_numbers_match_the_document(each: tuple[Opened, Analysis]) -> None:
     page.wait_for_selector("#summary", state="attached")
     assert page.text_content("#summary") == document.fit.summary
     assert page.text_content("#command") == document.command
+    recipes = [] if document.recipe is None else [document.recipe.toml]
+    assert page.locator("#recipe").all_text_contents() == recipes
+    assert page.locator("button", has_text="Copy recipe").count() == len(recipes)
     shown = page.locator("section").all_text_contents()
     c = document.fit.coefficients["c"].value
     assert f"{c:.2f}".replace("-", "\u2212") in " ".join(shown)

@@ -118,6 +118,9 @@ def test_amounts_of_a_recipe_take_units() -> None:
         ("load = ['2 N', '3 m']", UnitError, "recipe.toml: load: unit 'm' is not a unit of force"),
         ("signs = {torque = 'x'}", ParameterError, r"recipe\.toml: signs\.torque is 'x'"),
         ("logs = [3]", ParameterError, "recipe.toml: logs is 3: write the name of a file"),
+        ("logs = [['a.csv']]", ParameterError, r"recipe.toml: logs is \['a.csv'\]: write the name of a file"),
+        ("mapping = ['a.toml']", ParameterError, "recipe.toml: mapping is .*: write the name of a file"),
+        ("no_load = []", ParameterError, "recipe.toml: no_load is .*: write the name of a file"),
         ("mapping = ''", ParameterError, "recipe.toml: mapping is '': write the name of a file"),
     ],
 )
@@ -127,6 +130,33 @@ def test_a_mistake_in_a_saved_recipe_is_named(
     (tmp_path / "recipe.toml").write_text(text + "\n")
     with pytest.raises(error, match=says):
         Recipe.from_file(tmp_path / "recipe.toml")
+
+
+def test_dwells_keep_the_recipe_that_made_them(tmp_path: Path) -> None:
+    log = friction(tmp_path)
+    recipe = Recipe(logs=(log,))
+    assert recipe.points().recipe is recipe
+    rest = hersey.NoLoadTorque.stated(constant=0.001)
+    assert recipe.dwells(recipe.log()).without(rest).recipe is recipe
+    assert hersey.SteadyPoints.from_table(log, radius="25 mm").recipe is None  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("logs", "named"),
+    [
+        (("/a/x.csv", "/b/y.csv"), ("x.csv", "y.csv")),
+        (("/a/1/log.csv", "/a/2/log.csv"), ("1/log.csv", "2/log.csv")),
+        (("log.csv", "/a/log.csv"), ("log.csv", "a/log.csv")),
+        (("/a/log.csv", "/a/log.csv"), ("log.csv", "log.csv")),
+        ((), ()),
+    ],
+)
+def test_a_recipe_by_name_holds_no_more_of_a_path_than_it_must(
+    logs: tuple[str, ...], named: tuple[str, ...]
+) -> None:
+    recipe = Recipe(logs=logs, mapping=Path("/a/b/map.toml"), no_load=Path("/a/free.csv")).by_name()  # type: ignore[arg-type]
+    assert recipe.logs == tuple(map(Path, named))
+    assert (recipe.mapping, recipe.no_load) == (Path("map.toml"), Path("free.csv"))
 
 
 def test_no_load_is_said_once(tmp_path: Path) -> None:

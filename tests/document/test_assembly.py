@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import json
 import math
+import tomllib
+from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -29,6 +32,21 @@ def test_no_number_is_nan(document: Analysis) -> None:
             walk(item)
 
     walk(document.model_dump())
+
+
+def test_it_holds_the_recipe_of_its_dwells_and_no_path(bench_csv: Path) -> None:
+    recipe = hersey.Recipe(logs=(bench_csv,), tare="standing", no_load=bench_csv.parent / "free.csv")
+    points = replace(hersey.Recipe(logs=(bench_csv,), tare="standing").points(), recipe=recipe)
+    document = document_of(study(points))
+    assert document.recipe is not None
+    assert document.recipe.settings == {"logs": ["bench.csv"], "tare": "standing", "no_load": "free.csv"}
+    assert tomllib.loads(document.recipe.toml) == document.recipe.settings
+    assert load(document.model_dump_json()).recipe == document.recipe
+    assert str(bench_csv.parent) not in document.model_dump_json()
+
+
+def test_dwells_without_a_recipe_have_none(document: Analysis) -> None:
+    assert document.recipe is None
 
 
 def test_rows_add_up(document: Analysis) -> None:

@@ -159,6 +159,7 @@ WRITES = {
     "--figure": ("simulate --figure motion.svg", "motion.svg"),
     "--each": ("fit examples/bench.csv --tare standing --each fits.csv", "fits.csv"),
     "--save-mapping": ("inspect log.csv --save-mapping", "hersey.toml"),
+    "--save-recipe": ("inspect log.csv --save-recipe recipe.toml", "recipe.toml"),
     "sweep": ("sweep examples/scenario.toml --out sweep.parquet", "sweep.parquet"),
     "new": ("new log.csv --machine m.toml --mapping h.toml", "h.toml"),
 }

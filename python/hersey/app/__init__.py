@@ -13,6 +13,7 @@ checking  what stands before a run
 view      what the page shows of an analysis
 course    how long a run takes, once one like it has ended
 machine   what is wrong with the answers about the machine
+recipe    a recipe that was dropped
 workers   processes that read and compute, ended by whoever waits for them
 worker    what runs in such a process
 looking   what the page shows of a file

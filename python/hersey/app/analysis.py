@@ -14,6 +14,7 @@ from typing import Any
 from hersey.app.channels import Fault
 from hersey.app.course import Course
 from hersey.app.machine import answer_faults, form_text, mapping_of_form, mapping_said, named_logs
+from hersey.app.recipe import options_of_recipe
 from hersey.errors import HerseyError
 from hersey.files.text import read_text
 from hersey.log.channels import OTHER_ROLES, ROLES, called
@@ -280,12 +281,12 @@ class Analysis:
         return ""
 
     def take_file(self, file: Dropped) -> bool:
-        """Take a dropped TOML file as the machine or the mapping; return whether it is one.
+        """Take a dropped TOML file as the machine, a recipe or the mapping; return whether it is one.
 
         Raises
         ------
         HerseyError
-            If it is a mapping with a mistake, in the words of its reader.
+            If it is a mapping or a recipe with a mistake, in the words of its reader.
         """
         text = read_text(file.path, most=1_000_000)
         if re.search(r"^\s*\[\s*drivetrain\s*\]", text, re.M):
@@ -293,10 +294,17 @@ class Analysis:
             del self.files[file.id]
             file.path.unlink()
             return True
+        mappings = [other for other in self.files.values() if other.state == "mapping"]
+        options = options_of_recipe(file.path, mapped=bool(mappings))
+        if options is not None:
+            self.options |= options
+            del self.files[file.id]
+            file.path.unlink()
+            return True
         said = mapping_said(file.path)
         if said is None:
             return False
-        for older in [other for other in self.files.values() if other.state == "mapping"]:
+        for older in mappings:
             self.remove(older.id)
         file.state = "mapping"
         answers, self.mapping_others = said

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -29,7 +30,7 @@ def run(request: Mapping[str, Any], step: Step) -> dict[str, Any]:
     request
         ``logs`` (paths), ``mapping`` and ``machine`` (paths; the machine's may be None), ``isothermal``,
         ``drop_missing``, ``tare``, ``command``, ``report``, the path to write, and ``against``, an earlier
-        log to compare with, or None.
+        log to compare with, or None. The recipe is written beside the report, with the ending .toml.
 
     Raises
     ------
@@ -53,7 +54,10 @@ def run(request: Mapping[str, Any], step: Step) -> dict[str, Any]:
         found, command=request["command"], made=datetime.now(UTC).isoformat(timespec="seconds")
     )
     step("drawing the page", _DRAWING)
-    write_atomically(Path(request["report"]), render(document), overwrite=True)
+    report = Path(request["report"])
+    if document.recipe is not None:
+        write_atomically(report.with_suffix(".toml"), document.recipe.toml, overwrite=True)
+    write_atomically(report, render(document), overwrite=True)
     decision = found.decision
     return {"signal": decision.signal, "words": decision.instruction, "warnings": len(found.warnings)}
 
@@ -88,4 +92,7 @@ def _points(request: Mapping[str, Any], machine: Machine | None, step: Step) -> 
     step("reading", _READING)
     log = recipe.log(machine, progress=progress)
     step("finding dwells", _DWELLS)
-    return recipe.dwells(log, machine)
+    points = recipe.dwells(log, machine)
+    return replace(
+        points, recipe=replace(recipe.by_name(), logs=tuple(Path(path.name) for path in recipe.logs))
+    )

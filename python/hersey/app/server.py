@@ -77,6 +77,7 @@ def application(session: Session, *, token: str, port: int, door: Door | None = 
             Route(f"{one}/cancel", _safe(routes.cancel), methods=["POST"]),
             Route(f"{one}/hersey.toml", _safe(routes.mapping_file), methods=["GET"]),
             Route(f"{one}/machine.toml", _safe(routes.machine_file), methods=["GET"]),
+            Route(f"{one}/recipe.toml", _safe(routes.recipe_file), methods=["GET"]),
             Route(f"{one}/report.html", _safe(routes.report_file), methods=["GET"]),
         ],
         middleware=[Middleware(Guard, token=token, port=port, door=door), Middleware(Patience)],
@@ -221,6 +222,13 @@ class _Routes:
 
     async def machine_file(self, request: Request) -> Response:
         return PlainTextResponse(self._one(request).machine_file())
+
+    async def recipe_file(self, request: Request) -> Response:
+        path = self._session.shown.get(self._one(request).report)
+        recipe = None if path is None else path.with_suffix(".toml")
+        if recipe is None or not recipe.is_file():
+            return PlainTextResponse("This recipe is no longer here.", status_code=404)
+        return PlainTextResponse(recipe.read_text(encoding="utf-8"))
 
     async def report_file(self, request: Request) -> Response:
         return self._report(self._one(request).report)

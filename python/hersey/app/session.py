@@ -147,7 +147,8 @@ class Session:
     async def _take_toml(self, one: Analysis, file: Dropped) -> None:
         async with one.lock:
             wrong = (
-                "no machine's file and no mapping: it has no table [drivetrain], and none such as [torque]"
+                "this is no machine file (table [drivetrain]), no mapping (tables such as [torque]) and no "
+                "recipe (keys such as logs and tare)"
             )
             try:
                 taken = one.take_file(file)

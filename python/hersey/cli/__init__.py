@@ -11,6 +11,7 @@ belt          the options that describe a belt, its spring and its drag
 columns       columns of a small CSV: a drive's speed over time, a drag curve
 groups        an option with its help, and options that belong together as a data class
 options       options that several verbs share, and the reading of a log by them
+recipe_file   a recipe file as options
 quantities    shares, ranges, temperatures and speeds that options name as text
 warming       a machine that warms up: its heat and its drag
 workers       who works: this process, others of this machine, or a scheduler's

@@ -45,7 +45,7 @@ def entry(reading: Reading, log: Path, machine_file: Path | None, settings: str)
 
     machine = None if machine_file is None else read_machine(machine_file)
     with one_thread():
-        points = reading.points(reading.log([log], machine), machine)
+        points = reading.points([log], reading.log([log], machine), machine)
         scale = reading.temperature_scale
         return entry_of(points, log, temperature_scale=scale, settings=json.loads(settings))
 

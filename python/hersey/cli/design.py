@@ -50,7 +50,7 @@ def design(
 
     speed = range_of("speed", "--speeds", speeds)
     kelvin = range_of("temperature", "--temperatures", temperatures)
-    points = reading.points(reading.log(logs))
+    points = reading.points(logs, reading.log(logs))
     with working("fitting the candidates"):
         fitted = compare_models(points, bootstrap=0, cross_validate=False)
     found = designed(fitted, count=count, quantity=quantity, speeds=speed, temperatures=kelvin, seed=seed)

@@ -109,7 +109,7 @@ def _compared(logs: list[Path], reading: Reading, machine: Machine, kelvin: floa
     nip, lubricant = machine.contact, machine.lubricant
     assert nip is not None
     assert lubricant is not None
-    points = reading.points(reading.log(logs, machine), machine)
+    points = reading.points(logs, reading.log(logs, machine), machine)
     with working("fitting the surface"):
         surface = fit(points, temperature_scale=reading.temperature_scale)
     grip = machine.limits.roll_friction

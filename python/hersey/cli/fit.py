@@ -69,7 +69,7 @@ def _fit_one(logs: list[Path], reading: Reading, machine: Machine | None, as_jso
     from hersey.verdict.warnings import warnings_of
 
     with working("fitting the surface"):
-        points = reading.points(log, machine)
+        points = reading.points(logs, log, machine)
         surface = fitted(points, temperature_scale=reading.temperature_scale)
         curves = fit_curves(points, surface, None if machine is None else machine.mixed)
     if as_json:

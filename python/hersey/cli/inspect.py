@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import Annotated
 
 from hersey.cli.groups import grouped, option
-from hersey.cli.options import AsJson, Force, Logs, Reading, drawn
-from hersey.cli.outputs import may_draw, may_write, show
+from hersey.cli.options import AsJson, Force, Logs, Reading, SaveRecipe, drawn
+from hersey.cli.outputs import may_draw, may_save_recipe, may_write, show
 from hersey.cli.progress import working
 
 _SAVE_MAPPING = "Write a proposal for the channels as hersey.toml beside the log."
@@ -18,6 +18,7 @@ def inspect(
     logs: Logs,
     *,
     save_mapping: Annotated[bool, option(_SAVE_MAPPING, "--save-mapping")] = False,
+    save_recipe: SaveRecipe = None,
     figure: Annotated[Path | None, drawn("every channel")] = None,
     reading: Reading,
     as_json: AsJson = False,
@@ -35,6 +36,7 @@ def inspect(
 
         kept = logs[0].with_name(FILE_NAME)
     written = may_write(kept, force, inputs=inputs)
+    saved = may_save_recipe(save_recipe, force, inputs)
     drawing = may_draw(figure, force, inputs)
 
     from hersey.inspection import inspect as inspected
@@ -49,5 +51,7 @@ def inspect(
         if kept is not None:
             proposal = propose_mapping(logs[0], channels=recipe.channels, units=recipe.units)
             written.write(proposal)
+        if save_recipe is not None:
+            saved.write(recipe.toml(save_recipe.parent))
         drawing.draw(inspection, "drawing the channels", paths=logs)
-    show(inspection, as_json, mapping=kept, figure=figure)
+    show(inspection, as_json, mapping=kept, recipe=save_recipe, figure=figure)

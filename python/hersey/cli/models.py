@@ -45,7 +45,7 @@ def models(
         say(f"the machine's contact is no candidate: its file states no {stated}", file=sys.stderr)
     log = reading.log(logs, machine)
     with working("reducing to dwells"):
-        points = reading.points(log, machine)
+        points = reading.points(logs, log, machine)
     with bar("fitting", unit="candidates") as progress:
         compared = compare_models(points, contact=contact, bootstrap=bootstrap, seed=seed, progress=progress)
     try:

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import os
-import re
 import sys
-from collections.abc import Sequence
+from collections.abc import Sequence, Set
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 from hersey.cli.groups import argument, option
 from hersey.cli.progress import bar, working
+from hersey.cli.quantities import amounts_in
+from hersey.cli.recipe_file import ROLES, read_recipe
 from hersey.cli.terminal import say
 from hersey.errors import ParameterError
 
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
     from hersey.posterior.result import Posterior
 
 _LOGS = "Log file, several of one machine, or a pattern as 'logs/*.csv'."
-Logs = Annotated[list[Path], argument("LOG...", _LOGS)]
+Logs = Annotated[list[Path], argument("LOG", f"{_LOGS} Can be left out if --recipe names them.")]
 SomeLogs = Annotated[list[Path] | None, argument("[LOG]...", _LOGS)]
 _FIT = "Instead of a log: what hersey fit --json printed."
 FitFile = Annotated[Path | None, option(_FIT, "--fit", metavar="JSON")]
@@ -46,6 +47,10 @@ _KEEP_GOING = "Leave out logs that fail, say why at the end, with exit code 1."
 KeepGoing = Annotated[bool, option(_KEEP_GOING, "--keep-going")]
 
 
+_SAVE_RECIPE = "Write how the logs were read and reduced as a recipe, for --recipe."
+SaveRecipe = Annotated[Path | None, option(_SAVE_RECIPE, "--save-recipe", metavar="TOML")]
+
+
 def drawn(what: str) -> Any:
     """Return the option ``--figure`` of a command that draws something."""
     return option(f"Draw {what}: .html, .png, .svg or .pdf.", "--figure")
@@ -57,6 +62,9 @@ _MAPPING = "Roles, units and corrections of the channels.  [default: hersey.toml
 _DROP_MISSING = "Leave out rows in which a number is missing or impossible, also where they are many."
 _MEANS = "The file is a table of means: one row per dwell, no clock."
 _NO_LOAD = "Log of the drive without the film, read alike: what it takes is taken off the torque."
+
+
+_RECIPE = "Take logs and settings from a recipe; logs and options that are typed replace its own."
 
 
 @dataclass(frozen=True)
@@ -89,6 +97,20 @@ class Reading:
     rotation: Annotated[str, option("both, forward or reverse: dwells to use.")] = "both"
     temperature_scale: Annotated[str, option("degC or K: scale of T in B = a T^b w^c.")] = "degC"
     no_load: Annotated[str, option(_NO_LOAD, metavar="LOG")] = ""
+    recipe_file: Annotated[str, option(_RECIPE, "--recipe", metavar="TOML")] = ""
+
+    def completed(self, typed: Set[str]) -> tuple[Reading, list[Path]]:
+        """Return the same with what the recipe file states beside the options ``typed``, and its logs.
+
+        Raises
+        ------
+        HerseyError
+            If the file is no recipe.
+        """
+        if not self.recipe_file:
+            return self, []
+        logs, stated = read_recipe(Path(self.recipe_file))
+        return replace(self, **{name: value for name, value in stated.items() if name not in typed}), logs
 
     def anywhere(self) -> Reading:
         """Return the same, its files whole: workers may have been started in another folder."""
@@ -101,9 +123,9 @@ class Reading:
         from hersey.damping.recipe import Recipe
         from hersey.units import parse
 
-        amounts = {role: _amounts(getattr(self, role)) for role in ("load", "radius")}
-        names = {role: name for role in _ROLES if (name := getattr(self, role)) and not amounts.get(role)}
-        units = {role: unit for role in _ROLES if (unit := getattr(self, f"{role}_unit", ""))}
+        amounts = {role: amounts_in(getattr(self, role)) for role in ("load", "radius")}
+        names = {role: name for role in ROLES if (name := getattr(self, role)) and not amounts.get(role)}
+        units = {role: unit for role in ROLES if (unit := getattr(self, f"{role}_unit", ""))}
         signs = {role: sign for role in ("torque", "speed") if (sign := getattr(self, f"{role}_sign")) != 1}
         given = {name: getattr(self, name) or None for name in ("mapping", "every", "no_load")}
         same: dict[str, Any] = {name: getattr(self, name) for name in _AS_GIVEN}
@@ -112,8 +134,8 @@ class Reading:
         return Recipe(logs=tuple(logs), **(own | amounts | given | same))
 
     def inputs(self, *given: Path | list[Path] | None) -> list[Path]:
-        """Return the files that a command reads: those given, and the mapping; none may be an output."""
-        named = [Path(path) for path in (self.mapping, self.no_load) if path]
+        """Return the files that a command reads: those given and those of options; none may be an output."""
+        named = [Path(path) for path in (self.recipe_file, self.mapping, self.no_load) if path]
         for paths in given:
             named += [paths] if isinstance(paths, Path) else paths or []
         return named
@@ -144,9 +166,11 @@ class Reading:
             raise ParameterError(f"{path} is a table of means: a trace needs time, torque and speed")
         return read
 
-    def points(self, log: TorqueLog | MeansTable, machine: Machine | None = None) -> SteadyPoints:
-        """Reduce the log to dwells; say what a log of the drive without the film shows."""
-        points = self.recipe().dwells(log, machine)
+    def points(
+        self, paths: list[Path], log: TorqueLog | MeansTable, machine: Machine | None = None
+    ) -> SteadyPoints:
+        """Reduce the log of these files to dwells; say what a log of the drive without the film shows."""
+        points = self.recipe(paths).dwells(log, machine)
         if self.no_load and points.rest is not None:
             _warn(points.rest.headline(), *(f"- {warning}" for warning in points.rest.warnings))
         return points
@@ -156,7 +180,7 @@ class Reading:
         from hersey.damping.recipe import naming_logs
 
         with naming_logs(paths):
-            return self.points(self.log(paths, machine), machine)
+            return self.points(paths, self.log(paths, machine), machine)
 
     def surface_and_posterior(
         self,
@@ -174,7 +198,7 @@ class Reading:
         from hersey.posterior.sampling import posterior
 
         recorded = [self.trace(path, machine) for path in traces or []]
-        points = self.points(self.log(paths, machine), machine)
+        points = self.points(paths, self.log(paths, machine), machine)
         surface = fit(points, temperature_scale=self.temperature_scale)
         threads = os.cpu_count() or 1
         with working("drawing the drives that the log allows"):
@@ -188,30 +212,22 @@ class Reading:
         """Read a finished fit, or fit the log of a machine."""
         from hersey.damping.fit import fit
 
-        if (fit_file is None) == (not paths):
-            raise ParameterError("give either a LOG or --fit with what 'hersey fit LOG --json' printed")
         if fit_file is not None and self != Reading():
             raise ParameterError(
                 "--fit holds a finished fit: leave out the options that say how to read a log"
             )
+        if (fit_file is None) == (not paths):
+            raise ParameterError("give either a LOG or --fit with what 'hersey fit LOG --json' printed")
         if fit_file is not None:
             return finished_fit(fit_file, machine)
-        log = self.log(paths or [], machine)
+        logs = paths or []
+        log = self.log(logs, machine)
         with working("fitting the surface"):
-            return fit(self.points(log, machine), temperature_scale=self.temperature_scale)
+            return fit(self.points(logs, log, machine), temperature_scale=self.temperature_scale)
 
 
 _AS_GIVEN = ("isothermal", "drop_missing", "means", "tare", "rotation", "temperature_scale")
 _NOT_OF_FILE = "not those of the machine's file"
-_ROLES = ("time", "torque", "speed", "temperature", "load", "radius", "run")
-
-
-def _amounts(text: str) -> str | list[str] | None:
-    """A text that begins like an amount, several between commas, or None for none or a column's name."""
-    parts = text.split(",")
-    if not all(re.match(r"\s*[-+]?\.?[0-9]", part) for part in parts):
-        return None
-    return parts if len(parts) > 1 else text
 
 
 def finished_fit(file: Path, machine: Machine | None = None) -> DampingSurface:

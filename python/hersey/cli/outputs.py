@@ -157,6 +157,11 @@ def may_draw(
     return may_write(path, force, inputs, flag=flag, ends=PICTURES)
 
 
+def may_save_recipe(path: Path | None, force: bool, inputs: Sequence[Path]) -> Output:
+    """Refuse early a recipe that cannot be written."""
+    return may_write(path, force, inputs, flag="--save-recipe", ends=[".toml"])
+
+
 def may_write_table_and_figure(
     table: Path | None, figure: Path | None, force: bool, inputs: Sequence[Path]
 ) -> tuple[Output, Output]:

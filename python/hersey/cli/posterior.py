@@ -45,7 +45,7 @@ def posterior(
     machine = read_machine(machine_file)
     log = reading.log(logs, machine)
     traces = [reading.trace(path, machine) for path in trace or []]
-    points = reading.points(log, machine)
+    points = reading.points(logs, log, machine)
     with bar("drawing", "%") as progress:
         found = drawn(
             points,

@@ -11,6 +11,14 @@ if TYPE_CHECKING:
     from hersey.machine.machine import Machine
 
 
+def amounts_in(text: str) -> str | list[str] | None:
+    """Return a text that begins like an amount, several between commas as a list, or None for any other."""
+    parts = text.split(",")
+    if not all(re.match(r"\s*[-+]?\.?[0-9]", part) for part in parts):
+        return None
+    return parts if len(parts) > 1 else text
+
+
 def share(flag: str, text: str) -> float:
     """Return the share that an option such as ``'2 %'`` names."""
     match = re.fullmatch(r"\s*([0-9]+(?:\.[0-9]*)?)\s*%\s*", text[:60])

@@ -8,8 +8,16 @@ from typing import TYPE_CHECKING, Annotated
 
 from hersey.cli.groups import grouped, option
 from hersey.cli.loading import loading
-from hersey.cli.options import AsJson, Figures, Force, Logs, Reading, Traces
-from hersey.cli.outputs import PAGES, command, may_write, may_write_folder, print_document
+from hersey.cli.options import AsJson, Figures, Force, Logs, Reading, SaveRecipe, Traces
+from hersey.cli.outputs import (
+    PAGES,
+    command,
+    may_save_recipe,
+    may_write,
+    may_write_folder,
+    print_document,
+    say_written,
+)
 from hersey.cli.progress import steps, working
 from hersey.cli.terminal import say
 
@@ -29,6 +37,7 @@ def report(
     machine_file: Annotated[Path | None, option(_MACHINE, "--machine", metavar="TOML")] = None,
     against: Annotated[list[Path] | None, option(_AGAINST, metavar="LOG")] = None,
     trace: Traces = None,
+    save_recipe: SaveRecipe = None,
     reading: Reading,
     as_json: AsJson = False,
     force: Force = False,
@@ -40,7 +49,9 @@ def report(
     With --json the analysis document goes to stdout, and a page is written only if --out is given.
     """
     page = out or (None if as_json else Path("report.html"))
-    written = may_write(page, force, reading.inputs(logs, machine_file, against, trace), ends=PAGES)
+    inputs = reading.inputs(logs, machine_file, against, trace)
+    written = may_write(page, force, inputs, ends=PAGES)
+    kept = may_save_recipe(save_recipe, force, inputs)
     may_write_folder(figures, force)
 
     with loading():
@@ -52,6 +63,8 @@ def report(
     if page is not None:
         with working("drawing the page"):
             written.write(render(document))
+    if save_recipe is not None:
+        kept.write(reading.recipe(logs).toml(save_recipe.parent))
     if figures is not None:
         from hersey.charts.analysis import write_figures
 
@@ -61,7 +74,7 @@ def report(
         print_document(document)
         return
     say(*found.summary().splitlines())
-    say(f"report: {page}")
+    say_written(report=page, recipe=save_recipe)
 
 
 def _studied(
@@ -81,7 +94,7 @@ def _studied(
     traces = [reading.trace(path, machine) for path in trace or []]
     with steps() as step:
         step("finding the dwells")
-        points = reading.points(log, machine)
+        points = reading.points(logs, log, machine)
         return study(
             points,
             machine,

@@ -61,11 +61,18 @@ class _Path(Quantity):
 
     def checked(self, given: Any, info: ValidationInfo[Any]) -> Any:
         """Return the path."""
-        if isinstance(given, list | tuple):
-            return tuple(self.checked(each, info) for each in given)
         if not isinstance(given, str) or not given.strip():
             raise ParameterError(f"is {given!r}: write the name of a file")
         return info.context.path.parent / given
+
+
+class _Paths(_Path):
+    """Files in a list, or one alone."""
+
+    def checked(self, given: Any, info: ValidationInfo[Any]) -> Any:
+        """Return the paths."""
+        named = given if isinstance(given, list | tuple) else [given]
+        return tuple(super(_Paths, self).checked(each, info) for each in named)
 
 
 @dataclass(frozen=True)
@@ -96,7 +103,7 @@ class Recipe:
         Log of the drive without the film, read in the same way: its torque is subtracted.
     """
 
-    logs: Annotated[tuple[Path, ...], _Path(None)] = ()
+    logs: Annotated[tuple[Path, ...], _Paths(None)] = ()
     mapping: Annotated[Path | None, _Path(None)] = None
     channels: dict[str, str] = field(default_factory=dict)
     units: dict[str, str] = field(default_factory=dict)
@@ -117,7 +124,7 @@ class Recipe:
         """Bring amounts to SI and names of files to paths."""
         logs = (self.logs,) if isinstance(self.logs, str | Path) else self.logs
         given: dict[str, Any] = {"logs": tuple(Path(path) for path in logs)}
-        for name in ("mapping", "no_load"):
+        for name in _FILES:
             path = getattr(self, name)
             given[name] = None if path is None else Path(path)
         for name, kind in _KINDS.items():
@@ -149,7 +156,7 @@ class Recipe:
     def dwells(self, log: TorqueLog | MeansTable, drive: KnownDrive | None = None) -> SteadyPoints:
         """Reduce a log to dwells, or take those that a table of means states; torque is that of the film.
 
-        What the drive takes besides is that of ``no_load``, or that of the drive.
+        What the drive takes besides is that of ``no_load``, or that of the drive. The dwells keep the recipe.
 
         Raises
         ------
@@ -157,7 +164,7 @@ class Recipe:
             If there is no dwell, or a setting is wrong or given twice.
         """
         rest = self.rest(None if drive is None else drive.rest)
-        points = self._dwells(log)
+        points = replace(self._dwells(log), recipe=self)
         return points if rest is None else points.without(rest)
 
     def points(self, drive: KnownDrive | None = None, *, progress: Progress | None = None) -> SteadyPoints:
@@ -229,7 +236,21 @@ class Recipe:
         """
         return cls(**vars(read_tables(path, _RecipeFile)))
 
-    def toml(self, folder: Path) -> str:
+    def by_name(self) -> Recipe:
+        """Return the same with each file by its name alone, to be used where all files lie in one folder.
+
+        Logs of one name in several folders keep as much of their folders as tells them apart.
+
+        Examples
+        --------
+        >>> recipe = Recipe(logs=("/data/1/log.csv", "/data/2/log.csv"), mapping="/etc/hersey.toml")
+        >>> recipe.by_name().to_dict()
+        {'logs': ['1/log.csv', '2/log.csv'], 'mapping': 'hersey.toml'}
+        """
+        mapping, no_load = (path and Path(path.name) for path in (self.mapping, self.no_load))
+        return replace(self, logs=_distinct(self.logs), mapping=mapping, no_load=no_load)
+
+    def toml(self, folder: Path = Path()) -> str:
         """Return the recipe as TOML; files are named as they lie from ``folder``."""
         plain, tables = [], []
         for name, value in self.stated().items():
@@ -307,10 +328,22 @@ class _RecipeFile(Table, Recipe):
     """A recipe as its file holds it."""
 
 
+#: Fields that name one file each.
+_FILES = ("mapping", "no_load")
 #: Kind of unit of each amount.
 _KINDS = {"every": "time", "radius": "length", "load": "force", "min_dwell": "time"}
 #: Unit in which an amount is written.
 _UNITS = {"time": "s", "length": "m", "force": "N"}
+
+
+def _distinct(paths: Sequence[Path]) -> tuple[Path, ...]:
+    """The shortest ends of paths that differ, or their names where none do."""
+    inside = [path.relative_to(path.anchor) for path in paths]
+    for depth in range(1, max((len(path.parts) for path in inside), default=0) + 1):
+        ends = [Path(*path.parts[-depth:]) for path in inside]
+        if len(set(ends)) == len(ends):
+            return tuple(ends)
+    return tuple(Path(path.name) for path in inside)
 
 
 def _without(role: str, by_role: Mapping[str, str]) -> dict[str, str]:

@@ -12,7 +12,7 @@ from pydantic import Field
 from hersey.damping.compare import LogComparison
 from hersey.decision.behaviour import StickSpeeds
 from hersey.document.parts.fit import FitPart
-from hersey.document.parts.log import InputFile, MachineFilePart, Point, Quality, Timeline
+from hersey.document.parts.log import InputFile, MachineFilePart, Point, Quality, RecipePart, Timeline
 from hersey.document.parts.models import ModelsPart
 from hersey.document.parts.posterior import PosteriorPart
 from hersey.schema.part import SCHEMA_VERSION, Part
@@ -36,6 +36,9 @@ class Analysis(Part):
     title: str
     command: str
     made: str | None = Field(default=None, description="when, UTC, ISO 8601; null where nobody said so")
+    recipe: RecipePart | None = Field(
+        default=None, description="null for dwells that no `hersey.Recipe` made"
+    )
     machine: MachineFilePart | None = None
     synthetic: bool = Field(default=False, description="a log says of itself that it is no measurement")
     units: dict[str, str] = Field(

@@ -24,6 +24,7 @@ from hersey.document.parts.log import (
     MachineFilePart,
     Point,
     Quality,
+    RecipePart,
     RejectedStretch,
     Series,
     Timeline,
@@ -61,6 +62,7 @@ def document_of(study: Study, *, command: str = "", made: str | None = None) -> 
         title=log.title,
         command=command,
         made=made,
+        recipe=_recipe(points),
         machine=None if study.machine_file is None else _machine_file(study.machine_file),
         synthetic=any(file.synthetic for file in log.files),
         units=study.units,
@@ -93,6 +95,14 @@ def _of_the_machine(found: Behaviour | None) -> dict[str, Any]:
         "posterior": PosteriorPart.model_validate(found.posterior.to_dict()),
         "stick_speed_sweep": found.stick_speeds,
     }
+
+
+def _recipe(points: SteadyPoints) -> RecipePart | None:
+    """The recipe of the dwells; no path of this machine is kept."""
+    if points.recipe is None:
+        return None
+    recipe = points.recipe.by_name()
+    return RecipePart(settings=recipe.to_dict(), toml=recipe.toml())
 
 
 def _machine_file(path: Path) -> MachineFilePart:

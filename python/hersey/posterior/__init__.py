@@ -14,22 +14,11 @@ typical     the draw whose motion is shown, as a drivetrain and a table of drag
 ==========  ======================================================================
 """
 
-import sys
-from types import ModuleType
-from typing import Any
-
 from hersey.posterior.evidence import BreakAway, Start, StickSlip
 from hersey.posterior.result import PointProbability, Posterior
 from hersey.posterior.sampling import posterior
+from hersey.schema.callable_room import make_callable
 
 __all__ = ["BreakAway", "PointProbability", "Posterior", "Start", "StickSlip", "posterior"]
 
-
-class _Room(ModuleType):
-    """Make ``hersey.posterior(points, machine)`` work once the room of that name is imported."""
-
-    def __call__(self, *given: Any, **named: Any) -> Posterior:
-        return posterior(*given, **named)
-
-
-sys.modules[__name__].__class__ = _Room
+make_callable(__name__, "hersey.posterior.sampling", "posterior")

@@ -7,18 +7,6 @@ static     HTML, CSS and scripts
 =========  ========================================
 """
 
-import sys
-from types import ModuleType
-from typing import Any
+from hersey.schema.callable_room import make_callable
 
-
-class _Room(ModuleType):
-    """Make ``hersey.report(study, "out.html")`` work once the room of that name is imported."""
-
-    def __call__(self, *given: Any, **named: Any) -> None:
-        from hersey.report.page import report
-
-        report(*given, **named)
-
-
-sys.modules[__name__].__class__ = _Room
+make_callable(__name__, "hersey.report.page", "report")

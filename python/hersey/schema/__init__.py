@@ -1,8 +1,9 @@
 """What results and the document are made of: parts, records and their schema, and warnings.
 
-=======  =====================================================================
-part     `Part`, a frozen piece of the document that refuses what it does not know
-record   `Record`, a data class that describes itself, and the part that holds it
-warning  `Warning`, what is to be known of a result: kind, numbers, where, how grave, words
-=======  =====================================================================
+=============  =====================================================================
+part           `Part`, a frozen piece of the document that refuses what it does not know
+record         `Record`, a data class that describes itself, and the part that holds it
+warning        `Warning`, what is to be known of a result: kind, numbers, where, how grave, words
+callable_room  a package that can be called like the verb whose name it has
+=============  =====================================================================
 """

@@ -12,20 +12,9 @@ thinning         fewer samples to show, the extremes among them
 ===============  ====================================================================
 """
 
-import sys
-from types import ModuleType
-from typing import Any
-
+from hersey.schema.callable_room import make_callable
 from hersey.study.log_and_machine import Study, study
 
 __all__ = ["Study", "study"]
 
-
-class _Room(ModuleType):
-    """Make ``hersey.study(points, machine)`` work once the room of that name is imported."""
-
-    def __call__(self, *given: Any, **named: Any) -> Study:
-        return study(*given, **named)
-
-
-sys.modules[__name__].__class__ = _Room
+make_callable(__name__, "hersey.study.log_and_machine", "study")

@@ -123,6 +123,7 @@ function showBar() {
     make("span", { class: "right" },
       view.report ? make("a", { class: "button", href: `report/${view.report}`, target: "_blank", rel: "noopener", text: "Open report" }) : null,
       view.report ? button("Save report", () => save("report.html", `${stem}.html`, "text/html"), { "data-control": "save-report" }) : null,
+      view.report ? button("Save recipe", () => save("recipe.toml", "recipe.toml", "application/toml"), { "data-control": "save-recipe" }) : null,
       view.log ? button("Save mapping", () => save("hersey.toml", "hersey.toml", "application/toml"), { "data-control": "save-mapping" }) : null,
       view.machine.blank ? null : button("Save TOML", () => save("machine.toml", "machine.toml", "application/toml"), { "data-control": "save-toml" })));
 }

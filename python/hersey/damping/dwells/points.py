@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 import polars as pl
@@ -25,6 +25,19 @@ from hersey.units import rpm
 SAME_LOAD = 0.03
 #: Standard errors by which a torque must exceed the no-load torque, so that a film is left.
 _BEYOND = 2.0
+
+
+class HowRead(Protocol):
+    """How logs became dwells, for whoever shows it: `hersey.Recipe` is one."""
+
+    def by_name(self) -> HowRead:
+        """Return the same with files by their names, without folders."""
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return what is not the default, as JSON."""
+
+    def toml(self) -> str:
+        """Return the text of its file."""
 
 
 @dataclass(frozen=True)
@@ -89,6 +102,8 @@ class SteadyPoints(Result):
         What is left of it in the torque of each dwell at the most, N m, shape (points, 0 or 1).
     temperature_rates
         How fast the reading of temperature changes over each dwell, K/s, 0 within its noise, shape (points,).
+    recipe
+        The recipe that made the dwells; None if they were reduced without one.
     """
 
     table: pl.DataFrame
@@ -104,6 +119,7 @@ class SteadyPoints(Result):
     relaxation: Relaxation | None = None
     relaxation_errors: FloatArray = field(default_factory=lambda: np.empty((0, 0)))
     temperature_rates: FloatArray = field(default_factory=lambda: np.empty(0))
+    recipe: HowRead | None = None
 
     def __post_init__(self) -> None:
         """Give what has no tare, no rest taken off or no relaxation, no disturbances of it."""

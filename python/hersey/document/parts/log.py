@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Any, Literal
 
 from pydantic import Field
 
@@ -17,6 +17,13 @@ class MachineFilePart(Part):
 
     name: str
     sha256: str
+
+
+class RecipePart(Part):
+    """How the logs became dwells, as far as it is not the default; files by name."""
+
+    settings: dict[str, Any] = Field(description="fields of `hersey.Recipe`, in SI")
+    toml: str = Field(description="the same as a file, which `hersey.Recipe.from_file` reads")
 
 
 class InputFile(Part):

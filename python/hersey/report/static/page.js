@@ -29,6 +29,10 @@ function reproduce(parent) {
   const seed = data.decision?.points.find((p) => p.plan)?.plan.seed;
   const part = section(parent, "reproduce", "Reproduce", `One command, ${plural(inputs.length, "file")}${seed === undefined ? "" : `, one seed (${seed})`}.`);
   if (data.command) add(part, "pre", data.command).id = "command";
+  if (data.recipe) {
+    add(part, "p", "Recipe of the dwells. Save it beside the files as recipe.toml and use it with hersey report --recipe recipe.toml.", "note hint");
+    add(part, "pre", data.recipe.toml).id = "recipe";
+  }
   const all = inputs.length > 8 ? fold(part, `${inputs.length} files and their hashes`) : part;
   table(all, ["File", "sha256"], inputs.map((f) => {
     const hash = document.createElement("span");
@@ -40,6 +44,10 @@ function reproduce(parent) {
   add(part, "p", `hersey ${data.hersey_version}, document schema ${data.schema_version}, intervals at 95 %.`, "note");
   const foot = add(part, "div", "", "foot");
   if (data.command) button(foot, "Copy command", (from) => copy(data.command, from));
+  if (data.recipe) {
+    button(foot, "Copy recipe", (from) => copy(data.recipe.toml, from));
+    button(foot, "Save recipe (TOML)", () => save("recipe.toml", data.recipe.toml, "text/plain"));
+  }
   button(foot, "Save document (JSON)", () => save("hersey.json", document.getElementById("document").textContent, "application/json"));
 }
 

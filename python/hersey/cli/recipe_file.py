@@ -1,0 +1,68 @@
+"""A recipe file as options of a command: each setting as it would be typed."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from hersey.cli.quantities import amounts_in
+from hersey.errors import ParameterError
+
+if TYPE_CHECKING:
+    from hersey.damping.recipe import Recipe
+
+#: Roles that have an option for the column, for its unit and for the sign.
+ROLES = ("time", "torque", "speed", "temperature", "load", "radius", "run")
+_WITH_UNIT, _WITH_SIGN = ROLES[:-1], ("torque", "speed")
+#: Tables of a recipe by role: the ending of the option, and the roles that have it.
+_TABLES = {"channels": ("", ROLES), "units": ("_unit", _WITH_UNIT), "signs": ("_sign", _WITH_SIGN)}
+#: Options that are an amount, and the units in which a recipe holds it.
+_UNITS = {"load": "N", "radius": "m", "every": "s", "min_dwell": "s"}
+
+
+def read_recipe(path: Path) -> tuple[list[Path], dict[str, Any]]:
+    """Return the logs that a recipe file names, and its settings by the names of the options.
+
+    Raises
+    ------
+    HerseyError
+        If the file is no recipe, or states what no option can.
+    """
+    from hersey.damping.recipe import Recipe
+
+    recipe = Recipe.from_file(path)
+    return list(recipe.logs), _options(recipe, path.name)
+
+
+def _options(recipe: Recipe, file: str) -> dict[str, Any]:
+    """What a recipe states, as the options take it."""
+    stated = recipe.stated()
+    stated.pop("logs", None)
+    _refuse_unclear(stated, file)
+    out: dict[str, Any] = {}
+    for table, (ending, roles) in _TABLES.items():
+        for role, value in stated.pop(table, {}).items():
+            if role not in roles:
+                raise ParameterError(f"{file}: {table}.{role}: use one of {', '.join(roles)}")
+            out[role + ending] = value
+    return out | {name: _typed(name, value) for name, value in stated.items()}
+
+
+def _refuse_unclear(stated: dict[str, Any], file: str) -> None:
+    """Refuse a column where an amount is stated too, or that would be taken for one."""
+    for role in ("load", "radius"):
+        column = stated.get("channels", {}).get(role, "")
+        if column and role in stated:
+            raise ParameterError(f"{file}: {role} and channels.{role} both state the {role}: delete one")
+        if amounts_in(column):
+            raise ParameterError(
+                f"{file}: channels.{role} is '{column}', which --{role} reads as an amount: rename the column"
+            )
+
+
+def _typed(name: str, value: Any) -> Any:
+    """A setting as its option takes it."""
+    if name in _UNITS:
+        values = value if isinstance(value, tuple) else (value,)
+        return ", ".join(f"{each!r} {_UNITS[name]}" for each in values)
+    return str(value) if isinstance(value, Path) else value
