@@ -375,23 +375,28 @@ def test_a_doubtful_unit_is_told_of_logs_and_of_tables_of_means(tmp_path: Path) 
     rows = [f"{0.05 * i:.2f},{1 + i / 1e4},{60 + 10 * (i // 400)},{150 + i / 1e3}" for i in range(2000)]
     log, heading = tmp_path / "log.csv", "time [s],torque [N*m],speed [rpm],temp"
     log.write_text("\n".join([f"{heading} [degC]", *rows[:900], "45,1,80,900", *rows[901:]]))
-    ordered, one_way = inspect(log).cautions[:2]
-    assert one_way.startswith("Speeds were approached from below only")
-    assert ordered.startswith("Speed and time go together")
+    ordered, one_way = inspect(log).warnings[:2]
+    assert one_way.sentence.startswith("Speeds were approached from below only")
+    assert ordered.sentence.startswith("Speed and time go together")
     kelvin = [f"{row.rsplit(',', 1)[0]},{float(row.rsplit(',', 1)[1]) + 273.15:.3f}" for row in rows]
     log.write_text("\n".join([f"{heading} [degC]", *kelvin]))
-    told, *others = inspect(log).cautions
+    unit, *others = inspect(log).warnings
     assert others == [ordered, one_way]
-    assert told.startswith("Temperature reaches 425 degC")
-    assert f"\n! {told}\n" in inspect(log).summary()
-    assert inspect(log, units={"temperature": "K"}).cautions == (ordered, one_way)
+    assert unit.kind == "unit of temperature doubtful"
+    assert unit.values["temperature"] == pytest.approx(425.13 + 273.15, abs=0.02)
+    assert unit.sentence.startswith("Temperature reaches 425 degC")
+    assert f"\n! {unit.sentence}\n" in inspect(log).summary()
+    assert inspect(log, units={"temperature": "K"}).warnings == (ordered, one_way)
     log.write_text("\n".join(["time [s],torque [N*m],speed [rpm]", *(f"{50 * i},1,{i}" for i in range(200))]))
     seen = inspect(log, isothermal=True)
     assert seen.support is not None
     assert seen.support.dwells == 0
-    assert seen.cautions[0].startswith("Rows come every 50 s")
+    assert (seen.warnings[0].kind, seen.warnings[0].values["interval"]) == ("unit of time doubtful", 50)
+    assert seen.warnings[0].sentence == (
+        "Rows come every 50 s, as the clock is read: if it counts milliseconds, use units={'time': 'ms'}."
+    )
     log.write_text("speed [rpm],torque [N*m],temp [degC]\n10,1,420\n20,1.1,421\n30,1.3,422\n")
-    assert inspect(log, means=True).cautions[0].startswith("Temperature reaches 422 degC")
+    assert inspect(log, means=True).warnings[0].sentence.startswith("Temperature reaches 422 degC")
 
 
 @pytest.mark.parametrize(("rows", "found"), [(2, ["drop-outs"]), (5, ["drop-outs"]), (6, []), (12, [])])

@@ -46,7 +46,7 @@ def look(path: Path) -> dict[str, Any]:
         "means": means,
         "rows": report.rows,
         "cut_off": log.cut_off,
-        "notes": list(log.notes),
+        "warnings": [each.to_dict() for each in log.warnings],
         "clocks": [_clock(clock) for clock in report.clocks],
         "own_clock": any(channel.clock is not None for channel in log.channels),
         "channels": [

@@ -16,6 +16,7 @@ from hersey.inspection.raw import Lacking, RawChannel, RawLog, roles_of
 from hersey.log.channels import OTHER_ROLES, ChannelChoice, Stated, is_of_kind
 from hersey.log.torque_log import NO_CLOCK
 from hersey.result import Record
+from hersey.schema.warning import Warning
 from hersey.units import conversion
 
 #: A step of a role's channel matters if it is this share of its small readings (their lowest tenth).
@@ -53,7 +54,7 @@ class FileReport(Record):
     clocks: tuple[Clock, ...]
     channels: tuple[ChannelReport, ...]
     lacking: Mapping[str, Lacking]
-    notes: tuple[str, ...]
+    warnings: tuple[Warning, ...]
     cut_off: bool
 
     @property
@@ -76,7 +77,7 @@ def file_report(log: RawLog, choices: dict[str, ChannelChoice], stated: Stated) 
         findings = _findings(channel, shown, role) if role != "time" else ()
         channels.append(ChannelReport(column.path, column.unit, role, clock, shown, findings))
     rows = max((channel.values.size for channel in log.channels), default=0)
-    return FileReport(log.name, log.format, rows, clocks, tuple(channels), without, log.notes, log.cut_off)
+    return FileReport(log.name, log.format, rows, clocks, tuple(channels), without, log.warnings, log.cut_off)
 
 
 def _clocks(
@@ -183,7 +184,7 @@ def file_lines(file: FileReport, *, table: bool) -> list[str]:
         has_them = "--json has them" if way_in() == "terminal" else "files has them"
         lines.append(f"  - and {len(findings) - _SHOWN} more ({has_them})")
     lines += [f"  ! {role}: {why}" for role, why in file.without.items()]
-    lines += [f"  - {note}" for note in file.notes]
+    lines += [f"  - {warning}" for warning in file.warnings]
     return lines
 
 

@@ -84,7 +84,7 @@ def support_of_points(points: SteadyPoints, *, temperature_scale: str = "degC") 
     ):
         can += says[0]
         cannot += says[1]
-    cannot += [note for note in points.notes if isinstance(log, MeansTable)]
+    cannot += [str(each) for each in points.notes if isinstance(log, MeansTable)]
     rejected: Counter[Kind] = Counter()
     for stretch in points.rejected:
         rejected[stretch.why.kind] += stretch.rows

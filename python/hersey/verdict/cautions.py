@@ -36,13 +36,13 @@ def cautions(points: SteadyPoints, surface: DampingSurface | None) -> list[str]:
             out.append(f"{file.name} is synthetic, by its own words: no measurement.")
         if file.cut_off:
             out.append(f"{file.name}: the file ends before its time.")
-        out += [f"{file.name}: {note}." for note in file.notes]
+        out += [each.within(file.name).sentence for each in file.warnings]
         if run is not None and run.gaps():
             share = 1.0 - run.time.size * run.sampling_interval / max(float(run.time[-1] - run.time[0]), 1e-9)
             out.append(
                 f"{file.name}: rows are missing at {run.gaps()} places ({max(share, 0):.1%} of the time)."
             )
-    out += doubtful_units(log)
+    out += [each.sentence for each in doubtful_units(log)]
     out += held_values(log)
     out += doubtful_tare(points)
     out += points.notes

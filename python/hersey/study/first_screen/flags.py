@@ -183,7 +183,7 @@ def _plans(found: Behaviour) -> list[FlagPart]:
 def _of_log(points: SteadyPoints, surface: DampingSurface) -> list[FlagPart]:
     """What is doubtful in the log itself: a unit or a zero shifts every number."""
     titled = {
-        "A unit is doubtful.": doubtful_units(points.log),
+        "A unit is doubtful.": [each.sentence for each in doubtful_units(points.log)],
         "The zero is doubtful.": doubtful_tare(points),
     }
     out = [
