@@ -166,8 +166,8 @@ def test_missing_values_shift_no_row() -> None:
 def test_clock_faults() -> None:
     random = np.random.default_rng(14)
     even = np.arange(0.0, 200.0, 0.01)
-    assert clock_of("t", even).findings() == []
-    assert clock_of("t", 1.5e9 + even).findings() == []
+    assert clock_of("t", even).warnings == ()
+    assert clock_of("t", 1.5e9 + even).warnings == ()
     holes = np.delete(even, [*range(500, 520), 3000, *range(9000, 9003)])
     holed = clock_of("t", holes)
     assert (holed.gaps, round(holed.lost, 6), round(holed.longest_gap, 6)) == (3, 0.24, 0.21)
@@ -175,7 +175,9 @@ def test_clock_faults() -> None:
     back[7000:] -= 3.0
     stepped = clock_of("t", back)
     assert (stepped.back, stepped.first_back) == (1, 7000)
-    assert "time steps back once, first at row 7001" in stepped.findings()[0]
+    back = stepped.warnings[0]
+    assert (back.kind, back.values) == ("time steps back", {"times": 1, "row": 7001})
+    assert str(back) == "time steps back once, first at row 7001: split or sort the file there"
     assert clock_of("t", even + 0.002 * random.uniform(-1, 1, even.size)).is_uneven
     coarse = clock_of("t", np.floor(np.arange(0.0, 60.0, 0.0117) / 0.01) * 0.01)
     assert not coarse.is_uneven
@@ -196,7 +198,7 @@ def test_the_example_log(root: Path) -> None:
     (cannot,) = found.support.cannot
     assert "one exponent of speed: the local exponent of damping drifts" in cannot  # with the rest
     assert found.support.rejected["stick-slip"] > 500
-    assert [f for f in found.findings if "missing" not in f] == []
+    assert {each.kind for each in found.channel_warnings} <= {"rows missing"}
     assert json.loads(json.dumps(found.to_dict()))["files"][0]["channels"][1]["traits"]["step"] == 0.0005
 
 
@@ -227,7 +229,7 @@ def test_missing_numbers_and_temperature_say_which_flag_helps(tmp_path: Path) ->
     found = inspect(path)
     assert found.needed == ("isothermal", "drop_missing")
     assert found.dropped == {"holes.csv": 160}
-    assert f"{path.name}: Drive torque: 160 rows lack a number" in found.findings
+    assert f"{path.name}: Drive torque: 160 rows lack a number" in map(str, found.channel_warnings)
     assert "readable as a log of torque with isothermal=True and drop_missing=True" in found.summary()
 
 
@@ -238,7 +240,8 @@ def test_a_log_whose_time_steps_back_is_shown_all_the_same(tmp_path: Path) -> No
     found = inspect(path)
     assert "time runs backwards" in found.problem
     assert found.support is None
-    assert any("time steps back once, first at row 3001" in finding for finding in found.findings)
+    back = {each.kind: each for each in found.channel_warnings}["time steps back"]
+    assert back.values == {"times": 1, "row": 3001}
 
 
 def test_a_clock_that_starts_anew_is_shown_with_its_runs(tmp_path: Path) -> None:
@@ -291,7 +294,7 @@ def test_other_formats_are_shown_channel_by_channel() -> None:
         assert "bus frames" in found.summary()
     slider = inspect(shared("data/stick-slip") / "k1002Nm_v1100.mat")
     assert "there is no torque channel" in slider.summary()
-    assert [c.findings for c in slider.files[0].channels if c.name == "Fnorm"] == [()]
+    assert [c.warnings for c in slider.files[0].channels if c.name == "Fnorm"] == [()]
 
 
 def test_wear_tests_and_a_dynamometer() -> None:
@@ -313,7 +316,7 @@ def test_screw_drives_together_can_tell_what_each_alone_cannot() -> None:
     assert found.support is not None
     assert found.support.speeds == 15
     assert any("torque falls, then rises, beyond doubt" in said for said in found.support.can)
-    assert not [f for f in found.findings if "coarse" not in f]
+    assert {each.kind for each in found.channel_warnings} <= {"coarse"}
     alone = inspect(paths[5], units={"torque": "9.84 mN*m / 100"}).support
     assert alone is not None
     assert any("exponent c of speed: one speed" in said for said in alone.cannot)
@@ -329,7 +332,7 @@ def test_the_command(examples_here: Path) -> None:
     assert "exists: use --force" in again.stderr
     document = json.loads(run("inspect", "examples/bench.csv", "--json", cwd=examples_here).stdout)
     assert document["support"]["dwells"] == 73
-    assert document["files"][0]["clocks"][0]["findings"]
+    assert document["files"][0]["clocks"][0]["warnings"]
 
 
 def test_the_mapping_is_proposed_once_and_never_replaced(bench_csv: Path, tmp_path: Path) -> None:

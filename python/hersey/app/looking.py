@@ -99,7 +99,7 @@ def _clock(clock: Any) -> dict[str, Any]:
         "duration": _finite(clock.duration),
         "gaps": clock.gaps,
         "lost": _finite(clock.lost),
-        "findings": clock.findings(),
+        "warnings": [each.to_dict() for each in clock.warnings],
     }
 
 
@@ -118,7 +118,7 @@ def _channel(report: ChannelReport, name: str, unit: str, values: FloatArray) ->
         "missing": traits.missing,
         "rows": traits.rows,
         "dead": is_dead(values),
-        "findings": list(report.findings),
+        "warnings": [each.to_dict() for each in report.warnings],
         "preview": preview(values),
     }
 

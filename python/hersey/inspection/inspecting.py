@@ -92,7 +92,7 @@ class Inspection(Result):
                 "rows": channel.traits.rows,
                 "missing rows": channel.traits.missing,
                 **{f"{name} (own unit)": getattr(channel.traits, name) for name in numbers},
-                "findings": "; ".join(channel.findings),
+                "warnings": "; ".join(map(str, channel.warnings)),
             }
             for file in self.files
             for channel in file.channels
@@ -144,18 +144,18 @@ class Inspection(Result):
         )
 
     @property
-    def findings(self) -> list[str]:
-        """Every finding on a clock or on a channel that plays a role, behind its file."""
-        said = []
+    def channel_warnings(self) -> tuple[Warning, ...]:
+        """Every warning of a clock or of a channel that plays a role, with its file."""
+        found: list[Warning] = []
         for file in self.files:
-            said += [f"{file.name}: {finding}" for clock in file.clocks for finding in clock.findings()]
-            said += [
-                f"{file.name}: {channel.name}: {finding}"
+            found += [each.within(file.name) for clock in file.clocks for each in clock.warnings]
+            found += [
+                each.within(channel.name).within(file.name)
                 for channel in file.channels
-                for finding in channel.findings
+                for each in channel.warnings
                 if channel.role
             ]
-        return said
+        return tuple(found)
 
 
 @takes_si(min_dwell="time", every="time", radius="length", load="force")
