@@ -118,7 +118,7 @@ def test_a_bad_cell_costs_its_row_and_is_told(case: str, tmp_path: Path) -> None
     result = run("report", "log.csv", cwd=tmp_path)
     assert result.returncode == 0, result
     (line,) = (line for line in result.stderr.splitlines() if "left out" in line)
-    assert line.startswith("log.csv: 1 row(s) were left out: ")
+    assert line.startswith("log.csv: 1 row was left out: ")
     for words in says:
         assert words in line
         assert words in (tmp_path / "report.html").read_text()

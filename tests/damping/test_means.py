@@ -105,7 +105,9 @@ def test_one_bad_cell_costs_its_row(tmp_path: Path) -> None:
     assert len(points) == 16
     (file,) = points.log.files
     assert file.missing_rows == 2
-    assert file.notes == ("left out for a cell that is no number: row 3 (torque 'n/a'), row 7 (no speed)",)
+    (warning,) = file.warnings
+    assert (warning.kind, warning.values["rows"]) == ("rows left out", 2)
+    assert str(warning) == "left out for a cell that is no number: row 3 (torque 'n/a'), row 7 (no speed)"
 
 
 def test_rows_that_state_no_dwell_are_said() -> None:
@@ -129,8 +131,9 @@ def test_loads_that_differ_are_said() -> None:
     columns = {"speed [rpm]": [10, 20, 40], "torque [N*m]": [1.0, 1.1, 1.2], "load [N]": [10, 20, 20]}
     points = hersey.SteadyPoints.from_table(columns, channels={"load": "load"})
     assert points.varying_load == (10.0, 20.0)
-    unnamed = hersey.SteadyPoints.from_table(columns).log.files[0].notes
-    assert "column 'load [N]' may be the normal load" in unnamed[0]
+    (unnamed,) = hersey.SteadyPoints.from_table(columns).log.files[0].warnings
+    assert (unnamed.kind, unnamed.values["role"]) == ("column may play a role", "load")
+    assert "column 'load [N]' may be the normal load" in str(unnamed)
 
 
 def test_decimal_commas_and_semicolons(tmp_path: Path) -> None:

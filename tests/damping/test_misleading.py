@@ -180,8 +180,8 @@ def test_coarse_torque_never_ends_in_a_traceback(bits: int, noise: float) -> Non
 def test_inspection_names_the_resolution(tmp_path: Path) -> None:
     path = tmp_path / "coarse.csv"
     replace(BENCH, bits=6).frame(1).write_csv(path)
-    said = inspect(path, tare="standing").cautions
-    assert sum("resolution of" in text for text in said) == 1
+    said = inspect(path, tare="standing").warnings
+    assert sum("resolution of" in each.text for each in said) == 1
 
 
 @pytest.mark.parametrize("command", ["inspect", "fit", "models"])

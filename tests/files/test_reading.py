@@ -80,11 +80,14 @@ def test_what_fails_because_of_a_change_is_told_as_the_change(file: Path) -> Non
         read_while(file, nothing, ValueError("line 1: 3 cells"))
 
 
-def test_growth_alone_is_a_note(file: Path) -> None:
+def test_growth_alone_is_a_warning(file: Path) -> None:
     with open_once(file) as watched:
         appended(file)
-        (note,) = watched.growth(hashlib.sha256(BYTES).hexdigest())
-    assert note == "the file grew from 400 to 404 bytes while it was read: its first 400 bytes were used"
+        (warning,) = watched.growth(hashlib.sha256(BYTES).hexdigest())
+    assert (warning.kind, warning.values) == ("file grew while it was read", {"before": 400, "after": 404})
+    assert (
+        str(warning) == "the file grew from 400 to 404 bytes while it was read: its first 400 bytes were used"
+    )
 
 
 def test_growth_with_other_bytes_is_refused(file: Path) -> None:

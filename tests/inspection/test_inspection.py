@@ -166,8 +166,8 @@ def test_missing_values_shift_no_row() -> None:
 def test_clock_faults() -> None:
     random = np.random.default_rng(14)
     even = np.arange(0.0, 200.0, 0.01)
-    assert clock_of("t", even).findings() == []
-    assert clock_of("t", 1.5e9 + even).findings() == []
+    assert clock_of("t", even).warnings == ()
+    assert clock_of("t", 1.5e9 + even).warnings == ()
     holes = np.delete(even, [*range(500, 520), 3000, *range(9000, 9003)])
     holed = clock_of("t", holes)
     assert (holed.gaps, round(holed.lost, 6), round(holed.longest_gap, 6)) == (3, 0.24, 0.21)
@@ -175,7 +175,9 @@ def test_clock_faults() -> None:
     back[7000:] -= 3.0
     stepped = clock_of("t", back)
     assert (stepped.back, stepped.first_back) == (1, 7000)
-    assert "time steps back once, first at row 7001" in stepped.findings()[0]
+    back = stepped.warnings[0]
+    assert (back.kind, back.values) == ("time steps back", {"times": 1, "row": 7001})
+    assert str(back) == "time steps back once, first at row 7001: split or sort the file there"
     assert clock_of("t", even + 0.002 * random.uniform(-1, 1, even.size)).is_uneven
     coarse = clock_of("t", np.floor(np.arange(0.0, 60.0, 0.0117) / 0.01) * 0.01)
     assert not coarse.is_uneven
@@ -196,7 +198,7 @@ def test_the_example_log(root: Path) -> None:
     (cannot,) = found.support.cannot
     assert "one exponent of speed: the local exponent of damping drifts" in cannot  # with the rest
     assert found.support.rejected["stick-slip"] > 500
-    assert [f for f in found.findings if "missing" not in f] == []
+    assert {each.kind for each in found.channel_warnings} <= {"rows missing"}
     assert json.loads(json.dumps(found.to_dict()))["files"][0]["channels"][1]["traits"]["step"] == 0.0005
 
 
@@ -227,7 +229,7 @@ def test_missing_numbers_and_temperature_say_which_flag_helps(tmp_path: Path) ->
     found = inspect(path)
     assert found.needed == ("isothermal", "drop_missing")
     assert found.dropped == {"holes.csv": 160}
-    assert f"{path.name}: Drive torque: 160 rows lack a number" in found.findings
+    assert f"{path.name}: Drive torque: 160 rows lack a number" in map(str, found.channel_warnings)
     assert "readable as a log of torque with isothermal=True and drop_missing=True" in found.summary()
 
 
@@ -238,7 +240,8 @@ def test_a_log_whose_time_steps_back_is_shown_all_the_same(tmp_path: Path) -> No
     found = inspect(path)
     assert "time runs backwards" in found.problem
     assert found.support is None
-    assert any("time steps back once, first at row 3001" in finding for finding in found.findings)
+    back = {each.kind: each for each in found.channel_warnings}["time steps back"]
+    assert back.values == {"times": 1, "row": 3001}
 
 
 def test_a_clock_that_starts_anew_is_shown_with_its_runs(tmp_path: Path) -> None:
@@ -291,7 +294,7 @@ def test_other_formats_are_shown_channel_by_channel() -> None:
         assert "bus frames" in found.summary()
     slider = inspect(shared("data/stick-slip") / "k1002Nm_v1100.mat")
     assert "there is no torque channel" in slider.summary()
-    assert [c.findings for c in slider.files[0].channels if c.name == "Fnorm"] == [()]
+    assert [c.warnings for c in slider.files[0].channels if c.name == "Fnorm"] == [()]
 
 
 def test_wear_tests_and_a_dynamometer() -> None:
@@ -313,7 +316,7 @@ def test_screw_drives_together_can_tell_what_each_alone_cannot() -> None:
     assert found.support is not None
     assert found.support.speeds == 15
     assert any("torque falls, then rises, beyond doubt" in said for said in found.support.can)
-    assert not [f for f in found.findings if "coarse" not in f]
+    assert {each.kind for each in found.channel_warnings} <= {"coarse"}
     alone = inspect(paths[5], units={"torque": "9.84 mN*m / 100"}).support
     assert alone is not None
     assert any("exponent c of speed: one speed" in said for said in alone.cannot)
@@ -329,7 +332,7 @@ def test_the_command(examples_here: Path) -> None:
     assert "exists: use --force" in again.stderr
     document = json.loads(run("inspect", "examples/bench.csv", "--json", cwd=examples_here).stdout)
     assert document["support"]["dwells"] == 73
-    assert document["files"][0]["clocks"][0]["findings"]
+    assert document["files"][0]["clocks"][0]["warnings"]
 
 
 def test_the_mapping_is_proposed_once_and_never_replaced(bench_csv: Path, tmp_path: Path) -> None:
@@ -375,23 +378,28 @@ def test_a_doubtful_unit_is_told_of_logs_and_of_tables_of_means(tmp_path: Path) 
     rows = [f"{0.05 * i:.2f},{1 + i / 1e4},{60 + 10 * (i // 400)},{150 + i / 1e3}" for i in range(2000)]
     log, heading = tmp_path / "log.csv", "time [s],torque [N*m],speed [rpm],temp"
     log.write_text("\n".join([f"{heading} [degC]", *rows[:900], "45,1,80,900", *rows[901:]]))
-    ordered, one_way = inspect(log).cautions[:2]
-    assert one_way.startswith("Speeds were approached from below only")
-    assert ordered.startswith("Speed and time go together")
+    ordered, one_way = inspect(log).warnings[:2]
+    assert one_way.sentence.startswith("Speeds were approached from below only")
+    assert ordered.sentence.startswith("Speed and time go together")
     kelvin = [f"{row.rsplit(',', 1)[0]},{float(row.rsplit(',', 1)[1]) + 273.15:.3f}" for row in rows]
     log.write_text("\n".join([f"{heading} [degC]", *kelvin]))
-    told, *others = inspect(log).cautions
+    unit, *others = inspect(log).warnings
     assert others == [ordered, one_way]
-    assert told.startswith("Temperature reaches 425 degC")
-    assert f"\n! {told}\n" in inspect(log).summary()
-    assert inspect(log, units={"temperature": "K"}).cautions == (ordered, one_way)
+    assert unit.kind == "unit of temperature doubtful"
+    assert unit.values["temperature"] == pytest.approx(425.13 + 273.15, abs=0.02)
+    assert unit.sentence.startswith("Temperature reaches 425 degC")
+    assert f"\n! {unit.sentence}\n" in inspect(log).summary()
+    assert inspect(log, units={"temperature": "K"}).warnings == (ordered, one_way)
     log.write_text("\n".join(["time [s],torque [N*m],speed [rpm]", *(f"{50 * i},1,{i}" for i in range(200))]))
     seen = inspect(log, isothermal=True)
     assert seen.support is not None
     assert seen.support.dwells == 0
-    assert seen.cautions[0].startswith("Rows come every 50 s")
+    assert (seen.warnings[0].kind, seen.warnings[0].values["interval"]) == ("unit of time doubtful", 50)
+    assert seen.warnings[0].sentence == (
+        "Rows come every 50 s, as the clock is read: if it counts milliseconds, use units={'time': 'ms'}."
+    )
     log.write_text("speed [rpm],torque [N*m],temp [degC]\n10,1,420\n20,1.1,421\n30,1.3,422\n")
-    assert inspect(log, means=True).cautions[0].startswith("Temperature reaches 422 degC")
+    assert inspect(log, means=True).warnings[0].sentence.startswith("Temperature reaches 422 degC")
 
 
 @pytest.mark.parametrize(("rows", "found"), [(2, ["drop-outs"]), (5, ["drop-outs"]), (6, []), (12, [])])

@@ -89,7 +89,8 @@ def test_gaps_and_uneven_clocks_do_not_break_the_derivative() -> None:
     assert alone.sum() == 2
     np.testing.assert_allclose(torque_of(done)[~alone], expected[~alone], atol=0.02)
     np.testing.assert_array_equal(torque_of(done)[alone], 0.0)
-    assert "2 rows stand alone" in done.corrections[0].note
+    (warning,) = done.corrections[0].warnings
+    assert (warning.kind, warning.values) == ("rows alone between gaps", {"rows": 2})
 
 
 def test_tare_is_a_shift() -> None:
@@ -119,9 +120,9 @@ def test_no_load_torque_from_a_second_log() -> None:
     done = corrections.no_load(log_of(drag + bearings(speed), speed), torque=free)
     inside = np.abs(speed) >= 2.0
     np.testing.assert_allclose(torque_of(done)[inside], drag[inside], atol=0.0006)
-    assert (
-        f"{np.count_nonzero((np.abs(speed) < 2) & (np.abs(speed) > 0.002))} rows" in done.corrections[0].note
-    )
+    (warning,) = done.corrections[0].warnings
+    assert warning.kind == "speeds beyond the no-load log"
+    assert warning.values["rows"] == np.count_nonzero((np.abs(speed) < 2) & (np.abs(speed) > 0.002))
     assert "dwells of made.csv at 2 to 8 rad/s" in str(done.corrections[0])
 
 
@@ -136,8 +137,10 @@ def test_torque_from_current_through_gears() -> None:
     np.testing.assert_allclose(np.abs(done.log.runs[0].speed), 2.0)
     current, gears = done.corrections
     assert (current.name, current.effects) == ("torque from current", ())
-    assert "current in A" in current.note
-    assert "in 500 rows the roll drives the motor" in gears.note
+    (of_current,), (of_gears,) = current.warnings, gears.warnings
+    assert of_current.kind == "torque from current"
+    assert of_current.values["torque"] == pytest.approx(0.105)
+    assert (of_gears.kind, of_gears.values) == ("roll drives the motor", {"rows": 500})
 
 
 def test_sign() -> None:
@@ -223,8 +226,10 @@ def test_gears_by_hand_in_both_directions() -> None:
     np.testing.assert_allclose(torque_of(done)[driving], 0.5 * 3.0 * 0.8, rtol=1e-12)
     np.testing.assert_allclose(torque_of(done)[~driving], 0.5 * 3.0 / 0.8, rtol=1e-12)
     np.testing.assert_allclose(done.log.runs[0].speed, speed / 2.0, rtol=1e-12)
-    assert done.corrections[-1].note == f"in {int(np.sum(~driving))} rows the roll drives the motor"
-    assert not corrections.at_roll(log, torque_ratio=3.0).corrections[-1].note
+    (warning,) = done.corrections[-1].warnings
+    assert warning.values == {"rows": int(np.sum(~driving))}
+    assert str(warning) == f"in {int(np.sum(~driving))} rows the roll drives the motor"
+    assert not corrections.at_roll(log, torque_ratio=3.0).corrections[-1].warnings
 
 
 def test_the_no_load_curve_is_held_beyond_its_dwells() -> None:
@@ -234,9 +239,9 @@ def test_the_no_load_curve_is_held_beyond_its_dwells() -> None:
     expected = np.where(TIME < 20.0, 1.0 - 0.14, np.where(TIME < 40.0, -1.0 + 0.16, 1.0 - 0.22))
     np.testing.assert_allclose(torque_of(done), expected, rtol=1e-6)
     beyond = int(np.sum((TIME < 20.0) | (TIME >= 40.0)))
-    assert done.corrections[-1].note == (
-        f"{beyond} rows move slower or faster than its dwells: the nearest was used"
-    )
+    (warning,) = done.corrections[-1].warnings
+    assert warning.values == {"rows": beyond}
+    assert str(warning) == f"{beyond} rows move slower or faster than its dwells: the nearest was used"
 
 
 def test_a_current_becomes_a_torque_and_says_so() -> None:
@@ -267,8 +272,10 @@ def test_samples_alone_between_gaps_are_left_and_counted() -> None:
     alone = np.isin(time, [15.0, 15.0 + STEP])
     np.testing.assert_allclose(torque_of(done)[alone], 1.0, rtol=1e-12)
     np.testing.assert_allclose(torque_of(done)[~alone], 1.0 - 0.5 * 0.3, rtol=1e-9)
-    assert done.corrections[-1].note == (
-        "2 rows stand alone between gaps, where no derivative can be had: left as they were"
+    (warning,) = done.corrections[-1].warnings
+    assert warning.values == {"rows": 2}
+    assert (
+        str(warning) == "2 rows stand alone between gaps, where no derivative can be had: left as they were"
     )
 
 

@@ -71,9 +71,11 @@ def test_one_bad_cell_costs_its_row(bad: object, tmp_path: Path) -> None:
     table[40][1] = bad
     log = hersey.read(workbook(tmp_path / "a.xlsx", Run=[["Rig 3"], [], HEAD, *table]))
     assert (log.rows, log.files[0].missing_rows) == (ROWS - 1, 1)
-    assert any("left out: channel 'Torque', row 44: " in note for note in log.files[0].notes)
+    assert any("left out: channel 'Torque', row 44: " in str(each) for each in log.files[0].warnings)
     if bad == "OVERFLOW":
-        assert "row 44, column 'Torque': 'OVERFLOW' is no number" in log.files[0].notes
+        odd = log.files[0].warnings[0]
+        assert (odd.kind, odd.values["row"], odd.values["cell"]) == ("cells that are no numbers", 44, bad)
+        assert str(odd) == "row 44, column 'Torque': 'OVERFLOW' is no number"
 
 
 def test_rows_count_from_the_first_of_the_sheet_and_a_summary_is_none(tmp_path: Path) -> None:
@@ -83,8 +85,10 @@ def test_rows_count_from_the_first_of_the_sheet_and_a_summary_is_none(tmp_path: 
         workbook(tmp_path / "a.xlsx", Run=[[], [], HEAD, *table, [], *[["Mean", 1.5, 60.0]] * 5])
     )
     assert (log.rows, log.files[0].missing_rows) == (ROWS - 1, 1)
-    assert "5 row(s) below the table were left out" in log.files[0].notes[0]
-    assert "row 44, column 'Torque': 'OVERFLOW' is no number" in log.files[0].notes
+    below, *others = log.files[0].warnings
+    assert (below.kind, below.values["lines"]) == ("lines below the table", 5)
+    assert str(below).startswith("5 rows below the table were left out: 'Mean")
+    assert "row 44, column 'Torque': 'OVERFLOW' is no number" in map(str, others)
 
 
 def test_dates_of_a_sheet_are_times(tmp_path: Path) -> None:
@@ -92,7 +96,7 @@ def test_dates_of_a_sheet_are_times(tmp_path: Path) -> None:
     path = workbook(tmp_path / "d.xlsx", Run=[["Date", *HEAD[1:]], *dated])
     log = hersey.read(path)
     np.testing.assert_allclose(log.runs[0].time, np.arange(ROWS) * 0.1, atol=1e-3)
-    assert any("an ISO date: read in s since 2024-03-01" in note for note in log.files[0].notes)
+    assert any("an ISO date: read in s since 2024-03-01" in str(each) for each in log.files[0].warnings)
 
 
 def test_a_workbook_without_a_table_says_what_it_holds(tmp_path: Path) -> None:
@@ -243,9 +247,10 @@ def test_means_of_a_workbook_are_those_of_the_same_cells_in_a_text(numbers: Any,
     assert [row.approach for row in of_book.means] == ["from below"] * 2 + ["start"] + ["from above"] * 2
     assert of_book.stated_errors
     (first,), (second,) = of_book.files, of_text.files
-    assert (first.notes, first.comments, first.missing_rows) == (second.notes, second.comments, 2)
+    assert (first.warnings, first.comments, first.missing_rows) == (second.warnings, second.comments, 2)
     assert first.comments == ("SYNTHETIC",)
-    assert "row 4 (torque 'n/a'), row 6 (no speed)" in first.notes[-1]
+    assert first.warnings[-1].values["rows"] == 2
+    assert "row 4 (torque 'n/a'), row 6 (no speed)" in str(first.warnings[-1])
 
 
 def test_a_cell_of_a_workbook_is_cut_where_no_name_is_as_long(tmp_path: Path) -> None:

@@ -228,8 +228,9 @@ def test_a_missing_value_in_a_frame_is_refused_or_counted() -> None:
     )
     log = hersey.read(gap)
     assert (log.rows, log.files[0].missing_rows) == (ROWS - 1, 1)
-    (note,) = log.files[0].notes
-    assert "1 row(s) were left out: channel 'Torque', sample 51: no number" in note
+    (warning,) = log.files[0].warnings
+    assert (warning.kind, warning.values["rows"]) == ("rows left out", 1)
+    assert "1 row was left out: channel 'Torque', sample 51: no number" in str(warning)
     many = frame().with_columns(pl.when(pl.col("Time [s]") < 0.5).then("Torque [N*m]").alias("Torque [N*m]"))
     with pytest.raises(
         UnreadableLogError, match=r"'Torque', sample 51: no .* 150 such rows of 200.: too few"
@@ -244,10 +245,12 @@ def test_a_missing_value_in_a_frame_is_refused_or_counted() -> None:
 @pytest.mark.parametrize("name", ["a.tdms", "a.mf4"])
 def test_channels_at_different_rates_are_aligned_in_words(name: str, tmp_path: Path) -> None:
     WRITERS[name](tmp_path / name)
-    (note,) = hersey.read(tmp_path / name).files[0].notes
-    assert "10 Hz" in note
-    assert "torque 100 Hz" in note
-    assert "interpolated linearly" in note
+    (warning,) = hersey.read(tmp_path / name).files[0].warnings
+    assert warning.kind == "clocks aligned"
+    assert warning.values["role"] == "temperature"
+    intervals = [warning.values[key] for key in ("interval", "torque_interval", "longest")]
+    assert intervals == pytest.approx([0.1, 0.01, 0.1])
+    assert "(10 Hz, torque 100 Hz): interpolated linearly" in str(warning)
 
 
 def test_nothing_is_extrapolated(tmp_path: Path) -> None:
@@ -271,7 +274,8 @@ def test_nothing_is_extrapolated(tmp_path: Path) -> None:
     np.testing.assert_allclose(run.torque, TORQUE[inside])
     assert run.temperature is not None
     np.testing.assert_allclose(run.temperature, 423.15 + (TIME[inside] - 0.505) * 10)
-    assert any("100 of 200 samples of the torque" in note for note in log.files[0].notes)
+    outside = {each.kind: each for each in log.files[0].warnings}["samples outside another channel"]
+    assert (outside.values["samples"], outside.values["all"]) == (100, 200)
 
 
 def test_scalings_of_tdms_are_applied_or_refused(tmp_path: Path) -> None:
@@ -317,7 +321,7 @@ def test_the_part_with_the_torque_is_preferred(tmp_path: Path) -> None:
     np.testing.assert_allclose(run.speed, SPEED * np.pi / 30)
     other = hersey.read(path, channels={"speed": "motor/speed"})
     np.testing.assert_allclose(other.runs[0].speed, np.interp(TIME, TIME + 1, SPEED + 1)[100:] * np.pi / 30)
-    assert "interpolated" in other.files[0].notes[0]
+    assert other.files[0].warnings[0].kind == "clocks aligned"
     with h5py.File(path, "a") as file:
         file["motor/torque"] = TORQUE
         file["motor/torque"].attrs["unit"] = "N*m"
@@ -419,7 +423,8 @@ def test_mf4_by_others_keeps_every_raster() -> None:
         units={"torque": "N*m", "temperature": "degC"},
     )
     assert log.rows == 1230
-    assert any("10 Hz" in note and "torque 100 Hz" in note for note in log.files[0].notes)
+    aligned = [each.values for each in log.files[0].warnings if each.kind == "clocks aligned"]
+    assert any((each["rate"], each["torque_rate"]) == ("10 Hz", "100 Hz") for each in aligned)
 
 
 @pytest.mark.parametrize("name", ["2F6913DB_00000001.MF4", "94C49784_00000002.MF4"])
@@ -523,12 +528,17 @@ def test_lvm_by_labview() -> None:
     assert list_channels(path) == [("fx_N", "N"), ("fy_N", "N"), ("fz_N", "N"), ("dx_um", "micrometer")]
     with opened(path, kind_of(path)) as recording:
         values = {signal.name: signal.load() for signal in recording.signals}
-        notes = list(recording.notes)
+        (missing, *_) = recording.warnings
         clock = recording.signals[0].clock
         assert clock is not None
         with pytest.raises(UnreadableLogError, match="segment 2 starts at 0 s, before the one above it ends"):
             clock()  # shortened by hand: all three segments start at the same time
-    assert "segment 1 of 3 holds 6 of 2000 samples" in notes
+    assert (missing.kind, missing.values["samples"], missing.values["promised"]) == (
+        "samples missing",
+        6,
+        2000,
+    )
+    assert str(missing) == "segment 1 of 3 holds 6 of 2000 samples"
     np.testing.assert_allclose(
         values["fx_N"][:6], [0.211219, 0.212512, 0.209925, 0.213159, 0.208631, 0.206690]
     )
@@ -562,8 +572,9 @@ def test_pin_on_disc_by_others() -> None:
     assert run.torque[1] == pytest.approx(1.3 * 0.022)
     assert run.temperature is not None
     assert run.temperature[0] == pytest.approx(25.9 + 273.15)
-    assert any("a time of day: read in s since 20:32:21" in note for note in file.notes)
-    assert any("'Test completed at 21:02:28 on 2019-04-12'" in note for note in file.notes)
+    warnings_by_kind = {each.kind: each.values for each in file.warnings}
+    assert warnings_by_kind["time stamps read"]["since"] == "20:32:21"
+    assert warnings_by_kind["lines below the table"]["first"] == "Test completed at 21:02:28 on 2019-04-12"
     assert not file.cut_off
 
 
@@ -630,9 +641,9 @@ def test_a_file_cut_off_anywhere(name: str, tmp_path: Path, capfd: pytest.Captur
         rows = run.time.size
         assert rows < ROWS
         ends_at_a_line = name == "a.csv" and cut.read_bytes().endswith(b"\n")
-        assert ends_at_a_line or file.notes
+        assert ends_at_a_line or file.warnings
         for part, values in zip(arrays(run), whole, strict=True):
-            # the last number of a text table may lack digits: the note says so
+            # the last number of a text table may lack digits: a warning says so
             sure = rows - 1 if name == "a.csv" and not ends_at_a_line else rows
             np.testing.assert_allclose(part[:sure], values[:sure], rtol=1e-12)
     assert capfd.readouterr() == ("", "")
@@ -662,7 +673,7 @@ def test_a_flipped_byte(name: str, tmp_path: Path, capfd: pytest.CaptureFixture[
             log = attempt(bad)
             if isinstance(log, str):
                 refused += 1
-            elif log.files[0].notes == reference.files[0].notes:
+            elif log.files[0].warnings == reference.files[0].warnings:
                 parts = arrays(log.runs[0])
                 assert parts[0].size == ROWS, "rows are missing and nothing says so"
                 rows = [np.flatnonzero(p != w) for p, w in zip(parts, whole, strict=True)]

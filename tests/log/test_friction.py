@@ -54,7 +54,11 @@ def test_a_friction_force_with_its_radius_is_a_torque(tmp_path: Path) -> None:
     np.testing.assert_allclose(run.torque, FORCE * 0.025, rtol=1e-12)
     np.testing.assert_allclose(run.speed, SLIDING * 1e-3 / 0.025, rtol=1e-12)
     assert run.load is None
-    assert "torque is 'Friction force' x radius (0.025 m)" in log.files[0].notes
+    of_torque, of_speed = log.files[0].warnings
+    assert (of_torque.kind, of_speed.kind) == ("torque computed", "speed computed")
+    assert of_torque.values["radius"] == of_speed.values["radius"] == 0.025
+    assert str(of_torque) == "torque is 'Friction force' x radius (0.025 m)"
+    assert str(of_speed) == "speed is 'Sliding speed' / radius (0.025 m)"
     with pytest.raises(ParameterError, match=r"radius is -0\.025"):
         hersey.read(path, isothermal=True, radius="-25 mm")
     with pytest.raises(UnitError, match="radius"):
@@ -162,11 +166,11 @@ def test_no_column_becomes_the_radius_by_its_unit_or_name(length: str, way: str,
 def test_no_column_becomes_the_load_by_its_unit_or_name(force: str, tmp_path: Path) -> None:
     columns = FRICTION | {force: LOAD}
     name = force.partition(" [")[0]
-    proposal = f"column '{force}' may be the normal load and is not used: if it is, say channels="
+    proposal = f"column '{force}' may be the normal load and is not used: if it is, use channels="
     for source in (write(tmp_path / "a.csv", text(**columns)), pl.DataFrame(columns)):
         log = hersey.read(source, isothermal=True, radius="25 mm")
         assert log.runs[0].load is None
-        said = [note for note in log.files[0].notes if "normal load" in note]
+        said = [str(each) for each in log.files[0].warnings if each.kind == "column may play a role"]
         assert said == ([] if name == "Clamp" else [f"{proposal}{{'load': '{name}'}}"])
     coefficient = {"Time [s]": TIME, "COF": 0.1, "v [m/s]": 0.02, force: LOAD}
     with pytest.raises(UnstatedRoleError, match="only with the normal load"):
@@ -200,7 +204,7 @@ def test_a_load_and_a_radius_for_each_run(tmp_path: Path) -> None:
     cof = write(tmp_path / "cof.csv", text(**{"Time [s]": time, "COF": 0.1, "v [m/s]": 0.02}))
     log = hersey.read(cof, isothermal=True, radius=0.025, load=[10.0, 20.0])
     np.testing.assert_allclose([run.torque[0] for run in log.runs], [0.025, 0.05], rtol=1e-12)
-    assert "the load is one of 2 for each run" in log.files[0].notes
+    assert "the load is one of 2 for each run" in map(str, log.files[0].warnings)
     log = hersey.read(cof, isothermal=True, radius=[0.025, 0.05], load=[10.0, 20.0])
     np.testing.assert_allclose([run.torque[0] for run in log.runs], [0.025, 0.1], rtol=1e-12)
     np.testing.assert_allclose([run.speed[0] for run in log.runs], [0.8, 0.4], rtol=1e-12)
@@ -229,8 +233,9 @@ def test_one_bad_cell_costs_its_row(column: str, bad: str, tmp_path: Path) -> No
     log = hersey.read(write(tmp_path / "a.csv", with_cells(column, {57: bad})), isothermal=True)
     assert (log.rows, log.files[0].missing_rows) == (ROWS - 1, 1)
     np.testing.assert_array_equal(log.runs[0].torque, np.delete(FORCE, 57))
-    (note,) = log.files[0].notes
-    assert f"line 59, column '{column.partition(' ')[0]}'" in note
+    (warning,) = log.files[0].warnings
+    assert warning.values["rows"] == 1
+    assert f"line 59, column '{column.partition(' ')[0]}'" in str(warning)
 
 
 def test_a_bad_cell_beside_a_time_of_day_passes_no_midnight(tmp_path: Path) -> None:
@@ -250,7 +255,10 @@ def test_many_bad_cells_are_refused_with_the_first(tmp_path: Path) -> None:
         hersey.read(some, isothermal=True)
     log = hersey.read(some, isothermal=True, drop_missing=True)
     assert (log.rows, log.files[0].missing_rows) == (160, 40)
-    assert "40 row(s) were left out: line 22" in log.files[0].notes[0]
+    (warning,) = log.files[0].warnings
+    assert (warning.kind, warning.values["rows"], warning.values["others"]) == ("rows left out", 40, 30)
+    assert str(warning).startswith("40 rows were left out: line 22")
+    assert str(warning).endswith("; and 30 more")
     most = write(tmp_path / "most.csv", with_cells("Torque [N*m]", dict.fromkeys(range(20, 160), "off")))
     with pytest.raises(UnreadableLogError, match=r"'off' is not a number \(the first of 140 .*too few rows"):
         hersey.read(most, isothermal=True, drop_missing=True)
@@ -281,10 +289,9 @@ def test_a_clock_that_starts_anew_begins_a_run(tmp_path: Path) -> None:
         np.testing.assert_array_equal(np.concatenate([run.torque for run in log.runs]), FORCE)
         assert [file.rows for file in log.files] == [80, 70, 50]
         assert log.runs[1].name.endswith(", run 2 of 3")
-    assert any(
-        "begins at line 82" in note
-        for note in hersey.read(tmp_path / "a.csv", isothermal=True).files[1].notes
-    )
+    (warning,) = hersey.read(tmp_path / "a.csv", isothermal=True).files[1].warnings
+    assert (warning.kind, warning.values["run"], warning.values["runs"]) == ("run of a file", 2, 3)
+    assert str(warning) == "run 2 of 3 in a.csv begins at line 82"
     assert "3 runs" in hersey.read(tmp_path / "a.csv", isothermal=True).summary()
 
 
@@ -312,10 +319,9 @@ def test_a_time_that_lies_apart_costs_its_row(odd: float, row: int, tmp_path: Pa
     time[row] = odd
     log = hersey.read(write(tmp_path / "a.csv", text(**(TORQUE | {"Time [s]": time}))), isothermal=True)
     np.testing.assert_allclose(log.runs[0].time, np.delete(TIME, row))
-    assert (
-        f"line {row + 2}, column 'Time': {odd:.0f} s (once) is no time, off the clock"
-        in log.files[0].notes[0]
-    )
+    (warning,) = log.files[0].warnings
+    assert (warning.values["low"], warning.values["reason"]) == (odd, "clock")
+    assert f"line {row + 2}, column 'Time': {odd:.0f} s (once) is no time, off the clock" in str(warning)
 
 
 def test_rows_without_a_clock_and_their_interval(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -356,7 +362,9 @@ def test_clocks_with_am_and_pm(style: str, tmp_path: Path) -> None:
         lines.append(f"{stamp},1.5,{60 + i}")
     log = hersey.read(write(tmp_path / "a.csv", "\n".join(lines) + "\n"), isothermal=True)
     np.testing.assert_allclose(log.runs[0].time, np.arange(120.0), atol=1e-9)
-    assert "AM and PM: read in s since" in log.files[0].notes[0]
+    (warning,) = log.files[0].warnings
+    assert warning.kind == "time stamps read"
+    assert "AM and PM: read in s since" in str(warning)
 
 
 # Blanks between cells -------------------------------------------------------------------------------------
@@ -412,7 +420,7 @@ def test_trailing_separators_cost_nothing(ends: str, tmp_path: Path) -> None:
             tmp_path / "a.csv", "\n".join([lines[0] + head, *(line + ends for line in lines[1:])]) + "\n"
         )
         log = hersey.read(path, isothermal=True)
-        assert (log.rows, log.files[0].notes) == (ROWS, ())
+        assert (log.rows, log.files[0].warnings) == (ROWS, ())
         assert len(list_channels(path)) == 3
 
 
@@ -424,7 +432,8 @@ def test_a_dead_channel_is_not_taken(tmp_path: Path) -> None:
     for source in (write(tmp_path / "a.csv", text(**columns)), pl.DataFrame(columns)):
         log = hersey.read(source, isothermal=True)
         np.testing.assert_allclose(log.runs[0].speed, SLIDING * np.pi / 30)
-        assert sum("says nothing, one value throughout" in note for note in log.files[0].notes) == 2
+        passed_over = [each for each in log.files[0].warnings if each.kind == "constant channel passed over"]
+        assert [each.values["column"] for each in passed_over] == ["Speed 2 [rpm]", "Speed 3 [rpm]"]
     live = columns | {"Speed 3 [rpm]": SLIDING}
     with pytest.raises(ChannelError, match=r"speed could be 'Speed \[rpm\]' or 'Speed 3 \[rpm\]': choose"):
         hersey.read(write(tmp_path / "b.csv", text(**live)), isothermal=True)

@@ -115,7 +115,7 @@ def stopped(column: Array) -> int:
     return 12
 
 
-#: Name: column, what is written there, and what the note must hold beside the count; None: not one value.
+#: Name: column, what is written there, and what the warning must hold beside the count; None: not one value.
 PATTERNS: dict[str, tuple[str, Callable[[Array], int], str | None]] = {
     "a million degrees in five rows": (HOT, at(FIVE, 1e6), "1000000 degC (5 times)"),
     "65535 degC in five rows": (HOT, at(FIVE, 65535.0), "65535 degC (5 times)"),
@@ -193,11 +193,16 @@ def test_what_cannot_be_right_is_left_out_by_name(name: str, as_text: bool, tmp_
     role = {TIME: "time", TORQUE: "torque", SPEED: "speed", HOT: "temperature"}[column]
     assert {each.role for each in file.impossible} == {role}
     assert sum(each.rows for each in file.impossible) == count
-    notes = " ".join(file.notes)
-    assert f"{file.impossible[0].rows} row(s) were left out" in notes
-    assert f"is no {role}" in notes
-    assert f"'{column.partition(' ')[0]}" in notes
-    assert says is None or says in notes
+    assert {each.kind for each in file.warnings} == {"impossible readings"}
+    for warning, each in zip(file.warnings, file.impossible, strict=True):
+        assert (warning.values["rows"], warning.values["role"]) == (each.rows, role)
+        assert (warning.values["low"], warning.values["high"]) == (each.low, each.high)
+        assert warning.values["reason"] == each.reason
+        assert str(warning).startswith(f"{each.rows} row{' was' if each.rows == 1 else 's were'} left out: ")
+        assert f"'{column.partition(' ')[0]}" in str(warning)
+    words = " ".join(map(str, file.warnings))
+    assert f"is no {role}" in words
+    assert says is None or says in words
     if as_text:
         first = min(int(each.where.split(",")[0].removeprefix("line ")) for each in file.impossible)
         assert first == changed[0] + 2
@@ -210,7 +215,7 @@ def test_what_cannot_be_right_is_left_out_by_name(name: str, as_text: bool, tmp_
 
 def test_a_log_without_a_fault_loses_no_row() -> None:
     log = hersey.read(pl.DataFrame(clean()))
-    assert (log.rows, log.files[0].impossible, log.files[0].notes) == (_clean()[0].size, (), ())
+    assert (log.rows, log.files[0].impossible, log.files[0].warnings) == (_clean()[0].size, (), ())
 
 
 @pytest.mark.parametrize("word", ["inf", "-inf", "1.#INF"])
@@ -222,7 +227,9 @@ def test_words_for_no_number_cost_their_rows(word: str, tmp_path: Path) -> None:
     (tmp_path / "log.csv").write_text("\n".join(lines) + "\n")
     log = hersey.read(tmp_path / "log.csv")
     assert log.files[0].missing_rows == 5
-    assert f"5 row(s) were left out: line 102, column 'Temperature': '{word}' stands" in log.files[0].notes[0]
+    (warning,) = log.files[0].warnings
+    assert (warning.kind, warning.values["rows"], warning.values["others"]) == ("rows left out", 5, 0)
+    assert f"5 rows were left out: line 102, column 'Temperature': '{word}' stands" in str(warning)
 
 
 def test_too_many_are_refused_with_their_share() -> None:
@@ -274,7 +281,7 @@ def test_every_verb_says_so(verb: str, tmp_path: Path) -> None:
     result = run(verb, tmp_path / "log.csv", cwd=tmp_path)
     assert result.returncode == 0, result.stderr
     said = " ".join(f"{result.stdout} {result.stderr}".split())
-    assert "5 row(s) were left out: line 102, column 'Temperature': 1000000 degC (5 times)" in said
+    assert "5 rows were left out: line 102, column 'Temperature': 1000000 degC (5 times)" in said
 
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

@@ -289,15 +289,15 @@ def test_quirk(quirk: str, encoding: str, size: int, tmp_path: Path, monkeypatch
     log = hersey.read(path)
     (run,), (file,) = log.runs, log.files
     assert_same(hersey.TorqueLog((replace(run, time=np.round(run.time - run.time[0], 5)),), log.files))
-    told = {
-        "summary": "below the table",
-        "time": "read in s since",
-        "since": "was read as",
-        "Excel": "was read as",
+    kinds = {
+        "summary": "lines below the table",
+        "time": "time stamps read",
+        "since": "clock without unit",
+        "Excel": "clock without unit",
     }
-    for word, says in told.items():
+    for word, kind in kinds.items():
         if word in quirk.split():
-            assert any(says in note for note in file.notes), file.notes
+            assert kind in [warning.kind for warning in file.warnings]
 
 
 def test_a_time_of_day_passes_midnight(tmp_path: Path) -> None:
@@ -307,7 +307,9 @@ def test_a_time_of_day_passes_midnight(tmp_path: Path) -> None:
     )
     log = hersey.read(path)
     np.testing.assert_allclose(log.runs[0].time, [0, 0.4, 0.8], atol=1e-9)
-    assert "past midnight 1 time" in log.files[0].notes[0]
+    (warning,) = log.files[0].warnings
+    assert (warning.kind, warning.values["midnights"]) == ("time stamps read", 1)
+    assert str(warning).endswith("since 23:59:59, past midnight 1 time")
 
 
 @pytest.mark.parametrize("code", ["cp1252", "latin-1"])
@@ -350,7 +352,9 @@ def test_a_last_row_cut_off_is_left_out(last: str, tmp_path: Path) -> None:
     log = hersey.read(path)
     np.testing.assert_allclose(log.runs[0].time, [0, 0.1, 0.2])
     assert log.files[0].cut_off
-    assert f"'{last}', was cut off" in log.files[0].notes[0]
+    (warning,) = log.files[0].warnings
+    assert (warning.kind, warning.values) == ("last line cut off", {"line": last})
+    assert str(warning) == f"the last line, '{last}', was cut off: it was left out"
 
 
 def test_a_number_that_reads_in_two_ways_is_refused(tmp_path: Path) -> None:

@@ -40,7 +40,9 @@ def test_a_proposal_reads_the_log_it_was_made_for(bench_csv: Path, tmp_path: Pat
     plain = hersey.read(bench_csv)
     assert done.corrections == ()
     np.testing.assert_array_equal(done.log.runs[0].torque, plain.runs[0].torque)
-    assert f"channels, units and corrections are those of {FILE_NAME}" in done.log.files[0].notes
+    (warning,) = done.log.files[0].warnings
+    assert (warning.kind, warning.values) == ("mapping used", {"mapping": FILE_NAME})
+    assert str(warning) == f"channels, units and corrections are those of {FILE_NAME}"
 
 
 def test_every_comment_of_a_proposal_becomes_a_key_that_is_known(bench_csv: Path, tmp_path: Path) -> None:

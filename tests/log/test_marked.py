@@ -70,18 +70,16 @@ def test_samples_marked_invalid_cost_their_rows(case: str, tmp_path: Path) -> No
     assert file.missing_rows == gone.size
     assert {each.role: each.rows for each in file.impossible} == counts
     assert {each.reason for each in file.impossible} == {Reason.MARKED}
+    warned = {each.values["role"]: each for each in file.warnings if each.values.get("reason") == "marked"}
+    assert {role: each.values["rows"] for role, each in warned.items()} == counts
     for role, count in counts.items():
         times = "once" if count == 1 else f"{count} times"
-        assert any(
-            f"{count} row(s) were left out" in note
-            and f": {role} is marked as invalid by the file itself ({times})" in note
-            for note in file.notes
-        )
+        assert f": {role} is marked as invalid by the file itself ({times})" in str(warned[role])
 
 
 def test_the_first_of_them_is_named(tmp_path: Path) -> None:
-    (note,) = hersey.read(write(tmp_path / "log.mf4", {"torque": [5, 100, 300]})).files[0].notes
-    assert "channel 'torque', sample 6: torque is" in note
+    (warning,) = hersey.read(write(tmp_path / "log.mf4", {"torque": [5, 100, 300]})).files[0].warnings
+    assert "channel 'torque', sample 6: torque is" in str(warning)
 
 
 @pytest.mark.parametrize("name", list(CHANNELS))
@@ -121,5 +119,5 @@ def test_inspect_shows_them_as_missing(tmp_path: Path) -> None:
 
 def test_a_file_without_marks_keeps_every_row(tmp_path: Path) -> None:
     log = hersey.read(write(tmp_path / "log.mf4", {}))
-    assert (log.rows, log.files[0].notes) == (ROWS, ())
+    assert (log.rows, log.files[0].warnings) == (ROWS, ())
     assert log.to_frame().select(pl.len()).item() == ROWS

@@ -47,9 +47,14 @@ def test_a_slow_temperature_is_interpolated_between_its_values(tmp_path: Path) -
         np.testing.assert_allclose(run.temperature - 273.15, HEAT[within], atol=1e-9)
         np.testing.assert_array_equal(run.torque, TORQUE[within])
         assert log.files[0].missing_rows == 49
-        notes = " / ".join(log.files[0].notes)
-        assert "temperature 'Temp' has 1 value in 50 rows, every 1 s: interpolated linearly" in notes
-        assert "49 row(s) before the first or behind the last value of temperature 'Temp'" in notes
+        interpolated, outside = log.files[0].warnings
+        assert (interpolated.kind, outside.kind) == (
+            "slow channel interpolated",
+            "rows outside a slow channel",
+        )
+        assert [interpolated.values[key] for key in ("rows_per_value", "interval")] == pytest.approx([50, 1])
+        assert "temperature 'Temp' has 1 value in 50 rows, every 1 s" in str(interpolated)
+        assert outside.values["rows"] == 49
 
 
 def test_rows_before_the_first_value_are_left_out(tmp_path: Path) -> None:
@@ -68,7 +73,8 @@ def test_a_long_gap_is_not_bridged(tmp_path: Path) -> None:
         time = log.runs[0].time
         assert not np.any((time > 20.0 + 1e-9) & (time < 25.0 - 1e-9))
         assert log.files[0].missing_rows == 249 + 49
-        assert any("249 row(s) were left out in gaps" in note for note in log.files[0].notes)
+        gaps = {each.kind: each.values for each in log.files[0].warnings}["gaps of a slow channel"]
+        assert (gaps["rows"], gaps["role"], gaps["longest"]) == (249, "temperature", pytest.approx(3.0))
     with pytest.raises(UnreadableLogError, match=r"a\.csv, line 1003: temperature"):
         hersey.read(tmp_path / "a.csv")
 

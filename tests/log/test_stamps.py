@@ -30,9 +30,9 @@ def test_midnights_are_kept_from_block_to_block() -> None:
     assert seconds(stamps, "00:00:00", "00:00:01") == [86402.0, 86403.0]
     assert seconds(stamps, "00:00:02") == [86404.0]
     assert stamps.midnights == 2
-    assert stamps.note("Clock") == (
-        "'Clock' holds a time of day: read in s since 23:59:58, past midnight 2 time(s)"
-    )
+    warning = stamps.warning("Clock")
+    assert (warning.kind, warning.values["midnights"]) == ("time stamps read", 2)
+    assert str(warning) == "'Clock' holds a time of day: read in s since 23:59:58, past midnight 2 times"
 
 
 def test_two_midnights_in_one_block() -> None:
@@ -56,7 +56,7 @@ def test_a_block_of_missing_stamps_changes_nothing() -> None:
 
 
 @pytest.mark.parametrize(
-    ("cells", "times", "note"),
+    ("cells", "times", "says"),
     [
         (
             ("2026-03-01 23:59:59.5", "2026-03-02 00:00:00,25"),
@@ -85,10 +85,10 @@ def test_a_block_of_missing_stamps_changes_nothing() -> None:
         ),
     ],
 )
-def test_dates(cells: tuple[str, ...], times: list[float], note: str) -> None:
+def test_dates(cells: tuple[str, ...], times: list[float], says: str) -> None:
     stamps = stamps_of(*cells)
     assert seconds(stamps, *cells) == pytest.approx(times, abs=1e-6)
-    assert stamps.note("t") == f"'t' holds {note}"
+    assert str(stamps.warning("t")) == f"'t' holds {says}"
 
 
 def test_what_is_no_stamp() -> None:

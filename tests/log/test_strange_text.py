@@ -37,9 +37,10 @@ def test_digits_of_other_scripts_are_no_numbers(digits: str, tmp_path: Path) -> 
     assert not is_stamp(f"12:00:0{digits}")
     log = tmp_path / "log.csv"
     log.write_text(HEADER + ROWS + f"40,{digits},30,150\n41,1,1,150\n", encoding="utf-8")
-    (note,) = hersey.read(log).files[0].notes
-    assert "line 42, column 'Torque'" in note
-    assert "is not a number" in note
+    (warning,) = hersey.read(log).files[0].warnings
+    assert (warning.kind, warning.values["rows"]) == ("rows left out", 1)
+    assert "line 42, column 'Torque'" in str(warning)
+    assert "is not a number" in str(warning)
     assert raw_channels(log).channels[1].odd == 1
 
 
@@ -56,7 +57,7 @@ def test_half_a_character_at_the_end_of_utf_16(around: str, half: int, encoding:
         return
     read = hersey.read(log)
     assert read.rows == 40
-    assert any("line 42" in note for note in read.files[0].notes)
+    assert any("line 42" in str(warning) for warning in read.files[0].warnings)
 
 
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-16-le", "utf-16-be"])
@@ -175,10 +176,8 @@ def test_a_log_that_grows_is_read_as_it_was(
     assert log.rows == 40
     assert file.bytes == len(TEXT)
     assert file.sha256 == hashlib.sha256(TEXT.encode()).hexdigest()
-    assert [note for note in file.notes if "grew" in note] == [
-        f"the file grew from {len(TEXT)} to {len(TEXT) + 19} bytes while it was read: "
-        f"its first {len(TEXT)} bytes were used"
-    ]
+    (grown,) = [each for each in file.warnings if each.kind == "file grew while it was read"]
+    assert grown.values == {"before": len(TEXT), "after": len(TEXT) + 19}
 
 
 def test_a_table_is_opened_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

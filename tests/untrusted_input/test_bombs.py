@@ -329,7 +329,7 @@ def test_a_segment_that_says_more_values_than_it_has_is_cut_off(tmp_path: Path) 
     log = hersey.read(tmp_path / "log.tdms")
     np.testing.assert_array_equal(log.runs[0].torque, TORQUE)
     assert log.files[0].cut_off
-    assert any("segment of the file is incomplete" in note for note in log.files[0].notes)
+    assert "last segment incomplete" in [each.kind for each in log.files[0].warnings]
 
 
 def test_the_limit_may_be_raised_and_lowered(tmp_path: Path) -> None:

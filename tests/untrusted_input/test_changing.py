@@ -1,4 +1,4 @@
-"""A file that changes while it is read: an error or a note; the hash is that of the bytes that were read."""
+"""A file that changes while it is read: an error or a warning; the hash is that of the bytes read."""
 
 from __future__ import annotations
 
@@ -85,14 +85,14 @@ CHANGES = [truncated, emptied, grown, rewritten, replaced, removed]
 
 
 def what_was_told(path: Path, sound: bytes) -> str:
-    """The error, or the notes: then what was read has the hash of its bytes."""
+    """The error, or the warnings: then what was read has the hash of its bytes."""
     try:
         log = hersey.read(path)
     except HerseyError as error:
         return str(error)
     assert log.files[0].sha256 == hashlib.sha256(sound).hexdigest()
     np.testing.assert_allclose(log.runs[0].torque, TORQUE, atol=1e-6)
-    return "; ".join(log.files[0].notes)
+    return "; ".join(map(str, log.files[0].warnings))
 
 
 def once(change: Callable[[], None]) -> Callable[[], None]:

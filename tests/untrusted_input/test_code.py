@@ -236,7 +236,7 @@ def test_a_formula_of_the_clock(number: int, trap: Trap) -> None:
         hersey.read(path)
     inspection = hersey.inspect(path)
     assert not inspection.files[0].channels
-    assert sum("formula" in note for note in inspection.files[0].notes) == 3
+    assert sum("formula" in str(each) for each in inspection.files[0].warnings) == 3
     trap.assert_untouched()
     assert repr(plain(text)[:40])[1:-1] in plain(str(refused.value))
 
@@ -311,12 +311,12 @@ def values_of(path: Path) -> np.ndarray:
     return torque
 
 
-def test_what_a_sign_was_read_as_is_noted(tmp_path: Path) -> None:
+def test_what_a_sign_was_read_as_is_warned_of(tmp_path: Path) -> None:
     (tmp_path / "log.mf4").write_bytes(mf4(channels(formula("X^2"))))
-    notes = hersey.read(tmp_path / "log.mf4").files[0].notes
-    assert [note for note in notes if "'^'" in note] == [
-        "'Torque': '^' in its formula 'X^2' was read as a power"
-    ]
+    kind = "sign in a formula read as a power"
+    (power,) = [each for each in hersey.read(tmp_path / "log.mf4").files[0].warnings if each.kind == kind]
+    assert (power.values["channel"], power.values["formula"]) == ("Torque", "X^2")
+    assert str(power) == "'Torque': '^' in its formula 'X^2' was read as a power"
 
 
 SOUND: dict[str, Callable[[float], float]] = {

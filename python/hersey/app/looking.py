@@ -46,7 +46,7 @@ def look(path: Path) -> dict[str, Any]:
         "means": means,
         "rows": report.rows,
         "cut_off": log.cut_off,
-        "notes": list(log.notes),
+        "warnings": [each.to_dict() for each in log.warnings],
         "clocks": [_clock(clock) for clock in report.clocks],
         "own_clock": any(channel.clock is not None for channel in log.channels),
         "channels": [
@@ -99,7 +99,7 @@ def _clock(clock: Any) -> dict[str, Any]:
         "duration": _finite(clock.duration),
         "gaps": clock.gaps,
         "lost": _finite(clock.lost),
-        "findings": clock.findings(),
+        "warnings": [each.to_dict() for each in clock.warnings],
     }
 
 
@@ -118,7 +118,7 @@ def _channel(report: ChannelReport, name: str, unit: str, values: FloatArray) ->
         "missing": traits.missing,
         "rows": traits.rows,
         "dead": is_dead(values),
-        "findings": list(report.findings),
+        "warnings": [each.to_dict() for each in report.warnings],
         "preview": preview(values),
     }
 

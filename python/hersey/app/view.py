@@ -61,7 +61,7 @@ def _channels(one: Analysis, look: Mapping[str, Any]) -> list[dict[str, Any]]:
     rates = {clock["name"]: clock["interval"] for clock in look["clocks"]}
     rows = [
         {
-            **{key: channel[key] for key in ("name", "written", "low", "high", "preview", "findings")},
+            **{key: channel[key] for key in ("name", "written", "low", "high", "preview", "warnings")},
             "column": column,
             "proposed": channel["unit"],
             "interval": rates.get(channel["name"]),

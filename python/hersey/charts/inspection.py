@@ -144,6 +144,6 @@ def _panel(channel: ChannelReport, values: FloatArray, time: FloatArray | None, 
         points = plot(marks).mark_point(color=ORANGE, size=90, strokeWidth=2)
         layers.append(points.encode(x="x:Q", y="y:Q", tooltip=[alt.Tooltip("kind:N")]))
     look: Row = {"anchor": "start", "fontSize": 11, "subtitleFontSize": 10}
-    said = "; ".join(channel.findings)
+    said = "; ".join(map(str, channel.warnings))
     heading = alt.Title(name + role, subtitle=said[:110] or "nothing found", **look)
     return alt.LayerChart(layer=layers, width=WIDTH, height=_HEIGHT, title=heading)

@@ -149,7 +149,7 @@ class Reading:
             log: TorqueLog | MeansTable = recipe.log(machine, progress=progress)
         for file in log.files:
             if file.missing_rows:
-                _warn(*(f"{file.name}: {note}" for note in file.notes))
+                _warn(*(str(each.within(file.name)) for each in file.warnings))
         stated = set() if machine is None else set(machine.sensors.stated)
         for role in sorted(stated and stated & set(recipe.chosen.sensors.stated)):
             _warn(f"errors of the sensor of {role}: those of the mapping are used, {_NOT_OF_FILE}")

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from hersey.errors import HerseyError, MissingFileError, UnreadableLogError, meant, printable
+from hersey.schema.warning import Warning
 
 _WAY_OUT = "wait until the logger has closed it, or copy it first"
 _CHUNK = 1 << 20
@@ -78,8 +79,8 @@ class OpenFile:
         if self.sha256() != sha256:
             raise self._changed("it was written anew")
 
-    def growth(self, sha256: str) -> list[str]:
-        """Return notes on a file that a logger still appends to; ``sha256`` is that of the bytes read.
+    def growth(self, sha256: str) -> list[Warning]:
+        """Return a warning if a logger still appends to the file; ``sha256`` is that of the bytes read.
 
         Raises
         ------
@@ -92,8 +93,15 @@ class OpenFile:
             self.refuse_other_bytes(sha256)
         if not grown:
             return []
-        read = f"its first {self.size} bytes were used"
-        return [f"the file grew from {self.size} to {now} bytes while it was read: {read}"]
+        return [
+            Warning(
+                "file grew while it was read",
+                "the file grew from {before} to {after} bytes while it was read: its first {before} bytes "
+                "were used",
+                before=self.size,
+                after=now,
+            )
+        ]
 
     def _changed(self, change: str) -> UnreadableLogError:
         return UnreadableLogError(f"{self.path.name} changed while it was read: {change}: {_WAY_OUT}")

@@ -112,7 +112,7 @@ def _runs(whole: TraceFile, file: str) -> tuple[TraceFile, ...]:
     """The runs in what a file holds, split as the runs of a log are."""
     left_out = LeftOut()
     runs = runs_of(whole.time, None, file, lambda row: f"row {row + 1} of the table", left_out)
-    notes = tuple(left_out.notes())
+    notes = tuple(map(str, left_out.warnings()))
     if len(runs) == 1:
         return (replace(whole, time=whole.time[runs[0]], value=whole.value[runs[0]], notes=notes),)
     return tuple(

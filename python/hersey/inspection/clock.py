@@ -9,6 +9,7 @@ import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.result import OPEN, Means, Record
+from hersey.schema.warning import Warning
 
 #: Rows are missing where an interval is longer than so many usual ones (of an uneven clock: more).
 GAP, GAP_OF_UNEVEN = 1.5, 5.0
@@ -41,7 +42,7 @@ class Clock(Record):
         Rows with the time of the row before.
     """
 
-    also_stated = ("findings",)
+    also_stated = ("warnings",)
 
     name: str
     rows: int
@@ -62,25 +63,63 @@ class Clock(Record):
         """Whether intervals differ by more than lost rows explain."""
         return self.uneven > UNEVEN_SHARE
 
-    def findings(self) -> list[str]:
-        """What one must know of this clock, in words."""
-        said = []
-        if self.back:
-            at = "" if self.first_back is None else f", first at row {self.first_back + 1}"
-            said.append(f"time steps back {_times(self.back)}{at}: split or sort the file there")
-        if self.is_uneven:
-            off = f"{self.uneven:.1%} of its intervals are off by over {UNEVEN:.0%}"
-            said.append(f"the clock is uneven: {off}")
-        if self.gaps:
-            said.append(
-                f"rows are missing at {_places(self.gaps)}: {self.lost:.3g} s in all, "
-                f"{self.longest_gap:.3g} s at the longest"
-            )
-        if self.repeated:
-            said.append(f"{self.repeated} rows carry the time of the row before")
-        if self.missing:
-            said.append(f"{self.missing} rows have no time")
-        return said
+    @property
+    def warnings(self) -> Annotated[tuple[Warning, ...], Means("what one must know of this clock")]:
+        """What one must know of this clock."""
+        found = (self._back(), self._uneven(), self._gaps(), self._repeated(), self._without_time())
+        return tuple(each for each in found if each is not None)
+
+    def _back(self) -> Warning | None:
+        if not self.back:
+            return None
+        return Warning(
+            "time steps back",
+            "time steps back "
+            + ("once" if self.back == 1 else "{times} times")
+            + ("" if self.first_back is None else ", first at row {row}"),
+            severity="act",
+            remedy="split or sort the file there",
+            times=self.back,
+            row=None if self.first_back is None else self.first_back + 1,
+        )
+
+    def _uneven(self) -> Warning | None:
+        if not self.is_uneven:
+            return None
+        return Warning(
+            "clock uneven",
+            "the clock is uneven: {share:.1%} of its intervals are off by over {limit:.0%}",
+            severity="watch",
+            share=self.uneven,
+            limit=UNEVEN,
+        )
+
+    def _gaps(self) -> Warning | None:
+        if not self.gaps:
+            return None
+        return Warning(
+            "rows missing",
+            "rows are missing at {places} {places:place|places}: {lost:.3g} s in all, {longest:.3g} s at the "
+            "longest",
+            severity="watch",
+            places=self.gaps,
+            lost=self.lost,
+            longest=self.longest_gap,
+        )
+
+    def _repeated(self) -> Warning | None:
+        if not self.repeated:
+            return None
+        return Warning(
+            "times repeated",
+            "{rows} {rows:row carries|rows carry} the time of the row before",
+            rows=self.repeated,
+        )
+
+    def _without_time(self) -> Warning | None:
+        if not self.missing:
+            return None
+        return Warning("rows without a time", "{rows} {rows:row has|rows have} no time", rows=self.missing)
 
 
 def clock_of(name: str, time: FloatArray) -> Clock:
@@ -135,11 +174,3 @@ def _resolution(time: FloatArray, forward: FloatArray) -> float | None:
     step = float(np.min(np.diff(levels, prepend=0.0)))
     ratio = levels / step
     return step if step > 0 and np.all(np.abs(ratio - np.round(ratio)) < 0.05) else None
-
-
-def _times(count: int) -> str:
-    return "once" if count == 1 else f"{count} times"
-
-
-def _places(count: int) -> str:
-    return "1 place" if count == 1 else f"{count} places"

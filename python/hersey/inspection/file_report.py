@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from hersey.inspection.raw import Lacking, RawChannel, RawLog, roles_of
 from hersey.log.channels import OTHER_ROLES, ChannelChoice, Stated, is_of_kind
 from hersey.log.torque_log import NO_CLOCK
 from hersey.result import Record
+from hersey.schema.warning import Warning
 from hersey.units import conversion
 
 #: A step of a role's channel matters if it is this share of its small readings (their lowest tenth).
@@ -30,14 +32,14 @@ MEANS = "a table of means"
 
 @dataclass(frozen=True)
 class ChannelReport(Record):
-    """One channel: its name, the role it plays (empty if none), its traits, and findings in words."""
+    """One channel: its name, the role it plays (empty if none), its traits, and what is wrong with it."""
 
     name: str
     unit: str
     role: str
     clock: str
     traits: Traits
-    findings: tuple[str, ...]
+    warnings: tuple[Warning, ...]
 
 
 @dataclass(frozen=True)
@@ -53,7 +55,7 @@ class FileReport(Record):
     clocks: tuple[Clock, ...]
     channels: tuple[ChannelReport, ...]
     lacking: Mapping[str, Lacking]
-    notes: tuple[str, ...]
+    warnings: tuple[Warning, ...]
     cut_off: bool
 
     @property
@@ -73,10 +75,10 @@ def file_report(log: RawLog, choices: dict[str, ChannelChoice], stated: Stated) 
         column, clock = channel.column, clock_names.get(channel.tick, "")
         role = role_of.get(column.index, "")
         shown = traits(channel.values, stands=role in ("torque", "speed") or _is_speed(channel))
-        findings = _findings(channel, shown, role) if role != "time" else ()
-        channels.append(ChannelReport(column.path, column.unit, role, clock, shown, findings))
+        warnings = _warnings(channel, shown, role) if role != "time" else ()
+        channels.append(ChannelReport(column.path, column.unit, role, clock, shown, warnings))
     rows = max((channel.values.size for channel in log.channels), default=0)
-    return FileReport(log.name, log.format, rows, clocks, tuple(channels), without, log.notes, log.cut_off)
+    return FileReport(log.name, log.format, rows, clocks, tuple(channels), without, log.warnings, log.cut_off)
 
 
 def _clocks(
@@ -114,40 +116,84 @@ def _is_speed(channel: RawChannel) -> bool:
     return bool(_SPEED_NAME.search(channel.column.name)) or is_of_kind("speed", channel.column.unit)
 
 
-def _findings(channel: RawChannel, channel_traits: Traits, role: str) -> tuple[str, ...]:
+def _warnings(channel: RawChannel, channel_traits: Traits, role: str) -> tuple[Warning, ...]:
     steady = "constant" if role in OTHER_ROLES else ""  # a load, or a radius, may stay what it is
     faults = [fault for fault in channel_traits.faults if fault.kind != steady]
-    said = [_in_words(fault, channel_traits, channel.column.unit, role) for fault in faults]
+    found = [_of_fault(fault, channel_traits, channel.column.unit, role) for fault in faults]
     if channel.odd:
-        said.append(f"{channel.odd} cells hold no number")
-    if channel_traits.missing > channel.odd:
-        said.append(f"{channel_traits.missing - channel.odd} rows lack a number")
+        found.append(
+            Warning(
+                "cells that are no numbers",
+                "{cells} {cells:cell holds|cells hold} no number",
+                severity="watch",
+                cells=channel.odd,
+            )
+        )
+    if (lacking := channel_traits.missing - channel.odd) > 0:
+        found.append(
+            Warning(
+                "numbers missing",
+                "{rows} {rows:row lacks|rows lack} a number",
+                severity="watch",
+                rows=lacking,
+            )
+        )
     if channel_traits.refresh > 1:
-        said.append(
-            f"each value is held for {channel_traits.refresh} rows: the sensor is slower than the log"
+        found.append(
+            Warning(
+                "sensor slower than the log",
+                "each value is held for {rows} rows: the sensor is slower than the log",
+                rows=channel_traits.refresh,
+            )
         )
     if role in ("torque", "speed"):
-        said += _coarse(channel.values, channel_traits, channel.column.unit)
-    return tuple(said)
+        found += _coarse(channel.values, channel_traits, channel.column.unit)
+    return tuple(found)
 
 
-def _in_words(fault: Fault, channel_traits: Traits, unit: str, role: str) -> str:
-    value = f"{fault.value:.6g} {unit}".strip()
-    at = f"from row {fault.first + 1}" if fault.places == 1 else f"at {fault.places} places"
-    rows = f"{fault.rows} row{'s' if fault.rows > 1 else ''} ({fault.rows / channel_traits.rows:.2g} of all)"
-    if fault.kind == "constant":
-        return f"{value} throughout: a dead channel, or nothing changed"
-    if fault.kind == "stuck":
-        what = "the sensor is stuck" if role else "held"
-        return f"{what} at {value} for {rows} {at}" if fault.places == 1 else f"{what} for {rows} {at}"
-    if fault.kind == "spikes":
-        return f"spikes in {rows} {at}, as far as {value}"
-    if fault.kind == "drop-outs":
-        return f"drops out to 0 in {rows} {at}"
-    return f"{fault.kind} at {value}: {rows} {at}"
+def _of_fault(fault: Fault, channel_traits: Traits, unit: str, role: str) -> Warning:
+    """A fault with its rows; its value is in the unit of the channel."""
+    numbers: dict[str, Any] = {
+        "severity": "watch" if role else "note",
+        "reading": f"{fault.value:.6g} {unit}".strip(),
+        "place": f"from row {fault.first + 1}" if fault.places == 1 else f"at {fault.places} places",
+        "value": fault.value,
+        "unit": unit,
+        "rows": fault.rows,
+        "share": fault.rows / channel_traits.rows,
+        "row": fault.first + 1,
+        "places": fault.places,
+    }
+    match fault.kind:
+        case "constant":
+            return Warning(fault.kind, "{reading} throughout: a dead channel, or nothing changed", **numbers)
+        case "stuck":
+            return Warning(
+                fault.kind,
+                ("the sensor is stuck" if role else "held")
+                + (" at {reading}" if fault.places == 1 else "")
+                + " for {rows} {rows:row|rows} ({share:.2g} of all) {place}",
+                **numbers,
+            )
+        case "spikes":
+            return Warning(
+                fault.kind,
+                "spikes in {rows} {rows:row|rows} ({share:.2g} of all) {place}, as far as {reading}",
+                **numbers,
+            )
+        case "drop-outs":
+            return Warning(
+                fault.kind, "drops out to 0 in {rows} {rows:row|rows} ({share:.2g} of all) {place}", **numbers
+            )
+    return Warning(
+        fault.kind,
+        "{fault} at {reading}: {rows} {rows:row|rows} ({share:.2g} of all) {place}",
+        fault=fault.kind,
+        **numbers,
+    )
 
 
-def _coarse(values: FloatArray, channel_traits: Traits, unit: str) -> list[str]:
+def _coarse(values: FloatArray, channel_traits: Traits, unit: str) -> list[Warning]:
     """A step that the noise does not blur and that is large beside the small readings."""
     size = np.abs(values[np.isfinite(values) & (values != 0.0)])
     step = channel_traits.step
@@ -156,10 +202,19 @@ def _coarse(values: FloatArray, channel_traits: Traits, unit: str) -> list[str]:
     small = float(np.quantile(size, 0.1))
     if step < COARSE * small:
         return []
-    return [f"coarse: its step of {step:.3g} {unit} is {step / small:.0%} of its small readings"]
+    return [
+        Warning(
+            "coarse",
+            "coarse: its step of {step:.3g} {unit} is {share:.0%} of its small readings",
+            severity="watch",
+            step=step,
+            unit=unit,
+            share=step / small,
+        )
+    ]
 
 
-#: Width of a name in the table, and findings of other channels shown at the most.
+#: Width of a name in the table, and warnings of channels shown at the most.
 _WIDTH, _SHOWN = 26, 30
 
 
@@ -171,19 +226,19 @@ def file_lines(file: FileReport, *, table: bool) -> list[str]:
             f"  clock '{clock.name}': every {clock.interval:.4g} s ({_rate(clock.interval)}), "
             f"{clock.duration:.5g} s in all"
         )
-        lines += [f"  ! {finding}" for finding in clock.findings()]
+        lines += [f"  ! {warning}" for warning in clock.warnings]
     if not file.clocks and MEANS not in file.format:
         named = Setting("time", "channel").to()
         lines.append(f"  ! no channel is a clock: rates and gaps are not known; name it with {named}")
     lines += _table(file) if table else []
-    findings = [(c, finding) for c in file.channels for finding in c.findings]
-    findings.sort(key=lambda pair: not pair[0].role)
-    lines += [f"  {'!' if c.role else '-'} {c.name}: {finding}" for c, finding in findings[:_SHOWN]]
-    if len(findings) > _SHOWN:
+    channels = sorted(file.channels, key=lambda channel: not channel.role)
+    warnings = [(c, warning.within(c.name)) for c in channels for warning in c.warnings]
+    lines += [f"  {'!' if c.role else '-'} {warning}" for c, warning in warnings[:_SHOWN]]
+    if len(warnings) > _SHOWN:
         has_them = "--json has them" if way_in() == "terminal" else "files has them"
-        lines.append(f"  - and {len(findings) - _SHOWN} more ({has_them})")
+        lines.append(f"  - and {len(warnings) - _SHOWN} more ({has_them})")
     lines += [f"  ! {role}: {why}" for role, why in file.without.items()]
-    lines += [f"  - {note}" for note in file.notes]
+    lines += [f"  - {warning}" for warning in file.warnings]
     return lines
 
 

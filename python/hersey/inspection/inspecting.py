@@ -24,6 +24,7 @@ from hersey.log.mapping import LogMapping, as_stated, mapping_of, read_with_mapp
 from hersey.log.means import MeansTable, read_means
 from hersey.log.torque_log import Correction, LogFile, TorqueLog
 from hersey.result import Means, Result
+from hersey.schema.warning import Warning
 from hersey.units import takes_si
 
 if TYPE_CHECKING:
@@ -65,7 +66,7 @@ class Inspection(Result):
         What the mapping had corrected.
     support
         Dwells and what they can tell, or None if the logs cannot be read.
-    cautions
+    warnings
         Units, tare and order of the dwells where they are doubtful, as a fit says them too.
     """
 
@@ -75,7 +76,7 @@ class Inspection(Result):
     dropped: Annotated[Mapping[str, int], Means("rows left out, by file")]
     corrections: tuple[Correction, ...]
     support: Support | None
-    cautions: Annotated[tuple[str, ...], Means("units, tare and order that are doubtful")] = ()
+    warnings: Annotated[tuple[Warning, ...], Means("units, tare and order that are doubtful")] = ()
 
     def to_frame(self) -> pl.DataFrame:
         """Return one row per channel; its numbers in its own ``unit``."""
@@ -91,7 +92,7 @@ class Inspection(Result):
                 "rows": channel.traits.rows,
                 "missing rows": channel.traits.missing,
                 **{f"{name} (own unit)": getattr(channel.traits, name) for name in numbers},
-                "findings": "; ".join(channel.findings),
+                "warnings": "; ".join(map(str, channel.warnings)),
             }
             for file in self.files
             for channel in file.channels
@@ -117,7 +118,7 @@ class Inspection(Result):
         ]
         if self.needed:
             lines.append(f"readable as a log of torque with {_switches(self.needed)}")
-        lines += [f"! {caution}" for caution in self.cautions]
+        lines += [f"! {warning.sentence}" for warning in self.warnings]
         if self.support is None:
             return "\n".join([*lines, f"No fit is possible: {self._hindrance()}"])
         lines.append(f"{self.support.dwells} dwells")
@@ -143,18 +144,18 @@ class Inspection(Result):
         )
 
     @property
-    def findings(self) -> list[str]:
-        """Every finding on a clock or on a channel that plays a role, behind its file."""
-        said = []
+    def channel_warnings(self) -> tuple[Warning, ...]:
+        """Every warning of a clock or of a channel that plays a role, with its file."""
+        found: list[Warning] = []
         for file in self.files:
-            said += [f"{file.name}: {finding}" for clock in file.clocks for finding in clock.findings()]
-            said += [
-                f"{file.name}: {channel.name}: {finding}"
+            found += [each.within(file.name) for clock in file.clocks for each in clock.warnings]
+            found += [
+                each.within(channel.name).within(file.name)
                 for channel in file.channels
-                for finding in channel.findings
+                for each in channel.warnings
                 if channel.role
             ]
-        return said
+        return tuple(found)
 
 
 @takes_si(min_dwell="time", every="time", radius="length", load="force")
@@ -219,7 +220,7 @@ def inspect(
             return SteadyPoints.from_table(log, rotation=rotation)
         return log.steady(min_dwell=min_dwell, tare=tare, rotation=rotation)
 
-    reports = tuple(_with_notes(report, log.files) for report in reports)
+    reports = tuple(_with_warnings(report, log.files) for report in reports)
     dropped = {file.name: file.missing_rows for file in log.files if file.missing_rows}
     support, doubts = _supported(dwells, temperature_scale)
     return Inspection(reports, "", needed, dropped, done, support, (*doubtful_units(log), *doubts))
@@ -239,7 +240,9 @@ def _said(mapping: LogMapping, reading: Reading) -> tuple[dict[str, ChannelChoic
     return choices, Stated(*(getattr(stated, f.name) or getattr(said.stated, f.name) for f in fields(Stated)))
 
 
-def _supported(reduce: Callable[[], SteadyPoints], temperature_scale: str) -> tuple[Support, tuple[str, ...]]:
+def _supported(
+    reduce: Callable[[], SteadyPoints], temperature_scale: str
+) -> tuple[Support, tuple[Warning, ...]]:
     """What dwells support, and what is doubtful of them; a log without a dwell supports nothing."""
     try:
         points = reduce()
@@ -247,8 +250,7 @@ def _supported(reduce: Callable[[], SteadyPoints], temperature_scale: str) -> tu
         return Support(0, 0, None, (), {}, (), (str(error),)), ()
     notes = () if isinstance(points.log, MeansTable) else points.warnings  # what a table lacks, support says
     found = (*doubtful_tare(points), *notes, *doubtful_order(points), *misleading(points))
-    doubts = tuple(each.sentence for each in found)
-    return support_of_points(points, temperature_scale=temperature_scale), doubts
+    return support_of_points(points, temperature_scale=temperature_scale), found
 
 
 def _table(
@@ -267,10 +269,11 @@ def _table(
     )
 
 
-def _with_notes(report: FileReport, files: Sequence[LogFile]) -> FileReport:
+def _with_warnings(report: FileReport, files: Sequence[LogFile]) -> FileReport:
     """The report of a file with what was done to read it as a log: rows left out, above all."""
-    told = [note for file in files if file.name.partition(", run ")[0] == report.name for note in file.notes]
-    return replace(report, notes=(*report.notes, *(note for note in told if note not in report.notes)))
+    own = [file for file in files if file.name.partition(", run ")[0] == report.name]
+    others = [each for file in own for each in file.warnings if each not in report.warnings]
+    return replace(report, warnings=(*report.warnings, *others))
 
 
 def _read(

@@ -19,6 +19,7 @@ from hersey.log.text.layout import Layout
 from hersey.log.text.numbers import NULLS
 from hersey.log.text.separators import BLANKS, split, tabbed
 from hersey.log.text.stamps import Stamps, counted_since, numbers_in
+from hersey.schema.warning import Warning
 
 
 @dataclass(frozen=True)
@@ -44,7 +45,7 @@ class RawLog:
     format: str
     channels: tuple[RawChannel, ...]
     comments: tuple[str, ...]
-    notes: tuple[str, ...]
+    warnings: tuple[Warning, ...]
     cut_off: bool
 
 
@@ -62,7 +63,7 @@ def raw_channels(path: str | Path) -> RawLog:
         return _of_text(path)
     with opened(path, kind) as recording:
         channels = []
-        notes = list(recording.notes)
+        warnings = list(recording.warnings)
         clocks: dict[str, FloatArray] = {}  # each loaded once: a group of channels has one
         for index, signal in enumerate(recording.signals):
             column = Column(index, signal.name, signal.unit, signal.group)
@@ -71,7 +72,15 @@ def raw_channels(path: str | Path) -> RawLog:
                 if signal.clock is not None and signal.tick not in clocks:
                     clocks[signal.tick] = signal.clock()
             except HerseyError as error:
-                notes.append(f"'{column.path}' cannot be read: {error}")
+                warnings.append(
+                    Warning(
+                        "channel unreadable",
+                        "'{channel}' cannot be read: {error}",
+                        severity="watch",
+                        channel=column.path,
+                        error=str(error),
+                    )
+                )
                 continue
             unit = "" if signal.unit else counted_since(signal.name, values)[0]
             column = Column(index, signal.name, signal.unit or unit, signal.group)
@@ -80,8 +89,8 @@ def raw_channels(path: str | Path) -> RawLog:
                 RawChannel(column, values, clock=clock, tick=signal.tick or f"{signal.rows} rows")
             )
         kind, comments, cut_off = recording.format, recording.comments, recording.cut_off
-        notes += [note for note in recording.notes if note not in notes]
-    return RawLog(printable(path.name), kind, tuple(channels), comments, tuple(notes), cut_off)
+        warnings += [each for each in recording.warnings if each not in warnings]
+    return RawLog(printable(path.name), kind, tuple(channels), comments, tuple(warnings), cut_off)
 
 
 @dataclass(frozen=True)
@@ -147,8 +156,8 @@ def _of_text(path: Path) -> RawLog:
         for column in layout.named
         if column.index not in layout.texts and f"{column.index}" in frame.columns
     ]
-    notes = (*layout.notes, *end.notes, *growth)
-    return RawLog(printable(path.name), "text", tuple(channels), layout.comments, notes, end.cut_off)
+    warnings = (*layout.warnings, *end.warnings, *growth)
+    return RawLog(printable(path.name), "text", tuple(channels), layout.comments, warnings, end.cut_off)
 
 
 def _frame(text: bytes, layout: Layout) -> pl.DataFrame:

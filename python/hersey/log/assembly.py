@@ -15,20 +15,22 @@ from hersey.log.channels import (
     EVERY,
     OTHER_ROLES,
     ROLES,
+    constant_channel,
     find_channel,
     is_dead,
     no_channel,
     refuse_two_roles,
     role_conversion,
 )
-from hersey.log.friction import Chosen, beside, in_rotation, notes_on, slow_roles, unused
+from hersey.log.friction import Chosen, beside, computed, in_rotation, slow_roles, unused
 from hersey.log.impossible import Impossible, Reading, impossible_rows, marked_rows
-from hersey.log.recording import INVALID, INVALID_TIME, Recording, Signal
+from hersey.log.recording import INVALID, INVALID_TIME, Recording, Signal, columns, nothing_to_read
 from hersey.log.rows import LeftOut, runs_with_records
 from hersey.log.text.column import Column
-from hersey.log.text.stamps import counted_since, is_clock_name
+from hersey.log.text.stamps import clock_without_unit, counted_since, is_clock_name
 from hersey.log.torque_log import NO_CLOCK, Channel, LogFile, Run
 from hersey.log.wanted import Wanted
+from hersey.schema.warning import Warning
 from hersey.units import Conversion
 
 
@@ -71,7 +73,7 @@ class Assembly:
         self.columns = columns(recording)
         self._lacking: dict[str, LeftOut] = {}  # rows of the torque that lack a role that may be slow
         self._clocks: dict[str, tuple[FloatArray, str, Channel]] = {}
-        self._dead: dict[int, str] = {}
+        self._dead: dict[int, Warning | None] = {}
         self.chosen: Chosen = {}
         for role in wanted.roles:
             if role != "time":  # which is that of the channel
@@ -91,13 +93,13 @@ class Assembly:
             If too many numbers are missing, a clock runs backwards, or the channels do not overlap.
         """
         left_out, torque = LeftOut(), self.parts["torque"]
-        notes = list(self.recording.notes)
+        warnings = list(self.recording.warnings)
         marked, rows_marked = self._leave_out(self._marked)
         self._leave_out_missing(left_out)
         impossible, rows_impossible = self._leave_out(self._impossible)
         impossible = (*marked, *impossible)
-        notes += [each.note() for each in impossible]
-        arrays, rows = self._on_one_clock(notes)
+        warnings += [each.warning() for each in impossible]
+        arrays, rows = self._on_one_clock(warnings)
         arrays = in_rotation(arrays, self.chosen, self.stated)
         needed = [values for role, values in arrays.items() if role not in self._lacking]
         usable = np.logical_and.reduce([np.isfinite(values) for values in needed])
@@ -106,8 +108,9 @@ class Assembly:
             left_out.add(bad.size, (f"{self._place(torque, int(row))}: no radius above zero" for row in bad))
             arrays = {role: values[usable] for role, values in arrays.items()}
             rows = rows[usable]
-        notes += [*notes_on(self.chosen, self.stated), *self._dead.values(), *self._unused]
-        log = self._record(tuple(note for note in notes if note))
+        warnings += computed(self.chosen, self.stated)
+        warnings += [*filter(None, self._dead.values()), *self._unused]
+        log = self._record(tuple(warnings))
         log = replace(log, missing_rows=rows_marked + rows_impossible, impossible=impossible)
 
         def place(row: int) -> str:
@@ -115,7 +118,7 @@ class Assembly:
 
         return runs_with_records(log, arrays, place, left_out, self._lacking, drop_missing=self.drop_missing)
 
-    def _on_one_clock(self, notes: list[str]) -> tuple[dict[str, FloatArray], IntArray]:
+    def _on_one_clock(self, warnings: list[Warning]) -> tuple[dict[str, FloatArray], IntArray]:
         """Every channel at the times of the torque that all clocks span, and the rows of these times."""
         torque = self.parts["torque"]
         kept = np.ones(torque.time.size, dtype=bool)
@@ -132,15 +135,21 @@ class Assembly:
         for role, part in self.parts.items():
             same = part.tick == torque.tick
             arrays[role] = part.values[kept] if same else np.interp(arrays["time"], part.time, part.values)
-        notes += [_aligned(part, torque) for part in others]
+        warnings += [_aligned(part, torque) for part in others]
         if not kept.all():
-            notes.append(
-                f"{int((~kept).sum())} of {kept.size} samples of the torque lie outside the time of another "
-                f"channel and were left out ({self._spans()})"
+            warnings.append(
+                Warning(
+                    "samples outside another channel",
+                    "{samples} of {all} samples of the torque lie outside the time of another channel and "
+                    "were left out ({spans})",
+                    samples=int((~kept).sum()),
+                    all=kept.size,
+                    spans=self._spans(),
+                )
             )
         return arrays, torque.rows[kept]
 
-    def _record(self, notes: tuple[str, ...]) -> LogFile:
+    def _record(self, warnings: tuple[Warning, ...]) -> LogFile:
         used = {"time": self._clocks[self.parts["torque"].tick][2]} | {
             p.role: Channel(p.role, p.column.path, p.unit.unit) for p in self.parts.values()
         }
@@ -153,7 +162,7 @@ class Assembly:
             tuple(used[role] for role in (*ROLES, *OTHER_ROLES) if role in used),
             self.recording.comments,
             self.recording.cut_off,
-            notes,
+            warnings,
         )
 
     def _place(self, part: _Part, row: int) -> str:
@@ -190,12 +199,11 @@ class Assembly:
         return _Part(role, column, unit, in_si(values, unit), time, tick, np.arange(values.size), marked)
 
     def _says_nothing(self, column: Column) -> bool:
-        """Whether a channel holds one value throughout, or none; it is noted then."""
+        """Whether a channel holds one value throughout, or none; there is a warning then."""
         if column.index not in self._dead:
             dead = is_dead(self.recording.signals[column.index].load())
-            note = f"'{column}' says nothing, one value throughout: it was passed over"
-            self._dead[column.index] = note if dead else ""
-        return bool(self._dead[column.index])
+            self._dead[column.index] = constant_channel(column) if dead else None
+        return self._dead[column.index] is not None
 
     def _beside_a_speed(self, role: str) -> tuple[Column, ...]:
         """Channels among which to look for a role: for a torque those of the only part with a speed."""
@@ -259,9 +267,9 @@ class Assembly:
         signal = self.recording.signals[column.index]
         unit, meaning = counted_since(column.name, signal.load())
         if unit:
-            note = f"'{column.path}' has no unit and was read as {meaning}"
-            if note not in self.recording.notes:
-                self.recording.notes.append(note)
+            warning = clock_without_unit(column.path, meaning)
+            if warning not in self.recording.warnings:
+                self.recording.warnings.append(warning)
         return Column(column.index, column.name, unit, column.group)
 
     def _by_clock(self) -> Iterator[list[_Part]]:
@@ -293,7 +301,7 @@ class Assembly:
                 )
 
     def _set_apart(self, part: _Part, gone: BoolArray) -> None:
-        """Count the samples that lack only what may be slow, and note the first of them."""
+        """Count the samples that lack only what may be slow, and keep the first of them in words."""
         known = np.isfinite(part.values)
         rows = np.flatnonzero(~known & ~gone)
         lacking = LeftOut()
@@ -359,32 +367,22 @@ class Assembly:
         return ", ".join(f"{p.role} from {p.time[0]:.6g} to {p.time[-1]:.6g} s" for p in self.parts.values())
 
 
-def columns(recording: Recording) -> tuple[Column, ...]:
-    """Return the channels of a recording as columns to choose from."""
-    return tuple(
-        Column(index, signal.name, signal.unit, signal.group)
-        for index, signal in enumerate(recording.signals)
-    )
-
-
-def nothing_to_read(recording: Recording) -> ChannelError:
-    """Return the error for a recording without a channel of numbers."""
-    file = recording.source.name
-    if recording.nothing:
-        return ChannelError(f"{file}: {recording.nothing}")
-    others = ", ".join(recording.others[:40])[:1000] or "nothing"
-    return ChannelError(f"{file} holds no channel of numbers, only {others}")
-
-
-def _aligned(part: _Part, torque: _Part) -> str:
+def _aligned(part: _Part, torque: _Part) -> Warning:
     """What was done to a channel with a clock of its own."""
     step, of_torque = (float(np.median(np.diff(p.time))) for p in (part, torque))
     longest = float(np.max(np.diff(part.time)))
-    faster = "; it was recorded faster, values between were passed over" if step < 0.75 * of_torque else ""
-    return (
-        f"{part.role} '{part.column.path}' has a clock of its own ({_rate(step)}, "
-        f"torque {_rate(of_torque)}): "
-        f"interpolated linearly onto the torque's, over {longest:.3g} s at the most{faster}"
+    return Warning(
+        "clocks aligned",
+        "{role} '{channel}' has a clock of its own ({rate}, torque {torque_rate}): interpolated linearly "
+        "onto the torque's, over {longest:.3g} s at the most"
+        + ("; it was recorded faster, values between were passed over" if step < 0.75 * of_torque else ""),
+        role=part.role,
+        channel=part.column.path,
+        interval=step,
+        torque_interval=of_torque,
+        rate=_rate(step),
+        torque_rate=_rate(of_torque),
+        longest=longest,
     )
 
 

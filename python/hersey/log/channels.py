@@ -12,6 +12,7 @@ import numpy as np
 from hersey.arrays import FloatArray
 from hersey.errors import ISOTHERMAL, ChannelError, Setting, UnitError, WrongKindError, meant, printable
 from hersey.log.text.column import Column
+from hersey.schema.warning import Warning
 from hersey.units import KINDS, Conversion, conversion, nearest_unit
 
 #: Roles of a log's columns, in the order in which they are asked for.
@@ -155,6 +156,15 @@ def is_dead(values: FloatArray) -> bool:
     """Return whether a channel says nothing: no number (NaN stands for a missing one), or one throughout."""
     known = values[np.isfinite(values)]
     return not known.size or (known.size >= _TELLING and float(known.min()) == float(known.max()))
+
+
+def constant_channel(column: Column) -> Warning:
+    """Return the warning of a channel that was passed over because it is dead."""
+    return Warning(
+        "constant channel passed over",
+        "'{column}' says nothing, one value throughout: it was passed over",
+        column=str(column),
+    )
 
 
 def role_conversion(role: str, unit: str) -> tuple[str, Conversion]:

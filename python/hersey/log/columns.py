@@ -10,9 +10,8 @@ import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.errors import UnreadableLogError
-from hersey.log.assembly import columns, nothing_to_read
 from hersey.log.formats import format_of, opened
-from hersey.log.recording import Recording
+from hersey.log.recording import Recording, columns, nothing_to_read
 from hersey.log.text.column import Column
 from hersey.log.text.delimited import DelimitedFile, open_delimited
 

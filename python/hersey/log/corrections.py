@@ -16,6 +16,7 @@ import numpy as np
 from hersey.arrays import FloatArray
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.log.torque_log import CHANNEL_UNITS, STANDING, Correction, Effect, Run, TorqueLog
+from hersey.schema.warning import Warning
 
 #: Time over which a derivative is taken, s: ramps and heaters are slower, noise is faster.
 DERIVATIVE_WINDOW = 0.5
@@ -53,8 +54,12 @@ def torque_from_current(log: TorqueLog | Corrected, *, motor_constant: float) ->
 
     done = _corrected(log, "torque from current", turned, ("motor_constant", f"{motor_constant:g} N m/A"))
     typical = float(np.median(np.abs(np.concatenate([run.torque for run in done.log.runs]))))
-    note = f"the torque channel was a current in A; the median torque is now {typical:.3g} N m"
-    return _noted(done, note, effects=())
+    was_current = Warning(
+        "torque from current",
+        "the torque channel was a current in A; the median torque is now {torque:.3g} N m",
+        torque=typical,
+    )
+    return _warned(done, was_current, effects=())
 
 
 def sign(log: TorqueLog | Corrected, *, torque: int = 1, speed: int = 1) -> Corrected:
@@ -131,8 +136,12 @@ def no_load(log: TorqueLog | Corrected, *, torque: float | TorqueLog | Corrected
         return replace(run, torque=run.torque - np.sign(run.speed) * level)
 
     done = _corrected(log, "no-load torque", freed, source)
-    held = f"{beyond} rows move slower or faster than its dwells: the nearest was used"
-    return _noted(done, held if beyond else "")
+    held = Warning(
+        "speeds beyond the no-load log",
+        "{rows} {rows:row moves|rows move} slower or faster than its dwells: the nearest was used",
+        rows=beyond,
+    )
+    return _warned(done, held) if beyond else done
 
 
 def at_roll(
@@ -172,8 +181,10 @@ def at_roll(
 
     ratios = (("torque_ratio", f"{torque_ratio:g}"), ("speed_ratio", f"{speed_ratio:g}"))
     done = _corrected(log, "gears", geared, *ratios, ("efficiency", f"{efficiency:.4g}"))
-    backwards = back and efficiency != 1.0
-    return _noted(done, f"in {back} rows the roll drives the motor" if backwards else "")
+    backwards = Warning(
+        "roll drives the motor", "in {rows} {rows:row|rows} the roll drives the motor", rows=back
+    )
+    return _warned(done, backwards) if back and efficiency != 1.0 else done
 
 
 def inertia(
@@ -208,7 +219,7 @@ def inertia(
 
     stated = (("moment_of_inertia", f"{moment_of_inertia:g} kg m^2"), ("window", f"{window:g} s"))
     done = _corrected(log, "inertia", freed, *stated)  # counts what is left
-    return _noted(done, _stand_alone(left))
+    return _without_derivative(done, left)
 
 
 def thermal_lag(
@@ -244,7 +255,7 @@ def thermal_lag(
 
     stated = (("time_constant", f"{time_constant:g} s"), ("window", f"{over:g} s"))
     done = _corrected(log, "thermal lag", hurried, *stated)  # counts what is left
-    return _noted(done, _stand_alone(left))
+    return _without_derivative(done, left)
 
 
 def temperature_offset(log: TorqueLog | Corrected, *, offset: float) -> Corrected:
@@ -291,15 +302,21 @@ def _effect(role: str, before: tuple[Run, ...], after: tuple[Run, ...]) -> Effec
     return Effect(role, largest, typical, typical / level if level > 0 else None)
 
 
-def _noted(done: Corrected, note: str, **changed: Any) -> Corrected:
-    """The same with a note, if there is one, and other changes to the last record."""
+def _warned(done: Corrected, warning: Warning, **changed: Any) -> Corrected:
+    """The same with a warning and other changes to the last record."""
     *before, last = done.corrections
-    return Corrected(done.log, (*before, replace(last, note=note, **changed))) if note else done
+    return Corrected(done.log, (*before, replace(last, warnings=(warning,), **changed)))
 
 
-def _stand_alone(left: int) -> str:
-    text = f"{left} rows stand alone between gaps, where no derivative can be had: left as they were"
-    return text if left else ""
+def _without_derivative(done: Corrected, rows: int) -> Corrected:
+    """The same with a warning of the rows that have no derivative, if there are any."""
+    alone = Warning(
+        "rows alone between gaps",
+        "{rows} {rows:row stands|rows stand} alone between gaps, where no derivative can be had: left as "
+        "{rows:it was|they were}",
+        rows=rows,
+    )
+    return _warned(done, alone) if rows else done
 
 
 def _derivative(run: Run, values: FloatArray, window: float) -> FloatArray:

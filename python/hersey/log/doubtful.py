@@ -8,6 +8,7 @@ from hersey.arrays import FloatArray
 from hersey.errors import Setting
 from hersey.log.means import MeansTable
 from hersey.log.torque_log import Run, TorqueLog
+from hersey.schema.warning import Warning
 from hersey.units import celsius
 
 #: A log of a drive has rows more often than so, s, and no lubricant is hotter, degC.
@@ -19,25 +20,41 @@ _MOST = 0.99
 _GREAT, _SLOW, _STEADIER = 10.0, 0.1, 1.0 / 3.0
 
 
-def doubtful_units(log: TorqueLog | MeansTable) -> list[str]:
-    """Return in sentences which unit of a log is doubtful, with the option that mends it; often none."""
+def doubtful_units(log: TorqueLog | MeansTable) -> list[Warning]:
+    """Return which unit of a log is doubtful, with the option that mends it; often none."""
     out = []
     steps = [run.sampling_interval for run in log.runs]
     if steps and min(steps) >= RARE:
         out.append(
-            f"Rows come every {min(steps):.4g} s, as the clock is read: if it counts milliseconds, use "
-            f"{Setting('time', 'unit').to('ms')}."
+            Warning(
+                "unit of time doubtful",
+                "rows come every {interval:.4g} s, as the clock is read",
+                severity="watch",
+                remedy="if it counts milliseconds, use {how:ms}",
+                interval=min(steps),
+                how=Setting("time", "unit"),
+            )
         )
-    hottest = max((celsius(float(np.quantile(each, _MOST))) for each in _temperatures(log)), default=0.0)
-    if hottest > TOO_HOT:
+    hottest = max((float(np.quantile(each, _MOST)) for each in _temperatures(log)), default=0.0)
+    if celsius(hottest) > TOO_HOT:
         out.append(
-            f"Temperature reaches {hottest:.0f} degC, more than a lubricant stands: if the numbers are in K, "
-            f"use {Setting('temperature', 'unit').to('K')}."
+            Warning(
+                "unit of temperature doubtful",
+                "temperature reaches {temperature:.0f degC}, more than a lubricant stands",
+                severity="watch",
+                remedy="if the numbers are in K, use {how:K}",
+                temperature=hottest,
+                how=Setting("temperature", "unit"),
+            )
         )
     if any(_look_exchanged(run) for run in log.runs):
         out.append(
-            "Torque is great and steadier than the speed, which is next to nothing: look "
-            "whether the columns of torque and speed stand under each other's names."
+            Warning(
+                "torque and speed exchanged",
+                "torque is great and steadier than the speed, which is next to nothing",
+                severity="watch",
+                remedy="look whether the columns of torque and speed stand under each other's names",
+            )
         )
     return out
 

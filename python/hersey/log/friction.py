@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -17,6 +18,7 @@ from hersey.log.channels import ChannelChoice, Stated, find_channel, role_conver
 from hersey.log.stating import proposals, unstated
 from hersey.log.text.column import Column
 from hersey.log.torque_log import LogFile, Run
+from hersey.schema.warning import Warning
 from hersey.units import Conversion
 
 Chosen = dict[str, tuple[Column, Conversion]]
@@ -54,7 +56,7 @@ def beside(
     return others
 
 
-def unused(columns: tuple[Column, ...], chosen: Chosen, stated: Stated) -> list[str]:
+def unused(columns: tuple[Column, ...], chosen: Chosen, stated: Stated) -> list[Warning]:
     """Return which columns may be the normal load that nobody stated, and how to state it."""
     if "load" in chosen or stated.load is not None:
         return []
@@ -97,23 +99,43 @@ def in_rotation(arrays: dict[str, FloatArray], chosen: Chosen, stated: Stated) -
     return arrays
 
 
-def notes_on(chosen: Chosen, stated: Stated) -> list[str]:
-    """Return what was computed to have a torque and a speed of rotation, in words."""
-    places = {
-        role: f"'{chosen[role][0].path}'" if role in chosen else _said(value, unit)
-        for role, unit in (("radius", "m"), ("load", "N"))
-        if role in chosen or (value := getattr(stated, role)) is not None
-    }
-    told = []
-    kind = role_conversion("torque", chosen["torque"][1].unit)[0]
-    if kind != "torque":
-        load = f"load ({places['load']}) x " if kind == "friction coefficient" else ""
-        told.append(f"torque is '{chosen['torque'][0].path}' x {load}radius ({places['radius']})")
-    if role_conversion("speed", chosen["speed"][1].unit)[0] != "speed":
-        told.append(f"speed is '{chosen['speed'][0].path}' / radius ({places['radius']})")
-    if "load" in places:
-        told.append(f"the load is {places['load']}")
-    return told
+def computed(chosen: Chosen, stated: Stated) -> list[Warning]:
+    """Return what torque and speed were computed from, and where the load is from."""
+    known = _source("radius", "m", chosen, stated) | _source("load", "N", chosen, stated)
+    kinds = {role: role_conversion(role, chosen[role][1].unit)[0] for role in ("torque", "speed")}
+    torque, speed = (chosen[role][0].path for role in ("torque", "speed"))
+    out = []
+    if kinds["torque"] != "torque":
+        out.append(
+            Warning(
+                "torque computed",
+                "torque is '{channel}' x load ({load_from}) x radius ({radius_from})"
+                if kinds["torque"] == "friction coefficient"
+                else "torque is '{channel}' x radius ({radius_from})",
+                channel=torque,
+                **known,
+            )
+        )
+    if kinds["speed"] != "speed":
+        out.append(
+            Warning("speed computed", "speed is '{channel}' / radius ({radius_from})", channel=speed, **known)
+        )
+    if known["load_from"]:
+        out.append(Warning("load known", "the load is {load_from}", **known))
+    return out
+
+
+def _source(role: str, unit: str, chosen: Chosen, stated: Stated) -> dict[str, Any]:
+    """A radius or a load in SI where it is one number, and in words where it is from; empty if nowhere."""
+    value = getattr(stated, role)
+    if role in chosen:
+        source = f"'{chosen[role][0].path}'"
+    elif isinstance(value, tuple):
+        source = f"one of {len(value)} for each run"
+    else:
+        source = "" if value is None else f"{value:g} {unit}"
+    one = value if role not in chosen and isinstance(value, int | float) else None
+    return {role: one, f"{role}_from": source}
 
 
 def of_each_run(runs: list[tuple[Run, LogFile]], stated: Stated) -> list[tuple[Run, LogFile]]:
@@ -142,10 +164,6 @@ def _scaled(run: Run, log: LogFile, role: str, value: float) -> Run:
         return replace(run, torque=torque, load=np.full(run.torque.shape, value))
     torque = run.torque * value if kinds["torque"] != "torque" else run.torque
     return replace(run, torque=torque, speed=run.speed / value if kinds["speed"] != "speed" else run.speed)
-
-
-def _said(value: float | tuple[float, ...], unit: str) -> str:
-    return f"one of {len(value)} for each run" if isinstance(value, tuple) else f"{value:g} {unit}"
 
 
 def _in_need(role: str, chosen: Chosen) -> str:

@@ -23,6 +23,7 @@ from hersey.log.neighbours import bursts, drop_outs, flips, on_its_way, pulses
 from hersey.log.stray_times import stray_times
 from hersey.log.text.column import Column
 from hersey.result import Means, Record
+from hersey.schema.warning import Warning
 from hersey.units import Conversion
 
 #: Fewer rows than this show no ordinary range.
@@ -110,9 +111,20 @@ class Impossible(Record):
             read = f"{self.low:.10g} to {self.high:.10g}{unit} ({_times(self.rows)})"
         return f"{self.where}: {read} is no {self.role}, {why}"
 
-    def note(self) -> str:
+    def warning(self) -> Warning:
         """Return it as what was done to a file."""
-        return f"{self.rows} row(s) were left out: {self}"
+        return Warning(
+            "impossible readings",
+            "{rows} {rows:row was|rows were} left out: {readings}",
+            rows=self.rows,
+            role=self.role,
+            channel=self.channel,
+            reason=self.reason.value,
+            low=self.low,
+            high=self.high,
+            unit=self.unit,
+            readings=str(self),
+        )
 
 
 @dataclass(frozen=True)

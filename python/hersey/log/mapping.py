@@ -36,6 +36,7 @@ from hersey.log.sensor_tables import sensors_of
 from hersey.log.sensors import Sensors
 from hersey.log.text.delimited import Progress
 from hersey.log.torque_log import LogFile
+from hersey.schema.warning import Warning
 from hersey.units import registry, takes_si
 
 #: A mapping for every log in its directory; one for a single log is called after it, ``bench.hersey.toml``.
@@ -321,14 +322,19 @@ def without_what_is_said(mapping: LogMapping, channels: Mapping[str, str], state
 
 def _as_written(file: LogFile, mapping: LogMapping) -> LogFile:
     """The record of a file, with the unit of a current as it is, and the mapping that was used."""
-    notes = file.notes
+    warnings = file.warnings
     if mapping.source is not None:
-        notes = (*notes, f"channels, units and corrections are those of {mapping.source.name}")
+        used = Warning(
+            "mapping used",
+            "channels, units and corrections are those of {mapping}",
+            mapping=mapping.source.name,
+        )
+        warnings = (*warnings, used)
     if mapping.torque.motor_constant is None:
-        return replace(file, notes=notes)
+        return replace(file, warnings=warnings)
     unit = mapping.torque.unit or "A"
-    used = tuple(replace(c, unit=unit) if c.role == "torque" else c for c in file.channels)
-    return replace(file, notes=notes, channels=used)
+    channels = tuple(replace(c, unit=unit) if c.role == "torque" else c for c in file.channels)
+    return replace(file, warnings=warnings, channels=channels)
 
 
 def _ampere(unit: str) -> float:

@@ -20,7 +20,7 @@ from hersey.errors import HerseyError, InsufficientDataError, ParameterError
 from hersey.log.cell_table import CellTable, cells_of
 from hersey.log.channels import ChannelChoice, Stated, called, find_channel
 from hersey.log.formats.frame import is_frame
-from hersey.log.friction import beside, in_rotation, notes_on, unused
+from hersey.log.friction import beside, computed, in_rotation, unused
 from hersey.log.mean_roles import (
     Role,
     as_long_as_torque,
@@ -34,14 +34,15 @@ from hersey.log.sensors import Sensors
 from hersey.log.text.column import Column
 from hersey.log.torque_log import LARGEST, Channel, LogFile, title_of
 from hersey.result import Result, json_record
+from hersey.schema.warning import Warning
 from hersey.units import takes_si
 
 #: Rows and bytes of a file that is taken for a table of means without being called one, at the most.
 FEW_ROWS, FEW_BYTES = 300, 200_000
 #: Share of neighbouring rows at one speed from which on rows are samples and no means.
 SAMPLED = 0.7
-#: Rows left out that a note names at the most.
-_SHOWN = 5
+#: Rows left out that a warning names at the most.
+_NAMED = 5
 #: Approaches as people write them.
 _APPROACHES = {
     **dict.fromkeys(("from below", "below", "up", "rising", "increasing"), "from below"),
@@ -72,7 +73,7 @@ class MeansTable(Result):
     means
         One `MeanRow` per row that could be read.
     files
-        Each with the rows left out in its notes.
+        Each with the rows left out among its warnings.
     stated_errors
         Whether the table states errors of torque.
     """
@@ -102,12 +103,13 @@ class MeansTable(Result):
     def summary(self) -> str:
         """Return how many rows of which files, and what was left out."""
         lines = [f"{file.name}: table of means, {file.rows} rows" for file in self.files]
-        return "\n".join([*lines, *(f"{file.name}: {n}" for file in self.files for n in file.notes)])
+        warnings = [str(each.within(file.name)) for file in self.files for each in file.warnings]
+        return "\n".join([*lines, *warnings])
 
     def to_dict(self) -> dict[str, Any]:
         """Return files and rows, in SI."""
         rows = [asdict(row) for row in self.means]
-        return json_record({"files": [asdict(file) for file in self.files], "means": rows})
+        return json_record({"files": self.files, "means": rows})
 
     def to_frame(self) -> pl.DataFrame:
         """Return one row per dwell, in SI."""
@@ -248,7 +250,7 @@ def _read(
         _bad(cells, int(i), next(name for name in bad if bad[name][i]), roles) for i in np.flatnonzero(gone)
     ]
     channels = tuple(Channel(role, column.name, unit.unit) for role, (column, unit) in used.items())
-    notes = (*notes_on(used, said), *unused(cells.columns, used, said), *_named(left_out))
+    warnings = (*computed(used, said), *unused(cells.columns, used, said), *_rows_left_out(left_out))
     file = LogFile(
         name=cells.name,
         sha256=cells.sha256,
@@ -257,7 +259,7 @@ def _read(
         missing_rows=len(left_out),
         channels=channels,
         comments=cells.comments,
-        notes=notes,
+        warnings=warnings,
     )
     return rows, file, error is not None
 
@@ -300,11 +302,19 @@ def _bad(cells: CellTable, row: int, role: str, columns: dict[str, Role]) -> str
     return f"row {row + 1} ({role} {text!r})" if text else f"row {row + 1} (no {role})"
 
 
-def _named(left_out: list[str]) -> list[str]:
-    if not left_out:
+def _rows_left_out(named: list[str]) -> list[Warning]:
+    if not named:
         return []
-    more = f" and {len(left_out) - _SHOWN} more" if len(left_out) > _SHOWN else ""
-    return [f"left out for a cell that is no number: {', '.join(left_out[:_SHOWN])}{more}"]
+    return [
+        Warning(
+            "rows left out",
+            "left out for a cell that is no number: {first}"
+            + (" and {others} more" if len(named) > _NAMED else ""),
+            rows=len(named),
+            first=", ".join(named[:_NAMED]),
+            others=max(0, len(named) - _NAMED),
+        )
+    ]
 
 
 def refuse_corrections(stated: bool, name: str) -> None:

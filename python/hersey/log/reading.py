@@ -9,11 +9,12 @@ from typing import Any
 import numpy as np
 
 from hersey.errors import ParameterError
-from hersey.log.assembly import Assembly, columns, nothing_to_read
+from hersey.log.assembly import Assembly
 from hersey.log.channels import OTHER_ROLES, ROLES, ChannelChoice, Stated
 from hersey.log.formats import format_of, opened
 from hersey.log.formats.frame import frame_recording, is_frame
 from hersey.log.friction import of_each_run
+from hersey.log.recording import columns, nothing_to_read
 from hersey.log.text.column import distinct_names
 from hersey.log.text.delimited import Progress, delimited_columns, read_delimited
 from hersey.log.torque_log import LARGEST, LogFile, Run, TorqueLog
@@ -52,8 +53,8 @@ def read(
         Leave temperature out.
     drop_missing
         Leave out rows in which a number is missing, and count them, also where they are many; few are left
-        out, with a note, in any case. So are readings that cannot be right, up to a fifth of a channel, and
-        with this up to a half.
+        out, with a warning, in any case. So are readings that cannot be right, up to a fifth of a channel,
+        and with this up to a half.
     every
         Time between rows, s, where the file has no clock.
     radius

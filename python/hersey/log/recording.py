@@ -17,8 +17,9 @@ from typing import Any
 import numpy as np
 
 from hersey.arrays import FloatArray
-from hersey.errors import UnreadableLogError
-from hersey.log.text.column import name_and_unit
+from hersey.errors import ChannelError, UnreadableLogError
+from hersey.log.text.column import Column, name_and_unit
+from hersey.schema.warning import Warning
 
 #: Characters of a cell of text at the most: what it says beyond is no name.
 LONGEST_CELL = 300
@@ -95,17 +96,45 @@ class Source:
 
 @dataclass
 class Recording:
-    """A file as recorded; ``notes`` grow while channels are loaded, ``cut_off``: its end is missing."""
+    """A file as recorded; ``warnings`` grow while channels are loaded, ``cut_off``: its end is missing."""
 
     format: str
     signals: tuple[Signal, ...]
     others: tuple[str, ...] = ()  #: channels that hold no series of numbers, and what they hold
     comments: tuple[str, ...] = ()
-    notes: list[str] = field(default_factory=list)
+    warnings: list[Warning] = field(default_factory=list)
     cut_off: bool = False
     nothing: str = ""  #: why there are no signals, if the format can tell
     source: Source = Source("", "", 0)
     cells: tuple[Cells, ...] = ()  #: every named column as text, where the file is one of cells
+
+
+def columns(recording: Recording) -> tuple[Column, ...]:
+    """Return the channels of a recording as columns to choose from."""
+    return tuple(
+        Column(index, signal.name, signal.unit, signal.group)
+        for index, signal in enumerate(recording.signals)
+    )
+
+
+def nothing_to_read(recording: Recording) -> ChannelError:
+    """Return the error for a recording without a channel of numbers."""
+    file = recording.source.name
+    if recording.nothing:
+        return ChannelError(f"{file}: {recording.nothing}")
+    others = ", ".join(recording.others[:40])[:1000] or "nothing"
+    return ChannelError(f"{file} holds no channel of numbers, only {others}")
+
+
+def library_warning(library: str, message: str) -> Warning:
+    """Return what a library says of a file."""
+    return Warning(
+        "library warns",
+        "{library} warns: {message}",
+        severity="watch",
+        library=library,
+        message=message[:160],
+    )
 
 
 def library(module: str, reads: str) -> Any:

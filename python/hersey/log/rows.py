@@ -12,6 +12,7 @@ from hersey.arrays import BoolArray, FloatArray, IntArray
 from hersey.errors import DROP_MISSING, Setting, UnreadableLogError
 from hersey.log.slow_channels import LONGEST_INTERVAL, SlowChannel, is_slow
 from hersey.log.torque_log import LogFile, Run
+from hersey.schema.warning import Warning
 
 #: Rows of a run.
 Rows = slice | IntArray
@@ -59,12 +60,20 @@ class LeftOut:
             setting=Setting("time", "channel") if self.out_of_order == self.rows else None,
         )
 
-    def notes(self) -> list[str]:
-        """Return what was left out, in words."""
+    def warnings(self) -> list[Warning]:
+        """Return what was left out."""
         if not self.rows:
             return []
-        more = f"; and {self.rows - len(self.words)} more" if self.rows > len(self.words) else ""
-        return [f"{self.rows} row(s) were left out: {'; '.join(self.words)}{more}"]
+        return [
+            Warning(
+                "rows left out",
+                "{rows} {rows:row was|rows were} left out: {faults}"
+                + ("; and {others} more" if self.rows > len(self.words) else ""),
+                rows=self.rows,
+                faults="; ".join(self.words),
+                others=self.rows - len(self.words),
+            )
+        ]
 
 
 def _way_out() -> str:
@@ -138,7 +147,7 @@ def runs_with_records(
     *,
     drop_missing: bool,
 ) -> list[tuple[Run, LogFile]]:
-    """Return the runs in a file, each with its record: that of the file with rows and notes of its own.
+    """Return the runs in a file, each with its record: that of the file with rows and warnings of its own.
 
     ``arrays`` holds, in SI, time, torque and speed, and temperature, load and number of the run where known.
     A role of ``lacking`` may lack numbers (NaN): if few rows have one it is a slow channel, interpolated
@@ -167,15 +176,18 @@ def runs_with_records(
         gaps.refuse_many(file.name, rows, allowed=drop_missing)
     begins = [place(_first(part)) for part in parts]
     long = [i for i, run in enumerate(runs) if run["time"].size > 1 and run["time"][-1] > run["time"][0]]
-    notes = [note for channel in slow for note in channel.notes()]
+    warnings = [each for channel in slow for each in channel.warnings()]
     if not long:
-        raise UnreadableLogError(f"{file.name}: {'; '.join(notes) or 'all rows carry the same time'}")
+        raise UnreadableLogError(
+            f"{file.name}: {'; '.join(map(str, warnings)) or 'all rows carry the same time'}"
+        )
     for i in set(range(len(runs))) - set(long):
         if count := runs[i]["time"].size:  # what is lost to a slow channel, that counts
             left_out.add(count, [f"{begins[i]}: {count} row(s) of one time between two runs"] * count)
     lost = file.missing_rows + left_out.rows + sum(channel.lost for channel in slow)
-    first = replace(file, missing_rows=lost, notes=(*file.notes, *notes, *left_out.notes()))
-    other = replace(file, missing_rows=0, impossible=(), notes=())
+    warnings = [*file.warnings, *warnings, *left_out.warnings()]
+    first = replace(file, missing_rows=lost, warnings=tuple(warnings))
+    other = replace(file, missing_rows=0, impossible=(), warnings=())
     return [
         _recorded(runs[i], other if number else first, number + 1, len(long), begins[i])
         for number, i in enumerate(long)
@@ -186,12 +198,20 @@ def _recorded(
     run: dict[str, FloatArray], file: LogFile, number: int, runs: int, begins: str
 ) -> tuple[Run, LogFile]:
     """One of the runs in a file, with the record of that file as its own."""
-    name, notes = file.name, file.notes
+    name, warnings = file.name, file.warnings
     if runs > 1:
         name = f"{file.name}, run {number} of {runs}"
-        notes = (*notes, f"run {number} of {runs} in {file.name} begins at {begins}")
+        start = Warning(
+            "run of a file",
+            "run {run} of {runs} in {file} begins at {begins}",
+            run=number,
+            runs=runs,
+            file=file.name,
+            begins=begins,
+        )
+        warnings = (*warnings, start)
     optional = {role: run.get(role) for role in ("temperature", "load")}
-    record = replace(file, name=name, rows=run["time"].size, notes=notes)
+    record = replace(file, name=name, rows=run["time"].size, warnings=warnings)
     return Run(name, run["time"], run["torque"], run["speed"], **optional), record
 
 

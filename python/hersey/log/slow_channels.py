@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hersey.arrays import BoolArray, FloatArray
+from hersey.schema.warning import Warning
 
 #: A channel is slow if it has a value in this share of the rows at the most.
 SLOW = 0.5
@@ -72,20 +73,41 @@ class SlowChannel:
         """Rows that have no value."""
         return self.outside + self.in_gaps
 
-    def notes(self) -> list[str]:
-        """Return what was done, in words."""
+    def warnings(self) -> list[Warning]:
+        """Return what was done to the channel, and the rows that it cost."""
         out = [
-            f"{self.role} '{self.name}' has 1 value in {self.rows_per_value:.3g} rows, every "
-            f"{self.interval:.3g} s: interpolated linearly between its values"
+            Warning(
+                "slow channel interpolated",
+                "{role} '{channel}' has 1 value in {rows_per_value:.3g} rows, every {interval:.3g} s: "
+                "interpolated linearly between its values",
+                role=self.role,
+                channel=self.name,
+                rows_per_value=self.rows_per_value,
+                interval=self.interval,
+            )
         ]
         if self.outside:
             out.append(
-                f"{self.outside} row(s) before the first or behind the last value of {self.role} "
-                f"'{self.name}' were left out"
+                Warning(
+                    "rows outside a slow channel",
+                    "{rows} {rows:row|rows} before the first or behind the last value of {role} '{channel}' "
+                    "{rows:was|were} left out",
+                    rows=self.outside,
+                    role=self.role,
+                    channel=self.name,
+                )
             )
         if self.in_gaps:
             out.append(
-                f"{self.in_gaps} row(s) were left out in gaps of {self.role} '{self.name}' longer than "
-                f"{LONGEST_GAP * self.interval:.3g} s, the first from {self.first_gap} on"
+                Warning(
+                    "gaps of a slow channel",
+                    "{rows} {rows:row was|rows were} left out in gaps of {role} '{channel}' longer than "
+                    "{longest:.3g} s, the first from {first} on",
+                    rows=self.in_gaps,
+                    role=self.role,
+                    channel=self.name,
+                    longest=LONGEST_GAP * self.interval,
+                    first=self.first_gap,
+                )
             )
         return out

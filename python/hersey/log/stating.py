@@ -11,6 +11,7 @@ from typing import Final
 from hersey.errors import Setting, UnstatedRoleError, way_in
 from hersey.log.channels import is_called, is_of_kind
 from hersey.log.text.column import Column
+from hersey.schema.warning import Warning
 
 #: What each role is called, and an amount of it.
 _ROLES: Final = {"radius": ("radius", "25 mm"), "load": ("normal load", "50 N")}
@@ -58,10 +59,17 @@ def unstated(
     )
 
 
-def proposals(role: str, columns: tuple[Column, ...]) -> list[str]:
+def proposals(role: str, columns: tuple[Column, ...]) -> list[Warning]:
     """Return which columns may play a role that nobody stated, and what to write to use them."""
-    word = _ROLES[role][0]
     return [
-        f"column '{column}' may be the {word} and is not used: if it is, say {by_name(role, column)}"
+        Warning(
+            "column may play a role",
+            "column '{column}' may be the {meaning} and is not used",
+            remedy="if it is, {how}" if way_in() == "page" else "if it is, use {how}",
+            column=str(column),
+            role=role,
+            meaning=_ROLES[role][0],
+            how=by_name(role, column),
+        )
         for column in proposed(role, columns)
     ]

@@ -12,6 +12,7 @@ from hersey.arrays import FloatArray
 from hersey.log.impossible import Impossible
 from hersey.log.sensors import Sensors
 from hersey.result import Means, Record, Result
+from hersey.schema.warning import Warning
 from hersey.units import celsius, rpm, takes_si
 
 if TYPE_CHECKING:
@@ -50,7 +51,9 @@ class LogFile(Record):
     channels: tuple[Channel, ...]
     comments: Annotated[tuple[str, ...], Means("comment lines above the header")]
     cut_off: Annotated[bool, Means("the file ends before its time")] = False
-    notes: tuple[str, ...] = ()  #: what was done to read it: clocks aligned, time stamps, lines left out
+    warnings: Annotated[
+        tuple[Warning, ...], Means("what was done to read it: clocks aligned, time stamps, lines left out")
+    ] = ()
     impossible: Annotated[tuple[Impossible, ...], Means("readings that cannot be right")] = ()
 
     @property
@@ -122,14 +125,14 @@ class Correction(Record):
     name: str
     parameters: tuple[tuple[str, str], ...]
     effects: tuple[Effect, ...]
-    note: str = ""
+    warnings: tuple[Warning, ...] = ()
 
     def __str__(self) -> str:
         """Return it as one line."""
         stated = ", ".join(f"{key} {value}" for key, value in self.parameters)
         changed = "; ".join(str(effect) for effect in self.effects)
         moved = f": changed {changed}" if changed else ""
-        return f"{self.name} ({stated}){moved}{'; ' + self.note if self.note else ''}"
+        return "; ".join([f"{self.name} ({stated}){moved}", *map(str, self.warnings)])
 
 
 @dataclass(frozen=True, repr=False)

@@ -79,7 +79,7 @@ function row(channel, view, act) {
   const facts = [`col ${channel.column}`];
   if (channel.role === "time" && channel.interval) facts.push(`${digits(1 / channel.interval, 3)} per second`);
   if (!channel.written && channel.role !== "run") facts.push(channel.proposed ? `${sign(channel.proposed)} by its name` : "no unit in the file");
-  if (channel.role && channel.findings.length) facts.push(channel.findings[0]);
+  if (channel.role && channel.warnings.length) facts.push(channel.warnings[0].text);
   const line = make("tr", { class: faults.length ? "guilty" : null },
     make("td", {}, channel.written ? `${channel.name} [${channel.written}]` : channel.name, make("small", { text: facts.join(" · ") })),
     make("td", {}, preview(channel.preview)),

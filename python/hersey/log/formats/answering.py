@@ -67,7 +67,8 @@ class _Open:
     def state(self) -> dict[str, Any]:
         """What may change while numbers are loaded."""
         assert self.recording is not None
-        return {"notes": self.recording.notes, "cut_off": self.recording.cut_off}
+        warnings = [each.to_dict() for each in self.recording.warnings]
+        return {"warnings": warnings, "cut_off": self.recording.cut_off}
 
     def numbers(self, what: str, index: int) -> bytes:
         """The values of a signal, its clock, or what the file says of each sample, as float64."""

@@ -19,6 +19,7 @@ from hersey.log.text.footer import summary_lines
 from hersey.log.text.layout import SNIFFED, Layout, find_layout
 from hersey.log.text.repeated_header import refuse_another_header
 from hersey.log.text.stamps import Stamps, numbers_in
+from hersey.schema.warning import Warning
 
 #: What stands between the cells of a row where the table is looked for: no cell holds one then.
 _TAB = "\t"
@@ -56,7 +57,7 @@ def open_excel(file: BinaryIO, _name: str) -> Iterator[Recording]:
         table = _rows(recording, group, cells, layout)
         signals += _signals(recording, group, table, layout)
         columns += _columns(group, table, layout)
-        recording.notes += layout.notes
+        recording.warnings += layout.warnings
         recording.comments += tuple(comment.rstrip() for comment in layout.comments)
     recording.signals, recording.others, recording.cells = tuple(signals), tuple(others), tuple(columns)
     yield recording
@@ -95,21 +96,30 @@ def _rows(recording: Recording, group: str, cells: pl.DataFrame, layout: Layout)
     rows = int(filled[-1]) + 1 if filled.size else 0
     last = [_line(row) for row in table.slice(max(0, rows - _LAST), min(rows, _LAST)).iter_rows()]
     if summary := summary_lines(last, layout):
-        place = f"sheet '{group}', " if group else ""
-        recording.notes.append(
-            f"{place}{summary} row(s) below the table were left out: '{last[-summary][:60]}'"
+        recording.warnings.append(
+            Warning(
+                "lines below the table",
+                "{lines} {lines:row|rows} below the table {lines:was|were} left out: '{first}'",
+                where=_sheet(group),
+                lines=summary,
+                first=last[-summary][:60],
+            )
         )
         rows = int(filled[filled < rows - summary][-1]) + 1
     return table.head(rows)
 
 
 def _signals(recording: Recording, group: str, table: pl.DataFrame, layout: Layout) -> Iterator[Signal]:
-    place = f"sheet '{group}', " if group else ""
     for column in layout.named:
         if column.index in layout.texts:
             continue
-        load = partial(_numbers, recording, place, table.to_series(column.index), layout, column)
+        load = partial(_numbers, recording, _sheet(group), table.to_series(column.index), layout, column)
         yield Signal(column.name, column.unit, table.height, load, group=group, line=layout.first_line)
+
+
+def _sheet(group: str) -> str:
+    """The sheet in words, where there are several."""
+    return f"sheet '{group}'" if group else ""
 
 
 def _columns(group: str, table: pl.DataFrame, layout: Layout) -> Iterator[Cells]:
@@ -127,20 +137,31 @@ def _texts(cells: pl.Series, layout: Layout) -> list[str]:
 
 
 def _numbers(
-    recording: Recording, place: str, cells: pl.Series, layout: Layout, column: Column
+    recording: Recording, sheet: str, cells: pl.Series, layout: Layout, column: Column
 ) -> FloatArray:
-    """The numbers of a column: a cell that is none is missing, and noted."""
+    """The numbers of a column: a cell that is none is missing, and warned of."""
     style = layout.stamps.get(column.index)
     written = layout.style if style is None else Stamps(style)
     text = cells.fill_null("")
     values, odd = numbers_in(text, written)
     for row in odd.arg_true() if style is None else ():
+        place = f"{sheet}, " if sheet else ""
         where = f"{recording.source.name}, {place}row {layout.first_line + row}"
         refuse_another_header(where, column, text[row][:LONGEST_CELL], layout.columns)
     for row in odd.arg_true()[:1]:
-        more = f", and {int(odd.sum()) - 1} more in this column" if odd.sum() > 1 else ""
-        note = f"'{text[row][:40]}' is no {'number' if style is None else 'time'}"
-        recording.notes.append(f"{place}row {layout.first_line + row}, column '{column.name}': {note}{more}")
+        recording.warnings.append(
+            Warning(
+                "cells that are no numbers",
+                "row {row}, column '{column}': '{cell}' is no {expected}"
+                + (", and {others} more in this column" if odd.sum() > 1 else ""),
+                where=sheet,
+                row=layout.first_line + row,
+                column=column.name,
+                cell=text[row][:40],
+                expected="number" if style is None else "time",
+                others=int(odd.sum()) - 1,
+            )
+        )
     if isinstance(written, Stamps):
-        recording.notes.append(written.note(column.name))
+        recording.warnings.append(written.warning(column.name))
     return values

@@ -18,6 +18,7 @@ from hersey.log.recording import Recording, Signal, split_unit
 from hersey.log.text.column import refuse_columns, refuse_long_name, refuse_ragged
 from hersey.log.text.layout import encoding_of
 from hersey.log.text.numbers import LONGEST_NUMBER, NumberStyle, is_missing
+from hersey.schema.warning import Warning
 
 _END = "***End_of_Header***"
 _X = "X_Value"
@@ -71,7 +72,9 @@ def open_lvm(file: BinaryIO, name: str) -> Iterator[Recording]:
     recording = Recording("LVM", ())
     if lines[-1].strip():
         recording.cut_off = True
-        recording.notes.append(f"line {len(lines)} has no end: it was left out")
+        recording.warnings.append(
+            Warning("last line cut off", "line {line} has no end: it was left out", line=len(lines))
+        )
     general, segments = _segments(lines[:-1], separator, name)
     style = _style(general, segments)
     names = [segment.names for segment in segments]
@@ -83,8 +86,16 @@ def open_lvm(file: BinaryIO, name: str) -> Iterator[Recording]:
     for number, segment in enumerate(segments, start=1):
         promised = segment.number("Samples", 0, style)
         if promised and len(segment.rows) < promised:
-            recording.notes.append(
-                f"segment {number} of {len(segments)} holds {len(segment.rows)} of {promised:.0f} samples"
+            recording.warnings.append(
+                Warning(
+                    "samples missing",
+                    "segment {segment} of {segments} holds {samples} of {promised:.0f} samples",
+                    severity="watch",
+                    segment=number,
+                    segments=len(segments),
+                    samples=len(segment.rows),
+                    promised=promised,
+                )
             )
     recording.comments = tuple(f"{k}: {v[0]}"[:200] for k, v in general.items() if v and v[0])[:5]
     table = _Table(segments, style, name)

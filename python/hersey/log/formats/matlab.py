@@ -15,7 +15,7 @@ from hersey.log.formats.cells import cell_signals
 from hersey.log.formats.hdf5 import is_hdf5, open_hdf5
 from hersey.log.formats.matlab_tags import check_tags
 from hersey.log.formats.matrices import array_signals
-from hersey.log.recording import Recording, Signal
+from hersey.log.recording import Recording, Signal, library_warning
 
 _DATA = ("data", "values", "value", "signal", "samples")
 _UNITS = ("unit", "units", "Unit", "Units")
@@ -50,8 +50,13 @@ def open_matlab(file: BinaryIO, name: str) -> Iterator[Recording]:
         f"{', '.join(objects)}: tables and timetables can be opened by MATLAB alone; save them as "
         "s = table2struct(T, 'ToScalar', true)"
     )
-    notes = [f"scipy warns: {str(warning.message)[:160]}" for warning in heard]
-    yield Recording("MATLAB", tuple(signals), tuple(others), notes=notes, nothing=nothing if objects else "")
+    yield Recording(
+        "MATLAB",
+        tuple(signals),
+        tuple(others),
+        warnings=[library_warning("scipy", str(warning.message)) for warning in heard],
+        nothing=nothing if objects else "",
+    )
 
 
 def _walk(name: str, value: Any, group: str, signals: list[Signal], others: list[str], depth: int) -> None:

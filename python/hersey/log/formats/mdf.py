@@ -28,9 +28,11 @@ from hersey.log.recording import (
     Signal,
     floats,
     library,
+    library_warning,
     listening,
     split_unit,
 )
+from hersey.schema.warning import Warning
 
 _MASTERS = (2, 3)  # channel types: master, virtual master
 _TIME = (0, 1)  # kinds of master: none given (MDF 3), time
@@ -59,9 +61,8 @@ def open_mdf(file: BinaryIO, _name: str) -> Iterator[Recording]:
         file = io.BytesIO(file.read())
     with listening("asammdf") as heard, asammdf.MDF(file, process_bus_logging=False) as mdf:
         channels, frames = _channels(mdf)
-        recording = Recording(
-            "MF4", (), notes=[f"asammdf warns: {words[:160]}" for words in dict.fromkeys(heard)]
-        )
+        warnings = [library_warning("asammdf", words) for words in dict.fromkeys(heard)]
+        recording = Recording("MF4", (), warnings=warnings)
         several = len({group for group, *_ in channels}) > 1
         recording.signals = tuple(_signal(mdf, recording, heard, channel, several) for channel in channels)
         if frames:
@@ -136,8 +137,13 @@ def _signal(
         except UnreadableLogError as error:
             raise UnreadableLogError(f"channel '{full_name}' {error}") from None
         for formula in _powers:
-            note = f"'{full_name}': '^' in its formula {formula[:80]!r} was read as a power"
-            recording.notes += [note] if note not in recording.notes else []
+            power = Warning(
+                "sign in a formula read as a power",
+                "'{channel}': '^' in its formula {formula!r} was read as a power",
+                channel=full_name,
+                formula=formula[:80],
+            )
+            recording.warnings += [power] if power not in recording.warnings else []
         if problem := next(iter([*_refusals, *(f"cannot be read: {words[:160]}" for words in heard)]), ""):
             raise UnreadableLogError(f"channel '{full_name}' {problem}")
         count = times.size
@@ -147,7 +153,16 @@ def _signal(
             )
         if count < rows and not recording.cut_off:
             recording.cut_off = True
-            recording.notes.append(f"'{full_name}' has {count} of {rows} values: the rest is missing")
+            recording.warnings.append(
+                Warning(
+                    "values missing",
+                    "'{channel}' has {count} of {rows} values: the rest is missing",
+                    severity="watch",
+                    channel=full_name,
+                    count=count,
+                    rows=rows,
+                )
+            )
         return values, times, marked
 
     def part(which: int) -> FloatArray:

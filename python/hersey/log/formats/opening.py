@@ -36,6 +36,7 @@ from hersey.log.formats.recognition import called
 from hersey.log.recording import LONGEST_CELL, Cells, Recording, Signal, Source
 from hersey.processes.child import Child, FailedError, LostError
 from hersey.processes.limits import FROM_OUTSIDE
+from hersey.schema.warning import Severity, Warning
 
 #: What a file may take while it is read, bytes, where the user does not say otherwise, and now.
 _USUAL_MEMORY = 2e9
@@ -184,7 +185,7 @@ class _Reader:
             (),
             tuple(_plain(other, _LONGEST_NAME) for other in about["others"]),
             tuple(map(_plain, about["comments"])),
-            list(map(_plain, about["notes"])),
+            list(map(_warning, about["warnings"])),
             about["cut_off"],
             _plain(about["nothing"]),
             source,
@@ -235,7 +236,7 @@ class _Reader:
         about, content = self._asked({"do": what, "index": index}, most=8 * rows)
         if len(content) % 8:
             raise UnreadableLogError(f"{self.file.path.name} cannot be read: its numbers came in part")
-        recording.notes[:] = map(_plain, about["notes"])
+        recording.warnings[:] = map(_warning, about["warnings"])
         recording.cut_off = about["cut_off"]
         return np.frombuffer(content, dtype=float)
 
@@ -311,6 +312,16 @@ def _allowed(limit: str = "") -> str:
     if way_in() == "python":
         return f"hersey.memory_limit({limit!r})" if limit else "hersey.memory_limit"
     return Setting("max_memory").to(limit)
+
+
+def _warning(about: dict[str, Any]) -> Warning:
+    """A warning of the reader: its words are shown as they are, never as a template."""
+    values = {
+        name: _plain(value) if isinstance(value, str) else value for name, value in about["values"].items()
+    }
+    values["text"] = _plain(about["text"])
+    severity: Severity = "watch" if about["severity"] == "watch" else "note"
+    return Warning(_plain(about["kind"]), "{text}", severity=severity, where=_plain(about["where"]), **values)
 
 
 def _plain(text: str, most: int = _LONGEST) -> str:

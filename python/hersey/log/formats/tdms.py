@@ -12,7 +12,8 @@ import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.errors import UnreadableLogError
-from hersey.log.recording import Recording, Signal, floats, library, listening, split_unit
+from hersey.log.recording import Recording, Signal, floats, library, library_warning, listening, split_unit
+from hersey.schema.warning import Warning
 
 #: Scalings that nptdms applies; it reads a channel with any other one raw.
 _SCALES = {
@@ -44,11 +45,22 @@ def open_tdms(opened: BinaryIO, _name: str) -> Iterator[Recording]:
             tuple(f"{key}: {value}"[:200] for key, value in file.properties.items())[:5],
         )
         if starts and known and first is None:
-            recording.notes.append("some channels say when they started and some do not: all start at 0 s")
+            recording.warnings.append(
+                Warning(
+                    "start times missing",
+                    "some channels say when they started and some do not: all start at 0 s",
+                    severity="watch",
+                )
+            )
         if _is_cut_off(file, opened):
             recording.cut_off = True
-            recording.notes.append("the last segment of the file is incomplete: what is there was read")
-        recording.notes.extend(f"nptdms warns: {words[:160]}" for words in dict.fromkeys(heard))
+            recording.warnings.append(
+                Warning(
+                    "last segment incomplete",
+                    "the last segment of the file is incomplete: what is there was read",
+                )
+            )
+        recording.warnings += [library_warning("nptdms", words) for words in dict.fromkeys(heard)]
         yield recording
 
 

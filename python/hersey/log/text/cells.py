@@ -17,6 +17,7 @@ from hersey.log.text.layout import Layout
 from hersey.log.text.numbers import NULLS, NumberStyle, looks_numeric
 from hersey.log.text.repeated_header import refuse_another_header
 from hersey.log.text.stamps import Stamps, numbers_in
+from hersey.schema.warning import Warning
 
 
 class CellReader:
@@ -30,10 +31,10 @@ class CellReader:
         self.name, self.layout, self.columns, self.strict = name, layout, columns, strict
         self.stamps = {i: Stamps(style) for i, style in layout.stamps.items()}
 
-    def notes(self) -> list[str]:
-        """Return what was done to time stamps."""
+    def warnings(self) -> list[Warning]:
+        """Return how time stamps were read."""
         columns = [column for column in self.columns if column.index in self.stamps]
-        return [self.stamps[column.index].note(column.name) for column in columns]
+        return [self.stamps[column.index].warning(column.name) for column in columns]
 
     def what(self, column: Column) -> str:
         """Return what a cell of a column holds, in words."""

@@ -14,8 +14,8 @@ from hersey.arrays import BoolArray, FloatArray, IntArray
 from hersey.errors import Setting, UnreadableLogError, printable
 from hersey.files.reading import OpenFile, appended
 from hersey.log.believed import in_si
-from hersey.log.channels import Stated, find_channel, is_dead, no_channel, refuse_two_roles
-from hersey.log.friction import beside, in_rotation, notes_on, slow_roles, unused
+from hersey.log.channels import Stated, constant_channel, find_channel, is_dead, no_channel, refuse_two_roles
+from hersey.log.friction import beside, computed, in_rotation, slow_roles, unused
 from hersey.log.impossible import Impossible, Reading, impossible_rows
 from hersey.log.rows import LeftOut, runs_with_records
 from hersey.log.text.blocks import Block, blocks
@@ -26,6 +26,7 @@ from hersey.log.text.layout import SNIFFED, Layout, find_layout
 from hersey.log.text.numbers import is_missing
 from hersey.log.torque_log import NO_CLOCK, Channel, LogFile, Run
 from hersey.log.wanted import Wanted
+from hersey.schema.warning import Warning
 from hersey.units import Conversion
 
 Progress = Callable[[int, int], None]
@@ -62,14 +63,14 @@ def read_delimited(path: Path, wanted: Wanted, progress: Progress | None = None)
         layout.comments,
         end.cut_off,
         (
-            *layout.notes,
-            *table.reader.notes(),
-            *notes_on(channels, stated),
-            *dead.notes,
+            *layout.warnings,
+            *table.reader.warnings(),
+            *computed(channels, stated),
+            *dead.warnings,
             *unused(layout.named, channels, stated),
-            *end.notes,
+            *end.warnings,
             *growth,
-            *(each.note() for each in impossible),
+            *(each.warning() for each in impossible),
         ),
         impossible,
     )
@@ -99,8 +100,8 @@ class DelimitedFile:
         self.opened, self.layout = opened, find_layout(file.read(min(size, SNIFFED)), opened.path.name)
         self.end = end_of_table(file, size, self.layout)
 
-    def text(self) -> tuple[bytes, list[str]]:
-        """Return the file up to the end of the table, and notes if a logger appends to it.
+    def text(self) -> tuple[bytes, list[Warning]]:
+        """Return the file up to the end of the table, and a warning if a logger appends to it.
 
         Raises
         ------
@@ -146,17 +147,17 @@ def open_delimited(path: Path) -> Iterator[DelimitedFile]:
 
 
 class _Dead:
-    """Which columns of an open file say nothing; those that were passed over are noted."""
+    """Which columns of an open file say nothing; there is a warning of each that was passed over."""
 
     def __init__(self, file: DelimitedFile) -> None:
-        self.file, self.notes, self._known = file, list[str](), dict[int, bool]()
+        self.file, self.warnings, self._known = file, list[Warning](), dict[int, bool]()
 
     def __call__(self, column: Column) -> bool:
         if column.index not in self._known:
             (values,) = self.file.numbers([column], complete=False, odd_as_missing=True)
             self._known[column.index] = is_dead(values)
             if self._known[column.index]:
-                self.notes.append(f"'{column}' says nothing, one value throughout: it was passed over")
+                self.warnings.append(constant_channel(column))
         return self._known[column.index]
 
 

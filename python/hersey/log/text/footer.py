@@ -12,6 +12,7 @@ from hersey.log.text.layout import Layout
 from hersey.log.text.numbers import is_missing, looks_numeric
 from hersey.log.text.separators import split
 from hersey.log.text.stamps import is_stamp
+from hersey.schema.warning import Warning
 
 #: Bytes looked at from the end, and lines below a table at the most.
 _TAIL = 1 << 15
@@ -24,7 +25,7 @@ class TableEnd:
 
     byte: int
     cut_off: bool = False
-    notes: tuple[str, ...] = ()
+    warnings: tuple[Warning, ...] = ()
 
 
 def end_of_table(file: BinaryIO, size: int, layout: Layout) -> TableEnd:
@@ -45,22 +46,42 @@ def end_of_table(file: BinaryIO, size: int, layout: Layout) -> TableEnd:
     if len(stored) < 2:
         return TableEnd(size)
     lines = [line.decode(encoding.removesuffix("-sig"), errors="replace").rstrip("\n") for line in stored]
-    notes: list[str] = []
+    warnings: list[Warning] = []
     left_out = 0  # lines
     cut_off, short = _is_cut_off(lines, layout)
     if short:
         left_out = 1
-        notes.append(f"the last line, '{_shown(lines[-1])}', was cut off: it was left out")
+        warnings.append(
+            Warning(
+                "last line cut off",
+                "the last line, '{line}', was cut off: it was left out",
+                line=_shown(lines[-1]),
+            )
+        )
         lines[-1] = ""
     elif lines[-1].strip():
-        notes.append(f"the last line, '{_shown(lines[-1])}', has no end: its last number may lack digits")
+        warnings.append(
+            Warning(
+                "last line has no end",
+                "the last line, '{line}', has no end: its last number may lack digits",
+                severity="watch",
+                line=_shown(lines[-1]),
+            )
+        )
     summary = summary_lines(lines, layout)
     if summary:
         left_out = summary
         words = [line for line in lines[-summary:] if line.strip()]
-        notes.append(f"{len(words)} line(s) below the table were left out: '{_shown(words[0])}'")
+        warnings.append(
+            Warning(
+                "lines below the table",
+                "{lines} {lines:line|lines} below the table {lines:was|were} left out: '{first}'",
+                lines=len(words),
+                first=_shown(words[0]),
+            )
+        )
     length = sum(map(len, stored[-left_out:])) if left_out else 0
-    return TableEnd(size - length, cut_off, tuple(notes))
+    return TableEnd(size - length, cut_off, tuple(warnings))
 
 
 def _stored_lines(text: bytes, encoding: str) -> list[bytes]:

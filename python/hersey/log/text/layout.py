@@ -12,7 +12,8 @@ from hersey.log.text.column import Column, refuse_columns
 from hersey.log.text.header import Numbered, columns_of
 from hersey.log.text.numbers import NumberStyle, is_missing, looks_numeric, style_of
 from hersey.log.text.separators import BLANKS, SEPARATORS, NumberRows, number_rows, split
-from hersey.log.text.stamps import StampStyle, counted_since, stamp_style
+from hersey.log.text.stamps import StampStyle, clock_without_unit, counted_since, stamp_style
+from hersey.schema.warning import Warning
 
 #: Bytes looked at; preambles of data loggers are far shorter.
 SNIFFED = 1 << 17
@@ -37,7 +38,7 @@ class Layout:
     comments: tuple[str, ...]
     stamps: dict[int, StampStyle]
     texts: frozenset[int] = frozenset()
-    notes: tuple[str, ...] = ()
+    warnings: tuple[Warning, ...] = ()
     headless: str = ""
 
     @property
@@ -73,7 +74,7 @@ def find_layout(start: bytes, name: str, *, separators: str = SEPARATORS) -> Lay
     columns, headless = columns_of(table, numbered, name)
     columns, stamps = _with_stamps(columns, rows)
     style = style_of([cell for row in rows for cell in row])
-    columns, notes = _with_epochs(columns, rows, style)
+    columns, warnings = _with_epochs(columns, rows, style)
     texts = frozenset(c.index for c in columns if c.index not in stamps and _holds_words(rows, c.index))
     first_line = numbered[table.first][0]
     comments = tuple(li.strip("# ~/")[:200] for li in lines[: first_line - 1] if li.startswith(comment))
@@ -87,7 +88,7 @@ def find_layout(start: bytes, name: str, *, separators: str = SEPARATORS) -> Lay
         comments=comments[:5],
         stamps=stamps,
         texts=texts,
-        notes=notes,
+        warnings=warnings,
         headless=headless,
     )
 
@@ -167,17 +168,17 @@ def _holds_words(rows: list[list[str]], index: int) -> bool:
 
 def _with_epochs(
     columns: tuple[Column, ...], rows: list[list[str]], style: NumberStyle
-) -> tuple[tuple[Column, ...], tuple[str, ...]]:
+) -> tuple[tuple[Column, ...], tuple[Warning, ...]]:
     """Clocks without unit that count since 1970 or in days of Excel."""
-    out, notes = [], []
+    out, warnings = [], []
     for column in columns:
         cells = [row[column.index] for row in rows[:1000]] if not column.unit else []
         numbers = np.array([style.value(cell) for cell in cells if style.is_number(cell)])
         unit, meaning = counted_since(column.name, numbers)
         if unit:
-            notes.append(f"'{column.name}' has no unit and was read as {meaning}")
+            warnings.append(clock_without_unit(column.name, meaning))
         out.append(replace(column, unit=unit or column.unit))
-    return tuple(out), tuple(notes)
+    return tuple(out), tuple(warnings)
 
 
 def _of_another_kind(name: str) -> str:

@@ -11,6 +11,7 @@ import polars as pl
 
 from hersey.arrays import FloatArray
 from hersey.log.text.numbers import NumberStyle, is_missing
+from hersey.schema.warning import Warning
 
 _CLOCK = r"[0-9]{1,2}:[0-9]{2}:[0-9]{2}([.,][0-9]{1,9})?"
 _HALF = r" ?[AaPp]\.?[Mm]\.?"
@@ -121,12 +122,19 @@ class Stamps:
         """Return for each cell of text whether it is a time stamp or stands for a missing one."""
         return _readable(cells, self.style.stamps(cells))
 
-    def note(self, column: str) -> str:
-        """What was done, for the notes of the log."""
+    def warning(self, column: str) -> Warning:
+        """Return how the stamps of a column were read."""
         first = datetime.datetime(1970, 1, 1) + datetime.timedelta(microseconds=(self.first or 0) // 1000)
         since = first.strftime("%H:%M:%S" if self.style.is_time_of_day else "%Y-%m-%d %H:%M:%S")
-        passed = f", past midnight {self.midnights} time(s)" if self.midnights else ""
-        return f"'{column}' holds {self.style.name}: read in s since {since}{passed}"
+        return Warning(
+            "time stamps read",
+            "'{column}' holds {style}: read in s since {since}"
+            + (", past midnight {midnights} {midnights:time|times}" if self.midnights else ""),
+            column=column,
+            style=self.style.name,
+            since=since,
+            midnights=self.midnights,
+        )
 
     def _past_midnight(self, times: FloatArray) -> FloatArray:
         """A time of day that falls by more than half a day has passed midnight."""
@@ -173,3 +181,13 @@ def counted_since(name: str, numbers: FloatArray) -> tuple[str, str]:
     if _DAYS_NAME.fullmatch(name) and low > 3e4 and high < 7e4:
         return "d", "days of Excel"
     return "", ""
+
+
+def clock_without_unit(column: str, meaning: str) -> Warning:
+    """Return the warning of a clock whose unit is not written, and was found by `counted_since`."""
+    return Warning(
+        "clock without unit",
+        "'{column}' has no unit and was read as {meaning}",
+        column=column,
+        meaning=meaning,
+    )
