@@ -17,12 +17,14 @@ Severity = Literal["good", "note", "watch", "act"]
 Value = float | int | str | None
 #: From SI to the units in which words show a number.
 _UNITS: dict[str, Callable[[Any], Any]] = {
+    "%": lambda value: 100.0 * value,
     "rpm": rpm,
     "degC": celsius,
     "mm": lambda value: 1e3 * value,
     "mm/s": lambda value: 1e3 * value,
     "um": lambda value: 1e6 * value,
     "nm": lambda value: 1e9 * value,
+    "GPa": lambda value: 1e-9 * value,
     "mN m": lambda value: 1e3 * value,
 }
 

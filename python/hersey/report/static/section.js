@@ -9,6 +9,7 @@ const twoPlaces = (value) => value.toFixed(2).replace("-", "−");
 const share = (part, whole) => `${digits((100 * part) / whole, 2)} %`;
 const NUMBERS = ["no", "one", "two", "three", "four", "five", "six"];
 const plural = (count, word, words = `${word}s`) => `${NUMBERS[count] ?? count} ${count === 1 ? word : words}`;
+const warned = (each) => sentence(each.where ? `${each.where}: ${each.text}` : each.text);
 const capital = (text) => `${text.slice(0, 1).toUpperCase()}${text.slice(1)}`;
 const radius = data.map?.roll_radius ?? null;
 // A speed of the roll, at the belt where its radius is known.

@@ -157,10 +157,8 @@ def _chance(value: float) -> str:
 def _unused(found: Behaviour) -> list[FlagPart]:
     """Evidence that does not count, and draws that do not agree."""
     out = [
-        FlagPart(
-            signal="watch", title="A recording was not used.", text=f"{_sentence(text)}.", section="band"
-        )
-        for text in found.posterior.unused[:1]
+        FlagPart(signal="watch", title="A recording was not used.", text=each.sentence, section="band")
+        for each in found.posterior.warnings[:1]
     ]
     if not found.posterior.convergence.converged:
         text = "Two runs of the sampler differ: take the intervals as rough, or run hersey posterior."
