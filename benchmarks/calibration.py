@@ -132,7 +132,7 @@ def ranked(seed: int, draws: int, number: int) -> Ranked:
     )
     pairs = zip(quantities(found, found.drives), quantities(from_, truth), strict=True)
     ranks = [float(np.mean(d < t[0]) + random.random() * np.mean(d == t[0])) for d, t in pairs]
-    return Ranked(ranks, len(found.unused), found.convergence.converged)
+    return Ranked(ranks, len(found.warnings), found.convergence.converged)
 
 
 def main() -> None:

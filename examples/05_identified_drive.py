@@ -23,9 +23,9 @@ print(record.summary())
 drive = identify(record)
 print(f"\nclosure {drive.closure}, {'decided' if drive.decided else 'not decided'}")
 for name, value in truth.items():
-    print(f"{name}: {drive.estimates.get(name, 'not told by this record')}, in truth {float(value):g}")
-for text in drive.not_estimable:
-    print(f"- {text}")
+    print(f"{name}: {drive.estimates.get(name, 'not estimable from this record')}, in truth {float(value):g}")
+for each in drive.warnings:
+    print(f"- {each}")
 
 FOLDER.mkdir(parents=True, exist_ok=True)
 trace_chart(record, drive, unit="N").save(FOLDER / "05_identified_drive.png", scale_factor=2)

@@ -11,7 +11,9 @@ import pytest
 from hersey.errors import ParameterError
 from hersey.identification import CycleRecord, IdentifiedDrive, cycles, identify
 from hersey.identification.drive_fit import DriveFit
+from hersey.identification.independence import NOT_ESTIMABLE
 from hersey.identification.waveform import mean_waveform
+from hersey.schema.warning import Warning
 from tests.conftest import mostly_nightly
 from tests.identification.two_states import Truth
 
@@ -73,15 +75,24 @@ def test_a_known_stiffness_tells_the_drive_speed() -> None:
     assert "drive_speed" not in drive(1.02, 0.02, "stick_speed").derived
 
 
+def notable(found: IdentifiedDrive) -> list[Warning]:
+    """Warnings but for those of what the record leaves open."""
+    return [each for each in found.warnings if each.kind != NOT_ESTIMABLE]
+
+
 def test_a_slope_that_contradicts_the_stiffness_is_said_with_both_numbers() -> None:
-    (note,) = drive(1.02, 0.001, "stiffness", "stick_speed").notes
-    assert "a stiffness of 970.4" in note
-    assert "but 1000 is given; they agree at a drive speed of 0.99" in note
-    (creep,) = drive(1.02, 0.001, "stiffness").notes
-    assert "a stiffness of 970.4" in creep
-    assert "takes the difference for creep of the held belt" in creep
+    (other,) = notable(drive(1.02, 0.001, "stiffness", "stick_speed"))
+    assert other.kind == "slope contradicts stiffness"
+    assert other.values["stiffness"] == 1000.0
+    assert "a stiffness of 970.4" in str(other)
+    assert "but 1000 is given; they agree at a drive speed of 0.99" in str(other)
+    assert other.values["by_slope"] == other.values["slope"] / 1.02
+    (creep,) = notable(drive(1.02, 0.001, "stiffness"))
+    assert creep.kind == "difference taken for creep"
+    assert "a stiffness of 970.4" in str(creep)
+    assert creep.values["agreed"] == creep.values["slope"] / 1000.0
     for known in ((), ("stick_speed",), ("stiffness", "stick_speed")):
-        assert drive(1.0, 0.001, *known).notes == ()
+        assert notable(drive(1.0, 0.001, *known)) == []
 
 
 def test_an_uncertainty_is_a_share() -> None:

@@ -12,7 +12,7 @@ import pytest
 import hersey
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.identification import IdentifiedDrive, cycles, identify
-from hersey.identification.independence import in_words
+from hersey.identification.independence import NOT_ESTIMABLE, not_estimable
 from hersey.identification.waveform import mean_waveform, model_lap
 from hersey.motion.parameters import OF_THE_BELT, PARAMETERS
 
@@ -92,28 +92,31 @@ def test_the_closure_is_chosen_or_left_open(closure: str) -> None:
     assert drive.closure == closure
     vague = identify(record(2, closure, noise=6.0), known={"stick_speed": 0.01})
     assert not vague.decided or vague.closure == closure
-    assert vague.decided or "does not decide" in vague.notes[-1]
+    assert vague.decided or vague.warnings[-1].kind == "closure not decided"
+    assert vague.decided or vague.warnings[-1].values["closures"].startswith(vague.closure)
 
 
 def test_what_a_noisy_record_cannot_tell_is_said_and_not_given() -> None:
     drive = identify(record(3, noise=15.0), closures=("retained",))
     assert "stick_speed" not in drive.estimates
-    assert any("stick speed" in text for text in drive.not_estimable)
-    assert "not told by this record" in drive.summary()
+    left_open = [each.values["parameters"] for each in drive.warnings if each.kind == NOT_ESTIMABLE]
+    assert any("stick speed" in parameters for parameters in left_open)
+    assert "not estimable from this record" in drive.summary()
     assert drive.derived["free_period"].low < 2 * np.pi / np.sqrt(1000) < drive.derived["free_period"].high
 
 
 def test_words_for_directions() -> None:
     names = ("stiffness", "transition_force", "stick_speed")
     alone = np.diag([1e-4, 1e-4, 4.0])
-    assert in_words(names, alone) == ["the record hardly depends on the stick speed"]
+    assert list(map(str, not_estimable(names, alone))) == ["the record hardly depends on the stick speed"]
     weak = np.array([0.0, 1.0, 1.0]) / np.sqrt(2)
     pair = 4.0 * np.outer(weak, weak) + 1e-4 * np.eye(3)
-    (words,) = in_words(names, pair)
-    assert words == (
+    (product,) = not_estimable(names, pair)
+    assert product.values["error"] == pytest.approx(0.01 * np.sqrt(2.0))
+    assert str(product) == (
         "transition force and stick speed only as the product transition force x stick speed^-1 (to 1.4%)"
     )
-    assert in_words(names, 1e-4 * np.eye(3)) == []
+    assert not_estimable(names, 1e-4 * np.eye(3)) == []
 
 
 def test_the_fitted_drive_moves_like_the_record() -> None:
@@ -151,7 +154,7 @@ def test_records_without_an_answer_are_refused() -> None:
     with pytest.raises(ParameterError, match="closures lugre"):
         identify(good, closures=("lugre",))
     run = hersey.simulate(TRAIN, drag("retained"), drive_speed=1.0, duration=10, samples=10_001)
-    with pytest.raises(ParameterError, match="tells no force"):
+    with pytest.raises(ParameterError, match="a trace of speed has no force"):
         identify(cycles(run.time, run.belt_speed, quantity="speed", drive_speed=1.0))
     with pytest.raises(InsufficientDataError, match="whole laps"):
         identify(cycles(good.samples.time[:1200], good.samples.value[:1200], drive_speed=1.0))

@@ -10,7 +10,8 @@ import pytest
 from scipy.signal import lfilter
 
 from hersey.errors import InsufficientDataError
-from hersey.identification import CycleRecord, cycles, identified_drive, identify
+from hersey.identification import CycleRecord, cycles, drive_warnings, identify
+from hersey.identification.motion_kind import LONGEST_OF_LAP, NO_FREE_PERIOD
 from hersey.identification.trace_file import read_trace
 from tests.conftest import shared
 from tests.identification.two_states import Truth
@@ -55,8 +56,10 @@ def test_nearly_inertial_motion_is_found(
 
 
 def test_slower_noise_is_said() -> None:
-    (note,) = (n for n in record(1.6, samples=2000, noise=0.1, memory=0.9).notes if "slower noise" in n)
-    assert "falls are beyond the noise from sample to sample, without a rhythm" in note
+    found = record(1.6, samples=2000, noise=0.1, memory=0.9).warnings
+    (slower,) = (each for each in found if each.kind == "slower noise")
+    assert "falls are beyond the noise from sample to sample, without a rhythm" in str(slower)
+    assert slower.values["falls"] > 90
 
 
 @pytest.mark.parametrize("memory", [0.0, 0.5, 0.9, 0.99, 1.0])
@@ -104,9 +107,12 @@ def test_free_periods_are_plausible_or_not_given() -> None:
     assert np.isnan(record.free_period)
     assert record.to_dict()["free_period"] is None
     assert "free period" not in record.summary().splitlines()[1]
-    assert any(n.startswith("no free period is given: a fall lasts") for n in record.notes)
+    assert any(each.kind == NO_FREE_PERIOD and each.values["samples"] < 3.0 for each in record.warnings)
     slow = cycles(time, np.interp(time % 1.0, [0.0, 0.15, 0.3, 1.0], [0.0, 1.0, 1.0, 0.0]))
-    assert any("longer than the lap" in n for n in slow.notes)
+    (longer,) = (each for each in slow.warnings if each.kind == NO_FREE_PERIOD)
+    assert longer.values["free"] > LONGEST_OF_LAP * longer.values["lap"]
+    assert longer.values["lap"] == pytest.approx(1.0, rel=1e-3)
+    assert "longer than the lap" in str(longer)
     assert np.isnan(slow.free_period)
 
 
@@ -117,7 +123,7 @@ def test_gaps_in_every_lap_part_all_falls() -> None:
     record = cycles(time[kept], force[kept])
     assert record.falls > 100
     assert "no cycles" not in record.summary().splitlines()[0] or "falls beyond the noise" in record.summary()
-    assert any("gaps part the falls" in n for n in record.notes)
+    assert "gaps part the falls" in [each.kind for each in record.warnings]
 
 
 @pytest.mark.parametrize(("speed", "kind"), [(1100, "stick_slip"), (4300, "inertial")])
@@ -134,7 +140,9 @@ def test_the_slider_is_the_same_at_every_least_drop(speed: int, kind: str) -> No
 def test_a_fitted_free_period_is_plausible_or_taken_back(monkeypatch: pytest.MonkeyPatch) -> None:
     told = identify(record(1.0, noise=0.01), known={"stick_speed": 0.01}, closures=("retained",))
     assert told.derived["free_period"].low < Truth().free_period < told.derived["free_period"].high
-    monkeypatch.setattr(identified_drive, "LONGEST_OF_LAP", 0.5)
+    monkeypatch.setattr(drive_warnings, "LONGEST_OF_LAP", 0.5)
     taken = identify(record(1.0, noise=0.01), known={"stick_speed": 0.01}, closures=("retained",))
     assert "free_period" not in taken.derived
-    assert any("no free period is given: 0.19" in note for note in taken.notes)
+    (why,) = (each for each in taken.warnings if each.kind == NO_FREE_PERIOD)
+    assert why.values["free"] == told.derived["free_period"].value
+    assert str(why).startswith("no free period is given: 0.19")

@@ -16,7 +16,7 @@ from hersey.identification.cycle_record import CycleRecord, Scatter, cycles
 from hersey.identification.detection import running_width
 from hersey.identification.drive_fit import DriveFit
 from hersey.identification.identified_drive import IdentifiedDrive, identify
-from hersey.identification.independence import directions, in_words
+from hersey.identification.independence import directions, not_estimable
 from hersey.identification.sampling import even_samples
 from hersey.identification.slip_shape import TEN_TO_NINETY, held_slope, slip_duration, stick_angle
 from hersey.identification.turning_points import (
@@ -29,6 +29,7 @@ from hersey.identification.turning_points import (
     smoothed,
 )
 from hersey.identification.waveform import mean_waveform, model_lap
+from hersey.schema.warning import Warning
 
 TRAIN = hersey.Drivetrain(1000, 1)
 DRAG = hersey.Drag(50, 1, ehl_exponent=-0.7, mixed_exponent=-1.2, stick_speed=0.01)
@@ -70,7 +71,13 @@ def test_figures_of_a_saw() -> None:
     assert record.slips_of_at_least(9.0) == 40
     assert record.slips_of_at_least(11.0) == 0
     assert cycles(time, force).stiffness is None
-    assert record.notes == ()
+    assert record.warnings == ()
+
+
+def of_kind(record: CycleRecord, kind: str) -> Warning:
+    """The one warning of its kind."""
+    (found,) = (each for each in record.warnings if each.kind == kind)
+    return found
 
 
 def test_drift_is_the_slope_of_the_middle() -> None:
@@ -78,12 +85,13 @@ def test_drift_is_the_slope_of_the_middle() -> None:
     record = cycles(time, force + 0.1 * (time - time[0]))
     assert record.drift == pytest.approx(0.1, rel=0.02)
     swing = record.drift * 0.01 * force.size
-    assert f"the level drifts by {swing:.3g} over the trace" in record.notes
+    assert of_kind(record, "level drifts").values == {"drift": pytest.approx(swing)}
+    assert str(of_kind(record, "level drifts")) == f"the level drifts by {swing:.3g} over the trace"
     little = cycles(time, force + 0.03 * (time - time[0]))
-    assert not [note for note in little.notes if "drifts" in note]
+    assert "level drifts" not in [each.kind for each in little.warnings]
     down = cycles(time, force - 0.1 * (time - time[0]))
     assert down.drift == pytest.approx(-0.1, rel=0.02)
-    assert any(note.startswith("the level drifts by") for note in down.notes)
+    assert of_kind(down, "level drifts").values["drift"] == pytest.approx(-down.drift * 0.01 * force.size)
 
 
 def test_missing_samples_are_counted_and_said() -> None:
@@ -93,10 +101,10 @@ def test_missing_samples_are_counted_and_said() -> None:
     record = cycles(time, np.where(gone, np.nan, force))
     assert record.samples.missing == 13
     sentence = "13 samples are missing; no cycle across a gap that hides part of it is used"
-    assert sentence in record.notes
+    assert of_kind(record, "samples missing").values == {"count": 13}
     assert f"- {sentence}" in record.summary().splitlines()
-    assert sentence in record.to_dict()["notes"]
-    assert not [note for note in cycles(time, force).notes if "missing" in note]
+    assert sentence in [each["text"] for each in record.to_dict()["warnings"]]
+    assert cycles(time, force).warnings == ()
 
 
 def test_a_gap_parts_its_neighbours() -> None:
@@ -115,24 +123,31 @@ def test_spikes_are_removed_and_said() -> None:
     force[[250, 660, 661, 2250]] += [30.0, -25.0, -25.0, 30.0]
     record = cycles(time, force)
     assert record.samples.spikes == 4
-    assert "4 spikes of one or two samples were removed" in record.notes
+    assert of_kind(record, "spikes removed").values == {"count": 4}
+    assert str(of_kind(record, "spikes removed")) == "4 spikes of one or two samples were removed"
     assert record.slips == 40
     np.testing.assert_allclose(record.samples.value[[250, 2250]], force[[249, 2249]], atol=1.5)
 
 
-def test_other_notes_of_a_record() -> None:
+def test_other_warnings_of_a_record() -> None:
     time, force = saw(rise=20, fall=120)
-    assert "the force rises faster than it falls: is its sign turned?" in cycles(time, force).notes
+    turned = of_kind(cycles(time, force), "sign may be turned")
+    assert turned.sentence == "The force rises faster than it falls: is its sign turned?"
     time, force = saw(rise=30, fall=3)
     coarse = cycles(time, force)
     lasts = np.median(coarse.steep_duration) / 0.01
-    assert f"a fall lasts {lasts:.1f} samples: sample faster to see the slip" in coarse.notes
+    few = of_kind(coarse, "falls of few samples")
+    assert few.values == {"samples": pytest.approx(lasts)}
+    assert str(few) == f"a fall lasts {lasts:.1f} samples: sample faster to see the slip"
     time, force = saw()
     noisy = force + np.random.default_rng(0).normal(0, 0.5, force.size)
     record = cycles(time, noisy, least_drop=0.1)
-    assert f"least_drop 0.1 is within the noise: {record.least_drop:.3g} was taken" in record.notes
+    within = of_kind(record, "least drop within noise")
+    assert within.values == {"least_drop": 0.1, "taken": record.least_drop}
+    assert str(within) == f"least_drop 0.1 is within the noise: {record.least_drop:.3g} was taken"
     assert record.samples.noise == pytest.approx(0.5, rel=0.1)
-    assert not [n for n in cycles(time, noisy, least_drop=8.0).notes if "within the noise" in n]
+    less = cycles(time, noisy, least_drop=8.0).warnings
+    assert "least drop within noise" not in [each.kind for each in less]
 
 
 def test_small_slips_are_said_and_left_out() -> None:
@@ -142,10 +157,16 @@ def test_small_slips_are_said_and_left_out() -> None:
     record = cycles(3.0 + 0.01 * np.arange(both.size), both)
     count = int(np.sum(record.drop < 0.5 * np.median(record.drop)))
     assert count >= 6
-    assert record.notes[-1].startswith(
+    last = record.warnings[-1]
+    assert last.kind == "many small slips"
+    assert {name: last.values[name] for name in ("small", "slips", "least")} == {
+        "small": count,
+        "slips": record.slips,
+        "least": record.least_drop,
+    }
+    assert str(last).startswith(
         f"{count} of {record.slips} slips fall by less than half the median: their number depends on "
-        f"the least "
-        "fall counted, "
+        "the least fall counted, "
     )
     assert (
         cycles(3.0 + 0.01 * np.arange(both.size), both, least_drop=5.0).slips == 19
@@ -161,7 +182,7 @@ def test_an_irregular_force_is_no_cycle() -> None:
     force = np.interp(time, knots, np.where(np.arange(120) % 2, 1.0, -1.0))
     record = cycles(time, force)
     if record.kind == "steady_sliding":
-        assert "the force wanders irregularly without sticking: that is no cycle" in record.notes
+        assert "irregular force" in [each.kind for each in record.warnings]
         assert record.stuck_fraction == 0.0
 
 
@@ -414,17 +435,21 @@ def test_directions_are_those_of_the_covariance() -> None:
     assert str(first) == "mass^+0.60 x stiffness^+0.80"
     names = ("mass", "ehl_exponent", "stick_speed")
     three = np.ones(3) / np.sqrt(3)
-    assert in_words(names, 4.0 * np.outer(three, three) + 1e-6 * np.eye(3)) == [
+    assert list(map(str, not_estimable(names, 4.0 * np.outer(three, three) + 1e-6 * np.eye(3)))) == [
         "mass, ehl exponent and stick speed only together: they can change at once and leave the record "
         "as it is"
     ]
     both = np.diag([4.0, 4.1, 1e-6]) + 0.0
     both[0, 1] = both[1, 0] = 0.5
-    assert "mass and ehl exponent: neither is told, nor a product of them" in in_words(names, both)
+    assert "mass and ehl exponent: neither can be estimated, nor a product of them" in [
+        str(each) for each in not_estimable(names, both)
+    ]
     pair = np.array([2.0, 1.0, 0.0]) / np.sqrt(5)
-    (words,) = in_words(names, 4.0 * np.outer(pair, pair) + 1e-4 * np.eye(3))
-    assert words.startswith("mass and ehl exponent only as the product ")
-    assert "exp(" in words
+    (product,) = not_estimable(names, 4.0 * np.outer(pair, pair) + 1e-4 * np.eye(3))
+    assert str(product).startswith("mass and ehl exponent only as the product ")
+    assert "exp(" in product.values["product"]
+    assert product.values["parameters"] == "mass and ehl exponent"
+    assert product.values["error"] == pytest.approx(np.linalg.norm([1.0, -2.0]) / 2.0 * 0.01)
 
 
 # --- the picture -------------------------------------------------------------------------------------------

@@ -175,10 +175,11 @@ def test_work_is_pinned() -> None:
     assert film.stations <= 12
 
 
-def test_cautions() -> None:
-    assert solve(0.1, 100.0, layer=ElasticLayer(3.5e-3, 0.49)).cautions == ()
+def test_warnings() -> None:
+    assert solve(0.1, 100.0, layer=ElasticLayer(3.5e-3, 0.49)).warnings == ()
     soft = solve(0.1, 5000.0, layer=ElasticLayer(3e-3, 0.45))
-    assert any("indented" in caution for caution in soft.cautions)
+    (indented,) = (each for each in soft.warnings if each.kind == "layer indented deeply")
+    assert indented.values == {"share": -soft.offset / 3e-3, "most": 0.15}
 
 
 @pytest.mark.parametrize(

@@ -138,7 +138,10 @@ def test_an_integrator_that_cannot_finish_says_so() -> None:
     )
     assert run.check is not None
     assert run.check.speed_difference is None
-    assert "steps" in run.check.note
+    (unfinished,) = run.check.warnings
+    assert unfinished.kind == "check not finished"
+    assert str(run.check) == f"Dormand-Prince 5(4): {unfinished.values['error']}"
+    assert "steps" in str(run.check)
 
 
 @pytest.mark.parametrize(("growth", "time", "drive_speed"), [(0.05, 1e-3, 0.5), (0.2, 0.1, 1.0)])

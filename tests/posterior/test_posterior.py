@@ -134,7 +134,12 @@ def test_evidence_of_another_machine_does_not_count(whole: Posterior, demo: hers
     wrong = replace(seen, figures=long)
     found = posterior(demo, whole.model.machine, surface=whole.model.surface, evidence=(wrong,), draws=200)
     assert found.evidence == ()
-    assert "contradicts dwells and machine file" in found.unused[0]
+    [contradicting] = found.warnings
+    assert contradicting.kind == "evidence contradicts dwells and machine"
+    assert str(contradicting) == (
+        f"{seen.source}: stick-slip contradicts dwells and machine file: "
+        "check stiffness, mass and stick speed"
+    )
 
 
 def test_the_same_seed_gives_the_same_bits_and_the_rest_is_told(
@@ -284,7 +289,7 @@ def test_outcomes_that_hardly_any_draw_shows_do_not_count(
     for wrong in (Start(HOT, 0.01, slid=True), StickSlip(HOT, 2.0, 20.0)):
         found = posterior(demo, model.machine, surface=model.surface, evidence=(wrong,) * 3, draws=400)
         assert found.evidence == ()
-        assert len(found.unused) == 3
+        assert [each.kind for each in found.warnings] == ["evidence contradicts dwells and machine"] * 3
         assert found.fold_interval(HOT)[0] == pytest.approx(before[0], rel=0.15)
 
 

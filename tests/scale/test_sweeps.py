@@ -275,7 +275,7 @@ def test_a_damaged_note_is_told(tmp_path: Path) -> None:
     hersey.sweep(TRAIN, DRAG, **GRID, out=out, work=hersey.Work(chunk=7))
     chunk = out / "0000004.parquet"
     pl.read_parquet(chunk).write_parquet(chunk, metadata={"hersey": '{"kinds": 3}'})
-    with pytest.raises(OutputError, match="what is told of chunk 4 is damaged"):
+    with pytest.raises(OutputError, match="the record of chunk 4 is damaged"):
         hersey.sweep(TRAIN, DRAG, **GRID, out=out)
 
 
@@ -373,8 +373,9 @@ def test_a_worker_that_does_not_see_the_folder_is_told(client: Client, tmp_path:
 
 def test_other_last_bits_are_told() -> None:
     assert following.hashes_differ([("a", "1"), ("b", "1")], "1") == []
-    (said,) = following.hashes_differ([("a", "1"), ("b", "2"), ("c", "2")], "1")
-    assert said.startswith("worker b and 1 more computes other last bits")
+    (differ,) = following.hashes_differ([("a", "1"), ("b", "2"), ("c", "2")], "1")
+    assert (differ.kind, differ.values) == ("workers with other last bits", {"worker": "b", "more": 1})
+    assert str(differ).startswith("worker b and 1 more computes other last bits")
 
 
 def test_chunks_take_a_second_or_two_and_all_have_enough_to_do() -> None:

@@ -266,16 +266,33 @@ def test_every_sentence_of_a_map(few: OperatingMap, surface: DampingSurface) -> 
     assert hot is not None
     low, high = (np.interp(453.15, KELVIN, edge) for edge in few.upper_interval)
     assert low < 0.045 < high
-    cold_stick, hot_stick = (1e3 * few.drag.at(t).stick_speed for t in (KELVIN[0], KELVIN[-1]))
-    assert few.warnings == (
+    cold_stick, hot_stick = (few.drag.at(t).stick_speed for t in (KELVIN[0], KELVIN[-1]))
+    assert [str(each) for each in few.warnings] == [
         f"V* depends on the stick speed, 0.3 mm/s at {hot - 273.15:.0f} degC here (with the transition speed "
-        f"it moves from {cold_stick:.3g} to {hot_stick:.3g} mm/s), which nobody measures; its "
-        "interval counts the fit, stiffness and stick speed",
-        f"the drive bears 4.5 N m (motor torque); a belt at rest bears {rest:.3g} N m before it starts, "
-        "so it may not start",
-        f"thick paper: within the 95 % interval of V* ({1e3 * low:.3g} to {1e3 * high:.3g} mm/s), so the "
-        "verdict is not certain",
-    )
+        f"it moves from {1e3 * cold_stick:.3g} mm/s to {1e3 * hot_stick:.3g} mm/s), which nobody measures; "
+        "its interval counts the fit, stiffness and stick speed",
+        f"the drive gives at most 4.5 N m (motor torque); a belt at rest needs {rest:.3g} N m to start",
+        "the drive may not start a belt at rest",
+        f"thick paper: within the 95 % interval of V* ({1e3 * low:.3g} mm/s to {1e3 * high:.3g} mm/s), so "
+        "the verdict is not certain",
+    ]
+    stick, limit, doubtful, point = few.warnings
+    assert stick.values == {
+        "stick_speed": 3e-4,
+        "temperature": hot,
+        "coldest": pytest.approx(cold_stick),
+        "hottest": pytest.approx(hot_stick),
+        "counted": "the fit, stiffness and stick speed",
+    }
+    assert limit.values == {
+        "limit": 4.5,
+        "limited_by": "motor torque",
+        "least": float(few.holding.min()),
+        "most": float(few.holding.max()),
+    }
+    assert doubtful.values == {"first": KELVIN[0], "last": KELVIN[-1]}
+    assert point.values == {"edge": "V*", "low": pytest.approx(low), "high": pytest.approx(high)}
+    assert [each.severity for each in few.warnings] == ["note", "note", "watch", "watch"]
 
 
 def test_sentences_of_a_map_that_knows_little(
@@ -285,26 +302,30 @@ def test_sentences_of_a_map_that_knows_little(
     bare = map_of(
         surface, machine.train, **AT, draws=1, temperatures=KELVIN, points=points, limits=Limits(speed=0.4)
     )
-    assert bare.warnings[0].endswith(
+    assert str(bare.warnings[0]).endswith(
         "which nobody measures; its interval counts the fit: state how far stick_speed is known"
     )
-    assert bare.warnings[1:] == (
+    assert [str(each) for each in bare.warnings[1:]] == [
         "no stall is shown: state motor_torque, or roll_friction and nip_load, among the limits",
         "fast: extrapolated, no dwell lies that far out",
         "fast: faster than the drive, 400 mm/s",
-    )
+    ]
+    assert bare.warnings[-1].values == {"limit": 0.4}
     one = map_of(isothermal, machine.train, **AT, draws=1)
-    assert one.warnings[0].startswith("V* depends on the stick speed, 0.3 mm/s here, which nobody measures;")
-    assert one.warnings[1] == (
+    said = str(one.warnings[0])
+    assert said.startswith("V* depends on the stick speed, 0.3 mm/s here, which nobody measures;")
+    assert one.warnings[0].values["temperature"] is None
+    assert one.warnings[1].kind == "isothermal fit"
+    assert str(one.warnings[1]) == (
         "the fit is isothermal: the map holds at the temperature of the log, for the points too"
     )
     at = float(one.transition[0])
     near = map_of(isothermal, machine.train, **AT, draws=1, points=[OperatingPoint("edge", at, 400.0)])
-    low, high = (1e3 * edge[0] for edge in near.transition_interval)
-    assert near.warnings[-1] == (
-        f"edge: within the 95 % interval of the transition speed ({low:.3g} to {high:.3g} mm/s), so the "
-        f"verdict "
-        "is not certain"
+    low, high = (edge[0] for edge in near.transition_interval)
+    assert near.warnings[-1].values == {"edge": "the transition speed", "low": low, "high": high}
+    assert str(near.warnings[-1]) == (
+        f"edge: within the 95 % interval of the transition speed ({1e3 * low:.3g} mm/s to "
+        f"{1e3 * high:.3g} mm/s), so the verdict is not certain"
     )
 
 
@@ -322,9 +343,11 @@ def test_what_the_fit_says_of_its_draws_is_said_by_the_map(surface: DampingSurfa
         "draws of the fit had no falling branch and were drawn again: the intervals hold for fits that "
         "have one"
     )
-    assert said in drawn.warnings
-    assert len(set(drawn.warnings)) == len(drawn.warnings)
-    assert drawn.warnings.index(said) < len(drawn.warnings) - 2  # before what is said of the map itself
+    words = [str(each) for each in drawn.warnings]
+    assert said in words
+    assert len(set(words)) == len(words)
+    assert words.index(said) < len(words) - 2  # before what is said of the map itself
+    assert drawn.warnings[words.index(said)].kind == "draws of the fit"
 
 
 def test_the_summary_is_a_table_of_the_map(few: OperatingMap) -> None:

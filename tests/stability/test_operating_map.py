@@ -158,7 +158,7 @@ def test_stall_is_where_the_drag_exceeds_the_limit(surface: DampingSurface, mach
     assert np.all(np.isinf(free.stall_above))
     assert np.all(free.stall_below == 0)
     assert free.starts.all()
-    assert any("motor_torque" in text for text in free.warnings)
+    assert "no torque limit" in [each.kind for each in free.warnings]
     tight = map_of(surface, machine.train, **QUICK, limits=Limits(motor_torque=0.5))
     assert set(tight.states(t, tight.speed)) == {"motor"}
 
@@ -183,8 +183,11 @@ def test_what_the_roll_cannot_bear_simulation_finds_slipping(
     smooth = drawn.state_at(453.15, 0.15)
     assert (smooth.state, smooth.moving) == ("smooth" if grip == 300.0 else "stall", "smooth")
     assert ("goes on sliding" in smooth.verdict()) == (grip == 250.0)
-    said = "\n".join([*drawn.warnings, drawn.summary()])
-    assert ("so it is not started at all" in said) == ("not started" in said) == (grip == 250.0)
+    started = [each for each in drawn.warnings if each.kind == "belt not started"]
+    assert bool(started) == ("not started" in drawn.summary()) == (grip == 250.0)
+    assert [str(each) for each in started] == ["the drive does not start a belt at rest at any temperature"][
+        : len(started)
+    ]
     own = map_of(surface, gripping, **QUICK, temperatures=[360.0, 453.15])  # the drivetrain's own grip
     assert own.torque_limit == pytest.approx(0.015 * grip)
     parts = bands_of(drawn, Frame.of(drawn))
@@ -254,10 +257,10 @@ def test_points_are_judged(drawn: OperatingMap) -> None:
     assert judged["thick paper"].state == "bistable"
     assert judged["cold <b>start</b>"].state == "motor"
     assert [p.extrapolated for p in judged.values()] == [False, False, True]
-    said = "\n".join(drawn.warnings)
-    assert "thick paper: within the 95 % interval of V*" not in said  # only the fit is counted here
-    assert "cold <b>start</b>: extrapolated" in said
-    assert "state how far stick_speed is known" in said
+    said = [(each.where, each.kind) for each in drawn.warnings]
+    assert ("thick paper", "verdict not certain") not in said  # only the fit is counted here
+    assert ("cold <b>start</b>", "point extrapolated") in said
+    assert str(drawn.warnings[0]).endswith("state how far stick_speed is known")
     assert drawn.state_at(453.15, 0.12) == judged["full speed"]
 
 
@@ -274,7 +277,8 @@ def test_what_is_uncertain_widens_the_interval_of_the_fold(
     assert np.all(wide > 3 * narrow)
     for m in (fit_only, all_of_it):
         assert np.all((m.upper_interval[0] < m.upper) & (m.upper < m.upper_interval[1]))
-    assert any("thick paper: within the 95 % interval of V*" in text for text in all_of_it.warnings)
+    (uncertain,) = (each for each in all_of_it.warnings if each.kind == "verdict not certain")
+    assert (uncertain.where, uncertain.values["edge"]) == ("thick paper", "V*")
     # the whole map interpolates what these two temperatures computed
     assert np.interp(450.0, drawn.temperature, drawn.upper_interval[0]) == pytest.approx(
         fit_only.upper_interval[0, 0], rel=0.01
@@ -403,7 +407,7 @@ def test_an_isothermal_fit_has_a_map_of_one_column(isothermal: DampingSurface, m
     assert drawn.temperature is None
     assert drawn.lower.shape == (1,)
     assert drawn.transition_interval.shape == (2, 1)
-    assert any("isothermal" in text for text in drawn.warnings)
+    assert "isothermal fit" in [each.kind for each in drawn.warnings]
     assert drawn.state_at(None, 0.12).state == "smooth"
     assert "as in the log" in drawn.summary()
     with pytest.raises(ParameterError, match="isothermal"):

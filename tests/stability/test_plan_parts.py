@@ -486,7 +486,7 @@ def test_what_a_plan_says(plan: Plan) -> None:
     ]
     document = plan.to_dict()
     assert document["rows"] == [{"time": t, "drive_speed": v} for t, v in plan.rows()]
-    assert document["warnings"] == list(plan.warnings)
+    assert document["warnings"] == [each.to_dict() for each in plan.warnings]
     assert document["failures"] == dict(plan.failures)
     assert document["share_low"] == plan.share_low
     assert document["uses"][0] == {"name": "speed", "limit": 4.0, "used": plan.peak_speed}

@@ -110,10 +110,11 @@ def test_a_range_of_the_stick_speed_moves_with_it(fitted: hersey.DampingSurface)
 def test_map_and_plan_say_which_stick_speed_they_took(fitted: hersey.DampingSurface) -> None:
     m = machine()
     said = map_of(fitted, m.train, **m.belt, temperatures=[430.0, HOT], draws=2).warnings[0]
-    assert "0.3 mm/s at" in said
-    assert "with the transition speed it moves from" in said
+    assert said.values["stick_speed"] == 3e-4
+    assert "0.3 mm/s at" in str(said)
+    assert "with the transition speed it moves from" in str(said)
     fixed = map_of(fitted, m.train, **machine(FIXED).belt, temperatures=[430.0, HOT], draws=2).warnings[0]
-    assert "0.3 mm/s at all temperatures" in fixed
+    assert "0.3 mm/s at all temperatures" in str(fixed)
     plan = hersey.plan_profile(m.train, fitted.drag(**m.belt, temperature=HOT), target_speed=0.2)
     assert f"stick speed {1e3 * plan.stick_speed:.4g} mm/s" in plan.summary()
     assert plan.stick_speed == fitted.drag(**m.belt, temperature=HOT).stick_speed

@@ -142,7 +142,11 @@ def test_a_transition_that_passes_the_target_is_warned_of() -> None:
         _TRAIN, moving, _HEAT, target_speed=0.02, force_limit=300.0, acceleration=0.5, longest=600.0
     )
     assert warm.found
-    assert any("goes on warming" in warning for warning in warm.warnings)
+    (unstable,) = (each for each in warm.warnings if each.kind == "unstable once warmer")
+    temperature = unstable.values["temperature"]
+    assert isinstance(temperature, float)
+    assert moving.at(temperature - 3.0).transition_speed < 0.02 <= moving.at(temperature).transition_speed
+    assert "goes on warming" in str(unstable)
     hot = replace(_HEAT, film_temperature=450.0, roll_temperature=450.0)
     sticks = hersey.warm_up(
         _TRAIN, moving, hot, target_speed=0.02, force_limit=300.0, acceleration=0.5, longest=20.0
@@ -159,7 +163,10 @@ def test_a_mixed_contact_warms_up_and_its_belt_is_watched() -> None:
     assert np.nanmax(warm.drag[sliding]) < 4.5 * 1.002
     assert warm.drag_at_once == pytest.approx(float(CONTACT_DRAG.force(0.1, 300.0)), rel=1e-6)
     assert warm.slides_from > warm.full_speed
-    assert any("slides for good only" in warning for warning in warm.warnings)
+    (late,) = (each for each in warm.warnings if each.kind == "slides late")
+    assert late.values == {"slides_from": warm.slides_from}
+    (peak,) = (each for each in warm.warnings if each.kind == "peak force above the limit")
+    assert peak.values == {"peak_force": warm.peak_force, "force_limit": 5.0}
     assert warm.peak_force > 5.0
 
 

@@ -170,10 +170,10 @@ def _with_baseline(values: Mapping[str, float | None], lacking: list[str]) -> Am
     for name in lacking:
         kind = _KINDS[name][0]
         taken[name] = parse(kind, f"{_BASELINE[name]!r} {_OF_THE_PAPER[kind]}")
-    told = [
+    baseline = [
         f"{n.replace('_', ' ')} {taken[n]:.4g} {KINDS[_KINDS[n][0]][0]}" for n in lacking if n != "duration"
     ]
-    filled = f"not given, so that of the paper's baseline: {', '.join(told)}" if told else ""
+    filled = f"not given, so that of the paper's baseline: {', '.join(baseline)}" if baseline else ""
     return Amounts({**values, **taken}, in_si=True, filled=filled)
 
 
@@ -189,11 +189,11 @@ def _with_machine(
         if name == "drive_speed" and machine.points:
             example = f"{1e3 * machine.points[0].speed:.4g} mm/s"
         raise ParameterError(f"{file} does not state the {_words(name)}: add {_flag(name)} '{example}'")
-    told = ""
+    filled = ""
     if "stick_speed" in stated:
         speed = f"{1e3 * machine.stick_speed:.4g} mm/s"
-        told = f"stick speed {speed} as {file} has it: taken for that at the temperature of the drag given"
-    return Amounts({**values, **stated}, in_si=True, filled=told)
+        filled = f"stick speed {speed} as {file} has it: taken for that at the temperature of the drag given"
+    return Amounts({**values, **stated}, in_si=True, filled=filled)
 
 
 def _words(name: str) -> str:

@@ -83,7 +83,7 @@ class _Trace:
             quantity="speed" if given.quantity == "speed" else "force",
             least_drop=_least_drop(self.least_drop, given),
         )
-        return replace(record, notes=(*record.notes, *given.notes))
+        return replace(record, warnings=(*record.warnings, *given.warnings))
 
 
 @dataclass(frozen=True)

@@ -24,11 +24,6 @@ if TYPE_CHECKING:
 
     Temperature = float | Schedule | HeatBalance | None
 
-#: What a plan rests on that knows no dwells.
-_FIT_ALONE = (
-    "--fit holds one law with two branches: give the log to count other drag curves, both closures and starts"
-)
-
 
 _MACHINE = "TOML file of the drivetrain, its limits and uncertainty."
 _TARGET = "Target speed of the belt, as '60 mm/s', or of the roll, as '40 rpm'."
@@ -112,8 +107,8 @@ def plan(
         planned = _of_draws(drawn_of_log, surface, wanted, temperature, proof)
     course = temperature if isinstance(temperature, Schedule) else planned.course if film.heat else None
     if course is not None:
-        said = beyond_the_log(surface, course.values)
-        planned = replace(planned, warnings=(*planned.warnings, *said))
+        beyond = beyond_the_log(surface, course.values)
+        planned = replace(planned, warnings=(*planned.warnings, *beyond))
     give(planned, outputs, as_json, called="profile", temperature=course)
 
 
@@ -121,13 +116,19 @@ def _of_a_fit(
     surface: DampingSurface, machine: Machine, target: float, temperature: Temperature, proof: _Proof
 ) -> Plan:
     """The plan of one law with two branches, which a fit is."""
+    from hersey.schema.warning import Warning
     from hersey.stability.plan import plan_of_log
 
     with bar("planning", unit="profiles") as progress:
         found = plan_of_log(
             surface, machine, target_speed=target, temperature=temperature, progress=progress, **vars(proof)
         )
-    return replace(found, warnings=(*found.warnings, _FIT_ALONE))
+    alone = Warning(
+        "fit without its log",
+        "--fit holds one law with two branches",
+        remedy="give the log to count other drag curves, both closures and starts",
+    )
+    return replace(found, warnings=(*found.warnings, alone))
 
 
 def _of_draws(

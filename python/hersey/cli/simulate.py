@@ -181,19 +181,19 @@ def _warmed(belt: Belt, drive: _Drive, heat: _Heat) -> _Motion:
     if drive.drive_speed is None:
         raise ParameterError("give the speed of the drive: --drive-speed '30 mm/s'")
     machine = read_machine(belt.machine)
-    warmth = heat_of(machine, belt.machine, heat.begin)
+    balance = heat_of(machine, belt.machine, heat.begin)
     speed = target_of(drive.drive_speed, machine, "--drive-speed")
     time = parse("time", drive.duration or _WARMING)
     surface = finished_fit(heat.fit_file, machine)
     train, drag = machine.train, warming_drag(surface, machine)
     asked: dict[str, Any] = {"duration": time, "start": drive.start, "check": drive.check}
     with working("simulating"):
-        run = moved(train, drag, drive_speed=speed, temperature=warmth, **asked)
+        run = moved(train, drag, drive_speed=speed, temperature=balance, **asked)
     film = run.film_temperature
     assert film is not None
     last = float(film[-1])
     cycle = stick_slip(train, drag, drive_speed=speed, temperature=last, start=_end(run))
-    said = [f"- {each}" for each in beyond_the_log(surface, film)]
+    beyond = [f"- {each}" for each in beyond_the_log(surface, film)]
     settled = f"At {celsius(last):.4g} degC it settles to {cycle.headline()}."
     beside = {"energy": run.energy, "check": run.check, "warming": run}
-    return _Motion(run, cycle, beside, [run.summary(), settled, *said])
+    return _Motion(run, cycle, beside, [run.summary(), settled, *beyond])

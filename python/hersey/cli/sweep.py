@@ -79,9 +79,9 @@ def sweep(
     with crew.at_work() as client, bar("simulating", unit="sets") as progress:
         work = Work(threads=threads, client=client, chunk=chunks.chunk, progress=progress)
         if folder is not None:
-            counted, notes = _keep(described, folder, chunks.resume, force, work)
+            counted, warnings = _keep(described, folder, chunks.resume, force, work)
         else:
-            counted, notes, result = _run(described, work)
+            counted, warnings, result = _run(described, work)
     if table.path is not None:
         from hersey.motion.scenario import rows
 
@@ -90,7 +90,7 @@ def sweep(
     if as_json:
         print_json(counted)
         return
-    say(*_lines(counted), *(f"- {note}" for note in (*notes, *_of_the_machine(described))))
+    say(*_lines(counted), *(f"- {each}" for each in (*warnings, *_of_the_machine(described))))
     say_written(sweep=out)
 
 
@@ -112,7 +112,7 @@ def _keep(
     with _said_if_interrupted():
         found = described.keep(SweepFolder(folder, resume, force), work)
     before = [f"{found.before} of {found.chunks} chunks were there"] if found.before else []
-    return found.summary(), [*found.notes, *before]
+    return found.summary(), [*map(str, found.warnings), *before]
 
 
 def _run(described: Scenario, work: Work) -> tuple[dict[str, Any], list[str], xr.Dataset]:
@@ -120,7 +120,7 @@ def _run(described: Scenario, work: Work) -> tuple[dict[str, Any], list[str], xr
     from hersey.motion.scenario import summary
 
     result = described.run(work)
-    return summary(result), result.attrs.get("notes", []), result
+    return summary(result), result.attrs.get("warnings", []), result
 
 
 def _lines(counted: dict[str, Any]) -> list[str]:

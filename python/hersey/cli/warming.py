@@ -1,4 +1,4 @@
-"""A machine that warms up: its heat, its drag, and what a log says of neither."""
+"""A machine that warms up: what heats it, its drag, and temperatures that the log does not cover."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from hersey.machine.machine import Machine
     from hersey.motion.drag import Drag
     from hersey.motion.heat import HeatBalance
+    from hersey.schema.warning import Warning
 
 
 def heat_of(machine: Machine, file: Path, start: str) -> HeatBalance:
@@ -38,11 +39,11 @@ def warming_drag(surface: DampingSurface, machine: Machine) -> Drag:
     return surface.drag(**machine.belt)
 
 
-def beyond_the_log(surface: DampingSurface, kelvin: ArrayLike) -> list[str]:
-    """Return what to say of temperatures (K) that the log does not cover."""
+def beyond_the_log(surface: DampingSurface, kelvin: ArrayLike) -> list[Warning]:
+    """Return the warning of temperatures (K) that the log does not cover."""
     import numpy as np
 
-    from hersey.units import celsius
+    from hersey.schema.warning import Warning
 
     if surface.temperature_range is None:
         return []
@@ -51,6 +52,14 @@ def beyond_the_log(surface: DampingSurface, kelvin: ArrayLike) -> list[str]:
     if low - 1.0 <= lowest and highest <= high + 1.0:
         return []
     return [
-        f"the log covers {celsius(low):.4g} to {celsius(high):.4g} degC: drag at "
-        f"{celsius(lowest):.4g} to {celsius(highest):.4g} degC is extrapolated"
+        Warning(
+            "drag extrapolated",
+            "the log covers {low:.4g degC} to {high:.4g degC}: drag at {lowest:.4g degC} to "
+            "{highest:.4g degC} is extrapolated",
+            severity="watch",
+            low=low,
+            high=high,
+            lowest=float(lowest),
+            highest=float(highest),
+        )
     ]

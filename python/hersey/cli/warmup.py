@@ -68,6 +68,7 @@ def warmup(
     outputs = may_write_table_and_figure(out, figure, force, inputs)
 
     from hersey.machine.machine import read_machine
+    from hersey.schema.warning import Warning
     from hersey.stability.warm_up import warm_up
 
     machine = read_machine(machine_file)
@@ -76,8 +77,9 @@ def warmup(
     surface = reading.surface(logs, fit_file, machine)
     with working("warming up"):
         warm = warm_up(machine.train, warming_drag(surface, machine), heat, **sought, **limits)
-    said = (f"the limit is that of the {weakest}", *beyond_the_log(surface, warm.film_temperature))
-    warm = replace(warm, warnings=(*warm.warnings, *said))
+    limit = Warning("force limit", "the limit is that of the {limit}", limit=weakest)
+    beyond = beyond_the_log(surface, warm.film_temperature)
+    warm = replace(warm, warnings=(*warm.warnings, limit, *beyond))
     give(warm, outputs, as_json, called="course")
 
 

@@ -9,6 +9,7 @@ from hersey.decision.judge import Kind, judge, meaningless
 from hersey.errors import HerseyError
 from hersey.posterior import Posterior
 from hersey.posterior.typical import typical_of_all_temperatures
+from hersey.schema.warning import Warning
 from hersey.stability.operating_map import OperatingMap, given_map
 
 
@@ -33,8 +34,17 @@ def map_of(
         varies = map_.temperature is not None
         judged = [_kind(found, point.temperature if varies else None, point.speed) for point in points]
     placed = (replace(point, judged=kind or "") for point, kind in zip(map_.points, judged, strict=True))
-    said = [f"{each.point.name}: not judged, {each.error}" for each in without]
-    return replace(map_, points=tuple(placed), warnings=(*map_.warnings, *said))
+    not_judged = [
+        Warning(
+            "point not judged",
+            "not judged, {error}",
+            severity="watch",
+            where=each.point.name,
+            error=str(each.error),
+        )
+        for each in without
+    ]
+    return replace(map_, points=tuple(placed), warnings=(*map_.warnings, *not_judged))
 
 
 def _kind(found: Posterior, kelvin: float | None, speed: float) -> Kind | None:

@@ -61,13 +61,13 @@ def measurements(found: Posterior) -> tuple[Measurement, ...]:
     few = np.linspace(0, len(found.drives) - 1, min(_DRAWS, len(found.drives))).astype(np.intp)
     edges = found.edges(kelvin)
     fold = np.log(edges.fold[few])
-    whole = _width(fold, np.ones(fold.size))
-    if whole <= math.log(NARROW):
+    log_width = _width(fold, np.ones(fold.size))
+    if log_width <= math.log(NARROW):
         return ()
     out = []
     for kind, speeds, shown, error in _shown(found, kelvin, few):
-        left = _expected(fold, shown, error) / whole
-        out.append(Measurement(kind, kelvin, speeds, left, math.exp(left * whole)))
+        left = _expected(fold, shown, error) / log_width
+        out.append(Measurement(kind, kelvin, speeds, left, math.exp(left * log_width)))
     return tuple(sorted(out, key=lambda each: each.left))
 
 

@@ -11,7 +11,7 @@ from hersey.exchange.platforms import LIBRARY
 from hersey.exchange.unit_definitions import shown, unit_definitions
 from hersey.exchange.variables import Variable
 
-#: What tools are told to simulate unless they know better: seconds.
+#: What tools simulate by default: seconds.
 STOP, STEP = 2.0, 0.001
 COPYRIGHT, LICENSE = "Copyright (c) 2026 The hersey authors", "MIT"
 #: Type of a variable in FMI 2.0.

@@ -77,7 +77,7 @@ def page(model: Model, variables: Sequence[Variable], facts: Mapping[str, str], 
 
     ``facts`` are what else is to be said of it, by what they are about.
     """
-    told = "".join(f"<li>{escape(name)}: {escape(fact)}</li>" for name, fact in facts.items())
+    listed = "".join(f"<li>{escape(name)}: {escape(fact)}</li>" for name, fact in facts.items())
     tables = "".join(_group(name, model, variables) for name in _GROUPS)
     uses = "".join(f"<li>{tool}: {how}</li>" for tool, how in _USE.items())
     return (
@@ -86,7 +86,7 @@ def page(model: Model, variables: Sequence[Variable], facts: Mapping[str, str], 
         f"<title>{escape(model.name)}</title>\n<style>\n{_STYLE}</style>\n</head>\n<body>\n"
         f"<h1>{escape(model.name)}</h1>\n<p>A belt on its drive, which may stick and slip: a unit for "
         f"co-simulation by FMI {fmi}, with the core of hersey in it.</p>\n"
-        f'<ul class="facts">{told}</ul>\n{tables}'
+        f'<ul class="facts">{listed}</ul>\n{tables}'
         f"<h2>Steps and events</h2>\n<p>{_EVENTS[fmi]} The size of a communication step changes nothing "
         "else: the library takes its own steps. State can be saved, restored and serialized, to the bit; any "
         "number of instances may run in one process.</p>\n"

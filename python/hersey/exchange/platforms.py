@@ -114,12 +114,12 @@ def read_library(path: Path, wanted: Platform, fmi: str) -> bytes:
 def _platforms_of(content: bytes) -> tuple[str, ...]:
     """The platforms that the head of a library names; none if it is no library."""
     try:
-        return _told(content)
+        return _platforms_in_head(content)
     except struct.error:  # it ends within its head
         return ()
 
 
-def _told(content: bytes) -> tuple[str, ...]:
+def _platforms_in_head(content: bytes) -> tuple[str, ...]:
     kind, system = content[:4], ""
     numbers: tuple[int, ...] = ()
     known: dict[int, str] = {}

@@ -1,4 +1,4 @@
-"""A drive as a Functional Mock-up Unit: the core in a library, what it is told, what tools are told."""
+"""A drive as a Functional Mock-up Unit: the core in a library, its drive file, and its description."""
 
 from __future__ import annotations
 
@@ -171,9 +171,11 @@ def export_fmu(
     variables = _own(variables_of(own_library()), values, fmi)
     binaries, platforms = _binaries(libraries, fmi)
     facts = _facts(drag, fitted, roll_radius, drive, port)
-    told = printable(" ".join([f"{name}, driven by a {drive}.", *(f"{k}: {v}." for k, v in facts.items())]))
+    description_text = printable(
+        " ".join([f"{name}, driven by a {drive}.", *(f"{k}: {v}." for k, v in facts.items())])
+    )
     starts = {key: value for key, value in values.items() if isinstance(value, int | float)}
-    model = Model(name, told, str(values["start"]), tolerance, starts)
+    model = Model(name, description_text, str(values["start"]), tolerance, starts)
     files = {
         "documentation/index.html": page(model, variables, facts, fmi).encode(),
         "documentation/licenses/license.txt": LICENSE_TEXT.encode(),
@@ -269,7 +271,7 @@ def _values(
     roll_radius: float | None,
     tolerance: float,
 ) -> dict[str, Wire]:
-    """All that the library is told of the motion; ``given`` are the inputs in the units of the belt."""
+    """All that the library reads of the motion; ``given`` are the inputs in the units of the belt."""
     values = drive_values(train, drag) | {"drive": drive, "tolerance": tolerance}
     moved, rotates = given[DRIVES[drive]] or 0.0, drive == "speed" and port == ROTATIONAL
     if rotates and roll_radius is not None:

@@ -8,11 +8,12 @@ slip_shape        the slip between two sticks as half a free oscillation
 slip_figures      figures of each slip
 motion_kind       what kind of motion the falls make
 drive_speed       the speed of the drive behind a trace, and how far it may be off
-cycle_notes       what to know of the slips that were found
+cycle_warnings    what to know of the slips that were found
 cycle_record      cycles of a trace, their figures and kind
 waveform          the mean cycle of a trace, and of the model
-independence      which parameters a trace tells apart, in words
+independence      which parameters can be estimated from a trace, and which only together
 drive_fit         the drive that makes the mean cycle, and others that do nearly as well
+drive_warnings    what to know of the drive that was identified
 identified_drive  closure, parameters and intervals from the fits
 trace_file        a trace read from a file of any format of a log
 ================  ======================================================================

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from hersey.arrays import FloatArray
 from hersey.errors import ParameterError
-from hersey.identification.cycle_notes import notes_on
+from hersey.identification.cycle_warnings import warnings_of
 from hersey.identification.detection import (
     FEWEST_OF_RHYTHM,
     FEWEST_SLIPS,
@@ -24,6 +24,7 @@ from hersey.identification.motion_kind import Motion, is_regular, motion_of
 from hersey.identification.sampling import Samples, even_samples
 from hersey.identification.slip_figures import SlipFigures, slip_figures
 from hersey.result import OPEN, Means, Record, Result, json_record
+from hersey.schema.warning import Warning
 from hersey.units import takes_si
 
 if TYPE_CHECKING:
@@ -87,7 +88,7 @@ class CycleRecord(Result):
     period: FloatArray
     rise_slope: FloatArray
     drift: float
-    notes: tuple[str, ...]
+    warnings: tuple[Warning, ...]
 
     @property
     def slips(self) -> int:
@@ -123,7 +124,7 @@ class CycleRecord(Result):
         """Period of the free oscillation, 2 pi sqrt(m/k), s: twice the typical fall, from its steep part.
 
         Good to 5 % where drag varies little in a slip; creep and drag that grows with speed cost up to 25 %.
-        Not a number, and a note says why, where it would be longer than a lap or shorter than the samples
+        Not a number, and a warning says why, where it would be longer than a lap or shorter than the samples
         resolve.
         """
         return self.motion.free_period
@@ -148,7 +149,7 @@ class CycleRecord(Result):
         """Return the figures, time in s and force in the unit of the trace."""
         figures = {name: getattr(self.samples if name in _OF_SAMPLES else self, name) for name in _FIGURES}
         typical = {name: Scatter.of(getattr(self, name)) for name in _PER_CYCLE}
-        return json_record({**figures, "notes": list(self.notes), **typical})
+        return json_record({**figures, "warnings": self.warnings, **typical})
 
     def to_frame(self) -> pl.DataFrame:
         """Return one row per slip; force in the unit of the trace."""
@@ -183,7 +184,7 @@ class CycleRecord(Result):
         of = f" {unit}" if unit not in ("", "1") else ""
         heading = self.headline(unit)
         if self.kind == "steady_sliding" or self.slips < FEWEST_SLIPS:
-            return "\n".join([heading, *(f"- {note}" for note in self.notes)])
+            return "\n".join([heading, *(f"- {each}" for each in self.warnings)])
         period, drop = Scatter.of(self.period), Scatter.of(self.drop)
         free = f"; free period {self.free_period:.4g} s" if np.isfinite(self.free_period) else ""
         turning = "rad" if unit == "N m" else "m"
@@ -200,7 +201,7 @@ class CycleRecord(Result):
             f"loading slope {self.loading_slope:.5g}{of or ' 1'}/s",
             f"stuck         {self.stuck_fraction:.0%} of the time",
             *([stiff] if stiff else []),
-            *(f"- {note}" for note in self.notes),
+            *(f"- {each}" for each in self.warnings),
         ]
         return "\n".join(lines)
 
@@ -283,7 +284,7 @@ def _stretch(samples: Samples, drive_speed: float | None) -> Samples:
 def _record(
     samples: Samples, quantity: str, drive_speed: float | None, uncertainty: float, least_drop: float | None
 ) -> CycleRecord:
-    found, figures, motion, notes = _motion(samples)
+    found, figures, motion, warnings = _motion(samples)
     if least_drop is not None and least_drop > found.least:
         found = of_at_least(samples, found, least_drop)
         figures = slip_figures(samples, found)
@@ -304,11 +305,11 @@ def _record(
         period=figures.period,
         rise_slope=figures.slope,
         drift=drift,
-        notes=(*notes, *notes_on(samples, figures, found.least, least_drop, drift)),
+        warnings=(*warnings, *warnings_of(samples, figures, found.least, least_drop, drift)),
     )
 
 
-def _motion(samples: Samples) -> tuple[Found, SlipFigures, Motion, tuple[str, ...]]:
+def _motion(samples: Samples) -> tuple[Found, SlipFigures, Motion, tuple[Warning, ...]]:
     """The falls beyond the noise, or those with a rhythm where the others have none; figures and motion."""
     found = beyond_noise(samples)
     figures = slip_figures(samples, found)
@@ -316,13 +317,16 @@ def _motion(samples: Samples) -> tuple[Found, SlipFigures, Motion, tuple[str, ..
     if motion.kind == "steady_sliding" and (greater := of_one_rhythm(samples, found, is_regular)):
         slower = slip_figures(samples, greater)
         if slower.period.size >= FEWEST_OF_RHYTHM - 1 and is_regular(slower.period):
-            jitter = (
-                f"{motion.falls} falls are beyond the noise from sample to sample, without a rhythm; those "
-                f"of {greater.least:.3g} or more have one: the rest is taken for a slower noise"
+            jitter = Warning(
+                "slower noise",
+                "{falls} falls are beyond the noise from sample to sample, without a rhythm; those of "
+                "{least:.3g} or more have one: the rest is taken for a slower noise",
+                falls=motion.falls,
+                least=greater.least,
             )
             motion = motion_of(samples, slower, greater.least)
-            return greater, slower, motion, (*motion.notes, jitter)
-    return found, figures, motion, motion.notes
+            return greater, slower, motion, (*motion.warnings, jitter)
+    return found, figures, motion, motion.warnings
 
 
 def _slope(x: FloatArray, y: FloatArray) -> float:

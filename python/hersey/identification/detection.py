@@ -99,10 +99,10 @@ def _fitted(samples: Samples, found: Found, least_drop: float = 0.0, widest: flo
 def _refined(value: FloatArray, slips: Falls, window: int) -> Falls:
     """Falls from where the running mean is greatest to where it is least; none that the ends cut off."""
     inside = (slips.top > window) & (slips.bottom < value.size - 1 - window)
-    mean, reach = averaged(value, window), window // 2
-    nearby = np.arange(-reach, reach + 1)
+    mean, half_window = averaged(value, window), window // 2
+    nearby = np.arange(-half_window, half_window + 1)
     top, bottom = slips.top[inside], slips.bottom[inside]
-    if reach and top.size:
+    if half_window and top.size:
         top = top + nearby[np.argmax(mean[top[:, None] + nearby], axis=1)]
         bottom = bottom + nearby[np.argmin(mean[bottom[:, None] + nearby], axis=1)]
     falling = bottom > top

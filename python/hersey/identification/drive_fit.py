@@ -12,7 +12,7 @@ from scipy import optimize
 from hersey.arrays import FloatArray
 from hersey.errors import ParameterError
 from hersey.identification.cycle_record import CycleRecord
-from hersey.identification.independence import TOLD
+from hersey.identification.independence import ESTIMABLE
 from hersey.identification.waveform import FEWEST_LAPS, ModelLap, Waveform, model_lap
 from hersey.log.neighbours import runs_of_true
 from hersey.motion.belt import Drivetrain
@@ -170,7 +170,7 @@ class DriveFit:
         return np.array([*low, -0.5]), np.array([*high, 0.5])
 
     def _solved(self, start: FloatArray, fixed: int | None = None) -> tuple[FloatArray, float]:
-        """Values and chi-square from ``start``, with one value held if so told."""
+        """Values and chi-square from ``start``, with the value of index ``fixed`` held."""
         inside = np.clip(start, self.low + 1e-6, self.high - 1e-6)
         free = np.arange(inside.size) != fixed
 
@@ -304,7 +304,7 @@ class DriveFit:
         alternatives = []
         errors = self.errors(covariance)
         for index, name in enumerate(self.names):
-            if name == "drive_speed" or (errors[index] < TOLD and not self.at_bound(index)):
+            if name == "drive_speed" or (errors[index] < ESTIMABLE and not self.at_bound(index)):
                 continue
             moves = EXPONENT_MOVES if name in EXPONENTS else MOVES
             for side in (-1.0, 1.0):

@@ -13,33 +13,30 @@ from hersey.damping.estimate import Estimate, quantile
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.identification.cycle_record import CycleRecord
 from hersey.identification.drive_fit import EXPONENTS, NORMAL_REACH, DriveFit
-from hersey.identification.independence import TOLD, in_words
-from hersey.identification.motion_kind import LONGEST_OF_LAP
+from hersey.identification.drive_warnings import warnings_of
+from hersey.identification.independence import ESTIMABLE
+from hersey.identification.motion_kind import NO_FREE_PERIOD
 from hersey.identification.waveform import FEWEST_LAPS, Waveform, mean_waveform
 from hersey.motion.belt import Drivetrain
 from hersey.motion.drag import Drag
 from hersey.motion.parameters import KINDS, OF_THE_BELT
 from hersey.result import OPEN, Means, Record, Result
+from hersey.schema.warning import Warning
 from hersey.units import argument
 
 if TYPE_CHECKING:
     import polars as pl
 
-#: Closures that a record can be compared with, and those that are unless told otherwise: `stribeck` takes
-#: minutes.
+#: Closures that a record can be compared with, and those that are by default: `stribeck` takes minutes.
 CLOSURES = ("retained", "stiction", "stribeck")
 COMPARED = ("retained", "stiction")
-#: Closures whose chi-square differs by less (over the misfit of the best) are not told apart.
+#: Closures whose chi-square differs by less (over the misfit of the best) cannot be distinguished.
 UNDECIDED = 10.0
-#: A fit is called poor if its mean cycle is off by more than this share of the drop (root mean square).
-POOR = 0.05
 #: What needs no single parameter: the free period 2 pi sqrt(m/k), s, the force at which a held belt is
 #: released, and the drag at the drive speed.
 DERIVED = ("free_period", "release_force", "drag_at_drive_speed")
-#: Either, if known, makes of the slope of the force a measure of the drive speed.
-_SCALES = {"stiffness", "mass"}
-#: The drive speed is told anew only if what is known halves the interval that was stated.
-_TOLD_BETTER = 0.5
+#: The drive speed is estimated only if what is known halves the interval that was stated.
+_HALVED = 0.5
 
 
 @dataclass(frozen=True)
@@ -55,12 +52,13 @@ class ClosureFit(Record):
 class IdentifiedDrive(Result):
     """A drive identified from a record.
 
-    ``estimates`` holds every parameter that the record tells, with its 95 % interval; ``values`` all that
-    make the best fit, told or not (those in ``known`` as given). ``derived`` are quantities that need no
-    single parameter; the drive speed is among them where what is known tells it better than stated.
+    ``estimates`` holds every parameter that the record determines, with its 95 % interval; ``values`` all
+    that make the best fit, estimable or not (those in ``known`` as given). ``derived`` are quantities that
+    need no single parameter; the drive speed is among them where what is known determines it better than
+    stated.
     ``systematic`` is the half width, in the unit of each quantity, that the uncertainty of the stated drive
     speed adds to its interval. ``closure`` is the best; ``decided`` whether the others are worse by more than
-    chance. ``not_estimable`` says in words what the record leaves open.
+    chance. ``warnings`` of the kind "not estimable" say what the record leaves open.
     """
 
     also_stated = ("closure_decided", "best_fit")
@@ -68,21 +66,20 @@ class IdentifiedDrive(Result):
 
     closure: str
     decided: bool
-    estimates: Annotated[Mapping[str, Estimate], Means("what the record tells")]
+    estimates: Annotated[Mapping[str, Estimate], Means("what the record determines")]
     values: Mapping[str, float]
     known: Mapping[str, float]
     derived: Mapping[str, Estimate]
     systematic: Annotated[
         Mapping[str, float], Means("half width that the uncertainty of the drive speed adds to an interval")
     ]
-    not_estimable: tuple[str, ...]
     closures: tuple[ClosureFit, ...]
     misfit: float
     drive_speed: Annotated[float, Means(unit="m/s")]
     drive_speed_uncertainty: Annotated[float, Means("share, half of its 95 % interval", open=True)]
     waveform: Waveform
     fitted: FloatArray
-    notes: tuple[str, ...]
+    warnings: tuple[Warning, ...]
 
     @property
     def closure_decided(self) -> bool:
@@ -91,7 +88,7 @@ class IdentifiedDrive(Result):
 
     @property
     def best_fit(self) -> Annotated[Mapping[str, float], OPEN]:
-        """Every parameter of the best fit, told or not."""
+        """Every parameter of the best fit, estimable or not."""
         return self.values
 
     @property
@@ -106,7 +103,7 @@ class IdentifiedDrive(Result):
         return Drag(**{name: self.values[name] for name in names}, closure=self.closure)
 
     def to_frame(self) -> pl.DataFrame:
-        """Return what the record tells with its 95 % interval; the units hold for a trace in newtons."""
+        """Return what the record determines with its 95 % interval; the units hold for a trace in newtons."""
         import polars as pl
 
         rows = [
@@ -118,8 +115,8 @@ class IdentifiedDrive(Result):
         return pl.DataFrame(rows, schema=schema, orient="row")
 
     def headline(self) -> str:
-        """Return the closure and what is told."""
-        return f"closure {self.closure}, told: {', '.join(self.estimates) or 'nothing'}"
+        """Return the closure and what can be estimated."""
+        return f"closure {self.closure}, estimated: {', '.join(self.estimates) or 'nothing'}"
 
     def summary(self, unit: str = "") -> str:
         """Return the result in words, a line each; units where that of the trace is N or N m."""
@@ -131,8 +128,8 @@ class IdentifiedDrive(Result):
             if name in self.known:
                 lines.append(f"{name:18s} {self.known[name]:.5g}{units.get(name, '')} (given)")
             else:
-                told = self.estimates.get(name)
-                entry = "not told by this record" if told is None else f"{told}{units.get(name, '')}"
+                known = self.estimates.get(name)
+                entry = "not estimable from this record" if known is None else f"{known}{units.get(name, '')}"
                 lines.append(f"{name:18s} {entry}")
         lines += [f"{name:18s} {estimate}{units.get(name, '')}" for name, estimate in self.derived.items()]
         lines.append(
@@ -140,7 +137,7 @@ class IdentifiedDrive(Result):
             f"within {100 * self.drive_speed_uncertainty:.2g} %"
         )
         lines.append(f"mean cycle within {self.misfit:.2%} of the drop")
-        return "\n".join([*lines, *(f"- {text}" for text in (*self.not_estimable, *self.notes))])
+        return "\n".join([*lines, *(f"- {each}" for each in self.warnings)])
 
 
 #: Units of what is identified from a force, and from a torque.
@@ -194,16 +191,9 @@ def identify(
     near = [fit for fit in fits if (fit.chi_square - best.chi_square) / scale <= UNDECIDED]
     covariances = [fit.covariance(scale) for fit in near]
     intervals, systematic = _intervals(near, covariances, scale, wave.number)
-    notes = _implausible(record, best, intervals)
-    not_estimable = in_words(best.names[:-1], covariances[0][:-1, :-1])
-    not_estimable += _lost(best, covariances[0], intervals)
-    if best.misfit > POOR:
-        missed = f"the model misses the mean cycle by {best.misfit:.0%} of the drop"
-        notes.append(f"{missed}: take parameters as rough")
-    notes += _contradiction(record, best, intervals)
-    if len(near) > 1:
-        alike = " and ".join(fit.closure for fit in near)
-        notes.append(f"the closures {alike} fit alike: the record does not decide between them")
+    warnings = warnings_of(record, near, covariances[0], intervals)
+    if any(each.kind == NO_FREE_PERIOD for each in warnings):
+        del intervals["free_period"]
     return IdentifiedDrive(
         closure=best.closure,
         decided=len(near) == 1,
@@ -212,14 +202,13 @@ def identify(
         known=given,
         derived={name: each for name, each in intervals.items() if name not in OF_THE_BELT},
         systematic={name: systematic[name] for name in intervals},
-        not_estimable=tuple(not_estimable),
         closures=tuple(ClosureFit(f.closure, f.chi_square, f.misfit) for f in fits),
         misfit=best.misfit,
         drive_speed=record.drive_speed,
         drive_speed_uncertainty=record.drive_speed_uncertainty,
         waveform=wave,
         fitted=best.curve(best.values),
-        notes=tuple(notes),
+        warnings=warnings,
     )
 
 
@@ -247,7 +236,7 @@ def _in_si(name: str, value: Any) -> Any:
 
 def _check(record: CycleRecord, known: Mapping[str, float], closures: tuple[str, ...]) -> None:
     if record.quantity != "force":
-        raise ParameterError("a trace of speed tells no force: identify needs a trace of the spring force")
+        raise ParameterError("a trace of speed has no force: identify needs a trace of the spring force")
     if record.kind != "stick_slip":
         kind = record.kind.replace("_", " ")
         raise InsufficientDataError(f"the record shows {kind}: a drive is identified from stick-slip")
@@ -268,13 +257,13 @@ def _check(record: CycleRecord, known: Mapping[str, float], closures: tuple[str,
 def _intervals(
     near: list[DriveFit], covariances: list[FloatArray], scale: float, laps: int
 ) -> tuple[dict[str, Estimate], dict[str, float]]:
-    """Every quantity that the record tells, over all closures and drives that fit alike.
+    """Every quantity that the record determines, over all closures and drives that fit alike.
 
     Also the half width that the stated drive speed adds to each; it is added, not in quadrature, for it is
     the same for every lap: whatever the speed is within what is stated, the interval holds.
     """
     names = (*near[0].names, *DERIVED)
-    reach = quantile(laps - 1)
+    factor = quantile(laps - 1)
     lows, highs, shifts = [], [], []
     for fit, covariance in zip(near, covariances, strict=True):
         gradient = _gradient(fit)
@@ -282,31 +271,33 @@ def _intervals(
         shifts.append(NORMAL_REACH * np.abs(gradient @ fit.by_drive_speed()))
         for values, share in ((fit.values, 0.0), *fit.alternatives(covariance, scale)):
             # What an alternative costs is gone from what is left for the other values to be off.
-            half = reach * errors * np.sqrt(1.0 - share) + shifts[-1]
+            half = factor * errors * np.sqrt(1.0 - share) + shifts[-1]
             quantities = _quantities(fit, values[:-1])
             lows.append(quantities - half)
             highs.append(quantities + half)
     low, high, shift = np.min(lows, axis=0), np.max(highs, axis=0), np.max(shifts, axis=0)
     middle = _quantities(near[0], near[0].values[:-1])
     bound = [near[0].at_bound(index) for index in range(len(near[0].names))] + [False] * len(DERIVED)
-    told = [
-        high[i] - low[i] < 2.0 * reach * TOLD and not bound[i] and (name != "drive_speed" or _better(near, i))
+    rows = [
+        (i, name)
         for i, name in enumerate(names)
+        if high[i] - low[i] < 2.0 * factor * ESTIMABLE
+        and not bound[i]
+        and (name != "drive_speed" or _better(near, i))
     ]
-    rows = [(i, name) for i, name in enumerate(names) if told[i]]
-    intervals = {name: _estimate(name, middle[i], low[i], high[i], reach) for i, name in rows}
+    intervals = {name: _estimate(name, middle[i], low[i], high[i], factor) for i, name in rows}
     scales = {name: 1.0 if name in EXPONENTS else abs(each.value) for name, each in intervals.items()}
     return intervals, {name: float(shift[i]) * scales[name] for i, name in rows}
 
 
 def _better(near: list[DriveFit], index: int) -> bool:
-    """Whether what is known tells the drive speed better than it was stated."""
+    """Whether what is known determines the drive speed better than it was stated."""
     left = max(abs(fit.by_drive_speed()[index]) / fit.stated_error for fit in near)
-    return bool(left < _TOLD_BETTER)
+    return bool(left < _HALVED)
 
 
-def _estimate(name: str, value: float, low: float, high: float, reach: float) -> Estimate:
-    error = 0.5 * (high - low) / reach
+def _estimate(name: str, value: float, low: float, high: float, factor: float) -> Estimate:
+    error = 0.5 * (high - low) / factor
     if name in EXPONENTS:
         return Estimate(float(value), float(error), float(low), float(high))
     number = float(np.exp(value))
@@ -330,67 +321,3 @@ def _gradient(fit: DriveFit) -> FloatArray:
         change = step * (np.arange(values.size) == index)
         columns.append((_quantities(fit, values + change) - _quantities(fit, values - change)) / (2.0 * step))
     return np.stack(columns, axis=1)
-
-
-def _implausible(record: CycleRecord, best: DriveFit, told: dict[str, Estimate]) -> list[str]:
-    """Take back a free period that no such record has, and say why."""
-    free = told.get("free_period")
-    ends = [name for i, name in enumerate(best.names) if name in ("stiffness", "mass") and best.at_bound(i)]
-    if free is None:
-        return []
-    if ends:
-        why = f"the {' and the '.join(ends)} came to rest at the end of what is believed"
-    elif free.low > LONGEST_OF_LAP * best.period:
-        why = f"{free.value:.3g} s is longer than the lap of {best.period:.3g} s"
-    elif free.high < 2.0 * record.samples.interval:
-        why = f"{free.value:.3g} s is less than two samples"
-    else:
-        return []
-    del told["free_period"]
-    return [f"no free period is given: {why}"]
-
-
-def _contradiction(record: CycleRecord, best: DriveFit, told: Mapping[str, Estimate]) -> list[str]:
-    """Say so where the slope of the force of a held belt over the drive speed is another stiffness.
-
-    The slope, k times the drive speed less the creep, is a measurement of its own.
-    """
-    held = best.held_slope()
-    if held is None:
-        return []
-    over = held.slope / best.drive_speed
-    fitted, given = best.parameters(best.values)["stiffness"], "stiffness" in best.known
-    unsure = np.hypot(
-        quantile(best.wave.number - 1) * held.error / held.slope, record.drive_speed_uncertainty
-    )
-    if not given and "stiffness" not in told:
-        return []
-    if not given:
-        unsure += max(told["stiffness"].high / fitted, fitted / told["stiffness"].low) - 1.0
-    numbers = (
-        f"held, the belt loads the spring by {held.slope:.5g} per s: over the drive speed of "
-        f"{best.drive_speed:.5g} a stiffness of {over:.5g}, "
-        f"but {fitted:.5g} is {'given' if given else 'fitted'}"
-    )
-    if abs(over / held.followed / fitted - 1.0) > unsure:
-        agreed = held.slope / held.followed / fitted
-        return [
-            f"{numbers}; they agree at a drive speed of {agreed:.5g}: check it, and what is given as known"
-        ]
-    if best.known.keys() & _SCALES and "stick_speed" not in best.known and abs(over / fitted - 1.0) > unsure:
-        return [
-            f"{numbers}: the fit takes the difference for creep of the held belt, {1 - held.followed:.1%} of "
-            f"the drive speed; a drive speed of {held.slope / fitted:.5g} would do as well"
-        ]
-    return []
-
-
-def _lost(best: DriveFit, covariance: FloatArray, told: Mapping[str, Estimate]) -> list[str]:
-    """Parameters that look told by the fit alone, but are not."""
-    errors = best.errors(covariance)
-    names = best.names[:-1]  # the drive speed was stated
-    lost = [name for i, name in enumerate(names) if name not in told and errors[i] < TOLD]
-    if not lost:
-        return []
-    words = ", ".join(name.replace("_", " ") for name in lost)
-    return [f"{words}: differ too much between drives that fit alike"]

@@ -1,4 +1,4 @@
-"""Which parameters a fit tells apart, and in words which only together."""
+"""Which parameters can be estimated from a record, and which only together."""
 
 from __future__ import annotations
 
@@ -7,9 +7,12 @@ from typing import NamedTuple
 import numpy as np
 
 from hersey.arrays import FloatArray
+from hersey.schema.warning import Warning
 
-#: A parameter is told if its relative standard error (that of an exponent: absolute) is below this.
-TOLD = 0.2
+#: A parameter is estimable if its relative standard error (that of an exponent: absolute) is below this.
+ESTIMABLE = 0.2
+#: Kind of the warnings that name what is not.
+NOT_ESTIMABLE = "not estimable"
 #: A parameter takes part in a direction if its share of the unit vector is at least this.
 _PART = 0.25
 
@@ -39,35 +42,67 @@ def directions(names: tuple[str, ...], covariance: FloatArray) -> list[Direction
     return principal
 
 
-def in_words(names: tuple[str, ...], covariance: FloatArray) -> list[str]:
-    """Say for each direction that is not known what the record cannot tell."""
-    sentences = []
+def not_estimable(names: tuple[str, ...], covariance: FloatArray) -> list[Warning]:
+    """Return a warning for each direction that is not known: what the record leaves open."""
+    found: dict[str, Warning] = {}
     for direction in directions(names, covariance):
-        if direction.error < TOLD:
+        if direction.error < ESTIMABLE:
             break
-        involved = list(direction.exponents)
-        labels = [name.replace("_", " ") for name in involved]
+        involved = tuple(direction.exponents)
         if len(involved) == 1:
-            sentences.append(f"the record hardly depends on the {labels[0]}")
-            continue
-        together = f"{', '.join(labels[:-1])} and {labels[-1]}"
-        if len(involved) == 2:
-            one, two = involved
-            weights = direction.exponents[two], -direction.exponents[one]
-            scale = max(weights, key=abs)
-            a, b = weights[0] / scale, weights[1] / scale
-            picked = np.array([a * (n == one) + b * (n == two) for n in names])
-            error = float(np.sqrt(max(picked @ covariance @ picked, 0.0)))
-            product = f"{_power(one, a)} x {_power(two, b)}"
-            if error < TOLD:
-                sentences.append(f"{together} only as the product {product} (to {error:.1%})")
-            else:
-                sentences.append(f"{together}: neither is told, nor a product of them")
+            warning = _of_one(involved[0])
+        elif len(involved) == 2:
+            warning = _of_a_pair(involved, direction, names, covariance)
         else:
-            sentences.append(
-                f"{together} only together: they can change at once and leave the record as it is"
+            warning = Warning(
+                NOT_ESTIMABLE,
+                "{parameters} only together: they can change at once and leave the record as it is",
+                severity="watch",
+                parameters=_listed(involved),
             )
-    return list(dict.fromkeys(sentences))
+        found.setdefault(str(warning), warning)
+    return list(found.values())
+
+
+def _of_one(name: str) -> Warning:
+    return Warning(
+        NOT_ESTIMABLE,
+        "the record hardly depends on the {parameters}",
+        severity="watch",
+        parameters=name.replace("_", " "),
+    )
+
+
+def _of_a_pair(
+    pair: tuple[str, ...], direction: Direction, names: tuple[str, ...], covariance: FloatArray
+) -> Warning:
+    """What is known of two parameters: the product that keeps its value along the direction, or nothing."""
+    first, second = pair
+    weights = direction.exponents[second], -direction.exponents[first]
+    scale = max(weights, key=abs)
+    powers = dict(zip(pair, (weight / scale for weight in weights), strict=True))
+    picked = np.array([powers.get(name, 0.0) for name in names])
+    error = float(np.sqrt(max(picked @ covariance @ picked, 0.0)))
+    if error < ESTIMABLE:
+        return Warning(
+            NOT_ESTIMABLE,
+            "{parameters} only as the product {product} (to {error:.1%})",
+            severity="watch",
+            parameters=_listed(pair),
+            product=" x ".join(_power(name, power) for name, power in powers.items()),
+            error=error,
+        )
+    return Warning(
+        NOT_ESTIMABLE,
+        "{parameters}: neither can be estimated, nor a product of them",
+        severity="watch",
+        parameters=_listed(pair),
+    )
+
+
+def _listed(names: tuple[str, ...]) -> str:
+    labels = [name.replace("_", " ") for name in names]
+    return f"{', '.join(labels[:-1])} and {labels[-1]}"
 
 
 def _power(name: str, power: float) -> str:

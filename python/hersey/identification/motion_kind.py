@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -11,6 +12,7 @@ from hersey.identification.detection import FEWEST_SLIPS
 from hersey.identification.sampling import Samples
 from hersey.identification.slip_figures import SlipFigures
 from hersey.identification.slip_shape import held_slope, slip_duration, stick_angle
+from hersey.schema.warning import Warning
 
 #: A belt that sticks for a smaller share of the lap merely touches rest: the oscillation is inertial.
 LEAST_STUCK = 0.15
@@ -20,7 +22,9 @@ _REGULAR = 0.25
 _CLEAR = 2.0
 #: A free period is longer than a lap by no more than this: a belt that sticks only adds to it.
 LONGEST_OF_LAP = 1.3
-#: A fall that lasts fewer samples tells no duration.
+#: Kind of the warning that says why there is no free period.
+NO_FREE_PERIOD = "no free period"
+#: The duration of a fall that lasts fewer samples is not known.
 _RESOLVED = 3.0
 
 
@@ -38,7 +42,7 @@ class Motion(NamedTuple):
     loading_slope: float
     free_period: float
     stuck_fraction: float
-    notes: tuple[str, ...]
+    warnings: tuple[Warning, ...]
 
 
 def motion_of(samples: Samples, figures: SlipFigures, least: float) -> Motion:
@@ -46,12 +50,13 @@ def motion_of(samples: Samples, figures: SlipFigures, least: float) -> Motion:
     falls = figures.middle.size
     greatest = float(np.max(figures.drop)) if falls else float("nan")
     stuck = _stuck_fraction(figures) if figures.period.size >= FEWEST_SLIPS - 1 else 0.0
-    kind, notes = _kind(figures, stuck, least)
+    kind, warnings = _kind(figures, stuck, least)
+    nan = float("nan")
     if kind == "steady_sliding":
-        nan = float("nan")
-        return Motion(kind, falls, greatest, nan, nan, 0.0, tuple(notes))
-    free, why = _free_period(samples, figures)
-    return Motion(kind, falls, greatest, _loading_slope(kind, figures), free, stuck, (*notes, *why))
+        return Motion(kind, falls, greatest, nan, nan, 0.0, warnings)
+    implausible = tuple(_implausible_free_period(samples, figures))
+    free = nan if implausible else 2.0 * _typical(figures.steep)[0]
+    return Motion(kind, falls, greatest, _loading_slope(kind, figures), free, stuck, implausible)
 
 
 def is_regular(period: FloatArray) -> bool:
@@ -59,18 +64,28 @@ def is_regular(period: FloatArray) -> bool:
     return bool(float(np.std(period)) <= _REGULAR * float(np.mean(period)))
 
 
-def _kind(figures: SlipFigures, stuck: float, least: float) -> tuple[str, list[str]]:
+def _kind(figures: SlipFigures, stuck: float, least: float) -> tuple[str, tuple[Warning, ...]]:
+    """Return the kind of motion, and why falls are no cycle."""
     if figures.period.size < FEWEST_SLIPS - 1:
-        apart = "gaps part the falls: no two are known to follow each other"
-        return "steady_sliding", [apart] if figures.middle.size >= FEWEST_SLIPS else []
+        words = Warning(
+            "gaps part the falls",
+            "gaps part the falls: no two are known to follow each other",
+            severity="watch",
+        )
+        return "steady_sliding", (words,) if figures.middle.size >= FEWEST_SLIPS else ()
     regular = is_regular(figures.period)
     if stuck >= LEAST_STUCK and (regular or float(np.median(figures.drop)) > _CLEAR * least):
-        return "stick_slip", []
+        return "stick_slip", ()
     if stuck >= LEAST_STUCK:
-        return "steady_sliding", ["falls hardly beyond the noise come without a rhythm: that is no cycle"]
+        words = Warning(
+            "small falls without rhythm",
+            "falls hardly beyond the noise come without a rhythm: that is no cycle",
+        )
+        return "steady_sliding", (words,)
     if not regular:
-        return "steady_sliding", ["the force wanders irregularly without sticking: that is no cycle"]
-    return "inertial", []
+        words = Warning("irregular force", "the force wanders irregularly without sticking: that is no cycle")
+        return "steady_sliding", (words,)
+    return "inertial", ()
 
 
 def _stuck_fraction(figures: SlipFigures) -> float:
@@ -84,21 +99,33 @@ def _loading_slope(kind: str, figures: SlipFigures) -> float:
     return held_slope(drop, duration, 0.0) if kind == "inertial" else slope
 
 
-def _free_period(samples: Samples, figures: SlipFigures) -> tuple[float, list[str]]:
-    """Twice the typical fall, from its steep part; or why that is none."""
+def _implausible_free_period(samples: Samples, figures: SlipFigures) -> Iterator[Warning]:
+    """Yield why twice the typical fall, from its steep part, is no free period."""
     steep, lap = _typical(figures.steep, figures.period)
     free, lasts = 2.0 * steep, samples.interval * samples.value.size
     if steep < _RESOLVED * samples.interval:
-        why = f"a fall lasts {steep / samples.interval:.1f} samples, too few to time it"
-    elif free > LONGEST_OF_LAP * lap:
-        why = f"twice a fall is {free:.3g} s, longer than the lap of {lap:.3g} s: the fall is no free one"
-    elif free * FEWEST_SLIPS > lasts:
-        why = (
-            f"twice a fall is {free:.3g} s, which a trace of {lasts:.3g} s does not hold {FEWEST_SLIPS} times"
+        yield Warning(
+            NO_FREE_PERIOD,
+            "no free period is given: a fall lasts {samples:.1f} samples, too few to time it",
+            samples=steep / samples.interval,
         )
-    else:
-        return free, []
-    return float("nan"), [f"no free period is given: {why}"]
+    elif free > LONGEST_OF_LAP * lap:
+        yield Warning(
+            NO_FREE_PERIOD,
+            "no free period is given: twice a fall is {free:.3g} s, longer than the lap of {lap:.3g} s: the "
+            "fall is no free one",
+            free=free,
+            lap=lap,
+        )
+    elif free * FEWEST_SLIPS > lasts:
+        yield Warning(
+            NO_FREE_PERIOD,
+            "no free period is given: twice a fall is {free:.3g} s, which a trace of {lasts:.3g} s does not "
+            "hold {times} times",
+            free=free,
+            lasts=lasts,
+            times=FEWEST_SLIPS,
+        )
 
 
 def _typical(*columns: FloatArray) -> tuple[float, ...]:

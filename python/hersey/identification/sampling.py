@@ -70,38 +70,38 @@ def even_samples(time: ArrayLike, value: ArrayLike, *, name: str = "force") -> S
         )
     if not np.all(np.isfinite(times)):
         raise ParameterError(f"time of sample {int(np.argmin(np.isfinite(times)))} is not a number")
-    whole = np.isfinite(values)
-    times_whole, values_whole = times[whole], values[whole]
-    if values_whole.size < FEWEST:
+    finite = np.isfinite(values)
+    finite_times, finite_values = times[finite], values[finite]
+    if finite_values.size < FEWEST:
         raise InsufficientDataError(
-            f"{values_whole.size} samples of {name}: at least {FEWEST} are needed to see a cycle"
+            f"{finite_values.size} samples of {name}: at least {FEWEST} are needed to see a cycle"
         )
-    steps = np.diff(times_whole)
+    steps = np.diff(finite_times)
     if not np.all(steps > 0):
         raise ParameterError(f"time does not ascend at sample {int(np.argmin(np.diff(times) > 0)) + 1}")
     interval = float(np.median(steps))
-    count = round(float(times_whole[-1] - times_whole[0]) / interval) + 1
-    if count > _SPARSEST * values_whole.size:
+    count = round(float(finite_times[-1] - finite_times[0]) / interval) + 1
+    if count > _SPARSEST * finite_values.size:
         raise InsufficientDataError(
-            f"gaps are most of the trace: {values_whole.size} samples at {interval:g} s would take "
-            f"{interval * values_whole.size:g} s, and it lasts {times_whole[-1] - times_whole[0]:g} s"
+            f"gaps are most of the trace: {finite_values.size} samples at {interval:g} s would take "
+            f"{interval * finite_values.size:g} s, and it lasts {finite_times[-1] - finite_times[0]:g} s"
         )
-    grid = times_whole[0] + interval * np.arange(count)
-    if count == values_whole.size and np.all(np.abs(times_whole - grid) < 0.05 * interval):
-        even, bridged = values_whole.copy(), np.zeros(count, dtype=bool)
+    grid = finite_times[0] + interval * np.arange(count)
+    if count == finite_values.size and np.all(np.abs(finite_times - grid) < 0.05 * interval):
+        even, bridged = finite_values.copy(), np.zeros(count, dtype=bool)
     else:
-        even = np.interp(grid, times_whole, values_whole)
-        bridged = _bridged(grid, times_whole, interval)
+        even = np.interp(grid, finite_times, finite_values)
+        bridged = _bridged(grid, finite_times, interval)
     even, spikes = _despiked(even, _noise(even))
-    missing = max(int(np.sum(bridged)), int(np.sum(~whole)))
-    return Samples(float(times_whole[0]), interval, even, bridged, _noise(even), spikes, missing)
+    missing = max(int(np.sum(bridged)), int(np.sum(~finite)))
+    return Samples(float(finite_times[0]), interval, even, bridged, _noise(even), spikes, missing)
 
 
 def _bridged(grid: FloatArray, times: FloatArray, interval: float) -> NDArray[np.bool_]:
     after = np.clip(np.searchsorted(times, grid), 1, times.size - 1)
     wide = times[after] - times[after - 1] > GAP * interval
-    apart = np.minimum(np.abs(grid - times[after - 1]), np.abs(times[after] - grid))
-    return np.asarray(wide & (apart > 0.5 * interval))
+    to_nearest = np.minimum(np.abs(grid - times[after - 1]), np.abs(times[after] - grid))
+    return np.asarray(wide & (to_nearest > 0.5 * interval))
 
 
 def _noise(value: FloatArray) -> float:

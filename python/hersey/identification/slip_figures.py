@@ -42,8 +42,8 @@ def slip_figures(samples: Samples, found: Found) -> SlipFigures:
     """Return the figures of all falls that no gap hides part of."""
     value, slips, window = samples.value, found.slips, found.window
     bridged = np.concatenate([[0], np.cumsum(_long(samples.bridged, window))])
-    whole = bridged[slips.bottom] == bridged[slips.top]
-    top, bottom = slips.top[whole], slips.bottom[whole]
+    complete = bridged[slips.bottom] == bridged[slips.top]
+    top, bottom = slips.top[complete], slips.bottom[complete]
     kept = Falls(top, bottom)
     middle = crossing(smoothed(value, window), kept, 0.5) if top.size else np.empty(0)
     lasts = steep_lasts(value, kept, window) if top.size else np.empty(0)

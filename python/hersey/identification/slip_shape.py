@@ -52,5 +52,5 @@ def _scaled_slope(angle: float) -> float:
     """Mean slope over the steepest `SHARE` of a rise from -1 to 1, in time of 1/w."""
     held = float(np.tan(angle))
     half_rise = 0.5 * np.pi - angle + held
-    reach = SHARE * half_rise
-    return float(np.cos(angle)) if reach <= held else float(np.cos(half_rise - reach)) / reach
+    half_range = SHARE * half_rise
+    return float(np.cos(angle)) if half_range <= held else float(np.cos(half_rise - half_range)) / half_range

@@ -12,6 +12,7 @@ from hersey.log.channels import called
 from hersey.log.columns import OpenColumns, open_columns
 from hersey.log.rows import LeftOut, runs_of
 from hersey.log.text.column import Column
+from hersey.schema.warning import Warning
 from hersey.units import KINDS, conversion
 
 #: What a trace may hold: kind of unit, and the names by which its column is found.
@@ -34,7 +35,7 @@ class TraceFile:
     quantity: str
     unit: str
     name: str
-    notes: tuple[str, ...] = ()  #: which run of the file this is, and rows that were left out
+    warnings: tuple[Warning, ...] = ()  #: which run of the file this is, and rows that were left out
 
 
 def read_trace(
@@ -75,7 +76,8 @@ def read_trace_runs(
 ) -> tuple[TraceFile, ...]:
     """Read the traces in a table with a heading such as ``time [s],force [N]``, or a file of another format.
 
-    A run ends where the clock starts anew, as in a log; a row whose time lies apart is left out and noted.
+    A run ends where the clock starts anew, as in a log; a stray row is left out, with a
+    warning.
 
     Parameters
     ----------
@@ -112,17 +114,23 @@ def _runs(whole: TraceFile, file: str) -> tuple[TraceFile, ...]:
     """The runs in what a file holds, split as the runs of a log are."""
     left_out = LeftOut()
     runs = runs_of(whole.time, None, file, lambda row: f"row {row + 1} of the table", left_out)
-    notes = tuple(map(str, left_out.warnings()))
+    left = tuple(left_out.warnings())
     if len(runs) == 1:
-        return (replace(whole, time=whole.time[runs[0]], value=whole.value[runs[0]], notes=notes),)
+        return (replace(whole, time=whole.time[runs[0]], value=whole.value[runs[0]], warnings=left),)
     return tuple(
         replace(
             whole,
             time=whole.time[rows],
             value=whole.value[rows],
-            notes=(*(notes if number == 1 else ()), f"run {number} of {len(runs)}: the clock starts anew"),
+            warnings=(*(left if number == 1 else ()), _one_of(number, len(runs))),
         )
         for number, rows in enumerate(runs, start=1)
+    )
+
+
+def _one_of(number: int, runs: int) -> Warning:
+    return Warning(
+        "one of several runs", "run {number} of {runs}: the clock starts anew", number=number, runs=runs
     )
 
 

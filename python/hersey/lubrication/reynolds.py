@@ -8,6 +8,7 @@ against a rigid one. E* = E'/2 is the contact modulus.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
@@ -15,6 +16,7 @@ from hersey import _core
 from hersey.arrays import FloatArray
 from hersey.errors import ParameterError
 from hersey.result import Means
+from hersey.schema.warning import Warning
 from hersey.units import fields_in_si, takes_si
 
 #: Nodes between inlet and outlet.
@@ -121,8 +123,8 @@ class LineContactSolution:
     friction: Annotated[float, Means("magnitude of roll_traction over the load")]
     iterations: Annotated[int, Means("Newton steps in all")]
     stations: Annotated[int, Means("solutions on the way from a rigid roll")]
-    cautions: Annotated[
-        tuple[str, ...], Means("what the model does not hold for, or could be resolved better")
+    warnings: Annotated[
+        tuple[Warning, ...], Means("what the model does not hold for, or could be resolved better")
     ]
 
 
@@ -201,7 +203,10 @@ def solve_line_contact(
         by_speed=_exponents(solution.by_speed),
         by_load=_exponents(solution.by_load),
         friction=abs(solution.traction_1) / load,
-        cautions=_cautions(solution, radius, layer, barus=fluid.thickening == "barus"),
+        warnings=(
+            *_of_the_shape(solution, radius, layer),
+            *_of_the_numbers(solution, barus=fluid.thickening == "barus"),
+        ),
     )
 
 
@@ -239,25 +244,44 @@ def _exponents(of: _core.Exponents) -> LineExponents:
     return LineExponents(of.central, of.minimum, of.traction_1, of.traction_2)
 
 
-def _cautions(
-    solution: _core.LineContact, radius: float, layer: ElasticLayer | None, *, barus: bool
-) -> tuple[str, ...]:
-    """What a reader must know before the numbers are used."""
-    cautions = []
-    if layer is not None and -solution.offset > _INDENTATION * layer.thickness:
-        cautions.append(
-            f"the layer is indented by {-solution.offset / layer.thickness:.0%} of its thickness: linear "
-            f"elasticity, meant for up to {_INDENTATION:.0%}, is a sketch there"
+def _of_the_shape(
+    solution: _core.LineContact, radius: float, layer: ElasticLayer | None
+) -> Iterator[Warning]:
+    """Yield what the shape of the contact does not allow the model."""
+    indented = 0.0 if layer is None else -solution.offset / layer.thickness
+    if indented > _INDENTATION:
+        yield Warning(
+            "layer indented deeply",
+            "the layer is indented by {share:.0%} of its thickness: linear elasticity, meant for up to "
+            "{most:.0%}, is a sketch there",
+            severity="watch",
+            share=indented,
+            most=_INDENTATION,
         )
     if solution.outlet > _HALF_WIDTH * radius:
-        cautions.append(
-            f"the contact reaches {solution.outlet / radius:.0%} of the radius from the axis: the roll is no "
-            "parabola"
+        yield Warning(
+            "contact too wide for a parabola",
+            "the contact reaches {share:.0%} of the radius from the axis: the roll is no parabola",
+            severity="watch",
+            share=solution.outlet / radius,
         )
+
+
+def _of_the_numbers(solution: _core.LineContact, *, barus: bool) -> Iterator[Warning]:
+    """Yield what grid and law of viscosity cost."""
     if solution.grid_error > _GRID_ERROR:
-        cautions.append(f"the least film is good to {solution.grid_error:.1%} on this grid: take more nodes")
-    if barus and solution.greatest_pressure > _BARUS:
-        cautions.append(
-            f"Barus' law overstates viscosity at {solution.greatest_pressure / 1e9:.2g} GPa: use roelands"
+        yield Warning(
+            "coarse grid",
+            "the least film is good to {error:.1%} on this grid",
+            severity="watch",
+            remedy="take more nodes",
+            error=solution.grid_error,
         )
-    return tuple(cautions)
+    if barus and solution.greatest_pressure > _BARUS:
+        yield Warning(
+            "pressure beyond Barus' law",
+            "Barus' law overstates viscosity at {pressure:.2g GPa}",
+            severity="watch",
+            remedy="use roelands",
+            pressure=solution.greatest_pressure,
+        )

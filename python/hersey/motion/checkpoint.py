@@ -45,6 +45,7 @@ from hersey.scale.store import (
     sha256_of,
 )
 from hersey.scale.tasks import done
+from hersey.schema.warning import Warning
 from hersey.units import KINDS as UNITS
 
 if TYPE_CHECKING:
@@ -69,14 +70,14 @@ _ABOUT = {
 
 @dataclass(frozen=True)
 class Checkpoint:
-    """What a sweep left in its folder: what was counted, in how many chunks, and what to tell of it."""
+    """What a sweep left in its folder: what was counted, in how many chunks, and warnings."""
 
     path: Path
     tally: Tally
     chunks: int
     #: Chunks that were there before.
     before: int
-    notes: tuple[str, ...] = ()
+    warnings: tuple[Warning, ...] = ()
 
     def summary(self) -> dict[str, Any]:
         """Return what `hersey.motion.scenario.summary` returns of a sweep in memory."""
@@ -130,10 +131,10 @@ def checkpointed(
             planned=planned,
             asked=asked,
         ) as folder:
-            notes: list[str] = []
+            warnings: list[Warning] = []
             if known is not None:
-                notes = _probed(known, rules, tried, (path, kind, sha256_of(scenario)))
-            return _followed(sets, rules, folder, known, work.threads, work.progress, notes)
+                warnings = _probed(known, rules, tried, (path, kind, sha256_of(scenario)))
+            return _followed(sets, rules, folder, known, work.threads, work.progress, warnings)
 
 
 def _followed(
@@ -143,12 +144,12 @@ def _followed(
     client: Client | LocalWorkers | None,
     threads: int,
     progress: Callable[[int, int], object] | None,
-    notes: list[str],
+    warnings: list[Warning],
 ) -> Checkpoint:
     """Do what is not done."""
     tally, lacking, damaged = _counted(folder)
     count = lacking.size
-    notes = [*notes, *folder.mended, *_done_again(folder.path, damaged)]
+    warnings = [*warnings, *folder.mended, *_done_again(folder.path, damaged)]
     before = count - int(lacking.sum())
     ended, there = before, tally.sets
     pieces = _Pieces(sets, folder.cut, np.flatnonzero(lacking).tolist())
@@ -173,7 +174,7 @@ def _followed(
     except KeyboardInterrupt as interrupt:
         interrupt.add_note(_left(ended, count))
         raise
-    return Checkpoint(folder.path, tally, count, before, tuple(notes))
+    return Checkpoint(folder.path, tally, count, before, tuple(warnings))
 
 
 def _counted(folder: Folder) -> tuple[Tally, NDArray[np.bool_], list[int]]:
@@ -187,28 +188,37 @@ def _counted(folder: Folder) -> tuple[Tally, NDArray[np.bool_], list[int]]:
             tally.add(note)
         except (AttributeError, KeyError, TypeError, ValueError):
             raise OutputError(
-                f"{folder.path}: what is told of chunk {number} is damaged: remove its "
-                f"files, and it is done anew"
+                f"{folder.path}: the record of chunk {number} is damaged: remove its "
+                f"files, and it is computed again"
             ) from None
         lacking[number] = False
     return tally, lacking, damaged
 
 
-def _done_again(path: Path, damaged: list[int]) -> list[str]:
-    """What is told of chunks that were finished and are no longer whole."""
+def _done_again(path: Path, damaged: list[int]) -> list[Warning]:
+    """The warning of chunks that were finished and are damaged."""
     if not damaged:
         return []
     named = ", ".join(str(number) for number in damaged[:10]) + (", ..." if len(damaged) > 10 else "")
-    many = "chunks were" if len(damaged) > 1 else "chunk was"
-    return [f"{path.name}: {len(damaged)} {many} damaged and computed again: {named}"]
+    return [
+        Warning(
+            "chunks computed again",
+            "{count} {count:chunk was|chunks were} damaged and computed again: {chunks}",
+            where=path.name,
+            count=len(damaged),
+            chunks=named,
+        )
+    ]
 
 
 def _left(ended: int, count: int) -> str:
     return f"{ended} of {count} chunks are kept: the same command goes on"
 
 
-def gathered(sets: Sets, rules: Rules, work: Work) -> tuple[dict[str, NDArray[Any]], list[str], list[str]]:
-    """Return the numbers of every set as workers find them, flat, the failures, and what to tell."""
+def gathered(
+    sets: Sets, rules: Rules, work: Work
+) -> tuple[dict[str, NDArray[Any]], list[str], list[Warning]]:
+    """Return the numbers of every set as workers find them, flat, the failures, and warnings."""
     with _connected(work.client) as known:
         assert known is not None
         tried = trial(rules, sets)
@@ -216,7 +226,7 @@ def gathered(sets: Sets, rules: Rules, work: Work) -> tuple[dict[str, NDArray[An
         if wished is None:
             wished = usual_chunk(sets.count, tried.each, max(threads_of(known), 1))
         cut = Cut.into(sets.shape, wished)
-        notes = _probed(known, rules, tried, None)
+        warnings = _probed(known, rules, tried, None)
         columns: dict[str, NDArray[Any]] = {}
         failures: list[tuple[int, str]] = []
         pieces = _Pieces(sets, cut, range(cut.count))
@@ -229,7 +239,7 @@ def gathered(sets: Sets, rules: Rules, work: Work) -> tuple[dict[str, NDArray[An
                     columns[name] = np.empty(sets.count, column.dtype)
                 columns[name][first : first + column.size] = column
             failures.extend(failed)
-    return columns, [f"set {index}: {text}" for index, text in sorted(failures)], notes
+    return columns, [f"set {index}: {text}" for index, text in sorted(failures)], warnings
 
 
 @contextmanager
@@ -251,8 +261,8 @@ def _cut(sets: Sets, chunk: int) -> Cut:
     return cut
 
 
-def _probed(client: Client | LocalWorkers, rules: Rules, tried: Trial, seen: Any) -> list[str]:
-    """Refuse a worker that does not see the folder; return what is told of those with other bits."""
+def _probed(client: Client | LocalWorkers, rules: Rules, tried: Trial, seen: Any) -> list[Warning]:
+    """Refuse a worker that does not see the folder; return the warning of those with other bits."""
     if isinstance(client, LocalWorkers):  # this machine, with its folders
         return []
     found = client.run(probe, rules, tried.sample, seen, on_error="return")
@@ -295,13 +305,13 @@ def _layout(sets: Sets, rules: Rules, units: str, cut: Cut) -> Layout:
         axes = () if not values.ndim else sets.axes if sets.zip else (name,)
         laid = np.broadcast_to(values, sets.shape) if axes and sets.zip else values
         coordinates[name] = Coordinate(axes, laid, about)
-    told = {key: value for key, value in rules.described().items() if value is not None}
+    described = {key: value for key, value in rules.described().items() if value is not None}
     return Layout(
         sets.axes,
         cut,
         tuple(whole.values()),
         coordinates,
-        {**told, "created_by": f"hersey {_core.VERSION}, sweep", "units": units, "sets": sets.count},
+        {**described, "created_by": f"hersey {_core.VERSION}, sweep", "units": units, "sets": sets.count},
     )
 
 

@@ -1,4 +1,4 @@
-"""Following the sets of a sweep, here or at a worker: numbers by name, and what is told of a chunk."""
+"""Following the sets of a sweep, here or at a worker: numbers by name, and the record of a chunk."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ from hersey.motion.drag import Drag
 from hersey.motion.parameters import PARAMETERS
 from hersey.motion.sets import Later, Sets, within
 from hersey.scale.store import Folder, Kind, Note, refuse_unseen
+from hersey.schema.warning import Warning
 
 #: Numbers of each cycle, in the order of the core.
 NUMBERS = (
@@ -30,10 +31,10 @@ NUMBERS = (
     "grip_slip_duration",
     "drag_work",
 )
-#: What is told of those that stick and slip: least and greatest.
+#: What a summary has of those that stick and slip: least and greatest.
 RANGES = ("frequency", "stuck_fraction", "speed_max", "stretch_max")
 #: Failures of which the reason is kept.
-TOLD = 20
+REPORTED = 20
 #: Time that a task shall take, and that a trial may, s.
 _TASK, _TRIAL = 1.5, 0.05
 #: Time below which a task is mostly trouble, s.
@@ -122,7 +123,7 @@ class Tally:
             least, most = self.ranges.get(name, (low, high))
             self.ranges[name] = min(least, low), max(most, high)
         kept = sorted([*self.failures, *((int(index), str(text)) for index, text in note["failures"])])
-        self.failures = kept[:TOLD]
+        self.failures = kept[:REPORTED]
 
     def to_dict(self) -> dict[str, Any]:
         """Return it as the summary of a sweep; of failures the first, and how many more there are."""
@@ -137,7 +138,7 @@ class Tally:
 
 
 def note_of(motions: _core.Sweep, values: dict[str, NDArray[Any]], first: int) -> Note:
-    """Return what is told of a chunk whose first set has this index among all."""
+    """Return the record of a chunk whose first set has this index among all."""
     counts = np.bincount(values["kind"], minlength=len(_core.KINDS))
     sticking = values["kind"] == _core.KINDS.index("stick_slip")
     return {
@@ -147,7 +148,7 @@ def note_of(motions: _core.Sweep, values: dict[str, NDArray[Any]], first: int) -
             for name in RANGES
             if sticking.any()
         },
-        "failures": [[first + each.index, str(each.error)] for each in motions.failures[:TOLD]],
+        "failures": [[first + each.index, str(each.error)] for each in motions.failures[:REPORTED]],
     }
 
 
@@ -252,13 +253,19 @@ def usual_chunk(sets: int, each: float, workers: int) -> int:
     return int(min(max(min(long, enough), sets / _CHUNKS, 1), sets))
 
 
-def hashes_differ(hashes: Iterable[tuple[str, str]], own: str) -> list[str]:
-    """Return a line for machines whose numbers differ from those of this one."""
+def hashes_differ(hashes: Iterable[tuple[str, str]], own: str) -> list[Warning]:
+    """Return the warning of machines whose numbers differ from those of this one."""
     others = sorted(worker for worker, found in hashes if found != own)
     if not others:
         return []
-    many = f" and {len(others) - 1} more" if len(others) > 1 else ""
     return [
-        f"worker {others[0]}{many} computes other last bits than this machine (another processor or C "
-        f"library): chunks are as exact as any, but not the same to the bit wherever they are made"
+        Warning(
+            "workers with other last bits",
+            "worker {worker}"
+            + (" and {more} more" if len(others) > 1 else "")
+            + " computes other last bits than this machine (another processor or C library): chunks are as "
+            "exact as any, but not the same to the bit wherever they are made",
+            worker=others[0],
+            more=len(others) - 1,
+        )
     ]

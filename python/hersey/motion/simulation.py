@@ -24,6 +24,7 @@ from hersey.motion.parameters import MOST_STEPS, whole
 from hersey.motion.schedule import Schedule
 from hersey.motion.trajectory import Energy, Event, SelfCheck, Trajectory
 from hersey.result import Means, Result
+from hersey.schema.warning import Warning
 from hersey.units import takes_si
 
 #: Relative tolerance of the steps.
@@ -233,7 +234,8 @@ def _self_check(run: Callable[[], _core.Trajectory], first: _core.Trajectory) ->
     try:
         other = run()
     except HerseyError as error:
-        return SelfCheck(name, None, None, False, str(error))
+        unfinished = Warning("check not finished", "{error}", severity="watch", where=name, error=str(error))
+        return SelfCheck(name, None, None, False, (unfinished,))
     changes = [(m.events.from_mode, m.events.to_mode, m.events.guard) for m in (first, other)]
     return SelfCheck(
         name,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -20,6 +20,7 @@ from hersey.motion.parameters import KINDS, MOST_STEPS, PARAMETERS, refuse_too_m
 from hersey.motion.sets import Sets
 from hersey.motion.simulation import TOLERANCE
 from hersey.motion.work import ALONE, HELD, Work
+from hersey.schema.warning import Warning
 from hersey.units import takes_si
 
 if TYPE_CHECKING:
@@ -71,8 +72,9 @@ def sweep(
         ``kind`` (text), ``frequency``, ``stuck_fraction``, ``speed_max`` and so on, ``laps``. A motion that
         cannot be continued has the kind ``failed`` and no numbers; the attribute ``failures`` says why. With
         ``out`` a .zarr is opened, and numbers are read from it when they are asked for: there ``kind`` is a
-        number of which the attribute ``flag_meanings`` tells the words. Of a .parquet there are coordinates
-        and attributes alone. The attributes ``kinds``, ``stick_slip`` and ``failures`` tell what came out.
+        number whose words the attribute ``flag_meanings`` lists. Of a .parquet there are coordinates
+        and attributes alone. The attributes ``kinds``, ``stick_slip`` and ``failures`` count the outcomes,
+        ``warnings`` are in words.
 
     Raises
     ------
@@ -113,8 +115,8 @@ def sweep(
     if work.client is not None:
         from hersey.motion.checkpoint import gathered
 
-        columns, failures, notes = gathered(sets, rules, work)
-        return _labelled(sets, rules, columns, failures, notes)
+        columns, failures, warnings = gathered(sets, rules, work)
+        return _labelled(sets, rules, columns, failures, warnings)
     if work.chunk is not None:
         raise ParameterError("chunk is given, but neither out nor client: nothing is cut into chunks")
     motions = rules.follow(sets, work.threads, work.progress)
@@ -159,7 +161,7 @@ def planned(
 
 
 def _labelled(
-    sets: Sets, rules: Rules, values: dict[str, Any], failures: list[str], notes: list[str]
+    sets: Sets, rules: Rules, values: dict[str, Any], failures: list[str], warnings: Sequence[Warning]
 ) -> xr.Dataset:
     """The sweep in memory: values, flat, over the axes that the sets span."""
     import xarray as xr
@@ -173,7 +175,7 @@ def _labelled(
             **{name: over(values[name]) for name in (*NUMBERS, "stuck_fraction", "laps")},
         },
         coords=_coordinates(sets),
-        attrs={**_about(rules), "failures": failures, **({"notes": notes} if notes else {})},
+        attrs={**_about(rules), "failures": failures, **({"warnings": _said(warnings)} if warnings else {})},
     )
 
 
@@ -187,7 +189,12 @@ def _opened(sets: Sets, rules: Rules, found: Checkpoint) -> xr.Dataset:
         result = opened_dataset(found.path)
     else:
         result = xr.Dataset(coords=_coordinates(sets), attrs=_about(rules))
-    return result.assign_attrs({**found.summary(), "notes": list(found.notes)})
+    return result.assign_attrs({**found.summary(), "warnings": _said(found.warnings)})
+
+
+def _said(warnings: Sequence[Warning]) -> list[str]:
+    """The words of warnings: what files hold as an attribute is text."""
+    return [str(each) for each in warnings]
 
 
 def _coordinates(sets: Sets) -> dict[str, Any]:

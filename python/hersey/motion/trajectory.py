@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from hersey import _core
 from hersey.arrays import FloatArray
 from hersey.result import Means, Record, Result
+from hersey.schema.warning import Warning
 from hersey.units import celsius
 
 if TYPE_CHECKING:
@@ -54,20 +55,20 @@ class Energy(Record):
 class SelfCheck(Record):
     """The same run by another integrator: the greatest differences at the samples, as shares of the greatest.
 
-    ``same_events`` is whether both saw the same changes of mode in the same order. ``note`` says why there
-    are no figures, if the other integrator could not finish.
+    ``same_events`` is whether both saw the same changes of mode in the same order. ``warnings``
+    says why there are no figures, if the other integrator could not finish.
     """
 
     integrator: str
     speed_difference: float | None
     stretch_difference: float | None
     same_events: bool
-    note: str = ""
+    warnings: tuple[Warning, ...] = ()
 
     def __str__(self) -> str:
         """Return it in words."""
         if self.speed_difference is None:
-            return f"{self.integrator}: " + self.note
+            return "\n".join(str(each) for each in self.warnings)
         return (
             f"{self.integrator} differs by {self.speed_difference:.1e} in speed and "
             f"{self.stretch_difference:.1e} in stretch; "

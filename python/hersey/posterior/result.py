@@ -18,6 +18,7 @@ from hersey.posterior.drives import DriveModel, Drives
 from hersey.posterior.evidence import Evidence
 from hersey.posterior.priors import CLOSURES, NUMBERS
 from hersey.result import Means, Record, Result, json_record
+from hersey.schema.warning import Warning
 from hersey.stability.operating_map.edges import GivenEdges
 from hersey.units import celsius
 
@@ -106,7 +107,7 @@ class Posterior(Result):
     """Draws of curve, closure and drive that dwells and evidence allow.
 
     ``temperature`` (K; None if isothermal) is that of the headline. ``laws`` tells of the curves,
-    ``evidence`` what counted beyond the dwells, ``unused`` what did not, and why.
+    ``evidence`` what counted beyond the dwells, ``warnings`` what did not, and why.
     """
 
     model: DriveModel = field(repr=False)
@@ -114,7 +115,7 @@ class Posterior(Result):
     temperature: float | None
     laws: tuple[LawWeight, ...]
     evidence: tuple[Evidence, ...]
-    unused: tuple[str, ...]
+    warnings: tuple[Warning, ...]
     convergence: Convergence
     seed: int
     chains: int
@@ -256,7 +257,7 @@ class Posterior(Result):
                 },
                 "laws": [vars(law) for law in self.laws],
                 "evidence": [{"kind": type(each).__name__, **vars(each)} for each in self.evidence],
-                "unused": self.unused,
+                "warnings": self.warnings,
                 "convergence": {**vars(self.convergence), "converged": self.convergence.converged},
                 "draws": len(self.drives),
                 "seed": self.seed,
@@ -339,11 +340,11 @@ def _lines(found: Posterior) -> list[str]:
     lines += ["", "drag curves by weight", *weight_lines(found.laws)]
     counted = [type(each).__name__ for each in found.evidence]
     lines += ["", f"evidence beyond the dwells: {', '.join(counted) or 'none'}"]
-    lines += [f"  not used: {text}" for text in found.unused]
+    lines += [f"  not used: {each}" for each in found.warnings]
     c = found.convergence
     state = "converged" if c.converged else "NOT converged: use more draws"
-    apart = f"quantiles of V* of {found.chains} populations within {100 * (c.ratio - 1):.0f} %"
-    lines.append(f"{len(found.drives)} draws, seed {found.seed}; {state} ({apart})")
+    agreement = f"quantiles of V* of {found.chains} populations within {100 * (c.ratio - 1):.0f} %"
+    lines.append(f"{len(found.drives)} draws, seed {found.seed}; {state} ({agreement})")
     return lines
 
 

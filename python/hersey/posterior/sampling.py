@@ -23,6 +23,7 @@ from hersey.posterior.priors import CLOSURES, DrivePriors
 from hersey.posterior.result import Convergence, Posterior, edges_at, quantiles
 from hersey.posterior.sampler import Moves, Population, sample
 from hersey.posterior.traces import Found, evidence_of_log, evidence_of_trace
+from hersey.schema.warning import Warning
 
 #: Draws of a posterior, all populations together.
 DRAWS = 1000
@@ -126,7 +127,7 @@ def posterior(
         temperature=headline,
         laws=agreed.model.curves.table,
         evidence=agreed.evidence,
-        unused=(*seen.unused, *agreed.contradicting),
+        warnings=(*seen.warnings, *agreed.contradicting),
         convergence=_convergence(agreed.populations, edges.fold),
         seed=seed,
         chains=CHAINS,
@@ -136,13 +137,13 @@ def posterior(
 
 
 class _Agreed(NamedTuple):
-    """Draws and the evidence that agrees with them, and in words what does not."""
+    """Draws and the evidence that agrees with them, and which does not."""
 
     model: DriveModel
     populations: list[Population]
     drives: Drives
     evidence: tuple[Evidence, ...]
-    contradicting: tuple[str, ...]
+    contradicting: tuple[Warning, ...]
 
 
 def _agreeing(
@@ -154,7 +155,7 @@ def _agreeing(
 ) -> _Agreed:
     """Draw, leave out the evidence that contradicts the rest, and draw again."""
     counted: tuple[Evidence, ...] = evidence
-    unused: tuple[str, ...] = ()
+    contradicting: tuple[Warning, ...] = ()
     for left in range(_ROUNDS, -1, -1):
         priors = DrivePriors.of(machine, break_away_known=any(map(_tells_break_away, counted)))
         model = DriveModel(curves, surface, machine, priors)
@@ -165,9 +166,11 @@ def _agreeing(
         wrong = (off > 1.0) & (off >= (0.5 * off.max() if left > 1 else 0.0)) if off.size else off > 1.0
         if not wrong.any():
             break
-        unused += tuple(_contradicting(e) for e, is_wrong in zip(counted, wrong, strict=True) if is_wrong)
+        contradicting += tuple(
+            _contradicting(e) for e, is_wrong in zip(counted, wrong, strict=True) if is_wrong
+        )
         counted = tuple(e for e, is_wrong in zip(counted, wrong, strict=True) if not is_wrong)
-    return _Agreed(model, populations, drives, counted, unused)
+    return _Agreed(model, populations, drives, counted, contradicting)
 
 
 def _populations(model: DriveModel, evidence: Sequence[Evidence], sampling: Sampling) -> list[Population]:
@@ -208,13 +211,17 @@ def _given(evidence: Sequence[Evidence], surface: DampingSurface) -> Found:
     return Found(tuple(evidence))
 
 
-def _contradicting(evidence: Evidence) -> str:
+def _contradicting(evidence: Evidence) -> Warning:
     """Why a piece of evidence does not count."""
-    kind = {"StickSlip": "stick-slip", "Start": "the start"}.get(
-        type(evidence).__name__, "the break-away force"
+    names = {"StickSlip": "stick-slip", "Start": "the start"}
+    return Warning(
+        "evidence contradicts dwells and machine",
+        "{evidence} contradicts dwells and machine file",
+        severity="watch",
+        where=evidence.source,
+        remedy="check stiffness, mass and stick speed",
+        evidence=names.get(type(evidence).__name__, "the break-away force"),
     )
-    where = f" at {evidence.source}" if evidence.source else ""
-    return f"{kind}{where} contradicts dwells and machine file: check stiffness, mass and stick speed"
 
 
 def _seen(
@@ -229,13 +236,19 @@ def _seen(
     for trace in traces:
         seen = seen + evidence_of_trace(trace, machine, zero=points.tare)
     kept: dict[Evidence, Evidence] = {}
-    unused = seen.unused
+    warnings = seen.warnings
     for each in seen.evidence:
         if surface.b is not None and each.temperature is None:
-            unused += (f"{each.source}: it has no temperature, and the fit needs one",)
+            words = Warning(
+                "evidence without temperature",
+                "it has no temperature, and the fit needs one",
+                severity="watch",
+                where=each.source,
+            )
+            warnings += (words,)
         else:  # a recording that is given twice counts once
             kept.setdefault(replace(each, source=""), each)
-    return Found(tuple(kept.values()), unused)
+    return Found(tuple(kept.values()), warnings)
 
 
 def _stated(machine: Machine, surface: DampingSurface) -> tuple[BreakAway, ...]:

@@ -15,6 +15,7 @@ from hersey.log import TorqueLog
 from hersey.log.torque_log import Run
 from hersey.machine.machine import Machine
 from hersey.posterior.evidence import CycleFigures, Evidence, Start, StickSlip
+from hersey.schema.warning import Warning
 
 if TYPE_CHECKING:
     from hersey.identification import CycleRecord, Scatter
@@ -51,14 +52,14 @@ _OTHER_DRIVE = 1.5
 
 @dataclass(frozen=True)
 class Found:
-    """Evidence, and what does not count as such, in words."""
+    """Evidence, and why other recordings are none."""
 
     evidence: tuple[Evidence, ...] = ()
-    unused: tuple[str, ...] = ()
+    warnings: tuple[Warning, ...] = ()
 
     def __add__(self, other: Found) -> Found:
         """Return both together."""
-        return Found(self.evidence + other.evidence, self.unused + other.unused)
+        return Found(self.evidence + other.evidence, self.warnings + other.warnings)
 
 
 def evidence_of_log(points: SteadyPoints, curves: CurveMixture, machine: Machine) -> Found:
@@ -73,7 +74,7 @@ def evidence_of_log(points: SteadyPoints, curves: CurveMixture, machine: Machine
     if curves.falls_among_dwells(_STIFFER) < _SURELY_NOT:
         return found
     kept = tuple(e for e in found.evidence if isinstance(e, StickSlip))
-    return Found(kept, found.unused)
+    return Found(kept, found.warnings)
 
 
 def evidence_of_trace(log: TorqueLog, machine: Machine, *, zero: float = 0.0) -> Found:
@@ -170,17 +171,24 @@ def _of_stretch(run: Run, stretch: _Stretch, machine: Machine, zero: float) -> F
     assert record is not None
     slope = record.loading_slope
     if np.isfinite(slope) and slope > _OTHER_DRIVE * machine.stiffness * drive_speed:
-        text = (
-            f"stick-slip at {where}: its force grows {slope / drive_speed / machine.stiffness:.1f} times as "
-            "fast as the stiffness of the machine allows, so it is of another drive"
-        )
-        return Found(unused=(text,))
+        return Found(warnings=(_of_another_drive(where, slope / drive_speed / machine.stiffness),))
     figures = _figures(record, run, machine, drive_speed)
     lasts = float(run.time[rows][-1] - run.time[rows][0])
     out: tuple[Evidence, ...] = (StickSlip(kelvin, drive_speed, lasts, figures, where),)
     if stretch.started is not None and peak is not None:
         out = (*out, Start(kelvin, drive_speed, False, rise, peak, where))
     return Found(out)
+
+
+def _of_another_drive(where: str, times: float) -> Warning:
+    return Warning(
+        "stick-slip of another drive",
+        "the force of this stick-slip grows {times:.1f} times as fast as the stiffness of the machine "
+        "allows, so it is of another drive",
+        severity="watch",
+        where=where,
+        times=times,
+    )
 
 
 def _record(run: Run, force: FloatArray, rows: slice, drive_speed: float) -> CycleRecord | None:

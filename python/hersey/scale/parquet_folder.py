@@ -1,4 +1,4 @@
-"""A folder of Parquet files, one per chunk, one row per point; what is told of a chunk stands in its file.
+"""A folder of Parquet files, one per chunk, one row per point; the record of a chunk stands in its file.
 
 The manifest is such a file too, without rows, so that a reader can be given the folder as it is.
 """
@@ -17,6 +17,7 @@ import numpy as np
 from hersey.errors import OutputError
 from hersey.scale.cutting import Cut
 from hersey.scale.store import Columns, Layout, Note, Scenario, Variable, write_file
+from hersey.schema.warning import Warning
 
 #: Key of the note among what a file says of itself.
 _NOTE = "hersey"
@@ -41,9 +42,9 @@ class ParquetKind:
             each.name: np.empty(0, np.array(each.words).dtype if each.words else each.dtype)
             for each in layout.variables
         }
-        told = json.dumps({**manifest, "about": about}, allow_nan=False)
+        record = json.dumps({**manifest, "about": about}, allow_nan=False)
         content = io.BytesIO()
-        pl.DataFrame(columns).write_parquet(content, metadata={_NOTE: told})
+        pl.DataFrame(columns).write_parquet(content, metadata={_NOTE: record})
         write_file(path / self.manifest, content.getvalue())
 
     def read_manifest(self, path: Path) -> Scenario | None:
@@ -60,7 +61,7 @@ class ParquetKind:
         """Return a folder that is there."""
         return ParquetFolder(path, cut, tuple((each.name, tuple(each.words)) for each in variables))
 
-    def mend(self, path: Path, layout: Layout, manifest: Scenario) -> tuple[str, ...]:  # noqa: ARG002 - of `Kind`
+    def mend(self, path: Path, layout: Layout, manifest: Scenario) -> tuple[Warning, ...]:  # noqa: ARG002 - of `Kind`
         """Return nothing: beside the chunks there is the manifest alone."""
         return ()
 
@@ -72,7 +73,7 @@ class ParquetFolder:
     path: Path
     cut: Cut
     columns: tuple[tuple[str, tuple[str, ...]], ...]
-    mended: tuple[str, ...] = ()
+    mended: tuple[Warning, ...] = ()
 
     def note(self, number: int) -> Note | None:
         """Return the note of a chunk that is finished."""

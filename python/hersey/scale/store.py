@@ -22,10 +22,11 @@ from numpy.typing import NDArray
 from hersey.errors import OVERWRITE, OutputError, Setting, way_in
 from hersey.files.writing import SUFFIX, unfinished, write_atomically
 from hersey.scale.cutting import Cut
+from hersey.schema.warning import Warning
 
 #: What is written of a chunk, or of all: columns of one length by their names.
 Columns = Mapping[str, NDArray[Any]]
-#: What is told of a chunk beside its values, as JSON takes it.
+#: The record of a chunk beside its values, as JSON takes it.
 Note = dict[str, Any]
 #: What decides the values, as JSON takes it; `refused` names what differs.
 Scenario = dict[str, Any]
@@ -78,8 +79,8 @@ class Folder(Protocol):
         """How its grid is cut."""
 
     @property
-    def mended(self) -> tuple[str, ...]:
-        """What was damaged beside the chunks and has been written again, a sentence each."""
+    def mended(self) -> tuple[Warning, ...]:
+        """What was damaged beside the chunks and has been written again."""
 
     def note(self, number: int) -> Note | None:
         """Return the note of a chunk that is finished and whole; None of any other."""
@@ -109,8 +110,8 @@ class Kind(Protocol):
     def open(self, path: Path, cut: Cut, variables: tuple[Variable, ...]) -> Folder:
         """Return a folder that is there."""
 
-    def mend(self, path: Path, layout: Layout, manifest: Scenario) -> tuple[str, ...]:
-        """Write again what is damaged beside the chunks and the manifest; return a sentence for each."""
+    def mend(self, path: Path, layout: Layout, manifest: Scenario) -> tuple[Warning, ...]:
+        """Write again what is damaged beside the chunks and the manifest; return a warning for each."""
 
 
 def sha256_of(scenario: Scenario) -> str:

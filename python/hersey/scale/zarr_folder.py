@@ -27,6 +27,7 @@ import numpy as np
 from hersey.errors import MissingFileError, OutputError
 from hersey.scale.cutting import Cut
 from hersey.scale.store import Columns, Layout, Note, Scenario, Variable, write_file
+from hersey.schema.warning import Warning
 
 #: Compression of values: bytes of one weight together, then LZ4 (a tenth of a millisecond per 1,000 sets).
 _NAME: Literal["lz4"] = "lz4"
@@ -37,7 +38,7 @@ _STATUS: dict[str, Any] = {
     "flag_values": [0, 1],
     "flag_meanings": "missing finished",
 }
-#: Where what is told of each chunk lies, in the folder of `status`: no part of the store.
+#: Where the record of each chunk lies, in the folder of `status`: no part of the store.
 _NOTES = "notes"
 
 
@@ -112,7 +113,7 @@ class ZarrKind:
         """Return a store that is there."""
         return ZarrFolder(path, cut, tuple((each.name, each.dtype, each.fill) for each in variables))
 
-    def mend(self, path: Path, layout: Layout, manifest: Scenario) -> tuple[str, ...]:
+    def mend(self, path: Path, layout: Layout, manifest: Scenario) -> tuple[Warning, ...]:
         """Write again each file of metadata and coordinates that is not as it would be made."""
         mended = []
         with TemporaryDirectory() as folder:
@@ -126,7 +127,14 @@ class ZarrKind:
                     same = False
                 if not same:
                     write_file(path / name, content)
-                    mended.append(f"{path.name}: {name} was damaged or missing, and is written again")
+                    mended.append(
+                        Warning(
+                            "file written again",
+                            "{file} was damaged or missing, and is written again",
+                            where=path.name,
+                            file=str(name),
+                        )
+                    )
         return tuple(mended)
 
 
@@ -137,20 +145,20 @@ class ZarrFolder:
     path: Path
     cut: Cut
     arrays: tuple[tuple[str, str, float], ...]
-    mended: tuple[str, ...] = ()
+    mended: tuple[Warning, ...] = ()
 
     def note(self, number: int) -> Note | None:
         """Return the note of a chunk that is finished and whole."""
         try:
             if self._status(number).read_bytes() != b"\x01":
                 return None
-            told = self._told(number)
+            record = self._record(number)
             if any(
-                _checksum_of_chunk(self._file(name, number).read_bytes()) != told["files"][name]
+                _checksum_of_chunk(self._file(name, number).read_bytes()) != record["files"][name]
                 for name, _, _ in self.arrays
             ):
                 return None
-            return dict(told["note"])
+            return dict(record["note"])
         except (OSError, ValueError, TypeError, KeyError, RecursionError):
             return None
 
@@ -163,7 +171,7 @@ class ZarrFolder:
             Naming store, chunk and array.
         """
         try:
-            if content is not None and _checksum_of_chunk(content) == self._told(number)["files"][name]:
+            if content is not None and _checksum_of_chunk(content) == self._record(number)["files"][name]:
                 return
             if content is None and not self._status(number).exists():  # not finished: the fill value is right
                 return
@@ -174,13 +182,13 @@ class ZarrFolder:
             f"same folder, which computes damaged chunks again"
         )
 
-    def _told(self, number: int) -> dict[str, Any]:
+    def _record(self, number: int) -> dict[str, Any]:
         """What the note's file holds: the note and checksums of all files of the chunk."""
-        whole = json.loads(self._note(number).read_bytes())
-        told: dict[str, Any] = json.loads(whole["told"])
-        if checksum(whole["told"].encode()) != whole["crc32c"]:
+        checked = json.loads(self._note(number).read_bytes())
+        record: dict[str, Any] = json.loads(checked["told"])
+        if checksum(checked["told"].encode()) != checked["crc32c"]:
             raise ValueError
-        return told
+        return record
 
     def finished(self) -> list[int]:
         """Return the numbers of the chunks that are finished."""
@@ -199,8 +207,9 @@ class ZarrFolder:
             content = _encoded(np.asarray(values[name]).reshape(shape), self.cut.chunk, dtype, fill)
             write_file(self._file(name, number), content)
             files[name] = _checksum_of_chunk(content)
-        told = json.dumps({"note": note, "files": files})
-        write_file(self._note(number), json.dumps({"told": told, "crc32c": checksum(told.encode())}).encode())
+        record = json.dumps({"note": note, "files": files})
+        content = json.dumps({"told": record, "crc32c": checksum(record.encode())}).encode()
+        write_file(self._note(number), content)
         write_file(self._status(number), b"\x01")
 
     def _file(self, name: str, number: int) -> Path:

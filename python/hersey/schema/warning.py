@@ -26,6 +26,7 @@ _UNITS: dict[str, Callable[[Any], Any]] = {
     "mm/s": lambda value: 1e3 * value,
     "um": lambda value: 1e6 * value,
     "nm": lambda value: 1e9 * value,
+    "GPa": lambda value: 1e-9 * value,
     "mN m": lambda value: 1e3 * value,
 }
 

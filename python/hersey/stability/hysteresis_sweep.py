@@ -150,7 +150,7 @@ def sweep_bands(
     flat = {name: np.ascontiguousarray(column.ravel()) for name, column in columns.items()}
     workers = whole("threads", work.threads)
     if work.client is None:
-        values, failures = _told(0, rules.follow(flat, workers, work.progress))
+        values, failures = _bands_of(0, rules.follow(flat, workers, work.progress))
     else:
         values, failures = _by_workers(rules, flat, work.client, work.progress)
     coordinates = {
@@ -232,17 +232,17 @@ class _Part:
 
 
 #: Numbers of bands by name, and the index and reason of each that failed.
-_Told = tuple[dict[str, NDArray[Any]], list[tuple[int, str]]]
+_Bands = tuple[dict[str, NDArray[Any]], list[tuple[int, str]]]
 
 
-def _told(first: int, bands: _core.Bands) -> _Told:
+def _bands_of(first: int, bands: _core.Bands) -> _Bands:
     failures = [(first + failure.index, str(failure.error)) for failure in bands.failures]
     return {name: getattr(bands, name) for name in _COLUMNS}, failures
 
 
-def _of_part(rules: BandRules, part: _Part) -> _Told:
+def _of_part(rules: BandRules, part: _Part) -> _Bands:
     """Return the bands of a part where this runs."""
-    return _told(part.first, rules.follow(part.columns))
+    return _bands_of(part.first, rules.follow(part.columns))
 
 
 def _by_workers(
@@ -250,7 +250,7 @@ def _by_workers(
     columns: Mapping[str, FloatArray],
     client: Client | LocalWorkers | str,
     progress: Callable[[int, int], object] | None,
-) -> _Told:
+) -> _Bands:
     """Return the bands as workers find them, each task some seconds of them."""
     sets = columns["mass"].size
     _refuse_early(rules, columns)
@@ -260,13 +260,13 @@ def _by_workers(
             _Part(first, {name: column[first : first + each] for name, column in columns.items()})
             for first in range(0, sets, each)
         ]
-        found: list[_Told | None] = [None] * len(parts)
+        found: list[_Bands | None] = [None] * len(parts)
         task = partial(_of_part, rules)
-        for index, told in done(task, parts, client=known, progress=progress, size=lambda part: part.size):
-            found[index] = told
-    whole_ones = [told for told in found if told is not None]
-    values = {name: np.concatenate([told[0][name] for told in whole_ones]) for name in _COLUMNS}
-    return values, [failure for told in whole_ones for failure in told[1]]
+        for index, bands in done(task, parts, client=known, progress=progress, size=lambda part: part.size):
+            found[index] = bands
+    ended = [bands for bands in found if bands is not None]
+    values = {name: np.concatenate([columns[name] for columns, _ in ended]) for name in _COLUMNS}
+    return values, [failure for _, failures in ended for failure in failures]
 
 
 def _refuse_early(rules: BandRules, columns: Mapping[str, FloatArray]) -> None:

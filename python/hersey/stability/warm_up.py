@@ -8,7 +8,7 @@ other: they are found in rounds, each a motion of the core with temperature as a
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -23,9 +23,10 @@ from hersey.motion.heat import HeatBalance
 from hersey.motion.schedule import Schedule
 from hersey.motion.simulation import simulate
 from hersey.motion.trajectory import Trajectory
+from hersey.schema.warning import Warning
 from hersey.stability.hysteresis import hysteresis
 from hersey.stability.warm_up_result import WarmUp
-from hersey.units import celsius, takes_si
+from hersey.units import takes_si
 
 #: Points of a course.
 _POINTS = 501
@@ -320,25 +321,33 @@ def _slides_from(run: Trajectory) -> float:
     return max(0.0, *begun[-1:], *map(float, slipped[-1:]))
 
 
-def _warnings(warm: WarmUp, rule: _Rule, resting: Trajectory) -> list[str]:
-    """What the course does not keep, and what comes after it."""
-    said = []
+def _warnings(warm: WarmUp, rule: _Rule, resting: Trajectory) -> Iterator[Warning]:
+    """Yield what the course does not keep, and what comes after it."""
     if warm.peak_force > warm.force_limit:
-        said.append(
-            f"the spring takes up to {warm.peak_force:.4g} N where the belt breaks away or speeds up, more "
-            f"than the limit of {warm.force_limit:.4g} N, which is kept in steady sliding"
+        yield Warning(
+            "peak force above the limit",
+            "the spring takes up to {peak_force:.4g} N where the belt breaks away or speeds up, more than "
+            "the limit of {force_limit:.4g} N, which is kept in steady sliding",
+            severity="watch",
+            peak_force=warm.peak_force,
+            force_limit=warm.force_limit,
         )
     if math.isfinite(warm.full_speed) and warm.slides_from > warm.full_speed:
-        said.append(
+        yield Warning(
+            "slides late",
             "the belt slides for good only "
-            + (f"from {warm.slides_from:.4g} s on" if math.isfinite(warm.slides_from) else "beyond the end")
-            + ": seek a start for it with plan_profile, over the temperature profile of this warm-up"
+            + ("from {slides_from:.4g} s on" if math.isfinite(warm.slides_from) else "beyond the end"),
+            severity="watch",
+            remedy="seek a start for it with plan_profile, over the temperature profile of this warm-up",
+            slides_from=warm.slides_from,
         )
-    later = _film(resting)
-    late = (resting.time[::_FINER] > warm.full_speed) & (rule.transition(later) >= warm.target_speed)
-    if late.any():
-        said.append(
-            f"the film goes on warming: from {celsius(float(later[late][0])):.4g} degC on the transition "
-            "speed is above the target, and sliding at it is unstable"
+    film = _film(resting)
+    unstable = (resting.time[::_FINER] > warm.full_speed) & (rule.transition(film) >= warm.target_speed)
+    if unstable.any():
+        yield Warning(
+            "unstable once warmer",
+            "the film goes on warming: from {temperature:.4g degC} on the transition speed is above the "
+            "target, and sliding at it is unstable",
+            severity="watch",
+            temperature=float(film[unstable][0]),
         )
-    return said

@@ -12,6 +12,7 @@ from hersey.arrays import FloatArray
 from hersey.motion.schedule import Schedule
 from hersey.motion.trajectory import Trajectory
 from hersey.result import Means, Result
+from hersey.schema.warning import Warning
 from hersey.units import celsius
 
 if TYPE_CHECKING:
@@ -50,7 +51,7 @@ class WarmUp(Result):
     within_at_once: Annotated[float, Means("when that keeps the limit; null if not in time", open=True)]
     full_speed_standing: Annotated[float, Means("by standing until warm; null if not in time", open=True)]
     rounds: int
-    warnings: tuple[str, ...]
+    warnings: tuple[Warning, ...]
     response: Trajectory
 
     @property

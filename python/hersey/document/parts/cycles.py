@@ -9,6 +9,7 @@ from pydantic import Field
 from hersey.identification.cycle_record import Scatter
 from hersey.identification.identified_drive import IdentifiedDrive
 from hersey.schema.part import Numbers, Part
+from hersey.schema.warning import Warning
 
 
 class CyclesPart(Part):
@@ -32,7 +33,7 @@ class CyclesPart(Part):
     spikes: int
     missing: int
     slip_time: Numbers = Field(description="s, shape (slips,)")
-    notes: list[str]
+    warnings: list[Warning]
     period: Scatter
     drop: Scatter
     force_max: Scatter

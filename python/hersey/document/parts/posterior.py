@@ -10,6 +10,7 @@ from hersey.damping.curves.mixture import LawWeight
 from hersey.decision.edges import Edge
 from hersey.posterior.result import Convergence
 from hersey.schema.part import Part
+from hersey.schema.warning import Warning
 
 
 class PosteriorPart(Part):
@@ -22,7 +23,7 @@ class PosteriorPart(Part):
     numbers: dict[str, Edge] = Field(description="medians and 95 % intervals, SI")
     laws: list[LawWeight]
     evidence: list[dict[str, Any]] = Field(description="what counted beside the dwells")
-    unused: list[str] = Field(description="recordings that did not count, and why")
+    warnings: list[Warning] = Field(description="recordings that did not count, and why")
     convergence: Convergence
     draws: int
     seed: int

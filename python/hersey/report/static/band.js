@@ -27,7 +27,7 @@ async function bandSection(parent) {
     if (moves.length) add(part, "p", `One per cent more moves V* by: ${moves.map(([name, value]) => `${name.replaceAll("_", " ")} ${digits(value, 2)} %`).join(", ")}.`, "note");
   }
   if (data.map && charts.stick_speed) fold(part, "Edges of the band by temperature", bandTable);
-  if (data.map) data.map.warnings.forEach((text) => add(part, "p", sentence(text), "note"));
+  if (data.map) data.map.warnings.forEach((each) => add(part, "p", warned(each), "note"));
 }
 const rampOf = (step) => step.ramp_time >= 1 ? `${digits(step.ramp_time, 2)} s` : `${digits(step.ramp_time * 1e3, 2)} ms`;
 function bandFinding(bears, steps) {

@@ -16,6 +16,7 @@ from hersey.motion.belt import Drivetrain
 from hersey.motion.drag import Drag
 from hersey.motion.work import Work
 from hersey.scale.tasks import done, in_order
+from hersey.schema.warning import Warning
 from hersey.stability.hysteresis_sweep import sweep_bands
 from hersey.stability.operating_map.edges import law_at, laws_at, require_all
 
@@ -28,14 +29,14 @@ DRAWS, FOLD_DRAWS = 1000, 200
 FOLD_TEMPERATURES = 13
 #: Transition speeds at which the search for V* ends.
 _FARTHEST = 1e4
-#: Share of the draws that must start the belt for V* to be told of these alone.
+#: Share of the draws that must start the belt for V* to be that of these alone.
 _COUNTED = 0.1
 #: Drawn stick speeds stay below this share of the transition speed drawn with them.
 _BELOW = 0.999
 
 
 class Intervals(NamedTuple):
-    """95 % of the draws at each temperature, shape (2, n): speeds in m/s, what a belt at rest bears in N m.
+    """95 % of the draws at each temperature, shape (2, n): speeds in m/s, starting torque in N m.
 
     V* is that of the draws that start, where a tenth of them do.
     """
@@ -44,7 +45,7 @@ class Intervals(NamedTuple):
     upper: FloatArray
     holding: FloatArray
     uncertain: tuple[str, ...]
-    warnings: tuple[str, ...]
+    warnings: tuple[Warning, ...]
 
 
 @dataclass(frozen=True)
@@ -74,8 +75,8 @@ class Drawing:
         radius, rule = machine.roll_radius, machine.stick_speed_rule
         return cls(surface, train, drag, uncertain, radius, rule, seed, draws)
 
-    def drag_at(self, kelvin: float | None, count: int) -> tuple[dict[str, FloatArray], list[str]]:
-        """Return so many draws of the drag at a temperature (K), and what there is to say of them."""
+    def drag_at(self, kelvin: float | None, count: int) -> tuple[dict[str, FloatArray], list[Warning]]:
+        """Return so many draws of the drag at a temperature (K), and their warnings."""
         drawn, warned = self.surface.drawn_drag(
             count,
             self.seed,
@@ -84,7 +85,9 @@ class Drawing:
             temperature=kelvin,
             stick_speed_rule=self.rule,
         )
-        return drawn, [str(each) for each in warned]
+        return drawn, [
+            Warning("draws of the fit", "{said}", severity="watch", said=str(each)) for each in warned
+        ]
 
 
 def intervals(
@@ -92,22 +95,22 @@ def intervals(
 ) -> Intervals:
     """Return the intervals at each temperature, from draws of the fit and of what is uncertain beside it."""
     levels: list[float | None] = [None] if kelvin is None else kelvin.tolist()
-    said: dict[str, None] = {}
+    warnings: dict[Warning, None] = {}
     edges = []
     for t in levels:
-        drawn, words = drawing.drag_at(t, DRAWS)
+        drawn, warned = drawing.drag_at(t, DRAWS)
         edges.append(_middle(drawn["transition_speed"]))
-        said.update(dict.fromkeys(words))
+        warnings.update(dict.fromkeys(warned))
     few = levels
     if kelvin is not None and kelvin.size > FOLD_TEMPERATURES:
         few = np.linspace(kelvin[0], kelvin[-1], FOLD_TEMPERATURES).tolist()
     # the threads are those of the core, which share the draws of one temperature
     task = partial(_folds, drawing, threads if client is None else 1)
     ratios, holdings = [], []
-    for ratio, held, words in in_order(done(task, few, client=client)):
+    for ratio, held, warned in in_order(done(task, few, client=client)):
         ratios.append(ratio)
         holdings.append(held)
-        said.update(dict.fromkeys(words))
+        warnings.update(dict.fromkeys(warned))
     upper, holding = np.array(ratios).T, np.array(holdings).T
     if kelvin is not None:
         at = np.array(few, dtype=float)
@@ -118,15 +121,15 @@ def intervals(
     laws = laws_at(drawing.drag, kelvin, drawing.rule)
     bend = np.array([law.transition_speed for law in laws])
     torque = holding * drawing.roll_radius
-    return Intervals(np.array(edges).T, upper * bend, torque, tuple(drawing.uncertain), tuple(said))
+    return Intervals(np.array(edges).T, upper * bend, torque, tuple(drawing.uncertain), tuple(warnings))
 
 
 def _folds(
     drawing: Drawing, threads: int, kelvin: float | None
-) -> tuple[tuple[float, float], tuple[float, float], list[str]]:
-    """V* over the transition speed and what a belt at rest bears (N) at a temperature: 95 % of the draws."""
+) -> tuple[tuple[float, float], tuple[float, float], list[Warning]]:
+    """V* over the transition speed and the starting force (N) at a temperature: 95 % of the draws."""
     law = law_at(drawing.drag, kelvin, drawing.rule)
-    drawn, words = drawing.drag_at(kelvin, drawing.draws)
+    drawn, warned = drawing.drag_at(kelvin, drawing.draws)
     stick_speed = drawing.drag.stick_speed
     stick = drawing.uncertain.get("stick_speed", np.array(stick_speed)) * law.stick_speed / stick_speed
     below = np.minimum(stick, _BELOW * drawn["transition_speed"])
@@ -144,11 +147,11 @@ def _folds(
     starts = ~band.columns["stalls"]  # a belt that is not started has no V*
     counted = upper[starts] if np.count_nonzero(starts) >= _COUNTED * drawing.draws else upper
     low, high = _middle(counted / law.transition_speed)
-    return (min(low, _FARTHEST), min(high, _FARTHEST)), _middle(_holding(law, stick, drawn)), words
+    return (min(low, _FARTHEST), min(high, _FARTHEST)), _middle(_holding(law, stick, drawn)), warned
 
 
 def _holding(law: Drag, stick: FloatArray, drawn: Mapping[str, FloatArray]) -> FloatArray:
-    """What a belt at rest bears (N) in each draw; unless stated it goes as the drag at the stick speed."""
+    """Starting force (N) of each draw; unless stated it varies as the drag at the stick speed."""
     rest = law.holding_force - law.breakaway_force
     if law.static_force is not None:
         return np.full(drawn["transition_force"].size, law.holding_force)

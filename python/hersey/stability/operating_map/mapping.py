@@ -2,25 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from hersey.arrays import FloatArray
-from hersey.damping.surface import FIXED, DampingSurface
+from hersey.damping.surface import DampingSurface
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.machine.limits import OperatingPoint
 from hersey.machine.machine import Machine
 from hersey.motion.drag import DragTable, PowerDrag
 from hersey.stability.operating_map.edges import GivenEdges, contour, edges_at, laws_at, shown_laws
 from hersey.stability.operating_map.intervals import FOLD_DRAWS, Drawing, Intervals, intervals
+from hersey.stability.operating_map.map_warnings import warnings_of
 from hersey.stability.operating_map.result import OperatingMap
 from hersey.stability.operating_map.state import PlacedPoint
 from hersey.stability.operating_map.window import shown_speeds, shown_temperatures
-from hersey.units import convert, takes_si
+from hersey.units import takes_si
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -160,8 +161,8 @@ def _drawn(
 ) -> OperatingMap:
     """The map of edges (m/s) and starting torques (N m, ``holding``), with torque, stall and points."""
     train, limits, roll_radius = machine.train, machine.limits, machine.roll_radius
-    reach = surface.speed_range[0] * roll_radius, surface.speed_range[1] * roll_radius
-    speed_grid = shown_speeds(edges, reach, machine.points, limits.speed, speeds)
+    measured_speed = surface.speed_range[0] * roll_radius, surface.speed_range[1] * roll_radius
+    speed_grid = shown_speeds(edges, measured_speed, machine.points, limits.speed, speeds)
     laws = shown_laws(drag, kelvin, machine.stick_speed_rule)
     limit, limited_by = torque_limit(train.grip, limits.motor_torque, roll_radius)
     below, above = contour(laws, np.inf if limit is None else limit / roll_radius)
@@ -179,7 +180,7 @@ def _drawn(
         limited_by=limited_by,
         speed_limit=limits.speed,
         measured_temperature=surface.temperature_range if drag.varies_with_temperature else None,
-        measured_speed=reach,
+        measured_speed=measured_speed,
         points=(),
         uncertain=found.uncertain,
         warnings=(),
@@ -189,7 +190,7 @@ def _drawn(
         stick_speed_rule=machine.stick_speed_rule,
     )
     placed = tuple(_placed(map_, point) for point in machine.points)
-    return replace(map_, points=placed, warnings=(*found.warnings, *_remarks(map_, placed)))
+    return replace(map_, points=placed, warnings=(*found.warnings, *warnings_of(map_, placed)))
 
 
 def torque_limit(
@@ -207,76 +208,3 @@ def torque_limit(
 def _placed(map_: OperatingMap, point: OperatingPoint) -> PlacedPoint:
     temperature = point.temperature if map_.drag.varies_with_temperature else None
     return PlacedPoint(point.name, point.speed, point.temperature, map_.state_at(temperature, point.speed))
-
-
-def _remarks(map_: OperatingMap, points: Sequence[PlacedPoint]) -> list[str]:
-    """What a reader of the map must know, one sentence each."""
-    laws = shown_laws(map_.drag, map_.temperature, map_.stick_speed_rule)
-    hot, moved = map_.drag.reference_temperature, ""
-    where = "" if hot is None else f" at {convert(hot, 'K', 'degC'):.0f} degC"
-    if hot is not None and map_.stick_speed_rule == FIXED:
-        where = " at all temperatures"
-    elif hot is not None:
-        ends = [1e3 * law.stick_speed for law in (laws[0], laws[-1])]
-        moved = f" (with the transition speed it moves from {ends[0]:.3g} to {ends[1]:.3g} mm/s)"
-    names = ["the fit", *(name.replace("_", " ") for name in map_.uncertain)]
-    counted = " and ".join(filter(None, [", ".join(names[:-1]), names[-1]]))
-    stick = f"{1e3 * map_.drag.stick_speed:.3g} mm/s"
-    said = [
-        f"V* depends on the stick speed, {stick}{where} here{moved}, which nobody measures; "
-        f"its interval counts {counted}"
-        + ("" if "stick_speed" in map_.uncertain else ": state how far stick_speed is known")
-    ]
-    if map_.temperature is None:
-        said.append("the fit is isothermal: the map holds at the temperature of the log, for the points too")
-    if map_.torque_limit is None:
-        said.append("no stall is shown: state motor_torque, or roll_friction and nip_load, among the limits")
-    else:
-        least, most = float(map_.holding.min()), float(map_.holding.max())
-        bears = f"{least:.3g} N m" if most <= 1.0005 * least else f"{least:.3g} to {most:.3g} N m"
-        said.append(
-            f"the drive bears {map_.torque_limit:.3g} N m ({map_.limited_by}); "
-            f"a belt at rest bears {bears} before it starts{_started(map_)}"
-        )
-    for p in points:
-        within = "" if map_.given else _within(map_, p)
-        if within:
-            said.append(f"{p.name}: within the 95 % interval of {within}, so the verdict is not certain")
-        if p.at.extrapolated:
-            said.append(f"{p.name}: extrapolated, no dwell lies that far out")
-    if map_.speed_limit is not None:
-        fast = [p for p in points if p.speed > map_.speed_limit]
-        said += [f"{p.name}: faster than the drive, {1e3 * map_.speed_limit:.3g} mm/s" for p in fast]
-    return said
-
-
-def _started(map_: OperatingMap) -> str:
-    """Where the drive does not start a belt at rest, if anywhere."""
-    doubtful, never = map_.doubtful, ~map_.starts & ~map_.doubtful
-    said = [
-        _stands(map_, never, "it is not started", everywhere="it is not started at all"),
-        _stands(map_, doubtful, "it may not start", everywhere="it may not start"),
-    ]
-    return "".join(f", so {words}" for words in said if words)
-
-
-def _stands(map_: OperatingMap, where: NDArray[np.bool_], words: str, *, everywhere: str) -> str:
-    """The words with the temperatures of which they are said, nothing if of none."""
-    if where.all() or not where.any():
-        return everywhere if where.any() else ""
-    assert map_.temperature is not None  # one column starts or does not
-    ends = [f"{convert(t, 'K', 'degC'):.0f}" for t in map_.temperature[where][[0, -1]]]
-    return f"{words} from {ends[0]} to {ends[1]} degC" if ends[0] != ends[1] else f"{words} at {ends[0]} degC"
-
-
-def _within(map_: OperatingMap, point: PlacedPoint) -> str:
-    """The edge whose interval holds the point, if any."""
-    named = {"the transition speed": map_.transition_interval, "V*": map_.upper_interval}
-    for name, interval in named.items():
-        low, high = (
-            edge[0] if map_.temperature is None else np.interp(point.temperature, map_.temperature, edge)
-            for edge in interval
-        )
-        if low <= point.speed <= high:
-            return f"{name} ({1e3 * low:.3g} to {1e3 * high:.3g} mm/s)"
-    return ""

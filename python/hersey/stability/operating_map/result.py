@@ -14,6 +14,7 @@ from hersey.errors import ParameterError
 from hersey.motion.belt import Drivetrain
 from hersey.motion.drag import DragTable, PowerDrag
 from hersey.result import OPEN, Means, Result
+from hersey.schema.warning import Warning
 from hersey.stability.operating_map.edges import check_temperatures, contour, edges_at, shown_laws
 from hersey.stability.operating_map.state import MapState, PlacedPoint
 from hersey.units import convert, takes_si
@@ -62,7 +63,7 @@ class OperatingMap(Result):
     measured_speed: Annotated[tuple[float, float], Means(unit="m/s")]
     points: tuple[PlacedPoint, ...]
     uncertain: tuple[str, ...]
-    warnings: tuple[str, ...]
+    warnings: tuple[Warning, ...]
     roll_radius: Annotated[float, Means(unit="m")]
     train: Drivetrain
     drag: PowerDrag

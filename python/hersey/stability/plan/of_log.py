@@ -1,4 +1,4 @@
-"""The plan of a machine whose drag a log tells: what fit and machine's file leave open is drawn together."""
+"""The plan of a machine whose drag is that of a log: what fit and machine file leave open is drawn."""
 
 from __future__ import annotations
 
@@ -12,13 +12,19 @@ from hersey.machine.uncertainty import Uncertainty
 from hersey.motion.drag import Drag
 from hersey.motion.heat import HeatBalance
 from hersey.motion.schedule import Schedule
+from hersey.schema.warning import Warning
 from hersey.stability.plan.planner import plan_profile
 from hersey.stability.plan.result import Plan
 from hersey.stability.plan.search import Progress
 from hersey.units import takes_si
 
 #: What no share of draws counts: how a belt comes to rest.
-_CREEPS = "this is of a belt that creeps to rest (retained): one that stops dead (stiction) may stick on"
+_GRADUAL_STOP = Warning(
+    "gradual stop assumed",
+    "this assumes a belt that comes to rest gradually (retained): one that stops abruptly (stiction) may "
+    "keep sticking",
+    severity="watch",
+)
 #: Draws of the fit from which those of the plan are taken.
 _DRAWS = 4000
 _HEAT = Setting("heat")
@@ -68,7 +74,7 @@ def plan_of_log(
         seed=seed,
         progress=progress,
     )
-    return replace(plan, warnings=(*plan.warnings, _CREEPS)) if plan.found else plan
+    return replace(plan, warnings=(*plan.warnings, _GRADUAL_STOP)) if plan.found else plan
 
 
 def _uncertainty(machine: Machine, drag: Drag) -> dict[str, Uncertainty]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Any
@@ -19,6 +19,7 @@ from hersey.motion.drag import AnyDrag
 from hersey.motion.heat import HeatBalance
 from hersey.motion.schedule import Schedule
 from hersey.motion.simulation import simulate
+from hersey.schema.warning import Warning
 from hersey.stability.hysteresis import hysteresis
 from hersey.stability.plan.draws import most_failures
 from hersey.stability.plan.grid import Room
@@ -187,7 +188,7 @@ class _Asked:
                 duration = float(shape.points()[0][-1])
             proof = unknown.verify(shape, duration, search.thermal, reach.force, self.confidence, number)
             if proof.accepted:
-                said = {"tried": search.count, "warnings": _warnings(reach, proof.impossible)}
+                said = {"tried": search.count, "warnings": tuple(_warnings(reach, proof.impossible))}
                 machine = MachineSample(self.gripping, unknown.drag)
                 return _found(machine, shape, search.thermal, proof, reach, {**facts, **said}), shape
             if unknown.machines:  # given machines prove one profile: after that none of them is new
@@ -278,18 +279,20 @@ def _found(
     )
 
 
-def _warnings(reach: Reach, impossible: float) -> tuple[str, ...]:
-    said = []
+def _warnings(reach: Reach, impossible: float) -> Iterator[Warning]:
+    """Yield what was not stated, and draws that are no belt."""
     if "grip" not in reach.forces:
-        said.append(
-            "the roll's grip is not stated (roll_friction and nip_load): it is taken to hold throughout"
+        yield Warning(
+            "grip not stated",
+            "the roll's grip is not stated (roll_friction and nip_load): it is taken to hold throughout",
         )
     if impossible > 0:
-        said.append(
-            f"{100 * impossible:.2g} % of what is stated is no belt, for its stick speed is not below the "
-            "transition speed: left out"
+        yield Warning(
+            "impossible draws",
+            "{share:.2g %} of what is stated is no belt, because its stick speed is not below the transition "
+            "speed: left out",
+            share=impossible,
         )
-    return tuple(said)
 
 
 def _check(drag: AnyDrag, target_speed: float, limits: Limits, confidence: float, seed: int) -> None:

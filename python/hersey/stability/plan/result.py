@@ -12,6 +12,7 @@ import numpy as np
 from hersey.motion.schedule import Schedule
 from hersey.motion.trajectory import Trajectory
 from hersey.result import OPEN, Means, Record, Result
+from hersey.schema.warning import Warning
 from hersey.stability.plan.obstacles import Obstacle, speed_text
 from hersey.units import celsius
 
@@ -56,7 +57,7 @@ class Plan(Result):
 
     ``kind`` is ``direct`` (straight up), ``overshoot`` (above the target and down) or ``impossible``; then
     ``schedule`` is None and ``obstacles`` says why. ``duration`` (s) is the time from which the drive is at
-    the target and the belt slides for good; ``wait`` (s) the time at rest before it starts, for warmth.
+    the target and the belt slides for good; ``wait`` (s) the time at rest before it starts, to warm up.
     ``share`` of ``draws`` fresh draws are smooth from there on and keep all limits, ``failures`` counts what
     went wrong with the others; ``share_low`` is the bound that the true share exceeds with 95 %.
     ``peak_force`` (N) is the spring force that a share ``confidence`` of them keeps below. ``response`` is
@@ -86,7 +87,7 @@ class Plan(Result):
     draws: int
     failures: Mapping[str, int]
     uses: tuple[LimitUse, ...]
-    warnings: tuple[str, ...]
+    warnings: tuple[Warning, ...]
     obstacles: tuple[Obstacle, ...]
     fold_speed: Annotated[float, OPEN]
     transition_speed: float

@@ -234,17 +234,7 @@ def _closures(found: Behaviour) -> Iterator[Warning]:
 
 def _unused(found: Behaviour) -> list[Warning]:
     """Evidence that does not count, and draws that do not agree."""
-    out = [
-        Warning(
-            "recording not used",
-            "{why}",
-            severity="watch",
-            title="A recording was not used",
-            where="band",
-            why=str(each),
-        )
-        for each in found.posterior.unused[:1]
-    ]
+    out = [each.titled("A recording was not used", where="band") for each in found.posterior.warnings[:1]]
     if not found.posterior.convergence.converged:
         words = "two runs of the sampler differ: take the intervals as rough, or run hersey posterior"
         title = "V* has not converged"

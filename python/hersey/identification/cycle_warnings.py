@@ -1,0 +1,100 @@
+"""What to know of the slips that were found in a trace: gaps, noise, drift, a sign that may be turned."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from hersey.identification.detection import FEWEST_SLIPS
+from hersey.identification.sampling import Samples
+from hersey.identification.slip_figures import SlipFigures
+from hersey.identification.turning_points import least_turn
+from hersey.schema.warning import Warning
+
+#: Samples that a fall must last for its duration to be trusted.
+_FEW_SAMPLES = 6
+
+
+def warnings_of(
+    samples: Samples, figures: SlipFigures, least: float, least_drop: float | None, drift: float
+) -> tuple[Warning, ...]:
+    """Return the warnings of slips of which the ``least`` was counted, where ``least_drop`` was asked for.
+
+    ``drift`` is that of the level, per s.
+    """
+    if figures.drop.size < FEWEST_SLIPS:
+        return ()
+    return (
+        *_of_the_falls(samples, figures, least, least_drop),
+        *_of_the_samples(samples),
+        *_of_the_level(samples, figures, drift),
+    )
+
+
+def _of_the_falls(
+    samples: Samples, figures: SlipFigures, least: float, least_drop: float | None
+) -> Iterator[Warning]:
+    """Yield what makes the duration or the number of falls uncertain."""
+    drop, lasts = figures.drop, float(np.median(figures.steep / samples.interval))
+    if lasts < _FEW_SAMPLES:
+        yield Warning(
+            "falls of few samples",
+            "a fall lasts {samples:.1f} samples",
+            severity="watch",
+            remedy="sample faster to see the slip",
+            samples=lasts,
+        )
+    if least_drop is not None and least > least_drop:
+        yield Warning(
+            "least drop within noise",
+            "least_drop {least_drop:g} is within the noise: {taken:.3g} was taken",
+            severity="watch",
+            least_drop=least_drop,
+            taken=least,
+        )
+    small = int(np.sum(drop < 0.5 * np.median(drop)))
+    if least_drop is None and small > 0.05 * drop.size:
+        yield Warning(
+            "many small slips",
+            "{small} of {slips} slips fall by less than half the median: their number depends on the least "
+            "fall counted, {least:.3g} here (samples scatter by {scatter:.3g}); give least_drop",
+            severity="watch",
+            small=small,
+            slips=drop.size,
+            least=least,
+            scatter=least_turn(samples.noise, samples.value.size, 1),
+        )
+
+
+def _of_the_samples(samples: Samples) -> Iterator[Warning]:
+    """Yield which samples are missing or removed."""
+    if samples.missing:
+        yield Warning(
+            "samples missing",
+            "{count} {count:sample is|samples are} missing; no cycle across a gap that hides part of it is "
+            "used",
+            count=samples.missing,
+        )
+    if samples.spikes:
+        yield Warning(
+            "spikes removed",
+            "{count} {count:spike|spikes} of one or two samples {count:was|were} removed",
+            count=samples.spikes,
+        )
+
+
+def _of_the_level(samples: Samples, figures: SlipFigures, drift: float) -> Iterator[Warning]:
+    """Yield whether the sign may be turned, and how far the level drifts."""
+    period, lasts = figures.period, float(np.median(figures.steep))
+    if period.size and float(np.median(period)) - lasts < 0.5 * lasts:
+        yield Warning(
+            "sign may be turned",
+            "the force rises faster than it falls: is its sign turned?",
+            severity="watch",
+        )
+    swing = abs(drift) * samples.interval * samples.value.size
+    if swing > 0.5 * float(np.median(figures.drop)):
+        yield Warning(
+            "level drifts", "the level drifts by {drift:.3g} over the trace", severity="watch", drift=swing
+        )

@@ -1,0 +1,172 @@
+"""What a reader of an operating map must know: what V* depends on, stall, points that are not certain."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from hersey.arrays import BoolArray
+from hersey.damping.surface import FIXED
+from hersey.schema.warning import Warning
+from hersey.stability.operating_map.edges import shown_laws
+from hersey.stability.operating_map.result import OperatingMap
+from hersey.stability.operating_map.state import PlacedPoint
+
+#: Starting torques that differ by less are shown as one.
+_SAME_TORQUE = 1.0005
+
+
+def warnings_of(map_: OperatingMap, points: Sequence[PlacedPoint]) -> tuple[Warning, ...]:
+    """Return the warnings of a map and its operating points."""
+    return (
+        _of_the_stick_speed(map_),
+        *_of_the_temperature(map_),
+        *_of_the_stall(map_),
+        *_not_started(map_),
+        *(warning for point in points for warning in _of_a_point(map_, point)),
+        *_of_the_speed_limit(map_, points),
+    )
+
+
+def _of_the_stick_speed(map_: OperatingMap) -> Warning:
+    laws = shown_laws(map_.drag, map_.temperature, map_.stick_speed_rule)
+    hot, fixed = map_.drag.reference_temperature, map_.stick_speed_rule == FIXED
+    names = ["the fit", *(name.replace("_", " ") for name in map_.uncertain)]
+    return Warning(
+        "V* depends on the stick speed",
+        "V* depends on the stick speed, {stick_speed:.3g mm/s}"
+        + (
+            " here"
+            if hot is None
+            else " at all temperatures here"
+            if fixed
+            else " at {temperature:.0f degC} here (with the transition speed it moves from "
+            "{coldest:.3g mm/s} to {hottest:.3g mm/s})"
+        )
+        + ", which nobody measures; its interval counts {counted}"
+        + ("" if "stick_speed" in map_.uncertain else ": state how far stick_speed is known"),
+        stick_speed=map_.drag.stick_speed,
+        temperature=hot,
+        coldest=laws[0].stick_speed,
+        hottest=laws[-1].stick_speed,
+        counted=" and ".join(filter(None, [", ".join(names[:-1]), names[-1]])),
+    )
+
+
+def _of_the_temperature(map_: OperatingMap) -> Iterator[Warning]:
+    if map_.temperature is None:
+        yield Warning(
+            "isothermal fit",
+            "the fit is isothermal: the map holds at the temperature of the log, for the points too",
+        )
+
+
+def _of_the_stall(map_: OperatingMap) -> Iterator[Warning]:
+    """Yield what the drive can give, and what the belt needs."""
+    if map_.torque_limit is None:
+        yield Warning(
+            "no torque limit",
+            "no stall is shown",
+            remedy="state motor_torque, or roll_friction and nip_load, among the limits",
+        )
+        return
+    least, most = float(map_.holding.min()), float(map_.holding.max())
+    yield Warning(
+        "torque limit",
+        "the drive gives at most {limit:.3g} N m ({limited_by}); a belt at rest needs "
+        + ("{least:.3g} N m" if most <= _SAME_TORQUE * least else "{least:.3g} to {most:.3g} N m")
+        + " to start",
+        limit=map_.torque_limit,
+        limited_by=map_.limited_by,
+        least=least,
+        most=most,
+    )
+
+
+def _not_started(map_: OperatingMap) -> Iterator[Warning]:
+    """Yield the temperatures at which the drive does not start the belt, and where it may not."""
+    never = ~map_.starts & ~map_.doubtful
+    if never.any():
+        first, last = _ends(map_, never)
+        yield Warning(
+            "belt not started",
+            "the drive does not start a belt at rest"
+            + (
+                " at any temperature"
+                if never.all()
+                else " at {first:.0f degC}"
+                if first == last
+                else " from {first:.0f degC} to {last:.0f degC}"
+            ),
+            severity="watch",
+            first=first,
+            last=last,
+        )
+    if map_.doubtful.any():
+        first, last = _ends(map_, map_.doubtful)
+        yield Warning(
+            "belt may not start",
+            "the drive may not start a belt at rest"
+            + (
+                ""
+                if map_.doubtful.all()
+                else " at {first:.0f degC}"
+                if first == last
+                else " from {first:.0f degC} to {last:.0f degC}"
+            ),
+            severity="watch",
+            first=first,
+            last=last,
+        )
+
+
+def _ends(map_: OperatingMap, columns: BoolArray) -> tuple[float | None, float | None]:
+    """The first and last temperature (K) of columns; None of an isothermal map."""
+    if map_.temperature is None:
+        return None, None
+    first, last = map_.temperature[columns][[0, -1]].tolist()
+    return first, last
+
+
+def _of_a_point(map_: OperatingMap, point: PlacedPoint) -> Iterator[Warning]:
+    """Yield why the verdict on a point is uncertain."""
+    edges = {"the transition speed": map_.transition_interval, "V*": map_.upper_interval}
+    for name, interval in edges.items() if not map_.given else ():
+        low, high = (
+            float(
+                edge[0] if map_.temperature is None else np.interp(point.temperature, map_.temperature, edge)
+            )
+            for edge in interval
+        )
+        if low <= point.speed <= high:
+            yield Warning(
+                "verdict not certain",
+                "within the 95 % interval of {edge} ({low:.3g mm/s} to {high:.3g mm/s}), so the verdict is "
+                "not certain",
+                severity="watch",
+                where=point.name,
+                edge=name,
+                low=low,
+                high=high,
+            )
+            break
+    if point.at.extrapolated:
+        yield Warning(
+            "point extrapolated",
+            "extrapolated, no dwell lies that far out",
+            severity="watch",
+            where=point.name,
+        )
+
+
+def _of_the_speed_limit(map_: OperatingMap, points: Sequence[PlacedPoint]) -> Iterator[Warning]:
+    for point in points:
+        if map_.speed_limit is not None and point.speed > map_.speed_limit:
+            yield Warning(
+                "faster than the drive",
+                "faster than the drive, {limit:.3g mm/s}",
+                severity="watch",
+                where=point.name,
+                limit=map_.speed_limit,
+            )
