@@ -26,7 +26,7 @@ def fit_each(
     logs: list[Path], reading: Reading, machine: Machine | None, table: Output, keep_going: bool, crew: Crew
 ) -> None:
     """Fit each log by itself and write a table with a row for each, in their order."""
-    from hersey.log.many import collected, each_of, told
+    from hersey.log.many import collected, each_of, failure_line
 
     task = partial(row, reading if crew.scheduler is None else reading.anywhere(), machine)
     files = logs if crew.scheduler is None else [log.absolute() for log in logs]
@@ -38,7 +38,7 @@ def fit_each(
         table.write(_table(rows, table.path.suffix))
         say(f"fits of {len(rows)} logs: {table.path}")
     if fits.failures:
-        say(*(f"- {told(*failed)}" for failed in fits.failures.items()), file=sys.stderr)
+        say(*(f"- {failure_line(*failed)}" for failed in fits.failures.items()), file=sys.stderr)
         raise typer.Exit(NOT_FOUND)
 
 

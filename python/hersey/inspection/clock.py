@@ -31,7 +31,7 @@ class Clock(Record):
     interval
         Usual time between rows (median; the mean where stamps repeat).
     resolution
-        Step in which the stamps count, None where it cannot be told.
+        Step in which the stamps count, None where it is not known.
     uneven
         Share of the intervals that are off the usual one.
     gaps, longest_gap, lost
@@ -138,8 +138,8 @@ def clock_of(name: str, time: FloatArray) -> Clock:
     allowed = max(UNEVEN * usual, 1.01 * coarse)
     gap = max(GAP * usual, usual + 1.5 * coarse)
     far = np.abs(steps - usual) > allowed
-    whole = np.abs(steps / usual - np.round(steps / usual)) < UNEVEN if usual > 0 else far
-    lost_rows = (steps > gap) & whole
+    whole_intervals = np.abs(steps / usual - np.round(steps / usual)) < UNEVEN if usual > 0 else far
+    lost_rows = (steps > gap) & whole_intervals
     uneven = float(np.mean(far & ~lost_rows & (steps > 0)))
     if uneven > UNEVEN_SHARE:
         gap = max(gap, GAP_OF_UNEVEN * usual)

@@ -62,7 +62,7 @@ class Fault(Record):
 
 @dataclass(frozen=True)
 class Traits(Record):
-    """What a channel looks like, in its own unit; ``step`` and ``noise`` are None where they cannot be told.
+    """What a channel looks like, in its own unit; ``step`` and ``noise`` are None where they are not known.
 
     ``noise`` is the standard deviation from row to row, ``refresh`` the rows for which values are held.
     """
@@ -221,8 +221,10 @@ def stuck(values: FloatArray, step: float | None, *, stands: bool = False) -> li
         again = np.count_nonzero(held[candidates] == held[run])
         if again > RECURRING or float(held[run]) in clipped:
             continue
-        reach = max(10 * STUCK_ROWS, int(lengths[run]))
-        beside = np.concatenate([values[max(0, first - reach) : first], values[last : last + reach]])
+        rows_beside = max(10 * STUCK_ROWS, int(lengths[run]))
+        beside = np.concatenate(
+            [values[max(0, first - rows_beside) : first], values[last : last + rows_beside]]
+        )
         noise = noise_of(beside)
         if noise is None or noise <= max(DITHER * (step or 0.0), 1e-9 * float(np.ptp(values))):
             continue

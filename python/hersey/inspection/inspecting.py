@@ -128,7 +128,7 @@ class Inspection(Result):
         return "\n".join(lines)
 
     def _hindrance(self) -> str:
-        """Why there can be no fit; a log without torque is told so first."""
+        """Why there can be no fit; that a log has no torque comes first."""
         bare = [
             file.name
             for file in self.files

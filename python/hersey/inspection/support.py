@@ -28,7 +28,7 @@ from hersey.units import convert, rpm
 NARROW_SPEEDS, NARROW_TEMPERATURES = 2.0, 30.0
 #: Speeds at one temperature that two branches and the place where they meet need.
 BRANCH_SPEEDS = 6
-#: Speed and temperature vary together beyond this correlation: their exponents cannot be told apart.
+#: Speed and temperature vary together beyond this correlation: their exponents cannot be separated.
 TOGETHER = 0.95
 
 
@@ -47,7 +47,7 @@ class Support(Record):
     rejected
         Rows of every other stretch by the kind of its reason.
     can, cannot
-        In words; what cannot be told names what is missing.
+        In words; what is not known names what is missing.
     """
 
     dwells: int
@@ -208,7 +208,7 @@ def _one_exponent(branch: Rising, cannot: list[str]) -> Said:
 
 
 def _in_rpm(speed: Estimate) -> str:
-    ends = f"[{rpm(speed.low):.3g}, {rpm(speed.high):.3g}]" if speed.estimable else "(interval not told)"
+    ends = f"[{rpm(speed.low):.3g}, {rpm(speed.high):.3g}]" if speed.estimable else "(interval not known)"
     return f"{rpm(speed.value):.3g} rpm {ends}"
 
 

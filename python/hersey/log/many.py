@@ -47,7 +47,7 @@ class ManyLogs(Mapping[Path, R], Generic[R]):
         """Return the count, and a line for each file that was left out."""
         total = len(self.found) + len(self.failures)
         head = f"{len(self.found)} of {total} logs"
-        return "\n".join([head, *(f"- {told(path, error)}" for path, error in self.failures.items())])
+        return "\n".join([head, *(f"- {failure_line(path, error)}" for path, error in self.failures.items())])
 
     def __repr__(self) -> str:
         """Return the counts on one line."""
@@ -145,7 +145,7 @@ def collected(files: Iterable[Path], results: Iterable[R | HerseyError], keep_go
     return ManyLogs(found, failures)
 
 
-def told(path: Path, error: HerseyError) -> str:
+def failure_line(path: Path, error: HerseyError) -> str:
     """Return why a file gave nothing, in a line that begins with its path."""
     text = str(error)
     for name in (str(path), path.name):

@@ -129,7 +129,7 @@ class LogMapping(_Roles):
     def correct(self, log: Any) -> Corrected:
         """Apply the corrections that are stated, in the order of `hersey.log.corrections`."""
         done = self._at_the_sensor(log)
-        torque, speed, heat = self.torque, self.speed, self.temperature
+        torque, speed, temperature = self.torque, self.speed, self.temperature
         if isinstance(torque.no_load, Path):
             channels, units = map(_without_temperature, (self.channels, self.units))
             given = vars(self.stated)
@@ -146,10 +146,10 @@ class LogMapping(_Roles):
             )
         if torque.inertia:
             done = corrections.inertia(done, moment_of_inertia=torque.inertia)
-        if done.log.has_temperature and heat.time_constant:
-            done = corrections.thermal_lag(done, time_constant=heat.time_constant)
-        if done.log.has_temperature and heat.offset:
-            done = corrections.temperature_offset(done, offset=heat.offset)
+        if done.log.has_temperature and temperature.time_constant:
+            done = corrections.thermal_lag(done, time_constant=temperature.time_constant)
+        if done.log.has_temperature and temperature.offset:
+            done = corrections.temperature_offset(done, offset=temperature.offset)
         return done
 
     def _at_the_sensor(self, log: Any) -> Corrected:

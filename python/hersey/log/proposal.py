@@ -22,7 +22,7 @@ def propose_mapping(
 ) -> str:
     """Return a mapping for the channels of a log as TOML, to be looked at, mended and kept.
 
-    What cannot be told is left out, with a line that says why; what could be corrected is a comment.
+    What is not known is left out, with a line that says why; what could be corrected is a comment.
     ``channels`` and ``units`` by role are taken as for `hersey.read`.
 
     Raises

@@ -19,8 +19,8 @@ Rows = slice | IntArray
 
 #: Rows that may be left out unasked, as a share of a file; one may be in any.
 FEW = 0.02
-#: Rows left out that are told one by one, at the most.
-_TOLD = 10
+#: Rows left out that are listed one by one, at the most.
+_LISTED = 10
 #: A clock that falls back into this part of what it has passed starts anew.
 _START = 0.1
 #: Runs in a file at the most.
@@ -39,7 +39,7 @@ class LeftOut:
         """Count rows; of ``words``, one for each of them, no more are taken than are shown."""
         self.rows += rows
         self.out_of_order += rows if out_of_order else 0
-        self.words += itertools.islice(words, max(0, _TOLD - len(self.words)))
+        self.words += itertools.islice(words, max(0, _LISTED - len(self.words)))
 
     def refuse_many(self, file: str, rows: int, *, allowed: bool) -> None:
         """Raise unless few rows of a file, of ``rows`` in all, are left out, or that is ``allowed``.

@@ -195,8 +195,8 @@ def _values(mdf: Any, group: int, index: int) -> tuple[FloatArray, FloatArray, F
         raise UnreadableLogError("was recorded against no clock")
     conversion = channels[master].conversion
     if mdf.version < "4" and conversion is not None and conversion.conversion_type not in _OF_OLD_CLOCKS:
-        told = f": it has the formula {conversion.formula[:80]!r}" if conversion.formula else ""
-        raise UnreadableLogError(f"has a clock whose conversion cannot be applied{told}")
+        formula = f": it has the formula {conversion.formula[:80]!r}" if conversion.formula else ""
+        raise UnreadableLogError(f"has a clock whose conversion cannot be applied{formula}")
     # otherwise asammdf drops samples that are invalid from this channel alone
     signal = mdf.get(group=group, index=index, ignore_invalidation_bits=True)
     values = signal.samples

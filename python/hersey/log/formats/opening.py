@@ -274,10 +274,10 @@ class _Reader:
             return self._too_large()
         if kind == "NotStarted":
             return self._not_started(message)
-        told = _plain(message).partition("\n")[0][:160] or kind
+        reason = _plain(message).partition("\n")[0][:160] or kind
         return UnreadableLogError(
             f"{self.file.path.name} cannot be read as {called(self.kind)}: it is damaged, cut off or of "
-            f"another kind ({told})"
+            f"another kind ({reason})"
         )
 
     def _loss(self, error: LostError) -> UnreadableLogError:

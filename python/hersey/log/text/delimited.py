@@ -318,12 +318,12 @@ class _Table:
         place = f"line {block.lines[row]}"
         for (column, _), numbers in zip(self.channels.values(), values, strict=True):
             cell = cells[column.index] if column.index < len(cells) else ""
-            told = f"{place}, column '{column.name}': "
+            in_column = f"{place}, column '{column.name}': "
             if not np.isfinite(numbers[row]):
                 if is_missing(cell):
                     what = f"'{cell[:40]}' stands" if cell else "nothing stands"
-                    return f"{told}{what} where a number is needed"
-                return f"{told}'{cell[:40]}' is not a {self.reader.what(column)}"
+                    return f"{in_column}{what} where a number is needed"
+                return f"{in_column}'{cell[:40]}' is not a {self.reader.what(column)}"
         return (
             f"{place}: torque and speed cannot be had from what stands there: a radius that is not positive?"
         )

@@ -81,12 +81,12 @@ def _require_width(
 def _too_many(table: NumberRows, rows: list[list[str]], named: int) -> str:
     """What to do where rows have more cells than the header: a comma within the numbers parts them too."""
     cells = [row for row in rows if len(row) == table.width]
-    whole = cells and all(re.fullmatch(r"[-+]?\d+", cell.strip()) for row in cells for cell in row)
+    whole_numbers = cells and all(re.fullmatch(r"[-+]?\d+", cell.strip()) for row in cells for cell in row)
     if table.width < named:
         return "leave out the names that have no column"
     if table.separator != "," or table.width > 2 * named:
         return "give every column a name"
-    if table.width == 2 * named and whole:
+    if table.width == 2 * named and whole_numbers:
         return (
             "its numbers have decimal commas, and commas part its columns too: export it with ';' between "
             "the columns, or with decimal points"
