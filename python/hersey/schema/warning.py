@@ -38,11 +38,11 @@ class _Words(string.Formatter):
     """
 
     def format_field(self, value: Any, spec: str) -> str:
+        if isinstance(value, Setting):
+            return value.to(spec)
         if "|" in spec:
             one, many = spec.split("|")
             return one if value == 1 else many
-        if isinstance(value, Setting):
-            return value.to(spec)
         if spec == "capital":
             return f"{str(value)[:1].upper()}{str(value)[1:]}"
         if spec == "p":
