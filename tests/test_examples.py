@@ -52,6 +52,7 @@ def typed(line: str, folder: Path) -> None:
         (folder / output).write_text(done.stdout)
 
 
+@pytest.mark.usefixtures("few_draws", "few_laws")
 def test_readme_commands(tmp_path: Path) -> None:
     """As they are typed, one after the other, in a fresh copy."""
     shutil.copytree(ROOT / "examples", tmp_path / "examples")
@@ -61,7 +62,7 @@ def test_readme_commands(tmp_path: Path) -> None:
     with shipped.few():
         for line in lines:
             if line not in helped:
-                typed(line, tmp_path)
+                typed(line + " --draws 100" * line.startswith("hersey posterior"), tmp_path)
 
 
 #: Commands of the README for the reader's own files: those of the line, made here of the example's.
@@ -71,6 +72,7 @@ OWN = {
 }
 
 
+@pytest.mark.usefixtures("few_draws", "few_laws")
 @pytest.mark.parametrize("line", OWN)
 def test_readme_commands_of_the_reader(line: str, tmp_path: Path) -> None:
     text = (ROOT / "examples" / "bench.csv").read_text()

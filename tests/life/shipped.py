@@ -27,7 +27,7 @@ from hersey.life.indicators import sticking
 from hersey.machine.machine import Machine, read_machine
 from hersey.testbench.stand import RPM
 from hersey.units import ZERO_CELSIUS
-from tests.conftest import ROOT
+from tests.conftest import ROOT, made_once
 
 FOLDER = ROOT / "examples" / "life"
 
@@ -140,7 +140,7 @@ def followed(units: int = 2) -> hersey.LifeTest:
     """What ends some of the shipped specimens, and when; of few ways, which is quicker."""
     less = replace(machine(), limits=hersey.Limits(motor_torque=1.0), points=machine().points[:1])
     with few():
-        return hersey.follow(opened(units), less)
+        return made_once(f"followed-{units}", lambda: hersey.follow(opened(units), less))
 
 
 def write(path: Path, units: int = 2) -> Path:
