@@ -138,9 +138,7 @@ def surface(points: hersey.SteadyPoints) -> hersey.DampingSurface:
 @pytest.fixture(scope="session")
 def document(points: hersey.SteadyPoints) -> Analysis:
     machine = read_machine(ROOT / "tests" / "stand" / "machine.toml")
-    return made_once(
-        "document", lambda: document_of(study(points, machine), command="hersey report bench.csv")
-    )
+    return document_of(study(points, machine), command="hersey report bench.csv")
 
 
 @pytest.fixture

@@ -15,7 +15,7 @@ from hersey.document.assembly import document_of
 from hersey.machine.machine import read_machine
 from hersey.report.page import render
 from hersey.study import study
-from tests.conftest import ROOT, made_once, shared
+from tests.conftest import ROOT, shared
 
 ARGUMENTS = ["--no-sandbox", "--disable-gpu", "--disable-background-networking", "--disable-component-update"]
 #: Pictures of the pages, to be looked at: an artefact of the run.
@@ -66,7 +66,7 @@ def report(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], tuple[Pa
 
     def made(name: str) -> tuple[Path, Analysis]:
         if name not in kept:
-            document = made_once(name, {"demo": _demo, "screw": _screw, "plain": _plain}[name])
+            document = {"demo": _demo, "screw": _screw, "plain": _plain}[name]()
             path = tmp_path_factory.mktemp("report") / f"{name}.html"
             path.write_text(render(document), encoding="utf-8")
             kept[name] = path, document

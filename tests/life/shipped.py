@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import copyreg
 import json
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import cache
@@ -23,6 +24,7 @@ from hersey.life.campaign.conversion import entry_of
 from hersey.life.growth import fit as growth_module
 from hersey.life.growth import marginal
 from hersey.life.growth import posterior as growth_posterior
+from hersey.life.growth.laws import LAWS, Law
 from hersey.life.indicators import sticking
 from hersey.machine.machine import Machine, read_machine
 from hersey.testbench.stand import RPM
@@ -133,6 +135,17 @@ def few() -> Iterator[None]:
         patch.setattr(ageing_maps, "TEMPERATURES", 7)
         patch.setattr(other_uses, "_LIMITS", (0.8, 1.0, 1.25))
         yield
+
+
+def _by_name(law: Law) -> tuple[Callable[[str], Law], tuple[str]]:
+    return _law_of, (law.name,)
+
+
+def _law_of(name: str) -> Law:
+    return next(law for law in LAWS if law.name == name)
+
+
+copyreg.pickle(Law, _by_name)  # it holds functions without names, and there is one of each
 
 
 @cache
