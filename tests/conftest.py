@@ -2,20 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import fcntl
+import importlib
+import os
+import pickle
+from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import pytest
 
 import hersey
 from hersey import testbench
+from hersey.damping.candidates import comparison
+from hersey.damping.candidates.candidate import all_candidates
+from hersey.damping.curves import mixture
+from hersey.damping.curves.shapes import SHAPES
 from hersey.decision.behaviour import Working
 from hersey.document.analysis import Analysis
 from hersey.document.assembly import document_of
 from hersey.machine.machine import read_machine
+from hersey.posterior import sampling
 from hersey.study import study
+from hersey.verdict import explanations
 
+Made = TypeVar("Made")
 ROOT = Path(__file__).parents[1]
 SHARED = ROOT.parent / "shared"
 #: What `make quick` leaves out, by marker: the starts of names in a list of the same name.
@@ -53,6 +64,38 @@ def mostly_nightly(cases: Iterable[Any], *kept: Any) -> list[Any]:
         case if case in kept else pytest.param(*(case if isinstance(case, tuple) else (case,)), marks=nightly)
         for case in cases
     ]
+
+
+#: Where the processes of a run find what one of them made.
+_COMMON: list[Path] = []
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _common(tmp_path_factory: pytest.TempPathFactory) -> None:
+    """Let the processes of a run share a folder; a run in one process needs none."""
+    if "PYTEST_XDIST_WORKER" in os.environ:
+        _COMMON[:] = [tmp_path_factory.getbasetemp().parent]
+
+
+def made_once(name: str, make: Callable[[], Made]) -> Made:
+    """Return what the first process of a run that asks makes, and the others read."""
+    if not _COMMON:
+        return make()
+    made = _COMMON[0] / f"{name}.pickle"
+    with made.with_suffix(".lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)  # ends with the process, so that none waits for one that died
+        if not made.exists():
+            part = made.with_suffix(".part")
+            part.write_bytes(pickle.dumps(make()))
+            part.rename(made)
+    found: Made = pickle.loads(made.read_bytes())
+    return found
+
+
+@pytest.fixture(scope="session")
+def nightly(request: pytest.FixtureRequest) -> bool:
+    """Whether every case is tried."""
+    return bool(request.config.getoption("--nightly"))
 
 
 @pytest.fixture(scope="session")
@@ -100,8 +143,26 @@ def document(points: hersey.SteadyPoints) -> Analysis:
 
 @pytest.fixture
 def few_draws(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let a report rest on a quarter of the draws, where it is looked at in words."""
+    """Let a report, a map or a plan rest on a quarter of the draws, where it is looked at in words."""
     monkeypatch.setattr(Working.__init__, "__defaults__", ((), None, 250))
+    monkeypatch.setattr(sampling, "DRAWS", 250)
+
+
+@pytest.fixture
+def few_laws(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Try two curves, three candidates and no film beside a constant torque, where laws are not looked at."""
+    monkeypatch.setattr(mixture, "SHAPES", (SHAPES[0], SHAPES[-1]))
+    monkeypatch.setattr(comparison, "all_candidates", lambda: all_candidates()[:3])
+    monkeypatch.setattr(explanations, "_beside_constant", lambda *_: ([], []))
+
+
+@pytest.fixture
+def roughly(monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest) -> None:
+    """Fit one branch as well, where a command is looked at, or what it reads, and not what it fits."""
+    for few in ("few_draws", "few_laws"):
+        request.getfixturevalue(few)
+    fitting = importlib.import_module("hersey.damping.fit")  # the package has a function of that name
+    monkeypatch.setattr(fitting, "fit_branches", lambda _data, _single: None)
 
 
 @pytest.fixture

@@ -45,6 +45,7 @@ def pasted(examples_here: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[st
     return lambda name: exec(compile(RUN[name], name, "exec"), {"__name__": "__main__"})
 
 
+@pytest.mark.usefixtures("few_draws", "few_laws")
 @pytest.mark.parametrize("name", QUICK)
 def test_a_block_runs_alone(name: str, pasted: Callable[[str], None]) -> None:
     pasted(name)
@@ -55,6 +56,7 @@ LASTING = sorted(RUN.keys() - QUICK.keys())
 KEPT = [name for name in LASTING if "follow(" not in RUN[name]]
 
 
+@pytest.mark.usefixtures("few_draws", "few_laws")
 @pytest.mark.parametrize("name", mostly_nightly(LASTING, *KEPT))
 def test_a_long_block_runs_alone(name: str, pasted: Callable[[str], None]) -> None:
     with shipped.few():

@@ -52,16 +52,20 @@ def typed(line: str, folder: Path) -> None:
         (folder / output).write_text(done.stdout)
 
 
-def test_readme_commands(tmp_path: Path) -> None:
-    """As they are typed, one after the other, in a fresh copy."""
+@pytest.mark.usefixtures("few_draws", "few_laws")
+def test_readme_commands(tmp_path: Path, nightly: bool) -> None:
+    """As they are typed, one after the other, in a fresh copy; at night with all runs of the life test."""
     shutil.copytree(ROOT / "examples", tmp_path / "examples")
+    runs = tmp_path / "examples" / "life" / "runs.csv"
+    if not nightly:
+        runs.write_text("".join(runs.read_text().splitlines(keepends=True)[:4]))
     lines = [line for line in commands() if line not in OWN]
     assert len(lines) >= 15
     helped = {example(verb) for verb in VERBS}  # which tests/cli/test_cli.py types
     with shipped.few():
         for line in lines:
             if line not in helped:
-                typed(line, tmp_path)
+                typed(line + " --draws 100" * line.startswith("hersey posterior"), tmp_path)
 
 
 #: Commands of the README for the reader's own files: those of the line, made here of the example's.
@@ -71,6 +75,7 @@ OWN = {
 }
 
 
+@pytest.mark.usefixtures("few_draws", "few_laws")
 @pytest.mark.parametrize("line", OWN)
 def test_readme_commands_of_the_reader(line: str, tmp_path: Path) -> None:
     text = (ROOT / "examples" / "bench.csv").read_text()

@@ -79,6 +79,22 @@ class Finder(importlib.abc.MetaPathFinder):
 
 sys.meta_path.insert(0, Finder())
 """
+#: Types each command, and prints what all of them print.
+_TYPED = """
+import contextlib, io, shlex, sys
+from hersey.cli.application import main
+
+printed = []
+for line in sys.argv[1:]:
+    sys.argv = ["hersey", *shlex.split(line), "--json"]
+    with contextlib.redirect_stdout(io.StringIO()) as told:
+        try:
+            main()
+        except SystemExit as end:
+            assert not end.code, end.code
+    printed.append(told.getvalue())
+print("[" + ",".join(printed) + "]")
+"""
 
 
 def numbers(document: Any, at: str = "") -> dict[str, Any]:
@@ -92,11 +108,10 @@ def numbers(document: Any, at: str = "") -> dict[str, Any]:
     return {place: value for key, part in parts for place, value in numbers(part, f"{at}.{key}").items()}
 
 
-def document(*arguments: str, reworded: bool) -> dict[str, Any]:
-    """What a command prints with ``--json``."""
-    start = "from hersey.cli.application import main\nmain()"
+def documents(commands: tuple[str, ...], *, reworded: bool) -> list[dict[str, Any]]:
+    """What commands print with ``--json``, one after the other in a process of their own."""
     done = subprocess.run(
-        [sys.executable, "-c", (_REWORDING if reworded else "") + "\n" + start, *arguments, "--json"],
+        [sys.executable, "-c", (_REWORDING if reworded else "") + _TYPED, *commands],
         cwd=ROOT,
         env={**os.environ, "OMP_NUM_THREADS": "1"},
         capture_output=True,
@@ -104,21 +119,25 @@ def document(*arguments: str, reworded: bool) -> dict[str, Any]:
         check=True,
         timeout=600,
     )
-    found: dict[str, Any] = json.loads(done.stdout)
+    found: list[dict[str, Any]] = json.loads(done.stdout)
     return found
 
 
 @pytest.mark.parametrize(
-    "arguments",
+    "commands",
     [
         # the report holds the fit and its verdict
-        pytest.param(("fit", "examples/bench.csv", "--tare", "standing"), marks=pytest.mark.nightly),
-        ("report", "examples/bench.csv", "--machine", "examples/machine.toml", "--tare", "standing"),
-        ("inspect", "examples/bench.csv"),
+        pytest.param(("fit examples/bench.csv --tare standing",), marks=pytest.mark.nightly),
+        (
+            "report examples/bench.csv --machine examples/machine.toml --tare standing",
+            "inspect examples/bench.csv",
+        ),
     ],
-    ids=["fit", "report", "inspect"],
+    ids=["fit", "report and inspect"],
 )
-def test_no_number_hangs_on_a_sentence(arguments: tuple[str, ...]) -> None:
-    as_written, reworded = (document(*arguments, reworded=each) for each in (False, True))
-    assert as_written != reworded  # the words are others
-    assert numbers(as_written) == numbers(reworded)
+def test_no_number_hangs_on_a_sentence(commands: tuple[str, ...]) -> None:
+    written, turned = (documents(commands, reworded=each) for each in (False, True))
+    assert len(written) == len(turned) == len(commands)
+    for as_written, reworded in zip(written, turned, strict=True):
+        assert as_written != reworded  # the words are others
+        assert numbers(as_written) == numbers(reworded)

@@ -22,7 +22,7 @@ from hersey.document.assembly import document_of
 from hersey.log.means import read_means
 from hersey.machine.limits import Limits, OperatingPoint
 from hersey.machine.machine import Machine, read_machine
-from hersey.posterior.sampling import DRAWS, posterior
+from hersey.posterior.sampling import posterior
 from hersey.report.page import render
 from hersey.study import study
 from tests.browser.opening import Opened
@@ -80,6 +80,10 @@ MACHINES = {
 JUDGED = mostly_nightly(MACHINES, *(MACHINES.keys() - {"slow drive"}))
 
 
+#: Draws of each machine: the verdict is worked out of the same ones, so that a quarter will do.
+FEW = 250
+
+
 @pytest.fixture(scope="module", params=JUDGED)
 def judged(
     request: pytest.FixtureRequest,
@@ -95,9 +99,10 @@ def judged(
         found.append(posterior(*given, **named))
         return found[-1]
 
-    with mock.patch.object(behaviour, "posterior", drawn):
+    few = mock.patch.object(behaviour.Working.__init__, "__defaults__", ((), None, FEW))
+    with mock.patch.object(behaviour, "posterior", drawn), few:
         document = document_of(study(dwells, machine))
-    assert [len(each.drives) for each in found] == [DRAWS]
+    assert [len(each.drives) for each in found] == [FEW]
     return document, found[0], machine
 
 

@@ -15,7 +15,7 @@ from hersey.charts import vega
 from hersey.charts.vega import drawn
 from hersey.errors import OutputError
 from hersey.processes.child import Child
-from tests.conftest import ROOT
+from tests.conftest import ROOT, mostly_nightly
 
 linux = pytest.mark.skipif(sys.platform != "linux", reason="limits and signals as Linux has them")
 #: Few threads, each of which reserves memory of its own.
@@ -56,7 +56,7 @@ REPORT = ["report", str(ROOT / "examples" / "bench.csv"), "--out", "r.html", "--
 
 
 @linux
-@pytest.mark.parametrize("limit", [1.5e9, 6e9])
+@pytest.mark.parametrize("limit", mostly_nightly([1.5e9, 6e9], 6e9))
 def test_out_of_memory_it_ends_in_one_line(tmp_path: Path, limit: float) -> None:
     import resource
 

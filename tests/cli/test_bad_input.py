@@ -111,6 +111,7 @@ ONE_ROW: dict[str, tuple[bytes, list[str]]] = {
 }
 
 
+@pytest.mark.usefixtures("roughly")
 @pytest.mark.parametrize("case", ONE_ROW)
 def test_a_bad_cell_costs_its_row_and_is_told(case: str, tmp_path: Path) -> None:
     content, says = ONE_ROW[case]
@@ -130,6 +131,7 @@ def good(tmp_path: Path) -> Path:
     return tmp_path
 
 
+@pytest.mark.usefixtures("roughly")
 def test_the_good_file_is_good(good: Path) -> None:
     assert run("report", "log.csv", cwd=good).returncode == 0
     assert (good / "report.html").stat().st_size < 2_000_000
@@ -157,6 +159,7 @@ def test_directory(good: Path) -> None:
     assert_one_clear_line(run("report", ".", cwd=good), ["directory"])
 
 
+@pytest.mark.usefixtures("roughly")
 def test_existing_report_is_kept(good: Path) -> None:
     (good / "report.html").write_text("mine")
     assert_one_clear_line(run("report", "log.csv", cwd=good), ["report.html exists", "--force"])

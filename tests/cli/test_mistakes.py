@@ -21,6 +21,9 @@ from tests.cli.command import Done, run
 from tests.conftest import mostly_nightly
 from tests.untrusted_input.other_blocks import xlsx
 
+#: An advice works where the command ends well; what is fitted is the matter of other tests.
+pytestmark = pytest.mark.usefixtures("roughly")
+
 HEADER = ("Time [s]", "Torque [N*m]", "Speed [rpm]", "Temperature [degC]")
 #: Rounds of advice at the most: a file may have two mistakes.
 ROUNDS = 4

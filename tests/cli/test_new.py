@@ -44,6 +44,7 @@ def lines(*answers: str) -> str:
     return "".join(f"{answer}\n" for answer in answers)
 
 
+@pytest.mark.usefixtures("roughly")
 def test_answers_from_a_pipe_become_two_files_with_comments(folder: Path) -> None:
     done = run("new", "log.csv", cwd=folder, answers=lines(*CHANNELS, *MACHINE))
     assert done.returncode == 0, done.stderr
@@ -172,6 +173,7 @@ KNOWN = {
 }
 
 
+@pytest.mark.usefixtures("roughly")
 @pytest.mark.parametrize(
     ("heading", "lines_to_complete"),
     [
@@ -218,6 +220,7 @@ def test_what_no_log_tells_is_left_to_be_completed(
     assert (tmp_path / "report.html").is_file()
 
 
+@pytest.mark.usefixtures("roughly")
 def test_a_log_without_temperature_gets_a_command_that_works(tmp_path: Path) -> None:
     rows = [",".join(line.split(",")[:3]) for line in text(staircase()).decode().splitlines()]
     (tmp_path / "log.csv").write_text("\n".join(rows) + "\n")

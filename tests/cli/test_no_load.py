@@ -45,6 +45,7 @@ def exponent(printed: str) -> float:
     return float(json.loads(printed)["fit"]["coefficients"]["c"]["value"])
 
 
+@pytest.mark.usefixtures("roughly")
 def test_a_no_load_log_is_taken_off(folder: Path) -> None:
     done = run("fit", "log.csv", "--no-load", "free.csv", "--json", cwd=folder)
     assert done.returncode == 0, done.stderr
@@ -77,6 +78,7 @@ def test_a_log_of_the_machine_is_found_beside_it(folder: Path) -> None:
     assert [each.kind for each in stated.warnings] == ["counts as exact"]
 
 
+@pytest.mark.usefixtures("roughly")
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [

@@ -118,6 +118,7 @@ def test_every_verb_is_typed() -> None:
     assert TYPED.keys() == VERBS.keys()
 
 
+@pytest.mark.usefixtures("roughly")
 @pytest.mark.parametrize("verb", VERBS)
 def test_no_verb_prints_what_steers_a_terminal(verb: str, folder: Path) -> None:
     for number, typed in enumerate(TYPED[verb]):

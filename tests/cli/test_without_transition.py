@@ -69,6 +69,7 @@ def test_the_report_says_what_the_machine_does(here: Path) -> None:
     assert speed * np.array(curve["damping"]) == pytest.approx(0.3 * speed**0.4, rel=0.02)
 
 
+@pytest.mark.usefixtures("roughly")
 def test_map_and_posterior_need_no_transition(here: Path) -> None:
     given = ("means.csv", "--means", "--isothermal")
     done = run("map", "machine.toml", *given, "--out", "map.svg", cwd=here)
@@ -89,6 +90,7 @@ def _hump(w: np.ndarray) -> np.ndarray:
     return np.asarray(0.3 * np.exp(-(np.log(w / 2.5) ** 2) / 3.0))
 
 
+@pytest.mark.usefixtures("few_laws")
 @pytest.mark.parametrize(("torque", "rises"), [(_falling, False), (_hump, True)])
 def test_torque_that_still_falls_at_the_fastest_dwell_bounds_nothing(
     tmp_path: Path, torque: Callable[[np.ndarray], np.ndarray], rises: bool
@@ -108,6 +110,7 @@ def test_torque_that_still_falls_at_the_fastest_dwell_bounds_nothing(
     assert below < 50.0 if rises else below == pytest.approx(1e3 * FASTEST, rel=0.02)
 
 
+@pytest.mark.usefixtures("few_draws", "few_laws")
 def test_a_point_without_a_verdict_leaves_the_others_theirs(tmp_path: Path) -> None:
     """Dwells from 60 to 180 degC; points at 25 degC and below 0 degC."""
     rng, rows = np.random.default_rng(3), []

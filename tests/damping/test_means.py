@@ -166,6 +166,7 @@ def test_several_tables_are_runs(tmp_path: Path) -> None:
     assert means.to_frame().height == 37
 
 
+@pytest.mark.usefixtures("roughly")
 def test_the_commands_take_a_table_of_means(tmp_path: Path) -> None:
     written(tmp_path, table())
     fit = run("fit", "means.csv", "--json", cwd=tmp_path)
@@ -186,6 +187,7 @@ def test_the_commands_take_a_table_of_means(tmp_path: Path) -> None:
     assert models.returncode == 0, models.stderr
 
 
+@pytest.mark.usefixtures("roughly")
 def test_a_table_of_means_has_no_tare_and_no_corrections(tmp_path: Path) -> None:
     written(tmp_path, table())
     refused = run("fit", "means.csv", "--tare", "standing", cwd=tmp_path)

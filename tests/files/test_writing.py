@@ -180,6 +180,7 @@ TAKES_LONGER = {
 }
 
 
+@pytest.mark.usefixtures("roughly")
 @pytest.mark.parametrize("what", WRITES)
 def test_no_verb_replaces_what_appears_while_it_works(
     what: str, examples_here: Path, monkeypatch: pytest.MonkeyPatch
@@ -189,6 +190,7 @@ def test_no_verb_replaces_what_appears_while_it_works(
     refused_at_the_end(*WRITES[what], examples_here, monkeypatch)
 
 
+@pytest.mark.usefixtures("few_draws", "few_laws")
 @pytest.mark.parametrize("what", TAKES_LONGER)
 def test_no_long_verb_replaces_what_appears_while_it_works(
     what: str, examples_here: Path, monkeypatch: pytest.MonkeyPatch

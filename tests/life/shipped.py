@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import copyreg
 import json
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import cache
@@ -23,11 +24,12 @@ from hersey.life.campaign.conversion import entry_of
 from hersey.life.growth import fit as growth_module
 from hersey.life.growth import marginal
 from hersey.life.growth import posterior as growth_posterior
+from hersey.life.growth.laws import LAWS, Law
 from hersey.life.indicators import sticking
 from hersey.machine.machine import Machine, read_machine
 from hersey.testbench.stand import RPM
 from hersey.units import ZERO_CELSIUS
-from tests.conftest import ROOT
+from tests.conftest import ROOT, made_once
 
 FOLDER = ROOT / "examples" / "life"
 
@@ -135,12 +137,23 @@ def few() -> Iterator[None]:
         yield
 
 
+def _by_name(law: Law) -> tuple[Callable[[str], Law], tuple[str]]:
+    return _law_of, (law.name,)
+
+
+def _law_of(name: str) -> Law:
+    return next(law for law in LAWS if law.name == name)
+
+
+copyreg.pickle(Law, _by_name)  # it holds functions without names, and there is one of each
+
+
 @cache
 def followed(units: int = 2) -> hersey.LifeTest:
     """What ends some of the shipped specimens, and when; of few ways, which is quicker."""
     less = replace(machine(), limits=hersey.Limits(motor_torque=1.0), points=machine().points[:1])
     with few():
-        return hersey.follow(opened(units), less)
+        return made_once(f"followed-{units}", lambda: hersey.follow(opened(units), less))
 
 
 def write(path: Path, units: int = 2) -> Path:

@@ -18,6 +18,7 @@ from hersey.machine.limits import OperatingPoint
 from hersey.testbench import population
 from hersey.testbench.drive import example_drive
 from hersey.units import ZERO_CELSIUS
+from tests.conftest import made_once
 from tests.life import shipped
 
 
@@ -31,7 +32,9 @@ def told(unit: str, age: float, passed: float = 0.0) -> Any:
 
 @cache
 def maps() -> AgeingMaps:
-    return ageing_maps(shipped.opened(1), shipped.machine(), told("U1", 230e3))
+    return made_once(
+        "ageing-maps", lambda: ageing_maps(shipped.opened(1), shipped.machine(), told("U1", 230e3))
+    )
 
 
 def test_what_grows_with_the_clock_is_carried_on_with_it() -> None:

@@ -170,6 +170,7 @@ IN_A_FRAME = (
 CASES = [(name, as_text) for name in PATTERNS for as_text in (False, True)]
 
 
+@pytest.mark.usefixtures("roughly")
 @pytest.mark.parametrize(
     ("name", "as_text"),
     mostly_nightly(CASES, *(case for case in CASES if case[1] or case[0] in IN_A_FRAME)),
@@ -273,6 +274,7 @@ def test_an_impossible_load_costs_its_row_where_it_is_asked_for() -> None:
     assert (log.rows, found.reason, found.rows) == (_clean()[0].size - 1, Reason.RANGE, 1)
 
 
+@pytest.mark.usefixtures("roughly")
 @pytest.mark.parametrize("verb", ["fit", "inspect", "models"])
 def test_every_verb_says_so(verb: str, tmp_path: Path) -> None:
     columns = clean()

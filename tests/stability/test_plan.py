@@ -218,6 +218,7 @@ def test_smooth_closures_are_refused() -> None:
         hersey.plan_profile(TRAIN, replace(DRAG, closure="stribeck"), target_speed=1.9)
 
 
+@pytest.mark.usefixtures("few_draws", "few_laws")
 def test_the_command_writes_table_and_figure(examples_here: Path) -> None:
     text = (examples_here / "examples" / "machine.toml").read_text()
     strong = re.sub('motor_torque = "[0-9.]+', 'motor_torque = "1000', text)  # a grip that suffices
@@ -239,6 +240,7 @@ def test_the_command_writes_table_and_figure(examples_here: Path) -> None:
     assert (again.returncode, "exists" in again.stderr) == (2, True)
 
 
+@pytest.mark.usefixtures("few_draws", "few_laws")
 def test_the_command_says_what_forbids_a_profile(examples_here: Path) -> None:
     command = ["plan", "examples/machine.toml", "examples/bench.csv", "--tare", "standing"]
     refused = run(*command, "--target", "25 mm/s", "--at", "180 degC", "--out", "p.csv", cwd=examples_here)

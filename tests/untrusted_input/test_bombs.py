@@ -344,6 +344,7 @@ def test_the_limit_may_be_raised_and_lowered(tmp_path: Path) -> None:
         assert list_channels(path) == [("torque", "")]
 
 
+@pytest.mark.nightly  # a smaller one is read and refused above, and a bomb at the usual limit
 def test_what_exceeds_the_limit_is_read_with_a_higher_one(tmp_path: Path) -> None:
     """1.04 GB in a compressed element are too much for 2 GB, since they are held twice, and not for 8 GB."""
     rows = 130_000_000

@@ -1,4 +1,4 @@
-"""Damaged files, 150 in make test and 1200 at night, and a check that the driver sees what it looks for."""
+"""Damaged files, 75 in make test and 1200 at night, and a check that the driver sees what it looks for."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ pytestmark = linux
 pytest.importorskip("asammdf")
 pytest.importorskip("h5py")
 pytest.importorskip("nptdms")
-SEED, PARTS, EACH = 2015, 8, 150
+SEED, PARTS, EACH = 2015, 16, 75
 
 
 @pytest.fixture(scope="session")
