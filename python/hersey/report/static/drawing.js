@@ -18,13 +18,17 @@ function pretty(text) {
     .replace(/\b(mN|N) m\b/g, "$1·m").replace(/(\d)e-0*(\d+)\b/g, (_, first, power) => `${first}·10⁻${[...power].map((each) => "⁰¹²³⁴⁵⁶⁷⁸⁹"[each]).join("")}`);
 }
 // The same as a sentence of its own.
+const stopped = (text) => pretty(text).replace(/[^.!?:]$/, "$&.");
 function sentence(text) {
-  const set = pretty(text).replace(/[^.!?:]$/, "$&.");
+  const set = stopped(text);
   return `${set.slice(0, 1).toUpperCase()}${set.slice(1)}`;
 }
 
-// What a result is warned of, with what it concerns.
-const warned = (each) => sentence([each.where, each.title, each.text].filter(Boolean).join(": "));
+// What a result is warned of; what it concerns keeps its name as it is written.
+function warned(each) {
+  const said = [each.title, each.text].filter(Boolean).join(": ");
+  return each.where ? stopped(`${each.where}: ${said}`) : sentence(said);
+}
 
 function add(parent, tag, text = "", className = "") {
   const element = document.createElement(tag);
