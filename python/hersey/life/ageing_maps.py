@@ -20,6 +20,7 @@ from hersey.life.indicators.sticking import belt_drag, edges
 from hersey.life.indicators.torque_surface import RunDwells, TorqueSurface, shared_kernel
 from hersey.machine.limits import OperatingPoint
 from hersey.result import Means, Result
+from hersey.schema.warning import Warning
 from hersey.units import celsius
 
 if TYPE_CHECKING:
@@ -63,7 +64,7 @@ class AgeingMaps(Result):
     torque_limit: float | None
     points: tuple[OperatingPoint, ...]
     roll_radius: Annotated[float, Means(unit="m")]
-    notes: tuple[str, ...] = ()
+    warnings: tuple[Warning, ...] = ()
 
     @property
     def names(self) -> list[str]:
@@ -95,7 +96,7 @@ class AgeingMaps(Result):
                 states = (f"{when} {self.state(i, point)}" for i, when in enumerate(self.when))
                 at = f"{1e3 * point.speed:.3g} mm/s at {celsius(point.temperature):.3g} degC"
                 lines.append(f"  {point.name}, {at}: {', '.join(states)}")
-        return "\n".join([*lines, *(f"- {note}" for note in self.notes)])
+        return "\n".join([*lines, *(f"- {each}" for each in self.warnings)])
 
     def to_frame(self) -> pl.DataFrame:
         """Return one row per age and temperature."""
@@ -164,12 +165,19 @@ def ageing_maps(campaign: Campaign, machine: Machine, found: TimeToFailure, *, u
     shown = [(ages[0], "new" if ages[0] == 0.0 else "first", belts[0], own[0][2])]
     if ages[-1] > ages[0]:
         shown.append((ages[-1], "now", belts[-1], own[-1][2]))
-    notes = ["torque between the dwells, without a law"]
+    warnings = [Warning("torque without a law", "torque between the dwells, without a law")]
     last = end.age.age.value
     if ages[0] < ages[-1] < last < np.inf:
         clock = _clock(found, end.unit, np.append(ages, last))
         shown.append((last, "end", carried_on(belts, clock[:-1], float(clock[-1])), own[-1][2]))
-        notes.append("end: torque carried on as it grew, at the middle of the interval of that age")
+        warnings.append(
+            Warning(
+                "torque extrapolated",
+                "torque extrapolated as it grew, at the middle of the interval of that age",
+                severity="watch",
+                where="end",
+            )
+        )
     wholes, found_edges = [], []
     for _, _, belt, rest in shown:
         beside = (
@@ -192,7 +200,7 @@ def ageing_maps(campaign: Campaign, machine: Machine, found: TimeToFailure, *, u
         torque_limit=machine.limits.motor_torque,
         points=machine.points,
         roll_radius=machine.roll_radius,
-        notes=tuple(notes),
+        warnings=tuple(warnings),
     )
 
 

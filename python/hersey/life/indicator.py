@@ -10,9 +10,13 @@ import numpy as np
 from hersey.arrays import FloatArray, IntArray
 from hersey.errors import ParameterError
 from hersey.result import Record
+from hersey.schema.warning import Warning
 
 if TYPE_CHECKING:
     from hersey.life.campaign import Campaign
+
+#: Kind of the warning that a failure mode, named by where, is not judged.
+NOT_JUDGED = "mode not judged"
 
 
 @dataclass(frozen=True, repr=False)
@@ -77,7 +81,7 @@ class Indicator:
     accumulates: bool = False
     sign: bool = False
     own_ages: OwnAges | None = None
-    notes: tuple[str, ...] = ()
+    warnings: tuple[Warning, ...] = ()
 
     def __post_init__(self) -> None:
         """Check the numbers."""
@@ -92,8 +96,8 @@ class Indicator:
 
 @dataclass(frozen=True, repr=False)
 class Indicators:
-    """Runs and the failure modes that they tell; ``unsaid``: those that they cannot, and why."""
+    """Runs and the failure modes that they show; ``warnings``: which modes are not judged, and why."""
 
     runs: Runs
     each: tuple[Indicator, ...]
-    unsaid: tuple[str, ...] = ()
+    warnings: tuple[Warning, ...] = ()

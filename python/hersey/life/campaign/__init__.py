@@ -18,9 +18,9 @@ killed at any moment; writers wait for each other.
 """
 
 from hersey.life.campaign.adding import Added
-from hersey.life.campaign.checks import Finding, Findings
+from hersey.life.campaign.checks import CampaignCheck
 from hersey.life.campaign.entry import Entry
 from hersey.life.campaign.file import Campaign
 from hersey.life.campaign.table import RunToAdd, read_runs, rows_of
 
-__all__ = ["Added", "Campaign", "Entry", "Finding", "Findings", "RunToAdd", "read_runs", "rows_of"]
+__all__ = ["Added", "Campaign", "CampaignCheck", "Entry", "RunToAdd", "read_runs", "rows_of"]

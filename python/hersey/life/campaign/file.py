@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Self
 from hersey.errors import OutputError, ParameterError, meant
 from hersey.life.age import Age
 from hersey.life.campaign.adding import Added, add_entry, age_unit, is_there, lies_at
-from hersey.life.campaign.checks import Findings, check
+from hersey.life.campaign.checks import CampaignCheck, check
 from hersey.life.campaign.content import damaged, refuse_unsound_dwells, refuse_unsound_runs
 from hersey.life.campaign.entry import COLUMNS, Entry
 from hersey.life.campaign.store import PATIENCE, open_store, refuse_no_place, told, transaction
@@ -342,7 +342,7 @@ class Campaign:
             raise OutputError(f"a campaign is exported as .parquet or .csv, not as '{suffix}'")
         return table(self.dwells(), suffix)
 
-    def check(self, progress: Callable[[int, int], None] | None = None) -> Findings:
+    def check(self, progress: Callable[[int, int], None] | None = None) -> CampaignCheck:
         """Check the file, that each log is there and unchanged, the order of the ages, and the fits."""
         with told(self.path):
             refuse_unsound_dwells(self._database, self.path)

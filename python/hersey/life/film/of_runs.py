@@ -16,6 +16,7 @@ from hersey.life.growth.limit_ages import DEVIATIONS
 from hersey.life.indicator import Indicator, Runs
 from hersey.life.oil_layer import USUAL_SHARPNESS, log_film_share
 from hersey.result import Means, Record
+from hersey.schema.warning import Warning
 from hersey.units import celsius, rpm
 
 if TYPE_CHECKING:
@@ -28,7 +29,7 @@ _FEWEST = 6
 _WARMTH = 10.0
 #: Scatter over the stated errors from which the law does not describe a run.
 _BAD = 2.0
-#: Runs that a note names.
+#: Runs that a warning names.
 _NAMED = 4
 #: Standard errors in the 95 % at which uncertainties are stated.
 _TO_95 = 1.96
@@ -65,7 +66,7 @@ class FilmOfRuns:
     layers: Layers
     points: tuple[FilmPoint, ...]
     flooded: tuple[Flooded, ...]
-    notes: tuple[str, ...]
+    warnings: tuple[Warning, ...]
 
     def of_all(self, values: FloatArray) -> FloatArray:
         """Return values of all runs, NaN where one has no dwells."""
@@ -117,9 +118,16 @@ class FilmOfRuns:
             limit=1.0,
             value=self.of_all(value),
             error=self.of_all(error),
-            notes=(
-                f"the film starves where the layer of oil is thinner than a flooded film at {self.points[0]}",
-                *self.notes,
+            warnings=(
+                Warning(
+                    "starvation defined",
+                    "the film starves where the layer of oil is thinner than a flooded film at {point} "
+                    "({speed:.4g rpm}, {temperature:.4g degC})",
+                    point=self.points[0].name,
+                    speed=self.points[0].speed,
+                    temperature=self.points[0].temperature,
+                ),
+                *self.warnings,
             ),
         )
 
@@ -154,11 +162,17 @@ def film_of_runs(campaign: Campaign, machine: Machine, cold: float | None) -> Fi
     films = tuple(
         flooded(*film_of(machine), np.array([point.speed]), np.array([point.temperature])) for point in points
     )
-    notes = _notes(runs, told, found)
+    warnings = _warnings(runs, told, found)
     if not telling.all():
-        left = f"{np.count_nonzero(~telling)} of {telling.size} runs have too few dwells or one temperature"
-        notes = (f"{left}: they tell no film", *notes)
-    return FilmOfRuns(runs, told, found, points, films, notes)
+        few = Warning(
+            "runs without a film",
+            "{count} of {runs} runs have too few dwells or one temperature: they show no film",
+            severity="watch",
+            count=int(np.count_nonzero(~telling)),
+            runs=telling.size,
+        )
+        warnings = (few, *warnings)
+    return FilmOfRuns(runs, told, found, points, films, warnings)
 
 
 def _tells(dwells: FilledDwells) -> BoolArray:
@@ -183,22 +197,33 @@ def _points(
     return state, FilmPoint("the cold corner", state.speed, max(coldest.values()) if cold is None else cold)
 
 
-def _notes(runs: Runs, told: IntArray, found: Layers) -> tuple[str, ...]:
+def _warnings(runs: Runs, told: IntArray, found: Layers) -> tuple[Warning, ...]:
     _, _, high = found.interval()
-    notes = []
+    warnings = []
     unseen = int(np.count_nonzero(~np.isfinite(high)))
     if unseen:
-        notes.append(
-            f"{unseen} of {len(told)} runs show no starvation at all: of their layer they tell a lower bound"
+        warnings.append(
+            Warning(
+                "runs without starvation",
+                "{count} of {runs} runs show no starvation: of their layer only a lower bound is known",
+                count=unseen,
+                runs=len(told),
+            )
         )
     bad = [f"{runs.unit[told[i]]} at {runs.age[told[i]]:.6g}" for i in np.flatnonzero(found.scatter > _BAD)]
     if bad:
         more = " and others" if len(bad) > _NAMED else ""
-        notes.append(
-            f"dwells of {', '.join(bad[:_NAMED])}{more} scatter about the law by more than {_BAD:g} times "
-            "their errors: nip, lubricant or load are not those of the machine's file"
+        warnings.append(
+            Warning(
+                "dwells scatter",
+                "dwells of {which} scatter about the law by more than {factor:g} times their errors: nip, "
+                "lubricant or load are not those of the machine's file",
+                severity="act",
+                which=", ".join(bad[:_NAMED]) + more,
+                factor=_BAD,
+            )
         )
-    return tuple(notes)
+    return tuple(warnings)
 
 
 def systematic_factor(machine: Machine, read: FilmOfRuns) -> float:

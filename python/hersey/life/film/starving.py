@@ -15,6 +15,7 @@ from hersey.life.growth.limit_ages import AgesAtLimit, Interval, ages_at_limit, 
 from hersey.life.indicator import OwnAges
 from hersey.life.oil_layer import USUAL_SHARPNESS, log_film_share
 from hersey.result import Record
+from hersey.schema.warning import Warning
 
 #: Ages looked at, over the greatest of the data; past the last it counts as never.
 _AGES = np.concatenate([[0.0], np.geomspace(3e-3, 10.0, 110)])
@@ -94,10 +95,12 @@ class LayersOfSpecimens:
         known = _ages_below(drawn, drawn.specimens, point, off[:, None])
         return OwnAges(known, _ages_below(drawn, new, point, off[some, None]))
 
-    def starves(self, own: OwnAges, state: FilmPoint, age_unit: str, notes: tuple[str, ...]) -> AgesAtLimit:
+    def starves(
+        self, own: OwnAges, state: FilmPoint, age_unit: str, warnings: tuple[Warning, ...]
+    ) -> AgesAtLimit:
         """Return the ages at which the specimens starve at a point, of their draws."""
         quantity = f"the flooded film over the layer at {state.name}"
-        return ages_at_limit(quantity, age_unit, 1.0, self.names, own, self.last, notes)
+        return ages_at_limit(quantity, age_unit, 1.0, self.names, own, self.last, warnings)
 
     def with_all(self, own: OwnAges, names: tuple[str, ...]) -> OwnAges:
         """Return the draws of all specimens: one that no run shows is a new one."""

@@ -21,6 +21,7 @@ from hersey.life.growth.limit_ages import AgesAtLimit, Interval
 from hersey.life.indicator import Indicator, Indicators, Runs, most_ages
 from hersey.life.oil_layer import USUAL_SHARPNESS
 from hersey.result import Means, Result
+from hersey.schema.warning import Warning
 from hersey.units import takes_si
 
 if TYPE_CHECKING:
@@ -72,7 +73,7 @@ class FilmLife(Result):
     ]  #: of the median specimen: K (1/(m^2 age)), e and g (1/age)
     oil: tuple[OilLeft, ...]
     track: float
-    notes: tuple[str, ...]
+    warnings: tuple[Warning, ...]
     _starvation: Indicator = field(repr=False)
 
     def starved(self, point: int = 0) -> BoolArray:
@@ -118,7 +119,7 @@ class FilmLife(Result):
             f"law dh/dt = -K h^3/2 - e h, viscosity exp(g t); median specimen, per {unit}: "
             + ", ".join(f"{name} {each}" for name, each in self.law.items())
         )
-        return "\n".join([*lines, *(f"- {note}" for note in self.notes)])
+        return "\n".join([*lines, *(f"- {each}" for each in self.warnings)])
 
     def with_starvation(self, indicators: Indicators) -> Indicators:
         """Return indicators of the same runs with starvation among them.
@@ -205,8 +206,8 @@ def film_life(
         )
     drawn = fit_depletion(read.layers, place, age, side_flow=side_flow, evaporation=evaporation, seed=seed)
     last = np.array([age[place == k].max() for k in range(len(names))])
-    notes = (*read.notes, *_law_notes(age, place, machine))
-    return _film_life(read, LayersOfSpecimens(drawn, names, last), machine, track, notes)
+    warnings = (*read.warnings, *_of_the_law(age, place, machine))
+    return _film_life(read, LayersOfSpecimens(drawn, names, last), machine, track, warnings)
 
 
 def _refuse_impossible(side_flow: float | None, evaporation: float | None, track: float | None) -> None:
@@ -222,7 +223,7 @@ def _film_life(
     layers: LayersOfSpecimens,
     machine: Machine,
     track: float | None,
-    notes: tuple[str, ...],
+    warnings: tuple[Warning, ...],
 ) -> FilmLife:
     ages = _CURVES * layers.drawn.greatest_age
     length = machine.roll_radius * 2.0 * np.pi if track is None else track
@@ -241,29 +242,42 @@ def _film_life(
         curves=tuple(layers.film(point, ages) for point in read.flooded),
         layers=layers.thickness(ages),
         needs=tuple(layers.needs(point, ages) for point in read.flooded),
-        starves=tuple(layers.starves(own, state, read.runs.age_unit, notes) for own, state in pairs),
+        starves=tuple(layers.starves(own, state, read.runs.age_unit, warnings) for own, state in pairs),
         law=layers.rates(),
         oil=layers.oil(read.flooded[0], length * film_of(machine)[0].length),
         track=length,
-        notes=notes,
+        warnings=warnings,
         _starvation=replace(read.indicator(), own_ages=layers.with_all(starving[0], read.runs.units)),
     )
 
 
-def _law_notes(age: FloatArray, place: IntArray, machine: Machine) -> list[str]:
-    notes = []
+def _of_the_law(age: FloatArray, place: IntArray, machine: Machine) -> list[Warning]:
+    warnings = []
     if most_ages(place, age) < 3:
-        notes.append("no specimen was seen at three ages: side flow and evaporation cannot be told apart")
-    if machine.asperities is None:
-        notes.append(
-            "the machine's file states no asperities: dwells with a film below four times the roughness are "
-            "left out"
+        warnings.append(
+            Warning(
+                "two ages at most",
+                "no specimen was seen at three ages: side flow and evaporation cannot be distinguished",
+                severity="watch",
+            )
         )
-    notes.append(
-        "thicker oil moves torque at all dwells, a thin layer at cold and fast ones: a nip that widens with "
-        "age would be read as thicker oil"
+    if machine.asperities is None:
+        warnings.append(
+            Warning(
+                "no asperities",
+                "the machine's file states no asperities: dwells with a film below four times the roughness "
+                "are excluded",
+                severity="watch",
+            )
+        )
+    warnings.append(
+        Warning(
+            "nip taken as constant",
+            "thicker oil moves torque at all dwells, a thin layer at cold and fast ones: a nip that widens "
+            "with age would be read as thicker oil",
+        )
     )
-    return notes
+    return warnings
 
 
 def _last_runs(runs: Runs) -> list[int]:

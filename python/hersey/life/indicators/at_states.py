@@ -11,8 +11,9 @@ from hersey.arrays import BoolArray, FloatArray, IntArray
 from hersey.life.indicators.load_cases import State
 from hersey.life.indicators.run_dwells import CampaignRuns
 from hersey.life.indicators.torque_surface import TorqueSurface, shared_kernel
+from hersey.schema.warning import Warning
 
-#: Runs that a note names.
+#: Runs that a warning names.
 _NAMED = 3
 #: Factor beyond the slowest and the fastest dwell of a run up to which its curve is asked; what rounds off.
 _NEAR, _SLIP = 1.25, 0.999
@@ -60,26 +61,38 @@ class AtStates:
     kelvin: FloatArray
     curves: tuple[Curves, ...] = ()
 
-    def notes(self, state: int) -> tuple[str, ...]:
-        """What the state is, and which runs do not tell it or only beyond their dwells."""
+    def warnings(self, state: int) -> tuple[Warning, ...]:
+        """Return what the state is, and which runs do not show it or only beyond their dwells."""
         known = np.isfinite(self.whole[:, state])
-        notes = [str(self.states[state])]
+        warnings = [self.states[state].warning()]
         beyond = np.flatnonzero(known & self.outside[:, state]).tolist()
         if beyond:
             far = [f"{self.runs.name(run)}, {self._away(run, state)}" for run in beyond[:_NAMED]]
-            notes.append(
-                f"extrapolated in {len(beyond)} of {known.size} runs, whose dwells do not enclose it "
-                f"(not recorded there, or stalled): {'; '.join(far)}" + _more(beyond)
+            warnings.append(
+                Warning(
+                    "extrapolated",
+                    "extrapolated in {count} of {runs} runs, whose dwells do not enclose it (not recorded "
+                    "there, or stalled): {which}",
+                    severity="watch",
+                    count=len(beyond),
+                    runs=known.size,
+                    which="; ".join(far) + _more(beyond),
+                )
             )
         silent = np.flatnonzero(self.runs.enough & ~known).tolist()
         if silent:
             named = ", ".join(self.runs.name(run) for run in silent[:_NAMED])
-            notes.append(
-                f"not told by {len(silent)} of {known.size} runs, of other temperatures or lost in noise: "
-                + named
-                + _more(silent)
+            warnings.append(
+                Warning(
+                    "runs without a value",
+                    "unknown in {count} of {runs} runs, of other temperatures or lost in noise: {which}",
+                    severity="watch",
+                    count=len(silent),
+                    runs=known.size,
+                    which=named + _more(silent),
+                )
             )
-        return tuple(notes)
+        return tuple(warnings)
 
     def _away(self, run: int, state: int) -> str:
         factor, kelvin = float(self.factor[run, state]), float(self.kelvin[run, state])

@@ -16,11 +16,12 @@ from hersey.errors import HerseyError, UnitError
 from hersey.files.toml import naming
 from hersey.life.age import Age, one_of
 from hersey.life.fatigue import RainflowCycles, SNCurve, rainflow_cycles, stick_slip_damage_rate
-from hersey.life.indicator import Indicator
+from hersey.life.indicator import NOT_JUDGED, Indicator
 from hersey.life.indicators.at_states import AtStates, Curves
 from hersey.life.indicators.sticking import MOST_FOLDS, curve_at, drag_of
 from hersey.log.mapping import read_with_mapping
 from hersey.motion.simulation import stick_slip
+from hersey.schema.warning import Warning
 
 if TYPE_CHECKING:
     from hersey.machine import Machine
@@ -54,7 +55,7 @@ def running_time(machine: Machine, age_unit: str) -> float | None:
 
 def gear_fatigue(
     told: AtStates, machine: Machine, cold: int, points: slice, limit_error: float
-) -> tuple[list[Indicator], list[str]]:
+) -> tuple[list[Indicator], list[Warning]]:
     """Return the damage of the gear per age, and why there is none.
 
     Parameters
@@ -66,11 +67,26 @@ def gear_fatigue(
     """
     gear = machine.gear
     if gear is None:
-        return [], ["gear fatigue: add [gear] with torque, cycles and slope of its S-N curve"]
+        return [], [
+            Warning(
+                NOT_JUDGED,
+                "add [gear] with torque, cycles and slope of its S-N curve",
+                severity="act",
+                where="gear fatigue",
+                table="gear",
+            )
+        ]
     load = _GearLoad(told, machine, gear, cold, points)
     if not any([load.starts(), load.duty(), load.stick_slip()]):
         return [], [
-            'gear fatigue: [gear] says no load: add starts = "20 per 1000 pages", or duty and duty_age'
+            Warning(
+                NOT_JUDGED,
+                "[gear] states no load",
+                remedy='add starts = "20 per 1000 pages", or duty and duty_age',
+                severity="act",
+                where="gear fatigue",
+                table="gear",
+            )
         ]
     return [load.indicator(limit_error)], []
 
@@ -86,7 +102,7 @@ class _GearLoad:
                 gear.torque, gear.cycles, gear.slope, gear.second_slope, gear.endurance, gear.ultimate
             )
         self.rate, self.spread = np.zeros(told.whole.shape[0]), np.zeros(told.whole.shape[0])
-        self.notes: list[str] = []
+        self.warnings: list[Warning] = []
 
     def _add(self, cycles: RainflowCycles, scale: FloatArray, error: FloatArray) -> None:
         """Add cycles whose torque is so many times as large, known to a relative error."""
@@ -104,8 +120,13 @@ class _GearLoad:
         for state, share in shares.items():
             cycle = RainflowCycles(np.ones(1), np.full(1, 0.5), np.full(1, share * per_age))
             self._add(cycle, self.told.whole[:, state], self.told.whole_error[:, state])
-        self.notes.append(
-            f"{per_age:.3g} starts per {one_of(self.age_unit)}, without breakaway and acceleration"
+        self.warnings.append(
+            Warning(
+                "starts counted",
+                "{starts:.3g} starts per {age_unit}, without breakaway and acceleration",
+                starts=per_age,
+                age_unit=one_of(self.age_unit),
+            )
         )
         return True
 
@@ -123,8 +144,11 @@ class _GearLoad:
         scale = mix / np.median(mix[young]) if young.any() else np.full_like(mix, np.nan)
         error = np.nan_to_num(self.told.whole_error[:, states]).mean(axis=1)
         self._add(_counted(self.gear.duty, age), scale, error)
-        self.notes.append(
-            "the duty recorded grows as the torque at the points, from that of the youngest runs"
+        self.warnings.append(
+            Warning(
+                "duty scaled",
+                "the duty recorded grows as the torque at the points, from that of the youngest runs",
+            )
         )
         return True
 
@@ -140,7 +164,13 @@ class _GearLoad:
             return False
         time = running_time(self.machine, self.age_unit)
         if time is None:
-            self.notes.append('stick-slip at the points is not in it: [life] lacks travel = "300 mm"')
+            self.warnings.append(
+                Warning(
+                    "stick-slip not counted",
+                    'stick-slip at the points is not in it: [life] lacks travel = "300 mm"',
+                    severity="act",
+                )
+            )
             return False
         for point, share, curves, places in lasting:
             self.rate[places[MOST_FOLDS:]] = np.nan
@@ -149,8 +179,13 @@ class _GearLoad:
                 slowest = float(np.nan_to_num(self.told.belt_error[place]).max())
                 self.rate[place] += damage
                 self.spread[place] += np.nan_to_num(damage) * self.gear.slope * slowest
-            self.notes.append(
-                f"stick-slip at {point.name} in {len(places)} runs, where torque falls with speed"
+            self.warnings.append(
+                Warning(
+                    "stick-slip counted",
+                    "stick-slip at {point} in {count} {count:run|runs}, where torque falls with speed",
+                    point=point.name,
+                    count=len(places),
+                )
             )
         return True
 
@@ -171,10 +206,16 @@ class _GearLoad:
         """Return what adds up to the limit."""
         value = np.where(self.rate > 0.0, self.rate, np.nan)
         known = np.isfinite(value)
-        notes = list(self.notes)
+        warnings = list(self.warnings)
         if silent := int(np.count_nonzero(self.told.runs.enough & ~known)):
-            notes.append(
-                f"not told by {silent} runs: no damage, a peak that breaks the part, or no torque there"
+            warnings.append(
+                Warning(
+                    "runs without a value",
+                    "unknown in {count} {count:run|runs}: no damage, a peak that breaks the part, or no "
+                    "torque there",
+                    severity="watch",
+                    count=silent,
+                )
             )
         return Indicator(
             "gear fatigue",
@@ -185,7 +226,7 @@ class _GearLoad:
             np.where(known, self.spread / np.where(known, self.rate, 1.0), np.nan),
             limit_error * self.gear.slope,
             accumulates=True,
-            notes=tuple(notes),
+            warnings=tuple(warnings),
         )
 
 

@@ -18,11 +18,11 @@ from hersey.arrays import FloatArray
 from hersey.damping.no_load_torque import with_rest
 from hersey.damping.surface import WITH_TRANSITION
 from hersey.errors import ParameterError, UnfinishedError
-from hersey.life.indicator import Indicator
+from hersey.life.indicator import NOT_JUDGED, Indicator
 from hersey.life.indicators.at_states import AtStates, Curves
 from hersey.motion.drag import DragTable
+from hersey.schema.warning import Warning
 from hersey.stability.hysteresis import hysteresis
-from hersey.units import celsius
 
 if TYPE_CHECKING:
     from hersey.damping.no_load_torque import NoLoadTorque
@@ -59,18 +59,22 @@ def transitions(told: AtStates, machine: Machine) -> list[Indicator]:
                 speed,
                 np.where(np.isfinite(speed), curves.error, np.nan),
                 _speed_gain(told, machine),
-                notes=(
-                    f"speed of least torque at {celsius(point.temperature):.4g} degC",
-                    *_notes(told, curves),
+                warnings=(
+                    Warning(
+                        "speed of least torque",
+                        "speed of least torque at {temperature:.4g degC}",
+                        temperature=point.temperature,
+                    ),
+                    *_warnings(told, curves),
                 ),
             )
         )
     return found
 
 
-def folds(told: AtStates, machine: Machine) -> tuple[list[Indicator], list[str]]:
+def folds(told: AtStates, machine: Machine) -> tuple[list[Indicator], list[Warning]]:
     """Return V* at each point of the machine (m/s), against its speed; and why there is none."""
-    found, unsaid = [], []
+    found, warnings = [], []
     by_temperature = {point.temperature: point.name for point in machine.points}
     for temperature, name in by_temperature.items():
         curves = curve_at(told, temperature)
@@ -82,9 +86,24 @@ def folds(told: AtStates, machine: Machine) -> tuple[list[Indicator], list[str]]
             speed[place] = _fold(machine.train, drag_of(told, curves, place, machine))
         error = _error(told, curves, machine) if np.isfinite(speed).any() else None
         if error is None:
-            unsaid.append(f"stick-slip from rest at {name}: no V* can be told from these dwells")
+            warnings.append(
+                Warning(
+                    NOT_JUDGED,
+                    "V* cannot be determined from these dwells",
+                    severity="act",
+                    where=f"stick-slip from rest at {name}",
+                    point=name,
+                )
+            )
             continue
-        beside = f"V* of {np.isfinite(speed).sum()} of {speed.size} runs, of {MOST_FOLDS} at the most"
+        of_runs = Warning(
+            "V* of some runs",
+            "V* of {count} of {runs} runs, of {most} at the most; its error is the median of {drawn} runs",
+            count=int(np.isfinite(speed).sum()),
+            runs=speed.size,
+            most=MOST_FOLDS,
+            drawn=len(curves.drawn),
+        )
         errors = np.where(np.isfinite(speed), error, np.nan)
         common = np.hypot(
             _speed_gain(told, machine), _of_machine(told, curves, machine, chosen[len(chosen) // 2])
@@ -99,15 +118,12 @@ def folds(told: AtStates, machine: Machine) -> tuple[list[Indicator], list[str]]
                 errors,
                 float(common),
                 sign=True,
-                notes=(
-                    f"{beside}; its error is the middle one of {len(curves.drawn)} runs",
-                    *_notes(told, curves),
-                ),
+                warnings=(of_runs, *_warnings(told, curves)),
             )
             for point in machine.points
             if point.temperature == temperature
         ]
-    return found, unsaid
+    return found, warnings
 
 
 def drag_of(
@@ -215,18 +231,37 @@ def _speed_gain(told: AtStates, machine: Machine) -> float:
     return (machine.sensors.speed_gain if "speed" in machine.sensors.stated else max(gains)) / _DEVIATIONS
 
 
-def _notes(told: AtStates, curves: Curves) -> tuple[str, ...]:
-    """Which runs do not tell the transition, and what is taken for the belt's torque."""
+def _warnings(told: AtStates, curves: Curves) -> tuple[Warning, ...]:
+    """Which runs do not show the transition, and what is taken for the belt's torque."""
     enough = told.runs.enough
-    below, above = int(curves.below.sum()), int(curves.above.sum())
-    notes = []
-    if below:
-        notes.append(f"not told by {below} of {enough.size} runs: torque is least slower than they recorded")
-    if above:
-        notes.append(f"not told by {above} of {enough.size} runs: torque falls as far as they recorded")
-    silent = int(np.count_nonzero(enough & ~np.isfinite(curves.torque).any(axis=1)))
-    if silent:
-        notes.append(f"not told by {silent} of {enough.size} runs, of other temperatures")
+    silent = enough & ~np.isfinite(curves.torque).any(axis=1)
+    counts = (
+        ("slower than recorded", curves.below),
+        ("faster than recorded", curves.above),
+        ("other temperatures", silent),
+    )
+    warnings = [_unknown_in(kind, int(np.count_nonzero(of)), enough.size) for kind, of in counts if of.any()]
     if any(rest is None for rest in told.runs.rests):
-        notes.append("least of all torque together: the no-load torque is not known (add [rest])")
-    return tuple(notes)
+        warnings.append(
+            Warning(
+                "no-load torque unknown",
+                "least of all torque together: the no-load torque is not known (add [rest])",
+                severity="watch",
+            )
+        )
+    return tuple(warnings)
+
+
+def _unknown_in(kind: str, count: int, runs: int) -> Warning:
+    """Why so many runs do not show the transition."""
+    return Warning(
+        kind,
+        "unknown in {count} of {runs} runs: torque is least slower than they recorded"
+        if kind == "slower than recorded"
+        else "unknown in {count} of {runs} runs: torque falls as far as they recorded"
+        if kind == "faster than recorded"
+        else "unknown in {count} of {runs} runs, of other temperatures",
+        severity="watch",
+        count=count,
+        runs=runs,
+    )
