@@ -13,7 +13,7 @@ from hersey.units import celsius
 
 #: Width of all panels together without the gaps between them, and their height, px.
 _ALL, _HEIGHT = 640, 320
-#: Regions of the operating map that are told here, from slow to fast.
+#: Regions of the operating map that are shown here, from slow to fast.
 _TOLD = ("motor", "stick_slip", "bistable", "smooth")
 
 

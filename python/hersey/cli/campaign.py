@@ -63,9 +63,9 @@ def add(
     Example: [bold]hersey campaign add life.hersey examples/bench.csv --unit F12 --age '120000 pages'
     --tare standing[/bold]
 
-    A log that is there already is left alone; one that has changed, or is under another unit or age, is told,
-    and replaced with --force. With a table all its runs are added, or of the logs given those that it names;
-    what fails is left out, as with --keep-going. Exit code 1 says that a run could not be added.
+    A log that is there already is skipped; one that has changed, or is under another unit or age, is an
+    error, and replaced with --force. With a table all its runs are added, or of the logs given those that it
+    names; what fails is excluded, as with --keep-going. Exit code 1 says that a run could not be added.
     """
     if table is None and not runs:
         raise ParameterError("give either RUN... with --unit and --age, or --table with runs in rows")

@@ -1,7 +1,7 @@
 """The operating map of a specimen when new, as last seen, and when it ends.
 
 Torque between the dwells of a run is that of its `TorqueSurface`, without a law. To the end it is carried on
-by a clock, the growth of the torque that its own growth law tells: at each speed and temperature ln torque
+by a clock, the growth of the torque by its own growth law: at each speed and temperature ln torque
 went with ln of the clock over the ages seen, and goes on so.
 """
 
@@ -146,18 +146,18 @@ def ageing_maps(campaign: Campaign, machine: Machine, found: TimeToFailure, *, u
     ParameterError
         If there is no such specimen.
     InsufficientDataError
-        If its runs do not tell torque against temperature.
+        If its runs do not show torque against temperature.
     """
     end = _chosen(found, unit)
     runs = read_runs_of(campaign, machine.rest)
     own = [
         (age, dwells, rest)
-        for (i, dwells, rest), age in ((told, runs.runs.age[told[0]]) for told in runs.told())
+        for (i, dwells, rest), age in ((each, runs.runs.age[each[0]]) for each in runs.usable())
         if runs.runs.unit[i] == end.unit
     ]
     if not own or any(not np.ptp(dwells.temperature) > _APART for _, dwells, _ in own):
-        raise InsufficientDataError(f"the runs of {end.unit} do not tell torque against temperature")
-    kernel = shared_kernel([dwells for _, dwells, _ in runs.told()])
+        raise InsufficientDataError(f"the runs of {end.unit} do not show torque against temperature")
+    kernel = shared_kernel([dwells for _, dwells, _ in runs.usable()])
     hot, speed = _grid(own[0][1], machine)
     rolls = speed / machine.roll_radius
     belts = np.log([_torques(TorqueSurface(dwells, kernel), hot, rolls) for _, dwells, _ in own])
@@ -178,12 +178,12 @@ def ageing_maps(campaign: Campaign, machine: Machine, found: TimeToFailure, *, u
                 where="end",
             )
         )
-    wholes, found_edges = [], []
+    drive_torques, found_edges = [], []
     for _, _, belt, rest in shown:
-        beside = (
+        no_load = (
             np.zeros_like(belt) if rest is None else np.array([rest.torque(rolls, t) for t in hot.tolist()])
         )
-        wholes.append(np.exp(belt) + beside)
+        drive_torques.append(np.exp(belt) + no_load)
         rows = zip(np.exp(belt), hot.tolist(), strict=True)
         found_edges.append([edges(machine.train, belt_drag(machine, rest, speed, row, t)) for row, t in rows])
     transition, upper = np.moveaxis(np.nan_to_num(np.array(found_edges)), -1, 0)
@@ -194,7 +194,7 @@ def ageing_maps(campaign: Campaign, machine: Machine, found: TimeToFailure, *, u
         when=tuple(word for _, word, _, _ in shown),
         temperature=hot,
         speed=speed,
-        torque=np.array(wholes),
+        torque=np.array(drive_torques),
         transition=transition,
         upper=np.maximum(upper, transition),
         torque_limit=machine.limits.motor_torque,
@@ -218,7 +218,7 @@ def _chosen(found: TimeToFailure, unit: str) -> SpecimenEnd:
 
 
 def _clock(found: TimeToFailure, unit: str, ages: FloatArray) -> FloatArray:
-    """How far a specimen has aged at ages: ln of the growth of its torque, or the ages where none is told."""
+    """How far a specimen has aged at ages: ln of the growth of its torque, else the ages."""
     for mode in found.modes:
         if mode.kind == CLOCK and unit in mode.growth.units:
             return np.asarray(np.log(mode.growth.at(ages).median[mode.growth.units.index(unit)]))

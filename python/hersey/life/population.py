@@ -37,7 +37,7 @@ class BLife(Record):
     share: float
     age: float
     low: float
-    high: Annotated[float, OPEN]  #: infinite where no upper end is told
+    high: Annotated[float, OPEN]  #: infinite where no upper end is known
     level: float
 
     @property
@@ -73,7 +73,7 @@ class Population(Result):
         ParameterError
             If the share is not between 0 and 1.
         InsufficientDataError
-            If too few specimens have failed to tell.
+            If too few specimens have failed.
         """
         if not 0 < share < 1:
             raise ParameterError(f"share is {share}: it must lie between 0 and 1", quantity="share")
@@ -88,15 +88,15 @@ class Population(Result):
         Raises
         ------
         InsufficientDataError
-            If too few specimens have failed to tell.
+            If too few specimens have failed.
         """
         if self.shape is None or self.scale is None:
             raise InsufficientDataError(self.warnings[0].sentence)
         place = _place(np.asarray(shares, dtype=float))
         scale, shape = self._drawn
-        # (ln of the age told - ln of the true one) x shape told has one law, whatever the truth.
-        off = shape[:, None] * (np.log(scale)[:, None] - place) + place
-        early, late = np.quantile(off, [0.5 + self.level / 2, 0.5 - self.level / 2], axis=0)
+        # (ln of the estimated age - ln of the true one) x estimated shape has one law, whatever the truth.
+        pivot = shape[:, None] * (np.log(scale)[:, None] - place) + place
+        early, late = np.quantile(pivot, [0.5 + self.level / 2, 0.5 - self.level / 2], axis=0)
         middle = np.log(self.scale) + place / self.shape
         with np.errstate(over="ignore"):
             return np.exp(middle), np.exp(middle - early / self.shape), np.exp(middle - late / self.shape)
@@ -117,7 +117,7 @@ class Population(Result):
 
     @cached_property
     def _drawn(self) -> tuple[FloatArray, FloatArray]:
-        return _told_of_standard(_plan(self.failed), self.seed)
+        return _estimates_of_standard(_plan(self.failed), self.seed)
 
     def verdict(self) -> str:
         """Return what the shape says, in a sentence; empty if there is none."""
@@ -128,14 +128,14 @@ class Population(Result):
             return "The rate of failures grows with age: specimens wear out."
         if high < 1:
             return "The rate of failures falls with age: weak specimens fail early."
-        return "Whether the rate of failures grows or falls with age is not told."
+        return "Whether the rate of failures grows or falls with age is unknown."
 
     def headline(self) -> str:
         """Return how many failed, and B10 and B50."""
         count = int(self.failed.sum())
         head = f"{self.ages.size} specimens, {count} failed"
         if self.shape is None:
-            return f"{head}: no law is told"
+            return f"{head}: no law is known"
         lives = (self.b_life(share) for share in (0.10, 0.50))
         return head + "".join(f", {each.name} {_written(each.age, 3)}{self._behind}" for each in lives)
 
@@ -164,13 +164,13 @@ class Population(Result):
         return "\n".join([*lines, *(each.sentence for each in self.warnings)])
 
     def to_dict(self) -> dict[str, Any]:
-        """Return every field, B10, B50 and the median ranks; None for what is not told."""
-        told = self.shape is not None
+        """Return every field, B10, B50 and the median ranks; None for what is not known."""
+        estimable = self.shape is not None
         return json_record(
             {
                 **{each.name: getattr(self, each.name) for each in fields(self)},
-                "b10": self.b_life(0.10) if told else None,
-                "b50": self.b_life(0.50) if told else None,
+                "b10": self.b_life(0.10) if estimable else None,
+                "b50": self.b_life(0.50) if estimable else None,
                 "median_ranks": self.median_ranks[1],
                 "verdict": self.verdict(),
             }
@@ -221,8 +221,8 @@ def weibull(
 
     Examples
     --------
-    >>> told = weibull([54, 187, 216, 240, 244, 335, 361, 373, 375, 386, 500], [True] * 10 + [False])
-    >>> round(told.shape, 3), round(told.scale, 1)
+    >>> law = weibull([54, 187, 216, 240, 244, 335, 361, 373, 375, 386, 500], [True] * 10 + [False])
+    >>> round(law.shape, 3), round(law.scale, 1)
     (2.457, 340.5)
     """
     if not 0 < level < 1:
@@ -236,7 +236,7 @@ def weibull(
         return Population(values, ends, None, None, None, None, level, unit, warnings, seed)
     shape, scale = _fitted(np.log(values)[None, :], np.ones(values.size), ends)
     shapes = np.quantile(
-        _told_of_standard(_plan(ends), seed)[1], [0.5 + level / 2, 0.5 - level / 2]
+        _estimates_of_standard(_plan(ends), seed)[1], [0.5 + level / 2, 0.5 - level / 2]
     )  # of a shape of 1: their ratio to the true one
     bounds = (float(shape[0] / shapes[0]), float(shape[0] / shapes[1]))
     law = Population(
@@ -342,8 +342,8 @@ def _plan(failed: BoolArray) -> tuple[int, ...]:
 
 
 @lru_cache(maxsize=32)
-def _told_of_standard(plan: tuple[int, ...], seed: int) -> tuple[FloatArray, FloatArray]:
-    """Scales and shapes told of draws from the law of scale 1 and shape 1, taken off by the plan.
+def _estimates_of_standard(plan: tuple[int, ...], seed: int) -> tuple[FloatArray, FloatArray]:
+    """Scales and shapes estimated from draws from the law of scale 1 and shape 1, taken off by the plan.
 
     Spacings of failures under such a plan are exponential, each over the specimens then at risk (Viveros and
     Balakrishnan, Technometrics 36, 1994, 84-91).
@@ -357,7 +357,7 @@ def _told_of_standard(plan: tuple[int, ...], seed: int) -> tuple[FloatArray, Flo
 
 def _written(value: float, digits: int = 4) -> str:
     """A number with so many digits, those up to ten millions without a power of ten."""
-    return f"{float(f'{value:.{digits}g}'):.8g}" if np.isfinite(value) else "not told"
+    return f"{float(f'{value:.{digits}g}'):.8g}" if np.isfinite(value) else "unknown"
 
 
 def _span(low: float, high: float) -> str:

@@ -78,7 +78,7 @@ def open_store(
         If it cannot be written.
     """
     refuse_no_place(path, create)
-    with told(path):
+    with sqlite_errors(path):
         database = _connected(path, create=create, write=write, wait=wait)
         try:
             if create:
@@ -197,7 +197,7 @@ def _no_campaign(path: Path) -> HerseyError:
 @contextmanager
 def transaction(database: sqlite3.Connection, path: Path) -> Iterator[None]:
     """Make all changes inside or none; other writers wait meanwhile."""
-    with told(path):
+    with sqlite_errors(path):
         database.execute("BEGIN IMMEDIATE")
         try:
             yield
@@ -209,7 +209,7 @@ def transaction(database: sqlite3.Connection, path: Path) -> Iterator[None]:
 
 
 @contextmanager
-def told(path: Path) -> Iterator[None]:
+def sqlite_errors(path: Path) -> Iterator[None]:
     """Say in one line what SQLite could not do, and how to mend it."""
     try:
         yield

@@ -35,7 +35,7 @@ class Drift(Result):
     """What moved with age, and what it points to.
 
     ``reading`` is that of the specimens together, ``readings`` that of each; `Reading.sets` holds more than
-    one where the data cannot tell them apart.
+    one where the data cannot distinguish them.
     """
 
     also_stated = ("headline",)
@@ -74,7 +74,7 @@ class Drift(Result):
             *(_evidence(each) for each in self.reading.sure),
         ]
         if len(self.reading.sets) > 1:
-            lines.append("These readings cannot be told apart:")
+            lines.append("These readings cannot be distinguished:")
             lines += [f"  {_listed(each) or 'nothing moved'}" for each in self.reading.sets]
         lines += self._of_specimens()
         if any(self.reading.sets):
@@ -87,11 +87,11 @@ class Drift(Result):
         """A line for each thing that is said of specimens."""
         if len(self.units) == 1:
             return []
-        told: dict[str, list[str]] = {}
+        units_by_words: dict[str, list[str]] = {}
         for unit, reading in zip(self.units, self.readings, strict=True):
-            told.setdefault(_of_one(reading), []).append(unit)
+            units_by_words.setdefault(_of_one(reading), []).append(unit)
         lines = []
-        for words, units in sorted(told.items(), key=lambda each: -len(each[1])):
+        for words, units in sorted(units_by_words.items(), key=lambda each: -len(each[1])):
             named = ", ".join(units[:_NAMED]) + f" and {len(units) - _NAMED} more" * (len(units) > _NAMED)
             lines.append(f"  {named}: {words}")
         return ["Unit by specimen:", *lines]
@@ -119,7 +119,7 @@ class Drift(Result):
 
 #: How many specimens are named in a line.
 _NAMED = 12
-#: What each ageing would do, told beside its reading.
+#: What each ageing would do, shown beside its reading.
 _WOULD = {
     "lubricant": "a viscosity that grows shifts torque to lower speeds, that of least torque with it",
     "film": "a layer of oil that shrinks brings the damping exponent toward 0 where it is cold and fast, and "
@@ -143,10 +143,10 @@ def _pointed(reading: Reading) -> str:
     if len(reading.sets) == 1:
         return f"the drift points to {_listed(reading.sure)}"
     if () in reading.sets:
-        return "whether anything moved with age cannot be told"
+        return "whether anything moved with age is unknown"
     if reading.sure:
-        return f"the drift points to {_listed(reading.sure)}; what else moved cannot be told apart"
-    return "something moved with age; what it is cannot be told apart"
+        return f"the drift points to {_listed(reading.sure)}; what else moved cannot be determined"
+    return "something moved with age; what it is cannot be determined"
 
 
 def _of_one(reading: Reading) -> str:
@@ -168,7 +168,7 @@ def _evidence(change: Change) -> str:
 
 @one_thread()
 def fit_drift(runs: Campaign | pl.DataFrame) -> Drift:
-    """Fit all runs of all specimens together and tell what moved with age.
+    """Fit all runs of all specimens together and return what moved with age.
 
     Parameters
     ----------

@@ -9,7 +9,7 @@ import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.life.film.depletion_law import Depletion
-from hersey.life.film.of_runs import FilmPoint, Told
+from hersey.life.film.of_runs import Estimates, FilmPoint
 from hersey.life.film.starved_drag import Flooded
 from hersey.life.growth.limit_ages import AgesAtLimit, Interval, ages_at_limit, interval, quantiles
 from hersey.life.indicator import OwnAges
@@ -46,17 +46,17 @@ class LayersOfSpecimens:
     names: list[str]
     last: FloatArray
 
-    def spread(self, of: Callable[[FloatArray], FloatArray]) -> Told:
+    def spread(self, of: Callable[[FloatArray], FloatArray]) -> Estimates:
         """Return median and 90 % ends of exp of a function of what a specimen has, (specimens, ages)."""
         every = np.moveaxis(self.drawn.specimens, 1, 0)
         low, middle, high = np.moveaxis(np.array([np.exp(quantiles(of(own))) for own in every]), 1, 0)
-        return Told(middle, low, high)
+        return Estimates(middle, low, high)
 
-    def thickness(self, ages: FloatArray) -> Told:
+    def thickness(self, ages: FloatArray) -> Estimates:
         """Return the layer at ages, m."""
         return self.spread(lambda own: self.drawn.layer(own, ages))
 
-    def film(self, point: Flooded, ages: FloatArray) -> Told:
+    def film(self, point: Flooded, ages: FloatArray) -> Estimates:
         """Return the film over the flooded one at a point."""
         drawn = self.drawn
         return self.spread(

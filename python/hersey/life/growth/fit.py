@@ -1,7 +1,7 @@
 """The growth of a positive indicator over specimens, and the ages at which it reaches a limit.
 
 The laws of `laws` are fitted to the logarithm of the indicator over all specimens together, each with its
-own level and rate, and weighed by their evidence; nothing hangs on one law alone unless the data say so.
+own level and rate, and weighed by their evidence; nothing depends on one law alone unless the data say so.
 """
 
 from __future__ import annotations
@@ -93,7 +93,7 @@ class Growth(Result):
 
     @property
     def law(self) -> str | None:
-        """The law that the data name, or None where they cannot tell."""
+        """The law that the data name, or None where several remain."""
         name = max(self.weights, key=lambda each: self.weights[each])
         return name if self.weights[name] >= NAMED else None
 
@@ -108,8 +108,8 @@ class Growth(Result):
         ]
         for name in heaviest:
             if self.weights[name] >= 0.1:
-                told = ", ".join(f"{k} {v}" for k, v in self.parameters[name].items())
-                lines.append(f"  {name}: {told}")
+                shown = ", ".join(f"{k} {v}" for k, v in self.parameters[name].items())
+                lines.append(f"  {name}: {shown}")
         return "\n".join([*lines, *(f"- {each}" for each in self.warnings)])
 
     def headline(self) -> str:
@@ -120,7 +120,7 @@ class Growth(Result):
             formula = next(law.formula for law in LAWS if law.name == self.law)
             return f"growth of {self.quantity}: {self.law}, {formula}"
         near = [name for name, weight in self.weights.items() if weight >= 0.05]
-        return f"growth of {self.quantity}: cannot tell which law ({', '.join(near)})"
+        return f"growth of {self.quantity}: several laws remain ({', '.join(near)})"
 
     def to_frame(self) -> pl.DataFrame:
         """Return the parameters of each law with its weight."""
@@ -163,7 +163,7 @@ class Growth(Result):
     def reaches(self, limit: float, *, limit_error: float = 0.0, accumulates: bool = False) -> AgesAtLimit:
         """Return the ages at which each specimen, and a tenth and half of new specimens, reach a limit.
 
-        A specimen that has passed the limit already is told by the same draws; one that begins above it
+        A specimen that has passed the limit already follows from the same draws; one that begins above it
         has age 0.
 
         Parameters

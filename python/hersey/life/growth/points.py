@@ -71,7 +71,7 @@ def checked_runs(
         raise ParameterError(f"run {names.index('') + 1} names no specimen", index=names.index(""))
     if most_ages(np.unique(names, return_inverse=True)[1], columns[0]) < 2:
         raise InsufficientDataError(
-            "no specimen was seen at two ages, so nothing tells its growth: add runs at another age"
+            "no specimen was seen at two ages, so nothing shows its growth: add runs at another age"
         )
     return names, columns
 

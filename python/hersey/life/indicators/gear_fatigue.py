@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from hersey.machine import Machine
     from hersey.machine.duty import GearTable
 
-#: Relative step of torque that tells how steeply damage goes with it.
+#: Relative step of torque that shows how steeply damage rises with it.
 _STEP = 0.01
 #: Work that a stick-slip motion may take.
 _STEPS = 3e5
@@ -54,7 +54,7 @@ def running_time(machine: Machine, age_unit: str) -> float | None:
 
 
 def gear_fatigue(
-    told: AtStates, machine: Machine, cold: int, points: slice, limit_error: float
+    estimates: AtStates, machine: Machine, cold: int, points: slice, limit_error: float
 ) -> tuple[list[Indicator], list[Warning]]:
     """Return the damage of the gear per age, and why there is none.
 
@@ -76,7 +76,7 @@ def gear_fatigue(
                 table="gear",
             )
         ]
-    load = _GearLoad(told, machine, gear, cold, points)
+    load = _GearLoad(estimates, machine, gear, cold, points)
     if not any([load.starts(), load.duty(), load.stick_slip()]):
         return [], [
             Warning(
@@ -94,14 +94,16 @@ def gear_fatigue(
 class _GearLoad:
     """The damage of a gear per age, of each run, summed over its loads."""
 
-    def __init__(self, told: AtStates, machine: Machine, gear: GearTable, cold: int, points: slice) -> None:
-        self.told, self.machine, self.gear = told, machine, gear
-        self.cold, self.points, self.age_unit = cold, points, told.runs.runs.age_unit
+    def __init__(
+        self, estimates: AtStates, machine: Machine, gear: GearTable, cold: int, points: slice
+    ) -> None:
+        self.estimates, self.machine, self.gear = estimates, machine, gear
+        self.cold, self.points, self.age_unit = cold, points, estimates.runs.runs.age_unit
         with naming("[gear]"):
             self.curve = SNCurve(
                 gear.torque, gear.cycles, gear.slope, gear.second_slope, gear.endurance, gear.ultimate
             )
-        self.rate, self.spread = np.zeros(told.whole.shape[0]), np.zeros(told.whole.shape[0])
+        self.rate, self.spread = np.zeros(estimates.whole.shape[0]), np.zeros(estimates.whole.shape[0])
         self.warnings: list[Warning] = []
 
     def _add(self, cycles: RainflowCycles, scale: FloatArray, error: FloatArray) -> None:
@@ -114,12 +116,12 @@ class _GearLoad:
         """Add the starts; whether there are any."""
         if self.gear.starts is None:
             return False
-        shares = _shares_of_starts(self.gear, self.machine, self.told, self.cold, self.points)
+        shares = _shares_of_starts(self.gear, self.machine, self.estimates, self.cold, self.points)
         with naming("[gear] starts"):
             per_age = self.gear.starts[0] / Age.parse(self.gear.starts[1]).as_unit(self.age_unit).value
         for state, share in shares.items():
             cycle = RainflowCycles(np.ones(1), np.full(1, 0.5), np.full(1, share * per_age))
-            self._add(cycle, self.told.whole[:, state], self.told.whole_error[:, state])
+            self._add(cycle, self.estimates.whole[:, state], self.estimates.whole_error[:, state])
         self.warnings.append(
             Warning(
                 "starts counted",
@@ -136,13 +138,13 @@ class _GearLoad:
             return False
         with naming("[gear] duty_age"):
             age = Age.parse(self.gear.duty_age).as_unit(self.age_unit).value
-        whole, ages = self.told.whole, self.told.runs.runs.age
+        whole, ages = self.estimates.whole, self.estimates.runs.runs.age
         states = self.points if self.machine.points else [self.cold]
         mix = whole[:, states] @ shares_of(self.machine) if self.machine.points else whole[:, self.cold]
         known = np.isfinite(mix)
         young = known & (ages == ages[known].min(initial=np.inf))
         scale = mix / np.median(mix[young]) if young.any() else np.full_like(mix, np.nan)
-        error = np.nan_to_num(self.told.whole_error[:, states]).mean(axis=1)
+        error = np.nan_to_num(self.estimates.whole_error[:, states]).mean(axis=1)
         self._add(_counted(self.gear.duty, age), scale, error)
         self.warnings.append(
             Warning(
@@ -156,7 +158,7 @@ class _GearLoad:
         """Add stick-slip at points on the falling branch; whether there is any."""
         radius, lasting = self.machine.roll_radius, []
         for point, share in zip(self.machine.points, shares_of(self.machine), strict=True):
-            curves = curve_at(self.told, point.temperature)
+            curves = curve_at(self.estimates, point.temperature)
             places = np.flatnonzero((curves.least * radius > point.speed) | curves.above)
             if places.size:
                 lasting.append((point, share, curves, places))
@@ -176,7 +178,7 @@ class _GearLoad:
             self.rate[places[MOST_FOLDS:]] = np.nan
             for place in places[:MOST_FOLDS].tolist():
                 damage = share * time * self._rate_of_sticking(curves, place, point.speed)
-                slowest = float(np.nan_to_num(self.told.belt_error[place]).max())
+                slowest = float(np.nan_to_num(self.estimates.belt_error[place]).max())
                 self.rate[place] += damage
                 self.spread[place] += np.nan_to_num(damage) * self.gear.slope * slowest
             self.warnings.append(
@@ -193,7 +195,7 @@ class _GearLoad:
         """Damage per second of a run that sticks at a speed (m/s); NaN where its motion is not found."""
         train = self.machine.train
         try:
-            drag = drag_of(self.told, curves, place, self.machine)
+            drag = drag_of(self.estimates, curves, place, self.machine)
             if drag is None:
                 return np.nan  # no transition above its stick speed
             cycle = stick_slip(train, drag, drive_speed=speed, most_steps=_STEPS)
@@ -207,7 +209,7 @@ class _GearLoad:
         value = np.where(self.rate > 0.0, self.rate, np.nan)
         known = np.isfinite(value)
         warnings = list(self.warnings)
-        if silent := int(np.count_nonzero(self.told.runs.enough & ~known)):
+        if silent := int(np.count_nonzero(self.estimates.runs.enough & ~known)):
             warnings.append(
                 Warning(
                     "runs without a value",
@@ -231,11 +233,11 @@ class _GearLoad:
 
 
 def _shares_of_starts(
-    gear: GearTable, machine: Machine, told: AtStates, cold: int, points: slice
+    gear: GearTable, machine: Machine, estimates: AtStates, cold: int, points: slice
 ) -> dict[int, float]:
     """Shares of the starts by state: without a share all are cold."""
     of_cold = 1.0 if gear.cold_starts is None or not machine.points else gear.cold_starts
-    places = range(len(told.states))[points]
+    places = range(len(estimates.states))[points]
     warm = {
         place: (1.0 - of_cold) * float(share) for place, share in zip(places, shares_of(machine), strict=True)
     }

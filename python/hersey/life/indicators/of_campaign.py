@@ -59,14 +59,14 @@ def indicators_of(campaign: Campaign, machine: Machine, *, signs: bool = True) -
         "at rest, hot", stick_speed_at(machine, hottest) / machine.roll_radius, hottest, "stick speed"
     )
     states = (*ends, still, *point_states(machine))
-    heats = tuple(dict.fromkeys(point.temperature for point in machine.points))
-    told = at_states(runs, states, heats, drawn=DRAWN_RUNS)
-    asked = _Asked(told, machine, _torque_gain(machine, runs))
+    temperatures = tuple(dict.fromkeys(point.temperature for point in machine.points))
+    estimates = at_states(runs, states, temperatures, drawn=DRAWN_RUNS)
+    asked = _Asked(estimates, machine, _torque_gain(machine, runs))
     found: list[_Found] = [
         asked.motor_torque(),
         asked.grip(),
         asked.stick_slip(signs=signs),
-        gear_fatigue(told, machine, _COLD, _POINTS, asked.gain),
+        gear_fatigue(estimates, machine, _COLD, _POINTS, asked.gain),
         asked.continuous_torque(),
         asked.energy(),
     ]
@@ -87,7 +87,7 @@ def _torque_gain(machine: Machine, runs: CampaignRuns) -> float:
 class _Asked:
     """What the runs say of all states, against the limits; ``gain`` is an error common to all torques."""
 
-    told: AtStates
+    estimates: AtStates
     machine: Machine
     gain: float
 
@@ -98,13 +98,13 @@ class _Asked:
         return [self._whole("motor torque", limit, place) for place in (_COLD, _SLOW)], []
 
     def _whole(self, kind: str, limit: float, place: int) -> Indicator:
-        told = self.told
+        estimates = self.estimates
         return self._torque(
-            f"{kind}, {told.states[place].name}",
+            f"{kind}, {estimates.states[place].name}",
             kind,
             limit,
-            told.whole[:, place],
-            told.whole_error[:, place],
+            estimates.whole[:, place],
+            estimates.whole_error[:, place],
             place,
         )
 
@@ -126,11 +126,11 @@ class _Asked:
             value,
             error,
             self.gain,
-            warnings=(*self.told.warnings(place), *warnings),
+            warnings=(*self.estimates.warnings(place), *warnings),
         )
 
     def grip(self) -> _Found:
-        """The belt alone against what the roll bears before it slips: cold and fast, and from rest."""
+        """The belt alone against what the roll carries before it slips: cold and fast, and from rest."""
         grip = self.machine.limits.grip
         if grip is None:
             stated = self.machine.limits
@@ -143,9 +143,9 @@ class _Asked:
                 if value is None
             ]
             return [], [_lacks("grip of the roll", "limits", " and ".join(lacks))]
-        told, limit = self.told, grip * self.machine.roll_radius
+        estimates, limit = self.estimates, grip * self.machine.roll_radius
         warnings = []
-        if any(rest is None for rest in told.runs.rests):
+        if any(rest is None for rest in estimates.runs.rests):
             warnings.append(
                 Warning(
                     "no-load torque unknown",
@@ -154,21 +154,21 @@ class _Asked:
                     severity="watch",
                 )
             )
-        cold = told.belt[:, _COLD], told.belt_error[:, _COLD]
+        cold = estimates.belt[:, _COLD], estimates.belt_error[:, _COLD]
         breakaway, how = self._breakaway()
-        error = told.belt_error[:, _STILL]
+        error = estimates.belt_error[:, _STILL]
         from_rest = self._torque("grip, from rest", "grip", limit, breakaway, error, _STILL, how, *warnings)
         # Nobody measured the factor of Eq. 29: it warns, and ends no specimen.
-        told_by_rule = static_force(self.machine) is None
+        by_rule = static_force(self.machine) is None
         return [
             self._torque("grip, cold and fast", "grip", limit, *cold, _COLD, *warnings),
-            replace(from_rest, sign=told_by_rule),
+            replace(from_rest, sign=by_rule),
         ], []
 
     def _breakaway(self) -> tuple[FloatArray, Warning]:
         """Torque at which a belt at rest breaks away, and how it is estimated."""
-        told = self.told
-        drag = told.belt[:, _STILL]
+        estimates = self.estimates
+        drag = estimates.belt[:, _STILL]
         static = static_force(self.machine)
         if static is None:
             return np.e * drag, Warning(
@@ -176,7 +176,7 @@ class _Asked:
                 "a belt at rest withstands e times its drag at the stick speed (Eq. 29)",
                 severity="watch",
             )
-        age = told.runs.runs.age
+        age = estimates.runs.runs.age
         known = np.isfinite(drag)
         young = known & (age == age[known].min(initial=np.inf))
         new = float(np.median(drag[young])) if young.any() else np.nan
@@ -191,8 +191,8 @@ class _Asked:
     def stick_slip(self, *, signs: bool) -> _Found:
         if not self.machine.points:
             return [], [_lacks_points("stick-slip at a used operating point")]
-        early, warnings = folds(self.told, self.machine) if signs else ([], [])
-        return [*transitions(self.told, self.machine), *early], warnings
+        early, warnings = folds(self.estimates, self.machine) if signs else ([], [])
+        return [*transitions(self.estimates, self.machine), *early], warnings
 
     def continuous_torque(self) -> _Found:
         limit = self.machine.life.continuous_torque
@@ -200,20 +200,20 @@ class _Asked:
             return [], [_lacks("heating of the motor", "life", 'continuous_torque = "0.5 N*m"')]
         if not self.machine.points:
             return [], [_lacks_points("heating of the motor", share=True)]
-        squares = self.told.whole[:, _POINTS] ** 2 * shares_of(self.machine)
+        squares = self.estimates.whole[:, _POINTS] ** 2 * shares_of(self.machine)
         return [self._over_points("continuous torque", "motor heat", "N m", limit, squares, 0.5)], []
 
     def energy(self) -> _Found:
-        limit, unit = self.machine.life.energy, one_of(self.told.runs.runs.age_unit)
+        limit, unit = self.machine.life.energy, one_of(self.estimates.runs.runs.age_unit)
         if limit is None:
             return [], [_lacks(f"energy per {unit}", "life", 'energy = "10 J"')]
-        time = running_time(self.machine, self.told.runs.runs.age_unit)
+        time = running_time(self.machine, self.estimates.runs.runs.age_unit)
         if not self.machine.points:
             return [], [_lacks_points(f"energy per {unit}", share=time is not None)]
         if time is None:
             return [], [_lacks(f"energy per {unit}", "life", 'travel = "300 mm"')]
-        speeds = np.array([state.speed for state in self.told.states[_POINTS]])
-        work = self.told.whole[:, _POINTS] * speeds * time * shares_of(self.machine)
+        speeds = np.array([state.speed for state in self.estimates.states[_POINTS]])
+        work = self.estimates.whole[:, _POINTS] * speeds * time * shares_of(self.machine)
         return [self._over_points(f"energy per {unit}", "energy", "J", limit, work, 1.0)], []
 
     def _over_points(
@@ -221,7 +221,7 @@ class _Asked:
     ) -> Indicator:
         """A sum over the points to a power; their errors are taken to go together."""
         total = parts.sum(axis=1)
-        error = (parts / total[:, None] * self.told.whole_error[:, _POINTS]).sum(axis=1)
+        error = (parts / total[:, None] * self.estimates.whole_error[:, _POINTS]).sum(axis=1)
         alike = all(point.share is None for point in self.machine.points)
         warnings = []
         if alike:

@@ -47,7 +47,7 @@ class CampaignRuns:
         """Return specimen and age of a run."""
         return f"{self.runs.unit[place]} at {Age(float(self.runs.age[place]), self.runs.age_unit)}"
 
-    def told(self) -> Iterator[tuple[int, RunDwells, NoLoadTorque | None]]:
+    def usable(self) -> Iterator[tuple[int, RunDwells, NoLoadTorque | None]]:
         """Place, dwells and rest of each run that has enough of them."""
         for place in np.flatnonzero(self.enough).tolist():
             yield place, self.dwells[place], self.rests[place]
@@ -76,7 +76,7 @@ def read_runs_of(campaign: Campaign, rest: NoLoadTorque | None = None) -> Campai
     runs, drives = Runs.of(campaign), campaign.drives()
     numbers = runs.run
     of_run, table = campaign.measured()
-    beside = _rest_of(of_run, table, {number: drives[number][0] or rest for number in numbers})
+    no_load = _rest_of(of_run, table, {number: drives[number][0] or rest for number in numbers})
     rows = _stretches(of_run)
     each, unused = [], []
     for number in numbers:
@@ -84,8 +84,8 @@ def read_runs_of(campaign: Campaign, rest: NoLoadTorque | None = None) -> Campai
         usable = np.isfinite(table[own][:, [0, 2]]).all(axis=1) & (table[own, 0] != 0.0)
         if not usable.all():
             unused.append((int(np.count_nonzero(~usable)), number))
-        off = beside[own][usable]
-        each.append(_dwells(table[own][usable], off, was_off=drives[number][0] is not None))
+        own_no_load = no_load[own][usable]
+        each.append(_dwells(table[own][usable], own_no_load, was_off=drives[number][0] is not None))
     rests = [drives[number][0] or rest for number in numbers]
     few = [number for number, of in zip(numbers, each, strict=True) if of.speed.size < FEWEST]
     sensors = tuple(drives[number][1] for number in numbers)
@@ -131,7 +131,7 @@ def _stretches(of_run: IntArray) -> dict[int, slice]:
 
 def _rest_of(of_run: IntArray, table: FloatArray, rests: dict[int, NoLoadTorque | None]) -> FloatArray:
     """Torque of the no-load torque at each dwell, N m; where no temperature is, that of its reference."""
-    beside = np.zeros(of_run.size)
+    no_load = np.zeros(of_run.size)
     runs_with: dict[int, list[int]] = {}
     for number, rest in rests.items():
         runs_with.setdefault(id(rest), []).append(number)
@@ -140,9 +140,9 @@ def _rest_of(of_run: IntArray, table: FloatArray, rests: dict[int, NoLoadTorque 
         if (rest := rests[numbers[0]]) is None:
             continue
         of_rest = np.isin(of_run, numbers)
-        for some, heat in ((of_rest & thermal, table[:, 1]), (of_rest & ~thermal, None)):
-            beside[some] = rest.torque(table[some, 0], None if heat is None else heat[some])
-    return beside
+        for some, kelvin in ((of_rest & thermal, table[:, 1]), (of_rest & ~thermal, None)):
+            no_load[some] = rest.torque(table[some, 0], None if kelvin is None else kelvin[some])
+    return no_load
 
 
 def _dwells(rows: FloatArray, rest: FloatArray, *, was_off: bool) -> RunDwells:
@@ -150,5 +150,5 @@ def _dwells(rows: FloatArray, rest: FloatArray, *, was_off: bool) -> RunDwells:
     speed, temperature, torque, error = rows.T
     belt, whole = (torque, torque + rest) if was_off else (torque - rest, torque)
     sense = np.sign(speed)
-    heats = temperature if np.isfinite(temperature).all() else np.full(speed.shape, np.nan)
-    return RunDwells(np.abs(speed), heats, sense * belt, sense * whole, np.nan_to_num(error))
+    temperatures = temperature if np.isfinite(temperature).all() else np.full(speed.shape, np.nan)
+    return RunDwells(np.abs(speed), temperatures, sense * belt, sense * whole, np.nan_to_num(error))

@@ -1,10 +1,10 @@
-"""Stick-slip at the points of a machine: two speeds that its runs tell, against that of the point.
+"""Stick-slip at the points of a machine: two speeds that its runs show, against that of the point.
 
 Torque of the belt is least at the transition; slower than that it falls with speed, and a belt that slides
 steadily begins to stick of itself. So a point whose speed the transition reaches is at its end. Between the
 transition and V*, the fold above it, a belt that slides goes on sliding, and one that starts from rest
-sticks: that comes earlier, some machines are new within it, and it hangs on stiffness, mass and stick speed.
-It is followed as a sign.
+sticks: that comes earlier, some machines are new within it, and it depends on stiffness, mass and stick
+speed. It is followed as a sign.
 """
 
 from __future__ import annotations
@@ -29,26 +29,26 @@ if TYPE_CHECKING:
     from hersey.machine import Machine
     from hersey.motion.belt import Drivetrain
 
-#: Runs whose fold is sought at the most, those whose draws tell its error, and draws of each.
+#: Runs whose fold is sought at the most, those whose draws give its error, and draws of each.
 MOST_FOLDS, DRAWN_RUNS, _DRAWS = 24, 3, 3
 #: Work and tolerance of a fold: of thousands, one that takes long is left out.
 _STEPS, _TOLERANCE = 2e6, 1e-8
-#: Folds of draws that tell an error.
+#: Folds of draws that give an error.
 _FEWEST = 5
 #: Standard deviations that enclose 95 % of a normal distribution on either side.
 _DEVIATIONS = 1.96
 
 
-def curve_at(told: AtStates, temperature: float | None) -> Curves:
+def curve_at(estimates: AtStates, temperature: float | None) -> Curves:
     """Return the curves at a temperature that was asked for."""
-    return next(curves for curves in told.curves if curves.temperature == temperature)
+    return next(curves for curves in estimates.curves if curves.temperature == temperature)
 
 
-def transitions(told: AtStates, machine: Machine) -> list[Indicator]:
+def transitions(estimates: AtStates, machine: Machine) -> list[Indicator]:
     """Return the speed of least torque at each point of the machine (m/s), against that of the point."""
     found = []
     for point in machine.points:
-        curves = curve_at(told, point.temperature)
+        curves = curve_at(estimates, point.temperature)
         speed = curves.least * machine.roll_radius
         found.append(
             Indicator(
@@ -58,33 +58,33 @@ def transitions(told: AtStates, machine: Machine) -> list[Indicator]:
                 point.speed,
                 speed,
                 np.where(np.isfinite(speed), curves.error, np.nan),
-                _speed_gain(told, machine),
+                _speed_gain(estimates, machine),
                 warnings=(
                     Warning(
                         "speed of least torque",
                         "speed of least torque at {temperature:.4g degC}",
                         temperature=point.temperature,
                     ),
-                    *_warnings(told, curves),
+                    *_warnings(estimates, curves),
                 ),
             )
         )
     return found
 
 
-def folds(told: AtStates, machine: Machine) -> tuple[list[Indicator], list[Warning]]:
+def folds(estimates: AtStates, machine: Machine) -> tuple[list[Indicator], list[Warning]]:
     """Return V* at each point of the machine (m/s), against its speed; and why there is none."""
     found, warnings = [], []
     by_temperature = {point.temperature: point.name for point in machine.points}
     for temperature, name in by_temperature.items():
-        curves = curve_at(told, temperature)
+        curves = curve_at(estimates, temperature)
         falling = np.flatnonzero(np.isfinite(curves.least))
         most = min(falling.size, MOST_FOLDS)
         chosen = falling[np.linspace(0, falling.size - 1, most).round().astype(int)].tolist()
         speed = np.full(curves.least.shape, np.nan)
         for place in chosen:
-            speed[place] = _fold(machine.train, drag_of(told, curves, place, machine))
-        error = _error(told, curves, machine) if np.isfinite(speed).any() else None
+            speed[place] = _fold(machine.train, drag_of(estimates, curves, place, machine))
+        error = _error(estimates, curves, machine) if np.isfinite(speed).any() else None
         if error is None:
             warnings.append(
                 Warning(
@@ -106,7 +106,7 @@ def folds(told: AtStates, machine: Machine) -> tuple[list[Indicator], list[Warni
         )
         errors = np.where(np.isfinite(speed), error, np.nan)
         common = np.hypot(
-            _speed_gain(told, machine), _of_machine(told, curves, machine, chosen[len(chosen) // 2])
+            _speed_gain(estimates, machine), _of_machine(estimates, curves, machine, chosen[len(chosen) // 2])
         )
         found += [
             Indicator(
@@ -118,7 +118,7 @@ def folds(told: AtStates, machine: Machine) -> tuple[list[Indicator], list[Warni
                 errors,
                 float(common),
                 sign=True,
-                warnings=(of_runs, *_warnings(told, curves)),
+                warnings=(of_runs, *_warnings(estimates, curves)),
             )
             for point in machine.points
             if point.temperature == temperature
@@ -127,7 +127,7 @@ def folds(told: AtStates, machine: Machine) -> tuple[list[Indicator], list[Warni
 
 
 def drag_of(
-    told: AtStates, curves: Curves, place: int, machine: Machine, torque: FloatArray | None = None
+    estimates: AtStates, curves: Curves, place: int, machine: Machine, torque: FloatArray | None = None
 ) -> DragTable | None:
     """Return the drag of the belt of a run, or by another curve of it; None where it falls nowhere.
 
@@ -136,7 +136,7 @@ def drag_of(
     own = curves.torque[place] if torque is None else torque
     known = np.isfinite(own)
     speed = curves.speed[known] * machine.roll_radius
-    return belt_drag(machine, told.runs.rests[place], speed, own[known], curves.temperature)
+    return belt_drag(machine, estimates.runs.rests[place], speed, own[known], curves.temperature)
 
 
 def belt_drag(
@@ -197,12 +197,12 @@ def _fold(train: Drivetrain, drag: DragTable | None) -> float:
     return edges(train, drag)[1]
 
 
-def _error(told: AtStates, curves: Curves, machine: Machine) -> float | None:
-    """Relative standard error of a fold: the middle one of some runs; None if it cannot be told."""
+def _error(estimates: AtStates, curves: Curves, machine: Machine) -> float | None:
+    """Relative standard error of a fold: the middle one of some runs; None if it is not known."""
     errors, count = [], 0
     for place, drawn in curves.drawn.items():
         values = [
-            _fold(machine.train, drag_of(told, curves, place, machine, each)) for each in drawn[:_DRAWS]
+            _fold(machine.train, drag_of(estimates, curves, place, machine, each)) for each in drawn[:_DRAWS]
         ]
         logs = np.log(np.array(values)[np.isfinite(values)])
         count += logs.size
@@ -211,9 +211,9 @@ def _error(told: AtStates, curves: Curves, machine: Machine) -> float | None:
     return float(np.median(errors)) if count >= _FEWEST and errors else None
 
 
-def _of_machine(told: AtStates, curves: Curves, machine: Machine, place: int) -> float:
+def _of_machine(estimates: AtStates, curves: Curves, machine: Machine, place: int) -> float:
     """Relative standard error of all folds together, by what the machine states of its own numbers."""
-    at = _fold(machine.train, drag_of(told, curves, place, machine))
+    at = _fold(machine.train, drag_of(estimates, curves, place, machine))
     squares = 0.0
     for name in ("stiffness", "mass", "stick_speed"):
         if name not in machine.uncertainty:
@@ -221,19 +221,19 @@ def _of_machine(told: AtStates, curves: Curves, machine: Machine, place: int) ->
         drawn = machine.uncertainty[name].draw(np.random.default_rng(0), getattr(machine, name), 200)
         by: dict[str, Any] = {name: float(getattr(machine, name) * np.exp(np.log(drawn).std()))}
         wider = replace(machine, **by)
-        moved = _fold(wider.train, drag_of(told, curves, place, wider))
+        moved = _fold(wider.train, drag_of(estimates, curves, place, wider))
         squares += np.nan_to_num(np.log(moved / at)) ** 2
     return float(np.sqrt(squares))
 
 
-def _speed_gain(told: AtStates, machine: Machine) -> float:
-    gains = [sensors.speed_gain for sensors in told.runs.sensors]
+def _speed_gain(estimates: AtStates, machine: Machine) -> float:
+    gains = [sensors.speed_gain for sensors in estimates.runs.sensors]
     return (machine.sensors.speed_gain if "speed" in machine.sensors.stated else max(gains)) / _DEVIATIONS
 
 
-def _warnings(told: AtStates, curves: Curves) -> tuple[Warning, ...]:
+def _warnings(estimates: AtStates, curves: Curves) -> tuple[Warning, ...]:
     """Which runs do not show the transition, and what is taken for the belt's torque."""
-    enough = told.runs.enough
+    enough = estimates.runs.enough
     silent = enough & ~np.isfinite(curves.torque).any(axis=1)
     counts = (
         ("slower than recorded", curves.below),
@@ -241,7 +241,7 @@ def _warnings(told: AtStates, curves: Curves) -> tuple[Warning, ...]:
         ("other temperatures", silent),
     )
     warnings = [_unknown_in(kind, int(np.count_nonzero(of)), enough.size) for kind, of in counts if of.any()]
-    if any(rest is None for rest in told.runs.rests):
+    if any(rest is None for rest in estimates.runs.rests):
         warnings.append(
             Warning(
                 "no-load torque unknown",

@@ -130,7 +130,7 @@ class TimeToFailure(Result):
         unit = f" {self.age_unit}" if self.age_unit else ""
         if len(self.units) < FEW:
             first = min(self.units, key=lambda each: each.age.age.value)
-            by = " or ".join(first.named) or "no way told"
+            by = " or ".join(first.named) or "no known failure mode"
             return f"{first.unit} ends at {first.age.age}{unit} by {by}"
         likely = max(self.shares, key=lambda name: self.shares[name].value)
         return f"half of new specimens have ended at {self.b50.age}{unit}, most by {likely}"
@@ -241,7 +241,7 @@ def _shares(ending: Sequence[FittedWay], new: FloatArray) -> dict[str, Interval]
 
 
 def _curve(first: FloatArray, greatest: float) -> ShareEnded:
-    """Share ended against age, up to where ages are no more than told to be late."""
+    """Share ended against age, up to where ages are known to be late, no more."""
     ages = np.linspace(0.0, FAR * greatest, _PLACES)
     low, median, high = quantiles(np.stack([(first <= age).mean(axis=1) for age in ages], axis=1))
     return ShareEnded(ages, median, low, high)
@@ -264,16 +264,16 @@ def _again(
         order, first = picks[i]
         capped = np.minimum(first, HORIZON * greatest)
         ages = candidate_ages(units[i].age.last, float(np.median(capped)))
-        telling = [m for m, each in enumerate(ending) if units[i].unit in each.row]
-        if not (ages.size and telling):
+        observed = [m for m, each in enumerate(ending) if units[i].unit in each.row]
+        if not (ages.size and observed):
             continue
         values, errors = [], []
-        for m in telling:
+        for m in observed:
             each = ending[m]
             value, scatter = each.mode.growth.drawn_values(each.row[units[i].unit], ages)
             values.append(value[order[:, m]])
             errors.append(np.hypot(scatter, each.error)[order[:, m]])
-        among = of_runs[np.ix_(telling, telling)]
+        among = of_runs[np.ix_(observed, observed)]
         after = widths_after(capped, values, errors, among, random)
         runs = zip(ages.tolist(), after.tolist(), strict=True)
         found += [NextRun(units[i].unit, age, spans[i], each) for age, each in runs]
