@@ -39,13 +39,13 @@ def sample() -> Entry:
 
 
 def add(campaign: Campaign, unit: str, age: float, run: RunDwells, sense: float = 1.0) -> None:
-    """Add the dwells of a run with their whole torque: no rest was taken off, the machine states it."""
+    """Add the dwells of a run with the torque of the drive, from which nothing was subtracted."""
     number = len(campaign)
-    heats = [None if np.isnan(each) else each for each in run.temperature.tolist()]
-    columns = zip(run.speed, run.whole, run.error, heats, strict=True)
+    temperatures = [None if np.isnan(each) else each for each in run.temperature.tolist()]
+    columns = zip(run.speed, run.drive_torque, run.error, temperatures, strict=True)
     dwells = [
-        [0, 0.0, 0.0, sense * speed, 0.0, sense * torque, error, heat, 0.0, 1, 1.0, 0, "", None, 0.0]
-        for speed, torque, error, heat in columns
+        [0, 0.0, 0.0, sense * speed, 0.0, sense * torque, error, kelvin, 0.0, 1, 1.0, 0, "", None, 0.0]
+        for speed, torque, error, kelvin in columns
     ]
     path = str(Path(f"log{number}.csv").absolute())
     entry = replace(sample(), sha256=f"{number:064x}", path=path, dwells=dwells)

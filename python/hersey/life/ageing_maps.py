@@ -37,6 +37,14 @@ TEMPERATURES, SPEEDS = 21, 61
 CLOCK = "motor torque"
 #: Temperatures (K) that are one, and how far beyond the dwells an operating point is drawn.
 _APART, _BESIDE = 5.0, 10.0
+#: What is to be known of all maps, and of that at the end.
+_WITHOUT_LAW = Warning("torque without a law", "torque between the dwells, without a law")
+_EXTRAPOLATED = Warning(
+    "torque extrapolated",
+    "torque extrapolated as it grew, at the middle of the interval of that age",
+    severity="watch",
+    where="end",
+)
 
 
 @dataclass(frozen=True, repr=False)
@@ -165,19 +173,12 @@ def ageing_maps(campaign: Campaign, machine: Machine, found: TimeToFailure, *, u
     shown = [(ages[0], "new" if ages[0] == 0.0 else "first", belts[0], own[0][2])]
     if ages[-1] > ages[0]:
         shown.append((ages[-1], "now", belts[-1], own[-1][2]))
-    warnings = [Warning("torque without a law", "torque between the dwells, without a law")]
+    warnings = [_WITHOUT_LAW]
     last = end.age.age.value
     if ages[0] < ages[-1] < last < np.inf:
         clock = _clock(found, end.unit, np.append(ages, last))
         shown.append((last, "end", carried_on(belts, clock[:-1], float(clock[-1])), own[-1][2]))
-        warnings.append(
-            Warning(
-                "torque extrapolated",
-                "torque extrapolated as it grew, at the middle of the interval of that age",
-                severity="watch",
-                where="end",
-            )
-        )
+        warnings.append(_EXTRAPOLATED)
     drive_torques, found_edges = [], []
     for _, _, belt, rest in shown:
         no_load = (

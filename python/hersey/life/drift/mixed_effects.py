@@ -2,7 +2,8 @@
 
 A run's values are ``start of its specimen + change of its specimen x age + scatter of the run``; starts and
 changes of specimens are normal about those of the population. Runs enter by information matrices, so a run
-that says nothing of a value is no exception. All else that the runs share is solved for with them. Runs are eliminated first, then specimens, then what is left: cost and memory are linear in runs.
+that says nothing of a value is no exception. All else that the runs share is solved for with them. Runs are
+eliminated first, then specimens, then what is left: cost and memory are linear in runs.
 """
 
 from __future__ import annotations

@@ -228,17 +228,7 @@ def _warnings(found: Fitted, dwells: Dwells, units: tuple[str, ...]) -> tuple[Wa
             )
         )
     if len(units) <= _FEW:
-        warnings.append(
-            Warning(
-                "few specimens",
-                "one specimen does not show how specimens differ: the intervals are those of this specimen"
-                if len(units) == 1
-                else "{specimens} specimens show little of how specimens differ: the intervals over all are "
-                "wide",
-                severity="watch",
-                specimens=len(units),
-            )
-        )
+        warnings.append(_few_specimens(len(units)))
     ages = np.unique(np.stack([dwells.specimen, dwells.age]), axis=1)[0]
     alone = [units[int(u)] for u in np.flatnonzero(np.bincount(ages.astype(int)) < 2)]
     if alone:
@@ -257,3 +247,14 @@ def _warnings(found: Fitted, dwells: Dwells, units: tuple[str, ...]) -> tuple[Wa
             )
         )
     return tuple(warnings)
+
+
+def _few_specimens(count: int) -> Warning:
+    return Warning(
+        "few specimens",
+        "one specimen does not show how specimens differ: the intervals are those of this specimen"
+        if count == 1
+        else "{specimens} specimens show little of how specimens differ: the intervals over all are wide",
+        severity="watch",
+        specimens=count,
+    )

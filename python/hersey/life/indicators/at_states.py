@@ -47,15 +47,15 @@ class AtStates:
     """Torque of the belt alone and of the whole drive (N m) at each state, with relative errors.
 
     Arrays of shape (runs, states), NaN where a run does not show it. Where the no-load torque is not known
-    both torques are that of the whole. ``curves`` are those at the temperatures asked for.
+    both torques are that of the drive. ``curves`` are those at the temperatures asked for.
     """
 
     runs: CampaignRuns
     states: tuple[State, ...]
     belt: FloatArray
     belt_error: FloatArray
-    whole: FloatArray
-    whole_error: FloatArray
+    drive: FloatArray
+    drive_error: FloatArray
     outside: BoolArray
     factor: FloatArray
     kelvin: FloatArray
@@ -63,7 +63,7 @@ class AtStates:
 
     def warnings(self, state: int) -> tuple[Warning, ...]:
         """Return what the state is, and which runs do not show it or only beyond their dwells."""
-        known = np.isfinite(self.whole[:, state])
+        known = np.isfinite(self.drive[:, state])
         warnings = [self.states[state].warning()]
         beyond = np.flatnonzero(known & self.outside[:, state]).tolist()
         if beyond:
@@ -120,7 +120,7 @@ def at_states(
     """
     kernel = shared_kernel([dwells for _, dwells, _ in runs.usable()])
     shape = (len(runs.dwells), len(states))
-    belt, belt_error, whole, whole_error, factor, kelvin = (np.full(shape, np.nan) for _ in range(6))
+    belt, belt_error, drive, drive_error, factor, kelvin = (np.full(shape, np.nan) for _ in range(6))
     outside = np.zeros(shape, dtype=bool)
     speed = np.array([state.speed for state in states])
     temperature = np.array([np.nan if state.temperature is None else state.temperature for state in states])
@@ -138,13 +138,13 @@ def at_states(
         no_load = rests[which]
         belt[place], belt_error[place] = at.torque, at.error
         together = at.torque + no_load
-        whole[place] = np.where(together > 0.0, together, np.nan)  # a rest fitted below nothing
-        whole_error[place] = at.error * at.torque / whole[place]
+        drive[place] = np.where(together > 0.0, together, np.nan)  # a no-load torque fitted below nothing
+        drive_error[place] = at.error * at.torque / drive[place]
         outside[place], factor[place], kelvin[place] = at.outside, at.factor, at.kelvin
         for curve in curves:
             _trace(curve, place, surface, keep=place in some)
     return AtStates(
-        runs, tuple(states), belt, belt_error, whole, whole_error, outside, factor, kelvin, tuple(curves)
+        runs, tuple(states), belt, belt_error, drive, drive_error, outside, factor, kelvin, tuple(curves)
     )
 
 

@@ -103,7 +103,7 @@ class _GearLoad:
             self.curve = SNCurve(
                 gear.torque, gear.cycles, gear.slope, gear.second_slope, gear.endurance, gear.ultimate
             )
-        self.rate, self.spread = np.zeros(estimates.whole.shape[0]), np.zeros(estimates.whole.shape[0])
+        self.rate, self.spread = np.zeros(estimates.drive.shape[0]), np.zeros(estimates.drive.shape[0])
         self.warnings: list[Warning] = []
 
     def _add(self, cycles: RainflowCycles, scale: FloatArray, error: FloatArray) -> None:
@@ -121,7 +121,7 @@ class _GearLoad:
             per_age = self.gear.starts[0] / Age.parse(self.gear.starts[1]).as_unit(self.age_unit).value
         for state, share in shares.items():
             cycle = RainflowCycles(np.ones(1), np.full(1, 0.5), np.full(1, share * per_age))
-            self._add(cycle, self.estimates.whole[:, state], self.estimates.whole_error[:, state])
+            self._add(cycle, self.estimates.drive[:, state], self.estimates.drive_error[:, state])
         self.warnings.append(
             Warning(
                 "starts counted",
@@ -138,13 +138,13 @@ class _GearLoad:
             return False
         with naming("[gear] duty_age"):
             age = Age.parse(self.gear.duty_age).as_unit(self.age_unit).value
-        whole, ages = self.estimates.whole, self.estimates.runs.runs.age
+        drive, ages = self.estimates.drive, self.estimates.runs.runs.age
         states = self.points if self.machine.points else [self.cold]
-        mix = whole[:, states] @ shares_of(self.machine) if self.machine.points else whole[:, self.cold]
+        mix = drive[:, states] @ shares_of(self.machine) if self.machine.points else drive[:, self.cold]
         known = np.isfinite(mix)
         young = known & (ages == ages[known].min(initial=np.inf))
         scale = mix / np.median(mix[young]) if young.any() else np.full_like(mix, np.nan)
-        error = np.nan_to_num(self.estimates.whole_error[:, states]).mean(axis=1)
+        error = np.nan_to_num(self.estimates.drive_error[:, states]).mean(axis=1)
         self._add(_counted(self.gear.duty, age), scale, error)
         self.warnings.append(
             Warning(

@@ -95,16 +95,16 @@ class _Asked:
         limit = self.machine.limits.motor_torque
         if limit is None:
             return [], [_lacks("motor torque", "limits", 'motor_torque = "1 N*m"')]
-        return [self._whole("motor torque", limit, place) for place in (_COLD, _SLOW)], []
+        return [self._motor_indicator("motor torque", limit, place) for place in (_COLD, _SLOW)], []
 
-    def _whole(self, kind: str, limit: float, place: int) -> Indicator:
+    def _motor_indicator(self, kind: str, limit: float, place: int) -> Indicator:
         estimates = self.estimates
         return self._torque(
             f"{kind}, {estimates.states[place].name}",
             kind,
             limit,
-            estimates.whole[:, place],
-            estimates.whole_error[:, place],
+            estimates.drive[:, place],
+            estimates.drive_error[:, place],
             place,
         )
 
@@ -200,7 +200,7 @@ class _Asked:
             return [], [_lacks("heating of the motor", "life", 'continuous_torque = "0.5 N*m"')]
         if not self.machine.points:
             return [], [_lacks_points("heating of the motor", share=True)]
-        squares = self.estimates.whole[:, _POINTS] ** 2 * shares_of(self.machine)
+        squares = self.estimates.drive[:, _POINTS] ** 2 * shares_of(self.machine)
         return [self._over_points("continuous torque", "motor heat", "N m", limit, squares, 0.5)], []
 
     def energy(self) -> _Found:
@@ -213,7 +213,7 @@ class _Asked:
         if time is None:
             return [], [_lacks(f"energy per {unit}", "life", 'travel = "300 mm"')]
         speeds = np.array([state.speed for state in self.estimates.states[_POINTS]])
-        work = self.estimates.whole[:, _POINTS] * speeds * time * shares_of(self.machine)
+        work = self.estimates.drive[:, _POINTS] * speeds * time * shares_of(self.machine)
         return [self._over_points(f"energy per {unit}", "energy", "J", limit, work, 1.0)], []
 
     def _over_points(
@@ -221,7 +221,7 @@ class _Asked:
     ) -> Indicator:
         """A sum over the points to a power; their errors are taken to go together."""
         total = parts.sum(axis=1)
-        error = (parts / total[:, None] * self.estimates.whole_error[:, _POINTS]).sum(axis=1)
+        error = (parts / total[:, None] * self.estimates.drive_error[:, _POINTS]).sum(axis=1)
         alike = all(point.share is None for point in self.machine.points)
         warnings = []
         if alike:

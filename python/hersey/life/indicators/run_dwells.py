@@ -148,7 +148,7 @@ def _rest_of(of_run: IntArray, table: FloatArray, rests: dict[int, NoLoadTorque 
 def _dwells(rows: FloatArray, rest: FloatArray, *, was_off: bool) -> RunDwells:
     """Dwells in the sense of rotation, and the torque of the ``rest`` that is, or was, taken off them."""
     speed, temperature, torque, error = rows.T
-    belt, whole = (torque, torque + rest) if was_off else (torque - rest, torque)
+    belt, drive = (torque, torque + rest) if was_off else (torque - rest, torque)
     sense = np.sign(speed)
     temperatures = temperature if np.isfinite(temperature).all() else np.full(speed.shape, np.nan)
-    return RunDwells(np.abs(speed), temperatures, sense * belt, sense * whole, np.nan_to_num(error))
+    return RunDwells(np.abs(speed), temperatures, sense * belt, sense * drive, np.nan_to_num(error))

@@ -86,24 +86,9 @@ def folds(estimates: AtStates, machine: Machine) -> tuple[list[Indicator], list[
             speed[place] = _fold(machine.train, drag_of(estimates, curves, place, machine))
         error = _error(estimates, curves, machine) if np.isfinite(speed).any() else None
         if error is None:
-            warnings.append(
-                Warning(
-                    NOT_JUDGED,
-                    "V* cannot be determined from these dwells",
-                    severity="act",
-                    where=f"stick-slip from rest at {name}",
-                    point=name,
-                )
-            )
+            warnings.append(_no_fold(name))
             continue
-        of_runs = Warning(
-            "V* of some runs",
-            "V* of {count} of {runs} runs, of {most} at the most; its error is the median of {drawn} runs",
-            count=int(np.isfinite(speed).sum()),
-            runs=speed.size,
-            most=MOST_FOLDS,
-            drawn=len(curves.drawn),
-        )
+        of_runs = _folds_of_runs(speed, len(curves.drawn))
         errors = np.where(np.isfinite(speed), error, np.nan)
         common = np.hypot(
             _speed_gain(estimates, machine), _of_machine(estimates, curves, machine, chosen[len(chosen) // 2])
@@ -124,6 +109,28 @@ def folds(estimates: AtStates, machine: Machine) -> tuple[list[Indicator], list[
             if point.temperature == temperature
         ]
     return found, warnings
+
+
+def _no_fold(point: str) -> Warning:
+    return Warning(
+        NOT_JUDGED,
+        "V* cannot be determined from these dwells",
+        severity="act",
+        where=f"stick-slip from rest at {point}",
+        point=point,
+    )
+
+
+def _folds_of_runs(speed: FloatArray, drawn: int) -> Warning:
+    """Of how many runs V* is known; its error is that of ``drawn`` runs."""
+    return Warning(
+        "V* of some runs",
+        "V* of {count} of {runs} runs, of {most} at the most; its error is the median of {drawn} runs",
+        count=int(np.isfinite(speed).sum()),
+        runs=speed.size,
+        most=MOST_FOLDS,
+        drawn=drawn,
+    )
 
 
 def drag_of(

@@ -54,14 +54,14 @@ class RunDwells:
     """The dwells of a run: arrays of shape (dwells,).
 
     ``speed`` in rad/s, positive; ``temperature`` in K (NaN throughout where none was recorded). ``torque`` in
-    N m is that of the belt alone so far as the no-load torque is known, ``whole`` with that rest, both in
-    the sense of rotation; ``error`` is the standard error of either.
+    N m is that of the belt alone so far as the no-load torque is known, ``drive_torque`` that of the whole
+    drive, both in the sense of rotation; ``error`` is the standard error of either.
     """
 
     speed: FloatArray
     temperature: FloatArray
     torque: FloatArray
-    whole: FloatArray
+    drive_torque: FloatArray
     error: FloatArray
 
 
@@ -159,13 +159,13 @@ class _Layout:
 
     def first(self) -> FloatArray:
         """Ln torque of the dwells, those lost in noise at the size of that noise."""
-        least = np.maximum(self.dwells.error, 1e-3 * np.abs(self.dwells.whole))
+        least = np.maximum(self.dwells.error, 1e-3 * np.abs(self.dwells.drive_torque))
         return np.log(np.maximum(self.dwells.torque, least))
 
     def solved(self, kernel: Kernel, about: FloatArray, deviations: FloatArray) -> _Solved:
         """The surface with ln torque taken about values of the dwells; ``deviations``: their covariance."""
         torque = _torque(about)
-        noise = (self.dwells.error**2 + (kernel.scatter * self.dwells.whole) ** 2) / torque**2 + _FLOOR
+        noise = (self.dwells.error**2 + (kernel.scatter * self.dwells.drive_torque) ** 2) / torque**2 + _FLOOR
         value = about + np.clip(self.dwells.torque / torque - 1.0, -_STEP, _STEP)
         covariance = deviations + np.diag(noise)
         root = _root(covariance)

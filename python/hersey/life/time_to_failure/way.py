@@ -78,14 +78,7 @@ def fitted_way(indicators: Indicators, each: Indicator, seed: int, known: Growth
     warnings = [*each.warnings, *growth.warnings]
     missing = [name for name in last if name not in row]
     if missing and each.own_ages is None:
-        warnings.append(
-            Warning(
-                "specimens without a value",
-                "no run of {specimens} shows it: taken as any new specimen",
-                severity="watch",
-                specimens=listed(missing),
-            )
-        )
+        warnings.append(_without_a_value(missing))
     at_limit = ages_at_limit(
         each.name,
         runs.age_unit,
@@ -100,6 +93,15 @@ def fitted_way(indicators: Indicators, each: Indicator, seed: int, known: Growth
     residuals[known_runs] = growth.residuals()
     mode = Mode(each.name, each.kind, each.si, each.limit, each.sign, growth, at_limit, tuple(warnings))
     return FittedWay(mode, own.known, own.new, residuals, row, float(np.median(each.error[known_runs])))
+
+
+def _without_a_value(specimens: Sequence[str]) -> Warning:
+    return Warning(
+        "specimens without a value",
+        "no run of {specimens} shows it: taken as any new specimen",
+        severity="watch",
+        specimens=listed(specimens),
+    )
 
 
 def _drawn_ages(each: Indicator, growth: Growth, row: dict[str, int], names: list[str], seed: int) -> OwnAges:
