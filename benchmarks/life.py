@@ -216,7 +216,7 @@ class Outcome:
     firsts: tuple[First, ...]
     first_ages: tuple[Told, ...]
     shares: tuple[Told, ...]  #: B10 and B50 of the first of all ends
-    unsaid: tuple[str, ...]
+    not_judged: tuple[str, ...]  #: failure modes, with the reason
     seconds: float
     wrong: str = ""
 
@@ -224,6 +224,7 @@ class Outcome:
 def campaign(seed: int, folder: Path) -> Outcome:
     """Draw a campaign, ask hersey what ends its units, and set it beside the truth."""
     from hersey.life.film.through_life import film_life
+    from hersey.life.indicator import NOT_JUDGED
     from hersey.life.indicators.of_campaign import indicators_of
     from hersey.life.time_to_failure.estimate import time_to_failure
     from hersey.machine.machine import read_machine
@@ -263,9 +264,9 @@ def campaign(seed: int, folder: Path) -> Outcome:
     population = np.delete(all_ages, MEDIAN)
     b10, b50 = np.quantile(population, [0.1, 0.5], method="inverted_cdf")
     shares = [aged("B10", b10, told.b10, stop), aged("B50", b50, told.b50, stop)]
-    return Outcome(
-        seed, world.aim, tuple(ages), tuple(firsts), tuple(first_ages), tuple(shares), told.unsaid, seconds
-    )
+    lists = (tuple(each) for each in (ages, firsts, first_ages, shares))
+    not_judged = tuple(str(each) for each in told.warnings if each.kind == NOT_JUDGED)
+    return Outcome(seed, world.aim, *lists, not_judged, seconds)
 
 
 def _held(ages: list[Told]) -> list[str]:

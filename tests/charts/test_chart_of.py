@@ -442,7 +442,7 @@ def test_a_population_without_a_law_still_shows_its_units() -> None:
         law = hersey.weibull([10.0, 10.0], failed)
         shown = chart_of(law).to_dict(validate=False)
         alt.Chart.from_dict(valid(shown), validate=True)
-        assert law.note in shown["title"]["subtitle"]
+        assert law.warnings[0].sentence in shown["title"]["subtitle"]
 
 
 def test_a_motion_with_temperature_as_a_state_shows_it() -> None:

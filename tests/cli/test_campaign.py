@@ -49,7 +49,7 @@ def test_runs_are_added_listed_shown_checked_and_exported(folder: Path) -> None:
     (folder / "0.csv").unlink()
     done = typed(folder, "check", "life.hersey", "--json")
     assert done.returncode == 1
-    assert [each["kind"] for each in json.loads(done.stdout)["findings"]] == ["log missing"]
+    assert [each["kind"] for each in json.loads(done.stdout)["warnings"]] == ["log missing"]
     assert (
         typed(folder, "export", "life.hersey", "--out", "dwells.parquet").stdout == "dwells: dwells.parquet\n"
     )

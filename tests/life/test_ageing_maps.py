@@ -89,7 +89,7 @@ def test_a_unit_that_has_ended_has_no_end_ahead() -> None:
 def test_what_cannot_be_drawn_is_told() -> None:
     with pytest.raises(ParameterError, match="no specimen 'U11': did you mean 'U1'"):
         ageing_maps(shipped.opened(1), shipped.machine(), told("U1", 230e3), unit="U11")
-    with pytest.raises(InsufficientDataError, match="runs of U7 do not tell torque"):
+    with pytest.raises(InsufficientDataError, match="runs of U7 do not show torque"):
         ageing_maps(shipped.opened(1), shipped.machine(), told("U7", 230e3))
 
 

@@ -191,9 +191,12 @@ def test_a_run_without_a_fit_is_kept_and_told(campaign: Campaign, tmp_path: Path
     (tmp_path / "short.csv").write_text(TABLE + "10,5,100\n20,6,100\n")
     points = hersey.SteadyPoints.from_table(tmp_path / "short.csv")
     added = campaign.add(points, log=tmp_path / "short.csv", unit="F1", age="1 h")
+    assert [each.kind for each in added.warnings] == ["no fit"]
     assert "kept without a fit" in added.summary()
     assert campaign.fit(added.run) is None
-    assert [each.kind for each in campaign.check().findings] == ["no fit"]
+    (no_fit,) = campaign.check().warnings
+    assert (no_fit.kind, no_fit.where) == ("no fit", "run 1, F1 at 1 h: short.csv")
+    assert no_fit.values["reason"] == added.warnings[0].values["reason"]
     assert "1 without a fit" in campaign.summary()
 
 
@@ -203,18 +206,18 @@ def test_check_finds_what_is_planted(campaign: Campaign, tmp_path: Path) -> None
         os.utime(log, (1e9 + 1e4 * number, 1e9 + 1e4 * number))
         add(campaign, log, age=f"{[0, 1, 3, 2][number]} pages")
     found = campaign.check()
-    assert [(each.kind, each.run) for each in found.findings] == [("age backwards", 3)]
+    assert [(each.kind, each.values["run"]) for each in found.warnings] == [("age backwards", 3)]
     (tmp_path / "0.csv").unlink()
     with (tmp_path / "1.csv").open("a") as file:
         file.write("\n")
     found = campaign.check()
-    assert {(each.kind, each.run) for each in found.findings} == {
+    assert {(each.kind, each.values["run"]) for each in found.warnings} == {
         ("log missing", 1),
         ("log changed", 2),
         ("age backwards", 3),
     }
-    assert found.summary().startswith("4 runs: 3 findings")
-    assert found.to_frame().height == len(found.to_dict()["findings"]) == 3
+    assert found.summary().startswith("4 runs: 3 warnings")
+    assert found.to_frame().height == len(found.to_dict()["warnings"]) == 3
 
 
 def test_the_folder_can_move_with_its_logs(campaign: Campaign, run_csv: Path, tmp_path: Path) -> None:
@@ -283,7 +286,7 @@ def test_two_writers_at_once_both_complete(tmp_path: Path) -> None:
             done.result()
     with Campaign.open(path) as opened:
         assert opened.runs()["unit"].to_list() == ["F1"] * 25 + ["F2"] * 25 + ["F3"] * 25
-        assert not [each for each in opened.check().findings if each.kind == "damaged"]
+        assert not [each for each in opened.check().warnings if each.kind == "damaged"]
 
 
 def test_kills_lose_nothing(tmp_path: Path) -> None:

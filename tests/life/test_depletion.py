@@ -249,7 +249,7 @@ def test_given_numbers_of_the_law_are_kept() -> None:
 @pytest.mark.parametrize(
     ("kept", "said"),
     [
-        (pl.col("temperature (K)") < 335.0, "one temperature cannot tell"),
+        (pl.col("temperature (K)") < 335.0, "one temperature cannot distinguish"),
         (pl.col("run_id") == 1, "no specimen was seen at two ages"),
     ],
 )
@@ -291,7 +291,7 @@ def test_how_well_the_viscosity_is_known_beforehand(
     def told(_searches: object, _about: FloatArray, beforehand: Any) -> None:
         raise ToldError(beforehand.covariance)
 
-    monkeypatch.setattr(layer_module, "_told", told)
+    monkeypatch.setattr(layer_module, "_shared_by_runs", told)
     bare, _ = example_drive()
     assert bare.lubricant is not None
     machine = replace(bare, lubricant=replace(bare.lubricant, uncertainty=stated))

@@ -57,11 +57,11 @@ def test_the_same_seed_gives_the_same_bits() -> None:
     assert followed().to_dict() == little().to_dict()
 
 
-def test_what_cannot_be_told_is_said() -> None:
+def test_what_is_not_known_is_said() -> None:
     found = little()
     assert found.film is None
-    assert any("film through life" in line for line in found.unsaid)
-    assert "one specimen tells nothing of how specimens differ" in found.summary()
+    assert ("not computed", "film through life") in [(each.kind, each.where) for each in found.warnings]
+    assert "one specimen does not show how specimens differ" in found.summary()
     assert found.headline().startswith("U1 ends at ")  # not when half of new specimens do
     with pytest.raises(InsufficientDataError, match="nothing that ends a specimen"):
         follow(shipped.opened(1), hersey.Machine(11e3, 11.0, 15e-3, 3e-3))

@@ -15,7 +15,7 @@ from hersey.errors import InsufficientDataError, ParameterError, UnitError
 from hersey.life.age import Age
 from hersey.life.campaign import Campaign, Entry
 from hersey.life.campaign.conversion import entry_of
-from hersey.life.indicator import Indicator, Indicators
+from hersey.life.indicator import NOT_JUDGED, Indicator, Indicators
 from hersey.life.indicators import sticking
 from hersey.life.indicators.of_campaign import indicators_of
 from hersey.life.indicators.sticking import stick_speed_at
@@ -39,13 +39,13 @@ def sample() -> Entry:
 
 
 def add(campaign: Campaign, unit: str, age: float, run: RunDwells, sense: float = 1.0) -> None:
-    """Add the dwells of a run with their whole torque: no rest was taken off, the machine states it."""
+    """Add the dwells of a run with the torque of the drive, from which nothing was subtracted."""
     number = len(campaign)
-    heats = [None if np.isnan(each) else each for each in run.temperature.tolist()]
-    columns = zip(run.speed, run.whole, run.error, heats, strict=True)
+    temperatures = [None if np.isnan(each) else each for each in run.temperature.tolist()]
+    columns = zip(run.speed, run.drive_torque, run.error, temperatures, strict=True)
     dwells = [
-        [0, 0.0, 0.0, sense * speed, 0.0, sense * torque, error, heat, 0.0, 1, 1.0, 0, "", None, 0.0]
-        for speed, torque, error, heat in columns
+        [0, 0.0, 0.0, sense * speed, 0.0, sense * torque, error, kelvin, 0.0, 1, 1.0, 0, "", None, 0.0]
+        for speed, torque, error, kelvin in columns
     ]
     path = str(Path(f"log{number}.csv").absolute())
     entry = replace(sample(), sha256=f"{number:064x}", path=path, dwells=dwells)
@@ -108,17 +108,21 @@ def test_the_torque_of_the_motor_at_both_corners(campaign: Campaign) -> None:
         assert 0.5 < np.sqrt(np.mean(normal**2)) < 1.6
         assert each.limit == 1.0
         assert each.limit_error == pytest.approx(0.01 / 1.96)
-    notes = named(found, "motor torque, cold and fast").notes
-    assert "127.3 rpm and 60 degC" in notes[0]
-    assert notes[1].startswith("extrapolated in 1 of 12 runs")
-    assert "U4 at 170000 pages, 1.34 times the speed of the nearest dwell" in notes[1]
+    state, beyond = named(found, "motor torque, cold and fast").warnings
+    assert (state.kind, state.where) == ("state of the value", "cold and fast")
+    assert state.values["speed"] == pytest.approx(0.2 / 0.015, rel=1e-12)
+    assert state.values["temperature"] == pytest.approx(60.0 + ZERO_CELSIUS, abs=0.5)
+    assert "127.3 rpm and 60 degC" in str(state)
+    assert (beyond.kind, beyond.values["count"], beyond.values["runs"]) == ("extrapolated", 1, 12)
+    assert "U4 at 170000 pages, 1.34 times the speed of the nearest dwell" in str(beyond)
 
 
 def test_the_coldest_start_is_that_of_the_machine(campaign: Campaign) -> None:
     colder = replace(machine(motor_torque=1.0), points=(), life=LifeTable(coldest=318.15))
     cold = named(indicators_of(campaign, colder), "motor torque, cold and fast")
-    assert "45 degC" in cold.notes[0]
-    assert "[life] coldest" in cold.notes[0]
+    assert cold.warnings[0].values["temperature"] == 318.15
+    assert "45 degC" in str(cold.warnings[0])
+    assert "[life] coldest" in str(cold.warnings[0].values["origin"])
     assert np.all(cold.value > named(in_use(campaign), cold.name).value)
 
 
@@ -133,7 +137,8 @@ def test_what_the_machine_does_not_state_is_said(campaign: Campaign) -> None:
         '[life] continuous_torque = "0.5 N*m"',
         '[life] energy = "10 J"',
     ):
-        assert sum(f"add {lacks}" in line for line in found.unsaid) == 1
+        assert sum(f"add {lacks}" in each.text for each in found.warnings if each.kind == NOT_JUDGED) == 1
+    assert found.warnings[0].values == {"table": "limits", "keys": 'motor_torque = "1 N*m"'}
 
 
 @pytest.mark.usefixtures("no_folds")
@@ -141,14 +146,18 @@ def test_what_the_machine_does_not_state_is_said(campaign: Campaign) -> None:
     ("life", "gear", "lacks"),
     [
         ({"energy": 10.0}, {}, 'energy per page: add [life] travel = "300 mm"'),
-        ({}, {}, 'gear fatigue: [gear] says no load: add starts = "20 per 1000 pages", or duty and duty_age'),
+        (
+            {},
+            {},
+            'gear fatigue: [gear] states no load: add starts = "20 per 1000 pages", or duty and duty_age',
+        ),
     ],
 )
 def test_half_a_table_is_said(
     campaign: Campaign, life: dict[str, Any], gear: dict[str, Any], lacks: str
 ) -> None:
     half = replace(machine(), life=LifeTable(**life), gear=GearTable(3.0, 1e6, 7.0, **gear))
-    assert lacks in indicators_of(campaign, half).unsaid
+    assert lacks in map(str, indicators_of(campaign, half).warnings)
 
 
 def test_a_point_comes_to_lie_on_the_falling_branch(campaign: Campaign) -> None:
@@ -191,7 +200,7 @@ def test_the_belt_alone_against_the_grip(campaign: Campaign) -> None:
     assert np.all(np.abs(np.log(cold.value / (true + grown)) / cold.error) < 4.0)
     assert cold.limit == pytest.approx(0.6 * 300.0 * 0.015)
     rest = named(found, "grip, from rest")
-    assert any("(Eq. 29)" in note for note in rest.notes)
+    assert "break-away by rule" in [each.kind for each in rest.warnings]
     stated = replace(machine(roll_friction=0.6, nip_load=300.0), points=(), static_friction=0.07)
     young = named(indicators_of(campaign, stated), "grip, from rest")
     new = [place for place, (_, age) in enumerate(truths()) if age == 0.0]
@@ -224,7 +233,10 @@ def test_damage_of_starts_by_hand_and_of_stick_slip(campaign: Campaign) -> None:
     assert found.error[0] == pytest.approx(7.0 * 0.008, rel=0.2)
     assert found.limit_error == pytest.approx(7.0 * 0.01 / 1.96)  # a torque 1 % off at 95 %, to the slope
     assert np.all(found.value[worn & last] > 10.0 * by_hand[worn & last])
-    assert any("stick-slip at thick paper in" in note for note in found.notes)
+    (sticks,) = (each for each in found.warnings if each.kind == "stick-slip counted")
+    assert sticks.values == {"point": "thick paper", "count": worn.sum()}
+    (starts,) = (each for each in found.warnings if each.kind == "starts counted")
+    assert starts.values == {"starts": pytest.approx(0.02, rel=1e-12), "age_unit": "page"}
 
 
 @pytest.mark.usefixtures("no_folds")
@@ -252,7 +264,9 @@ def test_a_part_that_breaks_or_takes_no_harm_has_no_rate(campaign: Campaign) -> 
     weak = GearTable(0.5, 1e6, 7.0, ultimate=2.0, **starts)
     found = named(indicators_of(campaign, replace(bare, gear=weak)), "gear fatigue")
     assert 0 < np.isnan(found.value).sum() < 12
-    assert any("a peak that breaks the part" in note for note in found.notes)
+    (without,) = (each for each in found.warnings if each.kind == "runs without a value")
+    assert without.values == {"count": np.isnan(found.value).sum()}
+    assert "a peak that breaks the part" in str(without)
     sound = GearTable(3.0, 1e6, 7.0, endurance=2.9, **starts)
     assert np.isnan(named(indicators_of(campaign, replace(bare, gear=sound)), "gear fatigue").value).all()
     with pytest.raises(ParameterError, match=r"\[gear\]: endurance is 4"):
@@ -260,7 +274,7 @@ def test_a_part_that_breaks_or_takes_no_harm_has_no_rate(campaign: Campaign) -> 
 
 
 @pytest.mark.usefixtures("no_folds")
-def test_runs_that_do_not_tell_are_named(tmp_path: Path) -> None:
+def test_runs_without_a_value_are_named(tmp_path: Path) -> None:
     """One of few dwells, one of another temperature alone, and dwells that stand."""
     truth = truths()["U1", 0.0]
     whole = dwells_of(truth, 0)
@@ -279,12 +293,12 @@ def test_runs_that_do_not_tell_are_named(tmp_path: Path) -> None:
         found = indicators_of(opened, machine(motor_torque=1.0))
     each = named(found, "motor torque, cold and fast")
     assert np.isnan(each.value).tolist() == [False, True, True, False]
-    assert any(
-        "not told by 1 of 4 runs, of other temperatures or lost in noise: A at 2 pages" in note
-        for note in each.notes
-    )
-    assert any("fewer than 4 dwells" in line and line.endswith(": 2") for line in found.unsaid)
-    assert any("left out: 1 of run 4" in line for line in found.unsaid)
+    (without,) = (one for one in each.warnings if one.kind == "runs without a value")
+    assert without.values == {"count": 1, "runs": 4, "which": "A at 2 pages"}
+    standing_dwells, few = found.warnings[-2:]
+    assert (few.kind, few.values) == ("runs of few dwells", {"count": 1, "fewest": 4, "which": "2"})
+    assert str(few) == "1 run has fewer than 4 dwells and is not used here: 2"
+    assert standing_dwells.values == {"which": "1 of run 4", "count": 1}
 
 
 @pytest.mark.usefixtures("no_folds")
@@ -300,7 +314,9 @@ def test_without_temperature(tmp_path: Path) -> None:
     fast = np.array([0.2 / 0.015]), np.array([180.0])
     each = named(found, "motor torque, cold and fast")
     assert each.value == pytest.approx(truth.torque(*fast), rel=0.04)
-    assert each.notes == ("cold and fast: 127.3 rpm ([[points]])",)
+    (state,) = each.warnings
+    assert str(state) == "cold and fast: 127.3 rpm ([[points]])"
+    assert state.values["temperature"] is None
 
 
 def test_an_empty_campaign_is_refused(tmp_path: Path) -> None:

@@ -86,7 +86,7 @@ def test_units_of_age_do_not_matter(units: list[tuple[float, bool]], factor: flo
             b = law.b_life(share)
             assert b.low < b.age < b.high
     else:
-        assert law.note
+        assert [each.kind for each in law.warnings] == ["no law of failures"]
 
 
 @pytest.mark.parametrize(
@@ -96,9 +96,11 @@ def test_units_of_age_do_not_matter(units: list[tuple[float, bool]], factor: flo
         ([True, False, False], "One specimen has failed, at 10 pages"),
     ],
 )
-def test_too_few_failures_are_told(failed: list[bool], words: str) -> None:
+def test_too_few_failures_are_warned_of(failed: list[bool], words: str) -> None:
     law = weibull([10, 20, 30], failed, unit="pages")
     assert words in law.summary()
+    assert law.warnings[0].values["failures"] == sum(failed)
+    assert law.warnings[0].values["age"] == (10.0 if any(failed) else 30.0)
     assert law.to_dict()["b10"] is None
     with pytest.raises(InsufficientDataError, match=words):
         law.b_life(0.1)
@@ -106,19 +108,20 @@ def test_too_few_failures_are_told(failed: list[bool], words: str) -> None:
         law.lives([0.1])
 
 
-def test_two_failures_tell_little() -> None:
+def test_two_failures_show_little() -> None:
     law = weibull([10, 20, 30], [True, True, False], unit="pages")
-    assert "Two failures tell little" in law.summary()
+    assert [(each.kind, each.values) for each in law.warnings] == [("few failures", {"failures": 2})]
+    assert "Two failures show little" in law.summary()
     b10 = law.b_life(0.10)
     assert b10.low < b10.age / 100
-    assert "one age tells no spread" in weibull([10, 10], [True, True]).summary()
+    assert "one age shows no spread" in weibull([10, 10], [True, True]).summary()
 
 
 def test_what_the_shape_says() -> None:
     ages = np.linspace(90, 110, 12)
     assert "wear out" in weibull(ages, [True] * 12).verdict()
     assert "fail early" in weibull(10.0 ** np.arange(12), [True] * 12).verdict()
-    assert "not told" in weibull(*HANDBOOK).verdict()
+    assert "is unknown" in weibull(*HANDBOOK).verdict()
 
 
 def test_the_same_seed_gives_the_same_bits() -> None:

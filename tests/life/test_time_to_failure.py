@@ -14,9 +14,10 @@ from hersey.errors import InsufficientDataError, ParameterError
 from hersey.life.growth import fit as growth_module
 from hersey.life.growth import marginal
 from hersey.life.growth.fit import fit_growth
-from hersey.life.indicator import Indicator, Indicators, OwnAges, Runs
+from hersey.life.indicator import NOT_JUDGED, Indicator, Indicators, OwnAges, Runs
 from hersey.life.time_to_failure import joined, next_run
 from hersey.life.time_to_failure.estimate import TimeToFailure, time_to_failure
+from hersey.schema.warning import Warning
 from tests.life.shipped import fewer
 
 UNITS, AGES = 6, np.linspace(0.0, 600.0, 7)
@@ -44,6 +45,11 @@ def fewer_draws(monkeypatch: pytest.MonkeyPatch) -> None:
     fewer(monkeypatch)
 
 
+def warned(found: TimeToFailure) -> dict[str, Warning]:
+    """The warnings that concern all failure modes, by kind."""
+    return {each.kind: each for each in found.warnings if not each.where}
+
+
 @cache
 def told() -> TimeToFailure:
     """Torque reaches 2 at 1 / rate, film 3 at 2.2 / rate, in F1 at 1 / rate too; a sign at 0.3 / rate."""
@@ -54,7 +60,9 @@ def told() -> TimeToFailure:
     early = indicator("noise", linear(RATE), 1.3, seed=3)
     untold = indicator("grip", np.where(AGE == 0.0, 1.0, np.nan), 2.0)
     object.__setattr__(early, "sign", True)
-    return time_to_failure(of(torque, other, early, untold, unsaid=("heat: no table [motor]",)))
+    return time_to_failure(
+        of(torque, other, early, untold, warnings=(Warning(NOT_JUDGED, "no table [motor]", where="heat"),))
+    )
 
 
 def test_the_first_end_is_found_with_its_way() -> None:
@@ -70,7 +78,9 @@ def test_where_two_ways_are_near_both_are_named() -> None:
     first = told().units[0]
     assert set(first.named) == {"torque", "film"}
     assert sum(first.first.values()) == pytest.approx(1.0)
-    assert "which way comes first is not told for F1" in " ".join(told().notes)
+    unknown = warned(told())["first mode unknown"]
+    assert unknown.values == {"specimens": "F1"}
+    assert str(unknown) == "which failure mode comes first is unknown for F1: all that remain are named"
 
 
 def test_an_early_sign_ends_no_unit() -> None:
@@ -82,7 +92,8 @@ def test_an_early_sign_ends_no_unit() -> None:
 
 def test_what_has_passed_is_said_and_fails_in_the_weibull_plot() -> None:
     assert told().units[5].age.passed > 0.9
-    assert "F6 reached a limit already" in " ".join(told().notes)
+    assert warned(told())["limit reached"].values == {"specimens": "F6"}
+    assert warned(told())["limit reached"].severity == "act"
     assert "passed already" in str(told().units[5])
     population = told().population
     assert population.failed.tolist() == [True, False, False, False, False, False]
@@ -91,9 +102,12 @@ def test_what_has_passed_is_said_and_fails_in_the_weibull_plot() -> None:
 
 
 def test_what_cannot_be_judged_keeps_its_reason() -> None:
-    assert told().unsaid[0] == "heat: no table [motor]"
-    assert told().unsaid[1].startswith("grip: no specimen was seen at two ages")
-    with pytest.raises(InsufficientDataError, match="grip: no run tells it"):
+    stated, grip = (each for each in told().warnings if each.kind == NOT_JUDGED)
+    assert str(stated) == "heat: no table [motor]"
+    assert grip.where == "grip"
+    assert str(grip.values["reason"]).startswith("no specimen was seen at two ages")
+    assert "\nnot judged: heat: no table [motor]\n" in told().summary()
+    with pytest.raises(InsufficientDataError, match="grip: no run shows it"):
         time_to_failure(of(indicator("grip", np.full(AGE.size, np.nan), 2.0)))
 
 
@@ -116,26 +130,30 @@ def test_the_same_data_and_seed_give_the_same_ends() -> None:
     once = time_to_failure(few, seed=4, progress=lambda done, every: calls.append((done, every)))
     assert once.to_dict() == time_to_failure(few, seed=4).to_dict()
     assert calls == [(1, 1)]
-    assert "2 specimens tell little of how specimens differ" in " ".join(once.notes)
+    assert warned(once)["few specimens"].values == {"specimens": 2}
+    assert "2 specimens show little of how specimens differ" in once.summary()
 
 
 def test_a_unit_that_tells_nothing_is_one_of_the_others() -> None:
     value = linear(RATE[:4])
     value[-7:] = np.nan
     found = time_to_failure(of(indicator("torque", value, 2.0), names=NAMES[:28], age=AGE[:28]))
-    assert "no run of F4 tells it: taken as any new specimen" in found.summary()
+    (of_torque,) = (each for each in found.warnings if each.kind == "specimens without a value")
+    assert (of_torque.where, of_torque.values) == ("torque", {"specimens": "F4"})
+    assert "- torque: no run of F4 shows it: taken as any new specimen" in found.summary()
     wide, narrow = (found.units[i].age.age for i in (3, 0))
     assert wide.high / wide.low > 1.5 * narrow.high / narrow.low
 
 
 def test_far_and_wide_ends_are_said() -> None:
-    """Two specimens that have hardly begun to grow: neither law nor spread nor age is told."""
+    """Two specimens that have hardly begun to grow: neither law nor spread nor age is known."""
     names, age = ("A",) * 4 + ("B",) * 4, np.tile([0.0, 10.0, 20.0, 30.0], 2)
     value = linear(np.array([0.002, 0.003]), age[:4])
-    notes = " ".join(time_to_failure(of(indicator("torque", value, 2.0), names=names, age=age)).notes)
-    assert "which law of growth holds is not told for torque" in notes
-    assert "the end of A, B is not told within a factor of 2" in notes
-    assert "beyond 3 times the age followed" in notes
+    found = warned(time_to_failure(of(indicator("torque", value, 2.0), names=names, age=age)))
+    assert found["law of growth unknown"].values == {"modes": "torque"}
+    assert found["age uncertain"].values == {"specimens": "A, B", "factor": 2.0}
+    assert found["end far off"].values["factor"] == 3.0
+    assert "beyond 3 times the age followed" in str(found["end far off"])
 
 
 @pytest.fixture

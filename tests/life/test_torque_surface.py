@@ -53,9 +53,9 @@ def test_errors_at_both_corners_are_as_said() -> None:
     truths, runs, kernel = aged()
     normal = []
     for truth, run in zip(truths, runs, strict=True):
-        told = TorqueSurface(run, kernel).at(CORNERS[0], CORNERS[1] + ZERO_CELSIUS)
+        found = TorqueSurface(run, kernel).at(CORNERS[0], CORNERS[1] + ZERO_CELSIUS)
         belt = truth.torque(*CORNERS) - truth.rest.torque(CORNERS[0], CORNERS[1] + ZERO_CELSIUS)
-        normal.append(np.log(told.torque / belt) / told.error)
+        normal.append(np.log(found.torque / belt) / found.error)
     errors = np.array(normal)
     assert np.all(np.abs(errors.mean(axis=0)) < 0.45)  # three standard errors of a mean of 48
     assert np.all((errors.std(axis=0) > 0.7) & (errors.std(axis=0) < 1.3))
@@ -68,14 +68,14 @@ def test_the_cold_corner_of_an_old_unit_where_it_stalls() -> None:
     old = 3 * len(AGES) + 5
     assert runs[old].speed.size < runs[0].speed.size
     at, where = TorqueSurface(runs[old], kernel), (CORNERS[0][:1], CORNERS[1][:1] + ZERO_CELSIUS)
-    told = at.at(*where)
+    found = at.at(*where)
     rest = truths[old].rest.torque(*where)
-    assert told.torque + rest == pytest.approx(truths[old].torque(CORNERS[0][:1], CORNERS[1][:1]), rel=0.06)
-    assert told.outside.tolist() == [True]
-    assert told.factor == pytest.approx([1.34], abs=0.01)
+    assert found.torque + rest == pytest.approx(truths[old].torque(CORNERS[0][:1], CORNERS[1][:1]), rel=0.06)
+    assert found.outside.tolist() == [True]
+    assert found.factor == pytest.approx([1.34], abs=0.01)
     inside = TorqueSurface(runs[old - 1], kernel).at(*where)
     assert inside.outside.tolist() == [False]
-    assert told.error[0] > 2.0 * inside.error[0]
+    assert found.error[0] > 2.0 * inside.error[0]
     # without the dwells beside the corner it is told worse still, and said to be
     run = runs[old - 1]
     blind = TorqueSurface(only(run, run.temperature > 70.0 + ZERO_CELSIUS), kernel).at(*where)
@@ -89,10 +89,10 @@ def test_draws_of_a_curve_are_those_of_its_points() -> None:
     surface = TorqueSurface(runs[0], kernel)
     speed = np.geomspace(0.5, 20.0, 30)
     median, drawn = surface.curve(speed, 420.0, draws=400, seed=1)
-    told = surface.at(speed, np.full(30, 420.0))
-    assert median == pytest.approx(told.torque)
+    found = surface.at(speed, np.full(30, 420.0))
+    assert median == pytest.approx(found.torque)
     logs = np.log(drawn)
-    assert logs.std(axis=0) == pytest.approx(told.error, rel=0.15)
+    assert logs.std(axis=0) == pytest.approx(found.error, rel=0.15)
     assert np.abs(np.corrcoef(logs[:, 14], logs[:, 15])[0, 1]) > 0.9  # neighbours go together
     assert np.array_equal(drawn, surface.curve(speed, 420.0, draws=400, seed=1)[1])
 
@@ -111,11 +111,11 @@ def test_one_temperature_or_none(temperature: float) -> None:
     errors = []
     for run in runs:
         surface = TorqueSurface(run, kernel)
-        assert surface.tells(400.0)
-        told = surface.at(np.array([3.3]), np.array([401.0]))
-        errors.append(np.log(told.torque[0] / (0.2 * 3.3**0.4)) / told.error[0])
+        assert surface.covers(400.0)
+        found = surface.at(np.array([3.3]), np.array([401.0]))
+        errors.append(np.log(found.torque[0] / (0.2 * 3.3**0.4)) / found.error[0])
         if np.isnan(temperature):
-            assert surface.tells(500.0)  # nobody measured it: it may have been any
+            assert surface.covers(500.0)  # nobody measured it: it may have been any
         else:
             assert np.isnan(surface.at(np.array([3.3]), np.array([500.0])).torque[0])
             with pytest.raises(ParameterError, match="other temperatures"):
@@ -130,8 +130,10 @@ def test_few_dwells_make_a_trend_of_fewer_terms(count: int) -> None:
     grid = [each.ravel() for each in np.meshgrid(speed, heat)]
     order = [0, 8, 2, 6, 4, 1, 3, 5, 7][:count]
     run = power_law(grid[0][order], grid[1][order], 0)
-    told = TorqueSurface(run, shared_kernel([run])).at(np.array([4.0]), np.array([390.0]))
-    assert np.log(told.torque[0] / (0.2 * 4.0**0.4 * np.exp(0.1))) / told.error[0] == pytest.approx(0, abs=4)
+    found = TorqueSurface(run, shared_kernel([run])).at(np.array([4.0]), np.array([390.0]))
+    assert np.log(found.torque[0] / (0.2 * 4.0**0.4 * np.exp(0.1))) / found.error[0] == pytest.approx(
+        0, abs=4
+    )
 
 
 def test_dwells_lost_in_noise_do_not_lead_astray() -> None:
@@ -142,9 +144,9 @@ def test_dwells_lost_in_noise_do_not_lead_astray() -> None:
     shown = torque + 0.01 * np.random.default_rng(0).standard_normal(72)
     assert np.any(shown < 0.0)
     run = RunDwells(speed, heat, shown, shown + 0.2, np.full(72, 0.01))
-    told = TorqueSurface(run, kernel).at(np.array([6.0]), np.array([400.0]))
-    assert np.abs(np.log(told.torque[0] / (0.01 * 6.0**0.4))) < 3.0 * told.error[0]
-    assert told.error[0] < 0.4
+    found = TorqueSurface(run, kernel).at(np.array([6.0]), np.array([400.0]))
+    assert np.abs(np.log(found.torque[0] / (0.01 * 6.0**0.4))) < 3.0 * found.error[0]
+    assert found.error[0] < 0.4
 
 
 def test_too_few_dwells_are_refused() -> None:
@@ -162,7 +164,7 @@ def test_it_is_universal_kriging() -> None:
     grid = np.meshgrid(np.geomspace(1.0, 20.0, 6), [350.0, 380.0, 420.0, 450.0])
     run = power_law(grid[0].ravel(), grid[1].ravel(), 0)
     at = np.array([2.5, 13.0, 40.0]), np.array([365.0, 430.0, 480.0])
-    told = TorqueSurface(run, kernel).at(*at)
+    found = TorqueSurface(run, kernel).at(*at)
 
     def terms(speed: FloatArray, heat: FloatArray) -> FloatArray:
         u, t = np.log(speed) - 1.5, (heat - 400.0) / 50.0
@@ -177,7 +179,7 @@ def test_it_is_universal_kriging() -> None:
     system = np.block([[between(here, here) + np.diag(noise), trend], [trend.T, np.zeros((6, 6))]])
     right = np.vstack([between(here, at), terms(*at).T])
     weights = np.linalg.solve(system, right)
-    assert np.log(told.torque) == pytest.approx(weights[:24].T @ np.log(run.torque), abs=1e-3)
+    assert np.log(found.torque) == pytest.approx(weights[:24].T @ np.log(run.torque), abs=1e-3)
     variance = kernel.deviation**2 - np.sum(weights * right, axis=0)
-    assert told.error == pytest.approx(np.sqrt(variance), rel=1e-2)
-    assert told.error[2] > 0.3  # far beyond the dwells the trend adds as much as the deviation
+    assert found.error == pytest.approx(np.sqrt(variance), rel=1e-2)
+    assert found.error[2] > 0.3  # far beyond the dwells the trend adds as much as the deviation

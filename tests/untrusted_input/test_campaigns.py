@@ -153,7 +153,7 @@ TABLES: dict[str, tuple[Spoil, str]] = {
     "statistics of a planner": (execute("ANALYZE"), "table 'sqlite_stat1'"),
     "another program's": (execute("PRAGMA application_id = 7"), "is no campaign"),
     "no program's": (execute("PRAGMA application_id = 0"), "is no campaign"),
-    "a newer version": (execute("PRAGMA user_version = 2"), "a newer hersey"),
+    "a newer version": (execute(f"PRAGMA user_version = {store.VERSION + 1}"), "a newer hersey"),
     "version 0": (execute("PRAGMA user_version = 0"), "version 0"),
     "version -1": (execute("PRAGMA user_version = -1"), "version -1"),
     "twenty thousand tables": (

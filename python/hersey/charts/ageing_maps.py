@@ -13,7 +13,7 @@ from hersey.units import celsius
 
 #: Width of all panels together without the gaps between them, and their height, px.
 _ALL, _HEIGHT = 640, 320
-#: Regions of the operating map that are told here, from slow to fast.
+#: Regions of the operating map that are shown here, from slow to fast.
 _TOLD = ("motor", "stick_slip", "bistable", "smooth")
 
 
@@ -23,7 +23,7 @@ def ageing_maps_chart(result: AgeingMaps) -> Chart:
     panels = [_panel(result, index, width) for index in range(len(result.when))]
     title = alt.Title(
         f"Operating map of {result.unit} through its life",
-        subtitle=["solid: transition; dashed: V*; points: operating points", *result.notes],
+        subtitle=["solid: transition; dashed: V*; points: operating points", *map(str, result.warnings)],
     )
     chart: Chart = alt.hconcat(*panels, title=title, spacing=14)
     return chart

@@ -22,7 +22,7 @@ from hersey.charts.style import (
     stacked,
     tip,
 )
-from hersey.life.film.through_life import STARVED, FilmLife, Told
+from hersey.life.film.through_life import STARVED, Estimates, FilmLife
 
 #: Units drawn by themselves, in rows of so many, and the size of each.
 _SHOWN, _ACROSS = 8, 4
@@ -92,8 +92,8 @@ def _over_flooded(film: FilmLife, ages: BoolArray, names: list[str]) -> Chart:
     return alt.layer(*layers, title=title, width=WIDTH, height=_HEIGHT)
 
 
-def _runs(film: FilmLife, read: Told, *, most: float, unit: str = "", factor: float = 1.0) -> list[Row]:
-    """Rows of the runs that tell something, of one unit or of all; ends that are not told at ``most``."""
+def _runs(film: FilmLife, read: Estimates, *, most: float, unit: str = "", factor: float = 1.0) -> list[Row]:
+    """Rows of the runs with an estimate, of one unit or of all; unknown ends at ``most``."""
     names = enumerate(film.runs.unit)
     chosen = [i for i, name in names if np.isfinite(read.value[i]) and (not unit or name == unit)]
     return rows_of(

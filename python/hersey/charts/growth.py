@@ -37,8 +37,8 @@ def growth_chart(growth: Growth, *, ages: AgesAtLimit | None = None, si: str = "
     Of many units the first are shown. ``si`` is the unit of the values.
     """
     count = min(len(growth.units), _SHOWN)
-    told = {each.unit: each for each in ages.units} if ages else {}
-    known = [told[unit] for unit in growth.units[:count] if unit in told]
+    by_unit = {each.unit: each for each in ages.units} if ages else {}
+    known = [by_unit[unit] for unit in growth.units[:count] if unit in by_unit]
     end = axis_end(max(growth.last_age), [each.age.value for each in known])
     at = np.linspace(0.0, end, _POINTS)
     curves, runs = growth.at(at), growth.runs_of_units()
@@ -65,8 +65,8 @@ def growth_chart(growth: Growth, *, ages: AgesAtLimit | None = None, si: str = "
         if line is not None:
             rule = plot([{"value": line}]).mark_rule(color=INK, strokeDash=[4, 3])
             layers.append(rule.encode(y=alt.Y("value:Q", title=title)))
-        if unit in told:
-            layers += _age(told[unit], line if line is not None else top / _FREE, axes, title)
+        if unit in by_unit:
+            layers += _age(by_unit[unit], line if line is not None else top / _FREE, axes, title)
         name = alt.Title(unit, fontSize=12)
         panels.append(alt.layer(*layers, title=name, width=axes.width, height=axes.height))
     rows = [alt.hconcat(*panels[i : i + columns], spacing=12) for i in range(0, count, columns)]
@@ -111,17 +111,17 @@ def _curve(
     return [area, line.encode(x=x, y=median, tooltip=tips), points.encode(x=x, y=value, tooltip=seen)]
 
 
-def _age(told: AgeAtLimit, height: float, axes: _Axes, title: str | None) -> list[alt.Chart]:
+def _age(reached: AgeAtLimit, height: float, axes: _Axes, title: str | None) -> list[alt.Chart]:
     """The interval of the age, as far as it lies within the axis, and its median."""
-    span = {"low": told.age.low, "high": min(told.age.high, axes.end), "value": height}
-    mark = {**span, "age": told.age.value}
+    span = {"low": reached.age.low, "high": min(reached.age.high, axes.end), "value": height}
+    mark = {**span, "age": reached.age.value}
     tips = [tip("age", "age at the limit"), tip("low", "from"), tip("high", "to")]
     y = alt.Y("value:Q", scale=axes.value, title=title)
     layers = []
-    if told.age.low < axes.end:
+    if reached.age.low < axes.end:
         rule = plot([span]).mark_rule(color=ORANGE, strokeWidth=4, clip=True)
         layers.append(rule.encode(x=alt.X("low:Q", scale=axes.age), x2="high:Q", y=y))
-    if told.age.value < axes.end:
+    if reached.age.value < axes.end:
         point = plot([mark]).mark_point(**(DIAMOND | {"stroke": ORANGE, "size": 70, "strokeWidth": 2}))
         layers.append(point.encode(x=alt.X("age:Q", scale=axes.age), y=y, tooltip=tips))
     return layers

@@ -80,18 +80,20 @@ def _rows(found: TimeToFailure, named: dict[str, str], order: list[str], end: fl
     likely = {each.unit: max(each.first, key=lambda name: each.first[name]) for each in found.units}
     return [
         {
-            "unit": told.unit,
+            "unit": reached.unit,
             "way": named[mode.name],
-            "age": told.age.value if told.age.value <= end else None,
-            "low": told.age.low,
-            "high": min(told.age.high, end),
-            "to": told.age.high if math.isfinite(told.age.high) else None,
-            "first": named[mode.name] if likely[told.unit] == mode.name and told.age.value <= end else None,
+            "age": reached.age.value if reached.age.value <= end else None,
+            "low": reached.age.low,
+            "high": min(reached.age.high, end),
+            "to": reached.age.high if math.isfinite(reached.age.high) else None,
+            "first": named[mode.name]
+            if likely[reached.unit] == mode.name and reached.age.value <= end
+            else None,
         }
         for mode in found.modes
         if mode.name in named
-        for told in mode.ages.units
-        if told.unit in order and told.age.low < end
+        for reached in mode.ages.units
+        if reached.unit in order and reached.age.low < end
     ]
 
 

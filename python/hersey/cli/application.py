@@ -47,7 +47,7 @@ VERBS = {
         "Compare two lubricants, ages or units: ratio of damping, change of exponents and of the transition."
     ),
     "campaign": "Keep the runs of a life test, many units at many ages, in one file: add, list, check.",
-    "life": ("Say what ends the units of a life test, and when: growth, film, drift, what to measure next."),
+    "life": "Predict which units of a life test fail first, how, and when, and what to measure next.",
     "design": (
         "Propose the next dwells to record: those that make the fitted law, or one quantity, known best."
     ),

@@ -63,9 +63,9 @@ def add(
     Example: [bold]hersey campaign add life.hersey examples/bench.csv --unit F12 --age '120000 pages'
     --tare standing[/bold]
 
-    A log that is there already is left alone; one that has changed, or is under another unit or age, is told,
-    and replaced with --force. With a table all its runs are added, or of the logs given those that it names;
-    what fails is left out, as with --keep-going. Exit code 1 says that a run could not be added.
+    A log that is there already is skipped; one that has changed, or is under another unit or age, is an
+    error, and replaced with --force. With a table all its runs are added, or of the logs given those that it
+    names; what fails is excluded, as with --keep-going. Exit code 1 says that a run could not be added.
     """
     if table is None and not runs:
         raise ParameterError("give either RUN... with --unit and --age, or --table with runs in rows")
@@ -187,9 +187,9 @@ class _Adding:
 
 
 def _noted(added: Added) -> str:
-    """The outcome of a run that was added, whose notes are said."""
-    for note in added.notes:
-        say(f"{added.path}: {note}", file=sys.stderr)
+    """The outcome of a run that was added, whose warnings are printed."""
+    for warning in added.warnings:
+        say(f"{added.path}: {warning}", file=sys.stderr)
     return added.outcome
 
 
@@ -203,7 +203,7 @@ def list_(file: _File, as_json: AsJson = False) -> None:
 
     with Campaign.open(file, write=False) as opened:
         if as_json:
-            print_json(opened.to_dict(), findings=None)
+            print_json(opened.to_dict(), warnings=None)
         else:
             say(opened.summary())
 
@@ -222,7 +222,7 @@ def show(
 
     with Campaign.open(file, write=False) as opened:
         if as_json:
-            print_json(opened.to_dict(unit), findings=None)
+            print_json(opened.to_dict(unit), warnings=None)
             return
         for row in opened.runs(unit).to_dicts():
             facts = [f"run {row['run']} at {Age(row['age'], opened.age_unit)}", f"{row['dwells']} dwells"]
@@ -249,7 +249,7 @@ def check(file: _File, as_json: AsJson = False) -> None:
         with bar("checking", unit="runs") as progress:
             found = opened.check(progress)
         if as_json:
-            print_json(opened.to_dict(), findings=found.findings)
+            print_json(opened.to_dict(), warnings=found.warnings)
         else:
             say(found.summary())
     if not found.ok:

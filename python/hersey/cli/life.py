@@ -10,7 +10,7 @@ from hersey.cli.options import AsJson, Figures, Force
 from hersey.cli.outputs import PAGES, command, may_write, may_write_folder, show
 from hersey.cli.progress import steps, working
 
-_MACHINE = "Machine's file: limits, operating points, film."
+_MACHINE = "Machine file: limits, operating points, film."
 
 
 @grouped
@@ -21,11 +21,11 @@ def life(
     out: Annotated[Path | None, option("The page to write, .html.  [default: life.html]")] = None,
     figures: Figures = None,
     unit: Annotated[str, option("Whose maps are drawn.  [default: the unit that ends next]")] = "",
-    seed: Annotated[int, option("Of all draws.", min=0)] = 0,
+    seed: Annotated[int, option("Random seed.", min=0)] = 0,
     as_json: AsJson = False,
     force: Force = False,
 ) -> None:
-    """Say what ends the units of a life test, and when: growth, film, drift, what to measure next.
+    """Predict which units of a life test fail first, how, and when, and what to measure next.
 
     Example: [bold]hersey life life.hersey --machine examples/machine.toml[/bold]
 

@@ -1,7 +1,7 @@
 """The operating map of a specimen when new, as last seen, and when it ends.
 
 Torque between the dwells of a run is that of its `TorqueSurface`, without a law. To the end it is carried on
-by a clock, the growth of the torque that its own growth law tells: at each speed and temperature ln torque
+by a clock, the growth of the torque by its own growth law: at each speed and temperature ln torque
 went with ln of the clock over the ages seen, and goes on so.
 """
 
@@ -20,6 +20,7 @@ from hersey.life.indicators.sticking import belt_drag, edges
 from hersey.life.indicators.torque_surface import RunDwells, TorqueSurface, shared_kernel
 from hersey.machine.limits import OperatingPoint
 from hersey.result import Means, Result
+from hersey.schema.warning import Warning
 from hersey.units import celsius
 
 if TYPE_CHECKING:
@@ -36,6 +37,14 @@ TEMPERATURES, SPEEDS = 21, 61
 CLOCK = "motor torque"
 #: Temperatures (K) that are one, and how far beyond the dwells an operating point is drawn.
 _APART, _BESIDE = 5.0, 10.0
+#: What is to be known of all maps, and of that at the end.
+_WITHOUT_LAW = Warning("torque without a law", "torque between the dwells, without a law")
+_EXTRAPOLATED = Warning(
+    "torque extrapolated",
+    "torque extrapolated as it grew, at the middle of the interval of that age",
+    severity="watch",
+    where="end",
+)
 
 
 @dataclass(frozen=True, repr=False)
@@ -63,7 +72,7 @@ class AgeingMaps(Result):
     torque_limit: float | None
     points: tuple[OperatingPoint, ...]
     roll_radius: Annotated[float, Means(unit="m")]
-    notes: tuple[str, ...] = ()
+    warnings: tuple[Warning, ...] = ()
 
     @property
     def names(self) -> list[str]:
@@ -95,7 +104,7 @@ class AgeingMaps(Result):
                 states = (f"{when} {self.state(i, point)}" for i, when in enumerate(self.when))
                 at = f"{1e3 * point.speed:.3g} mm/s at {celsius(point.temperature):.3g} degC"
                 lines.append(f"  {point.name}, {at}: {', '.join(states)}")
-        return "\n".join([*lines, *(f"- {note}" for note in self.notes)])
+        return "\n".join([*lines, *(f"- {each}" for each in self.warnings)])
 
     def to_frame(self) -> pl.DataFrame:
         """Return one row per age and temperature."""
@@ -145,18 +154,18 @@ def ageing_maps(campaign: Campaign, machine: Machine, found: TimeToFailure, *, u
     ParameterError
         If there is no such specimen.
     InsufficientDataError
-        If its runs do not tell torque against temperature.
+        If its runs do not show torque against temperature.
     """
     end = _chosen(found, unit)
     runs = read_runs_of(campaign, machine.rest)
     own = [
         (age, dwells, rest)
-        for (i, dwells, rest), age in ((told, runs.runs.age[told[0]]) for told in runs.told())
+        for (i, dwells, rest), age in ((each, runs.runs.age[each[0]]) for each in runs.usable())
         if runs.runs.unit[i] == end.unit
     ]
     if not own or any(not np.ptp(dwells.temperature) > _APART for _, dwells, _ in own):
-        raise InsufficientDataError(f"the runs of {end.unit} do not tell torque against temperature")
-    kernel = shared_kernel([dwells for _, dwells, _ in runs.told()])
+        raise InsufficientDataError(f"the runs of {end.unit} do not show torque against temperature")
+    kernel = shared_kernel([dwells for _, dwells, _ in runs.usable()])
     hot, speed = _grid(own[0][1], machine)
     rolls = speed / machine.roll_radius
     belts = np.log([_torques(TorqueSurface(dwells, kernel), hot, rolls) for _, dwells, _ in own])
@@ -164,18 +173,18 @@ def ageing_maps(campaign: Campaign, machine: Machine, found: TimeToFailure, *, u
     shown = [(ages[0], "new" if ages[0] == 0.0 else "first", belts[0], own[0][2])]
     if ages[-1] > ages[0]:
         shown.append((ages[-1], "now", belts[-1], own[-1][2]))
-    notes = ["torque between the dwells, without a law"]
+    warnings = [_WITHOUT_LAW]
     last = end.age.age.value
     if ages[0] < ages[-1] < last < np.inf:
         clock = _clock(found, end.unit, np.append(ages, last))
         shown.append((last, "end", carried_on(belts, clock[:-1], float(clock[-1])), own[-1][2]))
-        notes.append("end: torque carried on as it grew, at the middle of the interval of that age")
-    wholes, found_edges = [], []
+        warnings.append(_EXTRAPOLATED)
+    drive_torques, found_edges = [], []
     for _, _, belt, rest in shown:
-        beside = (
+        no_load = (
             np.zeros_like(belt) if rest is None else np.array([rest.torque(rolls, t) for t in hot.tolist()])
         )
-        wholes.append(np.exp(belt) + beside)
+        drive_torques.append(np.exp(belt) + no_load)
         rows = zip(np.exp(belt), hot.tolist(), strict=True)
         found_edges.append([edges(machine.train, belt_drag(machine, rest, speed, row, t)) for row, t in rows])
     transition, upper = np.moveaxis(np.nan_to_num(np.array(found_edges)), -1, 0)
@@ -186,13 +195,13 @@ def ageing_maps(campaign: Campaign, machine: Machine, found: TimeToFailure, *, u
         when=tuple(word for _, word, _, _ in shown),
         temperature=hot,
         speed=speed,
-        torque=np.array(wholes),
+        torque=np.array(drive_torques),
         transition=transition,
         upper=np.maximum(upper, transition),
         torque_limit=machine.limits.motor_torque,
         points=machine.points,
         roll_radius=machine.roll_radius,
-        notes=tuple(notes),
+        warnings=tuple(warnings),
     )
 
 
@@ -210,7 +219,7 @@ def _chosen(found: TimeToFailure, unit: str) -> SpecimenEnd:
 
 
 def _clock(found: TimeToFailure, unit: str, ages: FloatArray) -> FloatArray:
-    """How far a specimen has aged at ages: ln of the growth of its torque, or the ages where none is told."""
+    """How far a specimen has aged at ages: ln of the growth of its torque, else the ages."""
     for mode in found.modes:
         if mode.kind == CLOCK and unit in mode.growth.units:
             return np.asarray(np.log(mode.growth.at(ages).median[mode.growth.units.index(unit)]))

@@ -136,7 +136,7 @@ class SNCurve:
             if worst >= self.ultimate:
                 raise ParameterError(
                     f"a peak of {worst:.6g} N m reaches the ultimate torque {self.ultimate:g} N m: the part "
-                    "breaks at once, and no S-N curve tells its life",
+                    "breaks at once, and no S-N curve gives its life",
                     quantity="ultimate",
                     value=worst,
                     limit=self.ultimate,

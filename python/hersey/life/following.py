@@ -16,6 +16,7 @@ from hersey.life.indicators.of_campaign import indicators_of
 from hersey.life.other_uses import OtherUses, other_uses
 from hersey.life.time_to_failure.estimate import TimeToFailure, time_to_failure
 from hersey.result import Result
+from hersey.schema.warning import Warning
 
 if TYPE_CHECKING:
     import polars as pl
@@ -29,7 +30,7 @@ Step = Callable[[str], None]
 
 @dataclass(frozen=True, repr=False)
 class LifeTest(Result):
-    """A life test followed; what cannot be told is None, and ``unsaid`` says why."""
+    """A life test followed; what cannot be computed is None, and ``warnings`` say why."""
 
     also_stated = ("file",)
     not_stated = ("name", "indicators")
@@ -41,7 +42,7 @@ class LifeTest(Result):
     film: FilmLife | None
     maps: AgeingMaps | None
     uses: OtherUses | None
-    unsaid: tuple[str, ...]
+    warnings: tuple[Warning, ...]
     seed: int
 
     def headline(self) -> str:
@@ -49,10 +50,10 @@ class LifeTest(Result):
         return self.time_to_failure.headline()
 
     def summary(self) -> str:
-        """Return the answer as text: what ends the specimens, what moved, the film, what is not told."""
+        """Return the answer as text: what ends the specimens, what moved, the film, what is not known."""
         parts = [self.time_to_failure.summary()]
         parts += [each.summary() for each in (self.drift, self.film, self.maps) if each is not None]
-        parts += [f"- {line}" for line in self.unsaid]
+        parts += [f"- {each}" for each in self.warnings]
         return "\n".join(parts)
 
     @property
@@ -80,34 +81,36 @@ def follow(
     Parameters
     ----------
     campaign
-        Of one run or more; more ages and specimens tell more.
+        Of one run or more; more ages and specimens show more.
     machine
         Its limits and operating points say what ends a specimen; contact and lubricant make the film.
     seed
-        Of all draws.
+        Random seed.
     unit
         Whose maps are drawn; the one that ends next if left out.
     uses
-        Whether the ages are told for other limits, coldest starts and duties too.
+        Whether the ages are computed for other limits, coldest starts and duties too.
     step
         Called with what is begun.
 
     Raises
     ------
     InsufficientDataError
-        If no indicator can be told of any run.
+        If no run shows any indicator.
     ParameterError
         If the campaign has no such specimen.
     """
     said = step or (lambda _text: None)
-    unsaid: list[str] = []
+    warnings: list[Warning] = []
 
     def tried(text: str, make: Callable[[], Any]) -> Any:
         said(text)
         try:
             return make()
         except HerseyError as error:
-            unsaid.append(f"{text}: {error}")
+            warnings.append(
+                Warning("not computed", "{reason}", severity="act", where=text, reason=str(error))
+            )
             return None
 
     said("torque at the limits")
@@ -127,4 +130,4 @@ def follow(
         if uses
         else None
     )
-    return LifeTest(campaign.path.name, indicators, found, drift, film, maps, others, tuple(unsaid), seed)
+    return LifeTest(campaign.path.name, indicators, found, drift, film, maps, others, tuple(warnings), seed)

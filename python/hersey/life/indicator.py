@@ -10,9 +10,13 @@ import numpy as np
 from hersey.arrays import FloatArray, IntArray
 from hersey.errors import ParameterError
 from hersey.result import Record
+from hersey.schema.warning import Warning
 
 if TYPE_CHECKING:
     from hersey.life.campaign import Campaign
+
+#: Kind of the warning that a failure mode, named by where, is not judged.
+NOT_JUDGED = "mode not judged"
 
 
 @dataclass(frozen=True, repr=False)
@@ -59,12 +63,12 @@ class OwnAges:
 class Indicator:
     """One failure mode.
 
-    ``value`` is positive, NaN where a run does not tell it, and grows toward ``limit``, both in ``si``; one
+    ``value`` is positive, NaN where a run does not show it, and grows toward ``limit``, both in ``si``; one
     that ``accumulates`` is a rate per age, and the limit is that of its integral from age 0. ``error`` is its
     relative standard error; ``limit_error`` that of the limit and of the sensor, common to all runs. ``kind``
-    is the failure in two or three words, ``name`` tells it from others of its kind. A ``sign`` comes early,
-    and a specimen that reaches its limit has not ended. Where ``own_ages`` are told they stand in the place
-    of those of a law of growth.
+    is the failure in two or three words, ``name`` distinguishes it from others of its kind. A ``sign``
+    comes early, and a specimen that reaches its limit has not ended. Where ``own_ages`` are given they
+    replace those of a law of growth.
     """
 
     name: str
@@ -77,23 +81,23 @@ class Indicator:
     accumulates: bool = False
     sign: bool = False
     own_ages: OwnAges | None = None
-    notes: tuple[str, ...] = ()
+    warnings: tuple[Warning, ...] = ()
 
     def __post_init__(self) -> None:
         """Check the numbers."""
-        told = np.isfinite(self.value)
+        known = np.isfinite(self.value)
         if not (np.isfinite(self.limit) and self.limit > 0.0):
             raise ParameterError(f"the limit of {self.name} is {self.limit:g}: it must be positive")
-        if self.value.shape != self.error.shape or np.any(self.value[told] <= 0.0):
+        if self.value.shape != self.error.shape or np.any(self.value[known] <= 0.0):
             raise ParameterError(f"{self.name} must be positive and have an error for each run")
-        if np.any(~(self.error[told] >= 0.0)):
+        if np.any(~(self.error[known] >= 0.0)):
             raise ParameterError(f"an error of {self.name} is negative or no number")
 
 
 @dataclass(frozen=True, repr=False)
 class Indicators:
-    """Runs and the failure modes that they tell; ``unsaid``: those that they cannot, and why."""
+    """Runs and the failure modes that they show; ``warnings``: which modes are not judged, and why."""
 
     runs: Runs
     each: tuple[Indicator, ...]
-    unsaid: tuple[str, ...] = ()
+    warnings: tuple[Warning, ...] = ()

@@ -22,7 +22,7 @@ from scipy import special
 
 from hersey.arrays import FloatArray
 
-#: Sharpness g of starvation where nothing tells it, as `film_thickness` has it.
+#: Sharpness g of starvation where nothing else is known, as `film_thickness` has it.
 USUAL_SHARPNESS = 3.0
 #: Greatest 2 e t: a layer beyond exp(-50) of the new one is gone, whatever the number.
 _MOST_LOST = 100.0

@@ -59,7 +59,7 @@ class Use(Record):
         bool, Means("the use that the machine's file states")
     ]  #: the use that the machine's file states
     ends: Annotated[
-        tuple[UseEnd, ...], Means("units, then a tenth and half of new units; empty if not told")
+        tuple[UseEnd, ...], Means("units, then a tenth and half of new units; empty if not known")
     ]  #: specimens, a tenth and half of new specimens; none where nothing can be followed
 
 
@@ -75,11 +75,11 @@ class OtherUses(Result):
 
     def headline(self) -> str:
         """Return how far the age of half the population moves."""
-        told = [use for use in self.uses if use.ends]
-        ages = [use.ends[-1].age.value for use in told]
+        followed = [use for use in self.uses if use.ends]
+        ages = [use.ends[-1].age.value for use in followed]
         unit = f" {self.age_unit}" if self.age_unit else ""
         low, high = (f"{float(f'{age:.3g}'):.10g}" for age in (min(ages), max(ages)))
-        return f"half of new specimens end between {low} and {high}{unit} in {len(told)} uses"
+        return f"half of new specimens end between {low} and {high}{unit} in {len(followed)} uses"
 
     def summary(self) -> str:
         """Return one line per use: when half of new specimens have ended."""
@@ -121,10 +121,10 @@ def other_uses(
     campaign, machine
         As for `follow`.
     indicators
-        Of the use that the machine's file states; ways that hang on none of limit, cold and duty (the film's)
-        are taken from here.
+        Of the use that the machine's file states; ways that depend on none of limit, cold and duty (the
+        film's) are taken from here.
     seed
-        Of the draws, that of `time_to_failure`: the stated use is then told with the same numbers.
+        Of the draws, that of `time_to_failure`: the stated use then has the same numbers.
     progress
         Called with uses done and uses in all.
 
@@ -137,7 +137,7 @@ def other_uses(
     cold = _coldest(campaign, machine)
     limits = () if limit is None else tuple(limit * factor for factor in _LIMITS)
     starts = () if cold is None or limit is None else tuple(cold + colder for colder in _COLDER)
-    points = tuple(point.name for point in machine.points) if _hangs_on_duty(machine) else ()
+    points = tuple(point.name for point in machine.points) if _depends_on_duty(machine) else ()
     duties = (AS_STATED, *points)
     if not limits and not points:
         raise ParameterError("no other use: state [limits] motor_torque to see the ages move with it")
@@ -209,7 +209,7 @@ def _words(use: Use) -> str:
     return f"{words}: {use.ends[-1].age if use.ends else 'nothing can be followed'}"
 
 
-def _hangs_on_duty(machine: Machine) -> bool:
+def _depends_on_duty(machine: Machine) -> bool:
     """Whether a failure mode sums over the points, and there is more than one."""
     sums = machine.gear is not None or any(
         value is not None for value in (machine.life.continuous_torque, machine.life.energy)
@@ -220,7 +220,7 @@ def _hangs_on_duty(machine: Machine) -> bool:
 def _in_use(
     campaign: Campaign, machine: Machine, stated: Indicators, coldest: float | None, duty: str
 ) -> Indicators:
-    """The indicators in another use; those that do not hang on it as they are."""
+    """The indicators in another use; those that do not depend on it as they are."""
     points = machine.points
     if duty != AS_STATED:
         points = tuple(replace(point, share=float(point.name == duty)) for point in points)

@@ -17,11 +17,12 @@ from scipy.special import betaincinv
 from hersey.arrays import BoolArray, FloatArray, numbers_of
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.result import OPEN, Record, Result, json_record, table_of
+from hersey.schema.warning import Warning
 
 if TYPE_CHECKING:
     import polars as pl
 
-#: Fewest failures that tell a law, and fewest whose law is given without a word of warning.
+#: Fewest failures that determine a law, and fewest whose law is given without a warning.
 _LEAST, _FEW = 2, 4
 #: Draws behind the intervals: their ends scatter by a percent or two of their width.
 _DRAWS = 4000
@@ -36,7 +37,7 @@ class BLife(Record):
     share: float
     age: float
     low: float
-    high: Annotated[float, OPEN]  #: infinite where no upper end is told
+    high: Annotated[float, OPEN]  #: infinite where no upper end is known
     level: float
 
     @property
@@ -49,8 +50,8 @@ class BLife(Record):
 class Population(Result):
     """What specimens that failed, and specimens that did not, say of all specimens like them.
 
-    ``ages`` (ascending) are in ``unit``; ``failed`` tells which are ages at failure. ``shape``, ``scale`` and
-    their intervals at ``level`` are None where too few specimens have failed: ``note`` says so.
+    ``ages`` (ascending) are in ``unit``; ``failed`` marks the ages at failure. ``shape``, ``scale`` and
+    their intervals at ``level`` are None where too few specimens have failed: ``warnings`` say so.
     """
 
     ages: FloatArray
@@ -61,7 +62,7 @@ class Population(Result):
     scale_interval: tuple[float, float] | None
     level: float
     unit: str
-    note: str
+    warnings: tuple[Warning, ...]
     seed: int
 
     def b_life(self, share: float) -> BLife:
@@ -72,12 +73,12 @@ class Population(Result):
         ParameterError
             If the share is not between 0 and 1.
         InsufficientDataError
-            If too few specimens have failed to tell.
+            If too few specimens have failed.
         """
         if not 0 < share < 1:
             raise ParameterError(f"share is {share}: it must lie between 0 and 1", quantity="share")
         if self.shape is None or self.scale is None:
-            raise InsufficientDataError(self.note)
+            raise InsufficientDataError(self.warnings[0].sentence)
         age, low, high = (float(each[0]) for each in self.lives([share]))
         return BLife(share, age, low, high, self.level)
 
@@ -87,15 +88,15 @@ class Population(Result):
         Raises
         ------
         InsufficientDataError
-            If too few specimens have failed to tell.
+            If too few specimens have failed.
         """
         if self.shape is None or self.scale is None:
-            raise InsufficientDataError(self.note)
+            raise InsufficientDataError(self.warnings[0].sentence)
         place = _place(np.asarray(shares, dtype=float))
         scale, shape = self._drawn
-        # (ln of the age told - ln of the true one) x shape told has one law, whatever the truth.
-        off = shape[:, None] * (np.log(scale)[:, None] - place) + place
-        early, late = np.quantile(off, [0.5 + self.level / 2, 0.5 - self.level / 2], axis=0)
+        # (ln of the estimated age - ln of the true one) x estimated shape has one law, whatever the truth.
+        pivot = shape[:, None] * (np.log(scale)[:, None] - place) + place
+        early, late = np.quantile(pivot, [0.5 + self.level / 2, 0.5 - self.level / 2], axis=0)
         middle = np.log(self.scale) + place / self.shape
         with np.errstate(over="ignore"):
             return np.exp(middle), np.exp(middle - early / self.shape), np.exp(middle - late / self.shape)
@@ -116,7 +117,7 @@ class Population(Result):
 
     @cached_property
     def _drawn(self) -> tuple[FloatArray, FloatArray]:
-        return _told_of_standard(_plan(self.failed), self.seed)
+        return _estimates_of_standard(_plan(self.failed), self.seed)
 
     def verdict(self) -> str:
         """Return what the shape says, in a sentence; empty if there is none."""
@@ -127,14 +128,14 @@ class Population(Result):
             return "The rate of failures grows with age: specimens wear out."
         if high < 1:
             return "The rate of failures falls with age: weak specimens fail early."
-        return "Whether the rate of failures grows or falls with age is not told."
+        return "Whether the rate of failures grows or falls with age is unknown."
 
     def headline(self) -> str:
         """Return how many failed, and B10 and B50."""
         count = int(self.failed.sum())
         head = f"{self.ages.size} specimens, {count} failed"
         if self.shape is None:
-            return f"{head}: no law is told"
+            return f"{head}: no law is known"
         lives = (self.b_life(share) for share in (0.10, 0.50))
         return head + "".join(f", {each.name} {_written(each.age, 3)}{self._behind}" for each in lives)
 
@@ -160,16 +161,16 @@ class Population(Result):
                 if value is not None and interval is not None
             ]
             lines += [f"Weibull law by maximum likelihood, intervals at {percent}.", self.verdict()]
-        return "\n".join([*lines, *([self.note] if self.note else [])])
+        return "\n".join([*lines, *(each.sentence for each in self.warnings)])
 
     def to_dict(self) -> dict[str, Any]:
-        """Return every field, B10, B50 and the median ranks; None for what is not told."""
-        told = self.shape is not None
+        """Return every field, B10, B50 and the median ranks; None for what is not known."""
+        estimable = self.shape is not None
         return json_record(
             {
                 **{each.name: getattr(self, each.name) for each in fields(self)},
-                "b10": self.b_life(0.10) if told else None,
-                "b50": self.b_life(0.50) if told else None,
+                "b10": self.b_life(0.10) if estimable else None,
+                "b50": self.b_life(0.50) if estimable else None,
                 "median_ranks": self.median_ranks[1],
                 "verdict": self.verdict(),
             }
@@ -220,8 +221,8 @@ def weibull(
 
     Examples
     --------
-    >>> told = weibull([54, 187, 216, 240, 244, 335, 361, 373, 375, 386, 500], [True] * 10 + [False])
-    >>> round(told.shape, 3), round(told.scale, 1)
+    >>> law = weibull([54, 187, 216, 240, 244, 335, 361, 373, 375, 386, 500], [True] * 10 + [False])
+    >>> round(law.shape, 3), round(law.scale, 1)
     (2.457, 340.5)
     """
     if not 0 < level < 1:
@@ -230,15 +231,17 @@ def weibull(
     # At one age failures come first: a specimen last seen there had outlived it.
     order = np.lexsort((~ends, values))
     values, ends = values[order], ends[order]
-    note = _note(values, ends, unit)
-    if note and not _is_told(values, ends):
-        return Population(values, ends, None, None, None, None, level, unit, note, seed)
+    warnings = _warnings(values, ends, unit)
+    if not _is_estimable(values, ends):
+        return Population(values, ends, None, None, None, None, level, unit, warnings, seed)
     shape, scale = _fitted(np.log(values)[None, :], np.ones(values.size), ends)
     shapes = np.quantile(
-        _told_of_standard(_plan(ends), seed)[1], [0.5 + level / 2, 0.5 - level / 2]
+        _estimates_of_standard(_plan(ends), seed)[1], [0.5 + level / 2, 0.5 - level / 2]
     )  # of a shape of 1: their ratio to the true one
     bounds = (float(shape[0] / shapes[0]), float(shape[0] / shapes[1]))
-    law = Population(values, ends, float(shape[0]), float(scale[0]), bounds, None, level, unit, note, seed)
+    law = Population(
+        values, ends, float(shape[0]), float(scale[0]), bounds, None, level, unit, warnings, seed
+    )
     _, low, high = law.lives([1 - np.exp(-1.0)])
     return replace(law, scale_interval=(float(low[0]), float(high[0])))
 
@@ -258,26 +261,47 @@ def _checked(ages: ArrayLike, failed: ArrayLike) -> tuple[FloatArray, BoolArray]
     return values, ends
 
 
-def _is_told(ages: FloatArray, failed: BoolArray) -> bool:
-    """Whether a law can be told: two failures, and some specimen that outlived the first of them."""
+def _is_estimable(ages: FloatArray, failed: BoolArray) -> bool:
+    """Whether a law can be estimated: two failures, and some specimen that outlived the first of them."""
     return bool(failed.sum() >= _LEAST and ages[failed].min() < ages.max())
 
 
-def _note(ages: FloatArray, failed: BoolArray, unit: str) -> str:
-    """What is to be said of few failures; empty if nothing."""
-    count, behind = int(failed.sum()), f" {unit}" if unit else ""
-    way = "Follow specimens until more have failed."
-    if count == 0:
-        return f"No specimen has failed up to {ages.max():.6g}{behind}: no law of failures is told. {way}"
-    if count == 1:
-        only = f"{ages[failed][0]:.6g}{behind}"
-        return f"One specimen has failed, at {only}: one failure tells no spread, so no law. {way}"
-    if not _is_told(ages, failed):
-        return f"All failed at {ages.max():.6g}{behind}: one age tells no spread, so no law. {way}"
-    if count < _FEW:
-        number = "Two" if count == _LEAST else "Three"
-        return f"{number} failures tell little of the spread: the intervals are wide. {way}"
-    return ""
+def _warnings(ages: FloatArray, failed: BoolArray, unit: str) -> tuple[Warning, ...]:
+    """What is to be known of few failures; nothing where there are more."""
+    count = int(failed.sum())
+    if count >= _FEW and _is_estimable(ages, failed):
+        return ()
+    last = float(ages.max() if count != 1 else ages[failed][0])
+    if not _is_estimable(ages, failed):
+        return (_no_law(count, f"{last:.6g} {unit}".strip(), last),)
+    return (
+        Warning(
+            "few failures",
+            "two failures show little of the spread, so the intervals are wide"
+            if count == _LEAST
+            else "three failures show little of the spread, so the intervals are wide",
+            remedy="follow specimens until more have failed",
+            severity="watch",
+            failures=count,
+        ),
+    )
+
+
+def _no_law(count: int, shown: str, age: float) -> Warning:
+    """Why so many failures determine no law; an age as a number, and as it is shown."""
+    return Warning(
+        "no law of failures",
+        "no specimen has failed up to {shown}, so no law of failures is known"
+        if count == 0
+        else "one specimen has failed, at {shown}: one failure shows no spread, so no law is known"
+        if count == 1
+        else "all failed at {shown}: one age shows no spread, so no law is known",
+        remedy="follow specimens until more have failed",
+        severity="act",
+        failures=count,
+        age=age,
+        shown=shown,
+    )
 
 
 def _place(share: FloatArray) -> FloatArray:
@@ -318,8 +342,8 @@ def _plan(failed: BoolArray) -> tuple[int, ...]:
 
 
 @lru_cache(maxsize=32)
-def _told_of_standard(plan: tuple[int, ...], seed: int) -> tuple[FloatArray, FloatArray]:
-    """Scales and shapes told of draws from the law of scale 1 and shape 1, taken off by the plan.
+def _estimates_of_standard(plan: tuple[int, ...], seed: int) -> tuple[FloatArray, FloatArray]:
+    """Scales and shapes estimated from draws from the law of scale 1 and shape 1, taken off by the plan.
 
     Spacings of failures under such a plan are exponential, each over the specimens then at risk (Viveros and
     Balakrishnan, Technometrics 36, 1994, 84-91).
@@ -333,7 +357,7 @@ def _told_of_standard(plan: tuple[int, ...], seed: int) -> tuple[FloatArray, Flo
 
 def _written(value: float, digits: int = 4) -> str:
     """A number with so many digits, those up to ten millions without a power of ten."""
-    return f"{float(f'{value:.{digits}g}'):.8g}" if np.isfinite(value) else "not told"
+    return f"{float(f'{value:.{digits}g}'):.8g}" if np.isfinite(value) else "unknown"
 
 
 def _span(low: float, high: float) -> str:

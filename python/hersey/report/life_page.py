@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from hersey import _core
 from hersey.charts.life import life_charts
 from hersey.life.age import Age
+from hersey.life.indicator import NOT_JUDGED
 from hersey.report.page import drawn
 from hersey.schema.part import SCHEMA_VERSION
+from hersey.schema.warning import Warning
 
 if TYPE_CHECKING:
     import polars as pl
@@ -44,7 +46,7 @@ def render_life(answer: LifeTest, runs: pl.DataFrame, command: str) -> str:
         "hersey_version": _core.VERSION,
         "title": f"{answer.name}: {len(found.units)} units, {runs.height} runs, up to {last}",
         "verdict": _verdict(found),
-        "warnings": [*found.general_notes, *answer.unsaid],
+        "warnings": _stated((*_of_all(found), *answer.warnings)),
         "sections": [each for each in _sections(answer, list(charts)) if each["text"] or each["charts"]],
         "uses": None if answer.uses is None else answer.uses.to_dict(),
         "runs": runs.select("sha256", "log").to_dicts(),
@@ -71,13 +73,23 @@ def _verdict(found: TimeToFailure) -> list[str]:
     return [*lines, *(f"To know more, {advice}." for advice in found.advice[:1])]
 
 
+def _of_all(found: TimeToFailure) -> list[Warning]:
+    """The warnings that concern no single failure mode."""
+    return [each for each in found.warnings if not each.where]
+
+
+def _stated(warnings: Iterable[Warning]) -> list[dict[str, Any]]:
+    return [each.to_dict() for each in warnings]
+
+
 def _section(
     name: str,
     title: str,
     charts: Sequence[str],
     text: Sequence[str] = (),
     *,
-    notes: Sequence[str] = (),
+    lines: Sequence[str] = (),
+    warnings: Iterable[Warning] = (),
     tables: Sequence[dict[str, Any]] = (),
 ) -> dict[str, Any]:
     return {
@@ -85,7 +97,8 @@ def _section(
         "title": title,
         "charts": list(charts),
         "text": list(text),
-        "notes": list(notes),
+        "lines": list(lines),
+        "warnings": _stated(warnings),
         "tables": list(tables),
     }
 
@@ -99,17 +112,17 @@ def _sections(answer: LifeTest, drawn_charts: list[str]) -> list[dict[str, Any]]
     def lines(result: Result | None) -> list[str]:
         return [] if result is None else [each.strip() for each in result.summary().split("\n")]
 
-    unsaid = [f"not judged: {each}" for each in found.unsaid]
-    notes = [f"{mode.name}: {note}" for mode in found.modes for note in mode.notes]
+    not_judged = [each.within("not judged") for each in found.warnings if each.kind == NOT_JUDGED]
+    of_modes = [each.within(mode.name) for mode in found.modes for each in mode.warnings]
     return [
         _section(
             "ends", "What ends each unit, and when", named("ends"), tables=[_first(found), _each(found)]
         ),
-        _section("next", "What to measure next", (), found.advice, notes=unsaid),
-        _section("growth", "How the indicators grow", named("growth"), notes=notes),
+        _section("next", "What to measure next", (), found.advice, warnings=not_judged),
+        _section("growth", "How the indicators grow", named("growth"), warnings=of_modes),
         _section("maps", "The operating map, from new to the end", named("maps"), lines(maps)[1:]),
-        _section("film", "Film through life", named("film"), lines(film)[:1], notes=lines(film)[1:]),
-        _section("drift", "What moved", named("drift"), lines(drift)[:1], notes=lines(drift)[1:]),
+        _section("film", "Film through life", named("film"), lines(film)[:1], lines=lines(film)[1:]),
+        _section("drift", "What moved", named("drift"), lines(drift)[:1], lines=lines(drift)[1:]),
         _section("population", "The units that have ended", named("population")),
     ]
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from hersey.life.campaign.checks import Finding
 from hersey.schema.part import Part
+from hersey.schema.warning import Warning
 
 
 class CampaignRun(Part):
@@ -25,9 +25,9 @@ class CampaignRun(Part):
 
 
 class CampaignPart(Part):
-    """Runs of many units at many ages; null findings where none were looked for."""
+    """Runs of many units at many ages; null warnings where none were looked for."""
 
     file: str
     age_unit: str
     runs: list[CampaignRun]
-    findings: list[Finding] | None = None
+    warnings: list[Warning] | None = None

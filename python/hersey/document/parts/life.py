@@ -6,6 +6,7 @@ from pydantic import Field
 
 from hersey.life.population import BLife
 from hersey.schema.part import Holed, Numbers, Part
+from hersey.schema.warning import Warning
 
 
 class PopulationPart(Part):
@@ -19,7 +20,7 @@ class PopulationPart(Part):
     scale_interval: Holed | None = Field(description="low and high")
     level: float = Field(description="of the intervals")
     unit: str = Field(description="of ages; empty if none was said")
-    note: str = Field(description="what few failures do not tell; empty if nothing")
+    warnings: list[Warning]
     seed: int
     b10: BLife | None
     b50: BLife | None

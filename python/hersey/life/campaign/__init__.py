@@ -1,26 +1,27 @@
 """The file of a life test: steady points and fits of many runs of many specimens, in one SQLite file.
 
-==========  ==========================================================================
-entry       a run as it is kept: its dwells, and all else as text
-records     its records as JSON, and back
-conversion  what is kept of a run, from its steady points and back
-guarded     a connection to a file from anywhere: limits of length and work
-content     whether a file holds what this package writes
-store       the file: its schema and version, opening, transactions, what can go wrong
-adding      which runs are new, there already, changed or under another specimen
-table       a table of runs: log, specimen and age in each row
-checks      whether files, ages and fits are as they should be
-file        `Campaign`: add, list, read back, export
-==========  ==========================================================================
+=============  =======================================================================
+entry          a run as it is kept: its dwells, and all else as text
+kept_warnings  its warnings as JSON, and back
+records        its records as JSON, and back
+conversion     what is kept of a run, from its steady points and back
+guarded        a connection to a file from anywhere: limits of length and work
+content        whether a file holds what this package writes
+store          the file: its schema and version, opening, transactions, errors
+adding         which runs are new, there already, changed or under another specimen
+table          a table of runs: log, specimen and age in each row
+checks         whether files, ages and fits are as they should be
+file           `Campaign`: add, list, read back, export
+=============  =======================================================================
 
 Logs stay where they are; the file holds their paths and hashes. What is committed survives a process that is
 killed at any moment; writers wait for each other.
 """
 
 from hersey.life.campaign.adding import Added
-from hersey.life.campaign.checks import Finding, Findings
+from hersey.life.campaign.checks import CampaignCheck
 from hersey.life.campaign.entry import Entry
 from hersey.life.campaign.file import Campaign
 from hersey.life.campaign.table import RunToAdd, read_runs, rows_of
 
-__all__ = ["Added", "Campaign", "Entry", "Finding", "Findings", "RunToAdd", "read_runs", "rows_of"]
+__all__ = ["Added", "Campaign", "CampaignCheck", "Entry", "RunToAdd", "read_runs", "rows_of"]

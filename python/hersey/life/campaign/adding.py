@@ -7,13 +7,15 @@ import json
 import os
 import re
 import sqlite3
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from hersey.errors import FORCE, ParameterError, printable
 from hersey.life.age import Age
 from hersey.life.campaign.entry import COLUMNS, Entry
+from hersey.result import Record
+from hersey.schema.warning import Warning
 
 if TYPE_CHECKING:
     import polars as pl
@@ -24,7 +26,7 @@ _LONGEST_UNIT = 60
 
 
 @dataclass(frozen=True)
-class Added:
+class Added(Record):
     """What became of a run, number ``run``: ``outcome`` is ``added``, ``already there`` or ``replaced``."""
 
     run: int
@@ -33,17 +35,13 @@ class Added:
     path: str
     dwells: int
     outcome: str
-    notes: tuple[str, ...] = ()
+    warnings: tuple[Warning, ...] = ()
 
     def summary(self) -> str:
-        """Return it in a line, and a line for each note."""
+        """Return it in a line, and a line for each warning."""
         name = Path(self.path).name
         head = f"{name}: {self.outcome}: run {self.run}, {self.unit} at {self.age}, {self.dwells} dwells"
-        return "\n".join([head, *(f"- {note}" for note in self.notes)])
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return it as JSON can hold it."""
-        return asdict(self)
+        return "\n".join([head, *(f"- {each}" for each in self.warnings)])
 
     def to_frame(self) -> pl.DataFrame:
         """Return it as a table of one row."""
@@ -90,48 +88,81 @@ def add_entry(
     """
     age = _in_the_unit_of_all(database, age)
     unit = _unit(database, unit, force)
-    name, path = Path(entry.path).name, stored(entry.path, home)
-    notes, outcome = [f"kept without a fit: {entry.no_fit}"] if entry.no_fit else [], ADDED
+    path, count = stored(entry.path, home), len(entry.dwells)
+    warnings = []
+    if entry.no_fit:
+        warnings.append(
+            Warning("no fit", "kept without a fit: {reason}", severity="watch", reason=entry.no_fit)
+        )
     there = database.execute(
         "SELECT id, unit, age, settings FROM runs WHERE sha256 = ?", (entry.sha256,)
     ).fetchone()
     if there is not None:
-        run, of, at, settings = there
-        same = (of, at) == (unit, age.value)
-        if same and settings == entry.settings and not force:
-            return Added(run, unit, age, entry.path, len(entry.dwells), ALREADY)
+        run, *place, settings = there
         if not force:
-            was = f"{of} at {Age(at, age.unit)}"
-            what = (
-                f"is there already as run {run}, read in another way: use {FORCE.to()} to keep this reading"
-                if same
-                else f"has the same content as run {run} of {was}: use {FORCE.to()} for {unit} at {age}"
-            )
-            raise ParameterError(f"{name} {what}")
-        outcome = REPLACED
-        notes += [] if same else [f"it was {of} at {Age(at, age.unit)}"]
+            if place != [unit, age.value] or settings != entry.settings:
+                raise _there_otherwise(entry, run, place, unit, age)
+            return Added(run, unit, age, entry.path, count, ALREADY)
+        if place != [unit, age.value]:
+            warnings.append(_moved(place[0], place[1], age.unit))
         database.execute("DELETE FROM runs WHERE id = ?", (run,))
+    replaced, overwritten = _same_path(database, path, entry, unit, age, force)
+    outcome = ADDED if there is None and not replaced else REPLACED
+    run = _inserted(database, path, entry, unit, age)
+    return Added(run, unit, age, entry.path, count, outcome, (*warnings, *overwritten))
+
+
+def _there_otherwise(entry: Entry, run: int, place: list[Any], unit: str, age: Age) -> ParameterError:
+    """The error of a log whose content is there as another run, or was read in another way."""
+    was = f"{place[0]} at {Age(place[1], age.unit)}"
+    what = (
+        f"is there already as run {run}, read in another way: use {FORCE.to()} to keep this reading"
+        if place == [unit, age.value]
+        else f"has the same content as run {run} of {was}: use {FORCE.to()} for {unit} at {age}"
+    )
+    return ParameterError(f"{Path(entry.path).name} {what}")
+
+
+def _moved(unit: str, age: float, age_unit: str) -> Warning:
+    return Warning(
+        "moved",
+        "it was {unit} at {age:.10g} {age_unit}",
+        unit=unit,
+        age=age,
+        age_unit=age_unit,
+    )
+
+
+def _same_path(
+    database: sqlite3.Connection, path: str | bytes, entry: Entry, unit: str, age: Age, force: bool
+) -> tuple[bool, list[Warning]]:
+    """Remove the run of the same log file that this one replaces; whether there was one, and what stays."""
+    replaced, stay = False, []
     for run, of, at in database.execute("SELECT id, unit, age FROM runs WHERE path = ?", (path,)).fetchall():
         same = (of, at) == (unit, age.value)
         if not force:
             way = "replace it" if same else "add it beside that one, whose log is gone"
             was = f"run {run} of {of} at {Age(at, age.unit)}"
-            raise ParameterError(f"{name} has changed since it was added as {was}: use {FORCE.to()} to {way}")
+            raise ParameterError(
+                f"{Path(entry.path).name} has changed since it was added as {was}: use {FORCE.to()} to {way}"
+            )
         if same:
-            outcome = REPLACED
+            replaced = True
             database.execute("DELETE FROM runs WHERE id = ?", (run,))
         else:
-            notes.append(
-                f"the log of run {run} ({of} at {Age(at, age.unit)}) was overwritten; its dwells stay"
-            )
-    return Added(
-        _inserted(database, path, entry, unit, age),
-        unit,
-        age,
-        entry.path,
-        len(entry.dwells),
-        outcome,
-        tuple(notes),
+            stay.append(_overwritten(run, of, at, age.unit))
+    return replaced, stay
+
+
+def _overwritten(run: int, unit: str, age: float, age_unit: str) -> Warning:
+    return Warning(
+        "log overwritten",
+        "the log of run {run} ({unit} at {age:.10g} {age_unit}) was overwritten; its dwells stay",
+        severity="watch",
+        run=run,
+        unit=unit,
+        age=age,
+        age_unit=age_unit,
     )
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sqlite3
 from collections.abc import Callable
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,6 +13,7 @@ from hersey.files.reading import hash_of
 from hersey.life.age import Age
 from hersey.life.campaign.adding import age_unit, lies_at
 from hersey.result import Record
+from hersey.schema.warning import Warning
 
 if TYPE_CHECKING:
     import polars as pl
@@ -22,54 +23,52 @@ _AT_ONCE = 60.0
 
 
 @dataclass(frozen=True)
-class Finding(Record):
-    """Something that is not as it should be: what, in words, of which run and specimen (None: the file)."""
+class CampaignCheck(Record):
+    """What is not as it should be in a campaign of so many runs.
 
-    kind: str  #: damaged, log missing, log changed, age backwards or no fit
-    text: str
-    run: int | None = None
-    unit: str | None = None
-
-
-@dataclass(frozen=True)
-class Findings:
-    """What a check of a campaign found among how many runs."""
+    Values of each warning are ``run`` and ``unit`` where it concerns a run; else it concerns the file.
+    """
 
     runs: int
-    findings: tuple[Finding, ...]
+    warnings: tuple[Warning, ...]
 
     @property
     def ok(self) -> bool:
         """Whether nothing was found."""
-        return not self.findings
+        return not self.warnings
 
     def summary(self) -> str:
-        """Return a line for the whole, and one for each finding."""
-        count = len(self.findings)
-        whole = "all as it should be" if self.ok else f"{count} finding{'s' if count > 1 else ''}"
-        return "\n".join([f"{self.runs} runs: {whole}", *(f"- {each.text}" for each in self.findings)])
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return the findings as JSON can hold them."""
-        return asdict(self)
+        """Return a line for the whole, and one for each warning."""
+        count = len(self.warnings)
+        whole = "all as it should be" if self.ok else f"{count} warning{'s' if count > 1 else ''}"
+        return "\n".join([f"{self.runs} runs: {whole}", *(f"- {each}" for each in self.warnings)])
 
     def to_frame(self) -> pl.DataFrame:
-        """Return a row per finding."""
+        """Return a row per warning."""
         import polars as pl
 
         kinds = {"kind": pl.String, "text": pl.String, "run": pl.Int64, "unit": pl.String}
-        return pl.DataFrame([asdict(each) for each in self.findings], schema=kinds)
+        rows = [
+            (each.kind, str(each), each.values.get("run"), each.values.get("unit")) for each in self.warnings
+        ]
+        return pl.DataFrame(rows, schema=kinds, orient="row")
 
 
 def check(
     database: sqlite3.Connection, home: Path, progress: Callable[[int, int], None] | None = None
-) -> Findings:
+) -> CampaignCheck:
     """Check the file, every log behind it, the order of the ages, and the fits.
 
     The time at which a log was recorded is that at which its file was last written to.
     """
     found = [
-        Finding("damaged", f"the file is damaged: {row[0]}: take it from a backup")
+        Warning(
+            "damaged",
+            "the file is damaged: {fault}",
+            remedy="take it from a backup",
+            severity="act",
+            fault=str(row[0]),
+        )
         for row in database.execute("PRAGMA integrity_check(100)")
         if row[0] != "ok"
     ]
@@ -79,35 +78,61 @@ def check(
     ).fetchall()
     latest: dict[str, tuple[float, float, int]] = {}
     for number, (run, unit, age, kept, sha256, written, no_fit) in enumerate(rows):
-        path = lies_at(kept, home)
+        path, of_run = lies_at(kept, home), {"run": run, "unit": unit}
         named = f"run {run}, {unit} at {Age(age, unit_of_age)}: {path.name}"
-        if lost := _lost(path, sha256):
-            found.append(Finding(lost[0], f"{named} {lost[1]}", run, unit))
+        own = _of_log(path, sha256, of_run)
         if no_fit:
-            found.append(Finding("no fit", f"{named} has no fit: {no_fit}", run, unit))
+            own.append(Warning("no fit", "no fit: {reason}", severity="watch", reason=no_fit, **of_run))
         if written is not None:
             before, at, other = latest.get(unit, (written, age, run))
             if written < before - _AT_ONCE and at < age:
-                other_age = Age(at, unit_of_age)
-                text = f"{named} was written before that of run {other} at {other_age}: are the ages right?"
-                found.append(Finding("age backwards", text, run, unit))
+                own.append(_age_backwards(other, Age(at, unit_of_age), of_run))
             latest[unit] = max((before, at, other), (written, age, run))
+        found += [each.within(named) for each in own]
         if progress is not None:
             progress(number + 1, len(rows))
-    return Findings(len(rows), tuple(found))
+    return CampaignCheck(len(rows), tuple(found))
 
 
-def _lost(path: Path, sha256: str) -> tuple[str, str] | None:
-    """What became of a log, or None if it is as it was."""
+def _age_backwards(other: int, age: Age, of_run: dict[str, Any]) -> Warning:
+    """A log that was written before that of another run of the specimen, which was younger."""
+    return Warning(
+        "age backwards",
+        "the log was written before that of run {other} at {other_age:.10g} {age_unit}: are the ages right?",
+        severity="act",
+        other=other,
+        other_age=age.value,
+        age_unit=age.unit,
+        **of_run,
+    )
+
+
+def _of_log(path: Path, sha256: str, of_run: dict[str, Any]) -> list[Warning]:
+    """What became of a log, if it is not as it was."""
     try:
         if not path.exists():  # said here, where a lot of them may be gone
             raise MissingFileError
         now = hash_of(path)
     except MissingFileError:
-        return "log missing", f"is no longer at {path}: put it back; its dwells stay"
-    if now != sha256:
-        return (
+        return [
+            Warning(
+                "log missing",
+                "the log is no longer at {path}",
+                remedy="put it back; its dwells stay",
+                severity="act",
+                path=str(path),
+                **of_run,
+            )
+        ]
+    if now == sha256:
+        return []
+    return [
+        Warning(
             "log changed",
-            f"has changed since it was added: add it again with {FORCE.to()}, or put it back",
+            "the log has changed since it was added",
+            remedy="add it again with {how}, or put it back",
+            severity="act",
+            how=FORCE,
+            **of_run,
         )
-    return None
+    ]

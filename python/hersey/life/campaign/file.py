@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING, Any, Self
 from hersey.errors import OutputError, ParameterError, meant
 from hersey.life.age import Age
 from hersey.life.campaign.adding import Added, add_entry, age_unit, is_there, lies_at
-from hersey.life.campaign.checks import Findings, check
+from hersey.life.campaign.checks import CampaignCheck, check
 from hersey.life.campaign.content import damaged, refuse_unsound_dwells, refuse_unsound_runs
 from hersey.life.campaign.entry import COLUMNS, Entry
-from hersey.life.campaign.store import PATIENCE, open_store, refuse_no_place, told, transaction
+from hersey.life.campaign.store import PATIENCE, open_store, refuse_no_place, sqlite_errors, transaction
 
 if TYPE_CHECKING:
     import polars as pl
@@ -97,12 +97,12 @@ class Campaign:
     @property
     def age_unit(self) -> str:
         """The unit of all ages, empty before the first run."""
-        with told(self.path):
+        with sqlite_errors(self.path):
             return age_unit(self._database)
 
     def __len__(self) -> int:
         """Return how many runs there are."""
-        with told(self.path):
+        with sqlite_errors(self.path):
             return int(self._database.execute("SELECT count(*) FROM runs").fetchone()[0])
 
     def add(
@@ -163,7 +163,7 @@ class Campaign:
 
     def there(self, sha256: str, unit: str, age: Age, settings: str) -> Added | None:
         """Return the run of a log with this hash if adding it so would change nothing, or None."""
-        with told(self.path):
+        with sqlite_errors(self.path):
             return is_there(self._database, sha256, unit, age, settings)
 
     def runs(self, unit: str = "") -> pl.DataFrame:
@@ -181,7 +181,7 @@ class Campaign:
         import polars as pl
 
         where, given = ("WHERE unit = ?", (unit,)) if unit else ("", ())
-        with told(self.path):
+        with sqlite_errors(self.path):
             rows = self._database.execute(f"SELECT {_LISTED} FROM runs {where} ORDER BY unit, age, id", given)
             listed = [(*row[:3], str(lies_at(row[3], self._home)), *row[4:]) for row in rows]
             if unit and not listed:
@@ -209,7 +209,7 @@ class Campaign:
 
         columns = ", ".join(f'"{name}"' for name in COLUMNS)
         reduction = self._of_run("reduction", run)
-        with told(self.path):
+        with sqlite_errors(self.path):
             refuse_unsound_dwells(self._database, self.path, run)
             dwells = self._database.execute(
                 f"SELECT {columns} FROM dwells WHERE run_id = ? ORDER BY number", (run,)
@@ -224,7 +224,7 @@ class Campaign:
         """
         from hersey.life.campaign.conversion import drive_of
 
-        with told(self.path):
+        with sqlite_errors(self.path):
             rows = self._database.execute("SELECT id, reduction FROM runs")
             same: dict[str, tuple[NoLoadTorque | None, Sensors]] = {}
             found = {}
@@ -270,7 +270,7 @@ class Campaign:
             return read_json(kept)
 
     def _of_run(self, column: str, run: int) -> Any:
-        with told(self.path):
+        with sqlite_errors(self.path):
             row = self._database.execute(f"SELECT {column} FROM runs WHERE id = ?", (run,)).fetchone()
         if row is None:
             raise ParameterError(f"{self.path.name} has no run {run}: 'hersey campaign list' names them")
@@ -288,7 +288,7 @@ class Campaign:
 
         kinds = {"INTEGER": pl.Int64, "REAL": pl.Float64, "TEXT": pl.String}
         columns = ", ".join(f'd."{name}"' for name in COLUMNS)
-        with told(self.path):
+        with sqlite_errors(self.path):
             refuse_unsound_dwells(self._database, self.path)
             rows = self._database.execute(
                 f"SELECT r.id, {columns} FROM runs r JOIN dwells d ON d.run_id = r.id "
@@ -310,14 +310,14 @@ class Campaign:
         return joined.rename({**new, "age": f"age ({self.age_unit or 'unit'})"})
 
     def measured(self) -> tuple[IntArray, FloatArray]:
-        """Return the numbers of every dwell, for computing: the fewest columns that a torque is told by.
+        """Return the numbers of every dwell, for computing: the fewest columns that a torque needs.
 
         Number of the run, shape (dwells,), those of one run one after the other; speed (rad/s), temperature
         (K), torque and its error (N m), shape (dwells, 4), NaN where nothing was recorded.
         """
         import numpy as np
 
-        with told(self.path):
+        with sqlite_errors(self.path):
             refuse_unsound_dwells(self._database, self.path)
             rows = self._database.execute(
                 "SELECT run_id, speed, temperature, torque, torque_error FROM dwells ORDER BY run_id, number"
@@ -342,9 +342,9 @@ class Campaign:
             raise OutputError(f"a campaign is exported as .parquet or .csv, not as '{suffix}'")
         return table(self.dwells(), suffix)
 
-    def check(self, progress: Callable[[int, int], None] | None = None) -> Findings:
+    def check(self, progress: Callable[[int, int], None] | None = None) -> CampaignCheck:
         """Check the file, that each log is there and unchanged, the order of the ages, and the fits."""
-        with told(self.path):
+        with sqlite_errors(self.path):
             refuse_unsound_dwells(self._database, self.path)
             return check(self._database, self._home, progress)
 

@@ -18,8 +18,10 @@ from hersey.damping.dwells.reasons import Reason
 from hersey.damping.estimate import Estimate
 from hersey.damping.no_load_torque import NoLoadTorque
 from hersey.errors import ParameterError
+from hersey.life.campaign.kept_warnings import kept_warning, warning_of, with_warnings
 from hersey.log.sensors import Sensors
 from hersey.log.torque_log import Channel, Correction, Effect, LogFile
+from hersey.schema.warning import Warning
 
 #: Records that are written and read back, by name.
 _RECORDS = {
@@ -41,7 +43,10 @@ _UNBOUNDED = {
 def plain(value: Any) -> Any:
     """Return a value as JSON, records by their names, so that `restored` gives it back with every digit."""
     if is_dataclass(value) and not isinstance(value, type):
-        own = {f.name: plain(getattr(value, f.name)) for f in fields(value)}
+        if isinstance(value, Warning):
+            own = kept_warning(value)
+        else:
+            own = {f.name: plain(getattr(value, f.name)) for f in fields(value)}
         if "kind" in own:
             own[_OWN_KIND] = own.pop("kind")
         return {"kind": type(value).__name__} | own
@@ -82,6 +87,7 @@ def restored(value: Any, kinds: Mapping[str, Any]) -> dict[str, Any]:
     found = _restored(value)
     if not isinstance(found, dict):
         raise ParameterError("no JSON object")
+    found = with_warnings(found, kinds)
     refuse_others(found, kinds)
     return found
 
@@ -97,11 +103,14 @@ def _restored(value: Any) -> Any:
     if "kind" not in inside:
         return inside
     name = inside.pop("kind")
+    if _OWN_KIND in inside:
+        inside["kind"] = inside.pop(_OWN_KIND)
+    if name == Warning.__name__:
+        return warning_of(inside)
     record = _RECORDS.get(name) if isinstance(name, str) else None
     if record is None:
         raise ParameterError("'kind' names no record that is known")
-    if _OWN_KIND in inside:
-        inside["kind"] = inside.pop(_OWN_KIND)
+    inside = with_warnings(inside, _kinds_of(record))
     defaults = {f.name for f in fields(record) if f.name not in inside and _has_default(f)}
     kinds = {name: kind for name, kind in _kinds_of(record).items() if name not in defaults}
     refuse_others(inside, kinds, f"{name}.", {field for of, field in _UNBOUNDED if of == name})

@@ -22,7 +22,7 @@ from hersey.life.campaign.guarded import LONGEST, GuardedConnection, connect
 SUFFIX = ".hersey"
 #: What stands in the header: "HrSy", and the version of the schema.
 APPLICATION = 0x48725379
-VERSION = 1
+VERSION = 2
 #: Time that a writer waits for another, s.
 PATIENCE = 30.0
 _AGAIN = 0.02
@@ -54,10 +54,13 @@ CREATE TABLE dwells (
     PRIMARY KEY (run_id, number)
 ) WITHOUT ROWID;
 """
-#: The schema of each version that may be read or brought up to date.
-SCHEMAS = {1: _SCHEMA}
+#: The schema of each version that may be read or brought up to date. Version 2 keeps warnings as data, in
+#: tables that are the same; what reads them also reads the sentences of version 1.
+SCHEMAS = {1: _SCHEMA, 2: _SCHEMA}
+#: Older versions that are read as they are.
+_READ_AS_THEY_ARE = {1}
 #: What brings a file of each older version to the next, inside one transaction.
-MIGRATIONS: dict[int, Callable[[sqlite3.Connection], None]] = {}
+MIGRATIONS: dict[int, Callable[[sqlite3.Connection], None]] = {1: lambda _database: None}
 
 
 def open_store(
@@ -75,7 +78,7 @@ def open_store(
         If it cannot be written.
     """
     refuse_no_place(path, create)
-    with told(path):
+    with sqlite_errors(path):
         database = _connected(path, create=create, write=write, wait=wait)
         try:
             if create:
@@ -169,7 +172,7 @@ def _brought_up_to_date(database: GuardedConnection, path: Path, write: bool) ->
     if version in SCHEMAS:
         refuse_other_tables(database, path, SCHEMAS[version])
         database.allow_what_the_size_needs()
-    if version == VERSION:
+    if version == VERSION or (version in _READ_AS_THEY_ARE and not write):
         return
     if not write:
         raise ParameterError(
@@ -194,7 +197,7 @@ def _no_campaign(path: Path) -> HerseyError:
 @contextmanager
 def transaction(database: sqlite3.Connection, path: Path) -> Iterator[None]:
     """Make all changes inside or none; other writers wait meanwhile."""
-    with told(path):
+    with sqlite_errors(path):
         database.execute("BEGIN IMMEDIATE")
         try:
             yield
@@ -206,7 +209,7 @@ def transaction(database: sqlite3.Connection, path: Path) -> Iterator[None]:
 
 
 @contextmanager
-def told(path: Path) -> Iterator[None]:
+def sqlite_errors(path: Path) -> Iterator[None]:
     """Say in one line what SQLite could not do, and how to mend it."""
     try:
         yield

@@ -193,8 +193,8 @@ def expected(scales: Scales) -> tuple[FloatArray, FloatArray]:
     return mean, deviation
 
 
-def told(scales: Scales) -> BoolArray:
-    """Return which of `OWN` the range of the data can tell at all."""
-    can = np.ones(len(OWN), dtype=bool)
-    can[LAW] = scales.thermal
-    return can
+def estimable(scales: Scales) -> BoolArray:
+    """Return which of `OWN` the range of the data can determine at all."""
+    found = np.ones(len(OWN), dtype=bool)
+    found[LAW] = scales.thermal
+    return found

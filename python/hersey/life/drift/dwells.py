@@ -21,7 +21,7 @@ _APART = 1.5
 _FEWEST = 4
 #: Columns of numbers of `Campaign.dwells`.
 _NUMBERS = ("speed (rad/s)", "torque (N m)", "torque error (N m)", "temperature (K)")
-#: Those that a dwell may lack: the scatter tells the error, and no dwell at all may have a temperature.
+#: Those that a dwell may lack: the scatter gives the error, and no dwell at all may have a temperature.
 _MAY_LACK = _NUMBERS[2:]
 
 
@@ -57,7 +57,7 @@ def dwells_of(table: pl.DataFrame, age_name: str) -> tuple[Dwells, tuple[str, ..
     place = np.array([places[name] for name in names])
     if most_ages(place, age) < 2:
         raise InsufficientDataError(
-            "no specimen was seen at two ages, so nothing tells what moved: add runs at another age"
+            "no specimen was seen at two ages, so nothing shows what moved: add runs at another age"
         )
     oldest = float(age.max())
     speed, torque, error, kelvin = (rows.filled(columns[name]) for name in _NUMBERS)
@@ -88,8 +88,8 @@ def _columns(table: pl.DataFrame, age_name: str) -> dict[str, FloatArray]:
 
 def _refuse_too_little(speed: FloatArray, rows: PaddedRows) -> None:
     way_out = (
-        "nothing tells level, exponent and film apart: record dwells at several speeds, or follow the torque "
-        "itself with hersey.fit_growth"
+        "nothing distinguishes level, exponent and film: record dwells at several speeds, or follow the "
+        "torque itself with hersey.fit_growth"
     )
     if speed.max() < _APART * speed.min():
         raise InsufficientDataError(f"all dwells have one speed, so {way_out}")

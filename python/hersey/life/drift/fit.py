@@ -7,9 +7,9 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 
 from hersey.arrays import BoolArray, FloatArray
-from hersey.life.drift.aged_torque import OWN, Scales, expected, parts, told
+from hersey.life.drift.aged_torque import OWN, Scales, estimable, expected, parts
 from hersey.life.drift.dwells import Dwells
-from hersey.life.drift.mixed_effects import Solved, Spread, Told, solve
+from hersey.life.drift.mixed_effects import Information, Solved, Spread, solve
 
 #: No torque is taken as known better than this, relative.
 _RESOLUTION = 2e-3
@@ -67,12 +67,12 @@ def _fitted(dwells: Dwells, scales: Scales, begun: Fitted | None) -> Fitted:
     target = dwells.torque / scales.torque
     size = np.where(dwells.given, np.abs(target), 1.0)
     error = np.hypot(dwells.error / scales.torque, _RESOLUTION * size)
-    can = told(scales)
-    prior = _prior(scales, can)
+    free = estimable(scales)
+    prior = _prior(scales, free)
     common = prior[0].copy() if begun is None else begun.solved.common.copy()
     usual = Spread(
-        np.where(np.tile(can, 2), np.concatenate([_OF_START, _OF_CHANGE]), _NIL) ** 2,
-        np.where(can, _OF_RUNS, _NIL) ** 2,
+        np.where(np.tile(free, 2), np.concatenate([_OF_START, _OF_CHANGE]), _NIL) ** 2,
+        np.where(free, _OF_RUNS, _NIL) ** 2,
     )
     spread = Spread(9.0 * usual.specimens, 9.0 * usual.runs) if begun is None else begun.spread
     own = len(OWN)
@@ -89,7 +89,7 @@ def _fitted(dwells: Dwells, scales: Scales, begun: Fitted | None) -> Fitted:
         slopes = np.concatenate([now.own, now.shared], axis=-1)
         pseudo = residual + np.einsum("rdj,rj->rd", now.own, values) + now.shared @ common[shared_at]
         weighted = slopes * weight[..., None]
-        information = Told(
+        information = Information(
             weighted.swapaxes(1, 2) @ slopes, (weighted.swapaxes(1, 2) @ pseudo[..., None])[..., 0]
         )
         solved = solve(information, dwells.age, dwells.specimen, spread, usual, prior)
@@ -124,14 +124,14 @@ def _scales(dwells: Dwells) -> Scales:
     return Scales.of(dwells.speed[given], dwells.temperature[given], dwells.torque[given])
 
 
-def _prior(scales: Scales, can: BoolArray) -> tuple[FloatArray, FloatArray]:
+def _prior(scales: Scales, free: BoolArray) -> tuple[FloatArray, FloatArray]:
     mean, deviation = expected(scales)
     return (
         np.concatenate([_START, np.zeros(len(OWN)), mean]),
         np.concatenate(
             [
-                np.where(can, _START_DEVIATION, _NIL),
-                np.where(can, _CHANGE_DEVIATION, _NIL),
+                np.where(free, _START_DEVIATION, _NIL),
+                np.where(free, _CHANGE_DEVIATION, _NIL),
                 deviation,
             ]
         ),

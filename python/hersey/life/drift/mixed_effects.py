@@ -1,9 +1,9 @@
 """A linear mixed-effects model: values of runs that change with age, differently in each specimen.
 
 A run's values are ``start of its specimen + change of its specimen x age + scatter of the run``; starts and
-changes of specimens are normal about those of the population. Runs tell their values through information
-matrices, so a run that tells nothing of a value is no exception. All else that the runs share is solved for
-with them. Runs are eliminated first, then specimens, then what is left: cost and memory are linear in runs.
+changes of specimens are normal about those of the population. Runs enter by information matrices, so a run
+that says nothing of a value is no exception. All else that the runs share is solved for with them. Runs are
+eliminated first, then specimens, then what is left: cost and memory are linear in runs.
 """
 
 from __future__ import annotations
@@ -20,8 +20,8 @@ _WEIGHT = 2.0
 
 
 @dataclass(frozen=True, repr=False)
-class Told:
-    """What the dwells tell of (own values of a run, shared values): information and right-hand side.
+class Information:
+    """What the dwells say of (own values of a run, shared values): information and right-hand side.
 
     ``matrix`` (runs, own + shared, own + shared), ``right`` (runs, own + shared).
     """
@@ -57,7 +57,7 @@ class Solved:
 
 
 def solve(
-    told: Told,
+    information: Information,
     age: FloatArray,
     specimen: IntArray,
     spread: Spread,
@@ -68,7 +68,7 @@ def solve(
 
     Parameters
     ----------
-    told
+    information
         Of each run.
     age
         Of each run, (runs,).
@@ -79,12 +79,12 @@ def solve(
     prior
         Mean and deviation of population and shared values, (2 own + shared,) each.
     """
-    runs = _Runs(told, spread.runs)
+    runs = _Runs(information, spread.runs)
     specimens = _Specimens.of(runs, age, specimen, spread.specimens)
     common, covariance = specimens.common(prior)
     found, likeliest = specimens.values(common, covariance)
-    values, off_squares = runs.values(age, specimen, common, found)
-    renewed = Spread(_pooled(likeliest, usual.specimens), _pooled(off_squares, usual.runs))
+    values, squares = runs.values(age, specimen, common, found)
+    renewed = Spread(_pooled(likeliest, usual.specimens), _pooled(squares, usual.runs))
     return Solved(
         common,
         covariance,
@@ -108,18 +108,20 @@ class _Normal:
 class _Runs:
     """Runs, eliminated: what each leaves of its specimen's line at its age, and of what is shared."""
 
-    def __init__(self, told: Told, variance: FloatArray) -> None:
+    def __init__(self, information: Information, variance: FloatArray) -> None:
         own = self.own = variance.size
-        self.told = told
-        self.of_run = told.matrix[:, :own, :own]
-        self.cross = told.matrix[:, :own, own:]
+        self.information = information
+        self.of_run = information.matrix[:, :own, :own]
+        self.cross = information.matrix[:, :own, own:]
         shrink = np.asarray(np.linalg.inv(np.eye(own) + self.of_run * variance), dtype=float)
         self.scatter = variance[:, None] * shrink  # covariance of the scatter of a run, its line given
-        self.line = shrink @ told.matrix[:, :own, :]  # of the line, with itself and with the shared
-        self.right_line = _times(shrink, told.right[:, :own])
+        self.line = shrink @ information.matrix[:, :own, :]  # of the line, with itself and with the shared
+        self.right_line = _times(shrink, information.right[:, :own])
         back = self.cross.swapaxes(1, 2) @ self.scatter
-        self.shared = (told.matrix[:, own:, own:] - back @ self.cross).sum(axis=0)
-        self.right_shared = (told.right[:, own:] - _times(back, told.right[:, :own])).sum(axis=0)
+        self.shared = (information.matrix[:, own:, own:] - back @ self.cross).sum(axis=0)
+        self.right_shared = (information.right[:, own:] - _times(back, information.right[:, :own])).sum(
+            axis=0
+        )
 
     def values(
         self, age: FloatArray, specimen: IntArray, common: FloatArray, specimens: _Normal
@@ -127,13 +129,13 @@ class _Runs:
         """Values of each run, and the mean squares of their scatter."""
         own, of = self.own, specimens.mean[specimen]
         lines = of[:, :own] + age[:, None] * of[:, own:]
-        rest = self.told.right[:, :own] - _times(self.of_run, lines) - self.cross @ common[2 * own :]
-        off = _times(self.scatter, rest)
+        rest = self.information.right[:, :own] - _times(self.of_run, lines) - self.cross @ common[2 * own :]
+        deviation = _times(self.scatter, rest)
         by_line = self.scatter @ self.of_run
-        reach = np.concatenate([-by_line, -age[:, None, None] * by_line], axis=2)
+        response = np.concatenate([-by_line, -age[:, None, None] * by_line], axis=2)
         # The shared values are known far better than a run: their part in its variance is left out.
-        variance = _diagonal(self.scatter) + _within(reach, specimens.covariance[specimen])
-        return lines + off, off**2 + variance
+        variance = _diagonal(self.scatter) + _propagated(response, specimens.covariance[specimen])
+        return lines + deviation, deviation**2 + variance
 
 
 @dataclass(frozen=True)
@@ -173,33 +175,33 @@ class _Specimens:
         return np.asarray(np.linalg.inv(np.eye(self.variance.size) + self.by_specimen * self.variance))
 
     @cached_property
-    def loose(self) -> FloatArray:
+    def own_covariance(self) -> FloatArray:
         """Covariance of a specimen's own, population and shared given."""
         return np.asarray(self.variance[:, None] * self.shrink)
 
     @cached_property
-    def pull(self) -> FloatArray:
+    def response(self) -> FloatArray:
         """How a specimen's own values follow population and shared ones."""
-        return np.asarray(-self.loose @ np.concatenate([self.by_specimen, self.with_shared], axis=2))
+        return np.asarray(-self.own_covariance @ np.concatenate([self.by_specimen, self.with_shared], axis=2))
 
     @cached_property
-    def whole(self) -> FloatArray:
+    def full_response(self) -> FloatArray:
         """The same of its values, the population's among them."""
-        two = self.variance.size
-        whole = np.zeros_like(self.pull)
-        whole[:, :two, :two] = np.eye(two)
-        return np.asarray(whole + self.pull)
+        own = self.variance.size
+        full_response = np.zeros_like(self.response)
+        full_response[:, :own, :own] = np.eye(own)
+        return np.asarray(full_response + self.response)
 
     def common(self, prior: tuple[FloatArray, FloatArray]) -> tuple[FloatArray, FloatArray]:
         """Posterior mean and covariance of population and shared values."""
         mean, deviation = prior
-        two = self.variance.size
-        held = self.with_shared.swapaxes(1, 2) @ self.loose
+        own = self.variance.size
+        held = self.with_shared.swapaxes(1, 2) @ self.own_covariance
         matrix = np.zeros((mean.size,) * 2)
-        matrix[:two, :two] = (self.shrink @ self.by_specimen).sum(axis=0)
-        matrix[:two, two:] = (self.shrink @ self.with_shared).sum(axis=0)
-        matrix[two:, :two] = matrix[:two, two:].T
-        matrix[two:, two:] = self.shared - (held @ self.with_shared).sum(axis=0)
+        matrix[:own, :own] = (self.shrink @ self.by_specimen).sum(axis=0)
+        matrix[:own, own:] = (self.shrink @ self.with_shared).sum(axis=0)
+        matrix[own:, :own] = matrix[:own, own:].T
+        matrix[own:, own:] = self.shared - (held @ self.with_shared).sum(axis=0)
         of_specimens = _times(self.shrink, self.right).sum(axis=0)
         right = np.concatenate([of_specimens, self.right_shared - _times(held, self.right).sum(axis=0)])
         # In deviations of the prior the matrix is well scaled.
@@ -210,16 +212,20 @@ class _Specimens:
 
     def values(self, common: FloatArray, covariance: FloatArray) -> tuple[_Normal, FloatArray]:
         """Values of each specimen, and the mean squares of what sets them apart from the population."""
-        two = self.variance.size
-        apart = _times(self.loose, self.right) + self.pull @ common
-        of_specimens = self.loose + self.whole @ covariance @ self.whole.swapaxes(1, 2)
-        variance = _diagonal(self.loose) + _within(self.pull, covariance)
-        return _Normal(apart + common[:two], of_specimens), apart**2 + variance
+        own = self.variance.size
+        deviation = _times(self.own_covariance, self.right) + self.response @ common
+        of_specimens = self.own_covariance + self.full_response @ covariance @ self.full_response.swapaxes(
+            1, 2
+        )
+        variance = _diagonal(self.own_covariance) + _propagated(self.response, covariance)
+        return _Normal(deviation + common[:own], of_specimens), deviation**2 + variance
 
     def covariance_of_mean(self, covariance: FloatArray) -> FloatArray:
         """Covariance of the mean of these specimens."""
-        middle = self.whole.mean(axis=0)
-        return np.asarray(self.loose.sum(axis=0) / len(self.loose) ** 2 + middle @ covariance @ middle.T)
+        middle = self.full_response.mean(axis=0)
+        return np.asarray(
+            self.own_covariance.sum(axis=0) / len(self.own_covariance) ** 2 + middle @ covariance @ middle.T
+        )
 
 
 def _times(matrices: FloatArray, vectors: FloatArray) -> FloatArray:
@@ -228,7 +234,7 @@ def _times(matrices: FloatArray, vectors: FloatArray) -> FloatArray:
 
 
 def _pooled(squares: FloatArray, usual: FloatArray) -> FloatArray:
-    """Mean square, with a usual variance that counts as `_WEIGHT` more: few specimens tell no spread."""
+    """Mean square, with a usual variance that counts as `_WEIGHT` more: few specimens show no spread."""
     return np.asarray((squares.sum(axis=0) + _WEIGHT * usual) / (len(squares) + _WEIGHT))
 
 
@@ -236,6 +242,6 @@ def _diagonal(matrices: FloatArray) -> FloatArray:
     return np.asarray(np.diagonal(matrices, axis1=1, axis2=2))
 
 
-def _within(reach: FloatArray, covariance: FloatArray) -> FloatArray:
-    """Variances of what moves by ``reach`` with values of a covariance."""
-    return _diagonal(reach @ covariance @ reach.swapaxes(1, 2))
+def _propagated(response: FloatArray, covariance: FloatArray) -> FloatArray:
+    """Variances of what responds so to values of a covariance."""
+    return _diagonal(response @ covariance @ response.swapaxes(1, 2))

@@ -57,7 +57,7 @@ class Quantity(Record):
     def shown(self, value: float, *, sign: bool = False) -> str:
         """Return a change as a reader sees it: per cent where it is relative."""
         if not np.isfinite(value):
-            return "not told"
+            return "unknown"
         scale, unit = (100.0, " %") if self.relative else _SHOWN.get(self.si, (1.0, ""))
         return f"{value * scale:{'+' if sign else ''}.3g}{unit}"
 
@@ -150,44 +150,49 @@ def _kinds(scales: Scales, shared: FloatArray) -> list[_Kind]:
 
 
 def quantities_of(found: Fitted, oldest: float) -> tuple[tuple[Quantity, ...], FloatArray]:
-    """Return the quantities that can be told of a fit, and the ages of their curves."""
+    """Return the quantities that a fit determines, and the ages of their curves."""
     solved, own = found.solved, len(OWN)
-    two = 2 * own
+    line_size = 2 * own
     grid = np.linspace(0.0, 1.0, _AGES)
     units = len(solved.specimen)
     # Of all: the line of the population, whose spread counts; of one specimen: its own.
-    line, covariance = solved.common[:two], solved.common_covariance[:two, :two]
-    normal = float(normal_quantile(0.5 + CONFIDENCE / 2))
-    reach = float(student_quantile(0.5 + CONFIDENCE / 2, units - 1)) if units > 1 else normal
+    line, covariance = solved.common[:line_size], solved.common_covariance[:line_size, :line_size]
+    specimen_quantile = float(normal_quantile(0.5 + CONFIDENCE / 2))
+    population_quantile = (
+        float(student_quantile(0.5 + CONFIDENCE / 2, units - 1)) if units > 1 else specimen_quantile
+    )
     if units == 1:
         line, covariance = solved.mean, solved.mean_covariance
     to_age = np.stack([np.hstack([np.eye(own), t * np.eye(own)]) for t in grid])
     along, spread = to_age @ line, to_age @ covariance @ to_age.swapaxes(1, 2)
-    told = []
-    for kind in _kinds(found.scales, solved.common[two:]):
+    quantities = []
+    for kind in _kinds(found.scales, solved.common[line_size:]):
         new, change, error = _changed(kind.value, line[None], covariance[None])
         _, own_change, own_error = _changed(kind.value, solved.specimen, solved.specimen_covariance)
         curves = np.stack(
             [kind.value(solved.specimen[:, :own] + t * solved.specimen[:, own:]) for t in grid], axis=1
         )
-        middle, half = kind.value(along), reach * _error(_slope(kind.value, along), spread)
+        middle, half = kind.value(along), population_quantile * _error(_slope(kind.value, along), spread)
         band = np.stack([middle - half, middle, middle + half])
         if kind.relative:
             new, curves, band = np.exp(new), np.exp(curves), np.exp(band)
-        told.append(
+        quantities.append(
             Quantity(
                 kind.name,
                 kind.si,
                 kind.relative,
                 kind.where,
                 float(new[0]),
-                _interval(kind, change[0], reach * error[0]),
-                tuple(_interval(kind, c, normal * e) for c, e in zip(own_change, own_error, strict=True)),
+                _interval(kind, change[0], population_quantile * error[0]),
+                tuple(
+                    _interval(kind, c, specimen_quantile * e)
+                    for c, e in zip(own_change, own_error, strict=True)
+                ),
                 curves,
                 band,
             )
         )
-    return tuple(told), grid * oldest
+    return tuple(quantities), grid * oldest
 
 
 def _interval(kind: _Kind, change: float, half: float) -> Interval:

@@ -3,7 +3,7 @@
 Each ageing moves the values of `aged_torque` along its own direction, so any set of them is a linear
 hypothesis about the change. The sets are weighed by how far the change stays from what they could do, in its
 own covariance, and by how many they are; ageing that runs backwards counts more. Sets that do about as well
-as the best, with other names, cannot be told apart.
+as the best, with other names, cannot be distinguished.
 """
 
 from __future__ import annotations
@@ -46,18 +46,18 @@ WORDS = {
     TOUCHING: ("contact that grows", "contact that recedes"),
     LOADED: ("more load or grip", "less load or grip"),
     OTHER: ("the no-load torque taking more", "the no-load torque taking less"),
-    LAWFUL: ("a viscosity that hangs more on temperature", "a viscosity that hangs less on temperature"),
+    LAWFUL: ("a viscosity that depends more on temperature", "a viscosity that depends less on temperature"),
 }
 #: Gain in minus twice the log-likelihood that one more ageing must bring, and an ageing that runs backwards;
 #: a load that changes by itself is rarer, so that it must bring as much as two.
 _PRICE, _BACKWARDS = 9.0, 3.0
 _DEAR = {LOADED: 2.0}
-#: Difference in it below which two sets cannot be told apart: a ratio of likelihoods of ten.
+#: Difference in it below which two sets cannot be distinguished: a ratio of likelihoods of ten.
 _NEAR = 4.6
 #: Of a 90 % interval.
 NORMAL = 1.645
 #: Part of the typical change of torque that the law may get wrong in each direction; more so where no
-#: temperatures tell film and rest apart.
+#: temperatures distinguish film and no-load torque.
 _LAW_ERROR, _WITHOUT_TEMPERATURES = 0.06, 0.2
 #: Least part of the greatest change of torque, and of torque, that is named.
 _LEAST_PART, _LEAST_CHANGE = 0.05, 0.003
@@ -88,7 +88,7 @@ class Change(Record):
 
 @dataclass(frozen=True)
 class Reading(Record):
-    """What a change points to: sets of ageings, the best first; more than one cannot be told apart.
+    """What a change points to: sets of ageings, the best first; more than one cannot be distinguished.
 
     An empty set says that nothing moved beyond the errors.
     """
@@ -165,8 +165,8 @@ def read(
     scores, amounts = np.empty((len(change), len(sets))), []
     for k, chosen in enumerate(sets):
         along = np.array([every[i][1] for i in chosen]).reshape(len(chosen), len(OWN)).T
-        pull = along.T @ weight
-        amount = np.linalg.solve(pull @ along, pull @ change[..., None])[..., 0]
+        projected = along.T @ weight
+        amount = np.linalg.solve(projected @ along, projected @ change[..., None])[..., 0]
         left = change - amount @ along.T
         backwards = sum(
             _effect(relative, every, chosen, amount, name) < 0.0
@@ -177,7 +177,7 @@ def read(
         amounts.append(amount)
     found = []
     for u in range(len(change)):
-        told: dict[frozenset[tuple[str, bool]], tuple[Change, ...]] = {}
+        likely: dict[frozenset[tuple[str, bool]], tuple[Change, ...]] = {}
         for k in np.argsort(scores[u], kind="stable"):
             if scores[u, k] > scores[u].min() + _NEAR:
                 break
@@ -185,8 +185,8 @@ def read(
             along = np.array([each[1] for each in ageings]).reshape(len(ageings), len(OWN))
             errors = np.linalg.inv(along @ weight[u] @ along.T)
             named = _named(scales, shared, new[u], ageings, amounts[k][u], errors)
-            told.setdefault(frozenset((each.name, each.grows) for each in named), named)
-        found.append(Reading(tuple(told.values())))
+            likely.setdefault(frozenset((each.name, each.grows) for each in named), named)
+        found.append(Reading(tuple(likely.values())))
     return found
 
 
@@ -237,7 +237,7 @@ def _named(
         error = NORMAL * float(np.sqrt(by @ covariance[np.ix_(at, at)] @ by))
         found.append((name, float(effect[state]), error, float(effect[state] / before[state]), state))
     greatest = max((abs(share) for *_, share, _ in found), default=0.0)
-    told = [
+    changes = [
         Change(
             name,
             effect > 0.0 if name != LAWFUL else bool(amount[[each for each, _ in chosen].index(name)] > 0.0),
@@ -251,4 +251,4 @@ def _named(
         for name, effect, error, share, state in found
         if abs(share) >= max(_LEAST_PART * greatest, _LEAST_CHANGE)
     ]
-    return tuple(sorted(told, key=lambda each: -abs(each.torque)))
+    return tuple(sorted(changes, key=lambda each: -abs(each.torque)))

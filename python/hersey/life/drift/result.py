@@ -20,12 +20,13 @@ from hersey.life.drift.fit import Fitted, fit
 from hersey.life.drift.quantities import Quantity, quantities_of
 from hersey.life.drift.readings import Change, Reading, read
 from hersey.result import Means, Result
+from hersey.schema.warning import Warning
 from hersey.units import celsius, rpm
 
 if TYPE_CHECKING:
     import polars as pl
 
-#: Up to so many specimens tell little of how specimens differ.
+#: Up to so many specimens show little of how specimens differ.
 _FEW = 3
 
 
@@ -34,7 +35,7 @@ class Drift(Result):
     """What moved with age, and what it points to.
 
     ``reading`` is that of the specimens together, ``readings`` that of each; `Reading.sets` holds more than
-    one where the data cannot tell them apart.
+    one where the data cannot distinguish them.
     """
 
     also_stated = ("headline",)
@@ -53,7 +54,7 @@ class Drift(Result):
     scatter: Annotated[
         float, Means("of dwells beyond their stated errors, relative")
     ]  #: of dwells beyond their stated errors, relative
-    notes: tuple[str, ...]
+    warnings: tuple[Warning, ...]
     fitted: Fitted = field(repr=False)
 
     def __getitem__(self, name: str) -> Quantity:
@@ -73,24 +74,24 @@ class Drift(Result):
             *(_evidence(each) for each in self.reading.sure),
         ]
         if len(self.reading.sets) > 1:
-            lines.append("These readings cannot be told apart:")
+            lines.append("These readings cannot be distinguished:")
             lines += [f"  {_listed(each) or 'nothing moved'}" for each in self.reading.sets]
         lines += self._of_specimens()
         if any(self.reading.sets):
             lines.append(
                 "A reading says what would do this, and is no proof: something else may do the same."
             )
-        return "\n".join([*lines, *(f"- {note}" for note in self.notes)])
+        return "\n".join([*lines, *(f"- {each.sentence}" for each in self.warnings)])
 
     def _of_specimens(self) -> list[str]:
         """A line for each thing that is said of specimens."""
         if len(self.units) == 1:
             return []
-        told: dict[str, list[str]] = {}
+        units_by_words: dict[str, list[str]] = {}
         for unit, reading in zip(self.units, self.readings, strict=True):
-            told.setdefault(_of_one(reading), []).append(unit)
+            units_by_words.setdefault(_of_one(reading), []).append(unit)
         lines = []
-        for words, units in sorted(told.items(), key=lambda each: -len(each[1])):
+        for words, units in sorted(units_by_words.items(), key=lambda each: -len(each[1])):
             named = ", ".join(units[:_NAMED]) + f" and {len(units) - _NAMED} more" * (len(units) > _NAMED)
             lines.append(f"  {named}: {words}")
         return ["Unit by specimen:", *lines]
@@ -118,7 +119,7 @@ class Drift(Result):
 
 #: How many specimens are named in a line.
 _NAMED = 12
-#: What each ageing would do, told beside its reading.
+#: What each ageing would do, shown beside its reading.
 _WOULD = {
     "lubricant": "a viscosity that grows shifts torque to lower speeds, that of least torque with it",
     "film": "a layer of oil that shrinks brings the damping exponent toward 0 where it is cold and fast, and "
@@ -142,10 +143,10 @@ def _pointed(reading: Reading) -> str:
     if len(reading.sets) == 1:
         return f"the drift points to {_listed(reading.sure)}"
     if () in reading.sets:
-        return "whether anything moved with age cannot be told"
+        return "whether anything moved with age is unknown"
     if reading.sure:
-        return f"the drift points to {_listed(reading.sure)}; what else moved cannot be told apart"
-    return "something moved with age; what it is cannot be told apart"
+        return f"the drift points to {_listed(reading.sure)}; what else moved cannot be determined"
+    return "something moved with age; what it is cannot be determined"
 
 
 def _of_one(reading: Reading) -> str:
@@ -167,7 +168,7 @@ def _evidence(change: Change) -> str:
 
 @one_thread()
 def fit_drift(runs: Campaign | pl.DataFrame) -> Drift:
-    """Fit all runs of all specimens together and tell what moved with age.
+    """Fit all runs of all specimens together and return what moved with age.
 
     Parameters
     ----------
@@ -202,7 +203,7 @@ def fit_drift(runs: Campaign | pl.DataFrame) -> Drift:
         readings=tuple(each),
         ages=ages,
         scatter=found.scatter,
-        notes=_notes(found, dwells, units),
+        warnings=_warnings(found, dwells, units),
         fitted=found,
     )
 
@@ -214,27 +215,46 @@ def _readings(found: Fitted, line: FloatArray, covariance: FloatArray) -> list[R
     return read(found.scales, shared, line[:, :own], line[:, own:], covariance[:, own:, own:])
 
 
-def _notes(found: Fitted, dwells: Dwells, units: tuple[str, ...]) -> tuple[str, ...]:
-    notes = []
+def _warnings(found: Fitted, dwells: Dwells, units: tuple[str, ...]) -> tuple[Warning, ...]:
+    warnings = []
     if not found.scales.thermal:
-        notes.append(
-            "Temperatures tell nothing here: level, viscosity and the no-load torque are told apart by "
-            "the shape over speed alone, and contact that recedes may be a lubricant that thickens. Record "
-            "dwells at several temperatures."
+        warnings.append(
+            Warning(
+                "no temperatures",
+                "temperature does not vary enough: only the shape over speed distinguishes level, viscosity "
+                "and no-load torque, and contact that recedes may be a lubricant that thickens",
+                remedy="record dwells at several temperatures",
+                severity="act",
+            )
         )
-    if len(units) == 1:
-        notes.append(
-            "One specimen tells nothing of how specimens differ: the intervals are those of this specimen."
-        )
-    elif len(units) <= _FEW:
-        notes.append(
-            f"{len(units)} specimens tell little of how specimens differ: the intervals over all are wide."
-        )
+    if len(units) <= _FEW:
+        warnings.append(_few_specimens(len(units)))
     ages = np.unique(np.stack([dwells.specimen, dwells.age]), axis=1)[0]
     alone = [units[int(u)] for u in np.flatnonzero(np.bincount(ages.astype(int)) < 2)]
     if alone:
-        named = ", ".join(alone[:_NAMED]) + " and more" * (len(alone) > _NAMED)
-        notes.append(f"Seen at one age alone, so that what is said of them rests on the others: {named}.")
+        warnings.append(
+            Warning(
+                "seen at one age",
+                "seen at one age only, so that what is said of them depends on the others: {specimens}",
+                severity="watch",
+                specimens=", ".join(alone[:_NAMED]) + " and more" * (len(alone) > _NAMED),
+            )
+        )
     if not found.settled:
-        notes.append("The fit did not settle: take the numbers with care.")
-    return tuple(notes)
+        warnings.append(
+            Warning(
+                "fit not converged", "the fit did not converge: take the numbers with care", severity="act"
+            )
+        )
+    return tuple(warnings)
+
+
+def _few_specimens(count: int) -> Warning:
+    return Warning(
+        "few specimens",
+        "one specimen does not show how specimens differ: the intervals are those of this specimen"
+        if count == 1
+        else "{specimens} specimens show little of how specimens differ: the intervals over all are wide",
+        severity="watch",
+        specimens=count,
+    )

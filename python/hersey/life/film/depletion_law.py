@@ -50,7 +50,7 @@ class Depletion:
     spread: FloatArray
     greatest_age: float
     reference: Flooded
-    warmth: float
+    temperature_sensitivity: float
     rates: Rates
 
     def layer(self, own: FloatArray, age: FloatArray) -> FloatArray:
@@ -72,7 +72,7 @@ class Depletion:
 
     def over_flooded(self, own: FloatArray, age: FloatArray, point: Flooded) -> FloatArray:
         """Return ln of the layer over the flooded film at a point, of draws (..., 5) at ages."""
-        at = self.viscosity(own, age) + self.warmth * point.steep.item()
+        at = self.viscosity(own, age) + self.temperature_sensitivity * point.steep.item()
         return self.layer(own, age) - cubic(point.film.reshape(4), at)[0]
 
 
@@ -107,8 +107,8 @@ class Rates:
 
 
 @dataclass(frozen=True)
-class _Told:
-    """What runs tell on an even grid of places; runs of a specimen stand together.
+class _RunLikelihoods:
+    """Likelihoods of runs on an even grid of places; runs of a specimen stand together.
 
     ``table`` holds the root of the deviance, ln of the factor on viscosity and its weight, (runs, grid, 3).
     """
@@ -117,7 +117,7 @@ class _Told:
     unit: IntArray
     age: FloatArray
     reference: Flooded
-    warmth: float
+    temperature_sensitivity: float
     scale: float
     rates: Rates
 
@@ -140,21 +140,23 @@ class _Told:
         new = _new(own)[:, self.unit]
         layer = log_layer(new, side_flow, evaporation, self.age)
         thick = own[:, self.unit, VISCOSITY_NEW] + own[:, self.unit, THICKENING] * self.age
-        at = np.clip(thick, -3.0, 5.0) + self.warmth * self.reference.steep.item()
+        at = np.clip(thick, -3.0, 5.0) + self.temperature_sensitivity * self.reference.steep.item()
         place = self.scale + layer - cubic(self.reference.film.reshape(4), at)[0]
         step = np.clip((place - DRY) * ((_GRID - 1) / (FLOODED - DRY)), 0.0, _GRID - 1.000001)
         index = step.astype(np.intp)
         share = (step - index)[..., None]
         rows = index + self._rows
-        told = self._flat[rows] * (1.0 - share) + self._flat[rows + 1] * share
-        loss, viscosity, weight = told[..., 0], told[..., 1], told[..., 2]
-        # A layer beyond the table is thinner than any torque of these runs bears.
+        at_place = self._flat[rows] * (1.0 - share) + self._flat[rows + 1] * share
+        loss, viscosity, weight = at_place[..., 0], at_place[..., 1], at_place[..., 2]
+        # A layer beyond the table is thinner than any torque of these runs allows.
         beyond = np.minimum(place - DRY, 0.0)
         log = -0.5 * (loss**2 + (thick - viscosity) ** 2 * weight) + 100.0 * beyond
         return np.asarray(np.add.reduceat(log, self.first, axis=1))
 
 
-def _told(layers: Layers, unit: IntArray, age: FloatArray, warmth: float, rates: Rates) -> _Told:
+def _likelihoods_of(
+    layers: Layers, unit: IntArray, age: FloatArray, temperature_sensitivity: float, rates: Rates
+) -> _RunLikelihoods:
     grid = np.linspace(DRY, FLOODED, _GRID)
     table = np.empty((len(age), _GRID, 3))
     low, high = layers.interval(level=0.68)[1:]
@@ -169,7 +171,7 @@ def _told(layers: Layers, unit: IntArray, age: FloatArray, warmth: float, rates:
         table[i, :, 1] = np.interp(grid, place, layers.viscosity[i])
         table[i, :, 2] = np.interp(grid, place, error[i]) ** -2
     reference = layers.reference
-    return _Told(table, unit, age, reference, warmth, _scale(reference), rates)
+    return _RunLikelihoods(table, unit, age, reference, temperature_sensitivity, _scale(reference), rates)
 
 
 def _new(own: FloatArray) -> FloatArray:
@@ -191,7 +193,7 @@ def fit_depletion(
     evaporation: float | None = None,
     seed: int = 0,
 ) -> Depletion:
-    """Fit the law to what runs tell, all specimens together.
+    """Fit the law to the layers of runs, all specimens together.
 
     Priors, all weak, are normal in T (the greatest age) and h (the flooded film at the reference), means over
     specimens as in `_MEAN` and `_MEAN_DEVIATION`; spreads are half-normal, as in `_SPREAD`.
@@ -199,7 +201,7 @@ def fit_depletion(
     Parameters
     ----------
     layers
-        What the runs tell.
+        Those of the runs.
     unit, age
         Of each run: number of its specimen from 0 on, ascending, and age in any one unit.
     side_flow, evaporation
@@ -207,16 +209,16 @@ def fit_depletion(
     seed
         Of the draws.
     """
-    greatest, warmth = float(age.max()) or 1.0, float(layers.common[0])
+    greatest, temperature_sensitivity = float(age.max()) or 1.0, float(layers.common[0])
     square = np.exp(2.0 * _scale(layers.reference))
     rates = Rates(
         None if side_flow is None else side_flow * greatest * square,
         None if evaporation is None else evaporation * greatest,
     )
-    told = _told(layers, unit, age / greatest, warmth, rates)
-    plan = _FEW_SPECIMENS if told.first.size < _MANY else _MANY_SPECIMENS
-    own, mean, spread = _walked(layers, told, plan, np.random.default_rng(seed))
-    return Depletion(own, mean, spread, greatest, layers.reference, warmth, rates)
+    likelihoods = _likelihoods_of(layers, unit, age / greatest, temperature_sensitivity, rates)
+    plan = _FEW_SPECIMENS if likelihoods.first.size < _MANY else _MANY_SPECIMENS
+    own, mean, spread = _walked(layers, likelihoods, plan, np.random.default_rng(seed))
+    return Depletion(own, mean, spread, greatest, layers.reference, temperature_sensitivity, rates)
 
 
 class _Plan(NamedTuple):
@@ -233,22 +235,22 @@ _FEW_SPECIMENS, _MANY_SPECIMENS = _Plan(64, 500, 200, 2000), _Plan(16, 320, 120,
 
 
 def _walked(
-    layers: Layers, told: _Told, plan: _Plan, random: np.random.Generator
+    layers: Layers, likelihoods: _RunLikelihoods, plan: _Plan, random: np.random.Generator
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Draws of specimens, means and spreads.
 
     Walkers move by differences of others (ter Braak, Stat. Comput. 16 (2006) 239); means and spreads are
     drawn given the specimens.
     """
-    free = told.rates.free
-    own, mean, spread = _begin(layers, told, (plan.walkers, told.first.size), random)
-    density = told.log_likelihood(own)
+    free = likelihoods.rates.free
+    own, mean, spread = _begin(layers, likelihoods, (plan.walkers, likelihoods.first.size), random)
+    density = likelihoods.log_likelihood(own)
     kept: list[tuple[FloatArray, FloatArray, FloatArray]] = []
     thin = max(1, (plan.steps - plan.dropped) * plan.walkers // plan.kept)
     for step in range(plan.steps):
         half_way = plan.walkers // 2
         for moved in (slice(0, half_way), slice(half_way, plan.walkers)):
-            _move(told, own, density, (mean, spread), moved, random)
+            _move(likelihoods, own, density, (mean, spread), moved, random)
         if step < plan.dropped // 2 and step % _CULL == 0:
             _culled(own, density, mean, spread, free)
         _share(own, mean, spread, free, random)
@@ -259,7 +261,7 @@ def _walked(
 
 
 def _move(
-    told: _Told,
+    likelihoods: _RunLikelihoods,
     own: FloatArray,
     density: FloatArray,
     shared: tuple[FloatArray, FloatArray],
@@ -268,8 +270,8 @@ def _move(
 ) -> None:
     """Let some walkers try to move by differences within the others."""
     others = np.delete(np.arange(len(own)), moved)
-    tried, bias = _tried(own, *shared, moved, others, told.rates.free, random)
-    found = told.log_likelihood(tried)
+    tried, bias = _tried(own, *shared, moved, others, likelihoods.rates.free, random)
+    found = likelihoods.log_likelihood(tried)
     gain = found - density[moved] + bias
     taken = np.log(random.random(gain.shape)) < gain
     own[moved] = np.where(taken[..., None], tried, own[moved])
@@ -277,14 +279,14 @@ def _move(
 
 
 def _begin(
-    layers: Layers, told: _Told, shape: tuple[int, int], random: np.random.Generator
+    layers: Layers, likelihoods: _RunLikelihoods, shape: tuple[int, int], random: np.random.Generator
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Walkers spread about what the youngest run of each specimen tells."""
+    """Walkers spread about the layer of the youngest run of each specimen."""
     best, _, _ = layers.thickness()
     own = np.empty((*shape, _NUMBERS))
-    for k, runs in enumerate(np.split(np.arange(told.age.size), told.first[1:])):
-        young = runs[np.argmin(told.age[runs])]
-        own[:, k, LAYER_NEW] = min(best[young] - told.scale, 1.5)
+    for k, runs in enumerate(np.split(np.arange(likelihoods.age.size), likelihoods.first[1:])):
+        young = runs[np.argmin(likelihoods.age[runs])]
+        own[:, k, LAYER_NEW] = min(best[young] - likelihoods.scale, 1.5)
         own[:, k, VISCOSITY_NEW] = np.interp(layers.best[young], layers.place[young], layers.viscosity[young])
     own[..., LOSS], own[..., EVAPORATED], own[..., THICKENING] = 0.0, 0.0, 0.3
     own += random.standard_normal(own.shape) * np.array([0.1, 0.3, 1.0, 0.05, 0.1])

@@ -48,13 +48,13 @@ def filled_dwells(campaign: Campaign, runs: Runs) -> tuple[FilledDwells, IntArra
         np.column_stack([table[name].cast(float).fill_null(np.nan).to_numpy() for name in names])
     )
     columns[:, 3] = np.nan_to_num(columns[:, 3])
-    told = np.isfinite(columns).all(axis=1) & (columns[:, 0] > 0.0) & (columns[:, 2] > 0.0)
-    if not told.any():
+    known = np.isfinite(columns).all(axis=1) & (columns[:, 0] > 0.0) & (columns[:, 2] > 0.0)
+    if not known.any():
         raise InsufficientDataError(
             "no dwell of the campaign has a temperature and a torque: the film needs both, so record them"
         )
     place = {run: i for i, run in enumerate(runs.run)}
-    of = np.array([place[run] for run in table["run_id"].to_list()])[told]
+    of = np.array([place[run] for run in table["run_id"].to_list()])[known]
     rows = PaddedRows.of(of)
-    speed, kelvin, torque, error = (rows.filled(column) for column in columns[told].T)
+    speed, kelvin, torque, error = (rows.filled(column) for column in columns[known].T)
     return FilledDwells(speed, kelvin, torque, error, rows.given), np.unique(of)

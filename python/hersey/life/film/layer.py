@@ -1,9 +1,9 @@
-"""The layer of oil on the inlet side that each run of a campaign tells, and the viscosity that goes with it.
+"""The layer of oil on the inlet side in each run of a campaign, and the viscosity that goes with it.
 
 Where the flooded film would be thick (cold, fast) a thin layer starves it: torque then goes as viscosity and
 speed themselves instead of as a small power of them. Where it is thin (hot, slow) the layer is not seen. A
 factor on viscosity moves all dwells alike, a thin layer only those: so the layer over the flooded film is
-told by the shape of torque over speed and temperature, whatever the level. In metres it is known as well as
+known by the shape of torque over speed and temperature, whatever the level. In metres it is known as well as
 that film is, viscosity to the power 0.6.
 """
 
@@ -26,8 +26,8 @@ from hersey.life.film.starved_drag import (
     PER_KELVIN,
     PER_SPEED,
     ROUGHNESS,
+    TEMPERATURE_SENSITIVITY,
     VISCOSITY,
-    WARMTH,
     Flooded,
     FloodedTable,
     SharedLoad,
@@ -56,14 +56,15 @@ _RESOLUTION = (0.003, 0.001)
 _AT_ONCE = 20_000
 #: Standard deviations beforehand: ln of the factors on viscosity, roughness and boundary friction; the rest
 #: of the drive over the greatest torque, and its change in 100 K over the same.
-_LEVEL, _ROUGH, _HARD, _REST, _REST_WARMTH = 2.0, 0.7, 0.4, 1.0, 0.05
+_LEVEL, _ROUGH, _HARD, _REST, _REST_PER_100_KELVIN = 2.0, 0.7, 0.4, 1.0, 0.05
 #: What belongs to the machine and its oil, common to all runs: viscosity against temperature, sharpness,
 #: rolling.
-_COMMON = slice(WARMTH, LAYER)
-#: Standard deviations beforehand of the last two, and of all three from run to run; runs that tell them.
+_COMMON = slice(TEMPERATURE_SENSITIVITY, LAYER)
+#: Standard deviations beforehand of the last two, and of all three from run to run; runs from which they are
+#: estimated.
 _SHARP, _ROLLED = 0.35, 0.3
 _FROM_RUN_TO_RUN = np.array([0.03, 0.1, 0.1])
-_TELLING = 120
+_RUNS_FOR_SHARED = 120
 #: Ends of the three; films of rolling contacts had a sharpness of 2 to 5.
 _COMMON_ENDS = np.array(
     [[-0.5, np.log(1.5 / USUAL_SHARPNESS), -0.6], [0.5, np.log(6.5 / USUAL_SHARPNESS), 0.6]]
@@ -73,25 +74,25 @@ _UNSTATED = 0.2
 #: Standard errors in the 95 % that an uncertainty is stated at.
 _TO_95 = 1.96
 #: Film over roughness below which asperities that the machine does not describe may touch.
-_APART = 4.0
+_LEAST_LAMBDA = 4.0
 
 
 @dataclass(frozen=True)
 class Layers:
-    """What each run tells of its layer; arrays of shape (runs, places), or (runs,).
+    """The layer of each run, as its dwells show it; arrays of shape (runs, places), or (runs,).
 
     ``place`` is ln of the layer over the flooded film at the reference, ``deviance`` twice what ln likelihood
-    falls short of its greatest there, all else free. ``viscosity`` and ``warmth`` are then most likely of ln
-    of the factor on viscosity at the middle temperature and of its change from hot to cold, with standard
-    errors.
+    falls short of its greatest there, all else free. ``viscosity`` and ``temperature_sensitivity`` are then
+    the most likely ln of the factor on viscosity at the middle temperature and its change from hot to cold,
+    with standard errors.
     """
 
     place: FloatArray
     deviance: FloatArray
     viscosity: FloatArray
-    warmth: FloatArray
+    temperature_sensitivity: FloatArray
     viscosity_error: FloatArray
-    warmth_error: FloatArray
+    temperature_sensitivity_error: FloatArray
     best: FloatArray  #: the most likely place
     scatter: FloatArray  #: of the dwells about the law, over their errors
     freedom: FloatArray
@@ -104,21 +105,25 @@ class Layers:
 
         The error is that of the run, viscosity and its change with temperature as independent.
         """
-        at = self.viscosity + self.warmth * point.steep
+        at = self.viscosity + self.temperature_sensitivity * point.steep
         film, slope = cubic(point.film, at)
-        return film, np.abs(slope) * np.hypot(self.viscosity_error, self.warmth_error * point.steep)
+        return film, np.abs(slope) * np.hypot(
+            self.viscosity_error, self.temperature_sensitivity_error * point.steep
+        )
 
     def interval(self, point: Flooded | None = None, level: float = 0.9) -> tuple[FloatArray, ...]:
         """Return the most likely ln of the layer over the flooded film at a point, and its interval.
 
-        An end is infinite where the run does not tell it. Without a point: at the reference.
+        An end is infinite where the run does not show it. Without a point: at the reference.
         """
         shift, extra = np.zeros_like(self.place), np.zeros_like(self.place)
         if point is not None:
             own, there = self.film_at(self.reference)[0], self.film_at(point)[0]
             shift = own - there
             slope = cubic(point.film, self.viscosity)[1]
-            extra = np.abs(slope * (self.reference.steep - point.steep)[0]) * self.warmth_error
+            extra = (
+                np.abs(slope * (self.reference.steep - point.steep)[0]) * self.temperature_sensitivity_error
+            )
         return self._ends(shift, extra, level)
 
     def film(self, point: Flooded, level: float = 0.9) -> tuple[FloatArray, ...]:
@@ -139,23 +144,23 @@ class Layers:
 
     def _ends(self, shift: FloatArray, extra: FloatArray, level: float) -> tuple[FloatArray, ...]:
         """Ends of place + shift, from the root of the deviance, widened by an error of the shift."""
-        reach: FloatArray = np.asarray(student_quantile(0.5 + level / 2.0, self.freedom))
+        quantile: FloatArray = np.asarray(student_quantile(0.5 + level / 2.0, self.freedom))
         away = self.place - self.best[:, None]
         root = np.maximum.accumulate(np.sqrt(np.maximum(self.deviance, 0.0)) * np.sign(away), axis=1)
         best, low, high = (np.empty_like(self.best) for _ in range(3))
         for i in range(len(best)):
             moved = self.place[i] + shift[i]
             best[i] = np.interp(self.best[i], self.place[i], moved)
-            more = reach[i] * np.interp(self.best[i], self.place[i], extra[i])
-            below = np.interp(-reach[i], root[i], moved, left=-np.inf)
-            above = np.interp(reach[i], root[i], moved, right=np.inf)
+            more = quantile[i] * np.interp(self.best[i], self.place[i], extra[i])
+            below = np.interp(-quantile[i], root[i], moved, left=-np.inf)
+            above = np.interp(quantile[i], root[i], moved, right=np.inf)
             low[i] = best[i] - np.hypot(best[i] - below, more)
             high[i] = best[i] + np.hypot(above - best[i], more)
         return best, low, high
 
 
 def layers(dwells: FilledDwells, machine: Machine, *, speed: float, kelvin: float) -> Layers:
-    """Return what runs tell of their layers.
+    """Return the layers of runs.
 
     Parameters
     ----------
@@ -178,7 +183,7 @@ def layers(dwells: FilledDwells, machine: Machine, *, speed: float, kelvin: floa
     shared = None if mixed is None else SharedLoad.of(mixed, middle)
     reference = flooded(contact, lubricant, np.array([[speed]]), np.array([[kelvin]]))
     uncertainty = _UNSTATED if lubricant.uncertainty is None else lubricant.uncertainty
-    beforehand = _Common(np.zeros(3), np.diag([_warmth(uncertainty), _SHARP, _ROLLED]) ** 2)
+    beforehand = _Common(np.zeros(3), np.diag([_sensitivity_deviation(uncertainty), _SHARP, _ROLLED]) ** 2)
 
     table = FloodedTable(contact, lubricant, dwells.speed[dwells.given], dwells.kelvin[dwells.given])
 
@@ -192,12 +197,14 @@ def layers(dwells: FilledDwells, machine: Machine, *, speed: float, kelvin: floa
             yield _Search(law, some, *_prior(some, common, shared is not None))
 
     runs, longest = dwells.speed.shape
-    every = max(1, -(-runs // _TELLING))
+    every = max(1, -(-runs // _RUNS_FOR_SHARED))
     many = max(1, _AT_ONCE // longest)
-    telling = [slice(i, min(i + many * every, runs), every) for i in range(0, runs, many * every)]
+    some_runs = [slice(i, min(i + many * every, runs), every) for i in range(0, runs, many * every)]
     common = beforehand
     for _ in range(2):  # about its own last answer, with all that was open beforehand
-        common = _told(searches(telling, replace(beforehand, mean=common.mean)), common.mean, beforehand)
+        common = _shared_by_runs(
+            searches(some_runs, replace(beforehand, mean=common.mean)), common.mean, beforehand
+        )
     parts = [_profiled(each) for each in searches((slice(i, i + many) for i in range(0, runs, many)), common)]
     names = [each.name for each in fields(Layers) if each.name not in ("reference", "common")]
     return Layers(
@@ -215,13 +222,13 @@ class _Common:
     covariance: FloatArray
 
 
-def _warmth(uncertainty: float) -> float:
+def _sensitivity_deviation(uncertainty: float) -> float:
     """Standard deviation of the change of ln viscosity between two points each known so well."""
     return max(float(np.sqrt(2.0) * np.log1p(uncertainty)) / _TO_95, 1e-3)
 
 
-def _told(searches: Iterable[_Search], about: FloatArray, beforehand: _Common) -> _Common:
-    """What runs tell together of what is common to them, all else free in each."""
+def _shared_by_runs(searches: Iterable[_Search], about: FloatArray, beforehand: _Common) -> _Common:
+    """What is common to all runs, estimated from them together, all else free in each."""
     known = np.linalg.inv(beforehand.covariance)
     total, moment = known.copy(), known @ beforehand.mean
     for search in searches:
@@ -239,8 +246,8 @@ def _told(searches: Iterable[_Search], about: FloatArray, beforehand: _Common) -
 
 def _on_film(given: BoolArray, film: Flooded, roughness: float) -> BoolArray:
     """Dwells whose film keeps the faces apart; all of a run that has too few of them."""
-    apart = given & (cubic(film.film, np.zeros(()))[0] > np.log(_APART * roughness))
-    return np.where((apart.sum(axis=1) > 2 * LAYER)[:, None], apart, given)
+    on_film = given & (cubic(film.film, np.zeros(()))[0] > np.log(_LEAST_LAMBDA * roughness))
+    return np.where((on_film.sum(axis=1) > 2 * LAYER)[:, None], on_film, given)
 
 
 def _prior(dwells: FilledDwells, common: _Common, mixed: bool) -> tuple[FloatArray, FloatArray]:
@@ -251,7 +258,7 @@ def _prior(dwells: FilledDwells, common: _Common, mixed: bool) -> tuple[FloatArr
     deviation[:, VISCOSITY] = _LEVEL
     deviation[:, CONSTANT] = _REST * greatest
     deviation[:, PER_SPEED] = _REST * greatest / fastest
-    deviation[:, PER_KELVIN] = _REST_WARMTH * greatest / 100.0
+    deviation[:, PER_KELVIN] = _REST_PER_100_KELVIN * greatest / 100.0
     deviation[:, ROUGHNESS], deviation[:, BOUNDARY] = (_ROUGH, _HARD) if mixed else (1e-3, 1e-3)
     deviation[:, LAYER] = 1e6
     mean = np.zeros_like(deviation)
@@ -276,8 +283,10 @@ def _profiled(search: _Search) -> Layers:
             trial[:, LAYER] = places[:, k]
             trial, costs[:, k], precision = search.settled(trial, steps=2, layer=False)
             covariance = np.linalg.inv(precision[:, :LAYER, :LAYER])
-            kept[:, k, :2] = trial[:, [VISCOSITY, WARMTH]]
-            kept[:, k, 2:] = np.sqrt(covariance[:, [VISCOSITY, WARMTH], [VISCOSITY, WARMTH]])
+            kept[:, k, :2] = trial[:, [VISCOSITY, TEMPERATURE_SENSITIVITY]]
+            kept[:, k, 2:] = np.sqrt(
+                covariance[:, [VISCOSITY, TEMPERATURE_SENSITIVITY], [VISCOSITY, TEMPERATURE_SENSITIVITY]]
+            )
     least, lowest = costs.min(axis=1), costs.argmin(axis=1)
     scatter = np.sqrt(least / search.freedom)
     stretch = np.maximum(scatter, 1.0)[:, None]
@@ -285,9 +294,9 @@ def _profiled(search: _Search) -> Layers:
         place=places,
         deviance=(costs - least[:, None]) / stretch**2,
         viscosity=kept[..., 0],
-        warmth=kept[..., 1],
+        temperature_sensitivity=kept[..., 1],
         viscosity_error=kept[..., 2] * stretch,
-        warmth_error=kept[..., 3] * stretch,
+        temperature_sensitivity_error=kept[..., 3] * stretch,
         best=places[np.arange(len(places)), lowest],
         scatter=scatter,
         freedom=search.freedom,
@@ -364,7 +373,9 @@ class _Search:
             trial[:, :many] += step
             trial[:, VISCOSITY] = np.clip(trial[:, VISCOSITY], *_near(best[:, VISCOSITY], 0.7, -3.0, 5.0))
             trial[:, LAYER] = np.clip(trial[:, LAYER], *_near(best[:, LAYER], 0.5, DRY, FLOODED))
-            trial[:, ROUGHNESS:WARMTH] = np.clip(trial[:, ROUGHNESS:WARMTH], -2.0, 2.0)
+            trial[:, ROUGHNESS:TEMPERATURE_SENSITIVITY] = np.clip(
+                trial[:, ROUGHNESS:TEMPERATURE_SENSITIVITY], -2.0, 2.0
+            )
             trial[:, _COMMON] = np.clip(trial[:, _COMMON], *_COMMON_ENDS)
             square, *moved = self._moved(trial)
             better = square < least

@@ -16,6 +16,7 @@ from hersey.life.growth.limit_ages import DEVIATIONS
 from hersey.life.indicator import Indicator, Runs
 from hersey.life.oil_layer import USUAL_SHARPNESS, log_film_share
 from hersey.result import Means, Record
+from hersey.schema.warning import Warning
 from hersey.units import celsius, rpm
 
 if TYPE_CHECKING:
@@ -25,10 +26,10 @@ if TYPE_CHECKING:
 #: Dwells of a run from which it shows a film.
 _FEWEST = 6
 #: Kelvin between the coldest and the hottest dwell of a run from which it shows a film.
-_WARMTH = 10.0
+_TEMPERATURE_RANGE = 10.0
 #: Scatter over the stated errors from which the law does not describe a run.
 _BAD = 2.0
-#: Runs that a note names.
+#: Runs that a warning names.
 _NAMED = 4
 #: Standard errors in the 95 % at which uncertainties are stated.
 _TO_95 = 1.96
@@ -36,7 +37,7 @@ _TO_95 = 1.96
 
 @dataclass(frozen=True)
 class FilmPoint(Record):
-    """A state at which the film is told: speed of the roll (rad/s) and temperature (K)."""
+    """A state at which the film is estimated: speed of the roll (rad/s) and temperature (K)."""
 
     name: str
     speed: float
@@ -48,8 +49,8 @@ class FilmPoint(Record):
 
 
 @dataclass(frozen=True)
-class Told(Record):
-    """Something that runs or specimens tell, with 90 % intervals; an end is infinite where it is not told."""
+class Estimates(Record):
+    """Estimates of runs or specimens, with 90 % intervals; an end is infinite where it is not known."""
 
     value: Annotated[FloatArray, Means(shape="(n,) or (n, m)", open=True)]
     low: Annotated[FloatArray, Means(shape="(n,) or (n, m)", open=True)]
@@ -58,41 +59,41 @@ class Told(Record):
 
 @dataclass(frozen=True)
 class FilmOfRuns:
-    """What the runs of a campaign tell; ``told`` are the places of those that have dwells."""
+    """What the runs of a campaign show; ``places`` are those of the runs that have dwells."""
 
     runs: Runs
-    told: IntArray
+    places: IntArray
     layers: Layers
     points: tuple[FilmPoint, ...]
     flooded: tuple[Flooded, ...]
-    notes: tuple[str, ...]
+    warnings: tuple[Warning, ...]
 
     def of_all(self, values: FloatArray) -> FloatArray:
         """Return values of all runs, NaN where one has no dwells."""
         every = np.full(len(self.runs.run), np.nan)
-        every[self.told] = values
+        every[self.places] = values
         return every
 
-    def spread(self, *ends: FloatArray) -> Told:
+    def spread(self, *ends: FloatArray) -> Estimates:
         """Return a value and the ends of its interval of all runs."""
-        return Told(*(self.of_all(each) for each in ends))
+        return Estimates(*(self.of_all(each) for each in ends))
 
-    def film(self, point: Flooded) -> Told:
+    def film(self, point: Flooded) -> Estimates:
         """Return the film over the flooded one at a point."""
         sharpness = USUAL_SHARPNESS * float(np.exp(self.layers.common[1]))
         return self.spread(
             *(np.exp(log_film_share(each, sharpness)[0]) for each in self.layers.interval(point))
         )
 
-    def thickness(self, point: Flooded) -> Told:
+    def thickness(self, point: Flooded) -> Estimates:
         """Return the film at a point, m."""
         return self.spread(*(np.exp(each) for each in self.layers.film(point)))
 
-    def layer(self) -> Told:
+    def layer(self) -> Estimates:
         """Return the layer of oil, m."""
         return self.spread(*(np.exp(each) for each in self.layers.thickness()))
 
-    def viscosity(self) -> Told:
+    def viscosity(self) -> Estimates:
         """Return the factor on viscosity at the middle temperature; its error includes that of the layer."""
         found = self.layers
         value, error = np.empty(len(found.best)), np.empty(len(found.best))
@@ -102,7 +103,9 @@ class FilmOfRuns:
             value[i] = np.interp(found.best[i], place, found.viscosity[i])
             away = found.viscosity[i] - value[i]
             error[i] = np.sqrt(weight @ (away**2 + found.viscosity_error[i] ** 2))
-        return self.spread(*(np.exp(value + reach * error) for reach in (0.0, -DEVIATIONS, DEVIATIONS)))
+        return self.spread(
+            *(np.exp(value + deviations * error) for deviations in (0.0, -DEVIATIONS, DEVIATIONS))
+        )
 
     def indicator(self) -> Indicator:
         """Return starvation as a failure mode: flooded film over layer, limit 1."""
@@ -117,9 +120,16 @@ class FilmOfRuns:
             limit=1.0,
             value=self.of_all(value),
             error=self.of_all(error),
-            notes=(
-                f"the film starves where the layer of oil is thinner than a flooded film at {self.points[0]}",
-                *self.notes,
+            warnings=(
+                Warning(
+                    "starvation defined",
+                    "the film starves where the layer of oil is thinner than a flooded film at {point} "
+                    "({speed:.4g rpm}, {temperature:.4g degC})",
+                    point=self.points[0].name,
+                    speed=self.points[0].speed,
+                    temperature=self.points[0].temperature,
+                ),
+                *self.warnings,
             ),
         )
 
@@ -135,15 +145,15 @@ def film_of_runs(campaign: Campaign, machine: Machine, cold: float | None) -> Fi
     runs = Runs.of(campaign)
     if not runs.run:
         raise InsufficientDataError(f"{campaign.path.name} holds no run: add logs first")
-    dwells, told = filled_dwells(campaign, runs)
-    telling = _tells(dwells)
-    if not telling.any():
+    dwells, places = filled_dwells(campaign, runs)
+    usable = _shows_film(dwells)
+    if not usable.any():
         raise InsufficientDataError(
-            f"no run has {_FEWEST} dwells over {_WARMTH:g} K or more: one temperature cannot tell a thin "
-            "layer of oil from a thick oil, so record cold and hot ones"
+            f"no run has {_FEWEST} dwells over {_TEMPERATURE_RANGE:g} K or more: one temperature cannot "
+            "distinguish a thin layer of oil from a thick oil, so record cold and hot ones"
         )
-    dwells, told = dwells.rows(np.flatnonzero(telling)), told[telling]
-    points = _points(machine, dwells, [runs.unit[i] for i in told], cold)
+    dwells, places = dwells.rows(np.flatnonzero(usable)), places[usable]
+    points = _points(machine, dwells, [runs.unit[i] for i in places], cold)
     found = layers(dwells, machine, speed=points[1].speed, kelvin=points[1].temperature)
     if (scatter := float(np.median(found.scatter))) > _BAD:
         raise InsufficientDataError(
@@ -154,18 +164,24 @@ def film_of_runs(campaign: Campaign, machine: Machine, cold: float | None) -> Fi
     films = tuple(
         flooded(*film_of(machine), np.array([point.speed]), np.array([point.temperature])) for point in points
     )
-    notes = _notes(runs, told, found)
-    if not telling.all():
-        left = f"{np.count_nonzero(~telling)} of {telling.size} runs have too few dwells or one temperature"
-        notes = (f"{left}: they tell no film", *notes)
-    return FilmOfRuns(runs, told, found, points, films, notes)
+    warnings = _warnings(runs, places, found)
+    if not usable.all():
+        few = Warning(
+            "runs without a film",
+            "{count} of {runs} runs have too few dwells or one temperature: they show no film",
+            severity="watch",
+            count=int(np.count_nonzero(~usable)),
+            runs=usable.size,
+        )
+        warnings = (few, *warnings)
+    return FilmOfRuns(runs, places, found, points, films, warnings)
 
 
-def _tells(dwells: FilledDwells) -> BoolArray:
+def _shows_film(dwells: FilledDwells) -> BoolArray:
     """Which runs have dwells enough, over temperatures enough."""
-    heats = np.where(dwells.given, dwells.kelvin, np.nan)
-    range_of_heat = np.nanmax(heats, axis=1) - np.nanmin(heats, axis=1)
-    return np.asarray((dwells.given.sum(axis=1) >= _FEWEST) & (range_of_heat >= _WARMTH))
+    temperatures = np.where(dwells.given, dwells.kelvin, np.nan)
+    temperature_range = np.nanmax(temperatures, axis=1) - np.nanmin(temperatures, axis=1)
+    return np.asarray((dwells.given.sum(axis=1) >= _FEWEST) & (temperature_range >= _TEMPERATURE_RANGE))
 
 
 def _points(
@@ -183,22 +199,35 @@ def _points(
     return state, FilmPoint("the cold corner", state.speed, max(coldest.values()) if cold is None else cold)
 
 
-def _notes(runs: Runs, told: IntArray, found: Layers) -> tuple[str, ...]:
+def _warnings(runs: Runs, places: IntArray, found: Layers) -> tuple[Warning, ...]:
     _, _, high = found.interval()
-    notes = []
+    warnings = []
     unseen = int(np.count_nonzero(~np.isfinite(high)))
     if unseen:
-        notes.append(
-            f"{unseen} of {len(told)} runs show no starvation at all: of their layer they tell a lower bound"
+        warnings.append(
+            Warning(
+                "runs without starvation",
+                "{count} of {runs} runs show no starvation: of their layer only a lower bound is known",
+                count=unseen,
+                runs=len(places),
+            )
         )
-    bad = [f"{runs.unit[told[i]]} at {runs.age[told[i]]:.6g}" for i in np.flatnonzero(found.scatter > _BAD)]
+    bad = [
+        f"{runs.unit[places[i]]} at {runs.age[places[i]]:.6g}" for i in np.flatnonzero(found.scatter > _BAD)
+    ]
     if bad:
         more = " and others" if len(bad) > _NAMED else ""
-        notes.append(
-            f"dwells of {', '.join(bad[:_NAMED])}{more} scatter about the law by more than {_BAD:g} times "
-            "their errors: nip, lubricant or load are not those of the machine's file"
+        warnings.append(
+            Warning(
+                "dwells scatter",
+                "dwells of {which} scatter about the law by more than {factor:g} times their errors: nip, "
+                "lubricant or load are not those of the machine's file",
+                severity="act",
+                which=", ".join(bad[:_NAMED]) + more,
+                factor=_BAD,
+            )
         )
-    return tuple(notes)
+    return tuple(warnings)
 
 
 def systematic_factor(machine: Machine, read: FilmOfRuns) -> float:
@@ -218,7 +247,7 @@ def starvation_indicator(campaign: Campaign, machine: Machine) -> Indicator:
 
     It needs a machine with contact and lubricant, and dwells at several speeds and temperatures: the layer is
     seen where it is thinner than a flooded film or near it, cold and fast. A run all of whose dwells are
-    flooded tells a lower bound of the layer alone, which a number with an error cannot hold: there the value
+    flooded shows only a lower bound of the layer, which a number with an error cannot hold: there the value
     is NaN, as for a run without dwells. `film_life` uses those, too.
 
     Raises

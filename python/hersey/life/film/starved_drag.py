@@ -30,7 +30,18 @@ _ALONG = 24
 #: ln of film over roughness at which the share of the asperities is tabled.
 _TABLE = np.linspace(np.log(0.02), np.log(60.0), 600)
 #: What is free in a run, in this order, with the index of each.
-VISCOSITY, CONSTANT, PER_SPEED, PER_KELVIN, ROUGHNESS, BOUNDARY, WARMTH, SHARPNESS, ROLLING, LAYER = range(10)
+(
+    VISCOSITY,
+    CONSTANT,
+    PER_SPEED,
+    PER_KELVIN,
+    ROUGHNESS,
+    BOUNDARY,
+    TEMPERATURE_SENSITIVITY,
+    SHARPNESS,
+    ROLLING,
+    LAYER,
+) = range(10)
 FREE = LAYER + 1
 
 
@@ -144,8 +155,8 @@ class StarvedDrag:
         part; and ln of the layer over the flooded film at the reference.
         """
         column = free.T[:, :, None]
-        at = column[VISCOSITY] + column[WARMTH] * self.flooded.steep
-        there = column[VISCOSITY] + column[WARMTH] * self.reference.steep
+        at = column[VISCOSITY] + column[TEMPERATURE_SENSITIVITY] * self.flooded.steep
+        there = column[VISCOSITY] + column[TEMPERATURE_SENSITIVITY] * self.reference.steep
         film, by_film = cubic(self.flooded.film, at)
         least, by_least = cubic(self.reference.film, there)
         layer = column[LAYER] + least - film
@@ -175,7 +186,7 @@ class StarvedDrag:
         slopes[:, VISCOSITY] = straight + of_layer * (by_least - by_film)
         slopes[:, CONSTANT], slopes[:, PER_SPEED], slopes[:, PER_KELVIN] = 1.0, self.speed, self.warm
         slopes[:, ROUGHNESS], slopes[:, BOUNDARY] = -of_ratio, touching
-        slopes[:, WARMTH] = straight * self.flooded.steep + of_layer * (
+        slopes[:, TEMPERATURE_SENSITIVITY] = straight * self.flooded.steep + of_layer * (
             by_least * self.reference.steep - by_film * self.flooded.steep
         )
         slopes[:, SHARPNESS] = of_share * (layer * by_layer - log_share)

@@ -9,12 +9,13 @@ import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.life.film.depletion_law import Depletion
-from hersey.life.film.of_runs import FilmPoint, Told
+from hersey.life.film.of_runs import Estimates, FilmPoint
 from hersey.life.film.starved_drag import Flooded
 from hersey.life.growth.limit_ages import AgesAtLimit, Interval, ages_at_limit, interval, quantiles
 from hersey.life.indicator import OwnAges
 from hersey.life.oil_layer import USUAL_SHARPNESS, log_film_share
 from hersey.result import Record
+from hersey.schema.warning import Warning
 
 #: Ages looked at, over the greatest of the data; past the last it counts as never.
 _AGES = np.concatenate([[0.0], np.geomspace(3e-3, 10.0, 110)])
@@ -45,17 +46,17 @@ class LayersOfSpecimens:
     names: list[str]
     last: FloatArray
 
-    def spread(self, of: Callable[[FloatArray], FloatArray]) -> Told:
+    def spread(self, of: Callable[[FloatArray], FloatArray]) -> Estimates:
         """Return median and 90 % ends of exp of a function of what a specimen has, (specimens, ages)."""
         every = np.moveaxis(self.drawn.specimens, 1, 0)
         low, middle, high = np.moveaxis(np.array([np.exp(quantiles(of(own))) for own in every]), 1, 0)
-        return Told(middle, low, high)
+        return Estimates(middle, low, high)
 
-    def thickness(self, ages: FloatArray) -> Told:
+    def thickness(self, ages: FloatArray) -> Estimates:
         """Return the layer at ages, m."""
         return self.spread(lambda own: self.drawn.layer(own, ages))
 
-    def film(self, point: Flooded, ages: FloatArray) -> Told:
+    def film(self, point: Flooded, ages: FloatArray) -> Estimates:
         """Return the film over the flooded one at a point."""
         drawn = self.drawn
         return self.spread(
@@ -94,10 +95,12 @@ class LayersOfSpecimens:
         known = _ages_below(drawn, drawn.specimens, point, off[:, None])
         return OwnAges(known, _ages_below(drawn, new, point, off[some, None]))
 
-    def starves(self, own: OwnAges, state: FilmPoint, age_unit: str, notes: tuple[str, ...]) -> AgesAtLimit:
+    def starves(
+        self, own: OwnAges, state: FilmPoint, age_unit: str, warnings: tuple[Warning, ...]
+    ) -> AgesAtLimit:
         """Return the ages at which the specimens starve at a point, of their draws."""
         quantity = f"the flooded film over the layer at {state.name}"
-        return ages_at_limit(quantity, age_unit, 1.0, self.names, own, self.last, notes)
+        return ages_at_limit(quantity, age_unit, 1.0, self.names, own, self.last, warnings)
 
     def with_all(self, own: OwnAges, names: tuple[str, ...]) -> OwnAges:
         """Return the draws of all specimens: one that no run shows is a new one."""

@@ -14,13 +14,14 @@ import numpy as np
 from hersey.arrays import BoolArray, FloatArray, IntArray, one_thread
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.life.film.depletion_law import fit_depletion
-from hersey.life.film.of_runs import FilmOfRuns, FilmPoint, Told, film_of_runs, systematic_factor
+from hersey.life.film.of_runs import Estimates, FilmOfRuns, FilmPoint, film_of_runs, systematic_factor
 from hersey.life.film.starved_drag import film_of
 from hersey.life.film.starving import LayersOfSpecimens, OilLeft
 from hersey.life.growth.limit_ages import AgesAtLimit, Interval
 from hersey.life.indicator import Indicator, Indicators, Runs, most_ages
 from hersey.life.oil_layer import USUAL_SHARPNESS
 from hersey.result import Means, Result
+from hersey.schema.warning import Warning
 from hersey.units import takes_si
 
 if TYPE_CHECKING:
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
     from hersey.life.campaign import Campaign
     from hersey.machine.machine import Machine
 
-__all__ = ["STARVED", "FilmLife", "Told", "film_life"]
+__all__ = ["STARVED", "Estimates", "FilmLife", "film_life"]
 
 #: Film over flooded below which it is starved: the layer is then thinner than the flooded film.
 STARVED = 2.0 ** (-1.0 / USUAL_SHARPNESS)
@@ -54,17 +55,19 @@ class FilmLife(Result):
 
     runs: Runs
     points: Annotated[tuple[FilmPoint, ...], Means("fastest operating point, cold corner")]
-    film: Annotated[tuple[Told, ...], Means("over that of a flooded inlet, at each point, shape (runs,)")]
-    thickness: Annotated[tuple[Told, ...], Means("of the film at each point, shape (runs,)", "m")]
-    layer: Annotated[Told, Means("of oil on the inlet side, shape (runs,)", "m")]
-    viscosity: Annotated[Told, Means("over that of the lubricant, shape (runs,)")]
+    film: Annotated[
+        tuple[Estimates, ...], Means("over that of a flooded inlet, at each point, shape (runs,)")
+    ]
+    thickness: Annotated[tuple[Estimates, ...], Means("of the film at each point, shape (runs,)", "m")]
+    layer: Annotated[Estimates, Means("of oil on the inlet side, shape (runs,)", "m")]
+    viscosity: Annotated[Estimates, Means("over that of the lubricant, shape (runs,)")]
     systematic: Annotated[float, Means("factor by which all layers may be off together")]
     scatter: Annotated[
         FloatArray, Means("of the dwells about the law, over their errors", shape="(runs,)", open=True)
     ]  #: of the dwells of each run about the law, over their errors
     ages: FloatArray
-    curves: Annotated[tuple[Told, ...], Means("film over flooded at each point, shape (units, ages)")]
-    layers: Annotated[Told, Means("shape (units, ages)", "m")]
+    curves: Annotated[tuple[Estimates, ...], Means("film over flooded at each point, shape (units, ages)")]
+    layers: Annotated[Estimates, Means("shape (units, ages)", "m")]
     needs: Annotated[tuple[FloatArray, ...], Means("flooded film at each point", "m", shape="(units, ages)")]
     starves: tuple[AgesAtLimit, ...]
     law: Annotated[
@@ -72,7 +75,7 @@ class FilmLife(Result):
     ]  #: of the median specimen: K (1/(m^2 age)), e and g (1/age)
     oil: tuple[OilLeft, ...]
     track: float
-    notes: tuple[str, ...]
+    warnings: tuple[Warning, ...]
     _starvation: Indicator = field(repr=False)
 
     def starved(self, point: int = 0) -> BoolArray:
@@ -97,11 +100,11 @@ class FilmLife(Result):
         ]
         for i in _last_runs(self.runs):
             films = ", ".join(
-                f"{_told(each, i, 1.0, 1.0)} at {point.name} ({1e6 * float(film.value[i]):.3g} um)"
+                f"{_shown(each, i, 1.0, 1.0)} at {point.name} ({1e6 * float(film.value[i]):.3g} um)"
                 for each, film, point in zip(self.film, self.thickness, self.points, strict=True)
             )
             name, age = self.runs.unit[i], self.runs.age[i]
-            lines.append(f"  {name} at {age:.6g}: {films}; layer {_told(self.layer, i, 1e6)} um")
+            lines.append(f"  {name} at {age:.6g}: {films}; layer {_shown(self.layer, i, 1e6)} um")
         lines += [f"  {point}" for point in self.points]
         for point, ages in zip(self.points, self.starves, strict=True):
             lines.append(f"age ({unit}) at which the layer is thinner than the flooded film, {point.name}")
@@ -118,7 +121,7 @@ class FilmLife(Result):
             f"law dh/dt = -K h^3/2 - e h, viscosity exp(g t); median specimen, per {unit}: "
             + ", ".join(f"{name} {each}" for name, each in self.law.items())
         )
-        return "\n".join([*lines, *(f"- {note}" for note in self.notes)])
+        return "\n".join([*lines, *(f"- {each}" for each in self.warnings)])
 
     def with_starvation(self, indicators: Indicators) -> Indicators:
         """Return indicators of the same runs with starvation among them.
@@ -133,7 +136,7 @@ class FilmLife(Result):
         return replace(indicators, each=(*indicators.each, self._starvation))
 
     def to_frame(self) -> pl.DataFrame:
-        """Return one row per run; infinite where an end is not told."""
+        """Return one row per run; infinite where an end is not known."""
         import polars as pl
 
         columns: dict[str, Any] = {
@@ -143,9 +146,17 @@ class FilmLife(Result):
         }
         of = [(f"film over flooded, {p.name} (1)", f) for p, f in zip(self.points, self.film, strict=True)]
         of += [(f"film, {p.name} (m)", f) for p, f in zip(self.points, self.thickness, strict=True)]
-        for name, told in (*of, ("layer (m)", self.layer), ("viscosity over new oil (1)", self.viscosity)):
+        for name, estimates in (
+            *of,
+            ("layer (m)", self.layer),
+            ("viscosity over new oil (1)", self.viscosity),
+        ):
             word, _, unit = name.rpartition(" ")
-            columns |= {name: told.value, f"{word} low {unit}": told.low, f"{word} high {unit}": told.high}
+            columns |= {
+                name: estimates.value,
+                f"{word} low {unit}": estimates.low,
+                f"{word} high {unit}": estimates.high,
+            }
         return pl.DataFrame(columns)
 
 
@@ -195,18 +206,18 @@ def film_life(
     """
     _refuse_impossible(side_flow, evaporation, track)
     read = film_of_runs(campaign, machine, machine.life.coldest if cold is None else cold)
-    age = read.runs.age[read.told]
-    of_run = [read.runs.unit[i] for i in read.told]
+    age = read.runs.age[read.places]
+    of_run = [read.runs.unit[i] for i in read.places]
     names = list(dict.fromkeys(of_run))
     place = np.array([names.index(name) for name in of_run])
     if most_ages(place, age) < 2:
         raise InsufficientDataError(
-            "no specimen was seen at two ages, so nothing tells how its oil thins: add runs at another age"
+            "no specimen was seen at two ages, so nothing shows how its oil thins: add runs at another age"
         )
     drawn = fit_depletion(read.layers, place, age, side_flow=side_flow, evaporation=evaporation, seed=seed)
     last = np.array([age[place == k].max() for k in range(len(names))])
-    notes = (*read.notes, *_law_notes(age, place, machine))
-    return _film_life(read, LayersOfSpecimens(drawn, names, last), machine, track, notes)
+    warnings = (*read.warnings, *_of_the_law(age, place, machine))
+    return _film_life(read, LayersOfSpecimens(drawn, names, last), machine, track, warnings)
 
 
 def _refuse_impossible(side_flow: float | None, evaporation: float | None, track: float | None) -> None:
@@ -222,7 +233,7 @@ def _film_life(
     layers: LayersOfSpecimens,
     machine: Machine,
     track: float | None,
-    notes: tuple[str, ...],
+    warnings: tuple[Warning, ...],
 ) -> FilmLife:
     ages = _CURVES * layers.drawn.greatest_age
     length = machine.roll_radius * 2.0 * np.pi if track is None else track
@@ -241,29 +252,42 @@ def _film_life(
         curves=tuple(layers.film(point, ages) for point in read.flooded),
         layers=layers.thickness(ages),
         needs=tuple(layers.needs(point, ages) for point in read.flooded),
-        starves=tuple(layers.starves(own, state, read.runs.age_unit, notes) for own, state in pairs),
+        starves=tuple(layers.starves(own, state, read.runs.age_unit, warnings) for own, state in pairs),
         law=layers.rates(),
         oil=layers.oil(read.flooded[0], length * film_of(machine)[0].length),
         track=length,
-        notes=notes,
+        warnings=warnings,
         _starvation=replace(read.indicator(), own_ages=layers.with_all(starving[0], read.runs.units)),
     )
 
 
-def _law_notes(age: FloatArray, place: IntArray, machine: Machine) -> list[str]:
-    notes = []
+def _of_the_law(age: FloatArray, place: IntArray, machine: Machine) -> list[Warning]:
+    warnings = []
     if most_ages(place, age) < 3:
-        notes.append("no specimen was seen at three ages: side flow and evaporation cannot be told apart")
-    if machine.asperities is None:
-        notes.append(
-            "the machine's file states no asperities: dwells with a film below four times the roughness are "
-            "left out"
+        warnings.append(
+            Warning(
+                "two ages at most",
+                "no specimen was seen at three ages: side flow and evaporation cannot be distinguished",
+                severity="watch",
+            )
         )
-    notes.append(
-        "thicker oil moves torque at all dwells, a thin layer at cold and fast ones: a nip that widens with "
-        "age would be read as thicker oil"
+    if machine.asperities is None:
+        warnings.append(
+            Warning(
+                "no asperities",
+                "the machine's file states no asperities: dwells with a film below four times the roughness "
+                "are excluded",
+                severity="watch",
+            )
+        )
+    warnings.append(
+        Warning(
+            "nip taken as constant",
+            "thicker oil moves torque at all dwells, a thin layer at cold and fast ones: a nip that widens "
+            "with age would be read as thicker oil",
+        )
     )
-    return notes
+    return warnings
 
 
 def _last_runs(runs: Runs) -> list[int]:
@@ -275,10 +299,10 @@ def _last_runs(runs: Runs) -> list[int]:
     return list(last.values())
 
 
-def _told(told: Told, i: int, factor: float, most: float = np.inf) -> str:
-    value, low, high = (factor * float(each[i]) for each in (told.value, told.low, told.high))
+def _shown(estimates: Estimates, i: int, factor: float, most: float = np.inf) -> str:
+    value, low, high = (factor * float(each[i]) for each in (estimates.value, estimates.low, estimates.high))
     if np.isnan(value):
-        return "not told"
+        return "unknown"
     if np.isinf(high) or (np.isfinite(most) and high >= most - 1e-3 and value > 0.99):
         return f"above {low:.3g}"
     return f"{value:.3g} [{low:.3g}, {high:.3g}]"

@@ -1,7 +1,7 @@
 """The growth of a positive indicator over specimens, and the ages at which it reaches a limit.
 
 The laws of `laws` are fitted to the logarithm of the indicator over all specimens together, each with its
-own level and rate, and weighed by their evidence; nothing hangs on one law alone unless the data say so.
+own level and rate, and weighed by their evidence; nothing depends on one law alone unless the data say so.
 """
 
 from __future__ import annotations
@@ -32,10 +32,11 @@ from hersey.life.growth.limit_ages import (
 )
 from hersey.life.growth.marginal import Specimens, drawn_specimens, new_specimens
 from hersey.life.growth.peaks import peaks
-from hersey.life.growth.points import Points, checked_runs, falls, points_of
+from hersey.life.growth.points import Points, checked_runs, points_of, warnings_of
 from hersey.life.growth.posterior import parameters_of, posterior, resampled
 from hersey.life.indicator import OwnAges
 from hersey.result import Means, Result
+from hersey.schema.warning import Warning
 
 if TYPE_CHECKING:
     import polars as pl
@@ -46,8 +47,6 @@ NAMED = 0.9
 _DRAWS, _OF_MANY, _MANY = 2000, 1000, 100
 #: Draws, about, behind the middle of a curve.
 _OF_MIDDLE = 100
-#: Up to so many specimens tell little of how specimens differ.
-_FEW = 3
 
 
 @dataclass(frozen=True)
@@ -85,7 +84,7 @@ class Growth(Result):
             float, Means("how many independent draws the posterior is worth")
         ]  #: how many independent draws the posterior is worth, of the least sampled law that counts
     )
-    notes: tuple[str, ...]
+    warnings: tuple[Warning, ...]
     _of_specimens: tuple[Specimens, ...] = field(repr=False)
     _of_population: tuple[Specimens, ...] = field(repr=False)
     _points: Points = field(repr=False)
@@ -94,7 +93,7 @@ class Growth(Result):
 
     @property
     def law(self) -> str | None:
-        """The law that the data name, or None where they cannot tell."""
+        """The law that the data name, or None where several remain."""
         name = max(self.weights, key=lambda each: self.weights[each])
         return name if self.weights[name] >= NAMED else None
 
@@ -109,9 +108,9 @@ class Growth(Result):
         ]
         for name in heaviest:
             if self.weights[name] >= 0.1:
-                told = ", ".join(f"{k} {v}" for k, v in self.parameters[name].items())
-                lines.append(f"  {name}: {told}")
-        return "\n".join([*lines, *(f"- {note}" for note in self.notes)])
+                shown = ", ".join(f"{k} {v}" for k, v in self.parameters[name].items())
+                lines.append(f"  {name}: {shown}")
+        return "\n".join([*lines, *(f"- {each}" for each in self.warnings)])
 
     def headline(self) -> str:
         """Return the law that the data name."""
@@ -121,7 +120,7 @@ class Growth(Result):
             formula = next(law.formula for law in LAWS if law.name == self.law)
             return f"growth of {self.quantity}: {self.law}, {formula}"
         near = [name for name, weight in self.weights.items() if weight >= 0.05]
-        return f"growth of {self.quantity}: cannot tell which law ({', '.join(near)})"
+        return f"growth of {self.quantity}: several laws remain ({', '.join(near)})"
 
     def to_frame(self) -> pl.DataFrame:
         """Return the parameters of each law with its weight."""
@@ -164,7 +163,7 @@ class Growth(Result):
     def reaches(self, limit: float, *, limit_error: float = 0.0, accumulates: bool = False) -> AgesAtLimit:
         """Return the ages at which each specimen, and a tenth and half of new specimens, reach a limit.
 
-        A specimen that has passed the limit already is told by the same draws; one that begins above it
+        A specimen that has passed the limit already follows from the same draws; one that begins above it
         has age 0.
 
         Parameters
@@ -189,7 +188,7 @@ class Growth(Result):
             self.units,
             own,
             self.last_age,
-            self.notes,
+            self.warnings,
             accumulates=accumulates,
         )
 
@@ -341,7 +340,7 @@ def fit_growth(
         weights=by_law,
         parameters={each.law.name: parameters_of(each, scale) for each in found},
         effective=min(each.effective for each, w in zip(found, weights, strict=True) if w > 0.05),
-        notes=_notes(runs, points),
+        warnings=warnings_of(points),
         _of_specimens=tuple(
             drawn_specimens(each.law, points, shared, each.sizes, random) for each, shared in draws
         ),
@@ -368,22 +367,3 @@ def _beforehand(laws: list[Law]) -> FloatArray:
     """Log prior probabilities of laws, up to a constant."""
     growing = sum(law.grows for law in laws)
     return np.array([-math.log(growing) if law.grows else 0.0 for law in laws])
-
-
-def _notes(runs: tuple[int, ...], points: Points) -> tuple[str, ...]:
-    notes = []
-    if len(runs) == 1:
-        notes.append(
-            "one specimen tells nothing of how specimens differ: B10 and B50 hang on the prior of the spread"
-        )
-    elif len(runs) <= _FEW:
-        notes.append(
-            f"{len(runs)} specimens tell little of how specimens differ: B10 and B50 lean on the "
-            "prior of the spread"
-        )
-    once = sum(np.unique(age[given]).size < 2 for age, given in zip(points.age, points.given, strict=True))
-    if once:
-        notes.append(f"{once} of the specimens were seen at one age only: their growth is that of the others")
-    if falls(points):
-        notes.append("values fall with age: no law of growth does; give the reciprocal of what falls")
-    return tuple(notes)

@@ -14,6 +14,7 @@ from hersey.arrays import FloatArray
 from hersey.life.growth.marginal import Specimens
 from hersey.life.indicator import OwnAges
 from hersey.result import OPEN, Means, Record, Result
+from hersey.schema.warning import Warning
 
 if TYPE_CHECKING:
     import polars as pl
@@ -66,11 +67,11 @@ class AgeAtLimit(Record):
 
     def __str__(self) -> str:
         """Return the age in words."""
-        return f"{self.unit}: {self.age}{self.remark}"
+        return f"{self.unit}: {self.age}{self.outcome}"
 
     @property
-    def remark(self) -> str:
-        """Whether it has passed already, or may never come, to be put behind the age."""
+    def outcome(self) -> str:
+        """Whether it has passed already, or may never come, in words that follow the age."""
         words = f", passed already (last seen at {self.last:.10g})" if self.passed > 0.5 else ""
         return words + (f", never in {self.never:.0%} of the draws" if self.never > _SAID else "")
 
@@ -85,7 +86,7 @@ class AgesAtLimit(Result):
     units: tuple[AgeAtLimit, ...]
     b10: AgeAtLimit  #: a tenth of new specimens has reached it
     b50: AgeAtLimit
-    notes: tuple[str, ...]
+    warnings: tuple[Warning, ...]
     accumulates: Annotated[bool, Means("the limit is that of the integral over age")] = (
         False  #: the limit is that of the integral over age
     )
@@ -95,7 +96,7 @@ class AgesAtLimit(Result):
         unit = f" ({self.age_unit})" if self.age_unit else ""
         lines = [f"age{unit} at which {self.quantity} reaches {self.limit:.4g}, with 90 % intervals"]
         lines += [f"  {each}" for each in (*self.units, self.b10, self.b50)]
-        return "\n".join([*lines, *(f"- {note}" for note in self.notes)])
+        return "\n".join([*lines, *(f"- {each}" for each in self.warnings)])
 
     def headline(self) -> str:
         """Return the age of half the population."""
@@ -121,7 +122,7 @@ class AgesAtLimit(Result):
 
 
 def age_at_limit(name: str, ages: FloatArray, last: float = math.nan) -> AgeAtLimit:
-    """Return what equally probable ages tell of a specimen that was last seen at ``last``."""
+    """Return the age at the limit of a specimen that was last seen at ``last``, of equally probable ages."""
     never, passed = float(np.isinf(ages).mean()), float((ages <= last).mean())
     return AgeAtLimit(name, interval(ages), never, last, passed)
 
@@ -138,7 +139,7 @@ def ages_at_limit(
     names: Sequence[str],
     own: OwnAges,
     last: Sequence[float] | FloatArray,
-    notes: tuple[str, ...],
+    warnings: tuple[Warning, ...],
     *,
     accumulates: bool = False,
 ) -> AgesAtLimit:
@@ -150,7 +151,7 @@ def ages_at_limit(
     known = [age_at_limit(name, own.known[:, i], float(last[i])) for i, name in enumerate(names)]
     new = np.sort(own.new, axis=1)
     b10, b50 = (share_of_specimens(new, share) for share in (0.1, 0.5))
-    return AgesAtLimit(quantity, age_unit, limit, tuple(known), b10, b50, notes, accumulates)
+    return AgesAtLimit(quantity, age_unit, limit, tuple(known), b10, b50, warnings, accumulates)
 
 
 def ages_of(drawn: Specimens, level: FloatArray) -> FloatArray:

@@ -68,7 +68,7 @@ def _fit_of(
 
 
 def _constants(points: Points, shared: FloatArray, weight: FloatArray) -> FloatArray:
-    """The part of the likelihood of each specimen that does not hang on its size."""
+    """The part of the likelihood of each specimen that does not depend on its size."""
     logs = np.where(points.given, np.log(np.where(points.given, weight, 1.0)), 0.0).sum(axis=2)
     spread = np.exp(2.0 * shared[:, 1])[:, None]
     number = points.given.sum(axis=1)
@@ -92,8 +92,8 @@ def modes(
         across = weighed.sum(axis=2)
         curvature = (weighed * slope).sum(axis=2) - across**2 / total + precision
         if turn < _POLISH:
-            pull = (weighed * left).sum(axis=2) - across * (weight * left).sum(axis=2) / total
-            step = np.clip((pull - precision * (size - mean)) / curvature, -1.0, 1.0)
+            gradient = (weighed * left).sum(axis=2) - across * (weight * left).sum(axis=2) / total
+            step = np.clip((gradient - precision * (size - mean)) / curvature, -1.0, 1.0)
             size += step
             if (step**2 * curvature).max() < _NEAR**2:
                 break

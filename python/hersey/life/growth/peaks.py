@@ -110,7 +110,7 @@ def _first_guess(law: Law, points: Points) -> tuple[FloatArray, FloatArray]:
 def _derivatives(
     law: Law, points: Points, at: FloatArray, middle: FloatArray | None, start: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Gradient of the log posterior and the covariance that its curvature tells, by central differences."""
+    """Gradient of the log posterior and the covariance that its curvature gives, by central differences."""
     number, step = at.size, 0.03
     unit = np.eye(number) * step
     pairs = [(i, j) for i in range(number) for j in range(i)]

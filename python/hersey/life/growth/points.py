@@ -13,11 +13,14 @@ from hersey.arrays import BoolArray, FloatArray, IntArray, numbers_of
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.life.indicator import most_ages
 from hersey.life.padded_rows import PaddedRows
+from hersey.schema.warning import Warning
 
 #: No value is taken as known better than this, relative.
 _RESOLUTION = 1e-4
 #: Standard errors by which a common slope must fall.
 _FALLS = 3.0
+#: Up to so many specimens show little of how specimens differ.
+_FEW = 3
 
 
 @dataclass(frozen=True)
@@ -68,7 +71,7 @@ def checked_runs(
         raise ParameterError(f"run {names.index('') + 1} names no specimen", index=names.index(""))
     if most_ages(np.unique(names, return_inverse=True)[1], columns[0]) < 2:
         raise InsufficientDataError(
-            "no specimen was seen at two ages, so nothing tells its growth: add runs at another age"
+            "no specimen was seen at two ages, so nothing shows its growth: add runs at another age"
         )
     return names, columns
 
@@ -101,3 +104,42 @@ def falls(points: Points) -> bool:
     left = ((value - slope * age) ** 2 * points.given).sum() / max(number.sum() - len(number) - 1, 1)
     least = (points.variance * points.given).sum() / number.sum()
     return bool(slope < -_FALLS * math.sqrt(max(left, least) / square))
+
+
+def warnings_of(points: Points) -> tuple[Warning, ...]:
+    """Return what weakens a law of growth that is fitted to points."""
+    specimens = len(points.age)
+    warnings = []
+    if specimens <= _FEW:
+        warnings.append(
+            Warning(
+                "few specimens",
+                "one specimen does not show how specimens differ: B10 and B50 depend on the prior"
+                if specimens == 1
+                else "{specimens} specimens show little of how specimens differ: B10 and B50 depend partly "
+                "on the prior of the spread",
+                severity="watch",
+                specimens=specimens,
+            )
+        )
+    once = sum(np.unique(age[given]).size < 2 for age, given in zip(points.age, points.given, strict=True))
+    if once:
+        warnings.append(
+            Warning(
+                "seen at one age",
+                "{count} of the specimens {count:was|were} seen at one age only: their growth is that of the "
+                "others",
+                severity="watch",
+                count=once,
+            )
+        )
+    if falls(points):
+        warnings.append(
+            Warning(
+                "values fall",
+                "values fall with age, which no law of growth does",
+                remedy="give the reciprocal of what falls",
+                severity="act",
+            )
+        )
+    return tuple(warnings)

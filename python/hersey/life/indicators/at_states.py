@@ -11,12 +11,13 @@ from hersey.arrays import BoolArray, FloatArray, IntArray
 from hersey.life.indicators.load_cases import State
 from hersey.life.indicators.run_dwells import CampaignRuns
 from hersey.life.indicators.torque_surface import TorqueSurface, shared_kernel
+from hersey.schema.warning import Warning
 
-#: Runs that a note names.
+#: Runs that a warning names.
 _NAMED = 3
 #: Factor beyond the slowest and the fastest dwell of a run up to which its curve is asked; what rounds off.
 _NEAR, _SLIP = 1.25, 0.999
-#: Steps of the curve in ln speed, its points at the least, and how many draws tell an error.
+#: Steps of the curve in ln speed, its points at the least, and how many draws give an error.
 _GRID, _FEWEST_SPEEDS, _DRAWS = 0.08, 24, 32
 
 
@@ -24,7 +25,7 @@ _GRID, _FEWEST_SPEEDS, _DRAWS = 0.08, 24, 32
 class Curves:
     """Torque of the belt against speed at one temperature (K; None where no run recorded any), of all runs.
 
-    ``speed`` in rad/s, shape (speeds,); ``torque`` in N m, (runs, speeds), NaN where a run does not tell:
+    ``speed`` in rad/s, shape (speeds,); ``torque`` in N m, (runs, speeds), NaN where a run does not show it:
     beyond its dwells and what lies near them. ``least`` is the speed of least torque, (runs,), NaN where it
     lies at no speed between, and ``error`` its relative standard error; ``drawn`` are joint draws of some
     runs, (draws, speeds) each. ``below`` and ``above`` mark runs whose torque is least at their slow or fast
@@ -45,41 +46,53 @@ class Curves:
 class AtStates:
     """Torque of the belt alone and of the whole drive (N m) at each state, with relative errors.
 
-    Arrays of shape (runs, states), NaN where a run does not tell. Where the no-load torque is not known
-    both torques are that of the whole. ``curves`` are those at the temperatures asked for.
+    Arrays of shape (runs, states), NaN where a run does not show it. Where the no-load torque is not known
+    both torques are that of the drive. ``curves`` are those at the temperatures asked for.
     """
 
     runs: CampaignRuns
     states: tuple[State, ...]
     belt: FloatArray
     belt_error: FloatArray
-    whole: FloatArray
-    whole_error: FloatArray
+    drive: FloatArray
+    drive_error: FloatArray
     outside: BoolArray
     factor: FloatArray
     kelvin: FloatArray
     curves: tuple[Curves, ...] = ()
 
-    def notes(self, state: int) -> tuple[str, ...]:
-        """What the state is, and which runs do not tell it or only beyond their dwells."""
-        known = np.isfinite(self.whole[:, state])
-        notes = [str(self.states[state])]
+    def warnings(self, state: int) -> tuple[Warning, ...]:
+        """Return what the state is, and which runs do not show it or only beyond their dwells."""
+        known = np.isfinite(self.drive[:, state])
+        warnings = [self.states[state].warning()]
         beyond = np.flatnonzero(known & self.outside[:, state]).tolist()
         if beyond:
             far = [f"{self.runs.name(run)}, {self._away(run, state)}" for run in beyond[:_NAMED]]
-            notes.append(
-                f"extrapolated in {len(beyond)} of {known.size} runs, whose dwells do not enclose it "
-                f"(not recorded there, or stalled): {'; '.join(far)}" + _more(beyond)
+            warnings.append(
+                Warning(
+                    "extrapolated",
+                    "extrapolated in {count} of {runs} runs, whose dwells do not enclose it (not recorded "
+                    "there, or stalled): {which}",
+                    severity="watch",
+                    count=len(beyond),
+                    runs=known.size,
+                    which="; ".join(far) + _more(beyond),
+                )
             )
         silent = np.flatnonzero(self.runs.enough & ~known).tolist()
         if silent:
             named = ", ".join(self.runs.name(run) for run in silent[:_NAMED])
-            notes.append(
-                f"not told by {len(silent)} of {known.size} runs, of other temperatures or lost in noise: "
-                + named
-                + _more(silent)
+            warnings.append(
+                Warning(
+                    "runs without a value",
+                    "unknown in {count} of {runs} runs, of other temperatures or lost in noise: {which}",
+                    severity="watch",
+                    count=len(silent),
+                    runs=known.size,
+                    which=named + _more(silent),
+                )
             )
-        return tuple(notes)
+        return tuple(warnings)
 
     def _away(self, run: int, state: int) -> str:
         factor, kelvin = float(self.factor[run, state]), float(self.kelvin[run, state])
@@ -105,38 +118,38 @@ def at_states(
     InsufficientDataError
         If no run has dwells enough.
     """
-    kernel = shared_kernel([dwells for _, dwells, _ in runs.told()])
+    kernel = shared_kernel([dwells for _, dwells, _ in runs.usable()])
     shape = (len(runs.dwells), len(states))
-    belt, belt_error, whole, whole_error, factor, kelvin = (np.full(shape, np.nan) for _ in range(6))
+    belt, belt_error, drive, drive_error, factor, kelvin = (np.full(shape, np.nan) for _ in range(6))
     outside = np.zeros(shape, dtype=bool)
     speed = np.array([state.speed for state in states])
-    heat = np.array([np.nan if state.temperature is None else state.temperature for state in states])
-    told = np.flatnonzero(runs.enough)
-    some = set(told[np.linspace(0, told.size - 1, min(drawn, told.size)).round().astype(int)].tolist())
+    temperature = np.array([np.nan if state.temperature is None else state.temperature for state in states])
+    places = np.flatnonzero(runs.enough)
+    some = set(places[np.linspace(0, places.size - 1, min(drawn, places.size)).round().astype(int)].tolist())
     curves = [_empty(runs, temperature) for temperature in temperatures]
     rests: dict[tuple[int, bool], FloatArray] = {}  # by object: runs of the same rest share it
-    for place, dwells, rest in runs.told():
+    for place, dwells, rest in runs.usable():
         surface = TorqueSurface(dwells, kernel)
-        at = surface.at(speed, heat)
-        thermal = bool(np.isfinite(dwells.temperature).all() and np.isfinite(heat).all())
+        at = surface.at(speed, temperature)
+        thermal = bool(np.isfinite(dwells.temperature).all() and np.isfinite(temperature).all())
         if (which := (id(rest), thermal)) not in rests:
-            at_rest = 0.0 if rest is None else rest.torque(speed, heat if thermal else None)
+            at_rest = 0.0 if rest is None else rest.torque(speed, temperature if thermal else None)
             rests[which] = np.zeros(speed.shape) + at_rest
-        beside = rests[which]
+        no_load = rests[which]
         belt[place], belt_error[place] = at.torque, at.error
-        together = at.torque + beside
-        whole[place] = np.where(together > 0.0, together, np.nan)  # a rest fitted below nothing
-        whole_error[place] = at.error * at.torque / whole[place]
+        together = at.torque + no_load
+        drive[place] = np.where(together > 0.0, together, np.nan)  # a no-load torque fitted below nothing
+        drive_error[place] = at.error * at.torque / drive[place]
         outside[place], factor[place], kelvin[place] = at.outside, at.factor, at.kelvin
         for curve in curves:
             _trace(curve, place, surface, keep=place in some)
     return AtStates(
-        runs, tuple(states), belt, belt_error, whole, whole_error, outside, factor, kelvin, tuple(curves)
+        runs, tuple(states), belt, belt_error, drive, drive_error, outside, factor, kelvin, tuple(curves)
     )
 
 
 def _empty(runs: CampaignRuns, temperature: float | None) -> Curves:
-    speeds = np.concatenate([dwells.speed for _, dwells, _ in runs.told()])
+    speeds = np.concatenate([dwells.speed for _, dwells, _ in runs.usable()])
     low, high = float(speeds.min()) / _NEAR, float(speeds.max()) * _NEAR
     grid = np.geomspace(low, high, max(int(np.log(high / low) / _GRID), _FEWEST_SPEEDS))
     count = len(runs.dwells)
@@ -151,7 +164,7 @@ def _trace(curves: Curves, place: int, surface: TorqueSurface, *, keep: bool) ->
     own = surface.dwells.speed
     near = (curves.speed >= own.min() / _NEAR * _SLIP) & (curves.speed <= own.max() * _NEAR / _SLIP)
     temperature = np.nan if curves.temperature is None else curves.temperature
-    if np.count_nonzero(near) < 3 or not surface.tells(temperature):
+    if np.count_nonzero(near) < 3 or not surface.covers(temperature):
         return
     median, drawn = surface.curve(curves.speed[near], temperature, _DRAWS, seed=0)
     curves.torque[place, near] = median

@@ -16,17 +16,18 @@ from hersey.errors import HerseyError, UnitError
 from hersey.files.toml import naming
 from hersey.life.age import Age, one_of
 from hersey.life.fatigue import RainflowCycles, SNCurve, rainflow_cycles, stick_slip_damage_rate
-from hersey.life.indicator import Indicator
+from hersey.life.indicator import NOT_JUDGED, Indicator
 from hersey.life.indicators.at_states import AtStates, Curves
 from hersey.life.indicators.sticking import MOST_FOLDS, curve_at, drag_of
 from hersey.log.mapping import read_with_mapping
 from hersey.motion.simulation import stick_slip
+from hersey.schema.warning import Warning
 
 if TYPE_CHECKING:
     from hersey.machine import Machine
     from hersey.machine.duty import GearTable
 
-#: Relative step of torque that tells how steeply damage goes with it.
+#: Relative step of torque that shows how steeply damage rises with it.
 _STEP = 0.01
 #: Work that a stick-slip motion may take.
 _STEPS = 3e5
@@ -53,8 +54,8 @@ def running_time(machine: Machine, age_unit: str) -> float | None:
 
 
 def gear_fatigue(
-    told: AtStates, machine: Machine, cold: int, points: slice, limit_error: float
-) -> tuple[list[Indicator], list[str]]:
+    estimates: AtStates, machine: Machine, cold: int, points: slice, limit_error: float
+) -> tuple[list[Indicator], list[Warning]]:
     """Return the damage of the gear per age, and why there is none.
 
     Parameters
@@ -66,11 +67,26 @@ def gear_fatigue(
     """
     gear = machine.gear
     if gear is None:
-        return [], ["gear fatigue: add [gear] with torque, cycles and slope of its S-N curve"]
-    load = _GearLoad(told, machine, gear, cold, points)
+        return [], [
+            Warning(
+                NOT_JUDGED,
+                "add [gear] with torque, cycles and slope of its S-N curve",
+                severity="act",
+                where="gear fatigue",
+                table="gear",
+            )
+        ]
+    load = _GearLoad(estimates, machine, gear, cold, points)
     if not any([load.starts(), load.duty(), load.stick_slip()]):
         return [], [
-            'gear fatigue: [gear] says no load: add starts = "20 per 1000 pages", or duty and duty_age'
+            Warning(
+                NOT_JUDGED,
+                "[gear] states no load",
+                remedy='add starts = "20 per 1000 pages", or duty and duty_age',
+                severity="act",
+                where="gear fatigue",
+                table="gear",
+            )
         ]
     return [load.indicator(limit_error)], []
 
@@ -78,15 +94,17 @@ def gear_fatigue(
 class _GearLoad:
     """The damage of a gear per age, of each run, summed over its loads."""
 
-    def __init__(self, told: AtStates, machine: Machine, gear: GearTable, cold: int, points: slice) -> None:
-        self.told, self.machine, self.gear = told, machine, gear
-        self.cold, self.points, self.age_unit = cold, points, told.runs.runs.age_unit
+    def __init__(
+        self, estimates: AtStates, machine: Machine, gear: GearTable, cold: int, points: slice
+    ) -> None:
+        self.estimates, self.machine, self.gear = estimates, machine, gear
+        self.cold, self.points, self.age_unit = cold, points, estimates.runs.runs.age_unit
         with naming("[gear]"):
             self.curve = SNCurve(
                 gear.torque, gear.cycles, gear.slope, gear.second_slope, gear.endurance, gear.ultimate
             )
-        self.rate, self.spread = np.zeros(told.whole.shape[0]), np.zeros(told.whole.shape[0])
-        self.notes: list[str] = []
+        self.rate, self.spread = np.zeros(estimates.drive.shape[0]), np.zeros(estimates.drive.shape[0])
+        self.warnings: list[Warning] = []
 
     def _add(self, cycles: RainflowCycles, scale: FloatArray, error: FloatArray) -> None:
         """Add cycles whose torque is so many times as large, known to a relative error."""
@@ -98,14 +116,19 @@ class _GearLoad:
         """Add the starts; whether there are any."""
         if self.gear.starts is None:
             return False
-        shares = _shares_of_starts(self.gear, self.machine, self.told, self.cold, self.points)
+        shares = _shares_of_starts(self.gear, self.machine, self.estimates, self.cold, self.points)
         with naming("[gear] starts"):
             per_age = self.gear.starts[0] / Age.parse(self.gear.starts[1]).as_unit(self.age_unit).value
         for state, share in shares.items():
             cycle = RainflowCycles(np.ones(1), np.full(1, 0.5), np.full(1, share * per_age))
-            self._add(cycle, self.told.whole[:, state], self.told.whole_error[:, state])
-        self.notes.append(
-            f"{per_age:.3g} starts per {one_of(self.age_unit)}, without breakaway and acceleration"
+            self._add(cycle, self.estimates.drive[:, state], self.estimates.drive_error[:, state])
+        self.warnings.append(
+            Warning(
+                "starts counted",
+                "{starts:.3g} starts per {age_unit}, without breakaway and acceleration",
+                starts=per_age,
+                age_unit=one_of(self.age_unit),
+            )
         )
         return True
 
@@ -115,16 +138,19 @@ class _GearLoad:
             return False
         with naming("[gear] duty_age"):
             age = Age.parse(self.gear.duty_age).as_unit(self.age_unit).value
-        whole, ages = self.told.whole, self.told.runs.runs.age
+        drive, ages = self.estimates.drive, self.estimates.runs.runs.age
         states = self.points if self.machine.points else [self.cold]
-        mix = whole[:, states] @ shares_of(self.machine) if self.machine.points else whole[:, self.cold]
+        mix = drive[:, states] @ shares_of(self.machine) if self.machine.points else drive[:, self.cold]
         known = np.isfinite(mix)
         young = known & (ages == ages[known].min(initial=np.inf))
         scale = mix / np.median(mix[young]) if young.any() else np.full_like(mix, np.nan)
-        error = np.nan_to_num(self.told.whole_error[:, states]).mean(axis=1)
+        error = np.nan_to_num(self.estimates.drive_error[:, states]).mean(axis=1)
         self._add(_counted(self.gear.duty, age), scale, error)
-        self.notes.append(
-            "the duty recorded grows as the torque at the points, from that of the youngest runs"
+        self.warnings.append(
+            Warning(
+                "duty scaled",
+                "the duty recorded grows as the torque at the points, from that of the youngest runs",
+            )
         )
         return True
 
@@ -132,7 +158,7 @@ class _GearLoad:
         """Add stick-slip at points on the falling branch; whether there is any."""
         radius, lasting = self.machine.roll_radius, []
         for point, share in zip(self.machine.points, shares_of(self.machine), strict=True):
-            curves = curve_at(self.told, point.temperature)
+            curves = curve_at(self.estimates, point.temperature)
             places = np.flatnonzero((curves.least * radius > point.speed) | curves.above)
             if places.size:
                 lasting.append((point, share, curves, places))
@@ -140,17 +166,28 @@ class _GearLoad:
             return False
         time = running_time(self.machine, self.age_unit)
         if time is None:
-            self.notes.append('stick-slip at the points is not in it: [life] lacks travel = "300 mm"')
+            self.warnings.append(
+                Warning(
+                    "stick-slip not counted",
+                    'stick-slip at the points is not in it: [life] lacks travel = "300 mm"',
+                    severity="act",
+                )
+            )
             return False
         for point, share, curves, places in lasting:
             self.rate[places[MOST_FOLDS:]] = np.nan
             for place in places[:MOST_FOLDS].tolist():
                 damage = share * time * self._rate_of_sticking(curves, place, point.speed)
-                slowest = float(np.nan_to_num(self.told.belt_error[place]).max())
+                slowest = float(np.nan_to_num(self.estimates.belt_error[place]).max())
                 self.rate[place] += damage
                 self.spread[place] += np.nan_to_num(damage) * self.gear.slope * slowest
-            self.notes.append(
-                f"stick-slip at {point.name} in {len(places)} runs, where torque falls with speed"
+            self.warnings.append(
+                Warning(
+                    "stick-slip counted",
+                    "stick-slip at {point} in {count} {count:run|runs}, where torque falls with speed",
+                    point=point.name,
+                    count=len(places),
+                )
             )
         return True
 
@@ -158,7 +195,7 @@ class _GearLoad:
         """Damage per second of a run that sticks at a speed (m/s); NaN where its motion is not found."""
         train = self.machine.train
         try:
-            drag = drag_of(self.told, curves, place, self.machine)
+            drag = drag_of(self.estimates, curves, place, self.machine)
             if drag is None:
                 return np.nan  # no transition above its stick speed
             cycle = stick_slip(train, drag, drive_speed=speed, most_steps=_STEPS)
@@ -171,10 +208,16 @@ class _GearLoad:
         """Return what adds up to the limit."""
         value = np.where(self.rate > 0.0, self.rate, np.nan)
         known = np.isfinite(value)
-        notes = list(self.notes)
-        if silent := int(np.count_nonzero(self.told.runs.enough & ~known)):
-            notes.append(
-                f"not told by {silent} runs: no damage, a peak that breaks the part, or no torque there"
+        warnings = list(self.warnings)
+        if silent := int(np.count_nonzero(self.estimates.runs.enough & ~known)):
+            warnings.append(
+                Warning(
+                    "runs without a value",
+                    "unknown in {count} {count:run|runs}: no damage, a peak that breaks the part, or no "
+                    "torque there",
+                    severity="watch",
+                    count=silent,
+                )
             )
         return Indicator(
             "gear fatigue",
@@ -185,16 +228,16 @@ class _GearLoad:
             np.where(known, self.spread / np.where(known, self.rate, 1.0), np.nan),
             limit_error * self.gear.slope,
             accumulates=True,
-            notes=tuple(notes),
+            warnings=tuple(warnings),
         )
 
 
 def _shares_of_starts(
-    gear: GearTable, machine: Machine, told: AtStates, cold: int, points: slice
+    gear: GearTable, machine: Machine, estimates: AtStates, cold: int, points: slice
 ) -> dict[int, float]:
     """Shares of the starts by state: without a share all are cold."""
     of_cold = 1.0 if gear.cold_starts is None or not machine.points else gear.cold_starts
-    places = range(len(told.states))[points]
+    places = range(len(estimates.states))[points]
     warm = {
         place: (1.0 - of_cold) * float(share) for place, share in zip(places, shares_of(machine), strict=True)
     }

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from hersey.units import celsius, rpm
+from hersey.schema.warning import Warning
 
 if TYPE_CHECKING:
     from hersey.life.indicators.run_dwells import CampaignRuns
@@ -24,10 +24,18 @@ class State:
     temperature: float | None
     origin: str
 
-    def __str__(self) -> str:
-        """Return it in words."""
-        at = "" if self.temperature is None else f" and {celsius(self.temperature):.4g} degC"
-        return f"{self.name}: {rpm(self.speed):.4g} rpm{at} ({self.origin})"
+    def warning(self) -> Warning:
+        """Return where a value of it holds."""
+        return Warning(
+            "state of the value",
+            "{speed:.4g rpm} ({origin})"
+            if self.temperature is None
+            else "{speed:.4g rpm} and {temperature:.4g degC} ({origin})",
+            where=self.name,
+            speed=self.speed,
+            temperature=self.temperature,
+            origin=self.origin,
+        )
 
 
 def point_states(machine: Machine) -> tuple[State, ...]:

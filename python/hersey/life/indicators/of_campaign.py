@@ -1,7 +1,7 @@
 """From the runs of a campaign to the indicators of failure: what each run says of each failure mode.
 
 A run is asked by its torque surface, without a law (`torque_surface`); what it says holds at the state that
-the note names, and its error grows where the dwells do not enclose that state.
+its first warning names, and its error grows where the dwells do not enclose that state.
 """
 
 from __future__ import annotations
@@ -14,12 +14,13 @@ import numpy as np
 from hersey.arrays import FloatArray, one_thread
 from hersey.errors import InsufficientDataError
 from hersey.life.age import one_of
-from hersey.life.indicator import Indicator, Indicators
+from hersey.life.indicator import NOT_JUDGED, Indicator, Indicators
 from hersey.life.indicators.at_states import AtStates, at_states
 from hersey.life.indicators.gear_fatigue import gear_fatigue, running_time, shares_of
 from hersey.life.indicators.load_cases import State, load_cases, point_states
 from hersey.life.indicators.run_dwells import CampaignRuns, read_runs_of
 from hersey.life.indicators.sticking import DRAWN_RUNS, folds, static_force, stick_speed_at, transitions
+from hersey.schema.warning import Warning
 
 if TYPE_CHECKING:
     from hersey.life.campaign import Campaign
@@ -30,8 +31,8 @@ _DEVIATIONS = 1.96
 #: Places of the states: the load cases, rest, and from there on the points.
 _COLD, _SLOW, _STILL, _POINTS = 0, 1, 2, slice(3, None)
 
-#: Indicators, and what cannot be said.
-_Found = tuple[list[Indicator], list[str]]
+#: Indicators, and why there are none.
+_Found = tuple[list[Indicator], list[Warning]]
 
 
 @one_thread()
@@ -58,19 +59,20 @@ def indicators_of(campaign: Campaign, machine: Machine, *, signs: bool = True) -
         "at rest, hot", stick_speed_at(machine, hottest) / machine.roll_radius, hottest, "stick speed"
     )
     states = (*ends, still, *point_states(machine))
-    heats = tuple(dict.fromkeys(point.temperature for point in machine.points))
-    told = at_states(runs, states, heats, drawn=DRAWN_RUNS)
-    asked = _Asked(told, machine, _torque_gain(machine, runs))
+    temperatures = tuple(dict.fromkeys(point.temperature for point in machine.points))
+    estimates = at_states(runs, states, temperatures, drawn=DRAWN_RUNS)
+    asked = _Asked(estimates, machine, _torque_gain(machine, runs))
     found: list[_Found] = [
         asked.motor_torque(),
         asked.grip(),
         asked.stick_slip(signs=signs),
-        gear_fatigue(told, machine, _COLD, _POINTS, asked.gain),
+        gear_fatigue(estimates, machine, _COLD, _POINTS, asked.gain),
         asked.continuous_torque(),
         asked.energy(),
     ]
     each = tuple(indicator for indicators, _ in found for indicator in indicators)
-    return Indicators(runs.runs, each, (*(line for _, lines in found for line in lines), *runs.notes))
+    warnings = (warning for _, of_mode in found for warning in of_mode)
+    return Indicators(runs.runs, each, (*warnings, *runs.warnings))
 
 
 def _torque_gain(machine: Machine, runs: CampaignRuns) -> float:
@@ -85,24 +87,24 @@ def _torque_gain(machine: Machine, runs: CampaignRuns) -> float:
 class _Asked:
     """What the runs say of all states, against the limits; ``gain`` is an error common to all torques."""
 
-    told: AtStates
+    estimates: AtStates
     machine: Machine
     gain: float
 
     def motor_torque(self) -> _Found:
         limit = self.machine.limits.motor_torque
         if limit is None:
-            return [], ['motor torque: add [limits] motor_torque = "1 N*m"']
-        return [self._whole("motor torque", limit, place) for place in (_COLD, _SLOW)], []
+            return [], [_lacks("motor torque", "limits", 'motor_torque = "1 N*m"')]
+        return [self._motor_indicator("motor torque", limit, place) for place in (_COLD, _SLOW)], []
 
-    def _whole(self, kind: str, limit: float, place: int) -> Indicator:
-        told = self.told
+    def _motor_indicator(self, kind: str, limit: float, place: int) -> Indicator:
+        estimates = self.estimates
         return self._torque(
-            f"{kind}, {told.states[place].name}",
+            f"{kind}, {estimates.states[place].name}",
             kind,
             limit,
-            told.whole[:, place],
-            told.whole_error[:, place],
+            estimates.drive[:, place],
+            estimates.drive_error[:, place],
             place,
         )
 
@@ -114,14 +116,21 @@ class _Asked:
         value: FloatArray,
         error: FloatArray,
         place: int,
-        *notes: str,
+        *warnings: Warning,
     ) -> Indicator:
         return Indicator(
-            name, kind, "N m", limit, value, error, self.gain, notes=(*self.told.notes(place), *notes)
+            name,
+            kind,
+            "N m",
+            limit,
+            value,
+            error,
+            self.gain,
+            warnings=(*self.estimates.warnings(place), *warnings),
         )
 
     def grip(self) -> _Found:
-        """The belt alone against what the roll bears before it slips: cold and fast, and from rest."""
+        """The belt alone against what the roll carries before it slips: cold and fast, and from rest."""
         grip = self.machine.limits.grip
         if grip is None:
             stated = self.machine.limits
@@ -133,66 +142,78 @@ class _Asked:
                 )
                 if value is None
             ]
-            return [], [f"grip of the roll: add [limits] {' and '.join(lacks)}"]
-        told, limit = self.told, grip * self.machine.roll_radius
-        known = [rest is not None for rest in told.runs.rests]
-        notes = (
-            () if all(known) else ("all torque counts as the belt's, and the roll carries less: add [rest]",)
-        )
-        cold = told.belt[:, _COLD], told.belt_error[:, _COLD]
+            return [], [_lacks("grip of the roll", "limits", " and ".join(lacks))]
+        estimates, limit = self.estimates, grip * self.machine.roll_radius
+        warnings = []
+        if any(rest is None for rest in estimates.runs.rests):
+            warnings.append(
+                Warning(
+                    "no-load torque unknown",
+                    "all torque counts as the belt's, and the roll carries less",
+                    remedy="add [rest]",
+                    severity="watch",
+                )
+            )
+        cold = estimates.belt[:, _COLD], estimates.belt_error[:, _COLD]
         breakaway, how = self._breakaway()
-        error = told.belt_error[:, _STILL]
-        from_rest = self._torque("grip, from rest", "grip", limit, breakaway, error, _STILL, how, *notes)
+        error = estimates.belt_error[:, _STILL]
+        from_rest = self._torque("grip, from rest", "grip", limit, breakaway, error, _STILL, how, *warnings)
         # Nobody measured the factor of Eq. 29: it warns, and ends no specimen.
-        told_by_rule = static_force(self.machine) is None
+        by_rule = static_force(self.machine) is None
         return [
-            self._torque("grip, cold and fast", "grip", limit, *cold, _COLD, *notes),
-            replace(from_rest, sign=told_by_rule),
+            self._torque("grip, cold and fast", "grip", limit, *cold, _COLD, *warnings),
+            replace(from_rest, sign=by_rule),
         ], []
 
-    def _breakaway(self) -> tuple[FloatArray, str]:
-        """Torque at which a belt at rest breaks away, and how it is told."""
-        told = self.told
-        drag = told.belt[:, _STILL]
+    def _breakaway(self) -> tuple[FloatArray, Warning]:
+        """Torque at which a belt at rest breaks away, and how it is estimated."""
+        estimates = self.estimates
+        drag = estimates.belt[:, _STILL]
         static = static_force(self.machine)
         if static is None:
-            return np.e * drag, "a belt at rest bears e times its drag at the stick speed (Eq. 29)"
-        age = told.runs.runs.age
+            return np.e * drag, Warning(
+                "break-away by rule",
+                "a belt at rest withstands e times its drag at the stick speed (Eq. 29)",
+                severity="watch",
+            )
+        age = estimates.runs.runs.age
         known = np.isfinite(drag)
         young = known & (age == age[known].min(initial=np.inf))
         new = float(np.median(drag[young])) if young.any() else np.nan
         return (
             static * self.machine.roll_radius * drag / new,
-            "static friction as stated for the youngest runs, grown as the drag at the stick speed",
+            Warning(
+                "break-away as stated",
+                "static friction as stated for the youngest runs, grown as the drag at the stick speed",
+            ),
         )
 
     def stick_slip(self, *, signs: bool) -> _Found:
         if not self.machine.points:
-            return [], ["stick-slip at a used operating point: add [[points]] with speed and temperature"]
-        early, unsaid = folds(self.told, self.machine) if signs else ([], [])
-        return [*transitions(self.told, self.machine), *early], unsaid
+            return [], [_lacks_points("stick-slip at a used operating point")]
+        early, warnings = folds(self.estimates, self.machine) if signs else ([], [])
+        return [*transitions(self.estimates, self.machine), *early], warnings
 
     def continuous_torque(self) -> _Found:
         limit = self.machine.life.continuous_torque
         if limit is None:
-            return [], ['heat of the motor: add [life] continuous_torque = "0.5 N*m"']
+            return [], [_lacks("heating of the motor", "life", 'continuous_torque = "0.5 N*m"')]
         if not self.machine.points:
-            return [], ["heat of the motor: add [[points]] with speed and temperature, and share"]
-        squares = self.told.whole[:, _POINTS] ** 2 * shares_of(self.machine)
+            return [], [_lacks_points("heating of the motor", share=True)]
+        squares = self.estimates.drive[:, _POINTS] ** 2 * shares_of(self.machine)
         return [self._over_points("continuous torque", "motor heat", "N m", limit, squares, 0.5)], []
 
     def energy(self) -> _Found:
-        limit, unit = self.machine.life.energy, one_of(self.told.runs.runs.age_unit)
+        limit, unit = self.machine.life.energy, one_of(self.estimates.runs.runs.age_unit)
         if limit is None:
-            return [], [f'energy per {unit}: add [life] energy = "10 J"']
-        time = running_time(self.machine, self.told.runs.runs.age_unit)
-        if time is None:
-            lacks = 'travel = "300 mm"' if self.machine.points else "[[points]] with speed and temperature"
-            return [], [f"energy per {unit}: add {'[life] ' * bool(self.machine.points)}{lacks}"]
+            return [], [_lacks(f"energy per {unit}", "life", 'energy = "10 J"')]
+        time = running_time(self.machine, self.estimates.runs.runs.age_unit)
         if not self.machine.points:
-            return [], [f"energy per {unit}: add [[points]] with speed and temperature, and share"]
-        speeds = np.array([state.speed for state in self.told.states[_POINTS]])
-        work = self.told.whole[:, _POINTS] * speeds * time * shares_of(self.machine)
+            return [], [_lacks_points(f"energy per {unit}", share=time is not None)]
+        if time is None:
+            return [], [_lacks(f"energy per {unit}", "life", 'travel = "300 mm"')]
+        speeds = np.array([state.speed for state in self.estimates.states[_POINTS]])
+        work = self.estimates.drive[:, _POINTS] * speeds * time * shares_of(self.machine)
         return [self._over_points(f"energy per {unit}", "energy", "J", limit, work, 1.0)], []
 
     def _over_points(
@@ -200,7 +221,29 @@ class _Asked:
     ) -> Indicator:
         """A sum over the points to a power; their errors are taken to go together."""
         total = parts.sum(axis=1)
-        error = (parts / total[:, None] * self.told.whole_error[:, _POINTS]).sum(axis=1)
+        error = (parts / total[:, None] * self.estimates.drive_error[:, _POINTS]).sum(axis=1)
         alike = all(point.share is None for point in self.machine.points)
-        notes = ("all points count alike: state a share in [[points]]",) if alike else ()
-        return Indicator(name, kind, si, limit, total**power, error, self.gain, notes=notes)
+        warnings = []
+        if alike:
+            warnings.append(
+                Warning("equal shares", "all points count alike", remedy="state a share in [[points]]")
+            )
+        return Indicator(name, kind, si, limit, total**power, error, self.gain, warnings=tuple(warnings))
+
+
+def _lacks(mode: str, table: str, keys: str) -> Warning:
+    """A failure mode that is not judged, and which keys of a table of the machine's file would do it."""
+    return Warning(NOT_JUDGED, "add [{table}] {keys}", severity="act", where=mode, table=table, keys=keys)
+
+
+def _lacks_points(mode: str, *, share: bool = False) -> Warning:
+    """A failure mode that is not judged without operating points."""
+    return Warning(
+        NOT_JUDGED,
+        "add [[points]] with speed and temperature, and share"
+        if share
+        else "add [[points]] with speed and temperature",
+        severity="act",
+        where=mode,
+        table="points",
+    )

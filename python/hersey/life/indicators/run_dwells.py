@@ -13,26 +13,30 @@ from hersey.arrays import BoolArray, FloatArray, IntArray
 from hersey.life.age import Age
 from hersey.life.indicator import Runs
 from hersey.life.indicators.torque_surface import FEWEST, RunDwells
+from hersey.schema.warning import Warning
 
 if TYPE_CHECKING:
     from hersey.damping.no_load_torque import NoLoadTorque
     from hersey.life.campaign import Campaign
     from hersey.log.sensors import Sensors
 
+#: Runs that a warning names.
+_NAMED = 10
+
 
 @dataclass(frozen=True, repr=False)
 class CampaignRuns:
     """The runs of a campaign by specimen and age; ``dwells``, ``rests`` and ``sensors`` are those of each.
 
-    ``dwells`` are those that turn and are known; a rest is None where none is known. ``notes`` say what is
-    not there.
+    ``dwells`` are those that turn and are known; a rest is None where none is known. ``warnings``
+    name what is not used.
     """
 
     runs: Runs
     dwells: tuple[RunDwells, ...]
     rests: tuple[NoLoadTorque | None, ...]
     sensors: tuple[Sensors, ...]
-    notes: tuple[str, ...]
+    warnings: tuple[Warning, ...]
 
     @cached_property
     def enough(self) -> BoolArray:
@@ -43,7 +47,7 @@ class CampaignRuns:
         """Return specimen and age of a run."""
         return f"{self.runs.unit[place]} at {Age(float(self.runs.age[place]), self.runs.age_unit)}"
 
-    def told(self) -> Iterator[tuple[int, RunDwells, NoLoadTorque | None]]:
+    def usable(self) -> Iterator[tuple[int, RunDwells, NoLoadTorque | None]]:
         """Place, dwells and rest of each run that has enough of them."""
         for place in np.flatnonzero(self.enough).tolist():
             yield place, self.dwells[place], self.rests[place]
@@ -72,26 +76,50 @@ def read_runs_of(campaign: Campaign, rest: NoLoadTorque | None = None) -> Campai
     runs, drives = Runs.of(campaign), campaign.drives()
     numbers = runs.run
     of_run, table = campaign.measured()
-    beside = _rest_of(of_run, table, {number: drives[number][0] or rest for number in numbers})
+    no_load = _rest_of(of_run, table, {number: drives[number][0] or rest for number in numbers})
     rows = _stretches(of_run)
     each, unused = [], []
     for number in numbers:
         own = rows.get(number, slice(0))
         usable = np.isfinite(table[own][:, [0, 2]]).all(axis=1) & (table[own, 0] != 0.0)
         if not usable.all():
-            unused.append(f"{np.count_nonzero(~usable)} of run {number}")
-        off = beside[own][usable]
-        each.append(_dwells(table[own][usable], off, was_off=drives[number][0] is not None))
+            unused.append((int(np.count_nonzero(~usable)), number))
+        own_no_load = no_load[own][usable]
+        each.append(_dwells(table[own][usable], own_no_load, was_off=drives[number][0] is not None))
     rests = [drives[number][0] or rest for number in numbers]
-    notes = [f"dwells that do not turn are left out: {', '.join(unused)}"] if unused else []
-    few = [str(number) for number, of in zip(numbers, each, strict=True) if of.speed.size < FEWEST]
-    if few:
-        notes.append(
-            f"{len(few)} runs have fewer than {FEWEST} dwells, and tell nothing here: {', '.join(few[:10])}"
-            + (" and more" if len(few) > 10 else "")
-        )
+    few = [number for number, of in zip(numbers, each, strict=True) if of.speed.size < FEWEST]
     sensors = tuple(drives[number][1] for number in numbers)
-    return CampaignRuns(runs, tuple(each), tuple(rests), sensors, tuple(notes))
+    return CampaignRuns(runs, tuple(each), tuple(rests), sensors, _not_used(unused, few))
+
+
+def _not_used(unused: list[tuple[int, int]], few: list[int]) -> tuple[Warning, ...]:
+    """What of the runs is not used: so many dwells of each run, and runs of few dwells."""
+    warnings = []
+    if unused:
+        which = ", ".join(f"{count} of run {number}" for count, number in unused)
+        total = sum(count for count, _ in unused)
+        warnings.append(
+            Warning(
+                "standing dwells excluded",
+                "dwells that do not turn are excluded: {which}",
+                which=which,
+                count=total,
+            )
+        )
+    if few:
+        named = ", ".join(map(str, few[:_NAMED])) + (" and more" if len(few) > _NAMED else "")
+        warnings.append(
+            Warning(
+                "runs of few dwells",
+                "{count} {count:run has|runs have} fewer than {fewest} dwells and {count:is|are} not used "
+                "here: {which}",
+                severity="watch",
+                count=len(few),
+                fewest=FEWEST,
+                which=named,
+            )
+        )
+    return tuple(warnings)
 
 
 def _stretches(of_run: IntArray) -> dict[int, slice]:
@@ -103,7 +131,7 @@ def _stretches(of_run: IntArray) -> dict[int, slice]:
 
 def _rest_of(of_run: IntArray, table: FloatArray, rests: dict[int, NoLoadTorque | None]) -> FloatArray:
     """Torque of the no-load torque at each dwell, N m; where no temperature is, that of its reference."""
-    beside = np.zeros(of_run.size)
+    no_load = np.zeros(of_run.size)
     runs_with: dict[int, list[int]] = {}
     for number, rest in rests.items():
         runs_with.setdefault(id(rest), []).append(number)
@@ -112,15 +140,15 @@ def _rest_of(of_run: IntArray, table: FloatArray, rests: dict[int, NoLoadTorque 
         if (rest := rests[numbers[0]]) is None:
             continue
         of_rest = np.isin(of_run, numbers)
-        for some, heat in ((of_rest & thermal, table[:, 1]), (of_rest & ~thermal, None)):
-            beside[some] = rest.torque(table[some, 0], None if heat is None else heat[some])
-    return beside
+        for some, kelvin in ((of_rest & thermal, table[:, 1]), (of_rest & ~thermal, None)):
+            no_load[some] = rest.torque(table[some, 0], None if kelvin is None else kelvin[some])
+    return no_load
 
 
 def _dwells(rows: FloatArray, rest: FloatArray, *, was_off: bool) -> RunDwells:
     """Dwells in the sense of rotation, and the torque of the ``rest`` that is, or was, taken off them."""
     speed, temperature, torque, error = rows.T
-    belt, whole = (torque, torque + rest) if was_off else (torque - rest, torque)
+    belt, drive = (torque, torque + rest) if was_off else (torque - rest, torque)
     sense = np.sign(speed)
-    heats = temperature if np.isfinite(temperature).all() else np.full(speed.shape, np.nan)
-    return RunDwells(np.abs(speed), heats, sense * belt, sense * whole, np.nan_to_num(error))
+    temperatures = temperature if np.isfinite(temperature).all() else np.full(speed.shape, np.nan)
+    return RunDwells(np.abs(speed), temperatures, sense * belt, sense * drive, np.nan_to_num(error))

@@ -1,10 +1,10 @@
-"""Stick-slip at the points of a machine: two speeds that its runs tell, against that of the point.
+"""Stick-slip at the points of a machine: two speeds that its runs show, against that of the point.
 
 Torque of the belt is least at the transition; slower than that it falls with speed, and a belt that slides
 steadily begins to stick of itself. So a point whose speed the transition reaches is at its end. Between the
 transition and V*, the fold above it, a belt that slides goes on sliding, and one that starts from rest
-sticks: that comes earlier, some machines are new within it, and it hangs on stiffness, mass and stick speed.
-It is followed as a sign.
+sticks: that comes earlier, some machines are new within it, and it depends on stiffness, mass and stick
+speed. It is followed as a sign.
 """
 
 from __future__ import annotations
@@ -18,37 +18,37 @@ from hersey.arrays import FloatArray
 from hersey.damping.no_load_torque import with_rest
 from hersey.damping.surface import WITH_TRANSITION
 from hersey.errors import ParameterError, UnfinishedError
-from hersey.life.indicator import Indicator
+from hersey.life.indicator import NOT_JUDGED, Indicator
 from hersey.life.indicators.at_states import AtStates, Curves
 from hersey.motion.drag import DragTable
+from hersey.schema.warning import Warning
 from hersey.stability.hysteresis import hysteresis
-from hersey.units import celsius
 
 if TYPE_CHECKING:
     from hersey.damping.no_load_torque import NoLoadTorque
     from hersey.machine import Machine
     from hersey.motion.belt import Drivetrain
 
-#: Runs whose fold is sought at the most, those whose draws tell its error, and draws of each.
+#: Runs whose fold is sought at the most, those whose draws give its error, and draws of each.
 MOST_FOLDS, DRAWN_RUNS, _DRAWS = 24, 3, 3
 #: Work and tolerance of a fold: of thousands, one that takes long is left out.
 _STEPS, _TOLERANCE = 2e6, 1e-8
-#: Folds of draws that tell an error.
+#: Folds of draws that give an error.
 _FEWEST = 5
 #: Standard deviations that enclose 95 % of a normal distribution on either side.
 _DEVIATIONS = 1.96
 
 
-def curve_at(told: AtStates, temperature: float | None) -> Curves:
+def curve_at(estimates: AtStates, temperature: float | None) -> Curves:
     """Return the curves at a temperature that was asked for."""
-    return next(curves for curves in told.curves if curves.temperature == temperature)
+    return next(curves for curves in estimates.curves if curves.temperature == temperature)
 
 
-def transitions(told: AtStates, machine: Machine) -> list[Indicator]:
+def transitions(estimates: AtStates, machine: Machine) -> list[Indicator]:
     """Return the speed of least torque at each point of the machine (m/s), against that of the point."""
     found = []
     for point in machine.points:
-        curves = curve_at(told, point.temperature)
+        curves = curve_at(estimates, point.temperature)
         speed = curves.least * machine.roll_radius
         found.append(
             Indicator(
@@ -58,36 +58,40 @@ def transitions(told: AtStates, machine: Machine) -> list[Indicator]:
                 point.speed,
                 speed,
                 np.where(np.isfinite(speed), curves.error, np.nan),
-                _speed_gain(told, machine),
-                notes=(
-                    f"speed of least torque at {celsius(point.temperature):.4g} degC",
-                    *_notes(told, curves),
+                _speed_gain(estimates, machine),
+                warnings=(
+                    Warning(
+                        "speed of least torque",
+                        "speed of least torque at {temperature:.4g degC}",
+                        temperature=point.temperature,
+                    ),
+                    *_warnings(estimates, curves),
                 ),
             )
         )
     return found
 
 
-def folds(told: AtStates, machine: Machine) -> tuple[list[Indicator], list[str]]:
+def folds(estimates: AtStates, machine: Machine) -> tuple[list[Indicator], list[Warning]]:
     """Return V* at each point of the machine (m/s), against its speed; and why there is none."""
-    found, unsaid = [], []
+    found, warnings = [], []
     by_temperature = {point.temperature: point.name for point in machine.points}
     for temperature, name in by_temperature.items():
-        curves = curve_at(told, temperature)
+        curves = curve_at(estimates, temperature)
         falling = np.flatnonzero(np.isfinite(curves.least))
         most = min(falling.size, MOST_FOLDS)
         chosen = falling[np.linspace(0, falling.size - 1, most).round().astype(int)].tolist()
         speed = np.full(curves.least.shape, np.nan)
         for place in chosen:
-            speed[place] = _fold(machine.train, drag_of(told, curves, place, machine))
-        error = _error(told, curves, machine) if np.isfinite(speed).any() else None
+            speed[place] = _fold(machine.train, drag_of(estimates, curves, place, machine))
+        error = _error(estimates, curves, machine) if np.isfinite(speed).any() else None
         if error is None:
-            unsaid.append(f"stick-slip from rest at {name}: no V* can be told from these dwells")
+            warnings.append(_no_fold(name))
             continue
-        beside = f"V* of {np.isfinite(speed).sum()} of {speed.size} runs, of {MOST_FOLDS} at the most"
+        of_runs = _folds_of_runs(speed, len(curves.drawn))
         errors = np.where(np.isfinite(speed), error, np.nan)
         common = np.hypot(
-            _speed_gain(told, machine), _of_machine(told, curves, machine, chosen[len(chosen) // 2])
+            _speed_gain(estimates, machine), _of_machine(estimates, curves, machine, chosen[len(chosen) // 2])
         )
         found += [
             Indicator(
@@ -99,19 +103,38 @@ def folds(told: AtStates, machine: Machine) -> tuple[list[Indicator], list[str]]
                 errors,
                 float(common),
                 sign=True,
-                notes=(
-                    f"{beside}; its error is the middle one of {len(curves.drawn)} runs",
-                    *_notes(told, curves),
-                ),
+                warnings=(of_runs, *_warnings(estimates, curves)),
             )
             for point in machine.points
             if point.temperature == temperature
         ]
-    return found, unsaid
+    return found, warnings
+
+
+def _no_fold(point: str) -> Warning:
+    return Warning(
+        NOT_JUDGED,
+        "V* cannot be determined from these dwells",
+        severity="act",
+        where=f"stick-slip from rest at {point}",
+        point=point,
+    )
+
+
+def _folds_of_runs(speed: FloatArray, drawn: int) -> Warning:
+    """Of how many runs V* is known; its error is that of ``drawn`` runs."""
+    return Warning(
+        "V* of some runs",
+        "V* of {count} of {runs} runs, of {most} at the most; its error is the median of {drawn} runs",
+        count=int(np.isfinite(speed).sum()),
+        runs=speed.size,
+        most=MOST_FOLDS,
+        drawn=drawn,
+    )
 
 
 def drag_of(
-    told: AtStates, curves: Curves, place: int, machine: Machine, torque: FloatArray | None = None
+    estimates: AtStates, curves: Curves, place: int, machine: Machine, torque: FloatArray | None = None
 ) -> DragTable | None:
     """Return the drag of the belt of a run, or by another curve of it; None where it falls nowhere.
 
@@ -120,7 +143,7 @@ def drag_of(
     own = curves.torque[place] if torque is None else torque
     known = np.isfinite(own)
     speed = curves.speed[known] * machine.roll_radius
-    return belt_drag(machine, told.runs.rests[place], speed, own[known], curves.temperature)
+    return belt_drag(machine, estimates.runs.rests[place], speed, own[known], curves.temperature)
 
 
 def belt_drag(
@@ -181,12 +204,12 @@ def _fold(train: Drivetrain, drag: DragTable | None) -> float:
     return edges(train, drag)[1]
 
 
-def _error(told: AtStates, curves: Curves, machine: Machine) -> float | None:
-    """Relative standard error of a fold: the middle one of some runs; None if it cannot be told."""
+def _error(estimates: AtStates, curves: Curves, machine: Machine) -> float | None:
+    """Relative standard error of a fold: the middle one of some runs; None if it is not known."""
     errors, count = [], 0
     for place, drawn in curves.drawn.items():
         values = [
-            _fold(machine.train, drag_of(told, curves, place, machine, each)) for each in drawn[:_DRAWS]
+            _fold(machine.train, drag_of(estimates, curves, place, machine, each)) for each in drawn[:_DRAWS]
         ]
         logs = np.log(np.array(values)[np.isfinite(values)])
         count += logs.size
@@ -195,9 +218,9 @@ def _error(told: AtStates, curves: Curves, machine: Machine) -> float | None:
     return float(np.median(errors)) if count >= _FEWEST and errors else None
 
 
-def _of_machine(told: AtStates, curves: Curves, machine: Machine, place: int) -> float:
+def _of_machine(estimates: AtStates, curves: Curves, machine: Machine, place: int) -> float:
     """Relative standard error of all folds together, by what the machine states of its own numbers."""
-    at = _fold(machine.train, drag_of(told, curves, place, machine))
+    at = _fold(machine.train, drag_of(estimates, curves, place, machine))
     squares = 0.0
     for name in ("stiffness", "mass", "stick_speed"):
         if name not in machine.uncertainty:
@@ -205,28 +228,47 @@ def _of_machine(told: AtStates, curves: Curves, machine: Machine, place: int) ->
         drawn = machine.uncertainty[name].draw(np.random.default_rng(0), getattr(machine, name), 200)
         by: dict[str, Any] = {name: float(getattr(machine, name) * np.exp(np.log(drawn).std()))}
         wider = replace(machine, **by)
-        moved = _fold(wider.train, drag_of(told, curves, place, wider))
+        moved = _fold(wider.train, drag_of(estimates, curves, place, wider))
         squares += np.nan_to_num(np.log(moved / at)) ** 2
     return float(np.sqrt(squares))
 
 
-def _speed_gain(told: AtStates, machine: Machine) -> float:
-    gains = [sensors.speed_gain for sensors in told.runs.sensors]
+def _speed_gain(estimates: AtStates, machine: Machine) -> float:
+    gains = [sensors.speed_gain for sensors in estimates.runs.sensors]
     return (machine.sensors.speed_gain if "speed" in machine.sensors.stated else max(gains)) / _DEVIATIONS
 
 
-def _notes(told: AtStates, curves: Curves) -> tuple[str, ...]:
-    """Which runs do not tell the transition, and what is taken for the belt's torque."""
-    enough = told.runs.enough
-    below, above = int(curves.below.sum()), int(curves.above.sum())
-    notes = []
-    if below:
-        notes.append(f"not told by {below} of {enough.size} runs: torque is least slower than they recorded")
-    if above:
-        notes.append(f"not told by {above} of {enough.size} runs: torque falls as far as they recorded")
-    silent = int(np.count_nonzero(enough & ~np.isfinite(curves.torque).any(axis=1)))
-    if silent:
-        notes.append(f"not told by {silent} of {enough.size} runs, of other temperatures")
-    if any(rest is None for rest in told.runs.rests):
-        notes.append("least of all torque together: the no-load torque is not known (add [rest])")
-    return tuple(notes)
+def _warnings(estimates: AtStates, curves: Curves) -> tuple[Warning, ...]:
+    """Which runs do not show the transition, and what is taken for the belt's torque."""
+    enough = estimates.runs.enough
+    silent = enough & ~np.isfinite(curves.torque).any(axis=1)
+    counts = (
+        ("slower than recorded", curves.below),
+        ("faster than recorded", curves.above),
+        ("other temperatures", silent),
+    )
+    warnings = [_unknown_in(kind, int(np.count_nonzero(of)), enough.size) for kind, of in counts if of.any()]
+    if any(rest is None for rest in estimates.runs.rests):
+        warnings.append(
+            Warning(
+                "no-load torque unknown",
+                "least of all torque together: the no-load torque is not known (add [rest])",
+                severity="watch",
+            )
+        )
+    return tuple(warnings)
+
+
+def _unknown_in(kind: str, count: int, runs: int) -> Warning:
+    """Why so many runs do not show the transition."""
+    return Warning(
+        kind,
+        "unknown in {count} of {runs} runs: torque is least slower than they recorded"
+        if kind == "slower than recorded"
+        else "unknown in {count} of {runs} runs: torque falls as far as they recorded"
+        if kind == "faster than recorded"
+        else "unknown in {count} of {runs} runs, of other temperatures",
+        severity="watch",
+        count=count,
+        runs=runs,
+    )

@@ -19,7 +19,7 @@ from hersey.life.growth.limit_ages import (
     quantiles,
     share_of_specimens,
 )
-from hersey.life.indicator import Indicators
+from hersey.life.indicator import NOT_JUDGED, Indicators
 from hersey.life.population import Population, weibull
 from hersey.life.time_to_failure.first import SpecimenEnd, ages_of_new, ends_of_specimens
 from hersey.life.time_to_failure.joined import correlations
@@ -31,22 +31,18 @@ from hersey.life.time_to_failure.next_run import (
     width_after_specimen,
     widths_after,
 )
-from hersey.life.time_to_failure.way import FittedWay, Mode, fitted_way, last_ages, listed
+from hersey.life.time_to_failure.unsure import FAR, FEW, unsure
+from hersey.life.time_to_failure.way import FittedWay, Mode, fitted_way, last_ages
 from hersey.result import Means, Record, Result
+from hersey.schema.warning import Warning
 
 if TYPE_CHECKING:
     import polars as pl
 
-#: What is said of a specimen from so many times the age at which it was last seen on.
-FAR = 3.0
 #: Places of the curve of the population.
 _PLACES = 121
 #: Specimens, of the widest intervals, for which a further run is weighed; advice that the summary gives.
 _WEIGHED, _ADVISED = 24, 3
-#: An interval whose ends differ by this factor tells the order of an age, no more.
-_WIDE = 2.0
-#: Up to so many specimens tell little of how specimens differ.
-_FEW = 3
 #: Rows that a summary shows.
 _SHOWN = 24
 NEVER = "none"
@@ -66,8 +62,7 @@ class ShareEnded(Record):
 class TimeToFailure(Result):
     """What ends each specimen and the population, and when; ages in ``age_unit``."""
 
-    also_stated = ("population", "advice", "notes")
-    not_stated = ("general_notes", "mode_notes")
+    also_stated = ("population", "advice")
 
     age_unit: str
     modes: tuple[Mode, ...]
@@ -84,17 +79,11 @@ class TimeToFailure(Result):
     together: Annotated[
         tuple[str, ...], Means("ways whose runs scatter together")
     ]  #: ways whose runs scatter together
-    general_notes: tuple[str, ...]  #: what cannot be told, and what rests on priors
-    mode_notes: tuple[tuple[str, str], ...]  #: name and note, of modes that may come first
-    unsaid: Annotated[
-        tuple[str, ...], Means("ways that are not judged, and why")
-    ]  #: ways that are not judged, and why
+    warnings: Annotated[
+        tuple[Warning, ...],
+        Means("failure modes not judged, what is not known, then those of the modes that may come first"),
+    ]  #: failure modes not judged, what is not known, then those of the modes that may come first
     seed: int = 0
-
-    @property
-    def notes(self) -> tuple[str, ...]:
-        """All notes, those of one mode led by its name."""
-        return (*self.general_notes, *(f"{name}: {note}" for name, note in self.mode_notes))
 
     @property
     def ending(self) -> tuple[Mode, ...]:
@@ -113,7 +102,7 @@ class TimeToFailure(Result):
         )
 
     def summary(self) -> str:
-        """Return specimens, population, what cannot be told and what to measure next as text."""
+        """Return specimens, population, what is not known and what to measure next as text."""
         unit = f" {self.age_unit}" if self.age_unit else ""
         lines = [self.headline(), f"age of the first end{unit and f' ({unit.strip()})'}, 90 % intervals"]
         lines += [f"  {each}" for each in self.units[:_SHOWN]]
@@ -133,16 +122,15 @@ class TimeToFailure(Result):
             lines.append(
                 f"  half of new specimens later than {FAR:g} times the age followed: {'; '.join(far)}"
             )
-        lines += [f"not judged: {each}" for each in self.unsaid]
-        lines += [f"- {each}" for each in self.notes]
+        lines += [f"not judged: {each}" if each.kind == NOT_JUDGED else f"- {each}" for each in self.warnings]
         return "\n".join([*lines, *(f"next: {each}" for each in self.advice)])
 
     def headline(self) -> str:
         """Return when half of new specimens have ended, and by what."""
         unit = f" {self.age_unit}" if self.age_unit else ""
-        if len(self.units) < _FEW:
+        if len(self.units) < FEW:
             first = min(self.units, key=lambda each: each.age.age.value)
-            by = " or ".join(first.named) or "no way told"
+            by = " or ".join(first.named) or "no known failure mode"
             return f"{first.unit} ends at {first.age.age}{unit} by {by}"
         likely = max(self.shares, key=lambda name: self.shares[name].value)
         return f"half of new specimens have ended at {self.b50.age}{unit}, most by {likely}"
@@ -193,7 +181,7 @@ def time_to_failure(
     Parameters
     ----------
     indicators
-        Of `Indicators`; those that cannot be fitted are named in ``unsaid`` with the reason.
+        Of `Indicators`; those that cannot be fitted are among the warnings with the reason.
     seed
         Of the draws: the same data and seed give the same result.
     progress
@@ -204,17 +192,19 @@ def time_to_failure(
     InsufficientDataError
         If no indicator that ends a specimen can be fitted; the message names the reasons.
     """
-    fitted, unsaid = [], list(indicators.unsaid)
+    fitted, warnings = [], list(indicators.warnings)
     for i, each in enumerate(indicators.each):
         try:
             fitted.append(fitted_way(indicators, each, seed + i))
         except HerseyError as error:
-            unsaid.append(f"{each.name}: {error}")
+            warnings.append(
+                Warning(NOT_JUDGED, "{reason}", severity="act", where=each.name, reason=str(error))
+            )
         if progress:
             progress(i + 1, len(indicators.each))
     ending = [each for each in fitted if not each.mode.sign]
     if not ending:
-        why = "; ".join(unsaid) or "no indicator was given"
+        why = "; ".join(map(str, warnings)) or "no indicator was given"
         raise InsufficientDataError(f"nothing that ends a specimen can be followed: {why}")
     random = np.random.default_rng([seed, 2])
     of_runs = correlations([each.residuals for each in ending])
@@ -236,9 +226,7 @@ def time_to_failure(
         curve=_curve(first, greatest),
         next_runs=tuple(sorted(runs, key=lambda each: -each.narrowing)),
         together=_together(ending, of_runs),
-        general_notes=_notes(ending, units, of_runs),
-        mode_notes=_mode_notes(ending, units),
-        unsaid=tuple(unsaid),
+        warnings=(*warnings, *unsure(ending, units, _together(ending, of_runs)), *_of_modes(ending, units)),
         seed=seed,
     )
 
@@ -253,7 +241,7 @@ def _shares(ending: Sequence[FittedWay], new: FloatArray) -> dict[str, Interval]
 
 
 def _curve(first: FloatArray, greatest: float) -> ShareEnded:
-    """Share ended against age, up to where ages are no more than told to be late."""
+    """Share ended against age, up to where ages are known to be late, no more."""
     ages = np.linspace(0.0, FAR * greatest, _PLACES)
     low, median, high = quantiles(np.stack([(first <= age).mean(axis=1) for age in ages], axis=1))
     return ShareEnded(ages, median, low, high)
@@ -276,16 +264,16 @@ def _again(
         order, first = picks[i]
         capped = np.minimum(first, HORIZON * greatest)
         ages = candidate_ages(units[i].age.last, float(np.median(capped)))
-        telling = [m for m, each in enumerate(ending) if units[i].unit in each.row]
-        if not (ages.size and telling):
+        observed = [m for m, each in enumerate(ending) if units[i].unit in each.row]
+        if not (ages.size and observed):
             continue
         values, errors = [], []
-        for m in telling:
+        for m in observed:
             each = ending[m]
             value, scatter = each.mode.growth.drawn_values(each.row[units[i].unit], ages)
             values.append(value[order[:, m]])
             errors.append(np.hypot(scatter, each.error)[order[:, m]])
-        among = of_runs[np.ix_(telling, telling)]
+        among = of_runs[np.ix_(observed, observed)]
         after = widths_after(capped, values, errors, among, random)
         runs = zip(ages.tolist(), after.tolist(), strict=True)
         found += [NextRun(units[i].unit, age, spans[i], each) for age, each in runs]
@@ -309,48 +297,8 @@ def _together(ending: Sequence[FittedWay], of_runs: FloatArray) -> tuple[str, ..
     )
 
 
-def _notes(ending: Sequence[FittedWay], units: Sequence[SpecimenEnd], of_runs: FloatArray) -> tuple[str, ...]:
-    """What cannot be told, and what rests on priors."""
-    notes = []
-    named = {name for each in units for name in each.named}
-    unnamed = [e.mode.name for e in ending if e.mode.growth.law is None and e.mode.name in named]
-    if unnamed:
-        notes.append(
-            f"which law of growth holds is not told for {listed(unnamed)}: ages later than the last runs "
-            "are taken over all laws that remain"
-        )
-    if len(units) == 1:
-        notes.append(
-            "one specimen tells nothing of how specimens differ: B10, B50 and the shares rest on the prior"
-        )
-    elif len(units) <= _FEW:
-        notes.append(
-            f"{len(units)} specimens tell little of how specimens differ: B10, B50 and the shares "
-            "lean on the prior of the spread"
-        )
-    passed = [each.unit for each in units if each.age.passed > 0.5]
-    if passed:
-        notes.append(f"{listed(passed)} reached a limit already, at the age told, before last seen")
-    near = [each.unit for each in units if len(each.named) > 1]
-    if near:
-        notes.append(f"which way comes first is not told for {listed(near)}: all that remain are named")
-    wide = [each.unit for each in units if each.age.age.high > _WIDE * max(each.age.age.low, 1e-300)]
-    if wide:
-        notes.append(f"the end of {listed(wide)} is not told within a factor of {_WIDE:g}")
-    far = [each.unit for each in units if each.age.age.value > FAR * each.age.last]
-    if far:
-        notes.append(
-            f"the end of {listed(far)} lies beyond {FAR:g} times the age followed: read it as not "
-            "soon, no more"
-        )
-    together = _together(ending, of_runs)
-    if together:
-        notes.append(f"runs scatter together, so draws move together: {', '.join(together)}")
-    return tuple(notes)
-
-
-def _mode_notes(ending: Sequence[FittedWay], units: Sequence[SpecimenEnd]) -> tuple[tuple[str, str], ...]:
-    """The notes of the modes that come first for a specimen."""
+def _of_modes(ending: Sequence[FittedWay], units: Sequence[SpecimenEnd]) -> list[Warning]:
+    """The warnings of the modes that come first for a specimen."""
     named = {name for each in units for name in each.named}
     modes = [each.mode for each in ending if each.mode.name in named]
-    return tuple((mode.name, note) for mode in modes for note in mode.notes)
+    return [warning.within(mode.name) for mode in modes for warning in mode.warnings]

@@ -54,7 +54,7 @@ class SpecimenEnd(Record):
     def ways(self) -> str:
         """The ways in words."""
         likely = [name for name in self.named if self.first[name] >= MENTIONED]
-        text = " or ".join(f"{name} ({self.first[name]:.0%})" for name in likely) or "no way told"
+        text = " or ".join(f"{name} ({self.first[name]:.0%})" for name in likely) or "no known failure mode"
         behind = [name for name in self.named if name not in likely]
         return text + (f", close behind {' and '.join(behind)}" if behind else "")
 

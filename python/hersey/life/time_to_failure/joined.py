@@ -16,7 +16,7 @@ _FLOOR = 1e-6
 
 
 def correlations(columns: Sequence[FloatArray]) -> FloatArray:
-    """Return correlations of columns over the rows that two of them tell; 0 where chance may make them.
+    """Return correlations of columns over the rows that two of them have; 0 where chance may make them.
 
     A correlation counts from two standard errors of none, 2 / sqrt(pairs). The matrix is positive definite.
     """

@@ -61,10 +61,10 @@ def rounded(age: float, digits: int = 2) -> str:
 
 def candidate_ages(last: float, end: float) -> FloatArray:
     """Return the ages at which a specimen that was last seen at ``last`` could be measured again."""
-    reach = min(end, _FARTHEST * last if last > 0.0 else end)
-    if not (math.isfinite(reach) and reach > last):
+    latest = min(end, _FARTHEST * last if last > 0.0 else end)
+    if not (math.isfinite(latest) and latest > last):
         return np.empty(0)
-    ages = {float(rounded(last + share * (reach - last))) for share in _WAY}
+    ages = {float(rounded(last + share * (latest - last))) for share in _WAY}
     return np.array(sorted(age for age in ages if age > last))
 
 

@@ -14,6 +14,7 @@ from hersey.life.growth.fit import Growth, fit_growth
 from hersey.life.growth.limit_ages import AgesAtLimit, ages_at_limit
 from hersey.life.indicator import Indicator, Indicators, OwnAges
 from hersey.result import Means, Record
+from hersey.schema.warning import Warning
 
 
 @dataclass(frozen=True, repr=False)
@@ -27,7 +28,7 @@ class Mode(Record):
     sign: Annotated[bool, Means("a precursor, which ends no unit")]  #: a precursor, which ends no specimen
     growth: Growth
     ages: AgesAtLimit
-    notes: tuple[str, ...]
+    warnings: tuple[Warning, ...]
 
 
 @dataclass(frozen=True)
@@ -37,7 +38,7 @@ class FittedWay:
     mode: Mode
     ages: FloatArray
     new: FloatArray
-    residuals: FloatArray  #: per run of the campaign, NaN where it does not tell it
+    residuals: FloatArray  #: per run of the campaign, NaN where it does not show it
     row: dict[str, int]  #: of each specimen that the growth knows
     error: float  #: of a run, typically
 
@@ -56,17 +57,17 @@ def fitted_way(indicators: Indicators, each: Indicator, seed: int, known: Growth
     Raises
     ------
     InsufficientDataError
-        If no run tells it.
+        If no run shows it.
     """
     runs = indicators.runs
-    told = np.flatnonzero(np.isfinite(each.value))
-    if not told.size:
-        raise InsufficientDataError("no run tells it")
+    known_runs = np.flatnonzero(np.isfinite(each.value))
+    if not known_runs.size:
+        raise InsufficientDataError("no run shows it")
     growth = known or fit_growth(
-        [runs.unit[i] for i in told],
-        runs.age[told],
-        each.value[told],
-        each.error[told],
+        [runs.unit[i] for i in known_runs],
+        runs.age[known_runs],
+        each.value[known_runs],
+        each.error[known_runs],
         quantity=each.name,
         age_unit=runs.age_unit,
         seed=seed,
@@ -74,10 +75,10 @@ def fitted_way(indicators: Indicators, each: Indicator, seed: int, known: Growth
     row = {name: i for i, name in enumerate(growth.units)}
     last = last_ages(indicators)
     own = _drawn_ages(each, growth, row, list(last), seed)
-    notes = [*each.notes, *growth.notes]
+    warnings = [*each.warnings, *growth.warnings]
     missing = [name for name in last if name not in row]
     if missing and each.own_ages is None:
-        notes.append(f"no run of {listed(missing)} tells it: taken as any new specimen")
+        warnings.append(_without_a_value(missing))
     at_limit = ages_at_limit(
         each.name,
         runs.age_unit,
@@ -85,19 +86,28 @@ def fitted_way(indicators: Indicators, each: Indicator, seed: int, known: Growth
         list(last),
         own,
         list(last.values()),
-        tuple(notes),
+        tuple(warnings),
         accumulates=each.accumulates,
     )
     residuals = np.full(runs.age.size, np.nan)
-    residuals[told] = growth.residuals()
-    mode = Mode(each.name, each.kind, each.si, each.limit, each.sign, growth, at_limit, tuple(notes))
-    return FittedWay(mode, own.known, own.new, residuals, row, float(np.median(each.error[told])))
+    residuals[known_runs] = growth.residuals()
+    mode = Mode(each.name, each.kind, each.si, each.limit, each.sign, growth, at_limit, tuple(warnings))
+    return FittedWay(mode, own.known, own.new, residuals, row, float(np.median(each.error[known_runs])))
+
+
+def _without_a_value(specimens: Sequence[str]) -> Warning:
+    return Warning(
+        "specimens without a value",
+        "no run of {specimens} shows it: taken as any new specimen",
+        severity="watch",
+        specimens=listed(specimens),
+    )
 
 
 def _drawn_ages(each: Indicator, growth: Growth, row: dict[str, int], names: list[str], seed: int) -> OwnAges:
     """Draws of the ages at the limit, of all specimens and of new ones."""
     known, new = growth.drawn_ages(each.limit, limit_error=each.limit_error, accumulates=each.accumulates)
-    # A specimen of which no run tells this is one more of the population.
+    # A specimen of which no run shows this is one more of the population.
     random = np.random.default_rng([seed, 3])
     spare = iter(random.permutation(new.shape[1]).tolist() * len(names))
     if each.own_ages is None:

@@ -1,6 +1,7 @@
 // The page of a life test: what ends the units and when, beside it the ages in other uses of the machine, then section
 // by section what it rests on.
 
+const warned = (each) => sentence(each.where ? `${each.where}: ${each.text}` : each.text);
 function list(parent, lines, className = "") {
   if (!lines.length) return;
   const items = add(parent, "ul", "", className);
@@ -15,7 +16,8 @@ async function section(parent, each, title = each.title) {
   for (const { title: of, heads, rows, numeric } of each.tables) {
     table(of ? fold(element, of) : element, heads, rows, numeric, { name: `${each.name}${of ? "-each" : ""}` });
   }
-  if (each.notes.length) list(each.notes.length > 4 ? fold(element, "More in words") : element, each.notes, "soft");
+  const words = [...each.lines, ...each.warnings.map(warned)];
+  if (words.length) list(words.length > 4 ? fold(element, "More in words") : element, words, "soft");
 }
 async function main() {
   document.title = `hersey: ${data.title}`;
@@ -26,7 +28,7 @@ async function main() {
   const verdict = add(report, "div", "", "verdict");
   verdict.id = "verdict";
   data.verdict.forEach((text) => add(verdict, "p", text));
-  list(report, data.warnings, "warnings");
+  list(report, data.warnings.map(warned), "warnings");
   const [ends, ...others] = data.sections;
   const first = add(report, "div", "", data.uses ? "first" : "");
   const left = add(first, "div");
@@ -36,7 +38,7 @@ async function main() {
     otherUses(panel, data.uses);
   }
   await section(left, { ...ends, tables: [] }, "");
-  await section(report, { ...ends, name: "ages", charts: [], text: [], notes: [] });
+  await section(report, { ...ends, name: "ages", charts: [], text: [], lines: [], warnings: [] });
   for (const each of others) await section(report, each);
   const last = add(report, "section", "", "part");
   last.id = "reproduce";

@@ -1,0 +1,83 @@
+"""Warnings of a run as JSON, and back: kind, numbers and the words as they were shown.
+
+The words that are kept are no template: braces in a file from anywhere stand for themselves. Version 1 of the
+file kept sentences alone, under ``notes``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, get_args
+
+import numpy as np
+
+from hersey.errors import ParameterError, Setting
+from hersey.schema.warning import Severity, Warning
+
+#: What is kept of a warning, beside its kind.
+_KEPT = {"kind": str, "severity": str, "where": str, "values": tuple, "title": str, "text": str}
+#: Names that no value may have, as a warning is made with them.
+_ARGUMENTS = {"severity", "title", "where", "remedy"}
+#: Kind of a warning of which only the sentence was kept.
+SENTENCE = "kept sentence"
+
+
+def kept_warning(warning: Warning) -> dict[str, Any]:
+    """Return a warning as JSON: its values as pairs, without settings, which its words name."""
+    values = [
+        [name, value.item() if isinstance(value, np.generic) else value]
+        for name, value in warning.values.items()
+        if not isinstance(value, Setting)
+    ]
+    return {name: getattr(warning, name) for name in _KEPT} | {"values": values}
+
+
+def warning_of(kept: dict[str, Any]) -> Warning:
+    """Return the warning that was kept, lists as tuples.
+
+    Raises
+    ------
+    ParameterError
+        Naming the first key that is missing, unknown or of another kind.
+    """
+    for name in kept.keys() ^ _KEPT.keys():
+        raise ParameterError(f"'Warning.{name[:40]}' {'is missing' if name in _KEPT else 'is not known'}")
+    values = kept["values"]
+    sound = {name: type(kept[name]) is kind for name, kind in _KEPT.items()}
+    sound["severity"] &= kept["severity"] in get_args(Severity)
+    sound["values"] &= sound["values"] and all(map(_is_value, values))
+    for name in (name for name, holds in sound.items() if not holds):
+        raise ParameterError(f"'Warning.{name}' holds another kind of value than it should")
+    made: Any = Warning  # whose words are literals elsewhere, and here as they were shown
+    warning: Warning = made(
+        kept["kind"],
+        _literal(kept["text"]),
+        severity=kept["severity"],
+        where=kept["where"],
+        title=_literal(kept["title"]),
+        **dict(values),
+    )
+    return warning
+
+
+def with_warnings(found: dict[str, Any], kinds: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what was kept with the sentences of ``notes`` as warnings, where it should have those."""
+    if "notes" not in found or "notes" in kinds or "warnings" not in kinds:
+        return found
+    notes = found["notes"]
+    if not (isinstance(notes, tuple) and all(isinstance(each, str) for each in notes)):
+        raise ParameterError("'notes' holds another kind of value than it should")
+    warnings = tuple(Warning(SENTENCE, "{text}", text=each) for each in notes)
+    return {name: value for name, value in found.items() if name != "notes"} | {"warnings": warnings}
+
+
+def _is_value(pair: Any) -> bool:
+    """Whether a name and a value may be among those of a warning."""
+    if not (isinstance(pair, tuple) and len(pair) == 2 and isinstance(pair[0], str)):
+        return False
+    return pair[0] not in _ARGUMENTS and (pair[1] is None or isinstance(pair[1], bool | int | float | str))
+
+
+def _literal(text: str) -> str:
+    """Words that show a text as it is."""
+    return text.replace("{", "{{").replace("}", "}}")

@@ -1,0 +1,92 @@
+"""What is not known of the ends of specimens, and what depends on priors."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from hersey.life.time_to_failure.first import SpecimenEnd
+from hersey.life.time_to_failure.way import FittedWay, listed
+from hersey.schema.warning import Warning
+
+#: Beyond so many times the age at which a specimen was last seen its end is "not soon", no more.
+FAR = 3.0
+#: Up to so many specimens show little of how specimens differ.
+FEW = 3
+#: An interval whose ends differ by this factor shows the order of an age, no more.
+_WIDE = 2.0
+
+
+def unsure(
+    ending: Sequence[FittedWay], units: Sequence[SpecimenEnd], together: Sequence[str]
+) -> Iterator[Warning]:
+    """Yield what is not known of all ends; ``together`` are failure modes whose runs scatter together."""
+    named = {name for each in units for name in each.named}
+    unnamed = [e.mode.name for e in ending if e.mode.growth.law is None and e.mode.name in named]
+    if unnamed:
+        yield Warning(
+            "law of growth unknown",
+            "which law of growth holds is unknown for {modes}: ages later than the last runs are taken over "
+            "all laws that remain",
+            severity="watch",
+            modes=listed(unnamed),
+        )
+    if len(units) <= FEW:
+        yield _few_specimens(len(units))
+    yield from _of_specimens(units)
+    if together:
+        yield Warning(
+            "modes scatter together",
+            "runs scatter together, so draws move together: {modes}",
+            modes=", ".join(together),
+        )
+
+
+def _few_specimens(count: int) -> Warning:
+    return Warning(
+        "few specimens",
+        "one specimen does not show how specimens differ: B10, B50 and the shares depend on the prior"
+        if count == 1
+        else "{specimens} specimens show little of how specimens differ: B10, B50 and the shares depend "
+        "partly on the prior of the spread",
+        severity="watch",
+        specimens=count,
+    )
+
+
+def _of_specimens(units: Sequence[SpecimenEnd]) -> Iterator[Warning]:
+    """What holds of the ends of some specimens, which each warning names."""
+    passed = [each.unit for each in units if each.age.passed > 0.5]
+    if passed:
+        yield Warning(
+            "limit reached",
+            "{specimens} reached a limit already, at the age given, before last seen",
+            severity="act",
+            specimens=listed(passed),
+        )
+    near = [each.unit for each in units if len(each.named) > 1]
+    if near:
+        yield Warning(
+            "first mode unknown",
+            "which failure mode comes first is unknown for {specimens}: all that remain are named",
+            severity="watch",
+            specimens=listed(near),
+        )
+    wide = [each.unit for each in units if each.age.age.high > _WIDE * max(each.age.age.low, 1e-300)]
+    if wide:
+        yield Warning(
+            "age uncertain",
+            "the end of {specimens} is not known within a factor of {factor:g}",
+            severity="watch",
+            specimens=listed(wide),
+            factor=_WIDE,
+        )
+    far = [each.unit for each in units if each.age.age.value > FAR * each.age.last]
+    if far:
+        yield Warning(
+            "end far off",
+            "the end of {specimens} lies beyond {factor:g} times the age followed: read it as not soon, no "
+            "more",
+            severity="watch",
+            specimens=listed(far),
+            factor=FAR,
+        )
