@@ -1,7 +1,6 @@
 // The page of a life test: what ends the units and when, beside it the ages in other uses of the machine, then section
 // by section what it rests on.
 
-const warned = (each) => sentence(each.where ? `${each.where}: ${each.text}` : each.text);
 function list(parent, lines, className = "") {
   if (!lines.length) return;
   const items = add(parent, "ul", "", className);
