@@ -40,7 +40,7 @@ def test_a_warning_comes_back_with_kind_numbers_and_words() -> None:
     (again,) = restored(read_json(kept(warning)), KINDS)["warnings"]
     assert again.to_dict() == warning.to_dict()
     assert again.values["speed"] == 0.1 + 0.2
-    assert str(again) == "bench.csv: rows of '{speed.real}' at 2.86 rpm: set rotation"
+    assert str(again) == "bench.csv: 3 late: rows of '{speed.real}' at 2.86 rpm: set rotation"
     assert kept(again) == kept(warning)
 
 
@@ -49,6 +49,10 @@ def test_sentences_of_an_earlier_version_are_warnings() -> None:
     found = restored(read_json(json.dumps(plain(notes))), KINDS)["warnings"]
     assert [each.kind for each in found] == [SENTENCE, SENTENCE]
     assert tuple(map(str, found)) == notes["notes"]
+    for said, kinds in (("the shaft {slips}", [SENTENCE]), ("", [])):
+        found = restored({"note": said}, KINDS)["warnings"]
+        assert [each.kind for each in found] == kinds
+        assert "".join(map(str, found)) == said
     with pytest.raises(ParameterError, match="'notes' holds another kind"):
         restored({"notes": [1]}, KINDS)
 

@@ -134,3 +134,11 @@ def test_words_of_warnings_are_literals_and_name_their_values(name: str) -> None
             named = {field for _, field, _, _ in string.Formatter().parse(text) if field is not None}
             assert None in given or named <= given.keys(), f"{place}: {named - given.keys()}"
     assert seen
+
+
+def test_one_that_was_kept_is_shown_as_it_was() -> None:
+    warning = Warning("cut", "'{line}' was cut at {speed:.3g rpm}", title="{line}", line="{x}", speed=1.0)
+    part = part_of(Warned).model_validate(Warned((warning,)).to_dict()).warnings[0]
+    again = Warning.read(part)
+    assert again.to_dict() == warning.to_dict()
+    assert again.sentence == warning.sentence

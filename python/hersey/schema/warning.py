@@ -13,6 +13,8 @@ from hersey.units import celsius, rpm
 
 #: How grave: nothing is wrong, worth knowing, look at it, something must be done.
 Severity = Literal["good", "note", "watch", "act"]
+#: Names that no value may have, as a warning is made with them.
+ARGUMENTS = frozenset({"severity", "title", "where", "remedy"})
 #: What a warning is made of, as JSON holds it.
 Value = float | int | str | None
 #: A p-value below this is said to be below it.
@@ -54,6 +56,11 @@ class _Words(string.Formatter):
 
 
 _words = _Words()
+
+
+def _literal(text: str) -> str:
+    """Words that show a text as it is."""
+    return text.replace("{", "{{").replace("}", "}}")
 
 
 @dataclass(frozen=True, init=False)
@@ -110,10 +117,18 @@ class Warning(Record):
             object.__setattr__(self, name, value)
 
     @classmethod
+    def said(
+        cls, kind: str, text: str, *, title: str, severity: Severity, where: str, values: Mapping[str, Any]
+    ) -> Warning:
+        """Return one that was kept: its words are as they were shown, braces and all."""
+        own: Any = {name: value for name, value in values.items() if name not in ARGUMENTS}
+        return cls(kind, _literal(text), severity=severity, title=_literal(title), where=where, **own)
+
+    @classmethod
     def read(cls, part: Any) -> Warning:
-        """Return one that a document holds; its words are those of the time at which it was written."""
-        own = dict(part.values) | {"title": part.title, "text": part.text}
-        return cls(part.kind, "{text}", severity=part.severity, title="{title}", where=part.where, **own)
+        """Return one that a document holds."""
+        own = {name: getattr(part, name) for name in ("title", "severity", "where", "values")}
+        return cls.said(part.kind, part.text, **own)
 
     def number(self, name: str) -> float:
         """Return one of its numbers."""

@@ -20,6 +20,7 @@ from hersey.life.campaign.records import plain, read_json, refuse_others, restor
 from hersey.log.means import MeansTable
 from hersey.log.sensors import OF_ROLE, Sensors
 from hersey.log.torque_log import Correction, LogFile, TorqueLog
+from hersey.schema.warning import Warning
 
 if TYPE_CHECKING:
     import polars as pl
@@ -43,7 +44,7 @@ _REDUCTION = {
     "tare": float,
     "standing_torque": float | None,
     "tare_errors": FloatArray,
-    "notes": tuple[str, ...],
+    "warnings": tuple[Warning, ...],
     "rest": NoLoadTorque | None,
     "rest_errors": FloatArray,
 }
@@ -214,5 +215,5 @@ def _reduction(points: SteadyPoints) -> dict[str, Any]:
     }
     if isinstance(log, MeansTable):
         about |= {"means": (), "stated_errors": log.stated_errors}
-    names = ("rejected", "tare", "standing_torque", "tare_errors", "notes", "rest", "rest_errors")
+    names = ("rejected", "tare", "standing_torque", "tare_errors", "warnings", "rest", "rest_errors")
     return {"means": means, "log": about} | {name: getattr(points, name) for name in names}

@@ -1,7 +1,7 @@
 """Warnings of a run as JSON, and back: kind, numbers and the words as they were shown.
 
 The words that are kept are no template: braces in a file from anywhere stand for themselves. Version 1 of the
-file kept sentences alone, under ``notes``.
+file kept sentences alone, under ``notes`` or ``note``.
 """
 
 from __future__ import annotations
@@ -12,12 +12,10 @@ from typing import Any, get_args
 import numpy as np
 
 from hersey.errors import ParameterError, Setting
-from hersey.schema.warning import Severity, Warning
+from hersey.schema.warning import ARGUMENTS, Severity, Warning
 
 #: What is kept of a warning, beside its kind.
 _KEPT = {"kind": str, "severity": str, "where": str, "values": tuple, "title": str, "text": str}
-#: Names that no value may have, as a warning is made with them.
-_ARGUMENTS = {"severity", "title", "where", "remedy"}
 #: Kind of a warning of which only the sentence was kept.
 SENTENCE = "kept sentence"
 
@@ -48,36 +46,24 @@ def warning_of(kept: dict[str, Any]) -> Warning:
     sound["values"] &= sound["values"] and all(map(_is_value, values))
     for name in (name for name, holds in sound.items() if not holds):
         raise ParameterError(f"'Warning.{name}' holds another kind of value than it should")
-    made: Any = Warning  # whose words are literals elsewhere, and here as they were shown
-    warning: Warning = made(
-        kept["kind"],
-        _literal(kept["text"]),
-        severity=kept["severity"],
-        where=kept["where"],
-        title=_literal(kept["title"]),
-        **dict(values),
-    )
-    return warning
+    return Warning.said(**(kept | {"values": dict(values)}))
 
 
 def with_warnings(found: dict[str, Any], kinds: Mapping[str, Any]) -> dict[str, Any]:
-    """Return what was kept with the sentences of ``notes`` as warnings, where it should have those."""
-    if "notes" not in found or "notes" in kinds or "warnings" not in kinds:
+    """Return what was kept with its ``notes``, or its ``note``, as the warnings that it should have."""
+    old = next((name for name in ("notes", "note") if name in found), "")
+    if not old or old in kinds or "warnings" not in kinds:
         return found
-    notes = found["notes"]
+    held = found[old]
+    notes = tuple(filter(None, [held])) if old == "note" and isinstance(held, str) else held
     if not (isinstance(notes, tuple) and all(isinstance(each, str) for each in notes)):
-        raise ParameterError("'notes' holds another kind of value than it should")
+        raise ParameterError(f"'{old}' holds another kind of value than it should")
     warnings = tuple(Warning(SENTENCE, "{text}", text=each) for each in notes)
-    return {name: value for name, value in found.items() if name != "notes"} | {"warnings": warnings}
+    return {name: value for name, value in found.items() if name != old} | {"warnings": warnings}
 
 
 def _is_value(pair: Any) -> bool:
     """Whether a name and a value may be among those of a warning."""
     if not (isinstance(pair, tuple) and len(pair) == 2 and isinstance(pair[0], str)):
         return False
-    return pair[0] not in _ARGUMENTS and (pair[1] is None or isinstance(pair[1], bool | int | float | str))
-
-
-def _literal(text: str) -> str:
-    """Words that show a text as it is."""
-    return text.replace("{", "{{").replace("}", "}}")
+    return pair[0] not in ARGUMENTS and (pair[1] is None or isinstance(pair[1], bool | int | float | str))

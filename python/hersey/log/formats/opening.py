@@ -319,9 +319,9 @@ def _warning(about: dict[str, Any]) -> Warning:
     values = {
         name: _plain(value) if isinstance(value, str) else value for name, value in about["values"].items()
     }
-    values["text"] = _plain(about["text"])
     severity: Severity = "watch" if about["severity"] == "watch" else "note"
-    return Warning(_plain(about["kind"]), "{text}", severity=severity, where=_plain(about["where"]), **values)
+    said = {name: _plain(about[name]) for name in ("kind", "text", "where")}
+    return Warning.said(**said, title="", severity=severity, values=values)
 
 
 def _plain(text: str, most: int = _LONGEST) -> str:
