@@ -149,20 +149,28 @@ def few_draws(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.fixture
-def few_laws(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Try two curves, three candidates and no film beside a constant torque, where laws are not looked at."""
+def few_laws(monkeypatch: pytest.MonkeyPatch, nightly: bool) -> None:
+    """Try two curves, three candidates and no film beside a constant torque; at night all."""
+    if nightly:
+        return
     monkeypatch.setattr(mixture, "SHAPES", (SHAPES[0], SHAPES[-1]))
     monkeypatch.setattr(comparison, "all_candidates", lambda: all_candidates()[:3])
     monkeypatch.setattr(explanations, "_beside_constant", lambda *_: ([], []))
 
 
 @pytest.fixture
-def roughly(monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest) -> None:
-    """Fit one branch as well, where a command is looked at, or what it reads, and not what it fits."""
-    for few in ("few_draws", "few_laws"):
-        request.getfixturevalue(few)
-    fitting = importlib.import_module("hersey.damping.fit")  # the package has a function of that name
-    monkeypatch.setattr(fitting, "fit_branches", lambda _data, _single: None)
+def one_branch(monkeypatch: pytest.MonkeyPatch, nightly: bool) -> None:
+    """Look for no second branch, where the torque has one; at night it is looked for."""
+    if not nightly:
+        fitting = importlib.import_module("hersey.damping.fit")  # the package has a function of that name
+        monkeypatch.setattr(fitting, "fit_branches", lambda _data, _single: None)
+
+
+@pytest.fixture
+def roughly(request: pytest.FixtureRequest) -> None:
+    """Fit quickly, where a command is looked at, or what it reads, and not what it fits."""
+    for quicker in ("few_draws", "few_laws", "one_branch"):
+        request.getfixturevalue(quicker)
 
 
 @pytest.fixture

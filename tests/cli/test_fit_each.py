@@ -12,6 +12,8 @@ from tests.cli.command import Done, run
 from tests.conftest import ROOT
 from tests.life.test_campaign import means
 
+pytestmark = pytest.mark.usefixtures("roughly")
+
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:

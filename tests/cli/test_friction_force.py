@@ -12,6 +12,7 @@ import pytest
 
 from tests.cli.command import run
 
+pytestmark = pytest.mark.usefixtures("roughly")
 SPEEDS = (10.0, 20.0, 40.0, 80.0, 160.0)
 
 

@@ -96,9 +96,15 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
 
 @pytest.mark.parametrize("name", PRINTED)
 def test_a_command_prints_its_part(
-    name: str, files: dict[str, str], document: Analysis, monkeypatch: pytest.MonkeyPatch
+    name: str,
+    files: dict[str, str],
+    document: Analysis,
+    monkeypatch: pytest.MonkeyPatch,
+    request: pytest.FixtureRequest,
 ) -> None:
     """The whole document is one that is made once for all tests; `test_cli` has the command make its own."""
+    if name != "design":  # which asks for one law of all
+        request.getfixturevalue("few_laws")
     monkeypatch.setattr(sys.modules["hersey.study"], "study", lambda *_, **__: None)
     monkeypatch.setattr("hersey.document.assembly.document_of", lambda *_, **__: document)
     with shipped.few():

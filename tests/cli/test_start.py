@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import json
 import sys
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -58,9 +59,34 @@ def test_importing_the_package_loads_nothing() -> None:
     assert not set(done.stdout.split()) & (HEAVY | {"hersey._core"})
 
 
+#: Asks one verb after the other for its help, and says on stderr what is loaded then.
+HELPED = """
+import json, sys
+from hersey.cli import main
+loaded = {}
+for verb in sys.argv[1:]:
+    sys.argv = ["hersey", verb, "--help"]
+    try:
+        main()
+    except SystemExit as end:
+        assert not end.code, verb
+    loaded[verb] = sorted(sys.modules)
+json.dump(loaded, sys.stderr)
+"""
+
+
+@cache
+def loaded_by_help() -> dict[str, list[str]]:
+    """Modules in memory after the help of each verb, which those before it in the list have added to."""
+    done = run_apart(*VERBS, cwd=ROOT, command=[sys.executable, "-c", HELPED])
+    assert done.stdout.count("Usage") == len(VERBS), done.stderr
+    found: dict[str, list[str]] = json.loads(done.stderr[done.stderr.index("{") :])
+    return found
+
+
 @pytest.mark.parametrize("verb", VERBS)
 def test_the_help_of_a_verb_loads_no_room(verb: str) -> None:
-    modules = loaded(verb, "--help", cwd=ROOT)
+    modules = set(loaded_by_help()[verb])
     assert not modules & HEAVY - {"pydantic"}
     assert not rooms(modules)
     assert f"hersey.cli.{verb}" in modules

@@ -68,6 +68,7 @@ STRUCTURES: dict[str, tuple[str, Callable[[int], hersey.SteadyPoints]]] = {
 KEPT = ("hysteresis", "relaxing, rising", "days", "lag, rising", "6 bits")
 
 
+@pytest.mark.usefixtures("one_branch")
 @pytest.mark.parametrize("name", mostly_nightly(STRUCTURES, *KEPT))
 def test_the_interval_holds_the_truth_and_a_finding_names_the_cause(name: str) -> None:
     kind, points_of = STRUCTURES[name]
@@ -184,6 +185,7 @@ def test_inspection_names_the_resolution(tmp_path: Path) -> None:
     assert sum("resolution of" in each.text for each in said) == 1
 
 
+@pytest.mark.usefixtures("roughly")
 @pytest.mark.parametrize("command", ["inspect", "fit", "models"])
 def test_commands_take_coarse_torque(tmp_path: Path, command: str) -> None:
     replace(BENCH, bits=5, noise=0.0).frame(1).write_csv(tmp_path / "coarse.csv")

@@ -184,6 +184,7 @@ def test_a_motor_that_is_too_weak_is_named(decide: Decide, found: Behaviour) -> 
     assert said.flags[0].title == "The motor does not start the belt"
 
 
+@pytest.mark.usefixtures("few_laws")
 def test_without_a_machine_it_speaks_of_the_roll(log: hersey.TorqueLog, tmp_path: Path) -> None:
     points = log.steady(tare="standing")
     document = document_of(study(points))
@@ -215,6 +216,7 @@ def test_lines_for_a_file_that_is_there_do_not_repeat_its_tables(
     assert read_machine(file).limits.grip is not None
 
 
+@pytest.mark.usefixtures("few_laws")
 def test_no_falling_branch_says_how_far_down() -> None:
     rng = np.random.default_rng(2)
     speeds = np.repeat(np.geomspace(1.0, 30.0, 12), 2)
@@ -247,6 +249,7 @@ def test_a_law_that_does_not_hold_is_never_called_safe(machine: Machine) -> None
     assert {point.signal for point in said.points} == {"watch"}
 
 
+@pytest.mark.usefixtures("few_laws")
 def test_one_temperature_is_not_named(points: hersey.SteadyPoints, machine: Machine) -> None:
     """An isothermal fit with a machine: the sentence begins with what to do."""
     hot = points.column("temperature") > points.column("temperature").max() - 5.0
@@ -260,6 +263,7 @@ def test_one_temperature_is_not_named(points: hersey.SteadyPoints, machine: Mach
     assert document.map.temperature is None
 
 
+@pytest.mark.usefixtures("few_laws")
 def test_what_cannot_be_computed_is_said(
     points: hersey.SteadyPoints,
     surface: DampingSurface,

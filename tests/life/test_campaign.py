@@ -27,6 +27,7 @@ from hersey.life.campaign import store as storing
 from hersey.life.campaign.conversion import entry_of
 from tests.conftest import ROOT
 
+pytestmark = pytest.mark.usefixtures("one_branch")
 TABLE = "speed [rpm],torque [mN*m],temperature [degC]\n"
 
 
