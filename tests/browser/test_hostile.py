@@ -16,6 +16,7 @@ from hersey.charts.inspection import inspection_chart
 from hersey.charts.render import picture
 from hersey.document.analysis import Analysis
 from hersey.document.parts.log import RecipePart
+from hersey.errors import printable
 from hersey.machine.machine import read_machine
 from hersey.report.page import render
 from hersey.schema.warning import Warning
@@ -101,9 +102,9 @@ def test_a_report(browser: Browser, hostile_document: Analysis, tmp_path: Path) 
     opened.assert_quiet()
     assert opened.page.text_content("h1") == NAMES[1]
     assert_shown(opened, NAMES)
-    for number, name in enumerate(NAMES):
+    for number, shown in enumerate(map(printable, NAMES)):
         text = opened.page.locator("#warnings li").nth(number).text_content()
-        assert text == name
+        assert text == f"{shown}: {shown}: {shown}."
     assert opened.page.locator("main img, main a[href^=http], main iframe, main script").count() == 0
     assert opened.page.evaluate("document.documentElement.scrollWidth") <= 1000
 

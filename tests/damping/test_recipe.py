@@ -159,6 +159,12 @@ def test_a_recipe_by_name_holds_no_more_of_a_path_than_it_must(
     assert (recipe.mapping, recipe.no_load) == (Path("map.toml"), Path("free.csv"))
 
 
+def test_a_log_and_one_of_the_same_name_without_the_film_stay_two() -> None:
+    recipe = Recipe(logs=("/a/log.csv",), no_load=Path("/b/log.csv"), mapping=Path("/c/map.toml")).by_name()  # type: ignore[arg-type]
+    assert (recipe.logs, recipe.no_load) == ((Path("a/log.csv"),), Path("b/log.csv"))
+    assert recipe.mapping == Path("map.toml")
+
+
 def test_no_load_is_said_once(tmp_path: Path) -> None:
     log = friction(tmp_path)
     rest = hersey.NoLoadTorque.stated(constant=0.01, source="[rest] of machine.toml")

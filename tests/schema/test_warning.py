@@ -142,3 +142,27 @@ def test_one_that_was_kept_is_shown_as_it_was() -> None:
     again = Warning.read(part)
     assert again.to_dict() == warning.to_dict()
     assert again.sentence == warning.sentence
+
+
+def test_under_a_title_it_still_names_what_it_concerns() -> None:
+    unused = Warning("not used", "it contradicts {count} dwells", where="start.csv", count=3)
+    flag = unused.titled("A recording was not used", section="band")
+    assert (flag.where, flag.text) == ("band", "start.csv: it contradicts 3 dwells")
+    assert unused.titled("", section="band").values["count"] == 3
+
+
+def test_what_was_kept_brings_numbers_and_texts_alone() -> None:
+    values = {"count": 3, "inside": [1], "severity": "act", "name": "x", "nothing": None}
+    kept = Warning.said("cut", "a {b}", title="", severity="note", where="a\x1b[2J", values=values)
+    assert kept.values == {"count": 3, "name": "x", "nothing": None}
+    assert (kept.severity, kept.where, kept.text) == ("note", r"a\x1b[2J", "a {b}")
+
+
+def test_one_kind_has_one_set_of_values() -> None:
+    """Code that asks for a kind finds the same numbers wherever it was made."""
+    given: dict[str, dict[str, frozenset[str | None]]] = {}
+    for place, call, _ in made():
+        if isinstance(call.args[0], ast.Constant):
+            own = {keyword.arg for keyword in call.keywords} - {"severity", "title", "where", "remedy"}
+            given.setdefault(str(call.args[0].value), {})[place] = frozenset(own)
+    assert {kind: each for kind, each in given.items() if len(set(each.values())) > 1} == {}

@@ -47,7 +47,7 @@ def test_the_contact_stands_beside_the_log() -> None:
     assert np.all((turn.low < turn.measured) & (turn.measured < turn.high))
     assert turn.ratio == pytest.approx(turn.speed / turn.measured)
     assert len(turn.summary().splitlines()) == 4
-    note = turn.notes()[0]
+    note = turn.warnings()[0]
     assert (note.number("speed"), note.number("ratio")) == (turn.speed[0], turn.ratio[0])
     assert f"at {rpm(turn.speed[0]):.3g} rpm, by the log at {rpm(turn.measured[0]):.3g}" in str(note)
     assert f"{turn.ratio[0]:.2f} times that" in str(note)
@@ -68,12 +68,12 @@ def test_the_interval_of_the_log_is_that_of_its_draws() -> None:
 def test_without_a_log_or_a_minimum_it_is_said() -> None:
     turn = contact_transition(mixed(), WARM)
     assert "none shown" in turn.summary()
-    assert "the log" not in str(turn.notes()[0])
+    assert "the log" not in str(turn.warnings()[0])
     flat = replace(machine(), boundary=hersey.BoundaryFriction(1e-6)).mixed
     assert flat is not None
     nowhere = contact_transition(flat, WARM, surface())
     assert "nowhere" in nowhere.summary()
-    assert "falls nowhere" in str(nowhere.notes()[0])
+    assert "falls nowhere" in str(nowhere.warnings()[0])
     assert json.dumps(nowhere.to_dict(), allow_nan=False)
     with pytest.raises(InsufficientDataError, match="no falling branch"):
         replace(surface(), transition=None).transition_estimate(400.0)
@@ -98,7 +98,7 @@ def test_the_film_part_holds_both() -> None:
     shared = shared_load(machine(), film, None, surface())
     assert shared is not None
     assert "Transition speed" in str(chart_of(film, transition=shared.transition).to_dict(validate=False))
-    fast = shared.notes(["slow", "fast"])[1]
+    fast = shared.warnings(["slow", "fast"])[1]
     assert (fast.kind, fast.where) == ("load shared", "fast")
     assert fast.number("torque") == np.ravel(shared.film.torque)[1]
     assert "slow" in shared.summary(["slow", "fast"])

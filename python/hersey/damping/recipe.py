@@ -239,7 +239,7 @@ class Recipe:
     def by_name(self) -> Recipe:
         """Return the same with each file by its name alone, to be used where all files lie in one folder.
 
-        Logs of one name in several folders keep as much of their folders as tells them apart.
+        Files of one name in several folders keep as much of their folders as distinguishes them.
 
         Examples
         --------
@@ -247,8 +247,11 @@ class Recipe:
         >>> recipe.by_name().to_dict()
         {'logs': ['1/log.csv', '2/log.csv'], 'mapping': 'hersey.toml'}
         """
-        mapping, no_load = (path and Path(path.name) for path in (self.mapping, self.no_load))
-        return replace(self, logs=_distinct(self.logs), mapping=mapping, no_load=no_load)
+        others = {name: path for name in _FILES if (path := getattr(self, name)) is not None}
+        named = _distinct([*self.logs, *others.values()])
+        count = len(self.logs)
+        changed: dict[str, Any] = dict(zip(others, named[count:], strict=True))
+        return replace(self, logs=named[:count], **changed)
 
     def toml(self, folder: Path = Path()) -> str:
         """Return the recipe as TOML; files are named as they lie from ``folder``."""
@@ -337,13 +340,15 @@ _UNITS = {"time": "s", "length": "m", "force": "N"}
 
 
 def _distinct(paths: Sequence[Path]) -> tuple[Path, ...]:
-    """The shortest ends of paths that differ, or their names where none do."""
+    """The shortest end of each path that no other path has; names of equal paths."""
     inside = [path.relative_to(path.anchor) for path in paths]
-    for depth in range(1, max((len(path.parts) for path in inside), default=0) + 1):
-        ends = [Path(*path.parts[-depth:]) for path in inside]
-        if len(set(ends)) == len(ends):
-            return tuple(ends)
-    return tuple(Path(path.name) for path in inside)
+    depths = [1] * len(inside)
+    for _ in range(max((len(path.parts) for path in inside), default=0)):
+        ends = [Path(*path.parts[-depth:]) for path, depth in zip(inside, depths, strict=True)]
+        for i, end in enumerate(ends):
+            rivals = {inside[k] for k, other in enumerate(ends) if other == end}
+            depths[i] += len(rivals) > 1
+    return tuple(Path(*path.parts[-depth:]) for path, depth in zip(inside, depths, strict=True))
 
 
 def _without(role: str, by_role: Mapping[str, str]) -> dict[str, str]:

@@ -52,9 +52,9 @@ def _implausible(record: CycleRecord, best: DriveFit, intervals: Mapping[str, Es
     if ends:
         yield Warning(
             NO_FREE_PERIOD,
-            "no free period is given: the {parameters} came to rest at the end of what is believed",
+            "no free period is given: the fit ended at the limit of plausible {parameters}",
             severity="watch",
-            parameters=" and the ".join(ends),
+            parameters=" and ".join(ends),
         )
     elif free.low > LONGEST_OF_LAP * best.period:
         yield Warning(

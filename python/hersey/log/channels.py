@@ -162,7 +162,7 @@ def constant_channel(column: Column) -> Warning:
     """Return the warning of a channel that was passed over because it is dead."""
     return Warning(
         "constant channel passed over",
-        "'{column}' says nothing, one value throughout: it was passed over",
+        "'{column}' is constant and was skipped",
         column=str(column),
     )
 

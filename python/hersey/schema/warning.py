@@ -14,7 +14,7 @@ from hersey.units import celsius, rpm
 #: How grave: nothing is wrong, worth knowing, look at it, something must be done.
 Severity = Literal["good", "note", "watch", "act"]
 #: Names that no value may have, as a warning is made with them.
-ARGUMENTS = frozenset({"severity", "title", "where", "remedy"})
+_ARGUMENTS = frozenset({"severity", "title", "where", "remedy"})
 #: What a warning is made of, as JSON holds it.
 Value = float | int | str | None
 #: A p-value below this is said to be below it.
@@ -58,6 +58,13 @@ class _Words(string.Formatter):
 _words = _Words()
 
 
+def is_value(name: Any, value: Any) -> bool:
+    """Return whether name and value may be among those of a warning that was kept."""
+    if not isinstance(name, str) or name in _ARGUMENTS:
+        return False
+    return value is None or isinstance(value, bool | int | float | str)
+
+
 def _literal(text: str) -> str:
     """Words that show a text as it is."""
     return text.replace("{", "{{").replace("}", "}}")
@@ -79,7 +86,7 @@ class Warning(Record):
     title
         It in a few words, as ``words`` are, for the first screen.
     **values
-        Numbers in SI, and names.
+        Numbers in SI, and names. Numbers beside a value called ``unit`` are in that unit.
 
     Examples
     --------
@@ -95,7 +102,7 @@ class Warning(Record):
     kind: Annotated[str, Means("what it is, the same whatever the words")]
     severity: Annotated[Severity, Means("good, note, watch or act")]
     where: Annotated[str, Means("file, channel, specimen or section that it concerns, or empty")]
-    values: Annotated[Mapping[str, Value], Means("its numbers in SI, and names")]
+    values: Annotated[Mapping[str, Value], Means("its numbers in SI (or in the value ``unit``), and names")]
     words: str
     remedy: str
     heading: str
@@ -112,7 +119,8 @@ class Warning(Record):
         remedy: str = "",
         **values: Any,
     ) -> None:
-        given = {"kind": kind, "words": words, "severity": severity, "where": where, "values": values}
+        given = {"kind": kind, "words": words, "severity": severity, "values": values}
+        given["where"] = printable(where)
         for name, value in (given | {"remedy": remedy, "heading": title}).items():
             object.__setattr__(self, name, value)
 
@@ -121,7 +129,7 @@ class Warning(Record):
         cls, kind: str, text: str, *, title: str, severity: Severity, where: str, values: Mapping[str, Any]
     ) -> Warning:
         """Return one that was kept: its words are as they were shown, braces and all."""
-        own: Any = {name: value for name, value in values.items() if name not in ARGUMENTS}
+        own: Any = {name: value for name, value in values.items() if is_value(name, value)}
         return cls(kind, _literal(text), severity=severity, title=_literal(title), where=where, **own)
 
     @classmethod
@@ -136,12 +144,16 @@ class Warning(Record):
 
     def within(self, where: str) -> Warning:
         """Return the same of what lies within ``where``, such as a file of a specimen."""
-        return self.titled(self.heading, where=f"{where}: {self.where}" if self.where else where)
+        return self._with(where=f"{where}: {self.where}" if self.where else where)
 
-    def titled(self, title: str, *, where: str) -> Warning:
-        """Return the same under a title and in another place."""
-        own: dict[str, Any] = dict(self.values) | {"severity": self.severity, "remedy": self.remedy}
-        return Warning(self.kind, self.words, title=title, where=where, **own)
+    def titled(self, title: str, *, section: str) -> Warning:
+        """Return the same under a title, its evidence in a section; what it concerns leads the words."""
+        words = f"{{concerns}}: {self.words}" if self.where else self.words
+        return self._with(words=words, title=title, where=section, concerns=self.where)
+
+    def _with(self, *, words: str = "", **changed: Any) -> Warning:
+        own = {"severity": self.severity, "title": self.heading, "remedy": self.remedy, "where": self.where}
+        return Warning(self.kind, words or self.words, **(own | dict(self.values) | changed))
 
     @property
     def title(self) -> Annotated[str, Means("it in a few words, or empty")]:
@@ -157,7 +169,8 @@ class Warning(Record):
     def sentence(self) -> str:
         """What it concerns, what is wrong and what to do, as a sentence."""
         said = str(self)
-        first = said if self.where or "_" in said.split(" ", 1)[0] else said[:1].upper() + said[1:]
+        name = self.where or any(sign in said.split(" ", 1)[0].rstrip(":.") for sign in "_.")
+        first = said if name else said[:1].upper() + said[1:]
         return first if first[-1:] in (".", "?", "!") else f"{first}."
 
     def to_dict(self) -> dict[str, Any]:

@@ -191,8 +191,7 @@ def hysteresis(
 
     Where the roll's grip bears less than the spring would pull the roll slips for a part of each lap, and
     stick-slip dies out at a slower drive: ``upper`` is that of the slipping roll, above which no swing lasts
-    on which it slips, be it without sticking. ``stalls`` says whether
-    the roll starts the belt at all.
+    on which it slips, be it without sticking. ``stalls`` says whether the roll starts the belt at all.
 
     Parameters
     ----------

@@ -44,7 +44,7 @@ def film_part(
     shared = shared_load(machine, film, measured, surface)
     says = verdict(measured, surface, contact, lubricant, seen)
     found = nip_warnings(machine, film, measured, says, None if shared is None else shared.transition)
-    said = () if shared is None else shared.notes(names)
+    said = () if shared is None else shared.warnings(names)
     return film_document(film, names, measured, says, [*found, *said], shared)
 
 
@@ -59,8 +59,8 @@ class SharedLoad:
         """Return both as text; names of the points."""
         return f"{self.film.summary(names)}\n{self.transition.summary()}"
 
-    def notes(self, names: Sequence[str]) -> list[Warning]:
-        """Return both as notes, for a page; names of the points."""
+    def warnings(self, names: Sequence[str]) -> list[Warning]:
+        """Return both as warnings, for a page; names of the points."""
         words = (
             "the film is {ratio:.3g} of the roughness (lambda), asperities carry {share:.2%} of the load, "
             "and film and asperities take {torque:.3g mN m}"
@@ -72,7 +72,7 @@ class SharedLoad:
                 names, *(np.ravel(each).tolist() for each in columns), strict=False
             )
         ]
-        return [*points, *self.transition.notes()]
+        return [*points, *self.transition.warnings()]
 
 
 def shared_load(

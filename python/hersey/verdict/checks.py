@@ -267,9 +267,9 @@ def _check_exponents(says: Verdict) -> Iterator[Warning]:
     if says.contradicted:
         yield Warning(
             "exponent of speed",
-            "damping goes as speed to the power {measured}; the film of this nip gives {predicted:.2f}",
+            "damping goes as speed to the power {shown}; the film of this nip gives {predicted:.2f}",
             severity="act",
-            measured=str(c),
+            shown=str(c),
             exponent=c.value,
             predicted=theory,
             off=_reaches(c.value, theory, c.low, c.high),
@@ -277,10 +277,10 @@ def _check_exponents(says: Verdict) -> Iterator[Warning]:
     if thermal is not None and thermal.estimable and not agrees(thermal, says.thermal_expected):
         yield Warning(
             "exponent of temperature",
-            "with temperature (K) damping goes to the power {measured}; the film of this lubricant predicts "
+            "with temperature (K) damping goes to the power {shown}; the film of this lubricant predicts "
             "{predicted:.2f}",
             severity="watch",
-            measured=str(thermal),
+            shown=str(thermal),
             exponent=thermal.value,
             predicted=says.thermal_expected,
             off=_reaches(thermal.value, says.thermal_expected, thermal.low, thermal.high),

@@ -58,12 +58,12 @@ class ContactTransition(Record):
             )
         return "\n".join(line.rstrip() for line in lines)
 
-    def notes(self) -> list[Warning]:
-        """Return the same as notes, for a page: the coldest and the hottest temperature."""
+    def warnings(self) -> list[Warning]:
+        """Return the same as warnings, for a page: the coldest and the hottest temperature."""
         ends = sorted({int(np.argmin(self.temperature)), int(np.argmax(self.temperature))})
-        return [self._note(i) for i in ends]
+        return [self._warning(i) for i in ends]
 
-    def _note(self, i: int) -> Warning:
+    def _warning(self, i: int) -> Warning:
         kelvin, speed = float(self.temperature[i]), float(self.speed[i])
         if np.isnan(speed):
             return Warning(
@@ -78,13 +78,13 @@ class ContactTransition(Record):
             + (
                 ""
                 if np.isnan(self.measured[i])
-                else ", by the log at {measured}: the contact has {ratio:.2f} times that"
+                else ", by the log at {shown}: the contact has {ratio:.2f} times that"
             )
             + ". It goes as roughness to the power {by_roughness:.2f}, as boundary friction to "
             "{by_boundary:.2f}, as the inverse of viscosity",
             temperature=kelvin,
             speed=speed,
-            measured=self._seen(i),
+            shown=self._seen(i),
             ratio=float(self.ratio[i]),
             by_roughness=float(self.by_roughness[i]),
             by_boundary=float(self.by_boundary[i]),

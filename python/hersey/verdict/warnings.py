@@ -71,8 +71,8 @@ def _of_file(log: TorqueLog | MeansTable, i: int) -> Iterator[Warning]:
     if run is not None and (gaps := run.gaps()):
         share = 1.0 - run.time.size * run.sampling_interval / max(float(run.time[-1] - run.time[0]), 1e-9)
         yield Warning(
-            "rows missing",
-            "rows are missing at {places} {places:place|places} ({share:.1%} of the time)",
+            "gaps",
+            "rows are missing at {places} {places:place|places} ({share:.1f %} of the time)",
             severity="watch",
             where=file.name,
             places=gaps,
@@ -85,7 +85,7 @@ def _of_rest(points: SteadyPoints) -> Iterator[Warning]:
     rest = points.rest
     if rest is None:
         return
-    yield Warning("no-load torque", "subtracted, so that torque is that of the film: {rest}", rest=str(rest))
+    yield Warning("no-load torque", "no-load torque subtracted: {rest}", rest=str(rest))
     yield from (warning.within("no-load torque") for warning in rest.warnings)
     if not points.log.has_temperature:
         if rest.reference_temperature is not None:
@@ -124,7 +124,7 @@ def _of_directions(points: SteadyPoints, surface: DampingSurface) -> Iterator[Wa
             if abs(difference) > max(NOTABLE_DIFFERENCE, SIGNIFICANT * error):
                 yield Warning(
                     "directions differ",
-                    "torque differs by {share:+.1%} between {first} and {second}: one surface does not "
+                    "torque differs by {share:+.1f %} between {first} and {second}: one surface does not "
                     "describe both" + ("; fit one alone with {how}" if name == "forward" else ""),
                     severity="watch",
                     share=float(np.expm1(difference)),
@@ -164,8 +164,8 @@ def _of_fit(surface: DampingSurface) -> Iterator[Warning]:
     yield from _of_visits(surface)
     if (scatter := surface.statistics.scatter) > SCATTER:
         words = (
-            "dwells stand {scatter:.0%} off the surface, more than their noise explains: scatter between "
-            "dwells, or a law that does not hold"
+            "dwells scatter {scatter:.0f %} about the surface, more than their noise explains: something "
+            "unrecorded varied, or the law does not hold"
         )
         yield Warning("scatter", words, severity="watch", scatter=scatter)
 
@@ -175,7 +175,7 @@ def _of_visits(surface: DampingSurface) -> Iterator[Warning]:
     for shared in surface.statistics.shared:
         if not shared.told and surface.b is not None and not surface.b.estimable:
             yield Warning(
-                "each temperature once",
+                "temperatures visited once",
                 "exponent b is {value:.3g}, its interval not known: each temperature was visited once, so "
                 "that an error of a whole visit would pass for temperature. Visit one again, or a third",
                 severity="watch",
@@ -184,7 +184,7 @@ def _of_visits(surface: DampingSurface) -> Iterator[Warning]:
         if shared.deviation > 0 and shared.p_value < SURE:
             yield Warning(
                 "dwells off together",
-                "all dwells of one {visit} stand off the law together, by {deviation:.1%} ({p_value:p} for "
+                "all dwells of one {visit} are off the law together, by {deviation:.1f %} ({p_value:p} for "
                 "chance): the intervals count {visit}s, not dwells",
                 severity="watch",
                 visit=shared.name,

@@ -249,7 +249,7 @@ class SteadyPoints(Result):
         if self.standing_torque is not None:
             lines[-1] += f", standing torque {self.standing_torque:.4g} N m"
         if self.rest is not None:
-            lines.append(f"taken off, so that torque is that of the film: {self.rest}")
+            lines.append(f"no-load torque subtracted: {self.rest}")
         lines += [f"  not used: {rows} rows, {why}" for why, rows in self._unused().items()]
         return "\n".join(
             [

@@ -10,6 +10,7 @@ from hersey.damping.no_load_torque import NoLoadTorque
 from hersey.log.torque_log import Channel, TorqueLog
 from hersey.schema.part import Part
 from hersey.schema.record import part_of
+from hersey.schema.warning import Warning
 
 
 class MachineFilePart(Part):
@@ -103,7 +104,7 @@ class PointsPart(Part):
     tare: float
     tare_error: float
     tare_errors: list[list[float]] = Field(description="N m, shape (points, disturbances)")
-    notes: list[str]
+    warnings: list[Warning]
     standing_torque: float | None
     rest: NoLoadTorque | None = Field(
         default=None, description="taken off, so that torque is that of the film"

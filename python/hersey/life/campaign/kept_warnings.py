@@ -12,7 +12,7 @@ from typing import Any, get_args
 import numpy as np
 
 from hersey.errors import ParameterError, Setting
-from hersey.schema.warning import ARGUMENTS, Severity, Warning
+from hersey.schema.warning import Severity, Warning, is_value
 
 #: What is kept of a warning, beside its kind.
 _KEPT = {"kind": str, "severity": str, "where": str, "values": tuple, "title": str, "text": str}
@@ -64,6 +64,6 @@ def with_warnings(found: dict[str, Any], kinds: Mapping[str, Any]) -> dict[str, 
 
 def _is_value(pair: Any) -> bool:
     """Whether a name and a value may be among those of a warning."""
-    if not (isinstance(pair, tuple) and len(pair) == 2 and isinstance(pair[0], str)):
+    if not (isinstance(pair, tuple) and len(pair) == 2):
         return False
-    return pair[0] not in ARGUMENTS and (pair[1] is None or isinstance(pair[1], bool | int | float | str))
+    return is_value(*pair)

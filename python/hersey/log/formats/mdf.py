@@ -122,6 +122,16 @@ def _channels(mdf: Any) -> tuple[list[tuple[int, int, str, str, int]], set[str]]
     return channels, frames
 
 
+def _read_as_power(channel: str, formula: str) -> Warning:
+    words = "'{channel}': '^' in its formula {formula!r} was read as a power"
+    return Warning("sign in a formula read as a power", words, channel=channel, formula=formula[:80])
+
+
+def _values_missing(channel: str, count: int, rows: int) -> Warning:
+    words = "'{channel}' has {count} of {rows} values: the rest is missing"
+    return Warning("values missing", words, severity="watch", channel=channel, count=count, rows=rows)
+
+
 def _signal(
     mdf: Any, recording: Recording, heard: list[str], channel: tuple[int, int, str, str, int], several: bool
 ) -> Signal:
@@ -136,14 +146,8 @@ def _signal(
             values, times, marked = _values(mdf, group, index)
         except UnreadableLogError as error:
             raise UnreadableLogError(f"channel '{full_name}' {error}") from None
-        for formula in _powers:
-            power = Warning(
-                "sign in a formula read as a power",
-                "'{channel}': '^' in its formula {formula!r} was read as a power",
-                channel=full_name,
-                formula=formula[:80],
-            )
-            recording.warnings += [power] if power not in recording.warnings else []
+        powers = [_read_as_power(full_name, formula) for formula in _powers]
+        recording.warnings += [power for power in powers if power not in recording.warnings]
         if problem := next(iter([*_refusals, *(f"cannot be read: {words[:160]}" for words in heard)]), ""):
             raise UnreadableLogError(f"channel '{full_name}' {problem}")
         count = times.size
@@ -153,16 +157,7 @@ def _signal(
             )
         if count < rows and not recording.cut_off:
             recording.cut_off = True
-            recording.warnings.append(
-                Warning(
-                    "values missing",
-                    "'{channel}' has {count} of {rows} values: the rest is missing",
-                    severity="watch",
-                    channel=full_name,
-                    count=count,
-                    rows=rows,
-                )
-            )
+            recording.warnings.append(_values_missing(full_name, count, rows))
         return values, times, marked
 
     def part(which: int) -> FloatArray:

@@ -317,7 +317,8 @@ def _allowed(limit: str = "") -> str:
 def _warning(about: dict[str, Any]) -> Warning:
     """A warning of the reader: its words are shown as they are, never as a template."""
     values = {
-        name: _plain(value) if isinstance(value, str) else value for name, value in about["values"].items()
+        _plain(name): _plain(value) if isinstance(value, str) else value
+        for name, value in about["values"].items()
     }
     severity: Severity = "watch" if about["severity"] == "watch" else "note"
     said = {name: _plain(about[name]) for name in ("kind", "text", "where")}

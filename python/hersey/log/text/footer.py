@@ -51,35 +51,19 @@ def end_of_table(file: BinaryIO, size: int, layout: Layout) -> TableEnd:
     cut_off, short = _is_cut_off(lines, layout)
     if short:
         left_out = 1
-        warnings.append(
-            Warning(
-                "last line cut off",
-                "the last line, '{line}', was cut off: it was left out",
-                line=_shown(lines[-1]),
-            )
-        )
+        words = "the last line, '{line}', was cut off: it was left out"
+        warnings.append(Warning("last line cut off", words, line=_shown(lines[-1])))
         lines[-1] = ""
     elif lines[-1].strip():
-        warnings.append(
-            Warning(
-                "last line has no end",
-                "the last line, '{line}', has no end: its last number may lack digits",
-                severity="watch",
-                line=_shown(lines[-1]),
-            )
-        )
+        words = "the last line, '{line}', has no end: its last number may lack digits"
+        line = _shown(lines[-1])
+        warnings.append(Warning("last line has no end", words, severity="watch", line=line))
     summary = summary_lines(lines, layout)
     if summary:
         left_out = summary
-        words = [line for line in lines[-summary:] if line.strip()]
-        warnings.append(
-            Warning(
-                "lines below the table",
-                "{lines} {lines:line|lines} below the table {lines:was|were} left out: '{first}'",
-                lines=len(words),
-                first=_shown(words[0]),
-            )
-        )
+        below = [line for line in lines[-summary:] if line.strip()]
+        words = "{lines} {lines:line|lines} below the table {lines:was|were} left out: '{first}'"
+        warnings.append(Warning("lines below the table", words, lines=len(below), first=_shown(below[0])))
     length = sum(map(len, stored[-left_out:])) if left_out else 0
     return TableEnd(size - length, cut_off, tuple(warnings))
 

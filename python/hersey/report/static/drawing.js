@@ -27,7 +27,7 @@ function sentence(text) {
 // What a result is warned of; what it concerns keeps its name as it is written.
 function warned(each) {
   const said = [each.title, each.text].filter(Boolean).join(": ");
-  return each.where ? stopped(`${each.where}: ${said}`) : sentence(said);
+  return each.where ? `${each.where}: ${stopped(said)}` : sentence(said);
 }
 
 function add(parent, tag, text = "", className = "") {
@@ -56,8 +56,8 @@ function link(parent, text, id) {
   return element;
 }
 
-const SIGNALS = { good: "Good", watch: "Watch", act: "Act" };
-const SHAPES = { good: "M6.5 0a6 6 0 1 1 0 12a6 6 0 1 1 0-12Z", watch: "M6.5 0 13 12H0Z", act: "M.5 0h12v12h-12Z" };
+const SIGNALS = { good: "Good", note: "Note", watch: "Watch", act: "Act" };
+const SHAPES = { good: "M6.5 0a6 6 0 1 1 0 12a6 6 0 1 1 0-12Z", note: "M1 5h11v2h-11Z", watch: "M6.5 0 13 12H0Z", act: "M.5 0h12v12h-12Z" };
 // A signal's shape; the word stands beside it.
 function signal(kind) {
   const icon = svg("svg", { class: `i ${kind}`, viewBox: "0 0 13 12", "aria-hidden": "true" });

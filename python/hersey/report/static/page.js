@@ -21,7 +21,7 @@ async function warmUp(parent) {
   const part = section(parent, "warm-up", "Warm-up", data.warm_up.verdict);
   await chart(part, "warm_up");
   data.warm_up.beside.forEach((text) => add(part, "p", pretty(text), "text"));
-  checks(part, data.warm_up.warnings.map((each) => ["watch", warned(each)]));
+  checks(part, data.warm_up.warnings.map((each) => [each.severity, warned(each)]));
 }
 function reproduce(parent) {
   const { rest } = data.fit;

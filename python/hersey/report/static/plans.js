@@ -45,7 +45,7 @@ async function onePlan(parent, point, i) {
     press.dataset.profile = "";
   }
   const marks = plan.uses.map((use) => [use.used !== null && use.used > use.limit ? "watch" : "good", `${capital(use.name.replaceAll("_", " "))}: ${use.used === null ? "not told" : amount(use.name, use.used)[0]} of ${amount(use.name, use.limit).join(" ")}`]);
-  marks.push(...plan.obstacles.map((each) => ["act", pretty(each.text)]), ...plan.warnings.map((each) => ["watch", warned(each)]));
+  marks.push(...plan.obstacles.map((each) => ["act", pretty(each.text)]), ...plan.warnings.map((each) => [each.severity, warned(each)]));
   checks(side, marks);
   const all = fold(columns, "How sure, in full");
   all.classList.add("across");

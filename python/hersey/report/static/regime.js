@@ -93,7 +93,7 @@ function candidates(parent) {
   const part = section(parent, "candidates", "Model comparison",
     `Of ${plural(order.length, "law")} ${best?.name ?? models.chosen} is chosen${best?.cross_validation ? `: it misses dwells left out by ${digits(100 * best.cross_validation)} %` : ""}`
     + `${next ? `; the next is worse by ${digits(next.delta_aicc - (best?.delta_aicc ?? 0), 2)} in AICc` : ""}.`);
-  checks(part, models.warnings.map((each) => ["watch", warned(each)]));
+  checks(part, models.warnings.map((each) => [each.severity, warned(each)]));
   const all = fold(part, `The ${order.length} laws`);
   const percent = (value) => value === null ? "–" : digits(100 * value);
   const element = table(all, ["Law", "Numbers", "ΔAICc", "ΔBIC", "Left out, %", "Scatter, %"], order.map((each) => [

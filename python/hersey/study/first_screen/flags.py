@@ -19,7 +19,7 @@ from hersey.stability.operating_map import OperatingMap
 from hersey.study.findings import Findings
 from hersey.study.first_screen.reasons import in_words
 from hersey.study.first_screen.words import at, figures, listed, mm, signed, starting
-from hersey.study.nip_film import FilmPart
+from hersey.study.nip_film import FilmPart, VerdictPart
 from hersey.study.torque_budget import TorqueBudgetPart
 from hersey.verdict.regime import Regime
 from hersey.verdict.warnings import SCATTER
@@ -94,53 +94,50 @@ def _compared(found: LogComparison) -> Warning:
 def _contradictions(film: FilmPart | None, torque_budget: TorqueBudgetPart | None) -> list[Warning]:
     out = []
     if film is not None and film.contradicted and film.exponents is not None:
-        e = film.exponents
-        theory = e.expected if e.solved is None else e.solved
-        value = e.exponent.value
-        out.append(
-            Warning(
-                "exponent and nip disagree",
-                "the film solved for this nip gives {gives}"
-                if value is None
-                else "measured {measured}; the film solved for this nip gives {gives}",
-                severity="watch",
-                title="Exponent and nip disagree",
-                where="regime",
-                exponent=value,
-                predicted=theory,
-                gives=signed(theory),
-                measured="" if value is None else signed(value),
-            )
-        )
+        out.append(_exponent(film.exponents))
     if torque_budget is not None and (torque_budget.ratio[0] < 1 / _FAR or torque_budget.ratio[2] > _FAR):
-        low, mean, high = torque_budget.ratio
-        out.append(
-            Warning(
-                "torque and file disagree",
-                "measured torque is {shown} times what the file states, {least} to {most} by dwell",
-                severity="watch",
-                title="Torque and file disagree",
-                where="regime",
-                low=low,
-                ratio=mean,
-                high=high,
-                shown=figures(mean),
-                least=figures(low),
-                most=figures(high),
-            )
-        )
+        out.append(_torque(*torque_budget.ratio))
     if not out and film is not None and film.warnings and film.warnings[0].severity == "act":
+        why = film.warnings[0].text
+        title = "Nip and log disagree"
         out.append(
-            Warning(
-                "nip and log disagree",
-                "{why}",
-                severity="watch",
-                title="Nip and log disagree",
-                where="regime",
-                why=film.warnings[0].text,
-            )
+            Warning("nip and log disagree", "{why}", severity="watch", title=title, where="regime", why=why)
         )
     return out
+
+
+def _exponent(e: VerdictPart) -> Warning:
+    theory = e.expected if e.solved is None else e.solved
+    value = e.exponent.value
+    return Warning(
+        "exponent and nip disagree",
+        "the film solved for this nip gives {gives}"
+        if value is None
+        else "measured {measured}; the film solved for this nip gives {gives}",
+        severity="watch",
+        title="Exponent and nip disagree",
+        where="regime",
+        exponent=value,
+        predicted=theory,
+        gives=signed(theory),
+        measured="" if value is None else signed(value),
+    )
+
+
+def _torque(low: float, mean: float, high: float) -> Warning:
+    return Warning(
+        "torque and file disagree",
+        "measured torque is {shown} times what the file states, {least} to {most} by dwell",
+        severity="watch",
+        title="Torque and file disagree",
+        where="regime",
+        low=low,
+        ratio=mean,
+        high=high,
+        shown=figures(mean),
+        least=figures(low),
+        most=figures(high),
+    )
 
 
 def _whole(points: SteadyPoints) -> Iterator[Warning]:
@@ -234,7 +231,7 @@ def _closures(found: Behaviour) -> Iterator[Warning]:
 
 def _unused(found: Behaviour) -> list[Warning]:
     """Evidence that does not count, and draws that do not agree."""
-    out = [each.titled("A recording was not used", where="band") for each in found.posterior.warnings[:1]]
+    out = [each.titled("A recording was not used", section="band") for each in found.posterior.warnings[:1]]
     if not found.posterior.convergence.converged:
         words = "two runs of the sampler differ: take the intervals as rough, or run hersey posterior"
         title = "V* has not converged"
@@ -261,9 +258,9 @@ def _plans(found: Behaviour) -> Iterator[Warning]:
 def _of_log(points: SteadyPoints, surface: DampingSurface) -> Iterator[Warning]:
     """What is doubtful in the log itself: a unit or a zero shifts every number."""
     for each in doubtful_units(points.log)[:1]:
-        yield each.titled("A unit is doubtful", where="data")
+        yield each.titled("A unit is doubtful", section="data")
     for each in doubtful_tare(points)[:1]:
-        yield each.titled("The zero is doubtful", where="data")
+        yield each.titled("The zero is doubtful", section="data")
     if surface.transition is not None and (below := _below(points, surface)) <= _FEW:
         yield Warning(
             "few slow dwells",
@@ -277,7 +274,7 @@ def _of_log(points: SteadyPoints, surface: DampingSurface) -> Iterator[Warning]:
     if surface.transition is not None and surface.transition.freed is not None:
         yield Warning(
             "transition apart from viscosity",
-            "the transition moves with temperature otherwise than viscosity does: it is fitted by itself",
+            "the transition moves with temperature differently from viscosity, so it is fitted separately",
             severity="watch",
             title="One Hersey number does not hold",
             where="torque",
@@ -306,7 +303,7 @@ def _below(points: SteadyPoints, surface: DampingSurface) -> int:
 
 
 def _left_open(points: SteadyPoints, seen: Regime, scatter: float) -> Iterator[Warning]:
-    yield from (each.titled(each.heading, where="data") for each in doubtful_order(points)[:1])
+    yield from (each.titled(each.heading, section="data") for each in doubtful_order(points)[:1])
     if seen.named is None:
         why = seen.why_unnamed or "several explain the dwells"
         title = "No regime is known"
