@@ -106,7 +106,7 @@ def test_one_bad_cell_costs_its_row(tmp_path: Path) -> None:
     (file,) = points.log.files
     assert file.missing_rows == 2
     (warning,) = file.warnings
-    assert (warning.kind, warning.values["rows"]) == ("rows left out", 2)
+    assert (warning.kind, warning.values["rows"]) == ("rows of means left out", 2)
     assert str(warning) == "left out for a cell that is no number: row 3 (torque 'n/a'), row 7 (no speed)"
 
 

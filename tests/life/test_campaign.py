@@ -192,7 +192,7 @@ def test_a_run_without_a_fit_is_kept_and_told(campaign: Campaign, tmp_path: Path
     (tmp_path / "short.csv").write_text(TABLE + "10,5,100\n20,6,100\n")
     points = hersey.SteadyPoints.from_table(tmp_path / "short.csv")
     added = campaign.add(points, log=tmp_path / "short.csv", unit="F1", age="1 h")
-    assert [each.kind for each in added.warnings] == ["no fit"]
+    assert [each.kind for each in added.warnings] == ["added without a fit"]
     assert "kept without a fit" in added.summary()
     assert campaign.fit(added.run) is None
     (no_fit,) = campaign.check().warnings

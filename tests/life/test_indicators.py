@@ -264,7 +264,7 @@ def test_a_part_that_breaks_or_takes_no_harm_has_no_rate(campaign: Campaign) -> 
     weak = GearTable(0.5, 1e6, 7.0, ultimate=2.0, **starts)
     found = named(indicators_of(campaign, replace(bare, gear=weak)), "gear fatigue")
     assert 0 < np.isnan(found.value).sum() < 12
-    (without,) = (each for each in found.warnings if each.kind == "runs without a value")
+    (without,) = (each for each in found.warnings if each.kind == "runs without a rate")
     assert without.values == {"count": np.isnan(found.value).sum()}
     assert "a peak that breaks the part" in str(without)
     sound = GearTable(3.0, 1e6, 7.0, endurance=2.9, **starts)

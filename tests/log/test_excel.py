@@ -74,7 +74,7 @@ def test_one_bad_cell_costs_its_row(bad: object, tmp_path: Path) -> None:
     assert any("left out: channel 'Torque', row 44: " in str(each) for each in log.files[0].warnings)
     if bad == "OVERFLOW":
         odd = log.files[0].warnings[0]
-        assert (odd.kind, odd.values["row"], odd.values["cell"]) == ("cells that are no numbers", 44, bad)
+        assert (odd.kind, odd.values["row"], odd.values["cell"]) == ("cell that is no number", 44, bad)
         assert str(odd) == "row 44, column 'Torque': 'OVERFLOW' is no number"
 
 

@@ -534,7 +534,7 @@ def test_lvm_by_labview() -> None:
         with pytest.raises(UnreadableLogError, match="segment 2 starts at 0 s, before the one above it ends"):
             clock()  # shortened by hand: all three segments start at the same time
     assert (missing.kind, missing.values["samples"], missing.values["promised"]) == (
-        "samples missing",
+        "segment short",
         6,
         2000,
     )

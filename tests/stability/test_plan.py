@@ -112,7 +112,7 @@ def test_the_number_that_would_do_does() -> None:
     wider = replace(tight, spring_force=enough)
     plan = hersey.plan_profile(machine_of(TRAIN, limits=wider), DRAG, target_speed=1.9)
     assert plan.found
-    assert [each.kind for each in plan.warnings] == ["grip not stated"]
+    assert [each.kind for each in plan.warnings] == ["grip not in the plan"]
     assert str(plan.warnings[0]) == (
         "the roll's grip is not stated (roll_friction and nip_load): it is taken to hold throughout"
     )

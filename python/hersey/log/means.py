@@ -307,7 +307,7 @@ def _rows_left_out(named: list[str]) -> list[Warning]:
         return []
     return [
         Warning(
-            "rows left out",
+            "rows of means left out",
             "left out for a cell that is no number: {first}"
             + (" and {others} more" if len(named) > _NAMED else ""),
             rows=len(named),

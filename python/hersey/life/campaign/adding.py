@@ -92,7 +92,9 @@ def add_entry(
     warnings = []
     if entry.no_fit:
         warnings.append(
-            Warning("no fit", "kept without a fit: {reason}", severity="watch", reason=entry.no_fit)
+            Warning(
+                "added without a fit", "kept without a fit: {reason}", severity="watch", reason=entry.no_fit
+            )
         )
     there = database.execute(
         "SELECT id, unit, age, settings FROM runs WHERE sha256 = ?", (entry.sha256,)

@@ -126,7 +126,7 @@ def warnings_of(points: Points) -> tuple[Warning, ...]:
     if once:
         warnings.append(
             Warning(
-                "seen at one age",
+                "growth of one age",
                 "{count} of the specimens {count:was|were} seen at one age only: their growth is that of the "
                 "others",
                 severity="watch",

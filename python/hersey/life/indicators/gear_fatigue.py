@@ -212,7 +212,7 @@ class _GearLoad:
         if silent := int(np.count_nonzero(self.estimates.runs.enough & ~known)):
             warnings.append(
                 Warning(
-                    "runs without a value",
+                    "runs without a rate",
                     "unknown in {count} {count:run|runs}: no damage, a peak that breaks the part, or no "
                     "torque there",
                     severity="watch",

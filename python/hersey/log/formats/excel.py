@@ -151,7 +151,7 @@ def _numbers(
     for row in odd.arg_true()[:1]:
         recording.warnings.append(
             Warning(
-                "cells that are no numbers",
+                "cell that is no number",
                 "row {row}, column '{column}': '{cell}' is no {expected}"
                 + (", and {others} more in this column" if odd.sum() > 1 else ""),
                 where=sheet,

@@ -88,7 +88,7 @@ def open_lvm(file: BinaryIO, name: str) -> Iterator[Recording]:
         if promised and len(segment.rows) < promised:
             recording.warnings.append(
                 Warning(
-                    "samples missing",
+                    "segment short",
                     "segment {segment} of {segments} holds {samples} of {promised:.0f} samples",
                     severity="watch",
                     segment=number,

@@ -283,7 +283,7 @@ def _warnings(reach: Reach, impossible: float) -> Iterator[Warning]:
     """Yield what was not stated, and draws that are no belt."""
     if "grip" not in reach.forces:
         yield Warning(
-            "grip not stated",
+            "grip not in the plan",
             "the roll's grip is not stated (roll_friction and nip_load): it is taken to hold throughout",
         )
     if impossible > 0:

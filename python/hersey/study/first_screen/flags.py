@@ -282,14 +282,12 @@ def _of_log(points: SteadyPoints, surface: DampingSurface) -> Iterator[Warning]:
     if loads := points.varying_load:
         yield Warning(
             "loads differ",
-            "from {least} to {most} N: fit each load alone",
+            "from {low:.3g} to {high:.3g} N: fit each load alone",
             severity="watch",
             title="The load differs",
             where="data",
             low=loads[0],
             high=loads[1],
-            least=figures(loads[0]),
-            most=figures(loads[1]),
         )
 
 
