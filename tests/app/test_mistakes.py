@@ -485,9 +485,12 @@ def test_a_recipe_that_is_dropped_sets_the_options(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ('min_dwell = "3 s"\n[signs]\ntorque = -1\n', "sets min_dwell, signs, which the app cannot"),
-        ('no_load = "/etc/passwd"\n', "sets no_load, which the app cannot"),
-        ('load = "50 N"\ntare = "none"\n', "sets load, which the app cannot"),
+        (
+            'min_dwell = "3 s"\n[signs]\ntorque = -1\n',
+            "cannot set min_dwell, signs, which this recipe states",
+        ),
+        ('no_load = "/etc/passwd"\n', "cannot set no_load, which this recipe states"),
+        ('load = "50 N"\ntare = "none"\n', "cannot set load, which this recipe states"),
         ('tare = "halting"\n', "tare is 'halting': write none or standing"),
         ("tare = 3\n", "tare is 3"),
         ('logs = ["a.csv"]\ntara = "none"\n', "did you mean [tare]"),

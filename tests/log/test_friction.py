@@ -256,11 +256,7 @@ def test_many_bad_cells_are_refused_with_the_first(tmp_path: Path) -> None:
     log = hersey.read(some, isothermal=True, drop_missing=True)
     assert (log.rows, log.files[0].missing_rows) == (160, 40)
     (warning,) = log.files[0].warnings
-    assert (warning.kind, warning.values["rows"], warning.values["others"]) == (
-        "rows of means left out",
-        40,
-        30,
-    )
+    assert (warning.kind, warning.values["rows"], warning.values["others"]) == ("rows left out", 40, 30)
     assert str(warning).startswith("40 rows were left out: line 22")
     assert str(warning).endswith("; and 30 more")
     most = write(tmp_path / "most.csv", with_cells("Torque [N*m]", dict.fromkeys(range(20, 160), "off")))
