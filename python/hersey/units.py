@@ -188,8 +188,8 @@ def conversion(kind: str, unit: str) -> Conversion:
     """
     si, example = KINDS[kind]
     if len(unit) > _LONGEST_UNIT:
-        told = f"'{unit[:20]}...' of {len(unit)} characters, {_LONGEST_UNIT} at the most"
-        raise UnitError(f"unknown unit {told}: write one such as {example}")
+        shown = f"'{unit[:20]}...' of {len(unit)} characters, {_LONGEST_UNIT} at the most"
+        raise UnitError(f"unknown unit {shown}: write one such as {example}")
     factor, text = _split_factor(unit.strip(), unit, kind)
     line, standard = (_from_table(each, energy=kind in _ENERGY_KINDS) for each in (text, si))
     if line and standard and line[2] == standard[2]:
@@ -317,8 +317,8 @@ def parse(kind: str, text: str) -> float:
     """
     example = KINDS[kind][1]
     if len(text) > _LONGEST_QUANTITY:
-        told = f"'{text[:20]}...' has {len(text)} characters, {_LONGEST_QUANTITY} at the most"
-        raise UnitError(f"{told}: write a number and a unit of {kind}, such as '1 {example}'")
+        shown = f"'{text[:20]}...' has {len(text)} characters, {_LONGEST_QUANTITY} at the most"
+        raise UnitError(f"{shown}: write a number and a unit of {kind}, such as '1 {example}'")
     match = re.fullmatch(rf"\s*({_NUMBER})\s*([A-Za-z°ºµμ%℃℉].*?)\s*", text)
     if match is None:
         raise UnitError(f"'{text}' needs a number and a unit of {kind}, such as '1 {example}'")

@@ -107,14 +107,14 @@ def test_two_visits_tell_the_exponent_of_speed_and_not_that_of_temperature() -> 
     assert (b.estimable, a.estimable, c.estimable) == (False, False, True)
     assert (b.low, b.high) == (-np.inf, np.inf)
     assert (c.high - c.value) / c.error == pytest.approx(float(stats.t.ppf(0.975, 3)), rel=1e-9)
-    assert [s.told for s in surface.statistics.shared] == [False]
+    assert [s.estimable for s in surface.statistics.shared] == [False]
     # the first temperature visited again, after the second: now they say it
     again = np.tile([100.0, 160.0, 100.0], (3, 1)).T.ravel()
     speed = np.tile([1.0, 3.0, 9.0], 3)
     visited = hersey.fit(points_of(speed, 5.0 * again**-0.9 * speed**0.3, again, error=0.02))
     assert visited.b is not None
     assert visited.b.estimable
-    assert [s.told for s in visited.statistics.shared] == [True]
+    assert [s.estimable for s in visited.statistics.shared] == [True]
 
 
 def test_scatter_by_hand() -> None:

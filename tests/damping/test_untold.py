@@ -72,7 +72,7 @@ def test_two_runs_without_temperatures_tell_by_how_much_they_stand_apart() -> No
     table = {"speed [rpm]": speed, "torque [N*m]": torque, "run": run}
     surface = hersey.fit(hersey.SteadyPoints.from_table(table))
     (shared,) = surface.statistics.shared
-    assert (shared.name, shared.told) == ("run", True)
+    assert (shared.name, shared.estimable) == ("run", True)
     assert shared.deviation == pytest.approx(np.log(1.05) / 2**0.5, rel=0.1)
     assert surface.a.low < 2.0 * (30 / np.pi) ** 0.3 * 1.025 < surface.a.high
     assert surface.a.high > 1.2 * surface.a.value  # one degree of freedom

@@ -95,9 +95,9 @@ def _socket(port: int) -> socket.socket:
         listening.bind(("127.0.0.1", port))
     except (OSError, OverflowError) as error:
         listening.close()
-        told = getattr(error, "strerror", None) or "there is no such port"
+        reason = getattr(error, "strerror", None) or "there is no such port"
         raise OutputError(
-            f"{Setting('port').to(str(port))}: {told}: leave it out for one that is free"
+            f"{Setting('port').to(str(port))}: {reason}: leave it out for one that is free"
         ) from None
     listening.listen(64)
     return listening

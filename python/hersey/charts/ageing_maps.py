@@ -14,7 +14,7 @@ from hersey.units import celsius
 #: Width of all panels together without the gaps between them, and their height, px.
 _ALL, _HEIGHT = 640, 320
 #: Regions of the operating map that are shown here, from slow to fast.
-_TOLD = ("motor", "stick_slip", "bistable", "smooth")
+_REGIONS = ("motor", "stick_slip", "bistable", "smooth")
 
 
 def ageing_maps_chart(result: AgeingMaps) -> Chart:
@@ -41,7 +41,7 @@ def _panel(result: AgeingMaps, index: int, width: float) -> Chart:
         for name, bottom, top in _regions(result, index)
         for row in rows_of(x=hot, y=1e3 * bottom, top=1e3 * top)
     ]
-    color = region_color("region", _TOLD, symbolSize=140, columns=2)
+    color = region_color("region", _REGIONS, symbolSize=140, columns=2)
     areas = plot(rows).mark_area(clip=True).encode(x=x, y=y, y2="top:Q", color=color, detail="part:N")
     lines = [
         plot([row for row in rows_of(x=hot, y=1e3 * edge) if row["y"] > 0])

@@ -250,10 +250,10 @@ def write_figures(document: Analysis, folder: Path, *, overwrite: bool = True) -
 
 def _torque_unit(document: Analysis) -> tuple[float, str]:
     """Factor from N m, and the unit in which the torques of a document read best."""
-    told = document.units.get("torque")
+    unit = document.units.get("torque")
     return (
-        (1e3 if told == "mN·m" else 1.0, told)
-        if told
+        (1e3 if unit == "mN·m" else 1.0, unit)
+        if unit
         else torque_unit(max(abs(p.torque) for p in document.points))
     )
 

@@ -54,11 +54,11 @@ def findings_chart(inspection: Inspection) -> Chart:
     panels = [_findings(report) for report in inspection.files if report.channels]
     if not panels:
         raise InsufficientDataError("there is no channel to draw")
-    title = alt.Title("What the channels hold", subtitle=_told(inspection))
+    title = alt.Title("What the channels hold", subtitle=_subtitle(inspection))
     return alt.vconcat(*panels, spacing=18, title=title)
 
 
-def _told(inspection: Inspection) -> str:
+def _subtitle(inspection: Inspection) -> str:
     support = inspection.support
     if support is None:
         return inspection.problem[:110]

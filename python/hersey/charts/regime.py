@@ -76,13 +76,13 @@ def exponent_chart(
 
     ``solved`` is what the film of the contact gives, if it is known.
     """
-    told = [row | {"text": ""} for row in rows]
-    for row in told:  # an interval that is not told has no length
+    shown = [row | {"text": ""} for row in rows]
+    for row in shown:  # an interval that is not shown has no length
         row |= {end: row["value"] for end in ("low", "high") if row[end] is None}
-    low = min([_LEAST, *(r["low"] for r in told)]) - 0.05
-    high = max([_GREATEST, *(r["high"] for r in told)]) + 0.05
-    told[-1]["text"] = _words(rows[-1])
-    places = sorted({(r["order"], r["where"]) for r in told})
+    low = min([_LEAST, *(r["low"] for r in shown)]) - 0.05
+    high = max([_GREATEST, *(r["high"] for r in shown)]) + 0.05
+    shown[-1]["text"] = _words(rows[-1])
+    places = sorted({(r["order"], r["where"]) for r in shown})
     order = [where for _, where in places]
     nip: list[Row] = []
     if solved is not None:
@@ -92,10 +92,10 @@ def exponent_chart(
     scale = alt.Scale(domain=[low, high], nice=False)
     x = alt.X("value:Q", title="Exponent of damping in speed (no unit)", scale=scale, axis=_AXIS)
     y = alt.Y("where:N", title=None, sort=order, axis=alt.Axis(grid=False))
-    title = alt.Title("Exponent of damping, with 95 % intervals", subtitle=_subtitle(told))
+    title = alt.Title("Exponent of damping, with 95 % intervals", subtitle=_subtitle(shown))
     layers = [
         *_regimes(regimes, scale, low, high),
-        *_exponents(told, x, y, scale, 0.5 * (low + high)),
+        *_exponents(shown, x, y, scale, 0.5 * (low + high)),
         *_nip(nip, x, y, 0.5 * (low + high)),
     ]
     return alt.layer(*layers, title=title, width=WIDTH, height=_ROW * max(len(order), 3))

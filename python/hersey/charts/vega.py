@@ -55,8 +55,8 @@ def _asked(request: Row, content: bytes) -> tuple[Row, bytes]:
     except LostError as error:
         raise OutputError(f"the figures cannot be drawn: {_why(error)}") from None
     except FailedError as error:
-        told = str(error).partition("\n")[0][:200] or error.kind
-        raise OutputError(f"the figures cannot be drawn: {told}") from None
+        reason = str(error).partition("\n")[0][:200] or error.kind
+        raise OutputError(f"the figures cannot be drawn: {reason}") from None
 
 
 def _why(error: LostError) -> str:

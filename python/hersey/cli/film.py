@@ -149,7 +149,7 @@ def _predicted(
         raise ParameterError("say where: [[points]] in the file, --log, or --belt-speed with --at")
     speeds = [speed / machine.contact.roll_radius for _, speed, _ in states]
     inside = film_temperature(
-        machine.contact, machine.lubricant, speed=speeds, temperature=[heat for _, _, heat in states]
+        machine.contact, machine.lubricant, speed=speeds, temperature=[kelvin for _, _, kelvin in states]
     )
     film = film_thickness(machine.contact, machine.lubricant, speed=speeds, temperature=inside)
     return film, [name for name, _, _ in states]

@@ -35,11 +35,11 @@ def interruptible() -> Iterator[None]:
     before = signal.signal(signal.SIGTERM, _raise)
     wakeup = signal.set_wakeup_fd(theirs.fileno(), warn_on_full_buffer=False)
     threading.Thread(target=_watch, args=(ours,), daemon=True).start()
-    told, sys.unraisablehook = sys.unraisablehook, _swallowed
+    hook, sys.unraisablehook = sys.unraisablehook, _swallowed
     try:
         yield
     finally:
-        sys.unraisablehook = told
+        sys.unraisablehook = hook
         signal.set_wakeup_fd(wakeup)
         signal.signal(signal.SIGTERM, before)
         theirs.close()  # which ends the thread

@@ -154,8 +154,8 @@ def _channel(
         return text
 
     name = asking.ask(f"channel of the {role}", named, proposed=proposed)
-    told = units.get(name or "", "")
-    of = asking.ask(f"unit of the {role}", unit, proposed=told if _is_of(role, told) else "")
+    written = units.get(name or "", "")
+    of = asking.ask(f"unit of the {role}", unit, proposed=written if _is_of(role, written) else "")
     given = {f"{role}.channel": name, f"{role}.unit": of if name else None}
     return {key: text for key, text in given.items() if text}
 
@@ -191,8 +191,8 @@ def _machine(asked: list[Question], asking: Asking, path: Path) -> str:
             answers[question.key] = text
             if question.field == "stick_speed" and asking.by_hand and len(question.values(text)) == 1:
                 words = "left out, V* takes it as exact; as 1 mm/s to 4 mm/s, or ± 50 %"
-                told = asking.ask("how far it is known", _known(text, read), words=words)
-                answers[question.key] = told or text
+                uncertainty = asking.ask("how far it is known", _known(text, read), words=words)
+                answers[question.key] = uncertainty or text
         elif not answers:
             say(f"no machine's file is written: {path} would begin with it", file=sys.stderr)
             return ""
@@ -240,7 +240,7 @@ def _reader(question: Question, fits: Callable[[str], None] | None = None) -> Ca
 
 def _known(value: str, read: Callable[[str], str]) -> Callable[[str], str]:
     """Read a range in the place of a value, or a share behind it."""
-    return lambda told: read(f"{value} {told}" if told.startswith(("±", "+")) else told)
+    return lambda typed: read(f"{value} {typed}" if typed.startswith(("±", "+")) else typed)
 
 
 def _refuse_wrong(text: str) -> None:

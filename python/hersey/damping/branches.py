@@ -153,7 +153,7 @@ def _freed(data: Observations, corner: LawFit) -> tuple[LawFit, float | None]:
     """The corner, or one that moves by itself where one Hersey number is excluded, and its gain in AICc."""
     law = replace(law_of(corner), branches=FREE)
     # where it is not told how far visits scatter, what parts two of them would pass for another transition
-    if law.thermal is None or any(not shared.told for shared in corner.shared):
+    if law.thermal is None or any(not shared.estimable for shared in corner.shared):
         return corner, None
     free = fit_law(law, data, [np.append(corner.values, move_of(corner)), *starts_of(law, data)])
     gain = corner.aicc - free.aicc
@@ -217,8 +217,8 @@ def _both(one: tuple[float, float], other: tuple[float, float]) -> tuple[float, 
 
 def _fit_split(data: Observations, law: Law, single: LawFit, below: BoolArray) -> LawFit:
     """The law with each point held to its branch, from two lines of their own."""
-    z, heat = data.inputs.log_speed, [temperatures_of(data, law)] if law.thermal else []
-    columns = [np.ones_like(z), *heat, z, below * 1.0, below * z]
+    z, of_temperature = data.inputs.log_speed, [temperatures_of(data, law)] if law.thermal else []
+    columns = [np.ones_like(z), *of_temperature, z, below * 1.0, below * z]
     weights = 1.0 / single.sigma
     linear, *_ = np.linalg.lstsq(
         np.column_stack(columns) * weights[:, None], data.log_torque * weights, rcond=None

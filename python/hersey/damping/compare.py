@@ -207,7 +207,7 @@ def _observed(points: SteadyPoints | Observations, name: str) -> Observations:
 
 def _once(candidate: CandidateFit, data: Observations) -> bool:
     """Whether a log does not tell how far visits scatter."""
-    return np.unique(data.visit).size == 1 or any(not shared.told for shared in candidate.fit.shared)
+    return np.unique(data.visit).size == 1 or any(not shared.estimable for shared in candidate.fit.shared)
 
 
 def _of_visits(names: list[str]) -> Warning:

@@ -71,8 +71,8 @@ def no_load_torque(points: SteadyPoints) -> NoLoadTorque:
     by = np.array([[units[n] if n == fitted else 0.0 for fitted in law.names] for n in units])
     covariance = by @ fit.covariance @ by.T
     freedoms = np.array([fit.freedom_of(n) if n in law.names else np.inf for n in units])
-    told = tuple(n for n in law.names if n != "temperature_slope" or not _of_visits(fit))
-    constant, per_speed, slope = estimates_of(by @ fit.values, covariance, freedoms, told)
+    estimable = tuple(n for n in law.names if n != "temperature_slope" or not _of_visits(fit))
+    constant, per_speed, slope = estimates_of(by @ fit.values, covariance, freedoms, estimable)
     kelvin, sensors = data.inputs.kelvin, points.log.sensors
     zero = sensors.torque_zero
     if zero is None:

@@ -261,14 +261,14 @@ def with_rest(film: AnyLaw, rest: NoLoadTorque, roll_radius: float, temperature:
 
 
 def estimates_of(
-    values: FloatArray, covariance: FloatArray, freedoms: FloatArray, told: tuple[str, ...]
+    values: FloatArray, covariance: FloatArray, freedoms: FloatArray, estimable: tuple[str, ...]
 ) -> list[Estimate]:
-    """Return constant, speed and temperature part with their intervals, unbounded for one not in ``told``."""
+    """Return constant, speed and temperature part; intervals of those not ``estimable`` are unbounded."""
     out = []
     for i, name in enumerate(NUMBERS):
         error = float(np.sqrt(covariance[i, i]))
         one = estimate(float(values[i]), error, float(freedoms[i]))
-        out.append(one if name in told else Estimate(one.value, error, -np.inf, np.inf, one.freedom))
+        out.append(one if name in estimable else Estimate(one.value, error, -np.inf, np.inf, one.freedom))
     return out
 
 

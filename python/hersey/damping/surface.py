@@ -53,9 +53,9 @@ class DampingSurface(FittedLaw):
         values, covariance = self.values, self.covariance
         if t.closure is not None:
             values, covariance = t.closure.values, t.closure.covariance
-        told = np.array([t.mixed_exponent.error, t.speed.error / t.speed.value])
+        errors = np.array([t.mixed_exponent.error, t.speed.error / t.speed.value])
         wider, of = np.ones(values.size), [self._law.index(name) for name in ("c_mixed", "at")]
-        wider[of] = np.maximum(told / np.sqrt(np.maximum(np.diag(covariance)[of], 1e-300)), 1.0)
+        wider[of] = np.maximum(errors / np.sqrt(np.maximum(np.diag(covariance)[of], 1e-300)), 1.0)
         return values, covariance * np.outer(wider, wider)
 
     @takes_si(temperature="temperature")
@@ -97,8 +97,8 @@ class DampingSurface(FittedLaw):
         error = float(np.sqrt(away @ covariance @ away))
         speed, freedom = self.transition_speed(temperature), self.freedoms.of(away)
         reach = np.exp(quantile(freedom) * error)
-        told = self.transition.speed.estimable and self.b.estimable
-        low, high = (speed / reach, speed * reach) if told else (-np.inf, np.inf)
+        estimable = self.transition.speed.estimable and self.b.estimable
+        low, high = (speed / reach, speed * reach) if estimable else (-np.inf, np.inf)
         return Estimate(speed, speed * error, low, high, freedom)
 
     @takes_si(temperature="temperature")

@@ -140,7 +140,7 @@ def _wrapped(text: str) -> list[str]:
 
 
 def _shared_text(shared: SharedScatter) -> str:
-    if not shared.told:
+    if not shared.estimable:
         few = "too few, or the law takes up what they differ by"
         return f"by the dwells of a {shared.name}: not told, they are {few}"
     return f"{shared.deviation:.3%} by the dwells of a {shared.name} (p = {shared.p_value:.2g} for none)"

@@ -292,13 +292,13 @@ def _measured(drag: AnyDrag, fitted: FittedLaw | None, roll_radius: float | None
     found: dict[str, Wire] = {}
     if fitted is not None and roll_radius is not None:
         found["measured_speeds"] = [speed * roll_radius for speed in fitted.speed_range]
-    heat = _measured_heat(drag, fitted)
-    if heat is not None and drag.varies_with_temperature:
-        found["measured_temperatures"] = list(heat)
+    temperatures = _measured_temperatures(drag, fitted)
+    if temperatures is not None and drag.varies_with_temperature:
+        found["measured_temperatures"] = list(temperatures)
     return found
 
 
-def _measured_heat(drag: AnyDrag, fitted: FittedLaw | None) -> tuple[float, float] | None:
+def _measured_temperatures(drag: AnyDrag, fitted: FittedLaw | None) -> tuple[float, float] | None:
     """Temperatures at which the fit was measured, or the lubricant of a contact."""
     if fitted is not None:
         return fitted.temperature_range
@@ -341,14 +341,14 @@ def _facts(
     shaft = drive == "speed" and port == ROTATIONAL
     moved = "speed of the roll's shaft" if shaft else f"{drive} of the drive"
     facts = {"Input": moved, "Made by": f"hersey {_core.VERSION}"}
-    heat = _measured_heat(drag, fitted)
+    temperatures = _measured_temperatures(drag, fitted)
     if fitted is None:
         if isinstance(drag, MixedDrag):
             facts["Law"] = (
                 f"mixed contact: film of {drag.contact.lubricant.name} and asperities share the load"
             )
-            if heat is not None:
-                facts["Viscosity known at"] = f"{_degrees(heat)}; beyond, it is extrapolated"
+            if temperatures is not None:
+                facts["Viscosity known at"] = f"{_degrees(temperatures)}; beyond, it is extrapolated"
         return facts
     facts["Law"] = " ".join(fitted.headline().split())
     facts["Fitted by"] = f"hersey {fitted.version}"
@@ -357,16 +357,16 @@ def _facts(
     ranges = f"roll speeds of {rpm(low):.4g} to {rpm(high):.4g} rpm"
     if roll_radius is not None:
         ranges += f" ({1e3 * low * roll_radius:.4g} to {1e3 * high * roll_radius:.4g} mm/s at the belt)"
-    if heat is not None:
-        ranges += f" and {_degrees(heat)}"
+    if temperatures is not None:
+        ranges += f" and {_degrees(temperatures)}"
     facts["Measured at"] = f"{ranges}; beyond, the law is extrapolated"
     if fitted.rest is not None:
         facts["Beside it"] = " ".join(fitted.rest.headline().split())
     return facts
 
 
-def _degrees(heat: tuple[float, float]) -> str:
-    cold, hot = map(celsius, heat)
+def _degrees(temperatures: tuple[float, float]) -> str:
+    cold, hot = map(celsius, temperatures)
     return f"{cold:.4g} to {hot:.4g} degC"
 
 

@@ -258,8 +258,8 @@ def refuse_value(kind: type, key: str, given: object) -> None:
         for mistake in wrong[:1]:
             if mistake["type"] == "value_error":
                 raise _named(key, mistake.get("ctx", {})["error"]) from None
-            told = _told(mistake["type"], (key,), mistake["input"], mistake.get("ctx", {}))
-            raise ParameterError(told) from None
+            refusal = _words(mistake["type"], (key,), mistake["input"], mistake.get("ctx", {}))
+            raise ParameterError(refusal) from None
 
 
 def quoted(text: str) -> str:
@@ -287,12 +287,12 @@ def _mistake(file: str, error: ValidationError) -> ParameterError | UnitError:
     about, place = first.get("ctx", {}), _place(first["loc"], first["input"]) if first["loc"] else ""
     if first["type"] == "value_error":
         return _named(f"{file}: {place}", about["error"], place)
-    told = ParameterError(f"{file}: {_told(first['type'], first['loc'], first['input'], about)}")
-    told.setting = Setting(place)
-    return told
+    refusal = ParameterError(f"{file}: {_words(first['type'], first['loc'], first['input'], about)}")
+    refusal.setting = Setting(place)
+    return refusal
 
 
-def _told(kind: str, loc: tuple[str | int, ...], given: object, about: Mapping[str, Any]) -> str:
+def _words(kind: str, loc: tuple[str | int, ...], given: object, about: Mapping[str, Any]) -> str:
     """What is wrong, and the way out, of a mistake that pydantic knows."""
     match kind:
         case "missing" if len(loc) == 1:
@@ -330,7 +330,7 @@ def _named(place: str, error: Exception, key: str = "") -> ParameterError | Unit
     """The error with the place before its message; the key of the value that is at fault is what to set."""
     text = str(error)
     goes_on = _GOES_ON.match(text)
-    told = f"{place}{'' if text.startswith('.') else ' ' if goes_on else ': '}{text}"
-    named = UnitError(told) if isinstance(error, UnitError) else ParameterError(told)
+    said = f"{place}{'' if text.startswith('.') else ' ' if goes_on else ': '}{text}"
+    named = UnitError(said) if isinstance(error, UnitError) else ParameterError(said)
     named.setting = Setting(key) if key else None
     return named

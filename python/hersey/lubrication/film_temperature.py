@@ -86,8 +86,8 @@ def film_temperature(
         if np.any(kelvin < 0.5 * read) or np.any(kelvin > 2.0 * read):
             break
     worst = int(np.argmax(np.abs(step)))
-    w, heat = float(np.ravel(speeds)[worst]), celsius(float(np.ravel(read)[worst]))
+    w, reading = float(np.ravel(speeds)[worst]), celsius(float(np.ravel(read)[worst]))
     raise ParameterError(
-        f"heat_flow is {contact.heat_flow:g} W: at {w:.3g} rad/s and {heat:.4g} degC the film finds no "
+        f"heat_flow is {contact.heat_flow:g} W: at {w:.3g} rad/s and {reading:.4g} degC the film finds no "
         "temperature near the one read; state the heat that flows there, and check conductivity and viscosity"
     )

@@ -112,14 +112,14 @@ class Machine:
                 '[contact] lacks the roughness of both faces together, rms: add roughness = "0.4 um"'
             )
         speed = float(np.mean([point.speed for point in self.points])) if self.points else _USUAL_SPEED
-        heats = [point.temperature for point in self.points] or self.lubricant.temperature_range
+        kelvin = [point.temperature for point in self.points] or self.lubricant.temperature_range
         return mixed_contact(
             self.contact,
             self.lubricant,
             self.asperities,
             self.boundary,
             speed=speed / self.contact.roll_radius,
-            temperature=float(np.mean(heats)),
+            temperature=float(np.mean(kelvin)),
         )
 
     @takes_si(temperature="temperature")

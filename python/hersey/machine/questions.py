@@ -80,8 +80,10 @@ class Question:
             return text
         value, share = _split(text)
         parts = re.split(r"\s+to\s+|\s*\u2013\s*", value)
-        told = " to ".join(f"{part.strip()} {self.unit}" if _BARE.fullmatch(part) else part for part in parts)
-        return f"{told} ± {share}" if share else told
+        listed = " to ".join(
+            f"{part.strip()} {self.unit}" if _BARE.fullmatch(part) else part for part in parts
+        )
+        return f"{listed} ± {share}" if share else listed
 
     def values(self, text: str) -> dict[str, Any]:
         """Return what stands in the file for an answer, by key: a range is a value and its uncertainty.
@@ -106,10 +108,10 @@ class Question:
         value, share = _split(text)
         out: dict[str, Any] = {}
         if share or re.search(r"\sto\s", value):
-            told = share or value
+            uncertainty = share or value
             with naming(self.field):
-                known = read_uncertainty(self.field, told)
-            out[f"uncertainty.{self.field}"] = told
+                known = read_uncertainty(self.field, uncertainty)
+            out[f"uncertainty.{self.field}"] = uncertainty
             if known.limits is not None:
                 value = _middle(self.field, *known.limits, self.unit)
         refuse_value(_TABLES[self.section], self.field, value)

@@ -115,13 +115,13 @@ def answers_of(document: Mapping[str, Any]) -> tuple[dict[str, str], list[dict[s
 def _know(answers: dict[str, str], others: dict[str, Any]) -> None:
     """Take from the others what is known of an answer, where both make the same lines again."""
     stated = others.get("uncertainty")
-    for key, told in list(stated.items()) if isinstance(stated, dict) else ():
+    for key, uncertainty in list(stated.items()) if isinstance(stated, dict) else ():
         question = BY_KEY.get(f"drivetrain.{key}")
         if question is None or not question.uncertain or question.key not in answers:
             continue
         value = answers[question.key]
-        both = f"{value} ± {told}" if "%" in str(told) else str(told)
-        if question.values(both) == {question.key: value, f"uncertainty.{key}": told}:
+        both = f"{value} ± {uncertainty}" if "%" in str(uncertainty) else str(uncertainty)
+        if question.values(both) == {question.key: value, f"uncertainty.{key}": uncertainty}:
             answers[question.key] = both
             others["uncertainty"].pop(key)
     if stated == {}:

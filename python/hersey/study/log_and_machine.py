@@ -60,11 +60,11 @@ class Study(Findings, Result):
 
     def summary(self) -> str:
         """Return decision, comparison, verdict, warnings and fit, as text."""
-        told = self.decision
-        interval = f" ({told.interval})" if told.interval else ""
-        lines = [f"{told.instruction}{interval}. {told.otherwise}"]
-        lines += [f"{told.measurement.text}."] if told.measurement is not None else []
-        lines += [f"{point.name}: {point.words}" for point in told.points]
+        decision = self.decision
+        interval = f" ({decision.interval})" if decision.interval else ""
+        lines = [f"{decision.instruction}{interval}. {decision.otherwise}"]
+        lines += [f"{decision.measurement.text}."] if decision.measurement is not None else []
+        lines += [f"{point.name}: {point.words}" for point in decision.points]
         if self.comparison is not None:
             lines.append(f"Against {self.comparison.names[0]}: {self.comparison.verdict}")
         lines += [*self.verdict, *(f"- {warning.sentence}" for warning in self.warnings)]

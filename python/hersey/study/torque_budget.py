@@ -83,8 +83,8 @@ def _shares(mixed: MixedContact, points: SteadyPoints, speed: FloatArray, level:
     for i, whole in enumerate((rest + state.torque).tolist()):
         film = float(state.shear_torque[i] + state.rolling_torque[i])
         shares = ((film, "film"), (float(state.boundary_torque[i]), "contact"), (float(rest[i]), "rest"))
-        told = ", ".join(f"{name} {torque / whole:.0%}" for torque, name in shares)
-        parts.append(f"{1e3 * whole:.3g} mN m at {rpm(float(speed[i])):.3g} rpm ({told})")
+        listed = ", ".join(f"{name} {torque / whole:.0%}" for torque, name in shares)
+        parts.append(f"{1e3 * whole:.3g} mN m at {rpm(float(speed[i])):.3g} rpm ({listed})")
     lead = "By the machine's file film, contact and the no-load torque take"
     return f"{lead} {'; '.join(parts)}, at {celsius(level):.0f} degC."
 

@@ -181,8 +181,8 @@ def _laws_tried(fitted: list[_Fitted]) -> tuple[Tried, ...]:
             verdict = "less likely"
         else:
             verdict = "no more than the film alone"
-        told = [value if abs(value) < _ANYTHING else math.nan for value in fit.values.tolist()]
-        values = dict(zip(fit.law.names, told, strict=True))
+        known = [value if abs(value) < _ANYTHING else math.nan for value in fit.values.tolist()]
+        values = dict(zip(fit.law.names, known, strict=True))
         out.append(Tried(said.name, values, said.constant_share, fit.aicc, p, verdict))
     return tuple(out)
 

@@ -93,9 +93,9 @@ class ContactTransition(Record):
     def _seen(self, i: int) -> str:
         if np.isnan(self.measured[i]):
             return "none shown"
-        told = np.isfinite(self.low[i]) and np.isfinite(self.high[i])
+        known = np.isfinite(self.low[i]) and np.isfinite(self.high[i])
         value, low, high = (rpm(x[i]) for x in (self.measured, self.low, self.high))
-        return f"{value:.3g}" + (f" [{low:.3g}, {high:.3g}]" if told else " (not known)")
+        return f"{value:.3g}" + (f" [{low:.3g}, {high:.3g}]" if known else " (not known)")
 
 
 def contact_transition(
@@ -114,8 +114,8 @@ def contact_transition(
         )
     seen = np.full((3, kelvin.size), np.nan)
     if surface is not None and surface.transition is not None:
-        for i, heat in enumerate(kelvin.tolist()):
-            found = surface.transition_estimate(None if surface.b is None else heat)
+        for i, level in enumerate(kelvin.tolist()):
+            found = surface.transition_estimate(None if surface.b is None else level)
             seen[:, i] = found.value, found.low, found.high
     return ContactTransition(
         temperature=kelvin,

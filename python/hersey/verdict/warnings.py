@@ -173,7 +173,7 @@ def _of_fit(surface: DampingSurface) -> Iterator[Warning]:
 def _of_visits(surface: DampingSurface) -> Iterator[Warning]:
     """What the dwells of a visit to a temperature, or of a run, have in common."""
     for shared in surface.statistics.shared:
-        if not shared.told and surface.b is not None and not surface.b.estimable:
+        if not shared.estimable and surface.b is not None and not surface.b.estimable:
             yield Warning(
                 "temperatures visited once",
                 "exponent b is {value:.3g}, its interval not known: each temperature was visited once, so "

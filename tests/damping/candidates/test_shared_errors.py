@@ -81,7 +81,7 @@ def straight(data: Observations) -> np.ndarray:
 def scatter_of(data: Observations, sigma: np.ndarray) -> SharedScatter:
     (found,) = shared_scatter(
         groupings(data),
-        (SharedScatter("visit", 0.0, 1.0, told=True),),
+        (SharedScatter("visit", 0.0, 1.0, estimable=True),),
         data,
         design(data),
         np.zeros(len(data)),
@@ -115,7 +115,7 @@ def test_the_variance_of_a_balanced_layout_is_that_of_the_analysis_of_variance()
     between = SPEEDS.size * float(np.var(means, ddof=1))
     sigma = 0.012
     found = scatter_of(data, np.full(len(data), sigma))
-    assert found.told
+    assert found.estimable
     assert found.deviation**2 == pytest.approx((between - sigma**2) / SPEEDS.size, rel=1e-4)
 
 
@@ -210,7 +210,7 @@ def test_two_runs_without_a_law_of_temperature_tell_how_far_they_stand_apart() -
     held = 0
     for seed in range(20):
         fit = fit_law(ISOTHERMAL, visited(None, visits=2, between=0.03, seed=seed))
-        assert fit.shared[0].told
+        assert fit.shared[0].estimable
         level = fit.estimate("level")
         held += level.low <= VALUES[None][0] <= level.high
     assert held >= 17
@@ -320,7 +320,7 @@ def test_satterthwaite_by_hand() -> None:
 
 def test_temperatures_visited_once_each_tell_no_more_than_the_law_takes_up() -> None:
     two = fit_law(THERMAL, visited([363.0, 453.0], seed=3))
-    assert [s.told for s in two.shared] == [False]
+    assert [s.estimable for s in two.shared] == [False]
     assert "visited once" in two.not_estimable("e")
     assert two.not_estimable("c") == two.not_estimable("level") == ""
     b, c = two.estimate("e"), two.estimate("c")

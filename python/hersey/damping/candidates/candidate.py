@@ -73,15 +73,23 @@ class Candidate:
         """The law in words."""
         if self.contact is not None:
             return f"{self.branches}, viscosity {'as stated' if self.viscosity_known else 'free'}"
-        heat = self.thermal or "no temperature"
+        temperature = self.thermal or "no temperature"
         if self.stribeck:
-            return f"Stribeck curve, {heat} viscosity" if self.thermal else "Stribeck curve, no temperature"
+            return (
+                f"Stribeck curve, {temperature} viscosity"
+                if self.thermal
+                else "Stribeck curve, no temperature"
+            )
         if self.branches == NO_SPEED:
-            return heat
+            return temperature
         if self.branches in _BESIDE:
-            return f"{self.branches}, film by {heat}" if self.thermal else f"{self.branches}, {heat}"
+            return (
+                f"{self.branches}, film by {temperature}"
+                if self.thermal
+                else f"{self.branches}, {temperature}"
+            )
         each = ", exponents per temperature" if self.per_temperature else ""
-        return f"{heat} x power of speed, {self.branches}{each}"
+        return f"{temperature} x power of speed, {self.branches}{each}"
 
     def law(self, data: Observations) -> Law | StribeckLaw | ConstantPlusLaw | SharedLoadLaw:
         """Return the law about the reference values of the data."""
@@ -139,14 +147,18 @@ class Candidate:
 
 def all_candidates() -> tuple[Candidate, ...]:
     """Return the candidates, the simplest first."""
-    heats = (None, CELSIUS, KELVIN, ARRHENIUS, VFT)
-    one = [Candidate(heat, ONE) for heat in heats]
-    held = [Candidate(heat, HELD) for heat in heats[1:]]
-    free = [Candidate(heat, FREE) for heat in heats]
-    each = [Candidate(heat, kind, per_temperature=True) for heat in heats[1:] for kind in (ONE, FREE)]
+    laws_of_temperature = (None, CELSIUS, KELVIN, ARRHENIUS, VFT)
+    one = [Candidate(law, ONE) for law in laws_of_temperature]
+    held = [Candidate(law, HELD) for law in laws_of_temperature[1:]]
+    free = [Candidate(law, FREE) for law in laws_of_temperature]
+    each = [
+        Candidate(law, kind, per_temperature=True) for law in laws_of_temperature[1:] for kind in (ONE, FREE)
+    ]
     curves = [Candidate(None, ONE, stribeck=True), Candidate(ARRHENIUS, ONE, stribeck=True)]
-    constant = [Candidate(heat, kind) for heat in heats for kind in (COULOMB_VISCOUS, CONSTANT_PLUS)]
-    rest = [Candidate(heat, REST_PLUS) for heat in (None, ARRHENIUS)]  # the others take time and tell no more
+    constant = [
+        Candidate(law, kind) for law in laws_of_temperature for kind in (COULOMB_VISCOUS, CONSTANT_PLUS)
+    ]
+    rest = [Candidate(law, REST_PLUS) for law in (None, ARRHENIUS)]  # the others take time and tell no more
     flat = (*constant[:2], *rest[:1], *free[:1], *curves[:1])
     return (*one, *flat, *constant[2:], *rest[1:], *held, *free[1:], *each, *curves[1:])
 
@@ -158,7 +170,7 @@ def contact_candidates(contact: SharedLoad) -> tuple[Candidate, ...]:
 
 def viscosity_candidates() -> tuple[Candidate, ...]:
     """Return the laws of temperature alone, for a table of viscosities."""
-    return tuple(Candidate(heat, NO_SPEED) for heat in (CELSIUS, KELVIN, ARRHENIUS, VFT))
+    return tuple(Candidate(law, NO_SPEED) for law in (CELSIUS, KELVIN, ARRHENIUS, VFT))
 
 
 def _listed(data: Observations) -> str:

@@ -108,9 +108,9 @@ class LawFit:
         far visits scatter. That leaves open what hangs on temperature: its law, and a transition that moves
         with it; levels and exponents of speed are those of these visits.
         """
-        heat = name in ("e", "q", "at", "d") and self.law.thermal is not None
+        thermal = name in ("e", "q", "at", "d") and self.law.thermal is not None
         moved = self.freedoms.moved_by_untold
-        if not heat or not moved.size or moved[self.law.index(name)] < _LITTLE:
+        if not thermal or not moved.size or moved[self.law.index(name)] < _LITTLE:
             return ""
         return (
             "each temperature was visited once, and the law of temperature takes up every difference between "
@@ -160,7 +160,7 @@ def _fit_from(law: AnyLaw, data: Observations, tried: list[FloatArray], scatter:
     """Fit and scatter in turn, until they settle, from a scatter on."""
     size = len(law.names)
     grouped = groupings(data)
-    shared = tuple(SharedScatter(g.name, 0.0, 1.0, told=True) for g in grouped)
+    shared = tuple(SharedScatter(g.name, 0.0, 1.0, estimable=True) for g in grouped)
     columns = disturbances(data, grouped, shared, np.zeros(len(data)))
     errors = np.array(data.torque_error)
     sigma = np.sqrt(errors**2 + scatter**2)

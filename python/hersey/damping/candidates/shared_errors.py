@@ -63,14 +63,14 @@ def _indicator(label: IntArray) -> FloatArray:
 class SharedScatter(Record):
     """Relative standard deviation of an error that the dwells of a group share.
 
-    ``p_value`` is that of none at all, by an F test of the groups' residuals. ``told`` is False where the law
-    takes up every difference between the groups, so that the dwells say nothing of their scatter.
+    ``p_value`` is that of none at all, by an F test of the groups' residuals. ``estimable`` is False where
+    the law takes up every difference between the groups, so that the dwells say nothing of their scatter.
     """
 
     name: str
     deviation: float
     p_value: Annotated[float, Means("of none, by an F test")]
-    told: Annotated[bool, Means("whether the dwells say anything of it")]
+    estimable: Annotated[bool, Means("whether the dwells say anything of it")]
 
 
 def shared_variance(scatter: tuple[SharedScatter, ...]) -> float:
@@ -124,7 +124,7 @@ def shared_scatter(
         held = disturbances(data, others, rest, by_heat)
         fewest = FEWEST_GROUPS if np.any(by_heat) else 2
         if grouping.member.shape[1] < fewest:
-            out[number] = SharedScatter(grouping.name, 0.0, 1.0, told=False)
+            out[number] = SharedScatter(grouping.name, 0.0, 1.0, estimable=False)
         else:
             out[number] = _restricted(grouping, slopes, held, residuals, sigma)
     return tuple(out)
@@ -155,13 +155,13 @@ def _restricted(
     seen = spread > _LEFT * float(np.max(np.sum(whole**2, axis=0)))
     spread, along = spread[seen], (axes.T @ (groups.T @ rest))[seen]
     if not spread.size:
-        return SharedScatter(grouping.name, 0.0, 1.0, told=False)
+        return SharedScatter(grouping.name, 0.0, 1.0, estimable=False)
     between = float(np.sum(along**2 / spread))
     freedom = residuals.size - basis.shape[1] + modes - spread.size
     within = max(float(rest @ rest) - between, 1e-300)
     p_value = ratio_above(between / spread.size / (within / max(freedom, 1)), spread.size, max(freedom, 1))
     variance = _likeliest(spread, along)
-    return SharedScatter(grouping.name, variance**0.5, float(p_value), told=True)
+    return SharedScatter(grouping.name, variance**0.5, float(p_value), estimable=True)
 
 
 def _column_space(matrix: FloatArray) -> FloatArray:
@@ -201,7 +201,7 @@ class Freedom:
     covariance: FloatArray
     parts: tuple[FloatArray, ...] = ()
     uncertainty: FloatArray = field(default_factory=lambda: np.empty((0, 0)))
-    #: variance of each value by a scatter of groups that is not told, over that by as much of dwells
+    #: variance of each value by a scatter of groups that is not estimable, over that by as much of dwells
     moved_by_untold: FloatArray = field(default_factory=lambda: np.empty(0))
 
     def of(self, weights: FloatArray) -> float:
@@ -242,7 +242,7 @@ def freedom_of(
     gain = (bread @ columns.T * weight)[:parameters]
     moved = np.zeros(parameters)
     for grouping, shared in zip(grouped, scatter, strict=True):
-        if not shared.told:
+        if not shared.estimable:
             by_dwells = np.maximum(np.sum(gain**2, axis=1), 1e-300)
             moved += np.sum((gain @ grouping.member) ** 2, axis=1) / by_dwells
     if not members:
