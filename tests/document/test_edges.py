@@ -18,13 +18,15 @@ from hersey.decision.edges import Edge, Edges, edges_of
 from hersey.decision.judge import judge
 from hersey.machine.limits import Limits, OperatingPoint
 from hersey.machine.machine import Machine
+from hersey.schema.warning import Warning
 from hersey.stability.operating_map import OperatingMap
 from hersey.study.findings import Findings
-from hersey.study.first_screen.flags import flags
+from hersey.study.first_screen.flags import MOST, flags
 from hersey.study.first_screen.instruction import of_log
 from hersey.study.first_screen.points import points_of_log
 from hersey.study.torque_budget import TorqueBudgetPart
 from hersey.verdict.regime import Regime
+from hersey.verdict.warnings import warnings_of
 from tests.document.conftest import HOT, Decide
 
 
@@ -181,3 +183,24 @@ def test_a_step_is_taken_between_points_of_one_temperature(
     found = Working(points, surface, replace(machine, points=asked), draws=80).result()
     stepped = [[step.from_speed for step in point.steps] for point in found.points]
     assert stepped == [[0.12], [0.06], []]
+
+
+def test_the_gravest_warnings_come_first(
+    points: hersey.SteadyPoints, surface: DampingSurface, seen: Regime
+) -> None:
+    fast = points.table.filter(pl.col("speed").abs() > 1.2 * surface.transition_speed(HOT + 30.0))
+    few = pl.concat([points.table.filter(pl.col("speed").abs() < 0.6).head(2), fast])
+    loaded = replace(points, table=few.with_columns(load=pl.Series(np.linspace(10.0, 20.0, few.height))))
+    assert surface.transition is not None
+    freed = replace(surface, transition=replace(surface.transition, freed=24.0))
+    found = flags(Findings(points=loaded, surface=freed, regime=seen, why="no machine"))
+    assert len(found) == MOST
+    assert [each.severity for each in found] == ["act", "watch", "watch"]
+    assert found[0].kind == "no band"
+
+
+def test_what_is_said_of_a_file_names_it(points: hersey.SteadyPoints, surface: DampingSurface) -> None:
+    file = replace(points.log.files[0], warnings=(Warning("noted", "something"),))
+    log = replace(points.log, files=(file, *points.log.files[1:]))
+    (noted,) = (w for w in warnings_of(replace(points, log=log), surface) if w.kind == "noted")
+    assert noted.where == file.name

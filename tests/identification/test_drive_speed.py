@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from hersey.errors import ParameterError
-from hersey.identification import CycleRecord, IdentifiedDrive, cycles, identify
+from hersey.identification import CycleRecord, IdentifiedDrive, cycles, drive_warnings, identify
 from hersey.identification.drive_fit import DriveFit
 from hersey.identification.independence import NOT_ESTIMABLE
 from hersey.identification.waveform import mean_waveform
@@ -141,3 +141,10 @@ def test_a_channel_of_a_drive_that_stands_or_without_numbers_is_refused(value: f
     times = np.linspace(0.0, 1.0, 100)
     with pytest.raises(ParameterError, match=words):
         cycles(times, np.sin(40.0 * times), drive_speed=np.full(times.size, value))
+
+
+def test_a_poor_fit_is_warned_of(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(drive_warnings, "POOR", 0.01)
+    found = identify(record(0, 1.0), known={"mass": 1.3}, closures=("stiction",))
+    (poor,) = (each for each in found.warnings if each.kind == "poor fit")
+    assert (poor.severity, poor.values) == ("watch", {"misfit": found.misfit})

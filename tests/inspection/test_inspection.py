@@ -410,3 +410,15 @@ def test_a_speed_lost_for_a_few_rows_is_a_drop_out_and_a_longer_one_a_stand(
     speed = 50.0 + 0.1 * np.random.default_rng(1).standard_normal(1000)
     speed[400 : 400 + rows] = 0.0
     assert kinds(speed, stands=True) == found
+
+
+def test_the_row_of_a_fault_is_counted_from_one(tmp_path: Path) -> None:
+    table = testbench.run(seed=2).table.head(3000)
+    name = next(each for each in table.columns if "torque" in each.lower())
+    torque = table[name].to_numpy().copy()
+    torque[1000] = 50.0 * np.max(np.abs(torque))
+    table.with_columns(pl.Series(name, torque)).write_csv(tmp_path / "log.csv")
+    (file,) = inspect(tmp_path / "log.csv").files
+    (spike,) = (w for c in file.channels for w in c.warnings if w.kind == "spikes")
+    assert (spike.severity, spike.values["row"], spike.values["rows"]) == ("watch", 1001, 1)
+    assert "from row 1001" in str(spike)

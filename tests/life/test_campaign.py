@@ -404,3 +404,22 @@ def test_a_thousand_runs_are_listed(campaign: Campaign) -> None:
     assert campaign.runs().height == 1000
     assert len(campaign.summary().splitlines()) == 21
     assert json.loads(json.dumps(campaign.to_dict()))["runs"][0]["unit"] == "F0"
+
+
+def test_a_fit_with_a_transition_is_kept_whole(
+    campaign: Campaign, points: hersey.SteadyPoints, surface: hersey.DampingSurface, bench_csv: Path
+) -> None:
+    run = campaign.add(points, log=bench_csv, unit="F1", age="0 pages", fit=surface).run
+    assert surface.transition is not None
+    assert campaign.runs()["transition_speed"].to_list() == [surface.transition.speed.value]
+    assert campaign.fit(run) == json.loads(json.dumps(surface.to_dict()))
+
+
+def test_a_log_that_is_overwritten_is_named_with_the_age_it_had(campaign: Campaign, run_csv: Path) -> None:
+    add(campaign, run_csv)
+    run_csv.write_text(run_csv.read_text() + "7,0.1,100\n")
+    points = hersey.SteadyPoints.from_table(run_csv)
+    added = campaign.add(points, log=run_csv, unit="F12", age="2000 pages", force=True)
+    (stays,) = added.warnings
+    assert (stays.kind, stays.severity) == ("log overwritten", "watch")
+    assert stays.values == {"run": 1, "unit": "F12", "age": 1000.0, "age_unit": "pages"}

@@ -292,3 +292,11 @@ def test_growth_of_new_units_is_doubted_beyond_the_greatest_last_age(
     assert 0.1 < np.mean(new < 40.0) < 0.9
     np.testing.assert_allclose(later_new, np.where(new > 40.0, 2.0 * new - 40.0, new), rtol=1e-12)
     np.testing.assert_allclose(later_units, np.where(units > last, 2.0 * units - last, units), rtol=1e-12)
+
+
+def test_specimens_of_one_age_are_counted() -> None:
+    unit, age, value, _ = logs("linear")
+    cut = slice(None, -7)  # the last specimen at one age alone
+    warnings = growth_of(unit[cut], age[cut], value[cut]).warnings
+    (once,) = (each for each in warnings if each.kind == "growth of one age")
+    assert (once.severity, once.values) == ("watch", {"count": 1})

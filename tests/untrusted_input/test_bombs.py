@@ -341,6 +341,7 @@ def test_the_limit_may_be_raised_and_lowered(tmp_path: Path) -> None:
         list_channels(path)
     assert list_channels(path) == [("torque", "")]
     with hersey.memory_limit("8 GB"):
+        assert opening._memory == 8e9
         assert list_channels(path) == [("torque", "")]
 
 
