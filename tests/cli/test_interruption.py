@@ -27,6 +27,7 @@ MACHINE = str(EXAMPLES / "machine.toml")
 TYPED: dict[str, tuple[list[str], float]] = {
     "app": (["--no-browser"], 1.5),
     "new": ([BENCH[0], "--mapping", "h.toml", "--machine", "m.toml"], 1.5),
+    "explain": (["dwell"], 0.2),
     "report": ([*BENCH, "--machine", MACHINE, "--out", "r.html", "--figures", "pictures"], 4.0),
     "inspect": ([BENCH[0], "--figure", "i.png"], 2.0),
     "fit": ([*BENCH, "--json"], 1.5),

@@ -96,6 +96,7 @@ LOG = "examples/bench.csv --tare standing"
 MACHINE = "examples/machine.toml"
 #: What each verb loads of what is heavy, beside pydantic, which every command loads.
 LOADS = {
+    "explain dwell": "",
     "simulate": "numpy",
     "simulate --json": "numpy",
     "simulate --check": "numpy",

@@ -31,7 +31,7 @@ def test_hostile_text_stays_text(document: Analysis) -> None:
     assert hostile not in page
     assert "alert(1)</script>" not in page
     assert "<img src=x" not in page
-    assert page.count("</script>") == 5  # document, charts, core; the runtime and the page's own
+    assert page.count("</script>") == 6  # document, charts, core, glossary; the runtime and the page's own
 
 
 def test_files_are_written_whole_or_not_at_all(tmp_path: Path) -> None:

@@ -3,6 +3,7 @@
 =========  ========================================
 page       document and charts of a log in the page
 life_page  those of a life test
+glossary   terms in plain words, for `hersey explain`, docs and tooltips
 static     HTML, CSS and scripts
 =========  ========================================
 """

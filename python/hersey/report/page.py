@@ -20,12 +20,14 @@ from hersey.charts.style import Chart
 from hersey.document.analysis import Analysis
 from hersey.document.assembly import document_of
 from hersey.files.writing import write_atomically
+from hersey.report.glossary import meanings
 from hersey.study.log_and_machine import Study
 
 #: Styles of all pages, and the pieces of their scripts, in the order in which they are one module.
 _STYLES = ("tokens.css", "page.css")
 _SHARED = ("drawing.js", "chart.js")
 _LIVE = (
+    "terms.js",
     "physics.js",
     "answers.js",
     "labour.js",
@@ -45,6 +47,8 @@ _SECTIONS = ("section.js", "torque.js", "regime.js", "quality.js", "band.js", "p
 _REPORT = ("panel.css", "timeline.js", *_LIVE, "first.js", *_SECTIONS, "page.js")
 #: Charts that the page has otherwise: the log on one axis, motion by the core itself.
 _OTHERWISE = ("timeline_", "simulation_")
+#: Terms whose meaning a label shows where the pointer rests on it.
+_TERMS = ("V*", "transition", "stick speed", "closure", "dwell")
 #: Samples that only charts need.
 _DRAWN: Any = {"fit": {"cells"}, "simulation": True}
 
@@ -75,7 +79,12 @@ def render(document: Analysis) -> str:
     core = resources.files("hersey.report") / "static" / "physics.wasm"
     physics = base64.b64encode(core.read_bytes()).decode() if document.map else None
     return drawn(
-        _REPORT, "hersey report", document.model_dump(mode="json", exclude=_DRAWN), shown, physics=physics
+        _REPORT,
+        "hersey report",
+        document.model_dump(mode="json", exclude=_DRAWN),
+        shown,
+        physics=physics,
+        glossary=meanings(_TERMS),
     )
 
 
@@ -86,17 +95,18 @@ def drawn(
     charts: Mapping[str, Chart],
     *,
     physics: str | None = None,
+    glossary: Mapping[str, str] | None = None,
 ) -> str:
     """Return a page as HTML text: what ``pieces`` of ``static`` (scripts, styles) show of a document.
 
-    ``physics`` is the core as WebAssembly, in base64.
+    ``physics`` is the core as WebAssembly, in base64; ``glossary`` is what terms of the page mean.
     """
     data: dict[str, object] = {
         "document": document,
         "charts": {key: specification_of(chart) for key, chart in charts.items()},
     }
-    if physics is not None:
-        data["physics"] = physics
+    more = {"physics": physics, "glossary": glossary}
+    data |= {name: content for name, content in more.items() if content is not None}
     return page(
         title=title,
         style=_static((*_STYLES, *(name for name in pieces if name.endswith(".css")))),

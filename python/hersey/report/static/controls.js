@@ -1,7 +1,7 @@
 // A slider with its number field and unit. What differs from the report carries a mark, in words for a reader of
 // the screen too.
 
-function control(place, { name, label, unit, low, high, logarithmic = true, count = 3, step = null, spoken = label, change, refused }) {
+function control(place, { name, label, unit, low, high, logarithmic = true, count = 3, step = null, spoken = label, term = "", change, refused }) {
   const STEPS = 1000;
   const row = add(place, "div", "", "control");
   const caption = add(row, "label");
@@ -14,6 +14,7 @@ function control(place, { name, label, unit, low, high, logarithmic = true, coun
   Object.assign(slider, { type: "range", min: 0, max: STEPS, step: 1, id: `slide-${name}` });
   slider.setAttribute("aria-label", `${spoken}, ${unit}`);
   if (spoken !== label) { caption.title = spoken; field.setAttribute("aria-label", `${spoken}, ${unit}`); }
+  explained(caption, term);
   Object.assign(field, { type: "text", inputMode: "decimal", autocomplete: "off" });
   let value = null, marked = null, tracked = "";
   const position = (v) => STEPS * (logarithmic ? Math.log(v / low) / Math.log(high / low) : (v - low) / (high - low));

@@ -221,6 +221,7 @@ function operatingMap(place, map, move = null) {
       else if (kind === "hatched") svg("rect", { x: 1, y: 0, width: 24, height: 12, fill: `url(#${named})` }, sample);
       else svg("path", { d: "M1 6h24", class: kind }, sample);
       item.append(text);
+      explained(item, { transition: "transition", fold: "V*" }[kind]);
     };
     const at = setting && hot ? ` at ${celsius(setting.temperature).toFixed(0)} °C` : "";
     const valued = (values) => {

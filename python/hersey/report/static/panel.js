@@ -87,9 +87,10 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
     }
     one(place, "stiffness", "Stiffness", "N/mm", 1e3, base.stiffness / 10, base.stiffness * 10);
     const level = hot ? ` at ${digits(known.stick.temperature - 273.15)} °C` : "";
-    one(place, "stick_speed", hot ? `Stick,${level.slice(3)}` : "Stick speed", "mm/s", 1e-3, base.stick_speed / 10, base.stick_speed * 10, { spoken: `Stick speed${level}` });
+    one(place, "stick_speed", hot ? `Stick,${level.slice(3)}` : "Stick speed", "mm/s", 1e-3, base.stick_speed / 10, base.stick_speed * 10, { spoken: `Stick speed${level}`, term: "stick speed" });
     const row = add(place, "div", "", "chosen"), label = add(row, "label", "Closure"), select = add(row, "select");
     label.htmlFor = select.id = "try-closure";
+    explained(label, "closure");
     const mark = document.createElement("span");
     mark.className = "changed";
     label.prepend(mark);

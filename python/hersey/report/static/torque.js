@@ -59,6 +59,7 @@ async function torqueSection(parent) {
     await chart(pair, "surface", { behind: false });
   });
   all.id = "statistics";
+  explained(all.firstChild, "dwell");
 }
 function exponents(parent) {
   const { coefficients: c, transition } = data.fit;

@@ -1,0 +1,8 @@
+// What a term means, an entry of the glossary, where the pointer rests on its label.
+
+const glossary = JSON.parse(document.getElementById("glossary").textContent);
+
+function explained(element, term) {
+  if (glossary[term]) element.title = [element.title, glossary[term]].filter(Boolean).join(": ");
+  return element;
+}
