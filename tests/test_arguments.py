@@ -179,11 +179,11 @@ TAKEN: list[tuple[str, Callable[[Any], Any], str, float, float]] = [
         0.7,
         2.0,
     ),
-    ("speed", lambda v: surface().damping(v, 420.0), "rpm", 10.0, 100.0),
-    ("temperature", lambda v: surface().torque(4.0, v), "degC", 95.0, 175.0),
-    ("speed", lambda v: surface().predict(v, 420.0).torque, "rpm", 10.0, 100.0),
+    ("speed", lambda v: surface().damping(speed=v, temperature=420.0), "rpm", 10.0, 100.0),
+    ("temperature", lambda v: surface().torque(speed=4.0, temperature=v), "degC", 95.0, 175.0),
+    ("speed", lambda v: surface().predict(speed=v, temperature=420.0).torque, "rpm", 10.0, 100.0),
     ("stick_speed", lambda v: surface().drag(roll_radius=0.015, stick_speed=v).stick_speed, "mm/s", 0.1, 1.0),
-    ("speed", lambda v: models().predict(v, 420.0).torque, "rpm", 10.0, 100.0),
+    ("speed", lambda v: models().predict(speed=v, temperature=420.0).torque, "rpm", 10.0, 100.0),
 ]
 
 

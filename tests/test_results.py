@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -30,6 +31,7 @@ from hersey.document.parts.posterior import PosteriorPart
 from hersey.document.parts.stability import BandPart
 from hersey.document.parts.study import StudyPart
 from hersey.document.parts.time_to_failure import TimeToFailurePart
+from hersey.errors import MissingFileError
 from hersey.identification.identified_drive import IdentifiedDrive
 from hersey.inspection.inspecting import Inspection
 from hersey.motion.trajectory import Trajectory
@@ -227,6 +229,7 @@ def test_a_result_answers(name: str) -> None:
     assert part.model_validate_json(document.model_dump_json()) == document
     assert set(plain) <= set(document.model_dump())
     check_units(result.to_frame())
+    check_pandas(result)
     page = result._repr_html_()
     assert page.startswith("<pre>")
     assert "<svg" in page
@@ -241,6 +244,34 @@ def check_units(table: pl.DataFrame) -> None:
         return
     for name, kind in table.schema.items():
         assert not kind.is_float() or name.endswith(")") or name == "effective_rows", name
+
+
+def check_pandas(result: Result) -> None:
+    """The same columns, rows and numbers in pandas."""
+    table, frame = result.to_frame(), result.to_pandas()
+    assert list(frame.columns) == table.columns
+    assert len(frame) == table.height
+    for name, kind in table.schema.items():
+        if kind.is_float():
+            np.testing.assert_array_equal(frame[name].to_numpy(), table[name].to_numpy(), name)
+
+
+def test_a_table_for_pandas_holds_the_same() -> None:
+    frame = hersey.NoLoadTorque.stated(constant=0.02, uncertainty=0.1).to_pandas()
+    assert type(frame).__module__.split(".")[0] == "pandas"
+    assert frame.loc[frame["name"] == "constant", "value"].tolist() == [0.02]
+    dwells = points().to_pandas()
+    assert dwells["torque (N m)"].tolist() == points().column("torque").tolist()
+
+
+def test_without_pandas_the_way_out_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "pandas", None)
+    with pytest.raises(MissingFileError) as caught:
+        points().to_pandas()
+    assert str(caught.value) == (
+        "to_pandas needs pandas, which is not installed: pip install pandas, "
+        "or use to_frame(), which returns a polars frame"
+    )
 
 
 def test_every_public_result_is_looked_at() -> None:

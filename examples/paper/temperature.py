@@ -144,7 +144,7 @@ def _surface(measured: Measured) -> Chart:
     speed, kelvin = np.meshgrid(np.sqrt(across[1:] * across[:-1]), 0.5 * (up[1:] + up[:-1]), indexing="ij")
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        law = surface.damping(speed, kelvin)
+        law = surface.damping(speed=speed, temperature=kelvin)
     left, bottom = np.meshgrid(across[:-1], up[:-1], indexing="ij")
     right, top = np.meshgrid(across[1:], up[1:], indexing="ij")
     cells = rows_of(

@@ -6,6 +6,7 @@ import html
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
+from hersey.errors import MissingFileError
 from hersey.schema.record import (
     OPEN,
     Means,
@@ -57,6 +58,24 @@ class Result(Record):
             for name, value in values.items()
             if isinstance(value, float | int) and not isinstance(value, bool)
         )
+
+    def to_pandas(self) -> Any:
+        """Return the table of `to_frame` as a pandas frame.
+
+        Raises
+        ------
+        MissingFileError
+            If pandas is not installed.
+        """
+        try:
+            import pandas as pd
+        except ImportError:
+            raise MissingFileError(
+                "to_pandas needs pandas, which is not installed: pip install pandas, "
+                "or use to_frame(), which returns a polars frame"
+            ) from None
+        # polars' own conversion needs pyarrow
+        return pd.DataFrame({column.name: column.to_numpy() for column in self.to_frame()})
 
     def chart(self) -> Any:
         """Return the chart of the result."""

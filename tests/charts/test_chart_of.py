@@ -263,7 +263,7 @@ def test_a_surface_with_its_limits() -> None:
     kelvin = np.linspace(span[0], span[1], 4)
     rows, _, corners, _ = layers("DampingSurface")
     speed = np.array([row["speed"] for row in rows]) * RPM
-    torque = surface().torque(speed, np.repeat(kelvin, speed.size // 4))
+    torque = surface().torque(speed=speed, temperature=np.repeat(kelvin, speed.size // 4))
     unit = 1.0 if torque.max() >= 1.0 else 1e3
     assert [row["y"] for row in rows] == pytest.approx(unit * torque)
     assert all(row["low"] < row["y"] < row["high"] for row in rows)

@@ -121,7 +121,7 @@ def test_the_transition_is_where_torque_is_least(surface: DampingSurface) -> Non
     assert t.meeting_speed > t.speed.high  # where the trend lines meet is another speed
     assert t.meeting_speed == pytest.approx(surface.reference_speed * np.exp(surface.values[-1]), rel=1e-9)
     assert surface.transition_torque() == pytest.approx(torque, rel=0.006)
-    assert surface.torque(t.meeting_speed) < 0.985 * torque
+    assert surface.torque(speed=t.meeting_speed) < 0.985 * torque
     assert "the trend lines on either side meet at" in surface.summary()
     assert surface.variables[-1] == "ln(w_meet/w_ref)"
 

@@ -157,8 +157,8 @@ def test_the_film_is_what_is_left() -> None:
     assert surface.b is not None
     assert surface.c.value == pytest.approx(-0.6, abs=1e-9)
     assert surface.b.value == pytest.approx(-0.9, abs=1e-9)
-    assert surface.torque(w, t + 273.15) == pytest.approx(film(w, t), rel=1e-9)
-    assert surface.total_torque(w, t + 273.15) == pytest.approx(whole, rel=1e-9)
+    assert surface.torque(speed=w, temperature=t + 273.15) == pytest.approx(film(w, t), rel=1e-9)
+    assert surface.total_torque(speed=w, temperature=t + 273.15) == pytest.approx(whole, rel=1e-9)
     assert abs(hersey.fit(points).c.value + 0.6) > 0.003  # the whole torque passes for another film
     backwards = points_of(-w, -whole, t).without(stated())
     assert backwards.column("torque") == pytest.approx(-film(w, t), rel=1e-9)
@@ -251,8 +251,12 @@ def test_a_saved_fit_carries_the_rest(tmp_path: Path) -> None:
     assert again.rest is not None
     assert surface.rest is not None
     assert again.rest.to_dict() == surface.rest.to_dict()
-    assert again.total_torque(5.0, 420.0) == surface.total_torque(5.0, 420.0)
-    assert again.total_torque(5.0, 420.0) > surface.torque(5.0, 420.0) + 0.02
+    assert again.total_torque(speed=5.0, temperature=420.0) == surface.total_torque(
+        speed=5.0, temperature=420.0
+    )
+    assert (
+        again.total_torque(speed=5.0, temperature=420.0) > surface.torque(speed=5.0, temperature=420.0) + 0.02
+    )
     broken: dict[str, Any] = json.loads(path.read_text())
     broken["fit"]["rest"]["covariance"] = [[1.0]]
     path.write_text(json.dumps(broken))
@@ -287,13 +291,15 @@ def test_motion_map_and_limits_count_film_and_rest() -> None:
     for kelvin in (400.0, AT):
         for drag in (surface.drag(**belt, temperature=kelvin), surface.drag(**belt).at(kelvin)):
             for v in (0.005, 0.1):
-                total = surface.total_torque(v / 0.015, kelvin)
+                total = surface.total_torque(speed=v / 0.015, temperature=kelvin)
                 assert drag.force(v) * 0.015 == pytest.approx(total, rel=1e-9)
     hot, limits = [400.0, AT], hersey.Limits(motor_torque=1.2)
     map_ = map_of(surface, hersey.Drivetrain(11e3, 11.0), **belt, limits=limits, temperatures=hot, draws=2)
-    assert map_.state_at(AT, 0.1).torque == pytest.approx(surface.total_torque(0.1 / 0.015, AT), rel=1e-9)
+    assert map_.state_at(AT, 0.1).torque == pytest.approx(
+        surface.total_torque(speed=0.1 / 0.015, temperature=AT), rel=1e-9
+    )
     for kelvin, speed in zip(hot, map_.stall_above, strict=True):
-        assert surface.total_torque(speed / 0.015, kelvin) == pytest.approx(1.2, rel=1e-9)
+        assert surface.total_torque(speed=speed / 0.015, temperature=kelvin) == pytest.approx(1.2, rel=1e-9)
 
 
 def test_draws_of_the_rest_have_its_errors() -> None:

@@ -87,7 +87,7 @@ def test_branches_that_meet_are_found() -> None:
     assert surface.transition_speed(150 + 273.15) == pytest.approx(1.5, rel=0.01)
     assert surface.transition.mixed_exponent.value == pytest.approx(-1.2, abs=0.01)
     assert surface.c.value == pytest.approx(-0.7, abs=0.005)
-    measured = surface.torque(w, t + 273.15)
+    measured = surface.torque(speed=w, temperature=t + 273.15)
     np.testing.assert_allclose(measured, torque, rtol=0.02)
 
 
@@ -141,11 +141,21 @@ def test_units_of_speed_change_a_only() -> None:
 def test_extrapolation_warns_and_names_the_axis(points: hersey.SteadyPoints) -> None:
     surface = hersey.fit(points)
     with pytest.warns(ExtrapolationWarning, match="speed outside"):
-        surface.damping(1000.0, 400.0)
+        surface.damping(speed=1000.0, temperature=400.0)
     with pytest.warns(ExtrapolationWarning, match="temperature outside"):
-        surface.damping(5.0, 600.0)
+        surface.damping(speed=5.0, temperature=600.0)
     with pytest.raises(ParameterError, match="temperature"):
-        surface.damping(5.0)
+        surface.damping(speed=5.0)
+
+
+@pytest.mark.parametrize("name", ["damping", "torque", "total_torque", "predict"])
+def test_speed_and_temperature_are_named(points: hersey.SteadyPoints, name: str) -> None:
+    """Two plain numbers can be swapped unseen: 420 rad/s at 5 K gave nan."""
+    method = getattr(hersey.fit(points), name)
+    with pytest.raises(TypeError, match="too many positional arguments"):
+        method(5.0, 420.0)
+    with pytest.raises(TypeError, match="too many positional arguments"):
+        method(5.0, temperature=420.0)
 
 
 def test_a_fitted_law_carries_where_it_came_from(points: hersey.SteadyPoints) -> None:
@@ -161,7 +171,7 @@ def test_a_fitted_law_becomes_drag(points: hersey.SteadyPoints) -> None:
     surface = hersey.fit(points)
     drag = surface.drag(roll_radius=0.015, stick_speed=3e-4, temperature=420.0)
     speed = 5.0
-    expected = float(surface.torque(speed, 420.0)) / 0.015
+    expected = float(surface.torque(speed=speed, temperature=420.0)) / 0.015
     assert float(drag.force(speed * 0.015)) == pytest.approx(expected, rel=1e-9)
     w, t = grid(SPEEDS, TEMPERATURES)
     single = hersey.fit(points_of(w, 62.0 * t**-0.9 * w**0.3, t))

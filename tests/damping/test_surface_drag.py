@@ -48,10 +48,10 @@ def surface() -> DampingSurface:
 def test_damping_and_torque_on_either_side_of_the_transition(surface: DampingSurface) -> None:
     w, t = np.array([[0.3], [3.0]]), np.array([100.0, 150.0])
     expected = law(w, t)
-    assert surface.torque(w, t + 273.15) == pytest.approx(expected, rel=1e-3)
-    assert surface.damping(w, t + 273.15) == pytest.approx(expected / w, rel=1e-3)
-    assert surface.torque(-w, t + 273.15) == pytest.approx(-expected, rel=1e-3)
-    assert surface.damping(-w, t + 273.15) == pytest.approx(expected / w, rel=1e-3)
+    assert surface.torque(speed=w, temperature=t + 273.15) == pytest.approx(expected, rel=1e-3)
+    assert surface.damping(speed=w, temperature=t + 273.15) == pytest.approx(expected / w, rel=1e-3)
+    assert surface.torque(speed=-w, temperature=t + 273.15) == pytest.approx(-expected, rel=1e-3)
+    assert surface.damping(speed=-w, temperature=t + 273.15) == pytest.approx(expected / w, rel=1e-3)
 
 
 def test_the_range_measured_is_left_with_a_warning(surface: DampingSurface) -> None:
@@ -59,18 +59,18 @@ def test_the_range_measured_is_left_with_a_warning(surface: DampingSurface) -> N
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         for speed, kelvin in ((0.1, cold), (15.0, hot), (0.09995, 362.9), (15.01, 453.5), (-15.0, hot)):
-            surface.torque(speed, kelvin)
+            surface.torque(speed=speed, temperature=kelvin)
     low, high = r"0\.1 to 15 rad/s: extrapolated", r"363\.1 to 453\.1 K: extrapolated"
     for speed in (0.0997, 15.03, -15.03):
         with pytest.warns(ExtrapolationWarning, match=f"speed outside the measured {low}") as caught:
-            surface.damping(speed, 400.0)
+            surface.damping(speed=speed, temperature=400.0)
         assert len(caught) == 1
     for kelvin in (cold - 0.5, hot + 0.6):
         with pytest.warns(ExtrapolationWarning, match=f"temperature outside the measured {high}") as caught:
-            surface.damping(3.0, kelvin)
+            surface.damping(speed=3.0, temperature=kelvin)
         assert len(caught) == 1
     with pytest.warns(ExtrapolationWarning, match="speed"):
-        surface.damping(np.array([1.0, 100.0]), 400.0)
+        surface.damping(speed=np.array([1.0, 100.0]), temperature=400.0)
 
 
 @pytest.mark.parametrize("scale", ["degC", "K"])
@@ -135,7 +135,7 @@ def test_drag_of_an_isothermal_law() -> None:
     assert surface.transition is not None
     at = surface.transition.speed.value
     assert drag.transition_speed == pytest.approx(at * RADIUS)
-    assert drag.transition_force == pytest.approx(float(surface.torque(at)) / RADIUS)
+    assert drag.transition_force == pytest.approx(float(surface.torque(speed=at)) / RADIUS)
     assert not drag.varies_with_temperature
 
 

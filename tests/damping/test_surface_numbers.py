@@ -273,7 +273,12 @@ def test_why_no_transition_is_said() -> None:
 
 
 def test_an_estimate_is_printed_with_its_interval() -> None:
-    assert str(Estimate(-0.70123, 0.01, -0.72, -0.68)) == "-0.7012 [-0.72, -0.68]"
+    known = Estimate(-0.70123, 0.01, -0.72, -0.68)
+    assert str(known) == "-0.7012 [-0.72, -0.68]"
+    assert repr(known) == "Estimate(-0.7012 [-0.72, -0.68] at 95 %)"
+    sensors = known.with_systematic(0.0123)
+    assert repr(sensors) == "Estimate(-0.7012 [-0.72, -0.68] at 95 %, sensor errors add up to 0.012)"
+    assert repr(Estimate(0.5, np.inf, -np.inf, np.inf)) == "Estimate(0.5, interval unknown)"
 
 
 def test_the_summary_prints_the_numbers() -> None:

@@ -30,9 +30,9 @@ def test_limits_of_two_visits_say_that_they_are_those_of_these_visits() -> None:
     assert "interval not told" in surface.summary()
     assert "by the dwells of a visit: not told, they are too few" in surface.summary()
     with pytest.warns(UntoldWarning, match="visits recorded"):
-        surface.predict("20 rpm", "120 degC")
+        surface.predict(speed="20 rpm", temperature="120 degC")
     with pytest.warns(UntoldWarning):
-        compare_models(two, bootstrap=0, cross_validate=False).predict("20 rpm", "120 degC")
+        compare_models(two, bootstrap=0, cross_validate=False).predict(speed="20 rpm", temperature="120 degC")
 
 
 @pytest.mark.filterwarnings("error::hersey.errors.UntoldWarning")
@@ -40,7 +40,7 @@ def test_a_third_temperature_tells_it() -> None:
     surface = hersey.fit(points(100.0, 130.0, 160.0))
     assert surface.b is not None
     assert surface.b.estimable
-    surface.predict("20 rpm", "120 degC")
+    surface.predict(speed="20 rpm", temperature="120 degC")
 
 
 def test_a_transition_that_moves_does_not_tell_how_far_two_visits_scatter() -> None:

@@ -71,11 +71,14 @@ def surface_chart(surface: DampingSurface) -> Chart:
         hot = list(np.linspace(*surface.temperature_range, _TEMPERATURES))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        bands = [surface.predict(speed, None if t is None else np.full_like(speed, t)) for t in hot]
+        bands = [
+            surface.predict(speed=speed, temperature=None if t is None else np.full_like(speed, t))
+            for t in hot
+        ]
         factor, unit = torque_unit(max(float(band.torque.max()) for band in bands))
         low, high = surface.speed_range
         turns: list[Row] = [
-            {"speed": rpm(at), "y": factor * float(surface.torque(np.array([at]), t)[0])}
+            {"speed": rpm(at), "y": factor * float(surface.torque(speed=np.array([at]), temperature=t)[0])}
             for at, t in ((surface.transition_speed(t), t) for t in hot)
             if low < at < high
         ]
@@ -116,7 +119,7 @@ def _chosen(comparison: ModelComparison) -> Chart:
     dwells = _dwells(measured, factor * torque, data.torque_error, kelvin)
     speed = np.geomspace(measured.min(), measured.max(), _SPEEDS)
     hot: list[float | None] = [None] if kelvin is None else list(data.temperatures)
-    curves = _band_rows(speed, [comparison.predict(speed, t) for t in hot], hot, factor)
+    curves = _band_rows(speed, [comparison.predict(speed=speed, temperature=t) for t in hot], hot, factor)
     name = comparison.chosen.candidate.name
     title = alt.Title("The law chosen", subtitle=f"{name}; shaded: 95 % limits of the law")
     tips = _tips(unit, hot=kelvin is not None)

@@ -25,6 +25,7 @@ from hersey.damping.candidates.model_comparison import CandidateFit, ModelCompar
 from hersey.damping.candidates.observations import Observations
 from hersey.damping.distributions import holm, ratio_quantile, student_above, student_quantile
 from hersey.damping.dwells import SteadyPoints
+from hersey.damping.dwells.reduced import require_points
 from hersey.damping.estimate import CONFIDENCE, Estimate
 from hersey.errors import ISOTHERMAL, HerseyError, InsufficientDataError
 from hersey.result import Means, Record, Result
@@ -153,6 +154,9 @@ def compare(
     InsufficientDataError
         If the two share no range of speed or temperature, or no law fits both; it names the log.
     """
+    for points, call in ((a, "hersey.compare({points}, b)"), (b, "hersey.compare(a, {points})")):
+        if not isinstance(points, Observations):
+            require_points(points, call)
     data = [_observed(points, name) for points, name in zip((a, b), names, strict=True)]
     speeds, temperatures = _shared(data[0], data[1], names)
     first, second = (_fitted(each, name) for each, name in zip(data, names, strict=True))

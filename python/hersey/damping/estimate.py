@@ -43,6 +43,15 @@ class Estimate(Record):
             return f"{self.value:.4g} (interval not told)"
         return f"{self.value:.4g} [{self.low:.4g}, {self.high:.4g}]"
 
+    def __repr__(self) -> str:
+        """Return value and interval on one line; the unit is that of the field that holds the estimate."""
+        if self.estimable:
+            interval = f"{self} at {CONFIDENCE:.0%}".replace("%", " %")
+        else:
+            interval = f"{self.value:.4g}, interval unknown"
+        sensors = f", sensor errors add up to {self.systematic:.2g}" if self.systematic else ""
+        return f"Estimate({interval}{sensors})"
+
 
 def quantile(freedom: float) -> float:
     """Return how many standard errors an interval reaches to either side (Student's t)."""

@@ -17,6 +17,7 @@ from hersey.damping.candidates.likelihood import minimise, scatter_beyond
 from hersey.damping.candidates.observations import Observations
 from hersey.damping.candidates.thermal import scaled_temperature
 from hersey.damping.dwells import SteadyPoints, groups_of_temperature
+from hersey.damping.dwells.reduced import require_points
 from hersey.damping.estimate import Estimate, estimate
 from hersey.damping.fitted_law import SCALES, FitStatistics
 from hersey.damping.scaled import law_of
@@ -46,7 +47,10 @@ def fit(points: SteadyPoints, *, temperature_scale: str = "degC") -> DampingSurf
     ------
     InsufficientDataError
         If the points hold fewer than three speeds, or a temperature that does not vary.
+    ParameterError
+        If ``points`` is a log or its file: the message has the line that reduces it.
     """
+    require_points(points, "hersey.fit({points})")
     if temperature_scale not in SCALES:
         raise ParameterError(f"temperature scale '{temperature_scale}' is not known: degC or K")
     data = Observations.of(points)

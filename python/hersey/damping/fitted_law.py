@@ -77,7 +77,7 @@ class FittedLaw(Result):
     version: str = field(default=_core.VERSION)
 
     @takes_si(speed="speed", temperature="temperature")
-    def damping(self, speed: ArrayLike, temperature: ArrayLike | None = None) -> FloatArray:
+    def damping(self, *, speed: ArrayLike, temperature: ArrayLike | None = None) -> FloatArray:
         """Return damping in N m s/rad at speeds (rad/s) and temperatures (K), broadcast together.
 
         Warns with `ExtrapolationWarning` outside the range of the data. Around a gradual bend it is that of
@@ -124,18 +124,18 @@ class FittedLaw(Result):
         return Inputs(z, hot, np.zeros(z.size, dtype=np.intp))
 
     @takes_si(speed="speed", temperature="temperature")
-    def torque(self, speed: ArrayLike, temperature: ArrayLike | None = None) -> FloatArray:
+    def torque(self, *, speed: ArrayLike, temperature: ArrayLike | None = None) -> FloatArray:
         """Return drag torque in N m, with the sign of the speed (rad/s); temperature in K."""
-        return np.asarray(self.damping(speed, temperature) * np.asarray(speed, dtype=float))
+        return np.asarray(self.damping(speed=speed, temperature=temperature) * np.asarray(speed, dtype=float))
 
     @takes_si(speed="speed", temperature="temperature")
-    def total_torque(self, speed: ArrayLike, temperature: ArrayLike | None = None) -> FloatArray:
+    def total_torque(self, *, speed: ArrayLike, temperature: ArrayLike | None = None) -> FloatArray:
         """Return the torque of the log in N m: that of the film and, if one was taken off, of the rest."""
-        film = self.torque(speed, temperature)
+        film = self.torque(speed=speed, temperature=temperature)
         return film if self.rest is None else film + self.rest.torque(speed, temperature)
 
     @takes_si(speed="speed", temperature="temperature")
-    def predict(self, speed: Any, temperature: Any = None) -> Band:
+    def predict(self, *, speed: Any, temperature: Any = None) -> Band:
         """Return torque with its 95 % limits: of the law, and of one further dwell in a visit of its own.
 
         Parameters
@@ -150,7 +150,7 @@ class FittedLaw(Result):
         --------
         >>> import hersey
         >>> surface = hersey.fit(hersey.read("examples/bench.csv").steady(tare="standing"))
-        >>> surface.predict("25 rpm", "150 degC").torque.round(3)
+        >>> surface.predict(speed="25 rpm", temperature="150 degC").torque.round(3)
         array([0.201])
         """
         _, inputs = self._points(speed, temperature)

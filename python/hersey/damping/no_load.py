@@ -16,6 +16,7 @@ from hersey.damping.candidates.lack_of_fit import DOES_NOT_HOLD, lack_of_fit
 from hersey.damping.candidates.no_load_law import KELVIN, RestLaw
 from hersey.damping.candidates.observations import Observations
 from hersey.damping.dwells import SteadyPoints, distinct_speeds
+from hersey.damping.dwells.reduced import require_points
 from hersey.damping.no_load_torque import NoLoadTorque, estimates_of
 from hersey.errors import TARE, InsufficientDataError, ParameterError, turned
 from hersey.log.sensors import SHARE_OF_LARGEST, Sensors
@@ -54,6 +55,7 @@ def no_load_torque(points: SteadyPoints) -> NoLoadTorque:
     >>> print(no_load_torque(SteadyPoints.from_table(table)))
     20 mN m + 1 mN m s/rad times speed (table)
     """
+    require_points(points, "hersey.no_load_torque({points})")
     name = points.log.files[0].name
     _refuse_corrected(points, name)
     speed = np.abs(points.column("speed"))

@@ -246,7 +246,7 @@ def _transition_curve(s: DampingSurface) -> list[TransitionAt]:
 def _damping(s: DampingSurface, speed: FloatArray, kelvin: float | None) -> list[float]:
     with warnings.catch_warnings():  # the mean of a group of temperatures may graze the edge of the range
         warnings.simplefilter("ignore", ExtrapolationWarning)
-        return [float(f"{b:.6g}") for b in s.damping(speed, kelvin)]
+        return [float(f"{b:.6g}") for b in s.damping(speed=speed, temperature=kelvin)]
 
 
 def _fit_part(points: SteadyPoints, s: DampingSurface, curves: CurveMixture) -> FitPart:

@@ -230,7 +230,7 @@ def _lines(surface: DampingSurface, speed: FloatArray, kelvin: FloatArray) -> li
     if found is None or found.closure is None:
         with warnings.catch_warnings():  # a range that agrees to rounding
             warnings.simplefilter("ignore")
-            return [surface.damping(speed, kelvin if heats else None)]
+            return [surface.damping(speed=speed, temperature=kelvin if heats else None)]
     warm = np.zeros(speed.size)
     if heats:
         scaled, reference = (

@@ -87,6 +87,16 @@ class Machine:
         """Bring the values to SI if they come with units."""
         fields_in_si(self, _KINDS)
 
+    def __repr__(self) -> str:
+        """Return what moves the belt, with units, and how many operating points there are, on one line."""
+        soft = self.stiffness < 1e3
+        stiffness = f"{self.stiffness:.4g} N/m" if soft else f"{self.stiffness / 1e3:.4g} kN/m"
+        count = len(self.points)
+        return (
+            f"Machine(roll radius {1e3 * self.roll_radius:.4g} mm, stiffness {stiffness}, "
+            f"mass {self.mass:.4g} kg, {count or 'no'} operating point{'' if count == 1 else 's'})"
+        )
+
     @property
     def mixed(self) -> MixedContact | None:
         """What shares the load, and how; None where no asperities and no boundary friction are stated.

@@ -11,6 +11,7 @@ import numpy as np
 from hersey.arrays import FloatArray, refuse_unknown
 from hersey.damping.curves import CurveMixture, fit_curves
 from hersey.damping.dwells import SteadyPoints
+from hersey.damping.dwells.reduced import require_points
 from hersey.damping.fit import fit
 from hersey.damping.surface import DampingSurface
 from hersey.errors import ParameterError
@@ -109,6 +110,7 @@ def posterior(
     >>> max(found.closures(), key=found.closures().get)
     'retained'
     """
+    require_points(points, "hersey.posterior({points}, machine)")
     refuse_unknown("posterior", sampling, tuple(Sampling.__annotations__))
     draws, seed, threads = sampling.get("draws", DRAWS), sampling.get("seed", 1), sampling.get("threads", 1)
     if draws < 20 * CHAINS or seed < 0:

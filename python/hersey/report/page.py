@@ -17,6 +17,7 @@ from hersey.charts.analysis import charts
 from hersey.charts.page import page
 from hersey.charts.render import specification_of
 from hersey.charts.style import Chart
+from hersey.damping.dwells.reduced import refuse_unfitted
 from hersey.document.analysis import Analysis
 from hersey.document.assembly import document_of
 from hersey.files.writing import write_atomically
@@ -53,11 +54,17 @@ _TERMS = ("V*", "transition", "stick speed", "closure", "dwell")
 _DRAWN: Any = {"fit": {"cells"}, "simulation": True}
 
 
-def report(study: Study, path: str | Path, *, command: str = "", overwrite: bool = False) -> None:
+def report(
+    study: Study, path: str | Path = "report.html", *, command: str = "", overwrite: bool = False
+) -> None:
     """Write the page of a study, one HTML file.
 
     Parameters
     ----------
+    study
+        From `hersey.study`.
+    path
+        The file to write, as `hersey report` names it by default.
     command
         What was typed, as the page shall say.
     overwrite
@@ -67,7 +74,11 @@ def report(study: Study, path: str | Path, *, command: str = "", overwrite: bool
     ------
     OutputError
         If the file is there and may not be replaced, or cannot be written.
+    ParameterError
+        If ``study`` is a log, its file or its steady points: the message has the line to write.
     """
+    if not isinstance(study, Study):
+        refuse_unfitted(study, 'hersey.report(hersey.study({points}), "report.html")', "a study")
     made = datetime.now(UTC).isoformat(timespec="seconds")
     document = document_of(study, command=command, made=made)
     write_atomically(Path(path), render(document), overwrite=overwrite)

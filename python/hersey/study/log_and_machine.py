@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from hersey.damping.compare import LogComparison, compare
 from hersey.damping.curves import CurveMixture, fit_curves
 from hersey.damping.dwells import SteadyPoints
+from hersey.damping.dwells.reduced import require_points
 from hersey.damping.fit import fit
 from hersey.decision.behaviour import Step, Working
 from hersey.errors import HerseyError, ParameterError
@@ -116,7 +117,7 @@ def study(
     InsufficientDataError
         If the points cannot determine the surface, or share nothing with those of the other log.
     ParameterError
-        If a file is in both logs, or the machine's file is wrong.
+        If a file is in both logs, the machine's file is wrong, or a log is given in the place of its points.
 
     Examples
     --------
@@ -124,6 +125,9 @@ def study(
     >>> study(Recipe(logs="examples/bench.csv", tare="standing").points()).decision.signal
     'watch'
     """
+    require_points(points, "hersey.study({points})" if machine is None else "hersey.study({points}, machine)")
+    if against is not None:
+        require_points(against, "hersey.study(points, against={points})")
     if isinstance(machine, str | Path):
         machine_file, machine = Path(machine), read_machine(machine)
     comparison = None

@@ -17,6 +17,7 @@ import numpy as np
 from hersey.arrays import FloatArray
 from hersey.damping.candidates.shared_errors import shared_variance
 from hersey.damping.dwells import SteadyPoints, groups_of_temperature
+from hersey.damping.dwells.reduced import require_points
 from hersey.damping.estimate import Estimate, quantile
 from hersey.damping.surface import DampingSurface
 from hersey.errors import InsufficientDataError, Setting, way_in
@@ -123,6 +124,7 @@ def measured_film(
     InsufficientDataError
         If the log holds no temperature and none is given.
     """
+    require_points(points, "hersey.measured_film({points}, surface, contact, lubricant)")
     speed, torque = np.abs(points.column("speed")), np.abs(points.column("torque"))
     kelvin = _temperatures(points, surface, temperature)
     inside = film_temperature(contact, lubricant, speed=speed, temperature=kelvin)

@@ -12,6 +12,7 @@ from hersey.arrays import FloatArray
 from hersey.damping.candidates.lack_of_fit import LackOfFit
 from hersey.damping.candidates.observations import Observations
 from hersey.damping.dwells import SteadyPoints, distinct_speeds, groups_of_temperature
+from hersey.damping.dwells.reduced import require_points
 from hersey.damping.estimate import Estimate, estimate
 from hersey.damping.surface import DampingSurface
 from hersey.damping.trend import Trend, trend_of
@@ -112,6 +113,7 @@ def regime(
     temperature
         K, of a log that holds none.
     """
+    require_points(points, "hersey.regime({points}, surface)")
     table, law = REGIMES, None
     if contact is not None and lubricant is not None:
         table = log_regimes(points, surface, contact, lubricant, temperature)

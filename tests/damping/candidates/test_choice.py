@@ -319,20 +319,20 @@ def test_torque_is_predicted_by_the_law_chosen() -> None:
     found = made(chosen=entry(0.0))
     w = found.data.reference_speed
     expected = band(found.chosen.fit, inputs([np.log(3.0 / w), np.log(6.0 / w)], [410.0, 410.0]))
-    got = found.predict(np.array([3.0, 6.0]), 410.0)
+    got = found.predict(speed=np.array([3.0, 6.0]), temperature=410.0)
     assert got.torque == pytest.approx(expected.torque, rel=1e-12)
     assert got.prediction[1] == pytest.approx(expected.prediction[1], rel=1e-12)
     assert got.torque[0] == pytest.approx(np.exp(0.1 - 2.4 * np.log(410 / 400) + 0.3 * np.log(3.0 / w)))
-    hot = found.predict(3.0, np.array([410.0, 380.0]))
+    hot = found.predict(speed=3.0, temperature=np.array([410.0, 380.0]))
     assert hot.torque == pytest.approx(
         [np.exp(0.1 - 2.4 * np.log(t / 400) + 0.3 * np.log(3.0 / w)) for t in (410.0, 380.0)]
     )
     with pytest.raises(ParameterError, match=r"^this law depends on temperature: give it one, in K$"):
-        found.predict(3.0)
+        found.predict(speed=3.0)
     law = Law(None, ONE)
     fit = hand_fit(law, [0.1, -0.7])
     cold = CandidateFit(Candidate(None, ONE), fit, {}, 0.0, 0.0, 1.0, None, None, HOLDS)
-    assert made(chosen=cold).predict(3.0).torque == pytest.approx([np.exp(0.1 + 0.3 * np.log(3.0 / w))])
+    assert made(chosen=cold).predict(speed=3.0).torque == pytest.approx([np.exp(0.1 + 0.3 * np.log(3.0 / w))])
 
 
 def test_a_comparison_is_what_its_parts_are() -> None:

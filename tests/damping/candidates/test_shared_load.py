@@ -104,9 +104,9 @@ def test_it_is_chosen_where_it_made_the_dwells() -> None:
     assert low < 0.1 * np.exp(0.1) < high
     law = SharedLoadLaw(CONTACT, data.reference_speed, 1.0)
     exact = np.exp(law.predict(np.array(list(TRUTH.values())), data.at(np.array([5.0]), np.array([353.15]))))
-    assert found.predict(5.0, 353.15).torque == pytest.approx(exact, rel=0.01)
+    assert found.predict(speed=5.0, temperature=353.15).torque == pytest.approx(exact, rel=0.01)
     with pytest.raises(ParameterError, match="temperature"):
-        found.predict(5.0)
+        found.predict(speed=5.0)
 
 
 def test_a_viscosity_that_is_right_as_stated_is_not_fitted() -> None:

@@ -87,10 +87,10 @@ def test_screw_drive_one_has_a_transition_and_drive_two_none() -> None:
     c, mixed = (corner.values[corner.law.index(name)] for name in ("c", "c_mixed"))
     assert mixed < -1.0 < c
     rpm = np.geomspace(20.0, 180.0, 200)
-    least = rpm[np.argmin(one.predict(rpm * testbench.RPM).torque)]
+    least = rpm[np.argmin(one.predict(speed=rpm * testbench.RPM).torque)]
     assert 45.0 < least < 70.0
     # of the laws without a falling branch, friction and a viscous part is the likelier, not beyond doubt
     assert two.chosen.candidate.key == "isothermal/coulomb-viscous"
     assert two.candidate("isothermal/one").delta_aicc < 6.0
-    assert np.all(np.diff(two.predict(rpm * testbench.RPM).torque) > 0)
+    assert np.all(np.diff(two.predict(speed=rpm * testbench.RPM).torque) > 0)
     assert two.energies.torque is None

@@ -29,6 +29,7 @@ from hersey.damping.candidates.shared_errors import shared_variance
 from hersey.damping.candidates.shared_load import SharedLoad
 from hersey.damping.candidates.thermal import ARRHENIUS
 from hersey.damping.dwells import SteadyPoints
+from hersey.damping.dwells.reduced import require_points
 from hersey.errors import InsufficientDataError, ParameterError
 
 #: AICc by which candidates differ at most when the data do not tell them apart.
@@ -81,6 +82,8 @@ def compare_models(
     if bootstrap < 0 or seed < 0:
         name, value = ("bootstrap", bootstrap) if bootstrap < 0 else ("seed", seed)
         raise ParameterError(f"{name} is {value}: it must be at least 0")
+    if not isinstance(points, Observations):
+        require_points(points, "hersey.compare_models({points})")
     data = points if isinstance(points, Observations) else Observations.of(points)
     candidates = candidates or all_candidates()
     candidates += () if contact is None else contact_candidates(contact)

@@ -79,7 +79,7 @@ class ModelComparison(Result):
         raise ParameterError(f"no candidate '{key}' was fitted; there are {known}")
 
     @takes_si(speed="speed", temperature="temperature")
-    def predict(self, speed: FloatArray | float, temperature: FloatArray | float | None = None) -> Band:
+    def predict(self, *, speed: FloatArray | float, temperature: FloatArray | float | None = None) -> Band:
         """Return torque (N m) with its bands at speeds (rad/s) and temperatures (K), broadcast together."""
         speeds = np.atleast_1d(np.asarray(speed, dtype=np.float64))
         law = self.chosen.fit.law

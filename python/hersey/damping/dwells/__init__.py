@@ -20,6 +20,7 @@ resolution      the step of a sensor, and the error that rounding leaves in a dw
 relaxation      torque that still relaxes after each change of speed
 misleading      errors that the order of a log hides or that its sensors leave
 reduction       `steady_points`: from a log to its dwells
+reduced         what to write where steady points are needed and something else is given
 ==============  =======================================================================
 
 The settling at the start of a dwell is cut by the marginal standard error rule (White, Simulation 69

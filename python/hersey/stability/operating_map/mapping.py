@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from hersey.arrays import FloatArray
+from hersey.damping.dwells.reduced import refuse_unfitted
 from hersey.damping.surface import DampingSurface
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.machine.limits import OperatingPoint
@@ -98,6 +99,8 @@ def operating_map(
 
 def _check(surface: DampingSurface, machine: Machine, draws: int) -> None:
     """Refuse what no map can be made of."""
+    if not isinstance(surface, DampingSurface):
+        refuse_unfitted(surface, "hersey.operating_map(hersey.fit({points}), machine)", "a fitted surface")
     if not isinstance(machine, Machine):
         raise ParameterError(
             "a map needs the machine, which states roll radius and stick speed: give read_machine(...) or "
