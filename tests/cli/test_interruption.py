@@ -10,6 +10,7 @@ import signal
 import subprocess
 import sys
 import time
+import tomllib
 import zipfile
 from pathlib import Path
 
@@ -27,6 +28,7 @@ MACHINE = str(EXAMPLES / "machine.toml")
 TYPED: dict[str, tuple[list[str], float]] = {
     "app": (["--no-browser"], 1.5),
     "new": ([BENCH[0], "--mapping", "h.toml", "--machine", "m.toml"], 1.5),
+    "examples": (["copied"], 0.5),
     "report": ([*BENCH, "--machine", MACHINE, "--out", "r.html", "--figures", "pictures"], 4.0),
     "inspect": ([BENCH[0], "--figure", "i.png"], 2.0),
     "fit": ([*BENCH, "--json"], 1.5),
@@ -170,6 +172,7 @@ def is_whole(path: Path) -> bool:
         ".hersey-shm": lambda: True,
         ".fmu": lambda: zipfile.is_zipfile(path),
         ".md": lambda: content.endswith(b"\n"),
+        ".toml": lambda: bool(tomllib.loads(content.decode())),
     }
     return ends[path.suffix]()
 

@@ -22,6 +22,7 @@ VERBS = {
         "Open a page on this computer: drop logs, choose channels, describe the machine, read the report."
     ),
     "new": "Ask the few things that a log cannot tell, and write hersey.toml and the machine's file.",
+    "examples": "Copy the shipped examples into a new folder: logs, a machine file, a life test.",
     "report": (
         "Write a report: regime, damping surface, data quality and a stick-slip simulation, in one HTML page."
     ),
