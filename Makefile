@@ -18,7 +18,7 @@ SUM_OF_SOURCES := cat $(PHYSICS_SOURCES) | sha256sum | cut -c1-64
 LIBRARY := python/hersey/exchange/library
 
 .PHONY: help build physics demo demo-life test quick nightly lint format typecheck test-rust test-python browser lowest fuzz \
-  fuzz-read benchmark mutants mutants-python mutants-rust clean
+  fuzz-read benchmark mutants mutants-python mutants-rust library wheel release-check clean
 .DEFAULT_GOAL := help
 
 help: ## list the targets
@@ -44,11 +44,14 @@ physics: ## compile the core for the page anew (rustup target add wasm32-unknown
 	@test "$$(head -n 1 $(PHYSICS).sha256)" = "$$($(SUM_OF_SOURCES))" || { $(HAS_WEB) && $(MAKE) --no-print-directory physics; } || \
 	  echo "the page keeps its committed core, though the sources are others: make physics renews it" >&2
 	PIP_CONSTRAINT=$(CURDIR)/constraints.txt $(BIN)/maturin develop --release --quiet
+	$(MAKE) --no-print-directory library
+	@$(BIN)/python -m compileall -q -j 0 python/hersey # as pip does: else a start compiles 200 modules where none are kept
+	@touch $@
+
+library: ## compile the core for C and put it into the package
 	cargo rustc --release --quiet --package hersey-c -- -C strip=symbols
 	@mkdir -p $(LIBRARY) && cd $${CARGO_TARGET_DIR:-target}/release && for made in libhersey.so libhersey.dylib; do \
 	  test ! -f $$made || install -m 755 $$made $(CURDIR)/$(LIBRARY)/$${made#lib}; done
-	@$(BIN)/python -m compileall -q -j 0 python/hersey # as pip does: else a start compiles 200 modules where none are kept
-	@touch $@
 
 demo: build ## run the main job on the shipped log
 	mkdir -p build/demo
@@ -152,5 +155,22 @@ benchmark: build ## ratios against peers, printed and written to benchmarks/RESU
 	$(BIN)/python -m benchmarks.candidates
 	$(BIN)/python benchmarks/start.py
 
+# One wheel serves Python 3.11 and later. It needs no .venv: what it is made with is in build/packaging. The package holds a
+# copy of the example data only while it is packed.
+WHEELS := build/wheels
+SHIPPED := python/hersey/files/examples
+wheel: library ## build a wheel and a source archive into build/wheels
+	@test -x build/packaging/bin/maturin || { $(PYTHON) -m venv build/packaging && \
+	  build/packaging/bin/python -m pip install --quiet --disable-pip-version-check -c constraints.txt maturin; }
+	rm -rf $(WHEELS) $(SHIPPED)
+	@mkdir $(SHIPPED) && cp -r examples/life examples/*.csv examples/*.json examples/*.toml $(SHIPPED)
+	@trap 'rm -rf $(SHIPPED)' EXIT; \
+	  build/packaging/bin/maturin build --release --quiet --out $(WHEELS) && \
+	  build/packaging/bin/maturin sdist --out $(WHEELS)
+	@ls -l $(WHEELS)
+
+release-check: wheel ## install the wheel where there is no Rust, and write a report with it; uploads nothing
+	$(PYTHON) tests/release_check.py $(WHEELS)/hersey-*.whl build/release
+
 clean: ## remove everything that was built
-	rm -rf .venv build target Cargo.lock $(LIBRARY)
+	rm -rf .venv build target Cargo.lock $(LIBRARY) $(SHIPPED)

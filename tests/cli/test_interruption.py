@@ -10,6 +10,7 @@ import signal
 import subprocess
 import sys
 import time
+import tomllib
 import zipfile
 from pathlib import Path
 
@@ -28,6 +29,7 @@ TYPED: dict[str, tuple[list[str], float]] = {
     "app": (["--no-browser"], 1.5),
     "new": ([BENCH[0], "--mapping", "h.toml", "--machine", "m.toml"], 1.5),
     "explain": (["dwell"], 0.2),
+    "examples": (["copied"], 0.5),
     "report": ([*BENCH, "--machine", MACHINE, "--out", "r.html", "--figures", "pictures"], 4.0),
     "inspect": ([BENCH[0], "--figure", "i.png"], 2.0),
     "fit": ([*BENCH, "--json"], 1.5),
@@ -171,6 +173,7 @@ def is_whole(path: Path) -> bool:
         ".hersey-shm": lambda: True,
         ".fmu": lambda: zipfile.is_zipfile(path),
         ".md": lambda: content.endswith(b"\n"),
+        ".toml": lambda: bool(tomllib.loads(content.decode())),
     }
     return ends[path.suffix]()
 

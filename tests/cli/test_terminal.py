@@ -61,6 +61,7 @@ TYPED: dict[str, list[list[str]]] = {
     "app": [["--port", "99999"], ["--port", HOSTILE]],
     "new": [[LOG, "--machine", f"{IN_FILE}-new.toml"], [HOSTILE], [LOG, "--machine", f"{IN_FILE}/x.toml"]],
     "explain": [["dwell"], [HOSTILE]],
+    "examples": [[f"{IN_FILE}-copied"], [LOG]],
     "inspect": [[LOG], [LOG, "--json"], [LOG, "--torque", HOSTILE], [LOG, "--save-mapping", "--force"]],
     "fit": [[LOG], [LOG, "--json"], [LOG, "--torque-unit", HOSTILE], [HOSTILE]],
     "report": [[LOG, "--out", f"{IN_FILE}.html", "--force"], [LOG, "--json"], [LOG, "--machine", BROKEN]],

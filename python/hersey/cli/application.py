@@ -23,6 +23,7 @@ VERBS = {
     ),
     "new": "Ask the few things that a log cannot tell, and write hersey.toml and the machine's file.",
     "explain": "Explain a term of reports and docs in plain words; without a term, list all of them.",
+    "examples": "Copy the shipped examples into a new folder: logs, a machine file, a life test.",
     "report": (
         "Write a report: regime, damping surface, data quality and a stick-slip simulation, in one HTML page."
     ),

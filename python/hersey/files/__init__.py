@@ -7,5 +7,6 @@ text      opening a text file, and values of it in messages
 tables    tables as files, of which a spreadsheet runs no text
 toml      a TOML file into tables: what each value is, and what is believed
 writing   writing whole or not at all
+shipped   the examples that a wheel carries, copied into a new folder
 ========  =================================================================
 """

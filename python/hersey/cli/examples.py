@@ -1,0 +1,23 @@
+"""The examples that come with the package, copied into a new folder: ``hersey examples``."""
+
+from __future__ import annotations
+
+import shlex
+from pathlib import Path
+from typing import Annotated
+
+from hersey.cli.groups import argument
+from hersey.cli.terminal import say
+
+
+def examples(folder: Annotated[Path, argument("FOLDER", "Folder to make; it must not exist yet.")]) -> None:
+    """Copy the shipped examples into a new folder: logs, a machine file, a life test.
+
+    Example: [bold]hersey examples try-hersey[/bold]
+    """
+    from hersey.files.shipped import copy_examples
+
+    written = copy_examples(folder)
+    log, machine = str(folder / "bench.csv"), str(folder / "machine.toml")
+    say(f"examples: {folder} ({len(written)} files)")
+    say(f"now: {shlex.join(['hersey', 'report', log, '--machine', machine, '--tare', 'standing'])}")
