@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, Any, NamedTuple, TypeVar
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 from pydantic import ValidationError
+from typing_extensions import TypeAliasType
 
 from hersey.errors import ParameterError
 from hersey.result import OPEN, Means, Record, Result
@@ -150,3 +151,22 @@ def test_single_numbers_are_a_table_with_units() -> None:
         ("laps", 3.0, ""),
         ("double", 0.5, "m/s"),
     ]
+
+
+_Item = TypeVar("_Item", bound=np.generic)
+#: As NumPy 2.5 writes NDArray.
+Alias = TypeAliasType("Alias", np.ndarray[Any, np.dtype[_Item]], type_params=(_Item,))
+
+
+@dataclass(frozen=True)
+class Aliased(Record):
+    """A record with an array whose type is an alias."""
+
+    counts: Annotated[Alias[np.intp], Means(shape="(n, m)")]
+
+
+def test_an_array_may_be_typed_by_an_alias() -> None:
+    """Else no report is written with NumPy 2.5, which Python 3.12 and later get."""
+    schema = part_of(Aliased).model_json_schema()
+    counts = schema["properties"]["counts"]
+    assert counts["items"] == {"items": {"type": "integer"}, "type": "array"}

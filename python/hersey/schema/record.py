@@ -177,6 +177,8 @@ def _plain(kind: Any, means: Means) -> Any:
     origin, inside = get_origin(kind), get_args(kind)
     if origin is Annotated:
         return _plain(inside[0], next((each for each in inside if isinstance(each, Means)), means))
+    if hasattr(origin, "__value__"):  # alias by `type`, as NDArray is from NumPy 2.5 on
+        return _plain(origin.__value__[inside], means)
     if kind is float:
         return float | None if means.open else float
     if origin is np.ndarray:

@@ -162,6 +162,8 @@ def refuse_others(
 def _is(value: Any, kind: Any, *, finite: bool) -> bool:
     """Whether a value is of an annotated kind; an array is of any shape."""
     origin, inside = get_origin(kind), get_args(kind)
+    if hasattr(origin, "__value__"):  # alias by `type`, as NDArray is from NumPy 2.5 on
+        return _is(value, origin.__value__[inside], finite=finite)
     if origin in (Union, UnionType):
         return any(_is(value, each, finite=finite) for each in inside)
     if origin is Literal:
