@@ -93,7 +93,7 @@ def test_readme_has_no_other_command() -> None:
     """A command with files in a sentence is one for the reader's own, or names a verb alone."""
     inline = re.findall(r"`(hersey [^`]*)`", (ROOT / "README.md").read_text())
     assert OWN.keys() <= {*inline, *commands()}
-    alone = r"hersey (COMMAND --help|[a-z]+( fmu| LOG| --recipe recipe.toml)?)"
+    alone = r"hersey (COMMAND --help|[a-z]+( fmu| LOG| FOLDER| TERM| --recipe recipe.toml)?)"
     assert all(line in OWN or re.fullmatch(alone, line) for line in inline)
 
 
