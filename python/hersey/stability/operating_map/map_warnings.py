@@ -88,37 +88,30 @@ def _not_started(map_: OperatingMap) -> Iterator[Warning]:
     """Yield the temperatures at which the drive does not start the belt, and where it may not."""
     never = ~map_.starts & ~map_.doubtful
     if never.any():
-        first, last = _ends(map_, never)
-        yield Warning(
-            "belt not started",
-            "the drive does not start a belt at rest"
-            + (
-                " at any temperature"
-                if never.all()
-                else " at {first:.0f degC}"
-                if first == last
-                else " from {first:.0f degC} to {last:.0f degC}"
-            ),
-            severity="watch",
-            first=first,
-            last=last,
-        )
+        yield _unstarted("belt not started", map_, never, surely=True)
     if map_.doubtful.any():
-        first, last = _ends(map_, map_.doubtful)
-        yield Warning(
-            "belt may not start",
-            "the drive may not start a belt at rest"
-            + (
-                ""
-                if map_.doubtful.all()
-                else " at {first:.0f degC}"
-                if first == last
-                else " from {first:.0f degC} to {last:.0f degC}"
-            ),
-            severity="watch",
-            first=first,
-            last=last,
-        )
+        yield _unstarted("belt may not start", map_, map_.doubtful, surely=False)
+
+
+def _unstarted(kind: str, map_: OperatingMap, columns: BoolArray, *, surely: bool) -> Warning:
+    first, last = _ends(map_, columns)
+    everywhere = columns.all()
+    return Warning(
+        kind,
+        ("the drive does not start a belt at rest" if surely else "the drive may not start a belt at rest")
+        + (
+            " at any temperature"
+            if everywhere and surely
+            else ""
+            if everywhere
+            else " at {first:.0f degC}"
+            if first == last
+            else " from {first:.0f degC} to {last:.0f degC}"
+        ),
+        severity="watch",
+        first=first,
+        last=last,
+    )
 
 
 def _ends(map_: OperatingMap, columns: BoolArray) -> tuple[float | None, float | None]:
