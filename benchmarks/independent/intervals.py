@@ -151,10 +151,10 @@ def table(results: dict[str, list[Row | str]]) -> list[str]:
 
 
 def _line(name: str, parameter: str, each: list[Interval]) -> str:
-    told = [i for i in each if i.told]
-    share = f"{len(told) / len(each):.0%}"
-    if not told:
+    known = [i for i in each if i.told]
+    share = f"{len(known) / len(each):.0%}"
+    if not known:
         return f"| {name} | {len(each)} | {parameter} | {share} | | | |"
-    holds = float(np.mean([i.holds for i in told]))
-    middle, most = np.nanquantile([i.ratio for i in told], [0.5, 0.9])
+    holds = float(np.mean([i.holds for i in known]))
+    middle, most = np.nanquantile([i.ratio for i in known], [0.5, 0.9])
     return f"| {name} | {len(each)} | {parameter} | {share} | {holds:.1%} | {middle:.2f} | {most:.2f} |"
