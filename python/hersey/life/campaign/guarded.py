@@ -42,6 +42,13 @@ class GuardedConnection(sqlite3.Connection):
     def __init__(self, *args: Any, **named: Any) -> None:
         """Open the file and set every limit before anything is read from it."""
         super().__init__(*args, **named)
+        try:
+            self._guard()
+        except BaseException:
+            self.close()  # nobody else can: an open file keeps its lock
+            raise
+
+    def _guard(self) -> None:
         self.work, self.allowed = 0, _UNKNOWN
         for limit, value in _LIMITS.items():
             self.setlimit(limit, value)

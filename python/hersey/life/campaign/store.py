@@ -119,13 +119,22 @@ def _connected(path: Path, *, create: bool, write: bool, wait: float) -> Guarded
     database = connect(path, mode=f"mode={'rwc' if create else 'rw' if write else 'ro'}", wait=wait)
     try:
         database.execute("SELECT count(*) FROM sqlite_master").fetchone()
-    except sqlite3.OperationalError:
-        # In a folder that cannot be written none writes: without an unfinished log the file is all there is.
+    except sqlite3.Error as error:
         database.close()
-        if write or os.access(path.parent, os.W_OK) or path.with_name(f"{path.name}-wal").exists():
+        # In a folder that cannot be written none writes: without an unfinished log the file is all there is.
+        if (
+            not isinstance(error, sqlite3.OperationalError)
+            or write
+            or os.access(path.parent, os.W_OK)
+            or path.with_name(f"{path.name}-wal").exists()
+        ):
             raise
         database = connect(path, mode="immutable=1")
-    database.execute("PRAGMA synchronous = FULL")
+    try:
+        database.execute("PRAGMA synchronous = FULL")
+    except BaseException:
+        database.close()
+        raise
     return database
 
 
