@@ -3,7 +3,8 @@
     python -m benchmarks.importers [--vdmcheck FOLDER]
 
 Whatever is not installed is told and left out: `pip install ecospy tbb libcosimpy`, `cargo install fmi-sim`;
-VDMCheck is built from its public sources (docs/exchange.md), FOLDER has VDMCheck2.sh or VDMCheck3.sh.
+VDMCheck is built from its public sources (docs/reference/exchange.md); FOLDER has
+VDMCheck2.sh or VDMCheck3.sh.
 """
 
 from __future__ import annotations

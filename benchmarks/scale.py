@@ -326,7 +326,7 @@ HEAD = f"""# Sweeps that outgrow a machine
 
 Written by `python -m benchmarks.scale`, Python {platform.python_version()}, on {os.cpu_count()} cores:
 the paper's law, started from rest.
-Bounds stand beside the figures. What they mean for 10^9 sets stands in `docs/scale.md`.
+Bounds stand beside the figures. What they mean for 10^9 sets stands in `docs/reference/scale.md`.
 """
 
 

@@ -1,4 +1,4 @@
-"""What `hersey inspect` and `hersey report` say of measurements by others: writes docs/validation.md.
+"""What `hersey inspect` and `report` say of measurements by others: writes docs/validation/measurements.md.
 
 Every file of a collection of public measurements that is a log, or could be taken for one, is given to both
 commands with the options of its line. Where the report refuses, the advice of its message is read from the
@@ -27,7 +27,7 @@ from tests.cli import command
 from benchmarks.advice import followed
 
 ROOT = Path(__file__).parents[1]
-PAGE = ROOT / "docs" / "validation.md"
+PAGE = ROOT / "docs" / "validation" / "measurements.md"
 #: Time that a command may take, s, and rounds of advice that are followed, at the most.
 LIMIT, ROUNDS = 240, 12
 #: Characters of what a command says that stand in the table.

@@ -1,4 +1,4 @@
-"""Error of the stick-slip frequency against tolerance, on the paper's baseline. Writes docs/order.svg."""
+"""Error of the stick-slip frequency against tolerance, on the paper's baseline (docs/theory/order.svg)."""
 
 import sys
 from pathlib import Path
@@ -46,6 +46,6 @@ chart = (
     )
     .properties(width=460, height=300, title="Baseline of the paper: k = 1000, B0 = 50, drive speed 1")
 )
-folder = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).parent.parent / "docs"
+folder = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).parent.parent / "docs" / "theory"
 chart.save(folder / "order.svg")
 chart.save(folder / "order.png") if len(sys.argv) > 1 else None

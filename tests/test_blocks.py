@@ -11,7 +11,7 @@ import pytest
 from tests.conftest import ROOT, mostly_nightly
 from tests.life import shipped
 
-FILES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+FILES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 #: A block, and the comment before it if it cannot run here.
 BLOCK = re.compile(r"(?:<!-- (needs [^>]*) -->\n)?^```python\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 
@@ -22,7 +22,8 @@ def blocks() -> dict[str, tuple[str, str]]:
     for file in FILES:
         text = file.read_text()
         for match in BLOCK.finditer(text):
-            found[f"{file.name}:{text.count(chr(10), 0, match.start(2))}"] = (match[1] or "", match[2])
+            line = text.count("\n", 0, match.start(2))
+            found[f"{file.relative_to(ROOT)}:{line}"] = (match[1] or "", match[2])
     return found
 
 

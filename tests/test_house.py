@@ -370,7 +370,7 @@ def test_no_message_outside_the_command_line_names_a_flag() -> None:
 
 
 def test_every_flag_is_in_the_docs() -> None:
-    sections = (ROOT / "docs" / "commands.md").read_text().split("\n## hersey ")
+    sections = (ROOT / "docs" / "reference" / "commands.md").read_text().split("\n## hersey ")
     documented = {section.split(maxsplit=1)[0]: section for section in sections[1:]}
     assert set(documented) == set(commands())
     of_a_log, of_a_belt = sections[0].split("\n## ")[1:]
@@ -395,7 +395,7 @@ _OF_FILES = {"toml"}
 
 def test_the_docs_name_nothing_that_is_gone() -> None:
     """Every ``hersey.x.y`` in prose resolves, to a module or to what stands in one; every file is there."""
-    texts = [*(ROOT / "docs").glob("*.md"), *ROOT.glob("*.md"), *(ROOT / "benchmarks").glob("*.md")]
+    texts = [*(ROOT / "docs").rglob("*.md"), *ROOT.glob("*.md"), *(ROOT / "benchmarks").glob("*.md")]
     seen = 0
     for path in [*texts, *modules().values()]:
         text = path.read_text()

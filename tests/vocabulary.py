@@ -52,4 +52,4 @@ def counts() -> dict[tuple[str, str], int]:
 
 
 def _joined(folder: Path, pattern: str) -> str:
-    return "\n".join(path.read_text(encoding="utf-8") for path in sorted(folder.glob(pattern)))
+    return "\n".join(path.read_text(encoding="utf-8") for path in sorted(folder.rglob(pattern)))

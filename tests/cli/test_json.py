@@ -144,8 +144,8 @@ def test_what_a_fit_prints_stands_in_the_document() -> None:
 
 
 def test_the_docs_list_every_part() -> None:
-    """The table of docs/document.md is that of the code: command, part, and what the part says of itself."""
-    text = (ROOT / "docs" / "document.md").read_text()
+    """The table of the page on the document is that of the code: command, part, and what the part is."""
+    text = (ROOT / "docs" / "reference" / "document.md").read_text()
     rows = re.findall(r"^\| `hersey (\w+) --json` \| `(\w+)` \| (.*?) \|$", text, re.M)
     expected = [(name, part.__name__, first_line(part)) for name, part in PRINTED.items()]
     assert rows == expected

@@ -79,7 +79,7 @@ def test_a_law_that_is_not_known_is_refused_with_those_that_are() -> None:
 @pytest.mark.parametrize("law", LAWS)
 def test_the_docs_name_the_law(law: str) -> None:
     """For those who write a machine file, and with its coefficients for those who write a drive file."""
-    assert f"`{law}`" in (ROOT / "docs" / "film.md").read_text()
+    assert f"`{law}`" in (ROOT / "docs" / "theory" / "film.md").read_text()
     header = (ROOT / "crates" / "c" / "include" / "hersey.h").read_text()
     coefficients = ", ".join(_core.VISCOSITY_LAWS[law].coefficients)
     assert f"{law} ({coefficients})" in header

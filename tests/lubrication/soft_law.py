@@ -1,4 +1,4 @@
-"""The law of a soft mixed contact as docs/mixed.md writes it, with adaptive quadrature and a bracket."""
+"""The law of a soft mixed contact of docs/theory/mixed.md, with adaptive quadrature and a bracket."""
 
 from __future__ import annotations
 

@@ -57,7 +57,7 @@ def test_two_rough_faces_press_as_their_summits_do() -> None:
 
 @pytest.mark.parametrize("speed", [0.3, 0.6, 1.2, 2.5])
 def test_torque_by_an_independent_solution(speed: float) -> None:
-    """From the law as it is written in ``docs/mixed.md``, with adaptive quadrature and a bracket."""
+    """From the law as it is written in ``docs/theory/mixed.md``, with adaptive quadrature and a bracket."""
     film = hersey.film_thickness(ROLL, OIL, speed=speed, temperature=WARM)
     nip, radius = film.nip, ROLL.reduced_radius
     modulus = 0.6e6 / (1 - 0.48**2)

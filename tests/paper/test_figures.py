@@ -353,7 +353,7 @@ def test_the_page_has_every_claim_with_its_verdict(figures: tuple[PaperFigure, .
 
 
 def test_the_docs_have_every_claim_with_its_verdict(figures: tuple[PaperFigure, ...], root: Path) -> None:
-    text = (root / "docs" / "figures.md").read_text()
+    text = (root / "docs" / "validation" / "paper.md").read_text()
     rows = [line.split(" | ")[:3] for line in text.splitlines() if line.startswith("| ") and "holds" in line]
     found = [c for figure in (*figures, *own_figures()) for c in figure.claims]
     assert rows == [[f"| {c.source}", c.statement, c.verdict.value] for c in found]

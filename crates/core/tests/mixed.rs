@@ -257,7 +257,7 @@ fn sharing() -> impl Strategy<Value = Sharing> {
         })
 }
 
-/// Lambda of the soft law from a lambda, and the share there, as docs/mixed.md writes them.
+/// Lambda of the soft law from a lambda, and the share there, as docs/theory/mixed.md writes them.
 fn soft_law(law: &Sharing, lambda: f64, x: f64) -> (f64, f64) {
     let (integral, slope) = asperity_integral(lambda);
     let k = law.roundness;

@@ -41,7 +41,7 @@ def models(
     machine = None if machine_file is None else read_machine(machine_file)
     contact = None if machine is None else machine.mixed
     if machine is not None and contact is None:
-        stated = "[asperities] and [boundary]: see docs/mixed.md"
+        stated = "[asperities] and [boundary]: see docs/theory/mixed.md"
         say(f"the machine's contact is no candidate: its file states no {stated}", file=sys.stderr)
     log = reading.log(logs, machine)
     with working("reducing to dwells"):

@@ -104,7 +104,9 @@ def read_library(path: Path, wanted: Platform, fmi: str) -> bytes:
     found = _platforms_of(content)
     if wanted.name not in found:
         what = f"is a library for {' and '.join(found)}" if found else "is no shared library"
-        raise ParameterError(f"{path} {what}: {wanted.name} needs one of its own (see docs/exchange.md)")
+        raise ParameterError(
+            f"{path} {what}: {wanted.name} needs one of its own (see docs/reference/exchange.md)"
+        )
     step = f"fmi{fmi[0]}DoStep"
     if step.encode() not in content:
         raise ParameterError(f"{path} has no function {step}: it is no library of hersey's crates/c")

@@ -117,7 +117,7 @@ def export_fmu(
 ) -> ExportedUnit:
     """Write a drive as a Functional Mock-up Unit for co-simulation, and return what is in it.
 
-    The same input gives the same bits. See ``docs/exchange.md`` for its variables, events and platforms.
+    The same input gives the same bits. Variables, events and platforms: ``docs/reference/exchange.md``.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Where the law of a mixed contact was checked against the full numerical solution (docs/mixed.md)."""
+"""Where the law of a mixed contact was checked against the full numerical solution (docs/theory/mixed.md)."""
 
 from __future__ import annotations
 

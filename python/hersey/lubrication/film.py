@@ -225,7 +225,7 @@ def drag_torque(
     """Return the torque (N m) that the film takes: shear (eta U/h_c) nip L R, Eq. 7, and rolling.
 
     A soft film's inlet, and the gradient of pressure in it, add up to half of the shear: see `Film.shear` and
-    `Film.rolling`, and docs/film.md for their range.
+    `Film.rolling`, and docs/theory/film.md for their range.
 
     Parameters
     ----------

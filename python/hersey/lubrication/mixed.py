@@ -2,7 +2,7 @@
 
 Film and asperities share the load; the force hangs on x = eta U alone where boundary friction is constant, U
 the sliding speed (belt speed). lambda is the central film over the composite rms roughness. The formulas
-stand in the core and, with their sources and limits, in ``docs/mixed.md``.
+stand in the core and, with their sources and limits, in ``docs/theory/mixed.md``.
 """
 
 from __future__ import annotations

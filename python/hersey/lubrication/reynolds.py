@@ -1,8 +1,8 @@
 """The film of a lubricated line contact, solved numerically: the judge of the film formulas.
 
 Reynolds' equation with cavitation, the elastic surface and the load balance are solved together by Newton's
-method (docs/reynolds.md). Conventions: ``entrainment_speed`` is the mean u of the two surface speeds, not
-their sum; ``effective_modulus`` is E' = 2/[(1-nu1^2)/E1 + (1-nu2^2)/E2], so 2E/(1-nu^2) for one soft body
+method (docs/theory/reynolds.md). Conventions: ``entrainment_speed`` is the mean u of the two surface speeds,
+not their sum; ``effective_modulus`` is E' = 2/[(1-nu1^2)/E1 + (1-nu2^2)/E2], so 2E/(1-nu^2) for one soft body
 against a rigid one. E* = E'/2 is the contact modulus.
 """
 

@@ -15,7 +15,7 @@ from hersey.errors import ParameterError
 from hersey.result import Means, Record
 from hersey.units import fields_in_si, takes_si
 
-#: What the belt does near zero speed; see docs/closures.md.
+#: What the belt does near zero speed; see docs/theory/closures.md.
 CLOSURES = tuple(_core.CLOSURES)
 #: A value of the wire form.
 Wire = str | float | Sequence[float]

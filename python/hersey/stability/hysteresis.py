@@ -40,7 +40,7 @@ class HysteresisBand(Result):
 
     ``lower_accuracy`` and ``upper_accuracy`` are relative. ``method`` is ``half laps`` (slip laps forward
     and back in time that meet) or ``simulation`` (from rest, halving the interval). With ``deeper`` the
-    stick-slip that lasts longest is released higher than at the stick speed (docs/hysteresis.md).
+    stick-slip that lasts longest is released higher than at the stick speed (docs/theory/hysteresis.md).
     ``sensitivity`` holds the relative change of ``upper`` per relative change of each parameter, and
     ``lower_sensitivity`` the same of ``lower``; both are empty if not asked for. ``interval`` and
     ``lower_interval`` enclose 95 % of the folds of the samples given, ``share_bistable`` is the share of them

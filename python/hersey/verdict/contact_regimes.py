@@ -2,7 +2,7 @@
 
 The exponent of a soft film is no constant: inlet and rolling part take a share that grows with viscosity and
 speed, and a film with little supply thins less than it should as it speeds up. What a log of one contact can
-show is the range of the local exponent over its dwells, by the film's formula (docs/film.md).
+show is the range of the local exponent over its dwells, by the film's formula (docs/theory/film.md).
 """
 
 from __future__ import annotations

@@ -34,7 +34,7 @@ pub struct Band {
     pub upper_accuracy: f64,
     /// How the fold was found.
     pub method: Method,
-    /// The stick-slip that lasts longest is not the one released at the stick speed (see `docs/hysteresis.md`).
+    /// The stick-slip that lasts longest is not the one released at the stick speed (see `docs/theory/hysteresis.md`).
     pub deeper: bool,
     /// Slip laps followed to find the fold; zero where it was found by simulation.
     pub laps: usize,

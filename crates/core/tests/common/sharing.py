@@ -1,6 +1,6 @@
 """Reference numbers of tests/mixed.rs, with 40 digits by bisection: python sharing.py (needs mpmath).
 
-Written from docs/mixed.md, without the equations by which the core solves the law.
+Written from docs/theory/mixed.md, without the equations by which the core solves the law.
 """
 
 from mpmath import diff, exp, gamma, log, mp, mpf, pcfd, pi, sqrt

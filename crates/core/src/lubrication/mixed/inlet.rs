@@ -10,7 +10,7 @@
 //! For large A the film goes as `sqrt(A/n)`, that is as `(eta u)^0.5` at one P. Phi is the slope of p where p is P over
 //! that of `K sqrt(d)`. For it the dry pressure is a mixture of ellipse and parabola, `p^2 = p_max^2 [k v + (1-k) v^2]`
 //! with `v = 1 - (x/a)^2` and the roundness `k = K^2 a/(2 p_max^2)`, which is 1 on a half-space.
-//! c, m and q are fitted to a numerical solution of the whole contact; see docs/mixed.md.
+//! c, m and q are fitted to a numerical solution of the whole contact; see docs/theory/mixed.md.
 
 use std::f64::consts::PI;
 
