@@ -112,7 +112,7 @@ lowest: build ## the tests at the lowest versions of everything we depend on (mi
 	rm -rf build/lowest && mkdir -p build && $(PYTHON) -m venv build/lowest
 	$(BIN)/python tests/lowest.py pyproject.toml > build/lowest/constraints.txt
 	build/lowest/bin/python -m pip install --quiet --disable-pip-version-check -c build/lowest/constraints.txt \
-	  '.[formats]' hypothesis lmfit pandas pytest pytest-xdist
+	  '.[figures,formats,sweep]' hypothesis lmfit pandas pytest pytest-xdist
 	build/lowest/bin/python -m pip check
 	build/lowest/bin/python -m pytest -n auto -m "not slow" --ignore tests/browser
 
@@ -159,12 +159,15 @@ benchmark: build ## ratios against peers, printed and written to benchmarks/RESU
 # copy of the example data only while it is packed.
 WHEELS := build/wheels
 SHIPPED := python/hersey/files/examples
+VEGA := python/hersey/charts/vega-embed.js
 wheel: library ## build a wheel and a source archive into build/wheels
 	@test -x build/packaging/bin/maturin || { $(PYTHON) -m venv build/packaging && \
-	  build/packaging/bin/python -m pip install --quiet --disable-pip-version-check -c constraints.txt maturin; }
-	rm -rf $(WHEELS) $(SHIPPED)
+	  build/packaging/bin/python -m pip install --quiet --disable-pip-version-check -c constraints.txt \
+	    altair lazy-loader maturin numpy platformdirs vl-convert-python; }
+	rm -rf $(WHEELS) $(SHIPPED) $(VEGA)
 	@mkdir $(SHIPPED) && cp -r examples/life examples/*.csv examples/*.json examples/*.toml $(SHIPPED)
-	@trap 'rm -rf $(SHIPPED)' EXIT; \
+	@trap 'rm -rf $(SHIPPED) $(VEGA)' EXIT; \
+	  PYTHONPATH=python build/packaging/bin/python -m hersey.charts.runtime $(VEGA) && \
 	  build/packaging/bin/maturin build --release --quiet --out $(WHEELS) && \
 	  build/packaging/bin/maturin sdist --out $(WHEELS)
 	@ls -l $(WHEELS)
@@ -173,4 +176,4 @@ release-check: wheel ## install the wheel where there is no Rust, and write a re
 	$(PYTHON) tests/release_check.py $(WHEELS)/hersey-*.whl build/release
 
 clean: ## remove everything that was built
-	rm -rf .venv build target Cargo.lock $(LIBRARY) $(SHIPPED)
+	rm -rf .venv build target Cargo.lock $(LIBRARY) $(SHIPPED) $(VEGA)

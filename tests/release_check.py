@@ -19,13 +19,15 @@ ROOT = Path(__file__).parents[1]
 PACKAGE = ROOT / "python" / "hersey"
 #: The main job, on the examples that the wheel carries.
 REPORT = "report examples/bench.csv --machine examples/machine.toml --tare standing --out report.html"
+#: Files that `make wheel` makes for the wheel alone.
+MADE = frozenset({"hersey/charts/vega-embed.js", "hersey/files/examples/bench.csv"})
 #: Packages named by their size.
 HEAVIEST = 5
 MB = 1e6
 
 
-def missing(wheel: Path, package: Path = PACKAGE) -> list[str]:
-    """Files of the package in the repository that the wheel lacks, and the bindings if it lacks those."""
+def missing(wheel: Path, package: Path = PACKAGE, made: frozenset[str] = MADE) -> list[str]:
+    """Files of the package and those made for a wheel that it lacks, and the bindings if it lacks those."""
     with zipfile.ZipFile(wheel) as packed:
         inside = set(packed.namelist())
     wanted = {
@@ -34,7 +36,7 @@ def missing(wheel: Path, package: Path = PACKAGE) -> list[str]:
         if path.is_file() and "__pycache__" not in path.parts and not path.name.startswith("_core.abi3")
     }
     bindings = any(name.startswith("hersey/_core.") and not name.endswith(".pyi") for name in inside)
-    return sorted(wanted - inside) + ["hersey/_core"] * (not bindings)
+    return sorted((wanted | made) - inside) + ["hersey/_core"] * (not bindings)
 
 
 def size(folder: Path) -> int:

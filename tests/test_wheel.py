@@ -28,11 +28,16 @@ def test_a_wheel_that_lacks_a_file_is_seen(tmp_path: Path) -> None:
     wheel = tmp_path / "hersey.whl"
     with zipfile.ZipFile(wheel, "w") as packed:
         packed.writestr("hersey/_core.pyi", "")
-    assert missing(wheel, package) == ["hersey/page.css", "hersey/_core"]
+    assert missing(wheel, package, frozenset({"hersey/made"})) == [
+        "hersey/made",
+        "hersey/page.css",
+        "hersey/_core",
+    ]
     with zipfile.ZipFile(wheel, "a") as packed:
         packed.writestr("hersey/page.css", "")
+        packed.writestr("hersey/made", "")
         packed.writestr("hersey/_core.abi3.so", "")
-    assert missing(wheel, package) == []
+    assert missing(wheel, package, frozenset({"hersey/made"})) == []
 
 
 def test_packages_are_weighed_with_their_libraries(tmp_path: Path) -> None:

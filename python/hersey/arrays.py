@@ -11,12 +11,28 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hersey.errors import ParameterError, meant, printable
+from hersey.errors import MissingFileError, ParameterError, meant, printable
 
 R = TypeVar("R")
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.intp]
 BoolArray = NDArray[np.bool_]
+
+
+def refuse_without_xarray(what: str) -> None:
+    """Refuse what needs xarray where it is not installed; ``what`` begins the sentence.
+
+    Raises
+    ------
+    MissingFileError
+        Naming the line that installs it.
+    """
+    try:
+        import xarray  # noqa: F401
+    except ImportError:
+        raise MissingFileError(
+            f"{what} needs xarray, which is not installed: pip install 'hersey[sweep]'"
+        ) from None
 
 
 class _OneThread:

@@ -96,8 +96,11 @@ class Result(Record):
         """Return summary and chart for a notebook; nothing is loaded from elsewhere."""
         from hersey.charts.render import picture
 
-        drawing = picture(self.chart(), ".svg").decode()
-        return f"<pre>{html.escape(self.summary())}</pre>{drawing}"
+        text = f"<pre>{html.escape(self.summary())}</pre>"
+        try:
+            return text + picture(self.chart(), ".svg").decode()
+        except MissingFileError as error:  # of the package that draws
+            return f"{text}<p>{html.escape(str(error))}</p>"
 
 
 def table_of(facts: Iterable[Fact]) -> pl.DataFrame:

@@ -50,3 +50,13 @@ def test_without_a_cache_it_is_bundled_each_time(bundler: Bundler, tmp_path: Pat
     (tmp_path / "hersey").write_text("a file where the folder would be")
     assert runtime() == runtime()
     assert bundler.calls == 2
+
+
+def test_the_script_of_a_wheel_is_taken_as_it_is(
+    bundler: Bundler, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    shipped = tmp_path / "vega-embed.js"
+    shipped.write_text("window.vegaEmbed = 1;")
+    monkeypatch.setattr(module, "_SHIPPED", shipped)
+    assert runtime() == "window.vegaEmbed = 1;"
+    assert bundler.calls == 0

@@ -9,13 +9,14 @@ from __future__ import annotations
 import json
 import signal
 from collections.abc import Sequence
+from importlib.util import find_spec
 from itertools import accumulate, pairwise
 from pathlib import Path
 
 import altair as alt
 
 from hersey.charts.style import Row
-from hersey.errors import OutputError
+from hersey.errors import MissingFileError, OutputError
 from hersey.processes.child import Child, FailedError, LostError
 
 #: Version of Vega-Lite that altair speaks, as vl-convert names it.
@@ -49,6 +50,10 @@ def bundled(snippet: str) -> str:
 
 
 def _asked(request: Row, content: bytes) -> tuple[Row, bytes]:
+    if find_spec("vl_convert") is None:
+        raise MissingFileError(
+            "Drawing a figure needs vl-convert, which is not installed: pip install 'hersey[figures]'"
+        )
     try:
         reply, block = _process.ask(request | {"version": VEGA_LITE}, content)
         return reply, bytes(block)

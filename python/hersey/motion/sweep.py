@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from hersey import _core
-from hersey.arrays import numbers_of, refuse_unknown
+from hersey.arrays import numbers_of, refuse_unknown, refuse_without_xarray
 from hersey.errors import ParameterError
 from hersey.motion.belt import Drivetrain
 from hersey.motion.drag import Drag
@@ -86,7 +86,7 @@ def sweep(
     UnfinishedError
         If scheduler or workers are lost.
     MissingFileError
-        If Dask or Zarr is needed and not installed.
+        If xarray, Dask or Zarr is needed and not installed.
 
     Examples
     --------
@@ -96,6 +96,7 @@ def sweep(
     ({'stiffness': 2, 'drive_speed': 3}, 3.94031)
     """
     refuse_unknown("sweep", varied, PARAMETERS, HELD)
+    refuse_without_xarray("A sweep")  # before hours of work
     work = replace(work, threads=whole("threads", work.threads))
     sets, rules = planned(
         train,

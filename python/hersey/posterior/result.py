@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hersey.arrays import BoolArray, FloatArray
+from hersey.arrays import BoolArray, FloatArray, refuse_without_xarray
 from hersey.damping.curves import LawWeight
 from hersey.damping.curves.words import weight_lines
 from hersey.errors import ParameterError
@@ -218,6 +218,7 @@ class Posterior(Result):
 
     def dataset(self) -> xr.Dataset:
         """Return the draws as ArviZ takes them: dimensions ``chain`` and ``draw``, units as attributes."""
+        refuse_without_xarray("dataset()")
         import xarray as xr
 
         edges = self.edges(self.temperature)

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hersey import _core
-from hersey.arrays import FloatArray, crossed, numbers_of, refuse_unknown, together
+from hersey.arrays import FloatArray, crossed, numbers_of, refuse_unknown, refuse_without_xarray, together
 from hersey.errors import ParameterError
 from hersey.motion.belt import Drivetrain
 from hersey.motion.drag import BESIDE, Drag
@@ -95,6 +95,7 @@ def hysteresis_sweep(
     >>> hysteresis_sweep(Drivetrain(1000, 1), drag, stiffness=[500, 2000]).upper.round(6).values.tolist()
     [2.228999, 2.109731]
     """
+    refuse_without_xarray("hysteresis_sweep")
     import xarray as xr
 
     refuse_unknown("hysteresis_sweep", varied, OF_THE_BELT, HELD)
