@@ -49,8 +49,8 @@ physics: ## compile the core for the page anew (rustup target add wasm32-unknown
 	@touch $@
 
 library: ## compile the core for C and put it into the package
-	cargo rustc --release --quiet --package hersey-c -- -C strip=symbols
-	@mkdir -p $(LIBRARY) && cd $${CARGO_TARGET_DIR:-target}/release && for made in libhersey.so libhersey.dylib; do \
+	$(COMPILE) --release --quiet --package hersey-c -- -C strip=symbols
+	@mkdir -p $(LIBRARY) && cd $${CARGO_TARGET_DIR:-target}/$(COMPILED) && for made in libhersey.so libhersey.dylib hersey.dll; do \
 	  test ! -f $$made || install -m 755 $$made $(CURDIR)/$(LIBRARY)/$${made#lib}; done
 
 demo: build ## run the main job on the shipped log
@@ -155,21 +155,35 @@ benchmark: build ## ratios against peers, printed and written to benchmarks/RESU
 	$(BIN)/python -m benchmarks.candidates
 	$(BIN)/python benchmarks/start.py
 
+# With MANYLINUX=1 a wheel runs where glibc is 2.17 (2014) or later: zig links it. Else it runs where glibc is as new as here.
+ifdef MANYLINUX
+COMPILE := PATH=$(CURDIR)/build/packaging/$(SCRIPTS):$$PATH cargo-zigbuild rustc --target $(shell uname -m)-unknown-linux-gnu.2.17
+COMPILED := $(shell uname -m)-unknown-linux-gnu/release
+COMPATIBLE := --zig --compatibility manylinux2014
+else
+COMPILE := cargo rustc
+COMPILED := release
+endif
+
 # One wheel serves Python 3.11 and later. It needs no .venv: what it is made with is in build/packaging. The package holds a
 # copy of the example data only while it is packed.
 WHEELS := build/wheels
+SCRIPTS := bin# Scripts on Windows
 SHIPPED := python/hersey/files/examples
 VEGA := python/hersey/charts/vega-embed.js
-wheel: library ## build a wheel and a source archive into build/wheels
-	@test -x build/packaging/bin/maturin || { $(PYTHON) -m venv build/packaging && \
-	  build/packaging/bin/python -m pip install --quiet --disable-pip-version-check -c constraints.txt \
-	    altair lazy-loader maturin numpy platformdirs vl-convert-python; }
+build/packaging/installed:
+	$(PYTHON) -m venv build/packaging
+	build/packaging/$(SCRIPTS)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt \
+	  altair cargo-zigbuild lazy-loader maturin numpy platformdirs vl-convert-python ziglang
+	@touch $@
+
+wheel: build/packaging/installed library ## build a wheel and a source archive into build/wheels (MANYLINUX=1: for older Linux)
 	rm -rf $(WHEELS) $(SHIPPED) $(VEGA)
 	@mkdir $(SHIPPED) && cp -r examples/life examples/*.csv examples/*.json examples/*.toml $(SHIPPED)
 	@trap 'rm -rf $(SHIPPED) $(VEGA)' EXIT; \
-	  PYTHONPATH=python build/packaging/bin/python -m hersey.charts.runtime $(VEGA) && \
-	  build/packaging/bin/maturin build --release --quiet --out $(WHEELS) && \
-	  build/packaging/bin/maturin sdist --out $(WHEELS)
+	  PYTHONPATH=python build/packaging/$(SCRIPTS)/python -m hersey.charts.runtime $(VEGA) && \
+	  build/packaging/$(SCRIPTS)/maturin build --release --quiet $(COMPATIBLE) --out $(WHEELS) && \
+	  build/packaging/$(SCRIPTS)/maturin sdist --out $(WHEELS)
 	@ls -l $(WHEELS)
 
 release-check: wheel ## install the wheel where there is no Rust, and write a report with it; uploads nothing

@@ -21,6 +21,8 @@ PACKAGE = ROOT / "python" / "hersey"
 REPORT = "report examples/bench.csv --machine examples/machine.toml --tare standing --out report.html"
 #: Files that `make wheel` makes for the wheel alone.
 MADE = frozenset({"hersey/charts/vega-embed.js", "hersey/files/examples/bench.csv"})
+#: Where an environment keeps its programs.
+PROGRAMS = "Scripts" if os.name == "nt" else "bin"
 #: Packages named by their size.
 HEAVIEST = 5
 MB = 1e6
@@ -56,7 +58,7 @@ def heaviest(packages: Path, count: int = HEAVIEST) -> list[tuple[str, int]]:
 
 def timed(words: str, *command: str | Path, folder: Path) -> None:
     """Run a command of the environment, with its programs alone on the path; say how long it took."""
-    programs = folder / "venv" / "bin"
+    programs = folder / "venv" / PROGRAMS
     variables = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
     start = time.monotonic()
     typed = [programs / command[0], *command[1:]]
@@ -73,7 +75,7 @@ def main(wheel: Path, folder: Path) -> None:
         sys.exit(f"{wheel.name} lacks {', '.join(lacking)}")
     shutil.rmtree(folder, ignore_errors=True)
     venv.create(folder / "venv", with_pip=True, symlinks=True)
-    programs = str(folder / "venv" / "bin")
+    programs = str(folder / "venv" / PROGRAMS)
     for tool in ("cargo", "rustc"):
         assert shutil.which(tool, path=programs) is None, f"{tool} is on the path"
     pip = [
@@ -90,7 +92,7 @@ def main(wheel: Path, folder: Path) -> None:
     timed("hersey --version", "hersey", "--version", folder=folder)
     timed("hersey examples", "hersey", "examples", "examples", folder=folder)
     timed("hersey report", "hersey", *REPORT.split(), folder=folder)
-    (packages,) = (folder / "venv" / "lib").glob("python*/site-packages")
+    (packages,) = (folder / "venv").glob("[Ll]ib/**/site-packages")
     sys.stdout.write(f"environment: {size(folder / 'venv') / MB:.0f} MB\n")
     for name, taken in heaviest(packages):
         sys.stdout.write(f"  {name}: {taken / MB:.0f} MB\n")

@@ -42,3 +42,22 @@ def test_the_citation_says_what_the_metadata_say() -> None:
     assert citation["license"] == PROJECT["license"]
     assert citation["keywords"] == PROJECT["keywords"]
     assert citation["authors"] == PROJECT["authors"]
+
+
+def test_the_conda_recipe_asks_for_what_the_metadata_ask_for() -> None:
+    yaml = pytest.importorskip("yaml")
+    recipe = yaml.safe_load((ROOT / "packaging" / "conda" / "recipe.yaml").read_text())
+    assert recipe["context"]["version"] == WORKSPACE["version"]
+    python, *needed = recipe["requirements"]["run"]
+    assert python == f"python {PROJECT['requires-python']}"
+    assert [each.replace(" ", "") for each in needed] == PROJECT["dependencies"]
+
+
+def test_the_release_workflow_builds_with_the_makefile_and_uploads_to_no_index() -> None:
+    yaml = pytest.importorskip("yaml")
+    text = (ROOT / ".github" / "workflows" / "release.yml").read_text()
+    jobs = yaml.safe_load(text)["jobs"]
+    steps = [step.get("run", "") for job in jobs.values() for step in job["steps"]]
+    assert any(step.startswith("make wheel ") for step in steps)
+    assert jobs["draft"]["needs"] == ["test", "wheel"]
+    assert not any("publish" in step or "twine" in step for step in steps)

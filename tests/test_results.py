@@ -264,6 +264,11 @@ def test_a_table_for_pandas_holds_the_same() -> None:
     assert dwells["torque (N m)"].tolist() == points().column("torque").tolist()
 
 
+def test_plot_is_the_chart() -> None:
+    dwells = points()
+    assert dwells.plot().to_dict() == dwells.chart().to_dict()
+
+
 def test_without_pandas_the_way_out_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "pandas", None)
     with pytest.raises(MissingFileError) as caught:

@@ -83,6 +83,10 @@ class Result(Record):
 
         return chart_of(self)
 
+    def plot(self) -> Any:
+        """Return the chart, as `chart` does: the name that plotting packages have made usual."""
+        return self.chart()
+
     def headline(self) -> str:
         """Return the result in a few words, without its class: the first line of the summary."""
         return self.summary().split("\n", 1)[0]
