@@ -32,9 +32,8 @@ def messages(path: Path) -> list[str]:
     for node in ast.walk(tree):
         if isinstance(node, ast.JoinedStr):
             found.append("".join(str(p.value) if isinstance(p, ast.Constant) else "3" for p in node.values))
-        elif isinstance(node, ast.Constant) and isinstance(node.value, str):
-            if id(node) not in described | parts:
-                found.append(node.value)
+        elif isinstance(node, ast.Constant) and id(node) not in described | parts:
+            found.append(str(node.value))
     return [text for text in found if len(text.split()) >= FEWEST_WORDS]
 
 
