@@ -51,16 +51,14 @@ WORDS = """
 `python -m benchmarks.validation` writes this page. It gives `hersey inspect` and `hersey report` every
 file of a collection of public measurements that is a log, or could be taken for one. No command may
 end in a traceback or hang, following the advice of a message must change the outcome, and no verdict
-may claim a transition which the data cannot show.
-
-If a message proposes options, they are followed, with its example values (25 mm, 35 mN m). Such an
-outcome tests the advice, not the measurement. Long sentences are cut.
+may claim a transition which the data cannot show. Long sentences are cut.
 """
 LOGS = """
 Options are those that the files need according to their description.
 """
 REFUSED = """
-None of these files is a log of torque at three speeds or more.
+None of these files is a log of torque at three speeds or more. If a message proposes options, they are
+followed, with its example values (25 mm, 35 mN m): this tests the advice, not the measurement.
 """
 #: Claims that need a transition in the log.
 _TRANSITION = r"rises as the drive slows|can stick and slip"
@@ -342,7 +340,7 @@ def quoted(text: str) -> str:
 def page(rows: list[Row]) -> str:
     """Return the page as Markdown."""
     logs = [
-        [row.source, row.name, row.options, row.inspected, row.reported]
+        [row.source, row.name, row.options, row.inspected.split(".")[0], row.reported]
         for row in rows
         if not row.reported.startswith("refused: ")
     ]
