@@ -54,7 +54,7 @@ end in a traceback or hang, following the advice of a message must change the ou
 may claim a transition which the data cannot show. Long sentences are cut.
 """
 LOGS = """
-Options are those that the files need according to their description.
+Options follow the description of the files.
 """
 REFUSED = """
 None of these files is a log of torque at three speeds or more. If a message proposes options, they are
@@ -340,7 +340,7 @@ def quoted(text: str) -> str:
 def page(rows: list[Row]) -> str:
     """Return the page as Markdown."""
     logs = [
-        [row.source, row.name, row.options, row.inspected.split(".")[0], row.reported]
+        [row.source, row.name, row.options, row.reported]
         for row in rows
         if not row.reported.startswith("refused: ")
     ]
@@ -354,7 +354,7 @@ def page(rows: list[Row]) -> str:
             WORDS,
             "## Logs with a report",
             LOGS,
-            table("source", "files", "options", "inspect", "report", rows=logs),
+            table("source", "files", "options", "report", rows=logs),
             "",
             "## Refused files",
             REFUSED,
