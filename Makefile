@@ -180,10 +180,10 @@ build/packaging/installed:
 wheel: build/packaging/installed library ## build a wheel and a source archive into build/wheels (MANYLINUX=1: for older Linux)
 	rm -rf $(WHEELS) $(SHIPPED) $(VEGA)
 	@mkdir $(SHIPPED) && cp -r examples/life examples/*.csv examples/*.json examples/*.toml $(SHIPPED)
-	@trap 'rm -rf $(SHIPPED) $(VEGA)' EXIT; \
-	  PYTHONPATH=python build/packaging/$(SCRIPTS)/python -m hersey.charts.runtime $(VEGA) && \
-	  build/packaging/$(SCRIPTS)/maturin build --release --quiet $(COMPATIBLE) --out $(WHEELS) && \
-	  build/packaging/$(SCRIPTS)/maturin sdist --out $(WHEELS)
+	@trap 'rm -rf $(SHIPPED) $(VEGA)' EXIT; export PATH="$(CURDIR)/build/packaging/$(SCRIPTS):$$PATH"; \
+	  PYTHONPATH=python python -m hersey.charts.runtime $(VEGA) && \
+	  maturin build --release --quiet $(COMPATIBLE) --out $(WHEELS) && \
+	  maturin sdist --out $(WHEELS)
 	@ls -l $(WHEELS)
 
 release-check: wheel ## install the wheel where there is no Rust, and write a report with it; uploads nothing

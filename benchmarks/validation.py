@@ -30,7 +30,7 @@ ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "docs" / "validation" / "measurements.md"
 #: Time that a command may take, s, and rounds of advice that are followed, at the most.
 LIMIT, ROUNDS = 240, 12
-#: Characters of what a command says that stand in the table.
+#: Most characters of a sentence in the table.
 WIDTH = 300
 
 
@@ -46,16 +46,21 @@ class Line:
     never: str = ""
 
 
-#: What stands above the table.
+#: Text above the tables.
 WORDS = """
-Written by `python -m benchmarks.validation`: what `hersey inspect` and `hersey report` say of each file
-of the collection of public measurements that is a log or could be taken for one. The options are those
-that the files need by their description. Where a report is refused, the options that its message proposes
-are read from the message and followed, and the outcome stands below the first refusal; where none is
-proposed, the refusal is the end. The example values of a proposal (25 mm, 35 mN m) are taken as they
-stand: such a line shows that the advice works, not what was measured.
+`python -m benchmarks.validation` writes this page. It gives `hersey inspect` and `hersey report` every
+file of a collection of public measurements that is a log, or could be taken for one. No command may
+end in a traceback or hang, following the advice of a message must change the outcome, and no verdict
+may claim a transition which the data cannot show. Long sentences are cut.
 """
-#: What nothing but a log of a transition may be told.
+LOGS = """
+Options follow the description of the files.
+"""
+REFUSED = """
+None of these files is a log of torque at three speeds or more. If a message proposes options, they are
+followed, with its example values (25 mm, 35 mN m): this tests the advice, not the measurement.
+"""
+#: Claims that need a transition in the log.
 _TRANSITION = r"rises as the drive slows|can stick and slip"
 _SCREW = ("--torque-unit", "-9.84 mN*m / 100", "--speed-unit", "-1 rpm", "--isothermal")
 _TE67 = (
@@ -128,6 +133,10 @@ LINES = (
 )
 
 
+#: Precedes the outcome of the options that a message proposed.
+FOLLOWED = "after its advice: "
+
+
 @dataclass(frozen=True)
 class Row:
     """One line of the table."""
@@ -197,12 +206,12 @@ def row_of(line: Line, files: list[Path]) -> Row:
     if code == 0:
         verdict = first_sentence(said)
         told = [
-            *(f"refused: {t}" for t in told[:1]),
-            *([f"with {quoted(followed_so_far[-1])}: {verdict}"] if told else [verdict]),
+            *(f"refused: {reason(t)}" for t in told[:1]),
+            *([f"{FOLLOWED}{verdict}"] if told else [verdict]),
         ]
     else:
-        told = [f"refused: {told[0] if told else said}"] + (
-            [f"with {quoted(followed_so_far[-1])}: {told[-1]}"] if followed_so_far and len(told) > 1 else []
+        told = [f"refused: {reason(told[0] if told else said)}"] + (
+            [f"{FOLLOWED}{reason(told[-1])}"] if followed_so_far and len(told) > 1 else []
         )
     if line.never and code == 0 and re.search(line.never, said):
         wrong = "the verdict claims what cannot be claimed"
@@ -264,21 +273,33 @@ def fault(code: int, said: str) -> str:
 
 
 def one_line(text: str) -> str:
-    """A refusal without the name of the program and of folders, cut."""
+    """Return a refusal without the name of the program, folders and long lists."""
     line = next(
         (x for x in reversed(text.splitlines()) if x.startswith("hersey: ")),
         text.strip().splitlines()[-1] if text.strip() else "",
     )
     line = re.sub(r"(?<![\w])/(?:[\w.+-]+/)+", "", line.removeprefix("hersey: "))
-    line = re.sub(r"(among|it has) '?[^:]*?, [^:]*?(?=: |$)", r"\1 its channels", line)
-    return line if len(line) <= WIDTH else line[: WIDTH - 3] + "..."
+    return re.sub(r"(among|it has) '?[^:]*?, [^:]*?(?=: |$)", r"\1 its channels", line)
+
+
+def reason(line: str) -> str:
+    """Return the first clause of a refusal, without the place that it is about."""
+    line = re.sub(r"^\S+\.\w+[:,]? |^hersey: ", "", line)
+    line = re.sub(r"^line \d+(, column '[^']*')?: ", "", line)
+    line = re.sub(r"'[^']*'", "'...'", line)
+    return re.split(r": |; | \(| among |, only |, such ", line)[0]
 
 
 def first_sentence(said: str) -> str:
-    """The first sentence of a verdict."""
-    first = said.splitlines()[0]
-    match = re.match(r".*?[a-z)%\]][.](?= [A-Z]|$)", first)
-    return match[0] if match else first[:WIDTH]
+    """Return the first sentences of a report: of its instruction, and of the verdict on the next line."""
+    lines = [line for line in said.splitlines()[:2] if line and line[0] not in "-["]
+    found = [(re.match(r".*?[a-z0-9)%\]][.](?= [A-Z]|$)", line), line) for line in lines]
+    return " ".join(cut(match[0] if match else line) for match, line in found)
+
+
+def cut(text: str) -> str:
+    """Return a text of at most `WIDTH` characters."""
+    return text if len(text) <= WIDTH else text[: WIDTH - 3] + "..."
 
 
 def inspected(text: str) -> str:
@@ -293,28 +314,22 @@ def inspected(text: str) -> str:
     can = [x.removeprefix("  can tell").strip() for x in lines if x.startswith("  can tell")]
     cannot = [x.removeprefix("  cannot tell").strip() for x in lines if x.startswith("  cannot tell")]
     told = f"{dwells}. Can tell {'; '.join(can) or 'nothing'}"
-    told = told if len(told) <= WIDTH else told[: WIDTH - 3] + "..."
+    told = cut(told)
     return f"{told}. Cannot tell {len(cannot)} things" if cannot else told
 
 
-def merged(rows: list[Row]) -> list[Row]:
-    """Rows of one source of which the same is said, as one."""
-    alike: dict[tuple[str, ...], list[Row]] = {}
+def by_reason(rows: list[Row]) -> dict[tuple[str, ...], dict[str, int]]:
+    """Return how many files of each source are refused for a reason."""
+    found: dict[tuple[str, ...], dict[str, int]] = {}
+    named: dict[tuple[str, ...], tuple[str, ...]] = {}
     for row in rows:
-        said = tuple(cell.replace(row.name, "the file") for cell in (row.inspected, row.reported))
-        alike.setdefault((row.source, row.options, *said), []).append(row)
-    return [
-        rows[0]
-        if len(rows) == 1
-        else Row(key[0], f"{len(rows)} files, each: {listed(rows)}", key[1], key[2], key[3], "")
-        for key, rows in alike.items()
-    ]
-
-
-def listed(rows: list[Row]) -> str:
-    """The names of some files, the first and the last where they are many."""
-    names = [row.name for row in rows]
-    return ", ".join(names) if len(names) < 4 else f"{names[0]} to {names[-1]}"
+        if not row.reported.startswith("refused: "):
+            continue
+        clauses = tuple(row.reported.removeprefix("refused: ").split(f"<br>{FOLLOWED}"))
+        key = named.setdefault(tuple(re.sub(r"\d[\d.]*", "", each) for each in clauses), clauses)
+        sources = found.setdefault(key, {})
+        sources[row.source] = sources.get(row.source, 0) + 1
+    return found
 
 
 def quoted(text: str) -> str:
@@ -323,25 +338,36 @@ def quoted(text: str) -> str:
 
 
 def page(rows: list[Row]) -> str:
-    """The page as Markdown."""
-    head = [
-        "# Measurements by others",
-        "",
-        *WORDS.strip().splitlines(),
-        "",
-        "| source | file | options | inspect | report |",
-        "|---|---|---|---|---|",
+    """Return the page as Markdown."""
+    logs = [
+        [row.source, row.name, row.options, row.reported]
+        for row in rows
+        if not row.reported.startswith("refused: ")
     ]
-    body = [
-        "| "
-        + " | ".join(
-            cell.replace("|", "\\|").replace("\n", " ")
-            for cell in (r.source, r.name, r.options, r.inspected, r.reported)
-        )
-        + " |"
-        for r in merged(rows)
+    refused = [
+        [first, rest[0] if rest else "", "; ".join(f"{source} ({n})" for source, n in sources.items())]
+        for (first, *rest), sources in by_reason(rows).items()
     ]
-    return "\n".join([*head, *body, ""])
+    return "\n".join(
+        [
+            "# Measurements by others",
+            WORDS,
+            "## Logs with a report",
+            LOGS,
+            table("source", "files", "options", "report", rows=logs),
+            "",
+            "## Refused files",
+            REFUSED,
+            table("reason", "after its advice", "files", rows=refused),
+            "",
+        ]
+    )
+
+
+def table(*heads: str, rows: list[list[str]]) -> str:
+    """Return rows of cells as a table with these headings."""
+    cells = [[cell.replace("|", "\\|").replace("\n", " ") for cell in row] for row in rows]
+    return "\n".join("| " + " | ".join(line) + " |" for line in [list(heads), ["---"] * len(heads), *cells])
 
 
 if __name__ == "__main__":
