@@ -157,7 +157,7 @@ benchmark: build ## ratios against peers, printed and written to benchmarks/RESU
 
 # With MANYLINUX=1 a wheel runs where glibc is 2.17 (2014) or later: zig links it. Else it runs where glibc is as new as here.
 ifdef MANYLINUX
-COMPILE := PATH=$(CURDIR)/build/packaging/$(SCRIPTS):$$PATH cargo-zigbuild rustc --target $(shell uname -m)-unknown-linux-gnu.2.17
+COMPILE = PATH=$(CURDIR)/build/packaging/$(SCRIPTS):$$PATH cargo-zigbuild rustc --target $(shell uname -m)-unknown-linux-gnu.2.17
 COMPILED := $(shell uname -m)-unknown-linux-gnu/release
 COMPATIBLE := --zig --compatibility manylinux2014
 else
