@@ -13,8 +13,10 @@ import tempfile
 from pathlib import Path
 
 from PIL import Image
-from playwright.sync_api import sync_playwright
+from playwright.sync_api import Browser, sync_playwright
 
+from tests.app.conftest import end, start
+from tests.app.test_page import MACHINE, Watched
 from tests.browser.conftest import ARGUMENTS
 from tests.browser.opening import Opened
 from tests.cli.command import run_apart
@@ -39,8 +41,8 @@ def main() -> None:
         folder = type_commands(Path(temporary))
         photographs = photograph(folder)
         IMAGES.mkdir(exist_ok=True)
-        for name in (*SCREENS, *CHARTS):
-            picture = Image.open(photographs[name] if name in SCREENS else folder / name).convert("RGB")
+        for name in (*photographs, *CHARTS):
+            picture = Image.open(photographs[name] if name in photographs else folder / name).convert("RGB")
             save(picture, IMAGES / name)
             sys.stdout.write(f"{name:16} {(IMAGES / name).stat().st_size / 1000:.0f} kB\n")
 
@@ -62,19 +64,36 @@ def type_commands(folder: Path) -> Path:
 
 
 def photograph(folder: Path) -> dict[str, io.BytesIO]:
-    """Return the first screens of the pages in a folder, by the name of the picture."""
+    """Return the first screens of the pages in a folder and of the app, by the name of the picture."""
     chromium = shutil.which("chromium") or shutil.which("chromium-browser")
     if not chromium:
         raise SystemExit("Chromium is missing: make browser installs it")
-    taken = {}
+    taken: dict[str, io.BytesIO] = {}
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=chromium, args=ARGUMENTS)
         for name, (page, size) in SCREENS.items():
             opened = Opened(browser, folder / page, size=size)
             opened.page.wait_for_timeout(1000)  # what the panel computes is drawn
             taken[name] = io.BytesIO(opened.page.screenshot())
+        taken["app.png"] = photograph_app(browser, folder)
         browser.close()
     return taken
+
+
+def photograph_app(browser: Browser, folder: Path) -> io.BytesIO:
+    """Return the app with the log of the example and numbers of its machine, before it is run."""
+    started = start(folder)
+    try:
+        watched = Watched(browser, started.address)
+        watched.drop("bench.csv", (folder / "bench.csv").read_bytes())
+        watched.page.wait_for_selector("table.channels")
+        for field, value in MACHINE.items():
+            watched.page.fill(f'[data-control="field:drivetrain.{field}"]', value)
+        watched.page.locator("h1").click()
+        watched.page.wait_for_timeout(2000)  # what the fields change is drawn
+        return io.BytesIO(watched.page.screenshot())
+    finally:
+        end(started)
 
 
 def save(picture: Image.Image, path: Path) -> None:

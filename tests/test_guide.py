@@ -1,4 +1,4 @@
-"""The tutorial and the how-to pages: their commands work as typed, their links and pictures are there."""
+"""Commands of the tutorial and the how-to pages work as typed; their links and pictures are there."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from tests.guide import DOCS, HOW_TO, TUTORIAL, commands, words, write_examples,
 from tests.life import shipped
 
 PAGES = [DOCS / "index.md", *TUTORIAL, *HOW_TO]
+REFERENCE = [DOCS / "reference" / f"{name}.md" for name in ("logs", "inspect", "report", "app", "exchange")]
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 #: Pages whose commands are typed in every run: they take a moment.
 KEPT = [DOCS / "how-to" / f"{name}.md" for name in ("means", "stiffness-and-mass", "untrusted-files")]
@@ -33,13 +34,13 @@ def test_every_option_of_a_command_exists(page: Path) -> None:
         command.make_context(verb, arguments, resilient_parsing=False)
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+@pytest.mark.parametrize("page", [*PAGES, *REFERENCE], ids=lambda page: page.stem)
 def test_links_lead_to_files_and_headings(page: Path) -> None:
     for target in LINK.findall(page.read_text(encoding="utf-8")):
         if "://" in target:
             continue
         name, _, anchor = target.partition("#")
-        path = (page.parent / name).resolve()
+        path = (page.parent / name).resolve() if name else page
         assert path.is_file(), f"{page.name}: {target}"
         assert path.is_relative_to(ROOT), f"{page.name}: {target}"
         if anchor:
@@ -47,9 +48,11 @@ def test_links_lead_to_files_and_headings(page: Path) -> None:
 
 
 def anchors(path: Path) -> set[str]:
-    """Anchors of the headings of a page, as GitHub makes them."""
-    headings = re.findall(r"^#+ (.*)$", path.read_text(encoding="utf-8"), re.MULTILINE)
-    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
+    """Anchors of a page: of its headings, as GitHub makes them, and those that are named."""
+    text = path.read_text(encoding="utf-8")
+    headings = re.findall(r"^#+ (.*)$", text, re.MULTILINE)
+    made = {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
+    return made | set(re.findall(r'<a id="([^"]+)">', text))
 
 
 def test_every_how_to_page_is_in_the_list() -> None:
