@@ -91,7 +91,7 @@ def photograph_app(browser: Browser, folder: Path) -> io.BytesIO:
             watched.page.fill(f'[data-control="field:drivetrain.{field}"]', value)
         watched.page.locator("h1").click()
         watched.page.wait_for_timeout(2000)  # what the fields change is drawn
-        return io.BytesIO(watched.page.screenshot())
+        return io.BytesIO(watched.page.screenshot(clip={"x": 0, "y": 0, "width": 1280, "height": 600}))
     finally:
         end(started)
 
