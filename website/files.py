@@ -25,6 +25,7 @@ from hersey.motion.parameters import OF_THE_BELT
 from hersey.motion.scenario import _ScenarioFile
 from hersey.units import KINDS
 from website.navigation import ROOT
+from website.said import cell, comments, listed
 from website.text import joined, sections, table
 
 TEMPLATE = Path(__file__).parent / "templates" / "files.md"
@@ -38,7 +39,6 @@ FILES: dict[str, Any] = {
 #: A heading of a table in the template, and a key in an example, also where it is in a comment.
 _TABLE = re.compile(r"^### (.+)$", re.MULTILINE)
 _EXAMPLE = re.compile(r"^(?:# )?(\w+) = (\"[^\"]*\"|\[.*\]|\{.*\}|\S+)")
-_COMMENT = re.compile(r"((?:^ +#: .+\n)+) +(\w+):", re.MULTILINE)
 _HEADING = re.compile(r"^(?:# )?\[{1,2}([\w.]+)\]")
 
 
@@ -106,7 +106,7 @@ def _tables(name: str, kind: Any, heading: str) -> Iterator[tuple[str, list[_Row
 
 def _row(name: str, key: str, hint: Any, field: dataclasses.Field[Any], kind: Any) -> _Row:
     question = BY_KEY.get(f"{name}.{key}")
-    words = _comments(kind).get(key) or (question.words if question is not None else "")
+    words = comments(kind).get(key) or (question.words if question is not None else "")
     if not words:
         raise ValueError(f"nothing says what [{name}] {key} means: write a comment #: above the field")
     quantity = _quantity(hint)
@@ -114,23 +114,13 @@ def _row(name: str, key: str, hint: Any, field: dataclasses.Field[Any], kind: An
     example = (
         _examples().get(at) or _OTHERS.get(at) or (question and _asked(question)) or _written(quantity, hint)
     )
-    return f"`{key}`", f"`{example}`", _cell(words), _default(field, quantity), _accepted(quantity)
+    return f"`{key}`", f"`{example}`", cell(words), _default(field, quantity), _accepted(quantity)
 
 
 def _asked(question: Question) -> str:
     """The example of a question, as a file has it."""
     value = question.values(question.example)[question.key]
     return quoted(value) if isinstance(value, str) else str(value)
-
-
-@cache
-def _comments(kind: type) -> dict[str, str]:
-    """The comments ``#:`` above the fields of a class and of those that it is made of, by field."""
-    found: dict[str, str] = {}
-    for each in kind.__mro__[:-1]:
-        for words, field in _COMMENT.findall(inspect.getsource(each)):
-            found.setdefault(field, " ".join(line.strip(" #:") for line in words.splitlines()))
-    return found
 
 
 def _of_uncertainty(key: str) -> _Row:
@@ -146,7 +136,7 @@ def _of_recipe(field: dataclasses.Field[Any]) -> _Row:
     return (
         f"`{field.name}`",
         f"`{example}`",
-        _cell(_attributes(Recipe)[field.name]),
+        cell(listed(inspect.getdoc(Recipe) or "")[field.name]),
         _default(field, quantity),
         "",
     )
@@ -274,17 +264,3 @@ def _accepted(quantity: Quantity | None) -> str:
     if quantity is None or not math.isfinite(quantity.high):
         return ""
     return f"{quantity.low:g} to {quantity.high:g} {quantity.unit}".strip()
-
-
-def _cell(words: str) -> str:
-    plain = re.sub(r"``(.+?)``", r"`\1`", " ".join(words.split()).removesuffix("."))
-    return re.sub(r"(?<!`)\*", r"\\*", plain[:1].upper() + plain[1:])
-
-
-def _attributes(kind: type) -> dict[str, str]:
-    """What a docstring says of the attributes, by name."""
-    listed = (inspect.getdoc(kind) or "").split("Attributes\n----------\n")[1]
-    found = {}
-    for names, words in re.findall(r"^(\S.*)\n((?:    .*\n?)+)", listed, re.MULTILINE):
-        found |= dict.fromkeys(names.split(", "), words)
-    return found

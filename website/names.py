@@ -9,6 +9,7 @@ from typing import Any
 
 import hersey
 from hersey import errors
+from website.said import first_sentence
 from website.text import joined, table, wrapped
 
 #: What a reader calls each room that has public names.
@@ -80,7 +81,10 @@ def _room(room: str, names: dict[str, Any]) -> str:
 
 
 def _table(names: dict[str, Any], page: str) -> str:
-    rows = [(f"[`{name}`]({page}#{_path(thing)})", first_sentence(thing)) for name, thing in names.items()]
+    rows = [
+        (f"[`{name}`]({page}#{_path(thing)})", first_sentence(inspect.getdoc(thing) or ""))
+        for name, thing in names.items()
+    ]
     return table(("name", "what it is"), rows)
 
 
@@ -90,15 +94,9 @@ def _errors() -> str:
     for kind in kinds:
         if issubclass(kind, errors.HerseyError) and kind is not errors.HerseyError:
             built_in = next(base.__name__ for base in kind.__mro__ if base.__module__ == "builtins")
-            rows.append((f"`{kind.__name__}`", f"`{built_in}`", first_sentence(kind)))
+            rows.append((f"`{kind.__name__}`", f"`{built_in}`", first_sentence(inspect.getdoc(kind) or "")))
     return table(("error", "also a", "when"), rows)
 
 
 def _path(thing: Any) -> str:
     return f"{thing.__module__}.{thing.__qualname__}"
-
-
-def first_sentence(thing: Any) -> str:
-    """Return the first sentence of a docstring, as a cell of a table holds it."""
-    first = " ".join((inspect.getdoc(thing) or "").split("\n\n")[0].split())
-    return re.sub(r"``(.+?)``", r"`\1`", re.split(r"(?<=\.) (?=[A-Z`])", first)[0])

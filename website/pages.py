@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from website import commands, files, names
+from website import commands, document, files, names
 from website.navigation import DOCS
 
 REFERENCE = DOCS / "reference"
@@ -12,7 +12,11 @@ REFERENCE = DOCS / "reference"
 
 def made() -> dict[Path, str]:
     """Return every page that is made, with its text."""
-    single = {"commands.md": commands.page(), "files.md": files.page()}
+    single = {
+        "commands.md": commands.page(),
+        "document.md": document.page(),
+        "files.md": files.page(),
+    }
     rooms = {f"python/{name}": text for name, text in names.pages()}
     return {REFERENCE / name: text for name, text in (single | rooms).items()}
 

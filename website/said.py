@@ -1,0 +1,57 @@
+"""What the code says of a field: comments ``#:``, sections of docstrings, docstrings of properties."""
+
+from __future__ import annotations
+
+import inspect
+import re
+from functools import cache
+
+_ABOVE = re.compile(r"((?:^ +#: .+\n)+) +(\w+):", re.MULTILINE)
+_BEHIND = re.compile(r"^ +(\w+):.*  #: (.+)$", re.MULTILINE)
+_LISTED = re.compile(r"^(?:Attributes|Parameters)\n-+\n((?:.*\n?)+?)(?=^\S+\n-+$|\Z)", re.MULTILINE)
+_ENTRY = re.compile(r"^(\S.*)\n((?:(?:    .*)?\n?)+)", re.MULTILINE)
+
+
+@cache
+def comments(kind: type) -> dict[str, str]:
+    """Return the comments ``#:`` above or behind the fields of a class and its bases, by field."""
+    found: dict[str, str] = {}
+    for each in kind.__mro__[:-1]:
+        try:
+            source = inspect.getsource(each)
+        except (OSError, TypeError):  # made as the program runs
+            continue
+        for words, field in _ABOVE.findall(source):
+            found.setdefault(field, " ".join(line.strip(" #:") for line in words.splitlines()))
+        for field, words in _BEHIND.findall(source):
+            found.setdefault(field, words)
+    return found
+
+
+def listed(docstring: str) -> dict[str, str]:
+    """Return what the sections Attributes and Parameters of a docstring say, by name."""
+    found: dict[str, str] = {}
+    for section in _LISTED.findall(docstring):
+        for names, words in _ENTRY.findall(section):
+            found |= dict.fromkeys(names.split(", "), " ".join(words.split()))
+    return found
+
+
+def computed(kind: type, name: str) -> str:
+    """Return what the docstring of a property or method says that it returns, or nothing."""
+    member = inspect.getattr_static(kind, name, None)
+    getter = getattr(member, "fget", None) or getattr(member, "func", None) or member
+    words = inspect.getdoc(getter) if inspect.isfunction(getter) else ""
+    return re.sub(r"^Return ", "", first_sentence(words or ""))
+
+
+def first_sentence(docstring: str) -> str:
+    """Return the first sentence of a docstring on one line, its code as Markdown has it."""
+    first = " ".join(docstring.split("\n\n")[0].split())
+    return re.sub(r"``(.+?)``", r"`\1`", re.split(r"(?<=\.) (?=[A-Z`])", first)[0])
+
+
+def cell(words: str) -> str:
+    """Return words as a cell of a table has them: a capital first, no full stop at the end."""
+    plain = re.sub(r"``(.+?)``", r"`\1`", " ".join(words.split()).removesuffix("."))
+    return re.sub(r"(?<![`\\])\*", r"\\*", plain[:1].upper() + plain[1:])
