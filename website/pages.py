@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from functools import cache
 from pathlib import Path
 
+from hersey.report import glossary
 from website import commands, document, files, names
 from website.navigation import DOCS
 
 REFERENCE = DOCS / "reference"
 
 
+@cache
 def made() -> dict[Path, str]:
     """Return every page that is made, with its text."""
     single = {
@@ -18,7 +21,8 @@ def made() -> dict[Path, str]:
         "files.md": files.page(),
     }
     rooms = {f"python/{name}": text for name, text in names.pages()}
-    return {REFERENCE / name: text for name, text in (single | rooms).items()}
+    reference = {REFERENCE / name: text for name, text in (single | rooms).items()}
+    return reference | {DOCS / "glossary.md": glossary.markdown()}
 
 
 def renew() -> list[Path]:
