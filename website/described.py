@@ -15,6 +15,8 @@ import griffe
 
 _BEHIND = re.compile(r"  #: (.+)$", re.MULTILINE)
 _ABOVE = "#: "
+#: What begins with a word, not with a unit or a symbol.
+_WORD = re.compile(r"(?!(?:rad|mm|kg|eta|ln)\b)[a-z][a-z-]+(?![\w/^*])|a ")
 
 
 class Described(griffe.Extension):
@@ -27,7 +29,8 @@ class Described(griffe.Extension):
             attr.annotation = _alone(attr.annotation, said)
         said = said or _commented(attr)
         if attr.docstring is None and said:
-            words = said[0][:1].upper() + said[0][1:].removesuffix(".") + "."
+            words = said[0].removesuffix(".") + "."
+            words = words[:1].upper() + words[1:] if _WORD.match(words) else words
             attr.docstring = griffe.Docstring(words, parent=attr)
 
 

@@ -40,8 +40,13 @@ _ROOM = re.compile(r"^(\w+)  ", re.MULTILINE)
 
 
 def public() -> dict[str, dict[str, Any]]:
-    """Return the public names and what they are, by room in the order of the computation."""
-    rooms: dict[str, dict[str, Any]] = {name: {} for name in _ROOM.findall(hersey.__doc__ or "")}
+    """Return the public names and what they are, by room in the order of the computation.
+
+    What serves all rooms, and stands before the first of them, comes last.
+    """
+    order = _ROOM.findall(hersey.__doc__ or "")
+    first = order.index("log")
+    rooms: dict[str, dict[str, Any]] = {name: {} for name in (*order[first:], *order[:first])}
     for name in sorted(hersey.__all__, key=lambda name: (name[0].islower(), name)):
         thing = getattr(hersey, name)
         if not isinstance(thing, str):  # the version

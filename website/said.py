@@ -51,7 +51,13 @@ def first_sentence(docstring: str) -> str:
     return re.sub(r"``(.+?)``", r"`\1`", re.split(r"(?<=\.) (?=[A-Z`])", first)[0])
 
 
+#: What begins with a word, not with a unit or a symbol: these stay as they are.
+_WORD = re.compile(r"(?!(?:rad|mm|kg|eta|ln)\b)[a-z][a-z-]+(?![\w/^*])|a ")
+
+
 def cell(words: str) -> str:
     """Return words as a cell of a table has them: a capital first, no full stop at the end."""
     plain = re.sub(r"``(.+?)``", r"`\1`", " ".join(words.split()).removesuffix("."))
-    return re.sub(r"(?<![`\\])\*", r"\\*", plain[:1].upper() + plain[1:])
+    if _WORD.match(plain):
+        plain = plain[:1].upper() + plain[1:]
+    return re.sub(r"(?<![`\\])\*", r"\\*", plain)
