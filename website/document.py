@@ -22,6 +22,8 @@ from website.text import joined, sections, table, wrapped
 TEMPLATE = Path(__file__).parent / "templates" / "document.md"
 FIELDS = Path(__file__).parent / "fields.toml"
 _TYPES = {"number": "number", "integer": "whole number", "string": "text", "boolean": "true or false"}
+#: Parts that are a number with its interval: what they say is true of any.
+_NUMBERS = ("Edge", "Estimate", "Interval")
 #: Where a docstring begins its sections.
 _SECTIONS = re.compile(r"\n\n\w+\n-+\n")
 
@@ -146,7 +148,9 @@ def _within(part: Shown, schema: dict[str, Any]) -> str:
     """The first sentence about the part that a field holds."""
     for each in (schema, *schema.get("anyOf", ())):
         if reference := each.get("$ref"):
-            return first_sentence(part.inside[reference.rsplit("/", 1)[1]].schema.get("description", ""))
+            held = part.inside[reference.rsplit("/", 1)[1]].schema
+            if held["title"] not in _NUMBERS:
+                return first_sentence(held.get("description", ""))
     return ""
 
 
