@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import ast
 import inspect
 import re
+import sys
 from functools import cache
+from pathlib import Path
 
 _ABOVE = re.compile(r"((?:^ +#: .+\n)+) +(\w+):", re.MULTILINE)
 _BEHIND = re.compile(r"^ +(\w+):.*  #: (.+)$", re.MULTILINE)
@@ -13,14 +16,26 @@ _ENTRY = re.compile(r"^(\S.*)\n((?:(?:    .*)?\n?)+)", re.MULTILINE)
 
 
 @cache
+def _classes(file: str) -> dict[str, str]:
+    """The source of each class of a module, by name; `inspect` would parse the file for each."""
+    if not file.endswith(".py"):
+        return {}
+    text = Path(file).read_text(encoding="utf-8")
+    lines = text.splitlines(keepends=True)
+    return {
+        node.name: "".join(lines[node.lineno - 1 : node.end_lineno])
+        for node in ast.walk(ast.parse(text))
+        if isinstance(node, ast.ClassDef)
+    }
+
+
+@cache
 def comments(kind: type) -> dict[str, str]:
     """Return the comments ``#:`` above or behind the fields of a class and its bases, by field."""
     found: dict[str, str] = {}
     for each in kind.__mro__[:-1]:
-        try:
-            source = inspect.getsource(each)
-        except (OSError, TypeError):  # made as the program runs
-            continue
+        module = sys.modules.get(each.__module__)
+        source = _classes(getattr(module, "__file__", None) or "").get(each.__name__, "")
         for words, field in _ABOVE.findall(source):
             found.setdefault(field, " ".join(line.strip(" #:") for line in words.splitlines()))
         for field, words in _BEHIND.findall(source):
