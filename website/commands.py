@@ -129,7 +129,7 @@ def _tables(options: list[Any]) -> Iterator[str]:
     """A table for each heading that the help has."""
     panels = dict.fromkeys(each.rich_help_panel for each in options)
     for panel in panels:
-        if panel:
+        if panel and len(panels) > 1:
             yield f"**{panel}**"
         rows = [_row(each) for each in options if each.rich_help_panel == panel]
         yield table(("option", "takes", "meaning", "default"), rows)
