@@ -24,7 +24,7 @@ class Described(griffe.Extension):
 
     def on_attribute_instance(self, *, attr: griffe.Attribute, **_: Any) -> None:
         """Describe one attribute."""
-        said = []
+        said: list[str] = []
         if attr.annotation is not None:
             attr.annotation = _alone(attr.annotation, said)
         said = said or _commented(attr)
