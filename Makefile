@@ -17,7 +17,7 @@ SUM_OF_SOURCES := cat $(PHYSICS_SOURCES) | sha256sum | cut -c1-64
 # The core for C and for units of other tools, beside the room that packs them. Its name ends as the system's libraries do.
 LIBRARY := python/hersey/exchange/library
 
-.PHONY: help build physics demo demo-life test quick nightly lint format typecheck test-rust test-python browser lowest fuzz \
+.PHONY: help build physics demo demo-life docs test quick nightly lint format typecheck test-rust test-python browser lowest fuzz \
   fuzz-read benchmark mutants mutants-python mutants-rust library wheel release-check clean
 .DEFAULT_GOAL := help
 
@@ -64,6 +64,10 @@ demo-life: build ## follow the shipped life test of eight units to what ends the
 	  --machine examples/machine.toml
 	$(BIN)/hersey life build/demo-life/life.hersey --machine examples/machine.toml \
 	  --out build/demo-life/life.html --figures build/demo-life/figures --force
+
+docs: build ## build the site of the docs, which needs no network, into build/docs/site
+	$(BIN)/python -m website
+	$(BIN)/python -m website.build build/docs
 
 # What keeps one core busy goes beside what else does; then the tests of the package take all cores. Cargo does not share
 # jobs with make: it would warn that it cannot.

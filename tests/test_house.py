@@ -369,23 +369,6 @@ def test_no_message_outside_the_command_line_names_a_flag() -> None:
     assert found == []
 
 
-def test_every_flag_is_in_the_docs() -> None:
-    sections = (ROOT / "docs" / "reference" / "commands.md").read_text().split("\n## hersey ")
-    documented = {section.split(maxsplit=1)[0]: section for section in sections[1:]}
-    assert set(documented) == set(commands())
-    of_a_log, of_a_belt = sections[0].split("\n## ")[1:]
-    for name, command in commands().items():
-        parameters = [
-            p for each in (command, *getattr(command, "commands", {}).values()) for p in each.params
-        ]
-        own = {parameter.name for parameter in parameters}
-        text = documented[name] + of_a_log * ("min_dwell" in own) + of_a_belt * ("ehl_exponent" in own)
-        for parameter in parameters:
-            for flag in parameter.opts:
-                if flag.startswith("--"):
-                    assert f"`{flag}`" in text, f"{name} {flag}"
-
-
 #: A dotted name below the package, or a file of it, in prose or code.
 _NAMED = re.compile(r"(?<![\w./-])hersey((?:\.[A-Za-z_]\w*)+)")
 _FILE = re.compile(r"python/hersey/([\w/]+\.py)\b|`([\w/]+/\w+\.py)`")

@@ -16,9 +16,9 @@ CONFIDENCE = 0.95
 
 @dataclass(frozen=True)
 class Estimate(Record):
-    """A number with its standard error and its 95 % interval, which is unbounded where it is not told.
+    """A number with its standard error and its 95 % interval, which is unbounded if unknown.
 
-    ``systematic`` is the half width that errors of the sensors may add, at 95 %, beyond that interval.
+    ``systematic`` is the half width, at 95 %, that errors of the sensors may add to the interval.
     """
 
     value: Annotated[float, OPEN]

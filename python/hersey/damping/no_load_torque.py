@@ -41,8 +41,8 @@ class NoLoadTorque(Result):
     """Torque beside the film, at the roll: ``(constant + per_speed w) (1 + temperature_slope (T - T_ref))``.
 
     ``constant`` is in N m, ``per_speed`` in N m s/rad, ``temperature_slope`` in 1/K about
-    ``reference_temperature`` (K; None if it does not vary). An interval that is not told (unbounded) stands
-    for a part taken as nothing. ``source`` names file and key, ``sha256`` the files.
+    ``reference_temperature`` (K; None if it does not vary). A part that is unknown is zero and has an
+    unbounded interval. ``source`` names file and key, ``sha256`` the files.
     """
 
     constant: Estimate

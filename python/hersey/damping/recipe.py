@@ -85,20 +85,32 @@ class Recipe:
         Files of one log.
     mapping
         File with roles, units and corrections of the channels; None for `hersey.toml` beside the logs.
-    channels, units
-        Names of columns and their units by role; they outrank those of the mapping.
+    channels
+        Name of the column of each role; outranks the mapping.
+    units
+        Unit of the column of each role; outranks the mapping.
     signs
-        -1 by role, ``torque`` or ``speed``, turns the sign.
-    every, radius, load
-        Time between rows, s; radius of a friction force, m, and normal load, N, one or one for each run.
-    isothermal, drop_missing
-        As for `hersey.read`.
+        -1 for ``torque`` or ``speed`` reverses its sign.
+    every
+        Time between rows, s, if the log has no clock.
+    radius
+        Radius at which a friction force acts, m: one, or one for each run.
+    load
+        Normal load, N: one, or one for each run.
+    isothermal
+        Whether temperature is left out of the fit.
+    drop_missing
+        Whether rows with a missing or impossible number are dropped also where they are many.
     means
         Whether the files are tables of means. Those that plainly are need not be called so.
-    min_dwell, tare, rotation
-        As for `TorqueLog.steady`; ``min_dwell`` in s.
+    min_dwell
+        Shortest dwell, s.
+    tare
+        ``none``, or ``standing``: subtract the torque at standstill.
+    rotation
+        Dwells to use: ``both``, ``forward`` or ``reverse``.
     temperature_scale
-        Of the fit: ``degC`` or ``K``.
+        Scale of T in the fit: ``degC`` or ``K``.
     no_load
         Log of the drive without the film, read in the same way: its torque is subtracted.
     """

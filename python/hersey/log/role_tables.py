@@ -42,7 +42,9 @@ _GearRatio = Annotated[float, Quantity(None, 1e-4, 1e4, "12.5")]
 class RoleMapping(Table):
     """What a mapping says of one role; ``channel`` and ``unit`` are empty where the log is to tell."""
 
+    #: Name of the channel.
     channel: Text = ""
+    #: Unit of the channel, if the log states none or a wrong one.
     unit: Text = ""
 
 
@@ -57,7 +59,9 @@ class TimeMapping(RoleMapping):
 class LoadMapping(RoleMapping):
     """What it says of the normal load, N: a channel, a ``value``, or ``values``, one for each run."""
 
+    #: Normal load, instead of a channel.
     value: Annotated[float, Quantity("force", 1e-9, 1e9, "50 N")] | None = None
+    #: Normal load of each run.
     values: tuple[Annotated[float, Quantity("force", 1e-9, 1e9, "50 N")], ...] = ()
 
 
@@ -65,7 +69,9 @@ class LoadMapping(RoleMapping):
 class RadiusMapping(RoleMapping):
     """What it says of the radius of a friction force, m: as `LoadMapping`."""
 
+    #: Radius at which the friction force acts, instead of a channel.
     value: Annotated[float, Quantity("length", 1e-6, 1e3, "25 mm")] | None = None
+    #: Radius of each run.
     values: tuple[Annotated[float, Quantity("length", 1e-6, 1e3, "25 mm")], ...] = ()
 
 
@@ -73,12 +79,19 @@ class RadiusMapping(RoleMapping):
 class TorqueMapping(TorqueErrors, RoleMapping):
     """What it says of the torque, in SI; ``no_load`` is a torque or a log."""
 
+    #: -1 reverses the sign of the torque.
     sign: _Sign = 1
+    #: Torque of the motor per ampere, if the channel is its current.
     motor_constant: Annotated[float, Amount("motor constant", 1e-6, 1e3, "35 mN*m/A")] | None = None
+    #: Reading of the sensor without load.
     tare: Annotated[float, Quantity("torque", -1e6, 1e6, "4 mN*m")] = 0.0
+    #: No-load torque, or a log of it beside the mapping.
     no_load: Annotated[float | Path, _NoLoad("torque", 0.0, 1e6, "4 mN*m")] = 0.0
+    #: Turns of the sensor's shaft per turn of the roll.
     gear_ratio: _GearRatio = 1.0
+    #: Efficiency of these gears.
     efficiency: Annotated[float, Quantity(None, 0.05, 1.0, "0.9")] = 1.0
+    #: Moment of inertia, at the roll.
     inertia: Annotated[float, Amount("moment of inertia", 1e-12, 1e6, "2e-4 kg*m^2")] = 0.0
 
 
@@ -86,7 +99,9 @@ class TorqueMapping(TorqueErrors, RoleMapping):
 class SpeedMapping(SpeedErrors, RoleMapping):
     """What it says of the speed."""
 
+    #: -1 reverses the sign of the speed.
     sign: _Sign = 1
+    #: Turns of the sensor's shaft per turn of the roll.
     gear_ratio: _GearRatio = 1.0
 
 
@@ -94,5 +109,7 @@ class SpeedMapping(SpeedErrors, RoleMapping):
 class TemperatureMapping(TemperatureErrors, RoleMapping):
     """What it says of the temperature, in SI: film minus reading, the lag of the sensor, their bounds."""
 
+    #: Temperature of the film minus reading.
     offset: Annotated[float, Amount("temperature difference", -100.0, 100.0, "-1.5 K")] = 0.0
+    #: Time constant of the lag of the sensor.
     time_constant: Annotated[float, Quantity("time", 1e-3, 1e4, "4 s")] = 0.0

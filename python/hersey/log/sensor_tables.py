@@ -16,7 +16,9 @@ from hersey.log.sensors import OF_ROLE, Sensors
 class TorqueErrors(Table):
     """Half widths at 95 %: a share, and N m."""
 
+    #: Error of the gain, half width at 95 %; 1 % if not stated.
     gain_error: Share | None = None
+    #: Error of the zero, half width at 95 %; 0.1 % of the largest torque if not stated.
     zero_error: Annotated[float, Quantity("torque", 0.0, 1e6, "2 mN*m")] | None = None
 
 
@@ -24,6 +26,7 @@ class TorqueErrors(Table):
 class SpeedErrors(Table):
     """Half width at 95 %, a share."""
 
+    #: Error of the gain, half width at 95 %; 0.1 % if not stated.
     gain_error: Share | None = None
 
 
@@ -31,7 +34,9 @@ class SpeedErrors(Table):
 class TemperatureErrors(Table):
     """Half width at 95 %, and bound on how much friction heats the film, K."""
 
+    #: Error of the reading, half width at 95 %; 2 K if not stated.
     zero_error: Annotated[float, Amount("temperature difference", 0.0, 100.0, "2 K")] | None = None
+    #: Upper bound on frictional heating of the film above the reading.
     film_heating: Annotated[float, Amount("temperature difference", 0.0, 100.0, "3 K")] | None = None
 
 

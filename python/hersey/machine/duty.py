@@ -58,9 +58,13 @@ class LifeTable(Table):
     the motor bears without end, as root of the mean square.
     """
 
+    #: Temperature of the coldest start; without it the coldest that all specimens recorded.
     coldest: Annotated[float, Quantity("temperature", 150.0, 1000.0, "15 degC")] | None = None
+    #: Travel of the belt in one unit of age, such as a page.
     travel: Annotated[float, Quantity("length", 1e-6, 1e6, "300 mm")] | None = None
+    #: Greatest energy that the roll may take in one unit of age.
     energy: Annotated[float, Quantity("energy", 1e-9, 1e12, "10 J")] | None = None
+    #: Torque that the motor withstands continuously, at the roll, rms.
     continuous_torque: Annotated[float, Quantity("torque", 1e-6, 1e6, "0.5 N*m")] | None = None
 
 
@@ -75,17 +79,29 @@ class GearTable(Table):
     fail at Miner's sum ``damage``.
     """
 
+    #: Torque amplitude at the knee of the S-N curve, at the part.
     torque: _Torque
+    #: Cycles to failure at the knee.
     cycles: Annotated[float, Quantity(None, 1.0, 1e15, "2e6")]
+    #: Slope of the S-N curve above the knee, positive.
     slope: Annotated[float, Quantity(None, 0.1, 1e3, "7")]
+    #: Slope below the knee: a number, or "haibach" for 2 slope - 1; without it slope holds everywhere.
     second_slope: Annotated[float | str, BeforeValidator(_slope)] | None = None
+    #: Torque amplitude below which cycles do no damage.
     endurance: _Torque | None = None
+    #: Torque at which the part breaks at once; with it the mean torque counts (Goodman's line).
     ultimate: _Torque | None = None
+    #: Torque at the part over torque at the roll.
     ratio: Annotated[float, Quantity(None, 1e-6, 1e6, "3.5")] = 1.0
+    #: Number of starts per age.
     starts: Annotated[tuple[float, str], BeforeValidator(_starts)] | None = None
+    #: Share of the starts at the coldest temperature; without it all of them.
     cold_starts: Share | None = None
+    #: Log of the torque in use, beside the machine file.
     duty: Text | None = None
+    #: Age over which duty was recorded.
     duty_age: Annotated[str, BeforeValidator(_age)] | None = None
+    #: Miner's sum at which the part is taken to fail.
     damage: Annotated[float, Quantity(None, 1e-6, 1e3, "0.5")] = 1.0
 
     def gear(self, path: Path) -> GearTable:

@@ -25,8 +25,11 @@ class Limits(Table):
     motor_torque: Annotated[float, Quantity("torque", 1e-6, 1e6)] | None = None
     roll_friction: Annotated[float, Quantity(None, 1e-3, 10.0)] | None = None
     nip_load: Annotated[float, Quantity("force", 1e-3, 1e7)] | None = None
+    #: Greatest acceleration of the drive, at the belt.
     acceleration: Annotated[float, Quantity("acceleration", 1e-6, 1e5)] | None = None
+    #: Greatest speed of the drive, at the belt.
     speed: _Speed | None = None
+    #: Greatest force in the gear train, at the belt.
     spring_force: Annotated[float, Quantity("force", 1e-6, 1e7)] | None = None
 
     def force(self, roll_radius: float) -> tuple[str, float] | None:
@@ -59,6 +62,9 @@ class OperatingPoint(Table):
     """
 
     name: Text
+    #: Belt speed.
     speed: _Speed
+    #: Temperature of the belt.
     temperature: Annotated[float, Quantity("temperature", 150.0, 1000.0)]
+    #: Share of the running time; state it for all points or for none.
     share: Share | None = None

@@ -177,10 +177,13 @@ class DrivetrainTable(Table):
     stiffness: Annotated[float, Quantity("stiffness", 1.0, 1e10)]
     mass: Annotated[float, Quantity("mass", 1e-6, 1e6)]
     roll_radius: Annotated[float, Quantity("length", 1e-5, 100.0)]
+    #: Stick speed: results depend on it and logs rarely show it, so state its range in [uncertainty].
     stick_speed: Annotated[float, Quantity("belt speed", 1e-9, 10.0)]
+    #: Temperature at which stick_speed holds; without it the reference temperature of the fit.
     stick_speed_temperature: Annotated[float, Quantity("temperature", 150.0, 1000.0, "150 degC")] | None = (
         None
     )
+    #: "fixed": the same stick speed at all temperatures; by default it moves with the transition speed.
     stick_speed_rule: Literal["with transition", "fixed"] = "with transition"
 
 

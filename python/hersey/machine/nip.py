@@ -21,18 +21,29 @@ _ANY = "298.15 K"
 class ContactTable(Table):
     """The nip as a machine's file states it; radius and load may stand in other tables."""
 
+    #: Outer radius of the roll; without it that of [drivetrain].
     roll_radius: Annotated[float, Quantity("length", 1e-4, 10.0)] | None = None
+    #: Thickness of the rubber on the roll.
     rubber_thickness: Annotated[float, Quantity("length", 1e-5, 1.0)] | None = None
     modulus: Annotated[float, Quantity("pressure", 1e4, 1e12)] | None = None
+    #: Hardness of the rubber, Shore A, instead of modulus.
     shore_a: Annotated[float, Quantity(None, 20.0, 80.0)] | None = None
     poisson_ratio: Annotated[float, Quantity(None, 1e-9, 0.5)] | None = None
+    #: Length of the nip, along the roll.
     length: Annotated[float, Quantity("length", 1e-4, 100.0)] | None = None
+    #: Load that presses the roll on the heater; without it nip_load of [limits].
     load: Annotated[float, Quantity("force", 1e-3, 1e7)] | None = None
+    #: Radius of the heater; flat if not stated.
     heater_radius: Annotated[float, Quantity("length", 1e-4, 1e6)] | None = None
+    #: Roughness of belt and heater together, rms; needed with [asperities].
     roughness: Annotated[float, Quantity("length", 1e-10, 1e-3)] | None = None
+    #: Uncertainty of the nip width.
     nip_uncertainty: Share | None = None
+    #: Thickness of the lubricant layer on the inlet side; a flooded inlet if not stated.
     supply: Annotated[float, Quantity("length", 1e-9, 1e-2)] | None = None
+    #: Heat flow from the heater through the film to the roll, over the whole nip; with sensor_side.
     heat_flow: Annotated[float, Quantity("power", 0.0, 1e6, "600 W")] | None = None
+    #: Wall of the film that the temperature sensor reads: "heater" or "roll"; with heat_flow.
     sensor_side: str | None = None
 
     def contact(self, roll_radius: float, load: float | None) -> Contact:
@@ -91,11 +102,18 @@ _Alpha = Annotated[float, Quantity("pressure-viscosity coefficient", 1e-12, 1e-6
 class LubricantTable(Table):
     """The lubricant as a machine's file states it: one of the examples, or points of a data sheet."""
 
+    #: Name of an oil with published values, instead of model and viscosities.
     example: str = ""
+    #: Name of the lubricant, as results show it.
     name: str = "lubricant"
+    #: Where the values come from.
     source: str = ""
+    #: Law of viscosity against temperature: "walther" (ASTM D341, two points, needs density), "arrhenius"
+    #: (two points) or "vogel" (three points).
     model: str = ""
+    #: Density of the lubricant; a kinematic viscosity, such as one in mm^2/s, needs it.
     density: Annotated[float, Quantity("density", 100.0, 2e4)] | None = None
+    #: Points of the data sheet: temperature and dynamic or kinematic viscosity.
     viscosities: (
         Annotated[
             tuple[tuple[_Temperature, Annotated[float, _Viscosity("viscosity", 1e-6, 1e9)]], ...],
@@ -103,11 +121,17 @@ class LubricantTable(Table):
         ]
         | None
     ) = None
+    #: Pressure-viscosity coefficient: one for all temperatures, or pairs of temperature and coefficient.
     pressure_viscosity: Annotated[tuple[tuple[_Temperature, _Alpha], ...], BeforeValidator(_or_one)] = ()
+    #: Thermal conductivity, for heating by shear.
     conductivity: Annotated[float, Quantity("thermal conductivity", 1e-3, 1e3)] | None = None
+    #: Relaxation time of Carreau's law of shear thinning; with carreau_exponent.
     relaxation_time: Annotated[float, Quantity("time", 1e-15, 1e3)] | None = None
+    #: Exponent of Carreau's law; 1 is a Newtonian lubricant.
     carreau_exponent: Annotated[float, Quantity(None, 1e-3, 1.0)] | None = None
+    #: Share of viscosity left at the highest shear rates.
     viscosity_left: Annotated[float, Quantity(None, 1e-9, 1.0)] = 0.0
+    #: Uncertainty of viscosity: "20 %" means that it lies within a factor of 1.2, at 95 %.
     uncertainty: Share | None = None
 
     def lubricant(self) -> Lubricant:

@@ -41,12 +41,19 @@ PerKelvin = Annotated[float, BeforeValidator(_slope)]
 class RestTable(Table):
     """Either the numbers, or a ``log`` recorded without the film, beside the machine's file."""
 
+    #: No-load torque, at the roll: the part that does not depend on speed.
     torque: Annotated[float, Quantity("torque", 0.0, 1e6, "20 mN*m")] | None = None
+    #: Increase of the no-load torque with speed.
     damping: Annotated[float, Quantity("rotational damping", 0.0, 1e6, "1 mN*m*s/rad")] | None = None
+    #: Change of the whole no-load torque per kelvin, as a share of it.
     temperature_slope: PerKelvin | None = None
+    #: Temperature at which torque and damping hold; needed with temperature_slope.
     at: Annotated[float, Quantity("temperature", 150.0, 1000.0, "180 degC")] | None = None
+    #: Uncertainty of the no-load torque.
     uncertainty: Share | None = None
+    #: Log recorded without the lubricated contact, beside the machine file, instead of numbers.
     log: Text | None = None
+    #: "standing": subtract the torque that this log shows at standstill.
     tare: Text | None = None
 
     def rest(self, path: Path) -> NoLoadTorque:

@@ -16,8 +16,11 @@ from hersey.machine.no_load import PerKelvin
 class AsperitiesTable(Table):
     """Summits of the two faces that slide: contact modulus E*, and what their shape is."""
 
+    #: Contact modulus E* of the faces of belt and heater that touch, not of the rubber.
     modulus: Annotated[float, Quantity("pressure", 1e6, 2e12, "3 GPa")]
+    #: Roughness times radius of the asperities times their number per area.
     sigma_beta_density: Annotated[float, Quantity(None, 1e-3, 1.0, "0.05")] = Asperities.sigma_beta_density
+    #: Roughness over radius of the asperities.
     sigma_over_beta: Annotated[float, Quantity(None, 1e-6, 1.0, "0.01")] = Asperities.sigma_over_beta
 
     def asperities(self) -> Asperities:
@@ -29,9 +32,14 @@ class AsperitiesTable(Table):
 class BoundaryTable(Table):
     """Friction where asperities carry all; ``temperature_slope`` is a share of it for each kelvin."""
 
+    #: Friction coefficient where asperities carry all of the load.
     friction: Annotated[float, Quantity(None, 1e-6, 10.0, "0.1")]
+    #: Change of the friction coefficient per kelvin, as a share of it.
     temperature_slope: PerKelvin | None = None
+    #: Temperature at which friction holds; needed with temperature_slope.
     at: Annotated[float, Quantity("temperature", 150.0, 1000.0, "180 degC")] | None = None
+    #: Friction coefficient of a belt at rest; without it, break-away drag is e times the drag at the stick
+    #: speed.
     static_friction: Annotated[float, Quantity(None, 1e-6, 10.0, "0.15")] | None = None
 
     def boundary(self) -> BoundaryFriction:

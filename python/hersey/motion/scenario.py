@@ -139,25 +139,41 @@ _Exponent = Annotated[Any, _Values(None)]
 
 @dataclass(frozen=True)
 class _ParametersTable(Table):
+    #: Spring stiffness.
     stiffness: Annotated[Any, _Values("stiffness")] = None
+    #: Moving mass, at the belt.
     mass: Annotated[Any, _Values("mass")] = None
+    #: Drag at the transition speed.
     transition_force: _Force = None
+    #: Transition speed.
     transition_speed: _Speed = None
+    #: Exponent of damping in speed above the transition.
     ehl_exponent: _Exponent = None
+    #: Exponent of damping in speed below the transition.
     mixed_exponent: _Exponent = None
+    #: Stick speed.
     stick_speed: _Speed = None
+    #: Speed of the drive.
     drive_speed: _Speed = None
 
 
 @dataclass(frozen=True)
 class _OptionsTable(Table):
+    #: Motion below the stick speed: "retained", "stiction", "stribeck" or "lugre".
     closure: str = "retained"
+    #: Force per deflection of the bristles; for "lugre".
     bristle_stiffness: Annotated[float, Quantity("stiffness")] | None = None
+    #: Force per rate of deflection; for "lugre".
     bristle_damping: Annotated[float, Quantity("translational damping")] | None = None
+    #: "rest", or "steady": sliding with the drive.
     start: str = "rest"
+    #: Time simulated; without it until the orbit closes.
     duration: Annotated[float, Quantity("time")] | None = None
+    #: Relative tolerance of the motion.
     tolerance: Annotated[float, Quantity(None)] = TOLERANCE
+    #: "consistent": plain numbers in any consistent set of units.
     units: Literal["SI", "consistent"] = "SI"
+    #: Whether lists of equal length are taken together instead of being crossed.
     zip: StrictBool = False
 
 

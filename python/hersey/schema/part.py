@@ -20,7 +20,7 @@ class Part(BaseModel):
 
 
 class Interval(Part):
-    """A number with error, 95 % interval (null: not told), degrees of freedom, and what sensors may add."""
+    """A number with error, 95 % interval (null: unknown), degrees of freedom, and what sensors may add."""
 
     value: float
     error: float
