@@ -79,9 +79,11 @@ def test_the_rule_is_that_of_the_transition_or_none(fitted: hersey.DampingSurfac
 
 
 def test_a_fixed_stick_speed_needs_one_temperature(fitted: hersey.DampingSurface) -> None:
-    with pytest.raises(ParameterError, match="give one temperature, or stick_speed_rule 'with transition'"):
+    with pytest.raises(
+        ParameterError, match="Give one temperature, or use stick_speed_rule 'with transition'"
+    ):
         fitted.drag(**machine(FIXED).belt)
-    with pytest.raises(ParameterError, match="give one temperature"):
+    with pytest.raises(ParameterError, match="Give one temperature"):
         drag_and_draws(fitted, machine(FIXED), None, 1, varies=True)
 
 

@@ -38,8 +38,8 @@ class DesignPoint(Record):
 
     speed: Annotated[float, Means(unit="rad/s")]
     kelvin: Annotated[float | None, Means(unit="K")]
-    error: Annotated[float | None, Means("of the quantity, in its unit")]
-    volume: Annotated[float, Means("of the confidence region over that of today", open=True)]
+    error: Annotated[float | None, Means("of the quantity after this dwell, in its unit")]
+    volume: Annotated[float, Means("volume of the confidence region, relative to the present one", open=True)]
 
 
 @dataclass(frozen=True, repr=False)
@@ -57,18 +57,18 @@ class TestDesign(Result):
 
     def summary(self) -> str:
         """Return the points as text."""
-        what = f"to know the {self.quantity} best" if self.quantity else "to know all parameters best"
-        lines = [f"Next dwells {what} (law: {self.law}; seed {self.seed}):"]
+        what = f"to determine the {self.quantity}" if self.quantity else "to determine all parameters"
+        lines = [f"Next dwells {what} (model: {self.law}; seed {self.seed}):"]
         if self.error_now is not None:
-            lines.append(f"  today's standard error: {self._shown(self.error_now)}")
+            lines.append(f"  present standard error: {self._shown(self.error_now)}")
         for number, point in enumerate(self.points, 1):
             hot = "" if point.kelvin is None else f" at {convert(point.kelvin, 'K', 'degC'):.0f} degC"
             then = (
-                f"region of all parameters {point.volume:.0%} of today's"
+                f"confidence region of all parameters shrinks to {100 * point.volume:.0f} %"
                 if point.error is None
                 else f"standard error {self._shown(point.error)}"
             )
-            lines.append(f"  {number}. {rpm(point.speed):.3g} rpm{hot}: then {then}")
+            lines.append(f"  {number}. {rpm(point.speed):.3g} rpm{hot}: {then}")
         return "\n".join(lines)
 
     def to_frame(self) -> pl.DataFrame:
@@ -165,7 +165,7 @@ def _information(
     information = np.einsum("kni,knj->kij", measured, measured)
     scale = np.sqrt(np.diag(fit.covariance))
     if not np.all(np.isfinite(scale)) or np.any(scale <= 0):
-        raise InsufficientDataError("the law is not determined by these data: record more of them first")
+        raise InsufficientDataError("these data do not determine the model. Record more dwells first")
     return rows * scale, information * np.outer(scale, scale), scale
 
 
@@ -186,7 +186,7 @@ def _wanted(comparison: ModelComparison, quantity: str) -> Quantity | None:
     if len(matches) != 1:
         listed = ", ".join(f"'{q.name}'" for q in known)
         raise ParameterError(
-            f"'{quantity}' names {len(matches) or 'no'} parameters of this law: take one of {listed}"
+            f"'{quantity}' matches {len(matches) or 'no'} parameters of this model. Use one of {listed}"
         )
     return matches[0]
 
@@ -197,7 +197,9 @@ def _dwells_to_try(
     data = comparison.data
     slow, fast = (data.speed.min(), data.speed.max()) if speeds is None else speeds
     if not 0 < slow < fast:
-        raise ParameterError(f"speeds are {slow:g} to {fast:g} rad/s: they must ascend from above 0")
+        raise ParameterError(
+            f"speeds are {slow:g} to {fast:g} rad/s: both must be above 0, the lower one first"
+        )
     grid = np.geomspace(slow, fast, SPEEDS)
     if data.inputs.kelvin is None or comparison.chosen.fit.law.thermal is None:
         return data.at(grid, None if data.inputs.kelvin is None else data.temperatures[0])
@@ -205,7 +207,9 @@ def _dwells_to_try(
     if temperatures is not None:
         cold, hot = temperatures
         if not 0 < cold < hot:
-            raise ParameterError(f"temperatures are {cold:g} to {hot:g} K: they must ascend from above 0")
+            raise ParameterError(
+                f"temperatures are {cold:g} to {hot:g} K: both must be above 0, the lower one first"
+            )
         hots = np.linspace(cold, hot, 7)
     both = np.meshgrid(grid, hots)
     return data.at(both[0].ravel(), both[1].ravel())

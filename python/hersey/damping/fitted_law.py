@@ -112,7 +112,7 @@ class FittedLaw(Result):
         kelvin = None
         if self.b is not None:
             if temperature is None:
-                raise ParameterError("this law depends on temperature: give it one, in K")
+                raise ParameterError("this law depends on temperature. Give the temperature in K")
             kelvin = np.asarray(temperature, dtype=float)
             self._warn_outside("temperature", kelvin, self.temperature_range)
             speeds, kelvin = np.broadcast_arrays(speeds, kelvin)
@@ -181,7 +181,8 @@ class FittedLaw(Result):
         if limits and (np.any(values < limits[0] * 0.999) or np.any(values > limits[1] * 1.001)):
             unit = "rad/s" if name == "speed" else "K"
             warnings.warn(
-                f"{name} outside the measured {limits[0]:.4g} to {limits[1]:.4g} {unit}: extrapolated",
+                f"{name} is outside the measured range, {limits[0]:.4g} to {limits[1]:.4g} {unit}, so "
+                "the result is extrapolated",
                 ExtrapolationWarning,
                 stacklevel=5,
             )

@@ -65,9 +65,9 @@ def no_load_torque(points: SteadyPoints) -> NoLoadTorque:
     least = float(np.min(law.predict(fit.values, data.inputs))) * scale
     if not least > 0:
         raise InsufficientDataError(
-            f"{name}: without the film torque is fitted as {1e3 * least:.3g} mN m at its least, and what a "
-            f"drive takes is greater than nothing: subtract the zero of the sensor ({TARE.to('standing')}), "
-            f"or turn a sign with {turned('torque')}"
+            f"{name}: the fitted no-load torque falls to {1e3 * least:.3g} mN m, but it must be "
+            f"positive. Subtract the zero of the sensor ({TARE.to('standing')}), or flip the sign "
+            f"with {turned('torque')}"
         )
     units = {"constant": scale, "per_speed": scale / data.reference_speed, "temperature_slope": 1.0 / KELVIN}
     by = np.array([[units[n] if n == fitted else 0.0 for fitted in law.names] for n in units])
@@ -98,8 +98,8 @@ def no_load_torque(points: SteadyPoints) -> NoLoadTorque:
 def _refuse_corrected(points: SteadyPoints, name: str) -> None:
     if any(c.name.startswith("no-load") for c in points.log.corrections):
         raise ParameterError(
-            f"{name}: the mapping takes a no-load torque off this log too, so that nothing is left: leave "
-            "out no_load of the mapping"
+            f"{name}: the mapping subtracts a no-load torque from this log too, so nothing is left. "
+            "Remove no_load from the mapping"
         )
 
 
@@ -111,8 +111,8 @@ def _law(name: str, data: Observations) -> RestLaw:
     )
     if len(data) < len(law.names) + _SPARE:
         raise InsufficientDataError(
-            f"{name}: {len(data)} steady points cannot tell the no-load torque with its error: "
-            f"at least {len(law.names) + _SPARE} are needed"
+            f"{name}: {len(data)} dwells are too few for the no-load torque and its error; at least "
+            f"{len(law.names) + _SPARE} are needed"
         )
     return law
 
@@ -146,25 +146,25 @@ def _warnings(law: RestLaw, fit: LawFit, data: Observations) -> tuple[Warning, .
     found = []
     if not law.with_speed:
         words = (
-            "the no-load log holds one speed, {speed:.3g rpm}: how torque rises with speed is not known and "
-            "taken as nothing; record other speeds"
+            "the no-load log has only one speed, {speed:.3g rpm}, so the increase of torque with "
+            "speed is unknown and assumed zero. Record other speeds"
         )
         found.append(Warning("one speed", words, severity="watch", speed=float(np.mean(data.speed))))
     if kelvin is not None and law.reference is None:
         words = (
-            "the no-load log holds one temperature, {temperature:.0f degC}: how torque varies with it is not "
-            "known and taken as nothing; record another"
+            "the no-load log has only one temperature, {temperature:.0f degC}, so the temperature "
+            "dependence is unknown and assumed zero. Record another temperature"
         )
         temperature = float(np.mean(kelvin))
         found.append(Warning("one temperature", words, severity="watch", temperature=temperature))
     if law.reference is not None and _of_visits(fit):
         words = (
-            "the no-load log visits each temperature once: the interval of the temperature slope is not "
-            "known; visit one again"
+            "the no-load log visits each temperature once, so the interval of its temperature slope "
+            "cannot be determined. Visit one temperature again"
         )
         found.append(Warning("each temperature once", words, severity="watch"))
     lack = lack_of_fit(fit, data)
     if lack.curvature is not None and lack.curvature < DOES_NOT_HOLD and np.std(fit.residuals) > _SEEN:
-        words = "without the film torque bends with speed as no line does ({p_value:p})"
+        words = "the no-load torque is not a straight line against speed ({p_value:p})"
         found.append(Warning("no line", words, severity="watch", p_value=lack.curvature))
     return tuple(found)

@@ -49,13 +49,13 @@ class NoLoadTorque(Result):
     per_speed: Estimate
     temperature_slope: Estimate
     reference_temperature: float | None
-    covariance: Annotated[FloatArray, Means("of the three", shape="(n, m)")]
-    freedom: Annotated[float, Means("degrees of freedom; null if it was stated", open=True)]
+    covariance: Annotated[FloatArray, Means("of the three numbers", shape="(n, m)")]
+    freedom: Annotated[float, Means("degrees of freedom; null if stated", open=True)]
     source: str
     sha256: tuple[str, ...] = ()
     speed_range: Annotated[tuple[float, float] | None, Means("of the no-load log", "rad/s")] = None
     temperature_range: Annotated[tuple[float, float] | None, Means("of the no-load log", "K")] = None
-    warnings: Annotated[tuple[Warning, ...], Means("what is not known of it")] = ()
+    warnings: Annotated[tuple[Warning, ...], Means("what is not known about it")] = ()
 
     @classmethod
     @takes_si(constant="torque", per_speed="rotational damping", reference_temperature="temperature")
@@ -95,17 +95,19 @@ class NoLoadTorque(Result):
             if not (np.isfinite(value) and value >= 0):
                 raise ParameterError(f"{name} is {value:g}: it must not be negative")
         if constant == 0 and per_speed == 0:
-            raise ParameterError("the no-load torque is nothing: give constant or per_speed, or leave it out")
+            raise ParameterError(
+                "the no-load torque is zero. Give constant or per_speed, or omit the no-load torque"
+            )
         if not np.isfinite(temperature_slope):
             raise ParameterError(f"temperature_slope is {temperature_slope}: it must be finite")
         if temperature_slope and reference_temperature is None:
             raise ParameterError(
-                "a temperature_slope needs the reference_temperature at which the torque holds"
+                "temperature_slope needs reference_temperature, the temperature at which the torque holds"
             )
         values = np.array([constant, per_speed, temperature_slope], dtype=float)
         error = np.log1p(uncertainty) / _DEVIATIONS * np.array([constant, per_speed, 0.0])
         covariance = np.outer(error, error)
-        exact = Warning("counts as exact", "its uncertainty is not stated, so that it counts as exact")
+        exact = Warning("counts as exact", "its uncertainty is not stated, so it is treated as exact")
         level, by_speed, slope = estimates_of(values, covariance, np.full(3, np.inf), NUMBERS)
         return cls(
             constant=level,
@@ -203,8 +205,9 @@ class NoLoadTorque(Result):
             covered = f"{rpm(low):.3g} to {rpm(high):.3g} rpm"
             covered = covered if self.per_speed.estimable else f"{rpm(low):.3g} rpm"
             raise InsufficientDataError(
-                f"{self.source} holds the no-load torque at {covered}, and {what} goes from "
-                f"{rpm(slow):.3g} to {rpm(fast):.3g} rpm: record the drive without the film there too"
+                f"{self.source} covers the no-load torque at {covered}, but {what} runs from "
+                f"{rpm(slow):.3g} to {rpm(fast):.3g} rpm. Record the drive without the lubricated "
+                "contact at these speeds too"
             )
 
     def summary(self) -> str:
@@ -219,7 +222,7 @@ class NoLoadTorque(Result):
 
     def headline(self) -> str:
         """Return the law in numbers, and its source."""
-        return f"no-load torque, {self}"
+        return f"no-load torque: {self}"
 
     def __str__(self) -> str:
         """Return the law in numbers, and its source, for a sentence."""
@@ -255,7 +258,8 @@ def with_rest(film: AnyLaw, rest: NoLoadTorque, roll_radius: float, temperature:
     of_one = isinstance(film, DragTable) and not film.varies_with_temperature
     if of_one and at_the_belt["rest_temperature_slope"] and temperature is None:
         raise ParameterError(
-            "the no-load torque changes with temperature, and a drag table holds at one: give temperature"
+            "the no-load torque depends on temperature, but a drag table holds at one temperature. "
+            "Give temperature"
         )
     return replace(film, **at_the_belt)  # type: ignore[type-var]
 

@@ -190,9 +190,7 @@ class Recipe:
             return stated
         if stated is not None:
             how = Setting("no_load").to()
-            raise ParameterError(
-                f"{how} and {stated.source} both say what the drive takes without the film: leave one out"
-            )
+            raise ParameterError(f"{how} and {stated.source} both give the no-load torque. Omit one of them")
         channels, units = _without("load", self.channels), _without("load", self.units)
         alone = replace(self, logs=(self.no_load,), no_load=None, load=None, channels=channels, units=units)
         return no_load_torque(alone._dwells(alone.log()))
@@ -308,8 +306,8 @@ class Recipe:
         if isinstance(log, MeansTable):
             if self.tare != "none":
                 raise ParameterError(
-                    f"a table of means has no stretch in which the drive stands: leave out {TARE.to()}, and "
-                    "subtract the zero in the table if it has one"
+                    f"a table of means has no standstill from which to take a tare. Omit {TARE.to()}, "
+                    "and subtract the zero in the table if it has one"
                 )
             return SteadyPoints.from_table(log, rotation=self.rotation)
         return log.steady(min_dwell=self.min_dwell, tare=self.tare, rotation=self.rotation)

@@ -81,7 +81,7 @@ class DampingSurface(FittedLaw):
             If the data show no transition.
         """
         if self.transition is None:
-            raise InsufficientDataError(f"the data show no falling branch ({self.rejected_transition})")
+            raise InsufficientDataError(f"the data show no falling branch: {self.rejected_transition}")
         if temperature is None or self.b is None or self.reference_temperature is None:
             return self.transition.speed
         x = self._checked_temperature(temperature)
@@ -137,7 +137,7 @@ class DampingSurface(FittedLaw):
         """
         if stick_speed_rule not in (WITH_TRANSITION, FIXED):
             raise ParameterError(
-                f"stick_speed_rule '{stick_speed_rule}' is not known: '{WITH_TRANSITION}' or '{FIXED}'"
+                f"stick_speed_rule '{stick_speed_rule}' is not known. Use '{WITH_TRANSITION}' or '{FIXED}'"
             )
         if stick_speed_rule == FIXED or self.b is None or self.transition is None:
             return stick_speed
@@ -183,8 +183,8 @@ class DampingSurface(FittedLaw):
         """
         if self.transition is None:
             raise InsufficientDataError(
-                f"the data show no falling branch ({self.rejected_transition}); "
-                "record slower dwells, until torque rises as the drive slows"
+                f"the data show no falling branch: {self.rejected_transition}. Record slower dwells, "
+                "until torque rises as the drive slows"
             )
         sticking: dict[str, Any] = {
             "stick_speed": stick_speed,
@@ -209,8 +209,8 @@ class DampingSurface(FittedLaw):
         assert self.transition is not None
         if sticking["stick_speed_rule"] == FIXED:
             raise ParameterError(
-                f"a stick speed that is '{FIXED}' at all temperatures cannot be followed while it "
-                f"varies: give one temperature, or stick_speed_rule '{WITH_TRANSITION}'"
+                f"stick_speed_rule '{FIXED}' cannot be used while temperature varies. Give one "
+                f"temperature, or use stick_speed_rule '{WITH_TRANSITION}'"
             )
         moved = self.transition.temperature_exponent
         return replace(
@@ -272,15 +272,15 @@ class DampingSurface(FittedLaw):
         """Return the draws of `drag_samples`, and what that warns of: for threads, which share warnings."""
         if self.transition is None:
             raise InsufficientDataError(
-                f"the data show no falling branch ({self.rejected_transition}); "
-                "record slower dwells, until torque rises as the drive slows"
+                f"the data show no falling branch: {self.rejected_transition}. Record slower dwells, "
+                "until torque rises as the drive slows"
             )
         if count < 1 or seed < 0:
             name, value, least = ("count", count, 1) if count < 1 else ("seed", seed, 0)
             raise ParameterError(f"{name} is {value}: it must be at least {least}")
         if (temperature is None) != (self.b is None):
-            reason = "this law depends on temperature: give it one, in K"
-            other = "temperature is given, but this law does not depend on it"
+            reason = "this law depends on temperature. Give the temperature in K"
+            other = "this law does not depend on temperature. Omit temperature"
             raise ParameterError(reason if self.b is not None else other)
         at = self.drag(roll_radius=roll_radius, temperature=temperature, **sticking)
         x = 0.0
@@ -291,8 +291,8 @@ class DampingSurface(FittedLaw):
         kept, total, failed = self._draws(count, seed, x, slowest)
         if failed:
             again = (
-                f"{failed} of {total} draws of the fit had no falling branch and were drawn again: "
-                "the intervals hold for fits that have one"
+                f"{failed} of {total} draws of the fit had no falling branch and were replaced, so "
+                "the intervals hold only if there is one"
             )
             said.append(UserWarning(again))
         level, b, c, mixed, corner, move = kept.T
@@ -317,8 +317,8 @@ class DampingSurface(FittedLaw):
             kept, total = np.concatenate([kept, values[falls]]), total + count
             if 2 * len(kept) < total:
                 raise InsufficientDataError(
-                    f"{total - len(kept)} of {total} draws of the fit have no falling branch: "
-                    "the data do not prove one; record more dwells below the transition"
+                    f"{total - len(kept)} of {total} draws of the fit have no falling branch, so the "
+                    "data do not prove one. Record more dwells below the transition"
                 )
         return kept[:count], total, total - len(kept)
 
@@ -364,7 +364,7 @@ class DampingSurface(FittedLaw):
         if temperature is None or not (np.isfinite(temperature) and temperature > self.temperature_zero):
             given = "missing" if temperature is None else f"{temperature:g} K"
             scale = self.temperature_scale
-            raise ParameterError(f"temperature is {given}: a law in {scale} holds above 0 {scale} only")
+            raise ParameterError(f"temperature is {given}, but a law in {scale} holds only above 0 {scale}")
 
     def _checked_temperature(self, temperature: float) -> float:
         """The same for one temperature where the powers of the law have a meaning."""

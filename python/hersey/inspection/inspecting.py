@@ -73,10 +73,10 @@ class Inspection(Result):
     files: tuple[FileReport, ...]
     problem: str
     needed: tuple[str, ...]
-    dropped: Annotated[Mapping[str, int], Means("rows left out, by file")]
+    dropped: Annotated[Mapping[str, int], Means("rows excluded, by file")]
     corrections: tuple[Correction, ...]
     support: Support | None
-    warnings: Annotated[tuple[Warning, ...], Means("units, tare and order that are doubtful")] = ()
+    warnings: Annotated[tuple[Warning, ...], Means("doubtful units, tare and order of the dwells")] = ()
 
     def to_frame(self) -> pl.DataFrame:
         """Return one row per channel; its numbers in its own ``unit``."""
@@ -113,18 +113,18 @@ class Inspection(Result):
             lines += [*file_lines(file, table=len(self.files) <= _TABLES), ""]
         lines += [f"corrected: {correction}" for correction in self.corrections]
         lines += [
-            f"{rows} rows of {name} are left out: a number is missing or cannot be right"
+            f"{rows} rows of {name} are excluded, because a number is missing or impossible"
             for name, rows in self.dropped.items()
         ]
         if self.needed:
-            lines.append(f"readable as a log of torque with {_switches(self.needed)}")
+            lines.append(f"this log can be read with {_switches(self.needed)}")
         lines += [f"! {warning.sentence}" for warning in self.warnings]
         if self.support is None:
             return "\n".join([*lines, f"No fit is possible: {self._hindrance()}"])
         lines.append(f"{self.support.dwells} dwells")
-        lines += [f"  not used: {rows} rows, {LABELS[kind]}" for kind, rows in self.support.rejected.items()]
-        lines += [f"  can tell    {said}" for said in self.support.can]
-        lines += [f"  cannot tell {said}" for said in self.support.cannot]
+        lines += [f"  excluded: {rows} rows, {LABELS[kind]}" for kind, rows in self.support.rejected.items()]
+        lines += [f"  can determine     {said}" for said in self.support.can]
+        lines += [f"  cannot determine  {said}" for said in self.support.cannot]
         return "\n".join(lines)
 
     def _hindrance(self) -> str:
@@ -139,8 +139,8 @@ class Inspection(Result):
         names = bare[0] if len(bare) == 1 else f"{bare[0]} and {len(bare) - 1} more"
         return (
             f"there is no torque channel in {names}. If a channel is torque, name it with "
-            f"{Setting('torque', 'channel').to()}; if one is the motor's current, give its motor_constant in "
-            "a mapping"
+            f"{Setting('torque', 'channel').to()}. If one is the motor current, give its "
+            "motor_constant in a mapping"
         )
 
     @property

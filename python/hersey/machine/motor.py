@@ -31,10 +31,10 @@ class MotorUse(Record):
     def __str__(self) -> str:
         """Return it in words."""
         if self.exceeded_from is None:
-            return f"the motor suffices: {self.torque:.4g} of {self.limit:.4g} N m"
+            return f"the motor is strong enough: the motion needs {self.torque:.4g} of {self.limit:.4g} N m"
         return (
-            f"the motor gives {self.limit:.4g} N m, and this motion asks {self.torque:.4g} N m at "
-            f"{self.time:.4g} s: more than the limit from {self.exceeded_from:.4g} s on, "
+            f"the motor gives {self.limit:.4g} N m, but this motion needs up to {self.torque:.4g} N m "
+            f"(at {self.time:.4g} s). It exceeds the limit from {self.exceeded_from:.4g} s on, during "
             f"{100 * self.exceeded:.2g} % of the time"
         )
 

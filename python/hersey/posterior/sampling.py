@@ -243,7 +243,7 @@ def _seen(
         if surface.b is not None and each.temperature is None:
             words = Warning(
                 "evidence without temperature",
-                "it has no temperature, and the fit needs one",
+                "it has no temperature, but the fit needs one",
                 severity="watch",
                 where=each.source,
             )

@@ -164,7 +164,7 @@ def _temperatures(points: SteadyPoints, surface: DampingSurface, temperature: fl
     if surface.b is None or not np.isfinite(kelvin).all():
         if temperature is None:
             raise InsufficientDataError(
-                "the log holds no temperatures: give that of the film, "
+                "the log has no temperatures. Give that of the film, "
                 f"{Setting('temperature', flag='--at').to('180 degC', python='453.15')}"
             )
         kelvin = np.full(len(points), temperature)
@@ -213,7 +213,9 @@ def _dwell_lines(measured: MeasuredFilm) -> list[str]:
             f"{1e6 * film.central[i] * film.factor[i]:10.3g} {measured.friction[i]:9.3g} "
             f"{1e6 * measured.hersey_number[i]:11.3g} {measured.sommerfeld_number[i]:10.3g}"
         )
-    lines.append("  measured film eta A/B, A the nip, rolling as predicted; U sliding speed, p mean pressure")
+    lines.append(
+        "  measured film: eta A/B with nip area A and rolling as predicted; U sliding speed, p mean pressure"
+    )
     lines.append("  of the nip; all dwells: --json" if way_in() == "terminal" else "  of the nip")
     return lines
 
@@ -222,11 +224,13 @@ def _systematic_lines(measured: MeasuredFilm) -> list[str]:
     lines = []
     if measured.systematic > 1:
         lines.append(
-            f"  intervals hold a common factor {measured.systematic:.3g} for viscosity and nip as stated"
+            f"  intervals include a common factor {measured.systematic:.3g} for viscosity and nip, as stated"
         )
     else:
-        lines.append("  intervals leave out what is unknown of viscosity and nip: state their uncertainty")
-    lines.append(f"  measured torque over predicted, where torque rises with speed: {measured.calibration}")
+        lines.append(
+            "  intervals do not include the uncertainty of viscosity and nip. State it in the machine file"
+        )
+    lines.append(f"  measured / predicted torque, where torque rises with speed: {measured.calibration}")
     return lines
 
 

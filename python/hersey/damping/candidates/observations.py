@@ -76,8 +76,8 @@ class Observations:
         if distinct_speeds(speed) < fewest_speeds:
             held = " and ".join(f"{v} rpm" for v in sorted({f"{rpm(w):.3g}" for w in speed}, key=float)[:2])
             raise InsufficientDataError(
-                f"the steady points are all at {held}: no law of speed can be fitted or compared; "
-                "record dwells at three speeds or more"
+                f"all dwells are at {held}, so no dependence on speed can be fitted. Record dwells at "
+                "three or more speeds"
             )
         if fewest_speeds > 1:
             refuse_constant_torque(points)

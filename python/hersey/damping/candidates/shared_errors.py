@@ -70,7 +70,7 @@ class SharedScatter(Record):
     name: str
     deviation: float
     p_value: Annotated[float, Means("of none, by an F test")]
-    estimable: Annotated[bool, Means("whether the dwells say anything of it")]
+    estimable: Annotated[bool, Means("whether the dwells show anything of it")]
 
 
 def shared_variance(scatter: tuple[SharedScatter, ...]) -> float:

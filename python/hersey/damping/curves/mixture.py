@@ -44,7 +44,7 @@ class LawWeight(Record):
     words: str
     weight: float
     delta_aicc: float
-    p_value: Annotated[float, Means("probability of so large a misfit by chance")]
+    p_value: Annotated[float, Means("probability that chance alone makes so large a deviation")]
     rejected: bool
 
 

@@ -212,8 +212,8 @@ class SteadyPoints(Result):
         name = self.log.files[0].name
         if self.rest is not None or any(c.name.startswith("no-load") for c in self.log.corrections):
             raise ParameterError(
-                f"{name}: what the drive takes without the film is taken off already: leave out no_load of "
-                "the mapping, or the no-load torque"
+                f"{name}: the no-load torque is already subtracted. Remove no_load from the mapping, "
+                "or omit the no-load torque"
             )
         speed, torque, error = (self.column(n) for n in ("speed", "torque", "torque_error"))
         kelvin = None
@@ -227,9 +227,10 @@ class SteadyPoints(Result):
         if not np.sign(speed[worst]) * film[worst] > _BEYOND * unsure[worst]:
             raise InsufficientDataError(
                 f"{name}: at {rpm(abs(float(speed[worst]))):.3g} rpm torque is "
-                f"{1e3 * abs(float(torque[worst])):.3g} mN m, and the no-load torque takes "
-                f"{1e3 * abs(float(taken[worst])):.3g} mN m of it ({rest.source}): nothing beyond the errors "
-                "is left for the film; was it stated in another unit, or recorded with the film?"
+                f"{1e3 * abs(float(torque[worst])):.3g} mN m and the no-load torque "
+                f"{1e3 * abs(float(taken[worst])):.3g} mN m ({rest.source}), so nothing beyond the "
+                "errors is left for the film. Check the unit of the no-load torque, and that it was "
+                "recorded without the film"
             )
         table = self.table.with_columns(torque=film)
         return replace(self, table=table, rest=rest, rest_errors=errors)
@@ -247,10 +248,10 @@ class SteadyPoints(Result):
         rows = f"{self.table['rows'].sum()} of {self.log.rows} rows used"
         lines = [f"{self.headline()}; {rows}", f"tare {self.tare:.4g} N m"]
         if self.standing_torque is not None:
-            lines[-1] += f", standing torque {self.standing_torque:.4g} N m"
+            lines[-1] += f", torque at standstill {self.standing_torque:.4g} N m"
         if self.rest is not None:
             lines.append(f"no-load torque subtracted: {self.rest}")
-        lines += [f"  not used: {rows} rows, {why}" for why, rows in self._unused().items()]
+        lines += [f"  excluded: {rows} rows, {why}" for why, rows in self._unused().items()]
         return "\n".join(
             [
                 *lines,
@@ -285,7 +286,7 @@ class SteadyPoints(Result):
         where = _placed(speeds, np.abs(self.column("speed")))
         verb = "was" if len(lost) == 1 else "were"
         why = joined([r.why for r in lost])
-        return f"{len(lost)} of {len(lost) + len(self)} dwells, {where}, {verb} dropped: {why}."
+        return f"{len(lost)} of {len(lost) + len(self)} dwells ({where}) {verb} excluded: {why}."
 
     def _unused(self) -> dict[str, int]:
         """Rows of every other stretch by its reason."""
@@ -373,13 +374,9 @@ def _of_means(table: MeansTable) -> Warning:
     """What a table of means cannot tell, and what it leaves out."""
     return Warning(
         "table of means",
-        "a table of means, one row per dwell. Without a trace, stick-slip, drift within a dwell, settling, "
-        "the zero of the torque and the clock cannot be judged. Errors of torque: "
-        + (
-            "as stated"
-            if table.stated_errors
-            else "none are stated: the scatter about the law stands for them"
-        ),
+        "a table of means, one row per dwell. Without a trace, stick-slip, drift, settling, torque "
+        "zero and clock cannot be checked. Errors of torque: "
+        + ("as stated" if table.stated_errors else "not stated; the scatter about the fit is used instead"),
         where=table.files[0].name + (f" and {len(table.files) - 1} more" if len(table.files) > 1 else ""),
         files=len(table.files),
     )
