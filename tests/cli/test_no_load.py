@@ -50,7 +50,7 @@ def test_a_no_load_log_is_taken_off(folder: Path) -> None:
     done = run("fit", "log.csv", "--no-load", "free.csv", "--json", cwd=folder)
     assert done.returncode == 0, done.stderr
     assert exponent(done.stdout) == pytest.approx(-0.6, abs=1e-6)
-    assert "no-load torque, 20 mN m + 1 mN m s/rad times speed" in done.stderr
+    assert "no-load torque: 20 mN m + 1 mN m s/rad times speed" in done.stderr
     (folder / "fit.json").write_text(done.stdout)
     assert json.loads(done.stdout)["fit"]["rest"]["source"] == "free.csv"
     assert exponent(run("fit", "log.csv", "--json", cwd=folder).stdout) < -0.61

@@ -74,7 +74,10 @@ def test_what_changed_stands_on_the_first_screen(less: Analysis) -> None:
     flag = less.decision.flags[0]
     assert (flag.severity, flag.where) == ("watch", "compare")
     assert flag.title == "Damping has changed since more.csv"
-    assert re.match(r"new\.csv drags less than more\.csv throughout the shared range, -(19|20)", flag.text)
+    assert re.match(
+        r"Damping of new\.csv is lower than that of more\.csv throughout the shared range, -(19|20)",
+        flag.text,
+    )
 
 
 def test_what_did_not_change_has_its_place_too(folder: Path) -> None:
@@ -116,7 +119,7 @@ def test_logs_of_one_name_are_told_apart_and_one_file_is_refused(folder: Path) -
 def test_typed(folder: Path, less: Analysis) -> None:
     shown = run("report", "new.csv", "--against", "more.csv", "--isothermal", "--out", "p.html", cwd=folder)
     assert less.compare is not None
-    assert f"Against more.csv: {less.compare.verdict}" in shown.stdout
+    assert f"Compared with more.csv: {less.compare.verdict}" in shown.stdout
     page = (folder / "p.html").read_text()
     assert json.dumps(less.compare.verdict) in page
 

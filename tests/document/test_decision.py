@@ -210,8 +210,10 @@ def test_lines_for_a_file_that_is_there_do_not_repeat_its_tables(
     assert "[uncertainty]\nstick_speed" in lines
     stated = (ROOT / "tests" / "stand" / "machine.toml").read_text().split("[limits]")[0]
     file = tmp_path / "machine.toml"
-    within_limits = next(part.lines for part in said.missing if part.lines.startswith("# in [limits]"))
-    others = "".join(part.lines for part in said.missing if not part.lines.startswith(("# in", "[rest]")))
+    within_limits = next(
+        part.lines for part in said.missing if part.lines.startswith("# add to the existing table [limits]")
+    )
+    others = "".join(part.lines for part in said.missing if not part.lines.startswith(("# add", "[rest]")))
     file.write_text(f'{stated}\n[limits]\nmotor_torque = "8 N*m"\n{within_limits}\n{others}')
     assert read_machine(file).limits.grip is not None
 
@@ -282,7 +284,7 @@ def test_what_cannot_be_computed_is_said(
     monkeypatch.setattr(behaviour, "plan_start_up", refuse)
     steps: list[str] = []
     found = Working(points, surface, machine, draws=80).result(steps.append)
-    assert steps[:2] == ["drawing from the posterior", "finding the bands"]
+    assert steps[:2] == ["drawing from the posterior", "computing V* and the bands"]
     assert "planning thick paper" in steps
     said = decide(found)
     assert "rpm" in said.instruction
@@ -345,7 +347,7 @@ def test_how_the_belt_stops_is_said_where_it_moves_v_star(decide: Decide, found:
     said = decide(replace(open_, points=()))
     [flag] = [flag for flag in said.flags if "comes to rest" in flag.title]
     assert flag.title == "The safe speed depends on how the belt comes to rest"
-    assert flag.text.endswith("V* is 60 or 200 mm/s")
+    assert flag.text.endswith("V* is 60 mm/s or 200 mm/s, respectively")
     assert (flag.number("retained"), flag.number("stiction")) == (0.06, 0.2)
     # where the evidence decides, or both are nearly the same, nothing is said
     same = with_draws(open_, fold=np.where(closure == 0, 0.06, 0.065))
@@ -436,8 +438,8 @@ def test_torque_has_one_unit(
     for unit, factor in (("N·m", 1.0), ("mN·m", 1e3)):
         said = decide(weak, unit=unit)
         gives = figures(factor * float(weak.map.torque_limit or 0.0))  # type: ignore[union-attr]
-        assert f" {unit}: the motor's {gives} {unit} do not start" in said.instruction
-        assert f" {unit}, the motor gives {gives}" in said.points[-1].words
+        assert f" {unit}: the motor's {gives} {unit} cannot start" in said.instruction
+        assert f", the motor gives {gives} {unit}" in said.points[-1].words
     large = float(np.abs(points.column("torque")).max())
     assert large > 1.0
     assert unit_of(points) == "N·m"

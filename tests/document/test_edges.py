@@ -79,7 +79,7 @@ def test_warnings_of_the_machine(decide: Decide, found: Behaviour, map_: Operati
     far = tuple(replace(p, at=replace(p.at, extrapolated=p.name == "crawl")) for p in map_.points)
     titles = {f.title: f.text for f in decide(replace(found, points=(), map=replace(bare, points=far))).flags}
     assert titles["Operating points are extrapolated"] == "the dwells do not reach crawl"
-    assert titles["The roll may slip at the start"].startswith("the roll's grip is not stated")
+    assert titles["The roll may slip at the start"].startswith("the grip of the roll is not stated")
     gripping = replace(map_, train=replace(map_.train, grip=1e6))
     assert "The roll may slip at the start" not in {
         flag.title for flag in decide(replace(found, points=(), map=gripping)).flags

@@ -229,7 +229,7 @@ def test_missing_numbers_and_temperature_say_which_flag_helps(tmp_path: Path) ->
     found = inspect(path)
     assert found.needed == ("isothermal", "drop_missing")
     assert found.dropped == {"holes.csv": 160}
-    assert f"{path.name}: Drive torque: 160 rows lack a number" in map(str, found.channel_warnings)
+    assert f"{path.name}: Drive torque: a number is missing in 160 rows" in map(str, found.channel_warnings)
     assert "this log can be read with isothermal=True and drop_missing=True" in found.summary()
 
 

@@ -202,12 +202,12 @@ PROFILES: dict[str, tuple[str, type[HerseyError], str]] = {
     "no name of time": (
         "t [s],temperature [K]\n0,300\n",
         ChannelError,
-        "no column named time: write 'time [s]' in the first line",
+        "no column is named time. Write 'time [s]' in the first line",
     ),
     "two temperatures": (
         "time [s],temperature 1 [K],temperature 2 [K]\n0,300,1\n",
         ChannelError,
-        "more than one column named temperature",
+        "more than one column is named temperature",
     ),
     "no unit": (
         "time [s],temperature\n0,300\n",

@@ -59,7 +59,7 @@ def test_spreads_as_people_write_them(parameter: str, text: str, expected: Uncer
     ("parameter", "text", "words"),
     [
         ("weight", "10 %", "there is no such parameter"),
-        ("mass", 0.1, "it is 0.1: write a string such as '10 %'"),
+        ("mass", 0.1, "it is 0.1. Write a string such as '10 %'"),
         ("mass", "0 %", "'0 %' is not a share"),
         ("mass", "1.2.3 %", "'1.2.3 %' is not a share"),
         ("mass", "10", "'10' is neither a share"),
@@ -92,7 +92,7 @@ def test_either_share_or_limits() -> None:
         Uncertainty(share=0)
     with pytest.raises(ParameterError, match="share is 100"):
         Uncertainty(share=100.0)
-    with pytest.raises(ParameterError, match="must ascend"):
+    with pytest.raises(ParameterError, match="lower end first"):
         Uncertainty(limits=(1.0, float("inf")))
 
 

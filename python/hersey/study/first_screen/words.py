@@ -76,7 +76,7 @@ def starting(low: float, value: float, high: float, limit: float, by: str, unit:
     ends = within(low, high, PER[unit]) if low < high else ""
     gives = "the motor gives" if by == "motor torque" else "the roll grips"
     said = " ".join(filter(None, ("starting from rest takes", figures(value * PER[unit]), unit, ends)))
-    return f"{said}, {gives} {figures(limit * PER[unit])}"
+    return f"{said}, {gives} {torque(limit, unit)}"
 
 
 def per_cent(share: float) -> str:
