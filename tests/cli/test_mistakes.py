@@ -154,7 +154,7 @@ def recorded(it: Refused) -> list[str]:
     lasts = re.search(r"hold one speed for at least ([\d.]+) s", it.message)
     three = "at three or more speeds" in it.message
     of_other = re.search(
-        r"csv covers ([\d.]+) to ([\d.]+) rpm.*Record one of them at speeds of the other", it.message
+        r"csv covers ([\d.]+) to ([\d.]+) rpm.*Record one at speeds of the other", it.message
     )
     assert lasts or three or of_other, it.message
     slow, fast = map(float, of_other.groups()) if of_other else (10.0, 120.0)

@@ -88,9 +88,9 @@ def test_a_log_of_the_machine_is_found_beside_it(folder: Path) -> None:
         ),
         (
             ("fit", "log.csv", "--no-load", "slow.csv"),
-            "Record the drive without the lubricated contact at these speeds too",
+            "Record these speeds without the lubricated contact too",
         ),
-        (("fit", "free.csv", "--no-load", "log.csv"), "nothing beyond the errors is left for the film"),
+        (("fit", "free.csv", "--no-load", "log.csv"), "leaves nothing for the film"),
         (("fit", "log.csv", "--no-load", "none.csv"), "none.csv"),
         (
             ("map", "machine.toml", "--fit", "whole.json"),

@@ -117,7 +117,7 @@ def test_what_one_speed_or_one_temperature_does_not_tell_is_said() -> None:
     noise = np.array([1.0, -1.0, 0.5, -0.5, 0.0]) * 1e-4
     slow = hersey.no_load_torque(points_of(np.full(5, 2.0), 0.02 + noise))
     assert (slow.constant.estimable, slow.per_speed.estimable, slow.per_speed.value) == (True, False, 0.0)
-    assert "has only one speed, 19.1 rpm, so the increase of torque with speed is unknown" in slow.summary()
+    assert "has only one speed, 19.1 rpm, so its increase with speed is assumed zero" in slow.summary()
     one = hersey.no_load_torque(points_of(SPEEDS[:5], 0.02 + 0.001 * SPEEDS[:5] + noise, np.full(5, 150.0)))
     assert (one.per_speed.estimable, one.temperature_slope.estimable, one.reference_temperature) == (
         True,
@@ -184,10 +184,7 @@ def test_a_rest_of_other_temperatures_is_said_to_be_extrapolated() -> None:
     points = points_of(w, whole, t, error=1e-3).without(cold)
     said = " ".join(str(each) for each in warnings_of(points, None))
     assert "has only one temperature, 25 degC" in said
-    assert (
-        "25 degC to 25 degC, but the dwells are at 100 degC to 175 degC, so the no-load torque is "
-        "extrapolated"
-    ) in said
+    assert ("25 degC to 25 degC, the dwells 100 degC to 175 degC: no-load torque is extrapolated") in said
     blind = points_of(w, whole, error=1e-3).without(stated())
     [found] = [each for each in warnings_of(blind, None) if each.kind == "no-load torque of one temperature"]
     assert found.sentence == "The log has no temperatures, so the no-load torque at 150 degC is used."
@@ -222,7 +219,7 @@ def test_what_cannot_be_taken_off_is_refused() -> None:
     points = points_of(w, film(w, t) + rest_torque(w, t), t)
     heavy = NoLoadTorque.stated(constant="0.3 N*m")
     with pytest.raises(
-        InsufficientDataError, match=r"at 4.77 rpm torque is .* the no-load torque 300 mN m \(stated\)"
+        InsufficientDataError, match=r"at 4.77 rpm torque is .* no-load torque 300 mN m \(stated\)"
     ):
         points.without(heavy)
     slow = hersey.no_load_torque(points_of(SPEEDS[:4], 0.02 + 0.001 * SPEEDS[:4], error=0.01))

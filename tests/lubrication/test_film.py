@@ -149,7 +149,7 @@ def test_the_verdict_on_the_bench(
     assert [p.name for p in says.predictions if p.holds_here] == ["soft EHL"]
     notes = " ".join(check_film(machine, measured.predicted, measured))
     for words in (
-        "too high for a fluid film",
+        "too high for a film",
         "pressure does not thicken",
         "extrapolated",
         "times the prediction",

@@ -73,7 +73,7 @@ def test_the_rule_is_that_of_the_transition_or_none(fitted: hersey.DampingSurfac
     assert fitted.stick_speed_at(420.0, **given) == pytest.approx(3e-4, rel=1e-12)
     assert fitted.stick_speed_at(HOT, **given, stick_speed_rule=FIXED) == 3e-4
     with pytest.raises(
-        ParameterError, match="stick_speed_rule 'still' is not known. Use 'with transition' or 'fixed'"
+        ParameterError, match=r"stick_speed_rule 'still' is not known. Use 'with transition' or 'fixed'"
     ):
         fitted.stick_speed_at(HOT, **given, stick_speed_rule="still")
 

@@ -265,9 +265,7 @@ def film_at(
     return film_thickness(contact, oil, speed=speed, temperature=kelvin)
 
 
-EXTRAPOLATED = (
-    "viscosity is known from 40 degC to 100 degC but used from {} degC to {} degC, so it is extrapolated"
-)
+EXTRAPOLATED = "viscosity is extrapolated: known from 40 degC to 100 degC, used from {} degC to {} degC"
 
 
 @pytest.mark.parametrize(
@@ -285,7 +283,7 @@ def test_extrapolation_is_said_of_the_cold_and_the_hot(
     machine: Machine, contact: Contact, oil: Lubricant, celsius: list[float], shown: tuple[str, str] | None
 ) -> None:
     notes = check_film(machine, film_at(contact, oil, kelvin=[t + 273.15 for t in celsius]))
-    found = [note for note in notes if note.startswith("viscosity is known")]
+    found = [note for note in notes if note.startswith("viscosity is extrapolated")]
     assert found == ([] if shown is None else [EXTRAPOLATED.format(*shown)])
 
 
@@ -321,20 +319,17 @@ def test_nip_strain_and_inlet(machine: Machine, contact: Contact, oil: Lubricant
     nip = thick.nip
     off = 100 * (nip.paper_width / nip.width - 1)
     assert (
-        f"nip/h = {nip.paper_width / 9e-3:.2g} is outside the range of the regression of Eq. 8, 1 to 4, "
+        f"nip/h = {nip.paper_width / 9e-3:.2g} is outside the range of Eq. 8, 1 to 4, "
         f"which is {off:+.0f} % off the solved nip"
     ) in check_film(replace(machine, contact=thick), film_at(thick, oil))
     pressed = replace(contact, load=900.0)
     share = 100 * (pressed.nip.width / 2) ** 2 / (2 * 15e-3 * 3.5e-3)
     assert share > 15
     assert (
-        f"the rubber strain (a^2/(2 R h)) is {share:.0f} %, but linear elasticity holds only up to about 15 %"
+        f"the rubber strain (a^2/(2 R h)) is {share:.0f} %; linear elasticity holds only up to about 15 %"
     ) in check_film(replace(machine, contact=pressed), film_at(pressed, oil))
     film = film_at(contact, oil)
-    short = (
-        "the inlet of the film is not short compared with rubber and nip, so the soft-EHL law is only "
-        "approximate"
-    )
+    short = "the inlet is not short compared with rubber and nip, so the soft-EHL law is only approximate"
     assert short not in check_film(machine, film)
     assert short in check_film(machine, replace(film, inlet_short=np.array(False)))
     rigid = replace(film, inlet_short=np.array(False), regime=np.array(0))
@@ -345,7 +340,7 @@ def test_what_is_said_of_the_lubricant(machine: Machine, contact: Contact, oil: 
     film = film_at(contact, oil)
     thickening = 20e-9 * contact.nip.pressure_max
     assert (
-        f"pressure does not thicken this lubricant in this nip (alpha p = {thickening:.2g}), so Eqs. 5, 9 "
+        f"pressure does not thicken this lubricant here (alpha p = {thickening:.2g}), so Eqs. 5, 9 "
         "and 10 of the paper do not apply"
     ) in check_film(machine, film)
     hard = replace(oil, pressure_viscosity=((300.0, 0.11 / contact.nip.pressure_max),))
@@ -390,7 +385,7 @@ def test_what_is_said_of_a_log(machine: Machine, measured: MeasuredFilm) -> None
 
     assert notes() == alone
     assert more(friction=np.full(on.size, 0.35)) == (
-        "friction coefficient 0.35 is too high for a fluid film. Above 0.3, surfaces touch or torque "
+        "friction coefficient 0.35 is too high for a film. Above 0.3, surfaces touch or torque "
         "contains more than the nip's drag",
     )
     assert more(grip=0.15) == (
@@ -399,13 +394,13 @@ def test_what_is_said_of_a_log(machine: Machine, measured: MeasuredFilm) -> None
     assert notes(grip=0.25) == alone
     for value, said in ((3.1, True), (2.9, False), (0.3, True), (0.35, False)):
         text = (
-            f"measured torque is {value:.3g} times the prediction. Viscosity or nip differs from what is "
-            "stated, or torque contains more than the film; the latter also changes the exponents"
+            f"measured torque is {value:.3g} times the prediction. Viscosity or nip is not as stated, or "
+            "torque contains more than the film, which also changes the exponents"
         )
         assert (text in notes(calibration=Estimate(value, 0.1, value, value))) == said
     rough = np.where(on > 0.5, 0.8, 0.1)
     assert more(lambda_ratio=rough) == (
-        "where torque rises with speed the measured film is as thin as 0.8 of the roughness (1.5 "
+        "on the rising branch the measured film falls to 0.8 of the roughness (1.5 "
         "um), so film thickness alone does not explain the torque",
     )
     assert notes(lambda_ratio=np.where(on > 0.5, 1.1, 0.1)) == alone

@@ -52,7 +52,7 @@ class Branches:
 
 @dataclass(frozen=True)
 class Transition(Record):
-    """Where torque is least, between the falling (mixed) and the rising (EHL) branch."""
+    """Transition: where torque is lowest, between the falling (mixed) and the rising (EHL) branch."""
 
     speed: Estimate  #: rad/s, at the reference temperature of the surface
     meeting_speed: Annotated[float, Means("speed at which the trend lines meet; equal to speed at a corner")]
@@ -95,7 +95,7 @@ def fit_branches(data: Observations, single: LawFit) -> Branches | None:
 
 
 def why_no_transition(data: Observations, single: LawFit, branches: Branches) -> str:
-    """Return why a second branch is not announced; empty if torque falls and rises beyond doubt."""
+    """Return why there is no second branch; empty if torque clearly falls and then rises."""
     fit = branches.fit
     below, above, at = branches.mixed, fit.estimate("c"), branches.least
     if branches.closure is None and (few := _few(data, fit)):
@@ -109,8 +109,8 @@ def why_no_transition(data: Observations, single: LawFit, branches: Branches) ->
     if below.high >= -1.0:
         if not (meeting := _meeting(data, fit)):
             return (
-                "two branches would meet outside the measured speeds, and the exponent of the slower one, "
-                f"{below}, does not prove that its torque falls with speed"
+                "two branches would meet outside the measured speeds, and the slower one, with "
+                f"exponent {below}, does not prove that torque falls with speed"
             )
         return f"the exponent below {meeting}, {below}, does not prove that torque falls with speed there"
     if above.low <= -1.0:
@@ -124,7 +124,7 @@ def why_no_transition(data: Observations, single: LawFit, branches: Branches) ->
 
 
 def transition(data: Observations, single: LawFit, branches: Branches) -> Transition:
-    """Return the transition that branches show."""
+    """Return the transition between two branches."""
     fit = branches.fit
     best, low, high, meeting = (
         data.reference_speed * float(np.exp(v)) for v in (branches.least, *branches.ends, _corner_of(fit))
@@ -281,9 +281,9 @@ def _corner_of(fit: LawFit) -> float:
 
 
 def _meeting(data: Observations, fit: LawFit) -> str:
-    """Where the lines of the branches meet, in rpm; empty if outside the measured speeds."""
-    at, scaled = _corner_of(fit), scaled_speed(data, fit)
-    if not scaled.min() <= at <= scaled.max():
+    """Where the lines meet at the reference temperature, in rpm; empty if outside the measured speeds."""
+    at, measured = _corner_of(fit), data.inputs.log_speed
+    if not measured.min() <= at <= measured.max():
         return ""
     return f"{rpm(data.reference_speed * float(np.exp(at))):.3g} rpm"
 

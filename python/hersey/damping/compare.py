@@ -46,7 +46,7 @@ _QUOTED = ("b", "c", "c below the transition", "transition speed", "Stribeck spe
 
 @dataclass(frozen=True)
 class Change(Record):
-    """How a quantity differs: B minus A, or B over A for a speed.
+    """Difference of a quantity: B minus A, or B divided by A for a speed.
 
     ``p_value`` is that of no difference, corrected for all the quantities compared (Holm, Scand. J. Stat. 6
     (1979) 65); the interval of the change is its own.
@@ -63,13 +63,13 @@ class Change(Record):
 
     @property
     def real(self) -> bool:
-        """Whether it differs at the 5 % level."""
+        """Whether the quantity differs at the 5 % level."""
         return self.p_value < 1.0 - CONFIDENCE
 
 
 @dataclass(frozen=True, repr=False)
 class LogComparison(Result):
-    """Damping of B over that of A, and what else differs; arrays of shape (temperatures, speeds)."""
+    """Damping of B relative to A, and other differences; arrays of shape (temperatures, speeds)."""
 
     also_stated = ("a", "b")
     not_stated = ("names",)
@@ -147,12 +147,12 @@ def compare(
     a, b
         From `TorqueLog.steady`.
     names
-        What to call them.
+        Names of the two logs.
 
     Raises
     ------
     InsufficientDataError
-        If the two share no range of speed or temperature, or no law fits both; it names the log.
+        If the logs have no speed or temperature in common, or no model fits both; the message names the log.
     """
     for points, call in ((a, "hersey.compare({points}, b)"), (b, "hersey.compare(a, {points})")):
         if not isinstance(points, Observations):
@@ -216,8 +216,8 @@ def _once(candidate: CandidateFit, data: Observations) -> bool:
 
 def _of_visits(names: list[str]) -> Warning:
     words = (
-        "{logs} {count:does|do} not show how much visits to one temperature differ, so the limits "
-        "hold only for the visits recorded. Record one temperature again"
+        "{logs} {count:does|do} not show how much visits to one temperature differ, so limits hold "
+        "only for these visits. Record one temperature again"
     )
     return Warning("visited once", words, severity="watch", logs=" and ".join(names), count=len(names))
 
@@ -228,7 +228,7 @@ def _shared(a: Observations, b: Observations, names: tuple[str, str]) -> tuple[F
         raise InsufficientDataError(
             f"the logs have no speed in common: {names[0]} covers {rpm(a.speed.min()):.3g} to "
             f"{rpm(a.speed.max()):.3g} rpm, {names[1]} covers {rpm(b.speed.min()):.3g} to "
-            f"{rpm(b.speed.max()):.3g} rpm. Record one of them at speeds of the other"
+            f"{rpm(b.speed.max()):.3g} rpm. Record one at speeds of the other"
         )
     speeds = np.geomspace(slow, fast, SPEEDS)
     if a.inputs.kelvin is None or b.inputs.kelvin is None:
@@ -245,7 +245,7 @@ def _shared(a: Observations, b: Observations, names: tuple[str, str]) -> tuple[F
         below, above = names if a.inputs.kelvin.max() < b.inputs.kelvin.min() else names[::-1]
         raise InsufficientDataError(
             f"the logs have no temperature in common: {below} ends at {convert(hot, 'K', 'degC'):.0f} "
-            f"degC, {above} starts at {convert(cold, 'K', 'degC'):.0f} degC. Record one of them at "
+            f"degC, {above} starts at {convert(cold, 'K', 'degC'):.0f} degC. Record one at "
             "temperatures of the other"
         )
     return speeds, np.linspace(min(cold, hot), max(cold, hot), TEMPERATURES)

@@ -34,7 +34,7 @@ DRAWS = 40
 
 @dataclass(frozen=True)
 class DesignPoint(Record):
-    """A dwell to record, and what is known of the quantity after it and those before it."""
+    """A dwell to record, and the precision reached after it and the dwells before it."""
 
     speed: Annotated[float, Means(unit="rad/s")]
     kelvin: Annotated[float | None, Means(unit="K")]
@@ -44,7 +44,7 @@ class DesignPoint(Record):
 
 @dataclass(frozen=True, repr=False)
 class TestDesign(Result):
-    """The next dwells, in the order of their worth."""
+    """The next dwells to record, the most useful first."""
 
     __test__ = False  # no test of pytest's
 
@@ -56,7 +56,7 @@ class TestDesign(Result):
     seed: int
 
     def summary(self) -> str:
-        """Return the points as text."""
+        """Return the dwells as text."""
         what = f"to determine the {self.quantity}" if self.quantity else "to determine all parameters"
         lines = [f"Next dwells {what} (model: {self.law}; seed {self.seed}):"]
         if self.error_now is not None:
@@ -72,7 +72,7 @@ class TestDesign(Result):
         return "\n".join(lines)
 
     def to_frame(self) -> pl.DataFrame:
-        """Return one row per dwell, in their order."""
+        """Return one row per dwell, in order."""
         import polars as pl
 
         unit = self.unit or "1"
@@ -96,26 +96,26 @@ def design(
     temperatures: tuple[float, float] | None = None,
     seed: int = 1,
 ) -> TestDesign:
-    """Return the next dwells to record, by the law that a comparison chose.
+    """Return the next dwells to record, for the model that a comparison chose.
 
     Parameters
     ----------
     count
-        How many.
+        Number of dwells.
     quantity
-        Name, or its beginning, of the parameter to know best, as ``transition speed``; all if not given.
+        Parameter to determine best, by name or its beginning, e.g. ``transition speed``; default: all.
     speeds, temperatures
-        Ranges that can be run, rad/s and K, or with units as ``("2 rpm", "200 rpm")``; those measured if not
-        given.
+        Ranges that can be run, rad/s and K, or with units, e.g. ``("2 rpm", "200 rpm")``; default: the
+        measured ranges.
     seed
-        Of the draws of the fit.
+        Random seed of the draws of the fit.
 
     Raises
     ------
     ParameterError
         If no parameter has that name, or a range is not ascending.
     InsufficientDataError
-        If the data leave the law so open that no gain can be computed.
+        If the data do not determine the model.
     """
     if count < 1:
         raise ParameterError(f"count is {count}: it must be at least 1")

@@ -21,9 +21,9 @@ _MOST_PLACES = 8
 
 @dataclass(frozen=True)
 class Estimate(Record):
-    """A number with its standard error and its 95 % interval, which is unbounded where it is not told.
+    """A number with its standard error and its 95 % interval, which is unbounded if unknown.
 
-    ``systematic`` is the half width that errors of the sensors may add, at 95 %, beyond that interval.
+    ``systematic`` is the half width, at 95 %, that errors of the sensors may add to the interval.
     """
 
     value: Annotated[float, OPEN]
@@ -39,7 +39,7 @@ class Estimate(Record):
         return bool(np.isfinite(self.low) and np.isfinite(self.high))
 
     def with_systematic(self, half_width: float) -> Estimate:
-        """Return it with what errors of the sensors may add."""
+        """Return the estimate with the half width that errors of the sensors may add."""
         return replace(self, systematic=half_width)
 
     def __str__(self) -> str:
@@ -88,11 +88,11 @@ def rounded(value: float, low: float, high: float, unit: str = "") -> str:
 
 
 def quantile(freedom: float) -> float:
-    """Return how many standard errors an interval reaches to either side (Student's t)."""
+    """Return the half width of an interval in standard errors (Student's t)."""
     return float(student_quantile(0.5 + CONFIDENCE / 2, max(freedom, 1)))
 
 
 def estimate(value: float, error: float, freedom: float) -> Estimate:
-    """Return a value with the interval that its standard error and degrees of freedom give."""
+    """Return an estimate from a value, its standard error and its degrees of freedom."""
     reach = quantile(freedom) * error
     return Estimate(value, error, value - reach, value + reach, freedom)

@@ -78,9 +78,8 @@ def _require_temperatures(data: Observations, scale: str) -> None:
         ends = {f"{celsius(float(each)):.1f}": None for each in (kelvin.min(), kelvin.max())}
         at = " to ".join(ends)
         raise InsufficientDataError(
-            f"all dwells are at one temperature ({at} degC), so exponent b cannot "
-            "be estimated. Record other temperatures, or fit B = a w^c at this one with "
-            f"{ISOTHERMAL.to()}"
+            f"all dwells are at one temperature ({at} degC), so exponent b cannot be estimated. "
+            f"Record other temperatures, or fit without b by {ISOTHERMAL.to()}"
         )
     if np.any(scaled_temperature(kelvin, scale) <= 0):
         raise InsufficientDataError(

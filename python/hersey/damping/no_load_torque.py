@@ -1,4 +1,4 @@
-"""The no-load torque: what turning the roll takes besides the film (bearings, gears, the rubber).
+"""The no-load torque: what turning the roll takes without the film (bearings, gears, the rubber).
 
     torque = (constant + per_speed w) (1 + temperature_slope (T - T_ref))
 
@@ -38,11 +38,11 @@ _DEVIATIONS = quantile(np.inf)
 
 @dataclass(frozen=True, repr=False)
 class NoLoadTorque(Result):
-    """Torque beside the film, at the roll: ``(constant + per_speed w) (1 + temperature_slope (T - T_ref))``.
+    """No-load torque at the roll: ``(constant + per_speed w) (1 + temperature_slope (T - T_ref))``.
 
     ``constant`` is in N m, ``per_speed`` in N m s/rad, ``temperature_slope`` in 1/K about
-    ``reference_temperature`` (K; None if it does not vary). An interval that is not told (unbounded) stands
-    for a part taken as nothing. ``source`` names file and key, ``sha256`` the files.
+    ``reference_temperature`` (K; None if it does not vary). A part that is unknown is zero and has an
+    unbounded interval. ``source`` names file and key, ``sha256`` the files.
     """
 
     constant: Estimate
@@ -69,16 +69,16 @@ class NoLoadTorque(Result):
         uncertainty: float = 0.0,
         source: str = "stated",
     ) -> NoLoadTorque:
-        """Return the no-load torque as stated.
+        """Return a no-load torque from stated numbers.
 
         Parameters
         ----------
         constant, per_speed
             N m, and N m s/rad; not negative, and one of them positive.
         temperature_slope
-            Change of the whole as a share of it, 1/K, from ``reference_temperature`` (K).
+            Relative change with temperature, 1/K, from ``reference_temperature`` (K).
         uncertainty
-            Share by which the whole torque may be off, at 95 %.
+            Relative error of the whole torque, at 95 %.
 
         Raises
         ------
@@ -122,9 +122,9 @@ class NoLoadTorque(Result):
 
     @takes_si(speed="speed", temperature="temperature")
     def torque(self, speed: ArrayLike, temperature: ArrayLike | None = None) -> FloatArray:
-        """Return the torque in N m at speeds (rad/s), with their sign; temperature in K.
+        """Return the torque (N m) at speeds (rad/s), with the sign of the speed; temperature in K.
 
-        Without a temperature it is that at the reference temperature.
+        Without a temperature, the torque at the reference temperature is returned.
         """
         speeds = np.asarray(speed, dtype=float)
         at_reference = self.constant.value + self.per_speed.value * np.abs(speeds)
@@ -132,7 +132,7 @@ class NoLoadTorque(Result):
 
     @takes_si(speed="speed", temperature="temperature")
     def errors(self, speed: ArrayLike, temperature: ArrayLike | None = None) -> FloatArray:
-        """Return what one standard error of each independent error does to the torque, N m.
+        """Return the change of torque (N m) by one standard error of each independent error.
 
         Shape (speeds, errors); wider than the covariance has it where few degrees of freedom stand behind it.
         """
@@ -155,9 +155,9 @@ class NoLoadTorque(Result):
 
     @takes_si(roll_radius="length", temperature="temperature")
     def at_the_belt(self, roll_radius: float, temperature: float | None = None) -> dict[str, float]:
-        """Return it at the surface of a roll of a radius (m), as a drag law takes it at a temperature (K).
+        """Return the no-load force at the surface of a roll (radius in m), at a temperature (K).
 
-        A part fitted below nothing counts as nothing. ``rest_force`` in N, ``rest_damping`` in N s/m, and
+        A part fitted below zero counts as zero. ``rest_force`` in N, ``rest_damping`` in N s/m, and
         ``rest_temperature_slope``, their relative change from that temperature on, in 1/K.
         """
         factor = float(self._at_temperature(temperature))
@@ -195,7 +195,7 @@ class NoLoadTorque(Result):
         return np.maximum(1.0 + self.temperature_slope.value * away, 0.0)
 
     def refuse_beyond(self, speed: FloatArray, what: str) -> None:
-        """Refuse speeds (rad/s) that the no-load log does not cover; ``what`` names the log they are of."""
+        """Raise for speeds (rad/s) that the no-load log does not cover; ``what`` names their log."""
         if self.speed_range is None:
             return
         low, high = self.speed_range
@@ -206,12 +206,12 @@ class NoLoadTorque(Result):
             covered = covered if self.per_speed.estimable else f"{rpm(low):.3g} rpm"
             raise InsufficientDataError(
                 f"{self.source} covers the no-load torque at {covered}, but {what} runs from "
-                f"{rpm(slow):.3g} to {rpm(fast):.3g} rpm. Record the drive without the lubricated "
-                "contact at these speeds too"
+                f"{rpm(slow):.3g} to {rpm(fast):.3g} rpm. Record these speeds without the lubricated "
+                "contact too"
             )
 
     def summary(self) -> str:
-        """Return the three numbers with their intervals, where they are from, and what is not told."""
+        """Return the three numbers with their intervals, their source, and warnings."""
         rows = [("constant", self.constant, "N m"), ("per speed", self.per_speed, "N m s/rad")]
         if self.reference_temperature is not None:
             about = f"1/K about {celsius(self.reference_temperature):.4g} degC"

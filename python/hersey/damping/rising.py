@@ -42,7 +42,7 @@ def rising(points: SteadyPoints, surface: DampingSurface) -> Rising:
     if loads := points.varying_load:
         low, high = loads
         why_not = (
-            f"the load varies from {low:.3g} to {high:.3g} N, and these models do not include load. "
+            f"the load varies from {low:.3g} to {high:.3g} N, which the models do not include. "
             "Analyse one load at a time"
         )
         return Rising(data, None, None, None, False, why_not)

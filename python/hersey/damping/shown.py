@@ -92,7 +92,7 @@ def _directions(points: SteadyPoints) -> list[tuple[list[tuple[str, BoolArray]],
             (
                 ways,
                 (
-                    ". Warming or running-in can cause this. Let the drive run in, then record the speeds up "
+                    ". Warming or running-in can cause this. Run the drive in, then record speeds up "
                     "and down again"
                 ),
             )

@@ -224,8 +224,8 @@ def _obstacle(asked: _Asked, below_transition: float) -> Obstacle:
         return Obstacle("speed", asked.limits.speed, asked.target, text)
     searched = 100 * max(SEARCHED, 0.5 * (1.0 + asked.confidence))
     text = (
-        f"no profile within the limits makes {searched:.3g} % of the draws slide at {speed}, as needed for "
-        f"{100 * asked.confidence:.3g} % confidence"
+        f"no profile within the limits makes {searched:.3g} % of the draws slide at {speed} "
+        f"({100 * asked.confidence:.3g} % confidence)"
     )
     return Obstacle("speed", asked.limits.speed or math.inf, None, text)
 

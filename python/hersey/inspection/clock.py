@@ -88,8 +88,7 @@ class Clock(Record):
             return None
         return Warning(
             "clock uneven",
-            "the clock is uneven: {share:.1f %} of its intervals differ from the usual one by more "
-            "than {limit:.0f %}",
+            "the clock is uneven: {share:.1f %} of its intervals are off by more than {limit:.0f %}",
             severity="watch",
             share=self.uneven,
             limit=UNEVEN,

@@ -108,8 +108,8 @@ def _fitted(points: SteadyPoints, scale: str) -> DampingSurface | str:
 def _nothing(torque: float) -> Said:
     """What a torque that stands still tells."""
     return [], [
-        f"any exponent: torque always reads {1e3 * torque:.4g} mN m. Check the sensor and its cable, "
-        f"or name another column with {Setting('torque', 'channel').to()}"
+        f"any exponent: torque always reads {1e3 * torque:.4g} mN m. Check the sensor, or name "
+        f"another column with {Setting('torque', 'channel').to()}"
     ]
 
 
@@ -215,7 +215,8 @@ def _one_exponent(branch: Rising, cannot: list[str]) -> Said:
 def _in_rpm(speed: Estimate) -> str:
     if not speed.estimable:
         return f"{rpm(speed.value):.3g} rpm (interval not known)"
-    return rounded(*(rpm(each) for each in (speed.value, speed.low, speed.high)), "rpm")
+    value, low, high = (rpm(each) for each in (speed.value, speed.low, speed.high))
+    return rounded(value, low, high, "rpm")
 
 
 def _levels(kelvin: Sequence[float]) -> str:

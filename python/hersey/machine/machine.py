@@ -99,7 +99,7 @@ class Machine:
 
     @property
     def mixed(self) -> MixedContact | None:
-        """What shares the load, and how; None where no asperities and no boundary friction are stated.
+        """Load sharing of film and asperities; None if neither asperities nor boundary friction is stated.
 
         The film is by the law that holds at the points of the machine, in their mean.
 

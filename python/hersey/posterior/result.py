@@ -105,10 +105,10 @@ class Convergence(Record):
 
 @dataclass(frozen=True, repr=False)
 class Posterior(Result):
-    """Draws of curve, closure and drive that dwells and evidence allow.
+    """Draws of drag curve, closure and drive, given the dwells and other evidence.
 
-    ``temperature`` (K; None if isothermal) is that of the headline. ``laws`` tells of the curves,
-    ``evidence`` what counted beyond the dwells, ``warnings`` what did not, and why.
+    ``temperature`` (K; None if isothermal) is that of the headline. ``laws`` are the drag curves by weight,
+    ``evidence`` what was used besides the dwells, ``warnings`` what was not, and why.
     """
 
     model: DriveModel = field(repr=False)
@@ -218,7 +218,7 @@ class Posterior(Result):
         }
 
     def dataset(self) -> xr.Dataset:
-        """Return the draws as ArviZ takes them: dimensions ``chain`` and ``draw``, units as attributes."""
+        """Return the draws in the format of ArviZ: dimensions ``chain`` and ``draw``, units as attributes."""
         import xarray as xr
 
         edges = self.edges(self.temperature)
@@ -245,7 +245,7 @@ class Posterior(Result):
         )
 
     def to_dict(self) -> dict[str, Any]:
-        """Return what the posterior says, in SI; the draws are in `dataset`."""
+        """Return the posterior in SI; the draws are in `dataset`."""
         value, low, high = self.fold_interval(self.temperature)
         return json_record(
             {

@@ -76,7 +76,7 @@ def posterior(
     temperature: float | None = None,
     **sampling: Unpack[Sampling],
 ) -> Posterior:
-    """Return draws of drag curve, closure, stick speed, stiffness and mass that all evidence allows.
+    """Return draws of drag curve, closure, stick speed, stiffness and mass, given all evidence.
 
     Parameters
     ----------

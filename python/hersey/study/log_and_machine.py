@@ -95,14 +95,14 @@ def study(
     machine_file: Path | None = None,
     step: Step = lambda _what: None,
 ) -> Study:
-    """Fit the dwells of a log, judge the regime, and work out what its machine does.
+    """Fit the dwells of a log, judge the regime, and predict the behaviour of the machine.
 
     Parameters
     ----------
     machine
         The machine, or its file.
     against
-        Dwells of an earlier log, which this one is compared with as `hersey.compare` does (this is B).
+        Dwells of an earlier log (A) to compare with this one (B), as by `hersey.compare`.
     traces
         Recordings of the machine that show starts from rest or stick-slip: evidence of V*.
     temperature_scale

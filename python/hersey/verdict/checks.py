@@ -83,8 +83,8 @@ def _on_thickening(lubricant: Lubricant, film: Film) -> Iterator[Warning]:
     if thickening < MIN_THICKENING:
         yield Warning(
             "no thickening",
-            "pressure does not thicken this lubricant in this nip (alpha p = {thickening:.2g}), so "
-            "Eqs. 5, 9 and 10 of the paper do not apply",
+            "pressure does not thicken this lubricant here (alpha p = {thickening:.2g}), so Eqs. 5, "
+            "9 and 10 of the paper do not apply",
             thickening=thickening,
         )
 
@@ -153,8 +153,8 @@ def _check_contact(contact: Contact, film: Film) -> Iterator[Warning]:
         ratio = nip.paper_width / contact.rubber_thickness
         yield Warning(
             "beyond the regression of the nip",
-            "nip/h = {ratio:.2g} is outside the range of the regression of Eq. 8, {low:g} to "
-            "{high:g}, which is {error:+.0f %} off the solved nip",
+            "nip/h = {ratio:.2g} is outside the range of Eq. 8, {low:g} to {high:g}, which is "
+            "{error:+.0f %} off the solved nip",
             severity="watch",
             ratio=ratio,
             low=low,
@@ -165,18 +165,15 @@ def _check_contact(contact: Contact, film: Film) -> Iterator[Warning]:
     if nip.strain > MAX_STRAIN:
         yield Warning(
             "large strain",
-            "the rubber strain (a^2/(2 R h)) is {strain:.0f %}, but linear elasticity holds only up "
-            "to about {limit:.0f %}",
+            "the rubber strain (a^2/(2 R h)) is {strain:.0f %}; linear elasticity holds only up to "
+            "about {limit:.0f %}",
             severity="watch",
             strain=nip.strain,
             limit=MAX_STRAIN,
             off=nip.strain / MAX_STRAIN,
         )
     if not np.all(film.inlet_short) and np.any(film.regime == REGIMES.index("isoviscous-elastic")):
-        words = (
-            "the inlet of the film is not short compared with rubber and nip, so the soft-EHL law is "
-            "only approximate"
-        )
+        words = "the inlet is not short compared with rubber and nip, so the soft-EHL law is only approximate"
         yield Warning("long inlet", words, severity="watch", off=1.0)
     if contact.roughness is not None:
         least = float(film.lambda_ratio(contact.roughness).min())
@@ -190,8 +187,8 @@ def _check_lubricant(lubricant: Lubricant, film: Film) -> Iterator[Warning]:
     if hottest > high + 0.5 or coldest < low - 0.5:
         yield Warning(
             "viscosity extrapolated",
-            "viscosity is known from {low:.0f degC} to {high:.0f degC} but used from {coldest:.0f "
-            "degC} to {hottest:.0f degC}, so it is extrapolated",
+            "viscosity is extrapolated: known from {low:.0f degC} to {high:.0f degC}, used from "
+            "{coldest:.0f degC} to {hottest:.0f degC}",
             severity="watch",
             low=low,
             high=high,
@@ -224,9 +221,8 @@ def _check_measured(measured: MeasuredFilm, contact: Contact) -> Iterator[Warnin
     if not 1 / _FAR < factor < _FAR:
         yield Warning(
             "torque off",
-            "measured torque is {factor:.3g} times the prediction. Viscosity or nip differs from "
-            "what is stated, or torque contains more than the film; the latter also changes the "
-            "exponents",
+            "measured torque is {factor:.3g} times the prediction. Viscosity or nip is not as "
+            "stated, or torque contains more than the film, which also changes the exponents",
             severity="act",
             factor=factor,
             off=_apart(factor, 1.0) / _FAR,
@@ -237,8 +233,8 @@ def _check_measured(measured: MeasuredFilm, contact: Contact) -> Iterator[Warnin
             least = float(thin.min())
             yield Warning(
                 "measured film below roughness",
-                "where torque rises with speed the measured film is as thin as {ratio:.2g} of the "
-                "roughness ({roughness:.2g um}), so film thickness alone does not explain the torque",
+                "on the rising branch the measured film falls to {ratio:.2g} of the roughness "
+                "({roughness:.2g um}), so film thickness alone does not explain the torque",
                 severity="watch",
                 ratio=least,
                 roughness=contact.roughness or 0.0,
@@ -250,8 +246,8 @@ def _check_friction(highest: float, grip: float | None) -> Iterator[Warning]:
     if highest > MAX_FILM_FRICTION:
         yield Warning(
             "friction above a film",
-            "friction coefficient {friction:.2g} is too high for a fluid film. Above {limit:g}, "
-            "surfaces touch or torque contains more than the nip's drag",
+            "friction coefficient {friction:.2g} is too high for a film. Above {limit:g}, surfaces "
+            "touch or torque contains more than the nip's drag",
             severity="act",
             friction=highest,
             limit=MAX_FILM_FRICTION,
@@ -313,7 +309,7 @@ def _check_transition(turn: ContactTransition) -> list[Warning]:
                 "one at {shown}"
                 if nowhere
                 else "at {temperature:.0f degC} torque is lowest at {speed:.3g rpm} in the contact model, "
-                "but at {shown} in the log",
+                "at {shown} in the log",
                 severity="watch",
                 temperature=kelvin,
                 speed=speed,

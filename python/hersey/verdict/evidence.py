@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, repr=False)
 class MeasuredFilm(Result):
-    """What each dwell says of the film; arrays of shape (points,), SI.
+    """Film thickness measured by each dwell; arrays of shape (points,), SI.
 
     ``temperature`` is the one read; that of the film, to which viscosity belongs, is
     ``predicted.temperature``. ``low`` and ``high`` enclose ``thickness`` at 95 %: errors of torque and
@@ -67,12 +67,12 @@ class MeasuredFilm(Result):
         return "\n".join([*_dwell_lines(self), *_systematic_lines(self)])
 
     def headline(self) -> str:
-        """Return how many dwells, and the range of the film."""
+        """Return the number of dwells and the range of film thickness."""
         film = 1e6 * self.thickness
         return f"{film.size} dwells, measured film {film.min():.3g} to {film.max():.3g} um"
 
     def to_dict(self) -> dict[str, Any]:
-        """Return what each dwell says, and the predicted states, in SI."""
+        """Return the measured and the predicted film of each dwell, in SI."""
         return json_record({**vars(self), "predicted": self.predicted.states()})
 
     def to_frame(self) -> pl.DataFrame:
@@ -106,16 +106,16 @@ def measured_film(
     temperature: float | None = None,
     grip: float | None = None,
 ) -> MeasuredFilm:
-    """Return the film that the dwells measure, beside the predicted one.
+    """Return the measured film thickness at each dwell, with the predicted one.
 
     Parameters
     ----------
     points, surface
-        Of a log, and the surface fitted to it.
+        Steady points of a log, and the surface fitted to them.
     contact, lubricant
-        The nip and what is in it.
+        The nip and its lubricant.
     temperature
-        K, of an isothermal log.
+        K, for an isothermal log.
     grip
         Friction coefficient at which the belt slips on the roll.
 

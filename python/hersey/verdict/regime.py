@@ -45,10 +45,10 @@ class BranchExponent(Record):
 
 @dataclass(frozen=True, repr=False)
 class Regime(Result):
-    """Evidence and verdict.
+    """Verdict on the lubrication regime, with its evidence.
 
-    ``named`` is the one regime that the data leave, None if none may be named, with ``why_unnamed``;
-    ``explanations`` are all that they do not exclude.
+    ``named`` is the only regime that the data do not exclude, or None, with ``why_unnamed``;
+    ``explanations`` are all that the data do not exclude.
     """
 
     exponents: tuple[BranchExponent, ...]
@@ -78,7 +78,7 @@ class Regime(Result):
         return "\n".join(lines)
 
     def headline(self) -> str:
-        """Return the regime named, or what is not excluded."""
+        """Return the named regime, or what is not excluded."""
         if self.named:
             return f"exponent as expected for {named_in_words(self.named)}"
         if not self.explanations:
@@ -104,14 +104,14 @@ def regime(
     lubricant: Lubricant | None = None,
     temperature: float | None = None,
 ) -> Regime:
-    """Return the evidence on the lubrication regime, from steady points and the surface fitted to them.
+    """Return the verdict on the lubrication regime, from steady points and the surface fitted to them.
 
     Parameters
     ----------
     contact, lubricant
-        The nip and what is in it, if both are known: then the band of the soft film is the contact's own.
+        The nip and its lubricant; if both are given, the exponent of the soft film is that of this contact.
     temperature
-        K, of a log that holds none.
+        K, for a log without temperatures.
     """
     require_points(points, "hersey.regime({points}, surface)")
     table, law = REGIMES, None

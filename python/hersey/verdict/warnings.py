@@ -41,10 +41,7 @@ def warnings_of(points: SteadyPoints, surface: DampingSurface | None) -> tuple[W
     found += [*doubtful_units(log), *held_values(log), *doubtful_tare(points), *points.warnings]
     found += _of_rest(points)
     if loads := points.varying_load:
-        words = (
-            "the load varies from {low:.3g} to {high:.3g} N, but one law is fitted to all dwells. "
-            "Fit each load separately"
-        )
+        words = "one law is fitted to loads from {low:.3g} to {high:.3g} N. Fit each load separately"
         found.append(Warning("loads differ", words, severity="watch", low=loads[0], high=loads[1]))
     if swinging := sum(each.why.kind == "stick-slip" for each in points.rejected):
         words = (
@@ -99,8 +96,8 @@ def _of_rest(points: SteadyPoints) -> Iterator[Warning]:
         if coldest < cold - FAR or hottest > hot + FAR:
             yield Warning(
                 "no-load torque extrapolated",
-                "{source} covers {cold:.0f degC} to {hot:.0f degC}, but the dwells are at "
-                "{coldest:.0f degC} to {hottest:.0f degC}, so the no-load torque is extrapolated",
+                "{source} covers {cold:.0f degC} to {hot:.0f degC}, the dwells {coldest:.0f degC} to "
+                "{hottest:.0f degC}: no-load torque is extrapolated",
                 severity="watch",
                 source=rest.source,
                 cold=cold,
@@ -150,8 +147,8 @@ def _of_fit(surface: DampingSurface) -> Iterator[Warning]:
         if abs(value - other) > max(0.005, 2.0 * np.hypot(coefficient.error, estimate.error)):
             yield Warning(
                 "fitted in torque",
-                "exponent {name} is {value:.3f} if fitted in logarithms, but {other:.3f} if fitted "
-                "in torque, where high torques weigh most. Look at the residuals",
+                "exponent {name} is {value:.3f} fitted in logarithms, but {other:.3f} fitted in "
+                "torque, where high torques weigh most. Look at the residuals",
                 severity="watch",
                 name=name,
                 value=value,
@@ -162,8 +159,8 @@ def _of_fit(surface: DampingSurface) -> Iterator[Warning]:
         if high - low < LEAST_SPAN:
             yield Warning(
                 "few temperatures",
-                "temperature only ranges from {low:.0f degC} to {high:.0f degC}, so a and b are "
-                "strongly correlated. Do not use the fit far outside this range",
+                "temperature ranges only from {low:.0f degC} to {high:.0f degC}, so a and b are "
+                "strongly correlated. Do not extrapolate far",
                 severity="watch",
                 low=low,
                 high=high,
@@ -183,17 +180,17 @@ def _of_visits(surface: DampingSurface) -> Iterator[Warning]:
         if not shared.estimable and surface.b is not None and not surface.b.estimable:
             yield Warning(
                 "temperatures visited once",
-                "exponent b is {value:.3g}, but its interval is not known: each temperature was "
-                "visited once, so an error of a whole visit cannot be separated from temperature. "
-                "Visit one temperature again, or a third one",
+                "exponent b is {value:.3g} without an interval: each temperature was visited once, "
+                "so errors of a whole visit cannot be excluded. Visit one temperature again, or a "
+                "third one",
                 severity="watch",
                 value=surface.b.value,
             )
         if shared.deviation > 0 and shared.p_value < SURE:
             yield Warning(
                 "dwells off together",
-                "all dwells of one {visit} deviate together, by {deviation:.1f %} ({p_value:p} for "
-                "chance), so the intervals count {visit}s, not dwells",
+                "all dwells of one {visit} deviate together by {deviation:.1f %} ({p_value:p} for "
+                "chance), so intervals count {visit}s, not dwells",
                 severity="watch",
                 visit=shared.name,
                 deviation=shared.deviation,

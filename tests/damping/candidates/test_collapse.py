@@ -81,14 +81,14 @@ def test_known_hersey_numbers_are_judged_by_an_f_test(
     assert found.collapses is collapses
     if collapses:
         assert found.verdict == (
-            "The curves collapse onto one against the Hersey number. They differ from it by "
+            "The curves collapse onto one against the Hersey number: they differ by "
             f"{100 * deviation:.1f} % rms and scatter by {100 * spread:.1f} %."
         )
     else:
         assert found.verdict == (
-            "The curves do NOT collapse onto one against the Hersey number. They differ from a common curve "
-            f"by {100 * deviation:.0f} % rms, and each scatters by {100 * spread:.1f} % (p = {p:.1g}). Do "
-            "not draw one Stribeck curve through them."
+            "The curves do NOT collapse onto one against the Hersey number: they differ by "
+            f"{100 * deviation:.0f} % rms and each scatters by {100 * spread:.1f} % (p = {p:.1g}). Do not "
+            "draw one Stribeck curve through them."
         )
 
 
@@ -151,7 +151,7 @@ def test_three_points_in_ten_must_share_a_number(shared: int, told: bool) -> Non
     assert (found.collapses is not None) is told
     if not told:
         assert found.verdict == (
-            "Whether the curves collapse onto one cannot be determined: only 20 % of the points "
+            "Whether the curves collapse cannot be determined: only 20 % of the points "
             "share a Hersey number with another curve. Widen the speed range."
         )
 
@@ -263,5 +263,5 @@ def test_temperatures_that_stand_off_as_whole_visits_do_are_not_said_to_part() -
     assert [b.deviation for b in beside] == [a.deviation for a in alone]
     assert any(a.collapses is False for a in alone)
     assert all(b.collapses is not False for b in beside)
-    assert any("no more than whole visits differ (8 %)" in b.verdict for b in beside)
+    assert any("no more than whole visits do (8 %)" in b.verdict for b in beside)
     assert judged(0.5, 1, 0.05).collapses is False

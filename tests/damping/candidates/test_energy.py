@@ -100,13 +100,13 @@ def test_the_transition_s_energy_against_that_of_viscosity(d: float) -> None:
     both = f"{-d * UNIT / 1e3:.3g} and {2.8 / 0.4 * UNIT / 1e3:.3g} kJ/mol, p = {p:.2g}"
     if p < 0.05:
         assert found.verdict == (
-            f"The energies of viscosity from the transition speed and from torque disagree ({both}). The "
+            f"Viscosity's energies from the transition speed and from torque disagree ({both}): the "
             "transition is not at one Hersey number, or the exponent is not that of viscosity."
         )
     else:
         assert found.verdict == (
-            f"The energies of viscosity from the transition speed and from torque agree ({both}), as "
-            "expected for a transition at one Hersey number."
+            f"Viscosity's energies from the transition speed and from torque agree ({both}), as "
+            "expected for a fixed Hersey number."
         )
     assert (p < 0.05) is (d == -9.0)
 
@@ -132,13 +132,13 @@ def test_torque_that_hardly_depends_on_viscosity_gives_no_energy_of_it(low: floa
     assert (found.viscosity is None) is (low < 0.05)
     if found.viscosity is None:
         assert found.verdict == (
-            f"The exponent of torque in viscosity, {found.power}, does not exclude 0, so torque gives no "
-            "activation energy of viscosity. Record faster speeds, where torque rises with speed."
+            f"The exponent of torque in viscosity, {found.power}, does not exclude 0, so torque gives "
+            "no activation energy. Record faster speeds, where torque rises with speed."
         )
     else:
         assert found.verdict == (
-            "The log does not show how the transition moves with temperature, so the energy from "
-            "torque cannot be checked. Record speeds around the transition at more temperatures."
+            "The log does not show how the transition moves with temperature, so this energy cannot "
+            "be checked. Record speeds around the transition at more temperatures."
         )
     assert found.transition is None
     assert found.p_value is None

@@ -374,7 +374,7 @@ def test_a_transition_needs_torque_to_tell_viscosity() -> None:
     law = Law(Thermal(ARRHENIUS, REFERENCE), HELD)
     data = dwells(law, [0.1, 0.02, -0.94, -1.6, -0.2])
     why = (
-        "torque hardly depends on viscosity above the transition (1 + c is at its bound), so its "
+        "torque above the transition hardly depends on viscosity (1 + c is at its bound), so its "
         "place at other temperatures is unknown. Record faster speeds"
     )
     for c, lost in ((-0.9499, {}), (-0.9501, {"at": why})):

@@ -123,8 +123,10 @@ def test_inputs_without_errors_are_exact() -> None:
         (
             0.5,
             True,
-            ". Orthogonal distance regression (ODRPACK) moves a parameter by 0.5 of its standard error, "
-            "because the law bends within an error bar. Hold speed and temperature more constant.",
+            (
+                ". Orthogonal distance regression (ODRPACK) moves a parameter by 0.5 of its standard "
+                "error, so the law bends within an error bar. Hold speed and temperature more constant."
+            ),
         ),
     ],
 )

@@ -130,26 +130,25 @@ def _judged(
     if overlap < 0.3:
         collapses = None
         verdict = (
-            f"Whether the curves collapse onto one cannot be determined: only {100 * overlap:.0f} % "
-            "of the points share a Hersey number with another curve. Widen the speed range."
+            f"Whether the curves collapse cannot be determined: only {100 * overlap:.0f} % of the "
+            "points share a Hersey number with another curve. Widen the speed range."
         )
     elif p_value < _CHANCE and max(NEGLIGIBLE, 0.5 * scatter) < deviation <= 2.0 * shared:
         collapses = None
         verdict = (
-            "Whether the curves collapse onto one cannot be determined: they differ from a common "
-            f"curve by {100 * deviation:.0f} % rms, no more than whole visits differ "
-            f"({100 * shared:.0f} %)."
+            f"Whether the curves collapse cannot be determined: they differ by {100 * deviation:.0f} "
+            f"% rms, no more than whole visits do ({100 * shared:.0f} %)."
         )
     elif p_value < _CHANCE and deviation > max(NEGLIGIBLE, 0.5 * scatter):
         collapses = False
         verdict = (
-            "The curves do NOT collapse onto one against the Hersey number. They differ from a "
-            f"common curve by {100 * deviation:.0f} % rms, and each scatters by {100 * scatter:.1f} % "
-            f"(p = {p_value:.1g}). Do not draw one Stribeck curve through them."
+            "The curves do NOT collapse onto one against the Hersey number: they differ by "
+            f"{100 * deviation:.0f} % rms and each scatters by {100 * scatter:.1f} % (p = "
+            f"{p_value:.1g}). Do not draw one Stribeck curve through them."
         )
     else:
         verdict = (
-            "The curves collapse onto one against the Hersey number. They differ from it by "
+            "The curves collapse onto one against the Hersey number: they differ by "
             f"{100 * deviation:.1f} % rms and scatter by {100 * scatter:.1f} %."
         )
     return HerseyCollapse(collapses, deviation, scatter, before, p_value, overlap, shifts, verdict)

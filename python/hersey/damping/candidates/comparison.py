@@ -46,20 +46,20 @@ def compare_models(
     cross_validate: bool = True,
     progress: Callable[[int, int], None] | None = None,
 ) -> ModelComparison:
-    """Fit every candidate to the same dwells and choose one.
+    """Fit every model to the same dwells and choose one.
 
     Parameters
     ----------
     points
         From `TorqueLog.steady`.
     candidates
-        Those to fit; all if not given.
+        Models to fit; default: all.
     contact
         Film and asperities of the machine (`hersey.MixedContact`), whose laws are candidates then.
     bootstrap
-        Resampled fits of the candidate chosen; 0 leaves that interval out.
+        Number of resampled fits of the chosen model; 0 omits that interval.
     seed
-        Of the resampling.
+        Random seed of the resampling.
     cross_validate
         Whether to predict dwells from the others.
     progress

@@ -165,28 +165,27 @@ def _verdict(
     if viscosity is None:
         return (
             f"The exponent of torque in viscosity, {power}, does not exclude 0, so torque gives no "
-            "activation energy of viscosity. Record faster speeds, where torque rises with speed."
+            "activation energy. Record faster speeds, where torque rises with speed."
         )
     if transition is not None and p_value is None:
         return (
-            "Each temperature was visited once, so the energies of viscosity from the transition "
-            "speed and from torque cannot be compared. Visit one temperature again, or record "
-            "another."
+            "Each temperature was visited once, so the energies from transition speed and torque "
+            "cannot be compared. Visit one again, or record another."
         )
     if transition is None or p_value is None:
         return (
-            "The log does not show how the transition moves with temperature, so the energy from "
-            "torque cannot be checked. Record speeds around the transition at more temperatures."
+            "The log does not show how the transition moves with temperature, so this energy cannot "
+            "be checked. Record speeds around the transition at more temperatures."
         )
     both = f"{transition.value / 1e3:.3g} and {viscosity.value / 1e3:.3g} kJ/mol, p = {p_value:.2g}"
     if p_value < _DISAGREE:
         return (
-            f"The energies of viscosity from the transition speed and from torque disagree ({both}). "
-            "The transition is not at one Hersey number, or the exponent is not that of viscosity."
+            f"Viscosity's energies from the transition speed and from torque disagree ({both}): the "
+            "transition is not at one Hersey number, or the exponent is not that of viscosity."
         )
     return (
-        f"The energies of viscosity from the transition speed and from torque agree ({both}), as "
-        "expected for a transition at one Hersey number."
+        f"Viscosity's energies from the transition speed and from torque agree ({both}), as expected "
+        "for a fixed Hersey number."
     )
 
 

@@ -49,8 +49,8 @@ class OrthogonalFit(Record):
             return f"{part}. {moved} of its standard error, so the effective variance is accurate enough."
         return (
             f"{part}. Orthogonal distance regression (ODRPACK) moves a parameter by "
-            f"{self.largest_shift:.2g} of its standard error, because the law bends within an error "
-            "bar. Hold speed and temperature more constant."
+            f"{self.largest_shift:.2g} of its standard error, so the law bends within an error bar. "
+            "Hold speed and temperature more constant."
         )
 
 

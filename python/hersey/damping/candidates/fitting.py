@@ -113,8 +113,8 @@ class LawFit:
         if not thermal or not moved.size or moved[self.law.index(name)] < _LITTLE:
             return ""
         return (
-            "each temperature was visited once, so differences between visits cannot be separated "
-            "from temperature. Visit one temperature again, or record another"
+            "each temperature was visited once, so visits cannot be separated from temperature. "
+            "Visit one again, or record another"
         )
 
     def error(self, name: str) -> float:

@@ -50,7 +50,7 @@ def not_identified(fit: LawFit, data: Observations) -> dict[str, str]:
         c = fit.values[law.index("c")]
         if 1.0 + c <= LEAST_POWER:
             out["at"] = (
-                "torque hardly depends on viscosity above the transition (1 + c is at its bound), so "
+                "torque above the transition hardly depends on viscosity (1 + c is at its bound), so "
                 "its place at other temperatures is unknown. Record faster speeds"
             )
     return out

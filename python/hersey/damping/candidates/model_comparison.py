@@ -50,7 +50,7 @@ class CandidateFit:
 
 @dataclass(frozen=True, repr=False)
 class ModelComparison(Result):
-    """All candidates by AICc, those refused and why, the one chosen, and what follows from it."""
+    """All models by AICc, those refused and why, and the one chosen with its parameters."""
 
     candidates: tuple[CandidateFit, ...]
     refused: tuple[tuple[str, str], ...]  #: name and reason
@@ -67,11 +67,11 @@ class ModelComparison(Result):
 
     @property
     def runners_up(self) -> tuple[CandidateFit, ...]:
-        """The candidates next in AICc."""
+        """The models next in AICc."""
         return tuple(r for r in self.candidates if r is not self.chosen)[:RUNNERS_UP]
 
     def candidate(self, key: str) -> CandidateFit:
-        """Return a candidate by its key, as ``arrhenius/two-hersey``."""
+        """Return a model by its key, e.g. ``arrhenius/two-hersey``."""
         for candidate in self.candidates:
             if candidate.candidate.key == key:
                 return candidate
@@ -97,7 +97,7 @@ class ModelComparison(Result):
         return _summary(self)
 
     def headline(self) -> str:
-        """Return the candidate chosen, among how many."""
+        """Return the chosen model and the number of models."""
         return f"{self.chosen.candidate.name}, chosen among {len(self.candidates)} models"
 
     def to_dict(self) -> dict[str, Any]:
@@ -105,7 +105,7 @@ class ModelComparison(Result):
         return json_record(_document(self))
 
     def to_frame(self) -> pl.DataFrame:
-        """Return one row per candidate."""
+        """Return one row per model."""
         import polars as pl
 
         rows = [

@@ -75,10 +75,7 @@ class Observations:
         speed, torque = np.abs(points.column("speed")), np.abs(points.column("torque"))
         if distinct_speeds(speed) < fewest_speeds:
             held = " and ".join(f"{v} rpm" for v in sorted({f"{rpm(w):.3g}" for w in speed}, key=float)[:2])
-            raise InsufficientDataError(
-                f"all dwells are at {held}, so no dependence on speed can be fitted. Record dwells at "
-                "three or more speeds"
-            )
+            raise InsufficientDataError(f"all dwells are at {held}. Record dwells at three or more speeds")
         if fewest_speeds > 1:
             refuse_constant_torque(points)
         kelvin = points.column("temperature") if points.log.has_temperature else None

@@ -41,8 +41,8 @@ def refuse_constant_torque(points: SteadyPoints) -> None:
     if torque is not None:
         raise InsufficientDataError(
             f"{points.log.files[0].name}: torque ({_name(points)}) reads {1e3 * torque:.4g} mN m at "
-            "all speeds, to one step of its resolution, so it does not measure friction. Check the "
-            f"sensor and its cable, or name another column with {Setting('torque', 'channel').to()}"
+            "all speeds, within its resolution, so it does not measure friction. Check the sensor, "
+            f"or name another column with {Setting('torque', 'channel').to()}"
         )
 
 

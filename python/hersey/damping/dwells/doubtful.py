@@ -27,15 +27,15 @@ def doubtful_tare(points: SteadyPoints) -> list[Warning]:
     if points.tare:
         share = abs(points.tare) / least
         words = (
-            "the tare, {tare:.3g mN m}, is {share:.0f %} of the torque of the lowest dwell. Check "
-            "that it is the sensor's offset, and that the drive stood free"
+            "the tare, {tare:.3g mN m}, is {share:.0f %} of the lowest torque. Check that it is the "
+            "sensor's offset and the drive stood free"
         )
         found = Warning("large tare", words, severity="watch", tare=points.tare, share=share)
         return [found] if share >= LARGE_TARE else []
     share = abs(standing) / least
     words = (
-        "torque read {standing:.3g mN m} at standstill, {share:.1f %} of the lowest dwell, and is "
-        "not subtracted. If this is the sensor's offset, use {how:standing}"
+        "torque at standstill, {standing:.3g mN m} ({share:.1f %} of the lowest dwell), is not "
+        "subtracted. If it is the sensor's offset, use {how:standing}"
     )
     found = Warning("zero not subtracted", words, severity="watch", standing=standing, share=share, how=TARE)
     return [found] if share >= MATTERS else []
@@ -53,8 +53,8 @@ def doubtful_order(points: SteadyPoints) -> list[Warning]:
     return [
         Warning(
             "in order",
-            "wear-in or any other drift cannot be separated from {quantity} and would bias "
-            "exponent {exponent}. Repeat the first {quantity} at the end",
+            "wear-in or other drift cannot be separated from {quantity} and would bias exponent "
+            "{exponent}. Repeat the first {quantity} at the end",
             severity="watch",
             title="{quantity:capital} and time changed together",
             quantity=what,

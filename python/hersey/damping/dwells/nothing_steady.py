@@ -73,9 +73,8 @@ def _way_out(
             return f"{held}. {count} dwells are found with {how}"
     if (speed := _only_speed(rejected)) is not None:
         return (
-            f"The speed is {rpm(speed):.3g} rpm throughout, so no dependence on speed can be fitted. "
-            "Record dwells at three or more speeds, or name another column with "
-            f"{Setting('speed', 'channel').to()}"
+            f"The speed is always {rpm(speed):.3g} rpm. Record dwells at three or more speeds, or "
+            f"name another column with {Setting('speed', 'channel').to()}"
         )
     return held
 

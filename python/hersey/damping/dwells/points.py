@@ -149,7 +149,7 @@ class SteadyPoints(Result):
         radius: float | Sequence[float] | None = None,
         load: float | Sequence[float] | None = None,
     ) -> SteadyPoints:
-        """Return the steady points that a table of means states: one row per dwell, no clock.
+        """Return the steady points of a table of means: one row per dwell, no time column.
 
         Parameters
         ----------
@@ -190,16 +190,16 @@ class SteadyPoints(Result):
         return cls(frame, tuple(rejected), 0.0, None, table, warnings=(_of_means(table),))
 
     def without(self, rest: NoLoadTorque) -> SteadyPoints:
-        """Return the same dwells with the torque of the film alone, that of the no-load torque taken off.
+        """Return the same dwells with the torque of the film alone: the no-load torque is subtracted.
 
-        Its errors are errors that the dwells share, as those of the tare.
+        Its errors are shared by all dwells, like those of the tare.
 
         Raises
         ------
         InsufficientDataError
             If a no-load log does not cover the speeds, or nothing beyond the errors is left for the film.
         ParameterError
-            If something was taken off already.
+            If a no-load torque was already subtracted.
 
         Examples
         --------
@@ -227,16 +227,15 @@ class SteadyPoints(Result):
         if not np.sign(speed[worst]) * film[worst] > _BEYOND * unsure[worst]:
             raise InsufficientDataError(
                 f"{name}: at {rpm(abs(float(speed[worst]))):.3g} rpm torque is "
-                f"{1e3 * abs(float(torque[worst])):.3g} mN m and the no-load torque "
-                f"{1e3 * abs(float(taken[worst])):.3g} mN m ({rest.source}), so nothing beyond the "
-                "errors is left for the film. Check the unit of the no-load torque, and that it was "
-                "recorded without the film"
+                f"{1e3 * abs(float(torque[worst])):.3g} mN m and no-load torque "
+                f"{1e3 * abs(float(taken[worst])):.3g} mN m ({rest.source}), which leaves nothing for "
+                "the film. Check its unit, and that it was recorded without the film"
             )
         table = self.table.with_columns(torque=film)
         return replace(self, table=table, rest=rest, rest_errors=errors)
 
     def __len__(self) -> int:
-        """Return how many steady points there are."""
+        """Return the number of steady points."""
         return self.table.height
 
     def column(self, name: str) -> FloatArray:
@@ -244,7 +243,7 @@ class SteadyPoints(Result):
         return self.table[name].to_numpy()
 
     def summary(self) -> str:
-        """Return how many dwells, their ranges, the tare, and what is not used, as text."""
+        """Return the number of dwells, their ranges, the tare, and what is excluded, as text."""
         rows = f"{self.table['rows'].sum()} of {self.log.rows} rows used"
         lines = [f"{self.headline()}; {rows}", f"tare {self.tare:.4g} N m"]
         if self.standing_torque is not None:
@@ -261,7 +260,7 @@ class SteadyPoints(Result):
         )
 
     def headline(self) -> str:
-        """Return how many dwells, and the ranges of speed and torque."""
+        """Return the number of dwells and the ranges of speed and torque."""
         speed, torque = np.abs(self.column("speed")), np.abs(self.column("torque"))
         return (
             f"{len(self)} dwells, {rpm(float(speed.min())):.4g} to {rpm(float(speed.max())):.4g} rpm, "
@@ -278,7 +277,7 @@ class SteadyPoints(Result):
         return (low, high) if high > (1.0 + SAME_LOAD) * low else None
 
     def dropped(self) -> str:
-        """Return in a sentence which dwells are not used, at which speeds, and why; empty if none are."""
+        """Return a sentence on the excluded dwells, their speeds and the reasons; empty if there are none."""
         lost = [r for r in self.rejected if r.is_dwell]
         if not lost:
             return ""
@@ -296,7 +295,7 @@ class SteadyPoints(Result):
         return rows
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the dwells, what is not used, and the tare, in SI."""
+        """Return the dwells, what is excluded, and the tare, in SI."""
         plain = ("tare", "tare_error", "tare_errors", "warnings", "standing_torque", "rest", "rest_errors")
         return json_record(
             {"points": self.table.to_dicts(), "rejected": [_record(r) for r in self.rejected]}
@@ -374,8 +373,8 @@ def _of_means(table: MeansTable) -> Warning:
     """What a table of means cannot tell, and what it leaves out."""
     return Warning(
         "table of means",
-        "a table of means, one row per dwell. Without a trace, stick-slip, drift, settling, torque "
-        "zero and clock cannot be checked. Errors of torque: "
+        "a table of means, one row per dwell: stick-slip, drift, settling, torque zero and clock "
+        "cannot be checked. Errors of torque: "
         + ("as stated" if table.stated_errors else "not stated; the scatter about the fit is used instead"),
         where=table.files[0].name + (f" and {len(table.files) - 1} more" if len(table.files) > 1 else ""),
         files=len(table.files),

@@ -79,8 +79,8 @@ class _Reduction:
         self.zero = self._zero(None)
         if subtracted and self.zero is None:
             raise InsufficientDataError(
-                f"the drive never stands still for 2 s, so there is no tare. Omit {TARE.to()}, or "
-                'write the zero into hersey.toml beside the log, under [torque], as tare = "4 mN*m"'
+                f"the drive never stands still for 2 s, so there is no tare. Omit {TARE.to()}, or set "
+                'tare = "4 mN*m" under [torque] in hersey.toml'
             )
 
     def points(self) -> SteadyPoints:

@@ -214,8 +214,8 @@ class Zero:
             out.append(_drifting(rise, p, count))
         if count == 2:
             words = (
-                "the drive stood still only twice, so drift of the torque zero is known between "
-                "these times but not outside them"
+                "the drive stood still only twice, so drift of the torque zero is known only between "
+                "these times"
             )
             out.append(Warning("two standing stretches", words))
         return tuple(out)
@@ -224,8 +224,8 @@ class Zero:
 def _drifting_unsubtracted(rise: float, p_value: float) -> Warning:
     return Warning(
         "zero drifts, not subtracted",
-        "torque at standstill varies by {rise:.3g} N m ({p_value:p}), so the torque zero drifts. It "
-        "is not subtracted. If the drive stands free, use {how:standing}",
+        "torque at standstill drifts by {rise:.3g} N m ({p_value:p}) and is not subtracted. If the "
+        "drive stands free, use {how:standing}",
         severity="watch",
         rise=rise,
         p_value=p_value,
@@ -236,9 +236,8 @@ def _drifting_unsubtracted(rise: float, p_value: float) -> Warning:
 def _drifting(rise: float, p_value: float, count: int) -> Warning:
     return Warning(
         "zero drifts",
-        "the torque zero varies by {rise:.3g} N m over the dwells ({p_value:p}, {count} "
-        "standstills), by drift or hysteresis of the sensor. Each dwell is corrected by the zero at "
-        "its time, and the intervals include its error",
+        "the torque zero varies by {rise:.3g} N m ({p_value:p}, {count} standstills), by drift or "
+        "hysteresis. Each dwell is corrected by the zero at its time; intervals include its error",
         severity="watch",
         rise=rise,
         p_value=p_value,
@@ -249,7 +248,8 @@ def _drifting(rise: float, p_value: float, count: int) -> Warning:
 def _seen_once() -> Warning:
     return Warning(
         "one standing stretch",
-        "the drive stood still only once, so drift of the torque zero cannot be checked; it would "
-        "bias the exponents. Record a standstill at the end too, or better, every few dwells",
+        "the drive stood still only once, so drift of the torque zero, which would bias the "
+        "exponents, cannot be checked. Record another standstill at the end, or better, every few "
+        "dwells",
         severity="watch",
     )

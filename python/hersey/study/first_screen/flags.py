@@ -146,8 +146,8 @@ def _whole(points: SteadyPoints) -> Iterator[Warning]:
     if points.rest is None:
         yield Warning(
             "torque of more than the film",
-            "V* is computed from the whole torque. If that includes bearings, rubber or gears, V* is "
-            "too low. State [rest]",
+            "V* is from the whole torque; if that includes bearings, rubber or gears, V* is too low. "
+            "State [rest]",
             severity="watch",
             title="Torque may hold more than the film",
             where="data",
@@ -217,8 +217,8 @@ def _closures(found: Behaviour) -> Iterator[Warning]:
         return
     yield Warning(
         "closure undecided",
-        "the belt may come to rest gradually ({gradually:.0f %} probability) or stop abruptly "
-        "({abruptly:.0f %}). V* is {soft} mm/s or {dead} mm/s, respectively",
+        "it comes to rest gradually ({gradually:.0f %} probability, V* {soft} mm/s) or stops "
+        "abruptly ({abruptly:.0f %}, V* {dead} mm/s)",
         severity="watch",
         title="The safe speed depends on how the belt comes to rest",
         where="band",

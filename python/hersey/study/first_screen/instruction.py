@@ -207,8 +207,8 @@ def _one_branch(surface: DampingSurface, trend: Trend) -> Instruction:
         "watch",
         f"Measure dwells slower than {low} rpm: torque rises with speed down to there",
         interval,
-        f"Once sliding, the belt keeps sliding down to {low} rpm. From rest it may stick, because "
-        "torque below that speed is not known.",
+        f"Once sliding, the belt keeps sliding down to {low} rpm. From rest it may stick: torque at "
+        "lower speeds is not known.",
     )
 
 

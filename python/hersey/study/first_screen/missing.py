@@ -46,8 +46,8 @@ def _table(name: str, stated: bool) -> str:
 def _drivetrain(file: str) -> MissingPart:
     return MissingPart(
         purpose=(
-            "the drive speed above which the belt slides after any start, and how to start it (V*, map, "
-            "start-up profile)"
+            "the drive speed above which the belt slides from any start (V*), the map, and the "
+            "start-up profile"
         ),
         file=file,
         lines=(

@@ -28,8 +28,8 @@ def in_words(error: HerseyError) -> str:
     """Return the reason without names of code, with units, and with what to do about it."""
     if isinstance(error, UnfinishedError):
         return (
-            "the simulation did not finish: stiffness, mass and stick speed in the machine file "
-            "differ too much. Check their units"
+            "the simulation did not finish. Check the units of stiffness, mass and stick speed in "
+            "the machine file"
         )
     if not isinstance(error, ParameterError) or error.quantity is None or error.value is None:
         return str(error)
