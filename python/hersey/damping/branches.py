@@ -159,7 +159,7 @@ def _parted(data: Observations, trend: LawFit, splits: list[tuple[float, BoolArr
 def _freed(data: Observations, corner: LawFit) -> tuple[LawFit, float | None]:
     """The corner, or one that moves by itself where one Hersey number is excluded, and its gain in AICc."""
     law = replace(law_of(corner), branches=FREE)
-    # where it is not told how far visits scatter, what parts two of them would pass for another transition
+    # where it is unknown how far visits scatter, what parts two of them would pass for another transition
     if law.thermal is None or any(not shared.estimable for shared in corner.shared):
         return corner, None
     free = fit_law(law, data, [np.append(corner.values, move_of(corner)), *starts_of(law, data)])

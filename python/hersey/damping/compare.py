@@ -4,7 +4,7 @@ Both are given the candidate that describes them best together (least sum of AIC
 larger law is beyond doubt). The ratio of damping, B over A, is taken where both were measured; its interval
 is simultaneous over that range (Scheffe), so that a verdict of a difference anywhere in it is wrong in 5 %
 of cases at most. Where a log does not tell how far visits scatter, it is a difference of the visits recorded,
-and what hangs on temperature is not compared.
+and what depends on temperature is not compared.
 """
 
 from __future__ import annotations

@@ -170,7 +170,7 @@ def _information(
 
 
 def _beside_shared(fit: LawFit, slopes: FloatArray) -> FloatArray:
-    """Derivatives (points, parameters) in standard errors, what shared errors explain taken off."""
+    """Derivatives (points, parameters) in standard errors, what shared errors explain subtracted."""
     modes = fit.disturbances.shape[1]
     own = np.vstack([slopes / fit.sigma[:, None], np.zeros((modes, slopes.shape[1]))])
     common = np.linalg.qr(np.vstack([fit.disturbances / fit.sigma[:, None], np.eye(modes)]))[0]

@@ -24,7 +24,7 @@ from hersey.schema.warning import Warning
 
 #: Dwells beyond the numbers fitted.
 _SPARE = 2
-#: Variance of the slope by a scatter of visits that is not told, over that by as much of dwells: a little.
+#: Variance of the slope by a scatter of visits that is unknown, over that by as much of dwells: a little.
 _LITTLE = 0.1
 #: Deviation from the line, as a share of the torque, from which a bend is spoken of.
 _SEEN = 1e-3
@@ -135,7 +135,7 @@ def _observations(points: SteadyPoints) -> tuple[Observations, float]:
 
 
 def _of_visits(fit: LawFit) -> bool:
-    """Whether the slope in temperature hangs on a scatter of visits that is not told."""
+    """Whether the slope in temperature depends on a scatter of visits that is unknown."""
     moved = fit.freedoms.moved_by_untold
     return bool(moved.size and moved[fit.law.index("temperature_slope")] >= _LITTLE)
 

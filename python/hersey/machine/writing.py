@@ -25,7 +25,7 @@ def machine_text(
     Parameters
     ----------
     answers
-        Answers by the key of their question; blank ones are left out.
+        Answers by the key of their question; blank ones are skipped.
     points
         Answers of each operating point by field: ``name``, ``speed``, ``temperature``; what else it holds
         is written as it is.
@@ -40,7 +40,7 @@ def machine_text(
     Examples
     --------
     >>> print(machine_text({"drivetrain.mass": "11 kg"}).splitlines()[3])
-    mass = "11 kg"                  # all that moves with the belt, at the belt: the motor too
+    mass = "11 kg"                  # all that moves with the belt, including the motor, at the belt
     """
     values = _values(answers)
     known = {key: values.pop(key) for key in list(values) if key.startswith("uncertainty.")}

@@ -35,7 +35,7 @@ CHAINS = 2
 #: Misfit (a chi-square) from which evidence contradicts dwells and machine file together, and does not count:
 #: of figures; of an outcome, which most draws then do not show.
 CONTRADICTS, UNLIKE = 20.0, 5.0
-#: Rounds in which evidence is left out, the worst first.
+#: Rounds in which evidence is excluded, the worst first.
 _ROUNDS = 3
 #: Relative standard error of a static friction that is stated without one.
 _STATED_STATIC = 0.05

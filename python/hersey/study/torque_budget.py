@@ -125,7 +125,7 @@ def _paper(mixed: MixedContact, speed: float, level: float) -> list[str]:
 
 
 def _rest(points: SteadyPoints, speed: FloatArray, kelvin: FloatArray) -> FloatArray:
-    """What was taken off as the no-load torque, N m."""
+    """What was subtracted as the no-load torque, N m."""
     return np.zeros_like(speed) if points.rest is None else points.rest.torque(speed, kelvin)
 
 

@@ -34,7 +34,7 @@ from hersey.verdict.regimes import COULOMB, FALLING, Hypothesis
 
 #: Share of the torque from which a constant part, or the film beside it, counts.
 LEAST_SHARE = 0.02
-#: Half width of the interval of c within which level torque is told from falling torque.
+#: Half width of the interval of c within which level torque is distinguished from falling torque.
 LEVEL = 0.05
 #: By how much the exponent of the film's formula may be off.
 FORMULA = 0.01
@@ -247,7 +247,7 @@ def _own_film(
 ) -> tuple[Explanation, LawFit] | None:
     """The film of this contact alone, with the exponent of each dwell, unless the data exclude it.
 
-    What the film's law has beyond the best power law is taken off the dwells: if the film made them one
+    What the film's law has beyond the best power law is subtracted from the dwells: if the film made them one
     exponent holds for the rest, and it is that of the best power law.
     """
     assert branch.fit is not None

@@ -52,7 +52,7 @@ class ContactTransition(Record):
         ]
         for i, kelvin in enumerate(self.temperature.tolist()):
             speed = "nowhere" if np.isnan(self.speed[i]) else f"{rpm(self.speed[i]):.3g}"
-            seen, ratio = self._seen(i), self.ratio[i]
+            seen, ratio = self._seen(i).replace(" rpm", ""), self.ratio[i]
             shown = "" if np.isnan(ratio) else f"{ratio:.3g}"
             shifts = (self.by_roughness[i], self.by_boundary[i])
             roughness, boundary = ("" if np.isnan(shift) else f"{shift:.2f}" for shift in shifts)

@@ -130,7 +130,7 @@ def choose(candidates: tuple[CandidateFit, ...]) -> CandidateFit:
 def ranked(
     fits: list[tuple[Candidate, LawFit]], data: Observations, cross_validate: bool
 ) -> tuple[CandidateFit, ...]:
-    """Return fits by AICc, with what is not determined and the errors of dwells left out."""
+    """Return fits by AICc, with what is not determined and the errors of excluded dwells."""
     least_aicc, least_bic = min(f.aicc for _, f in fits), min(f.bic for _, f in fits)
     weights = np.array([np.exp(-0.5 * (f.aicc - least_aicc)) for _, f in fits])
     weights /= weights.sum()

@@ -31,7 +31,7 @@ class ActivationEnergies:
 
     ``local`` holds the chosen law's apparent energy of torque at the coldest, the reference and the hottest
     temperature, K: equal if the law is Arrhenius. ``of_film`` says that a constant part of the torque is
-    left out of them: ``torque`` is then that of the film.
+    excluded from them: ``torque`` is then that of the film.
     """
 
     torque: Estimate | None

@@ -43,7 +43,7 @@ class CandidateFit:
     delta_aicc: float  #: to the least of all candidates
     delta_bic: float
     weight: float  #: Akaike weight
-    cross_validation: float | None  #: relative error of dwells left out, root mean square
+    cross_validation: float | None  #: relative error of excluded dwells, root mean square
     left_out: FloatArray | None  #: ln(measured/predicted) of each dwell from the others
     lack_of_fit: LackOfFit  #: whether its residuals still depend on speed or temperature
 

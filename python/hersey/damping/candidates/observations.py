@@ -17,7 +17,7 @@ from hersey.units import rpm
 
 #: Change of temperature from dwell to dwell, K, that ends a stay.
 STEP = 6.0
-#: Runs from which on they are resampled and left out whole; fewer say too little of their spread.
+#: Runs from which on they are resampled and excluded whole; fewer say too little of their spread.
 MANY_RUNS = 8
 
 
@@ -48,7 +48,7 @@ class Observations:
     tare: FloatArray
     visit: IntArray  #: which stay at a temperature a dwell belongs to, shape (points,)
     run: IntArray
-    cluster: IntArray  #: points that share it are left out and resampled together
+    cluster: IntArray  #: points that share it are excluded and resampled together
     clustered_by: str  #: ``run`` or ``level``
     reference_speed: float  #: rad/s
     reference_kelvin: float | None

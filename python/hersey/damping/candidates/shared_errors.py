@@ -113,7 +113,7 @@ def shared_scatter(
     by_heat
         Its derivative by temperature, 1/K, shape (points,).
     residuals
-        ln(measured/fitted), no disturbance taken off, shape (points,).
+        ln(measured/fitted), no disturbance subtracted, shape (points,).
     sigma
         Standard error of each dwell on its own, those of outlying dwells widened, shape (points,).
     """

@@ -89,7 +89,7 @@ class SteadyPoints(Result):
     log
         What was reduced, or the table that states them.
     rest
-        The no-load torque, taken off so that torque is that of the film (see `without`); None if none is.
+        The no-load torque, subtracted so that torque is that of the film (see `without`); None if none is.
     rest_errors
         What one standard error of each independent error of it does to the torque of each dwell, N m, shape
         (points, errors).
@@ -122,7 +122,7 @@ class SteadyPoints(Result):
     recipe: HowRead | None = None
 
     def __post_init__(self) -> None:
-        """Give what has no tare, no rest taken off or no relaxation, no disturbances of it."""
+        """Give what has no tare, no rest subtracted or no relaxation, no disturbances of it."""
         for name in ("tare_errors", "rest_errors", "relaxation_errors"):
             if not getattr(self, name).size:
                 object.__setattr__(self, name, np.empty((self.table.height, 0)))

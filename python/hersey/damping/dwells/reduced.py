@@ -35,7 +35,7 @@ def require_points(given: object, call: str) -> None:
     >>> require_points("bench.csv", "hersey.fit({points})")
     Traceback (most recent call last):
         ...
-    hersey.errors.ParameterError: hersey.fit needs steady points, not the name of a file: write \
+    hersey.errors.ParameterError: hersey.fit needs steady points, not a file name. Write \
 hersey.fit(hersey.read("bench.csv").steady(tare="standing")), or tare="none" if the torque is zeroed already
     """
     if isinstance(given, SteadyPoints):

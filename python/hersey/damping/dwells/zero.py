@@ -122,7 +122,7 @@ class Zero:
         """Return what one standard error of each disturbance does at these times, and the error left over.
 
         Shapes (times, disturbances), the largest first, and (times,); ``errors`` are those of the dwells
-        themselves, beside which small disturbances are not told apart.
+        themselves, beside which small disturbances cannot be distinguished.
         """
         known = np.unique(times)
         if known.size > MOST_TIMES:

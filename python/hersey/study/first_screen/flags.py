@@ -1,4 +1,4 @@
-"""The warnings of the first screen: contradictions, what V* hangs on, what the log leaves open."""
+"""The warnings of the first screen: contradictions, what V* depends on, what the log leaves open."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from hersey.verdict.warnings import SCATTER
 MOST = 3
 #: Measured over stated torque beyond which the file does not make the log.
 _FAR = 2.0
-#: Dwells of a falling branch that are few: a transition is told from three on.
+#: Dwells of a falling branch that are few: a transition is fitted from three on.
 _FEW = 4
 #: Probability of a closure from which it counts as known, and ratio of V* of two from which they differ.
 _DECIDED, _APART = 0.95, 1.25
