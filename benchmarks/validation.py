@@ -311,11 +311,12 @@ def inspected(text: str) -> str:
     if not any(re.match(r"\d+ dwells", x) for x in lines):
         return one_line(text)
     dwells = next(x for x in lines if re.match(r"\d+ dwells", x))
-    can = [x.removeprefix("  can tell").strip() for x in lines if x.startswith("  can tell")]
-    cannot = [x.removeprefix("  cannot tell").strip() for x in lines if x.startswith("  cannot tell")]
-    told = f"{dwells}. Can tell {'; '.join(can) or 'nothing'}"
+    can = [x.removeprefix("  can determine").strip() for x in lines if x.startswith("  can determine")]
+    lost = "  cannot determine"
+    cannot = [x.removeprefix(lost).strip() for x in lines if x.startswith(lost)]
+    told = f"{dwells}. Can determine {'; '.join(can) or 'nothing'}"
     told = cut(told)
-    return f"{told}. Cannot tell {len(cannot)} things" if cannot else told
+    return f"{told}. Cannot determine {len(cannot)} things" if cannot else told
 
 
 def by_reason(rows: list[Row]) -> dict[tuple[str, ...], dict[str, int]]:

@@ -39,7 +39,7 @@ def test_each_log_is_a_row(folder: Path) -> None:
     assert table["c"][1] == surface.c.value
     assert table["c low"][1] == surface.c.low
     assert table["transition speed (rad/s)"].null_count() == 2
-    assert table["regime"][1] == "has the exponent of Dowson-Higginson EHL"
+    assert table["regime"][1] == "exponent as expected for Dowson-Higginson EHL"
     assert typed(folder, "logs/1.csv", "--each", "fits.parquet").returncode == 0
     assert pl.read_parquet(folder / "fits.parquet").rows() == table[1:2].rows()
 

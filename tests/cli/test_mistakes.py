@@ -151,10 +151,10 @@ def split_there(it: Refused) -> list[str]:
 
 def recorded(it: Refused) -> list[str]:
     """Record what the message asks for: dwells as long as it says, at as many speeds, or slower ones."""
-    lasts = re.search(r"holds one speed for at least ([\d.]+) s", it.message)
-    three = "at three speeds or more" in it.message
+    lasts = re.search(r"hold one speed for at least ([\d.]+) s", it.message)
+    three = "at three or more speeds" in it.message
     of_other = re.search(
-        r"csv has ([\d.]+) to ([\d.]+) rpm.*record one of them at speeds of the other", it.message
+        r"csv covers ([\d.]+) to ([\d.]+) rpm.*Record one at speeds of the other", it.message
     )
     assert lasts or three or of_other, it.message
     slow, fast = map(float, of_other.groups()) if of_other else (10.0, 120.0)
@@ -302,11 +302,11 @@ MISTAKES: dict[str, Mistake] = {
     "ramps without dwells": Mistake(
         {"log.csv": table([(i / 10, 1 + i / 1000, 0.2 * i, 100 + 50 * (i > 200)) for i in range(1, 400)])},
         "fit log.csv",
-        ("the speed never holds: 1 ramp between 0.2 and 79.8 rpm",),
+        ("The speed never holds: 1 ramp between 0.2 and 79.8 rpm",),
         recorded,
     ),
     "steps too short for dwells": Mistake(
-        {"log.csv": table(rows(each=8))}, "fit log.csv", ("the speed never holds: ", "short steps"), recorded
+        {"log.csv": table(rows(each=8))}, "fit log.csv", ("The speed never holds: ", "short steps"), recorded
     ),
     "dwells shorter than is asked": Mistake(
         {"log.csv": table(rows(each=75, step=0.02))}, "fit log.csv", ("dwell too short", "at least 2 s")
@@ -328,7 +328,7 @@ MISTAKES: dict[str, Mistake] = {
         ("no temperature column",),
     ),
     "degC called K": Mistake(
-        {"log.csv": named(3, "Temperature [K]")}, "fit log.csv", ("-173 degC", "if the numbers are degC")
+        {"log.csv": named(3, "Temperature [K]")}, "fit log.csv", ("-173 degC", "If temperatures are in degC")
     ),
     "below 0 degC": Mistake(
         {"log.csv": table(column(3, lambda x: x - 130))}, "fit log.csv", ("at or below 0 degC", "-30 degC")
@@ -374,7 +374,7 @@ MISTAKES: dict[str, Mistake] = {
     "two speeds": Mistake(shorter_log(20, 60), "fit log.csv", ("20 rpm and 60 rpm",), recorded),
     "a tare without standing": Mistake(GOOD, "fit log.csv --tare standing", ("never stands still",)),
     "reverse of a log that turns forward": Mistake(
-        GOOD, "fit log.csv --rotation reverse", ("15 x rotation not reverse", "turns forward")
+        GOOD, "fit log.csv --rotation reverse", ("15 x rotation is not reverse", "turns in forward")
     ),
     "a gear ratio of 0": Mistake(
         {**GOOD, "hersey.toml": "[torque]\ngear_ratio = 0\n"},
@@ -426,7 +426,7 @@ MISTAKES: dict[str, Mistake] = {
     "logs without common speeds": Mistake(
         {"a.csv": table(rows()), "log.csv": table(rows((200, 300, 400, 500)))},
         "compare a.csv log.csv",
-        ("share no range of speed", "a.csv has 10 to 120 rpm, log.csv 200 to 500 rpm"),
+        ("have no speed in common", "a.csv covers 10 to 120 rpm, log.csv covers 200 to 500 rpm"),
         recorded,
     ),
     "machine and log swapped": Mistake(
@@ -444,7 +444,7 @@ MISTAKES: dict[str, Mistake] = {
     "a mapping given as machine": Mistake(
         {**GOOD, "rig.toml": "[torque]\nsign = 1\n"},
         "report log.csv --machine rig.toml",
-        ("rig.toml is a mapping of a log",),
+        ("so it is the mapping of a log",),
         given_as,
     ),
     "one file twice": Mistake(GOOD, "fit log.csv log.csv", ("is named twice",), named_once),

@@ -50,7 +50,7 @@ def test_a_no_load_log_is_taken_off(folder: Path) -> None:
     done = run("fit", "log.csv", "--no-load", "free.csv", "--json", cwd=folder)
     assert done.returncode == 0, done.stderr
     assert exponent(done.stdout) == pytest.approx(-0.6, abs=1e-6)
-    assert "no-load torque, 20 mN m + 1 mN m s/rad times speed" in done.stderr
+    assert "no-load torque: 20 mN m + 1 mN m s/rad times speed" in done.stderr
     (folder / "fit.json").write_text(done.stdout)
     assert json.loads(done.stdout)["fit"]["rest"]["source"] == "free.csv"
     assert exponent(run("fit", "log.csv", "--json", cwd=folder).stdout) < -0.61
@@ -62,7 +62,7 @@ def test_the_rest_of_the_machine_is_taken_off(folder: Path, file: str) -> None:
     assert printed.returncode == 0, printed.stderr
     assert exponent(printed.stdout) == pytest.approx(-0.6, abs=1e-6)
     document = json.loads(printed.stdout)
-    assert "of the film alone, the no-load torque taken off: 20 mN m" in " ".join(document["verdict"])
+    assert "for the film alone: no-load torque is subtracted" in " ".join(document["verdict"])
     film = run("film", file, "--log", "log.csv", "--json", cwd=folder)
     torque = json.loads(film.stdout)["measured"]["torque"]
     assert torque[0] == pytest.approx(0.1 * (100 / 150.0) ** -0.9 * (8 * 2 * np.pi / 60) ** 0.4, rel=1e-5)
@@ -84,10 +84,13 @@ def test_a_log_of_the_machine_is_found_beside_it(folder: Path) -> None:
     [
         (
             ("report", "log.csv", "--machine", "machine.toml", "--no-load", "free.csv"),
-            "--no-load and [rest] of machine.toml both say what the drive takes without the film: leave",
+            "--no-load and [rest] of machine.toml both give the no-load torque. Omit",
         ),
-        (("fit", "log.csv", "--no-load", "slow.csv"), "record the drive without the film there too"),
-        (("fit", "free.csv", "--no-load", "log.csv"), "nothing beyond the errors is left for the film"),
+        (
+            ("fit", "log.csv", "--no-load", "slow.csv"),
+            "Record these speeds without the lubricated contact too",
+        ),
+        (("fit", "free.csv", "--no-load", "log.csv"), "leaves nothing for the film"),
         (("fit", "log.csv", "--no-load", "none.csv"), "none.csv"),
         (
             ("map", "machine.toml", "--fit", "whole.json"),

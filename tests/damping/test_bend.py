@@ -230,11 +230,11 @@ def test_a_saved_fit_keeps_its_bend(
     closure = document["fit"]["transition"]["closure"]
     closure["covariance"][0][0] *= -1.0
     path.write_text(json.dumps(document))
-    with pytest.raises(ParameterError, match=r"fit.transition.closure: it is not symmetric"):
+    with pytest.raises(ParameterError, match=r"fit.transition.closure: it must be symmetric"):
         read_fit(path)
     closure["values"].pop()
     path.write_text(json.dumps(document))
-    with pytest.raises(ParameterError, match=r"fit.transition.closure: not 4 values"):
+    with pytest.raises(ParameterError, match=r"fit.transition.closure: it must have 4 values"):
         read_fit(path)
 
 
@@ -252,7 +252,10 @@ def test_a_fall_in_one_rotation_alone_is_not_announced() -> None:
     assert both.transition is not None
     one = hersey.fit(points_of(w, np.sign(w) * np.exp(np.append(falls, level) + noise.ravel()), error=0.002))
     assert one.transition is None
-    assert "torque does not fall in the dwells of reverse rotation: fit each alone" in one.rejected_transition
+    assert (
+        "torque does not fall in the dwells of reverse rotation. Fit each rotation separately"
+        in one.rejected_transition
+    )
 
 
 def test_a_fall_on_the_way_up_alone_is_not_announced() -> None:
@@ -283,4 +286,4 @@ def test_one_speed_is_no_falling_branch() -> None:
     values = rises + 0.06 * (w == level[0]) + 0.002 * rng.standard_normal(w.size)
     surface = hersey.fit(points_of(w, np.exp(values), error=0.001))
     assert surface.transition is None
-    assert "above the least at 1 of 5 speeds, and 2 are asked" in surface.rejected_transition
+    assert "exceeds its minimum at only 1 of 5 speeds, and 2 are needed" in surface.rejected_transition

@@ -203,8 +203,8 @@ def test_a_change_is_real_at_five_percent() -> None:
 def test_the_summary_and_the_document_say_the_same_numbers() -> None:
     _, _, found = both()
     lines = found.summary().splitlines()
-    assert lines[:4] == ["A: new", "B: aged", f"law for both: {found.candidate}", found.verdict]
-    assert lines[4] == f"damping of B over A, mean over the shared range: {found.mean_ratio}"
+    assert lines[:4] == ["A: new", "B: aged", f"model for both: {found.candidate}", found.verdict]
+    assert lines[4] == f"damping ratio B/A, mean over the shared range: {found.mean_ratio}"
     for row, hot in enumerate((90, 120, 150, 180)):
         parts = []
         for i in (0, 4, 8):
@@ -237,8 +237,12 @@ def test_more_or_less_throughout() -> None:
     a, b = isothermal(0.1, -0.7), isothermal(0.1 + np.log(1.2), -0.7, seed=2)
     more, less = compare(a, b, names=("x", "y")), compare(b, a, names=("y", "x"))
     up, down = 100 * (more.mean_ratio.value - 1), 100 * (1 - less.mean_ratio.value)
-    assert more.verdict == f"y drags more than x throughout the shared range, +{up:.1f}% on the mean."
-    assert less.verdict == f"x drags less than y throughout the shared range, -{down:.1f}% on the mean."
+    assert more.verdict == (
+        f"Damping of y is higher than that of x throughout the shared range, +{up:.1f} % on average."
+    )
+    assert less.verdict == (
+        f"Damping of x is lower than that of y throughout the shared range, -{down:.1f} % on average."
+    )
     assert less.ratio == pytest.approx(1.0 / more.ratio)
     assert less.low == pytest.approx(1.0 / more.high)
     assert less.mean_ratio.low == pytest.approx(1.0 / more.mean_ratio.high)
@@ -250,7 +254,8 @@ def test_more_or_less_throughout() -> None:
 def test_more_in_one_part_and_less_in_another() -> None:
     found = compare(isothermal(0.1, -0.7), isothermal(0.1, -0.5, seed=2))
     assert found.verdict == (
-        "B drags more than A in one part of the shared range and less in another; also different: c."
+        "Damping of B is higher than that of A in one part of the shared range and lower in another. "
+        "Also different: c."
     )
     assert found.ratio[0, 0] < 0.9 < 1.1 < found.ratio[0, -1]
 
@@ -260,11 +265,17 @@ def test_more_over_a_part() -> None:
     found = compare(isothermal(0.1, -0.7), isothermal(0.1 + 0.05 * middle, -0.65, seed=2))
     share = float(np.mean(found.low > 1.0))
     assert 0.0 < share < 1.0
-    assert f"B drags more than A over {share:.0%} of the shared range, +" in found.verdict
+    assert (
+        f"Damping of B is higher than that of A over {100 * share:.0f} % of the shared range, +"
+        in found.verdict
+    )
     other = compare(isothermal(0.1, -0.7), isothermal(0.1 - 0.05 * middle, -0.75, seed=2))
     share = float(np.mean(other.high < 1.0))
     assert 0.0 < share < 1.0
-    assert f"B drags less than A over {share:.0%} of the shared range, -" in other.verdict
+    assert (
+        f"Damping of B is lower than that of A over {100 * share:.0f} % of the shared range, -"
+        in other.verdict
+    )
 
 
 def test_no_difference_is_bounded() -> None:
@@ -272,7 +283,7 @@ def test_no_difference_is_bounded() -> None:
         found = compare(isothermal(0.1, -0.7, scatter=0.03), isothermal(level, -0.7, seed=2, scatter=0.03))
         widest = max(float(np.max(found.high)) - 1.0, 1.0 - float(np.min(found.low)))
         assert found.verdict == (
-            f"No difference of damping is proven: any there is stays within {100 * widest:.1f}%."
+            f"No difference in damping is proven; any difference is at most {100 * widest:.1f} %."
         )
         assert found.warnings == ()
 
@@ -289,14 +300,14 @@ def test_what_each_alone_would_be_given_is_noted() -> None:
     ):
         found = compare(a, b)
         lost = [
-            f"{n} alone would be given {candidate}"
+            f"fitted separately, {n} would get another model: {candidate}"
             for n, candidate in shown.items()
             if candidate != found.candidate
         ]
         assert lost
         assert [str(each) for each in found.warnings] == [
             *lost,
-            "only one of the two shows a falling branch within its range",
+            "only one of the two logs shows a falling branch",
         ]
 
 
@@ -309,7 +320,7 @@ def test_speeds_are_shared_from_a_factor_of_1_2_on() -> None:
             found = compare(data, faster)
             assert found.speeds[[0, -1]] == pytest.approx([SPEEDS[-1] / overlap, SPEEDS[-1]])
         else:
-            words = rf"A has {SPEEDS[0] / RPM:.3g} to {SPEEDS[-1] / RPM:.3g} rpm, B {133:.3g} to"
+            words = rf"A covers {SPEEDS[0] / RPM:.3g} to {SPEEDS[-1] / RPM:.3g} rpm, B covers {133:.3g} to"
             with pytest.raises(InsufficientDataError, match=words):
                 compare(data, faster)
 

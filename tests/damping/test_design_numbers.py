@@ -177,9 +177,9 @@ def test_the_ranges_that_can_be_run(straight: ModelComparison, isothermal: Model
     assert {p.kelvin for p in level.points} == {None}
     assert round(level.points[0].speed, 6) in (round(SPEEDS[0], 6), round(SPEEDS[-1], 6))
     for bad in ((0.0, 5.0), (5.0, 5.0)):
-        with pytest.raises(ParameterError, match=f"speeds are {bad[0]:g} to 5 rad/s: they must ascend"):
+        with pytest.raises(ParameterError, match=f"speeds are {bad[0]:g} to 5 rad/s: both must be above 0"):
             design(straight, speeds=bad)
-        with pytest.raises(ParameterError, match=f"temperatures are {bad[0]:g} to 5 K: they must ascend"):
+        with pytest.raises(ParameterError, match=f"temperatures are {bad[0]:g} to 5 K: both must be above 0"):
             design(straight, temperatures=bad)
 
 
@@ -187,7 +187,7 @@ def test_a_quantity_is_named_by_its_beginning(bent: ModelComparison) -> None:
     assert design(bent, count=1, quantity="TRANS").quantity == "transition speed"
     assert design(bent, count=1, quantity="c").quantity == "c"  # in full, though two begin so
     assert design(bent, count=1, quantity="c b").quantity == "c below the transition"
-    with pytest.raises(ParameterError, match="'x' names no parameters") as none:
+    with pytest.raises(ParameterError, match="'x' matches no parameters") as none:
         design(bent, quantity="x")
     assert "'damping at reference', 'activation energy of torque', 'c'" in str(none.value)
     with pytest.raises(ParameterError, match="count is -1: it must be at least 1"):
@@ -199,27 +199,27 @@ def test_the_points_in_words(bent: ModelComparison, straight: ModelComparison) -
     first, second = found.points
     assert found.error_now is not None
     lines = found.summary().splitlines()
-    assert lines[0] == f"Next dwells to know the transition speed best (law: {found.law}; seed 3):"
-    assert lines[1] == f"  today's standard error: {found.error_now / RPM:.3g} rpm"
+    assert lines[0] == f"Next dwells to determine the transition speed (model: {found.law}; seed 3):"
+    assert lines[1] == f"  present standard error: {found.error_now / RPM:.3g} rpm"
     for number, point in ((1, first), (2, second)):
         assert point.kelvin is not None
         assert point.error is not None
         celsius = f"{point.kelvin - 273.15:.0f} degC"
         error = f"{point.error / RPM:.3g} rpm"
         assert lines[number + 1] == (
-            f"  {number}. {point.speed / RPM:.3g} rpm at {celsius}: then standard error {error}"
+            f"  {number}. {point.speed / RPM:.3g} rpm at {celsius}: standard error {error}"
         )
     assert found.law == bent.chosen.candidate.name
     whole = design(straight, count=1)
     (point,) = whole.points
     lines = whole.summary().splitlines()
-    assert lines[0] == f"Next dwells to know all parameters best (law: {whole.law}; seed 1):"
-    assert lines[1].endswith(f"then region of all parameters {100 * point.volume:.0f}% of today's")
+    assert lines[0] == f"Next dwells to determine all parameters (model: {whole.law}; seed 1):"
+    assert lines[1].endswith(f"confidence region of all parameters shrinks to {100 * point.volume:.0f} %")
     assert len(lines) == 2
     energy = design(straight, count=1, quantity="activation")
-    assert f"today's standard error: {energy.error_now:.3g} kJ/mol" in energy.summary()
+    assert f"present standard error: {energy.error_now:.3g} kJ/mol" in energy.summary()
     exponent = design(straight, count=1, quantity="c")
-    assert exponent.summary().splitlines()[1] == f"  today's standard error: {exponent.error_now:.3g}"
+    assert exponent.summary().splitlines()[1] == f"  present standard error: {exponent.error_now:.3g}"
 
 
 def test_the_document_holds_every_number(bent: ModelComparison) -> None:

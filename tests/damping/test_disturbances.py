@@ -43,7 +43,7 @@ def test_spikes_are_named_with_their_number_and_size() -> None:
     lost = [r for r in points.rejected if r.is_dwell]
     assert [(r.why.kind, r.why.count) for r in lost] == [("spikes", 10), ("spikes", 10)]
     assert [r.why.share for r in lost] == pytest.approx([15.0, 15.0], rel=0.02)
-    assert "10 samples lie 14.9 times the mean apart" in lost[0].reason
+    assert "10 samples differ from their neighbours by 14.9 times the mean" in lost[0].reason
     assert "check the cable" in points.dropped()
 
 
@@ -51,8 +51,8 @@ def test_spikes_are_named_with_their_number_and_size() -> None:
 def test_a_ripple_of_the_roll_is_named(per_turn: float, said: str) -> None:
     with pytest.raises(InsufficientDataError, match=said) as caught:
         log(lambda torque: torque * (1.0 + 0.6 * np.sin(per_turn * ANGLE))).steady()
-    assert "5 x ripple of the torque at" in str(caught.value)
-    assert "amplitude 60% of the mean" in str(caught.value)
+    assert "5 x torque ripple at" in str(caught.value)
+    assert "amplitude 60 % of the mean" in str(caught.value)
 
 
 def test_frequency_and_amplitude_of_a_ripple_are_data() -> None:
@@ -72,7 +72,7 @@ def test_frequency_and_amplitude_of_a_ripple_are_data() -> None:
 
 def test_one_frequency_at_every_speed_is_none_of_the_roll() -> None:
     with pytest.raises(
-        InsufficientDataError, match=r"3 Hz, .* the same at every speed, so not of roll or belt"
+        InsufficientDataError, match=r"3 Hz, .* the same at every speed, so not from roll or belt"
     ):
         log(lambda torque: torque * (1.0 + 0.6 * np.sin(2.0 * np.pi * 3.0 * TIME))).steady()
 
@@ -80,9 +80,9 @@ def test_one_frequency_at_every_speed_is_none_of_the_roll() -> None:
 def test_what_to_do_about_a_ripple_depends_on_what_it_does() -> None:
     ripple: dict[str, Any] = {"share": 0.3, "frequency": 0.1, "per_turn": 0.25, "lasts": 30.0}
     drifts = Reason("ripple", **ripple, seen_as="torque drift")
-    assert str(drifts).endswith("hold each speed for 100 s or longer, which averages it out")
+    assert str(drifts).endswith("Hold each speed for at least 100 s to average it out")
     assert str(Reason("ripple", **ripple, seen_as="swing")).endswith(
-        "find what turns at this frequency, and true it"
+        "Find the part that turns at this frequency, and true it"
     )
 
 

@@ -52,7 +52,7 @@ def test_the_staircase_gives_one_point_per_dwell(points: hersey.SteadyPoints) ->
 
 def test_reasons_are_named(points: hersey.SteadyPoints) -> None:
     reasons = " | ".join(r.reason for r in points.rejected)
-    for words in ("drive standing", "speed changing", "stick-slip"):
+    for words in ("drive at standstill", "speed changing", "stick-slip"):
         assert words in reasons
 
 
@@ -89,7 +89,7 @@ def test_drifting_temperature_is_rejected() -> None:
 
 def test_a_slow_sweep_is_no_dwell() -> None:
     speed = np.linspace(10, 100, 5000) * RPM
-    with pytest.raises(InsufficientDataError, match="no steady stretch"):
+    with pytest.raises(InsufficientDataError, match="no dwell found"):
         log_of(speed, np.ones(speed.size)).steady()
 
 

@@ -155,7 +155,7 @@ def test_a_new_run_starts_anew() -> None:
 def test_a_rejected_stretch_is_placed_in_its_run() -> None:
     points = runs_of((30.0, 60.0), (0.0, 20.0)).steady()
     (standing,) = points.rejected
-    assert (standing.run, standing.rows, standing.reason) == (1, 500, "drive standing")
+    assert (standing.run, standing.rows, standing.reason) == (1, 500, "drive at standstill")
     assert (standing.start, standing.end) == pytest.approx((0.0, 9.98))
 
 

@@ -77,7 +77,7 @@ def test_errors_in_percent_and_from_deviations() -> None:
     del deviations["samples"]  # a deviation without a count is no error of a mean
     points = hersey.SteadyPoints.from_table(deviations)
     assert points.column("torque_error").tolist() == [0.0, 0.0]
-    assert "none are stated" in str(points.warnings[0])
+    assert "not stated; the scatter" in str(points.warnings[0])
 
 
 def test_the_law_of_a_table_is_found(tmp_path: Path) -> None:
@@ -114,11 +114,11 @@ def test_rows_that_state_no_dwell_are_said() -> None:
     points = hersey.SteadyPoints.from_table(
         {"speed [rpm]": [0, 10, 20, 40, -5], "torque [N*m]": [0.1, 1.0, -1.1, 1.2, -1.3]}
     )
-    assert [r.reason.split(":")[0] for r in points.rejected] == [
-        "drive standing",
+    assert [r.reason.split(".")[0] for r in points.rejected] == [
+        "drive at standstill",
         "torque and speed have opposite signs",
     ]
-    assert points.dropped().startswith("1 of 4 dwells, at 20 rpm, was dropped")
+    assert points.dropped().startswith("1 of 4 dwells (at 20 rpm) was excluded")
     forward = hersey.SteadyPoints.from_table(
         {"speed [rpm]": [10, 40, -5], "torque [N*m]": [1.0, 1.2, -1.3]}, rotation="forward"
     )
@@ -177,12 +177,12 @@ def test_the_commands_take_a_table_of_means(tmp_path: Path) -> None:
     assert document["fit"]["coefficients"]["c"]["value"] == pytest.approx(-0.8, abs=0.002)
     report = run("report", "means.csv", cwd=tmp_path)
     assert report.returncode == 0, report.stderr
-    assert "a table of means, one row per dwell. Without a trace, stick-slip" in report.stdout
+    assert "a table of means, one row per dwell: stick-slip" in report.stdout
     assert (tmp_path / "report.html").stat().st_size > 100_000
     for flags in ([], ["--means"]):
         inspected = run("inspect", "means.csv", *flags, cwd=tmp_path)
         assert "18 dwells" in inspected.stdout
-        assert "no channel is a clock" not in inspected.stdout
+        assert "no time column found" not in inspected.stdout
     models = run("models", "means.csv", "--bootstrap", "0", cwd=tmp_path)
     assert models.returncode == 0, models.stderr
 
@@ -192,7 +192,7 @@ def test_a_table_of_means_has_no_tare_and_no_corrections(tmp_path: Path) -> None
     written(tmp_path, table())
     refused = run("fit", "means.csv", "--tare", "standing", cwd=tmp_path)
     assert refused.returncode == 2
-    assert "no stretch in which the drive stands" in refused.stderr
+    assert "no standstill" in refused.stderr
     (tmp_path / "hersey.toml").write_text("[torque]\ngear_ratio = 2.0\n")
     refused = run("fit", "means.csv", cwd=tmp_path)
     assert refused.returncode == 2

@@ -117,14 +117,14 @@ def test_what_one_speed_or_one_temperature_does_not_tell_is_said() -> None:
     noise = np.array([1.0, -1.0, 0.5, -0.5, 0.0]) * 1e-4
     slow = hersey.no_load_torque(points_of(np.full(5, 2.0), 0.02 + noise))
     assert (slow.constant.estimable, slow.per_speed.estimable, slow.per_speed.value) == (True, False, 0.0)
-    assert "holds one speed, 19.1 rpm: how torque rises with speed is not known" in slow.summary()
+    assert "has only one speed, 19.1 rpm, so its increase with speed is assumed zero" in slow.summary()
     one = hersey.no_load_torque(points_of(SPEEDS[:5], 0.02 + 0.001 * SPEEDS[:5] + noise, np.full(5, 150.0)))
     assert (one.per_speed.estimable, one.temperature_slope.estimable, one.reference_temperature) == (
         True,
         False,
         None,
     )
-    assert "holds one temperature, 150 degC" in str(one.warnings[0])
+    assert "has only one temperature, 150 degC" in str(one.warnings[0])
     w, t = grid(SPEEDS, TEMPERATURES[:2])
     each_once = hersey.no_load_torque(points_of(w, rest_torque(w, t), t, error=0.01))
     assert not each_once.temperature_slope.estimable
@@ -132,13 +132,13 @@ def test_what_one_speed_or_one_temperature_does_not_tell_is_said() -> None:
 
 
 def test_no_load_logs_that_tell_nothing_are_refused() -> None:
-    with pytest.raises(InsufficientDataError, match="run: 3 steady points cannot tell the no-load torque"):
+    with pytest.raises(InsufficientDataError, match="run: 3 dwells are too few for the no-load torque"):
         hersey.no_load_torque(points_of(SPEEDS[:3], 0.02 + 0.001 * SPEEDS[:3]))
-    with pytest.raises(InsufficientDataError, match=r"fitted as -35 mN m at its least.*signs={'torque': -1}"):
+    with pytest.raises(InsufficientDataError, match=r"falls to -35 mN m.*signs={'torque': -1}"):
         hersey.no_load_torque(points_of(SPEEDS, -0.02 - 0.001 * SPEEDS))
     points = no_load()
     twice = replace(points.log, corrections=(Correction("no-load torque", (), ()),))
-    with pytest.raises(ParameterError, match="leave out no_load of the mapping"):
+    with pytest.raises(ParameterError, match="Remove no_load from the mapping"):
         hersey.no_load_torque(replace(points, log=twice))
 
 
@@ -171,10 +171,8 @@ def test_what_was_taken_off_is_said() -> None:
     points = replace(points, table=with_approach).without(stated())
     surface = hersey.fit(points)
     assert "20 mN m + 1 mN m s/rad times speed, -0.2 %/K from 150 degC (stated)" in points.summary()
-    assert "measured less the no-load torque: 20 mN m" in surface.summary()
-    assert (
-        "of the film alone, the no-load torque taken off: 20 mN m" in hersey.regime(points, surface).verdict
-    )
+    assert "measured minus no-load torque: 20 mN m" in surface.summary()
+    assert "for the film alone: no-load torque is subtracted" in hersey.regime(points, surface).verdict
 
 
 def test_a_rest_of_other_temperatures_is_said_to_be_extrapolated() -> None:
@@ -185,11 +183,11 @@ def test_a_rest_of_other_temperatures_is_said_to_be_extrapolated() -> None:
     whole = film(w, t) + rest_torque(w, t)
     points = points_of(w, whole, t, error=1e-3).without(cold)
     said = " ".join(str(each) for each in warnings_of(points, None))
-    assert "holds one temperature, 25 degC" in said
-    assert "at 25 degC to 25 degC, and the dwells lie at 100 degC to 175 degC: it is extrapolated" in said
+    assert "has only one temperature, 25 degC" in said
+    assert ("25 degC to 25 degC, the dwells 100 degC to 175 degC: no-load torque is extrapolated") in said
     blind = points_of(w, whole, error=1e-3).without(stated())
     [found] = [each for each in warnings_of(blind, None) if each.kind == "no-load torque of one temperature"]
-    assert found.sentence == "The log holds no temperatures: the no-load torque is that at 150 degC."
+    assert found.sentence == "The log has no temperatures, so the no-load torque at 150 degC is used."
     assert found.number("temperature") == AT
 
 
@@ -221,23 +219,23 @@ def test_what_cannot_be_taken_off_is_refused() -> None:
     points = points_of(w, film(w, t) + rest_torque(w, t), t)
     heavy = NoLoadTorque.stated(constant="0.3 N*m")
     with pytest.raises(
-        InsufficientDataError, match=r"at 4.77 rpm torque is .* takes 300 mN m of it \(stated\)"
+        InsufficientDataError, match=r"at 4.77 rpm torque is .* no-load torque 300 mN m \(stated\)"
     ):
         points.without(heavy)
     slow = hersey.no_load_torque(points_of(SPEEDS[:4], 0.02 + 0.001 * SPEEDS[:4], error=0.01))
     with pytest.raises(
-        InsufficientDataError, match=r"run holds the no-load torque at 4.77 to 20.5 rpm.*143 rpm"
+        InsufficientDataError, match=r"run covers the no-load torque at 4.77 to 20.5 rpm.*143 rpm"
     ):
         points.without(slow)
-    with pytest.raises(ParameterError, match="taken off already"):
+    with pytest.raises(ParameterError, match="already subtracted"):
         points.without(stated()).without(stated())
     with pytest.raises(WrongKindError, match="unit 'N' is not a unit of torque"):
         NoLoadTorque.stated(constant="20 N")
-    with pytest.raises(ParameterError, match="no-load torque is nothing"):
+    with pytest.raises(ParameterError, match="no-load torque is zero"):
         NoLoadTorque.stated()
     with pytest.raises(ParameterError, match="constant is -1: it must not be negative"):
         NoLoadTorque.stated(constant=-1.0)
-    with pytest.raises(ParameterError, match="needs the reference_temperature"):
+    with pytest.raises(ParameterError, match="needs reference_temperature"):
         NoLoadTorque.stated(constant=0.02, temperature_slope=-0.002)
 
 
@@ -260,7 +258,9 @@ def test_a_saved_fit_carries_the_rest(tmp_path: Path) -> None:
     broken: dict[str, Any] = json.loads(path.read_text())
     broken["fit"]["rest"]["covariance"] = [[1.0]]
     path.write_text(json.dumps(broken))
-    with pytest.raises(ParameterError, match=r"fit.rest.covariance: it is no covariance of three numbers"):
+    with pytest.raises(
+        ParameterError, match=r"fit.rest.covariance: it must be a covariance of three numbers"
+    ):
         read_fit(path)
 
 
@@ -276,7 +276,7 @@ def test_beside_a_drag_table_it_is_that_of_one_temperature() -> None:
     drag = with_rest(table, stated(), 0.015, AT + 50.0)
     added = 0.9 * (CONSTANT / 0.015 + PER_SPEED / 0.015**2 * 0.1)
     assert drag.force(0.1) == pytest.approx(50.0 + added)
-    with pytest.raises(ParameterError, match="a drag table holds at one: give temperature"):
+    with pytest.raises(ParameterError, match=r"a drag table holds at one temperature. Give temperature"):
         with_rest(table, stated(), 0.015, None)
     even = NoLoadTorque.stated(constant=CONSTANT, per_speed=PER_SPEED, uncertainty=0.1)
     assert with_rest(table, even, 0.015, None).rest_force == pytest.approx(CONSTANT / 0.015)

@@ -169,7 +169,7 @@ def test_no_load_is_said_once(tmp_path: Path) -> None:
     log = friction(tmp_path)
     rest = hersey.NoLoadTorque.stated(constant=0.01, source="[rest] of machine.toml")
     drive: Any = SimpleNamespace(sensors=Sensors(), rest=rest)
-    with pytest.raises(ParameterError, match=r"^.*no_load and \[rest\] of machine.toml both say"):
+    with pytest.raises(ParameterError, match=r"^.*no_load and \[rest\] of machine.toml both give"):
         Recipe(logs=(log,), no_load=log).points(drive)
     without = Recipe(logs=(log,)).points(drive)
     whole = Recipe(logs=(log,)).points()

@@ -43,14 +43,14 @@ def refused(call: Callable[[], object]) -> str:
 
 def test_a_fit_of_a_log_says_how_to_reduce_it(log: hersey.TorqueLog) -> None:
     assert refused(lambda: H.fit(log)) == (
-        f"hersey.fit needs steady points, not a log: write hersey.fit(log{STANDING}){ZEROED}"
+        f"hersey.fit needs steady points, not a log. Write hersey.fit(log{STANDING}){ZEROED}"
     )
 
 
 @pytest.mark.parametrize("name", [FILE, Path(FILE)])
 def test_a_fit_of_a_file_says_how_to_read_it(name: str | Path) -> None:
     assert refused(lambda: H.fit(name)) == (
-        f"hersey.fit needs steady points, not the name of a file: write hersey.fit({READ}){ZEROED}"
+        f"hersey.fit needs steady points, not a file name. Write hersey.fit({READ}){ZEROED}"
     )
 
 
@@ -58,7 +58,7 @@ def test_the_line_works_as_it_is_written(
     points: hersey.SteadyPoints, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(ROOT / "examples")
-    line = refused(lambda: H.fit(FILE)).split("write ")[1].split(", or ")[0]
+    line = refused(lambda: H.fit(FILE)).split("Write ")[1].split(", or ")[0]
     assert eval(line, {"hersey": hersey}).c == hersey.fit(points).c
 
 
@@ -82,7 +82,7 @@ def test_the_line_works_as_it_is_written(
     ],
 )
 def test_every_function_of_points_says_it(call: Callable[[], object], line: str) -> None:
-    assert refused(call).endswith(f", not the name of a file: write {line}{ZEROED}")
+    assert refused(call).endswith(f", not a file name. Write {line}{ZEROED}")
 
 
 def test_what_needs_more_than_points_says_the_whole_way(
@@ -90,18 +90,18 @@ def test_what_needs_more_than_points_says_the_whole_way(
 ) -> None:
     study = f"hersey.study(log{STANDING})"
     assert refused(lambda: H.report(log, "report.html")) == (
-        f'hersey.report needs a study, not a log: write hersey.report({study}, "report.html"){ZEROED}'
+        f'hersey.report needs a study, not a log. Write hersey.report({study}, "report.html"){ZEROED}'
     )
     assert refused(lambda: H.report(points)) == (
-        "hersey.report needs a study, not steady points: write "
+        "hersey.report needs a study, not steady points. Write "
         'hersey.report(hersey.study(points), "report.html")'
     )
     fitted = f"hersey.operating_map(hersey.fit(log{STANDING}), machine)"
     assert refused(lambda: H.operating_map(log, None)) == (
-        f"hersey.operating_map needs a fitted surface, not a log: write {fitted}{ZEROED}"
+        f"hersey.operating_map needs a fitted surface, not a log. Write {fitted}{ZEROED}"
     )
     assert refused(lambda: H.operating_map(points, None)) == (
-        "hersey.operating_map needs a fitted surface, not steady points: write "
+        "hersey.operating_map needs a fitted surface, not steady points. Write "
         "hersey.operating_map(hersey.fit(points), machine)"
     )
 
@@ -114,12 +114,12 @@ def test_the_other_log_is_asked_for_as_points_too(log: hersey.TorqueLog, points:
 def test_other_things_are_named() -> None:
     means = read_means({"speed [rpm]": [10, 20, 40], "torque [mN*m]": [21.0, 22.0, 24.0]}, isothermal=True)
     given: list[tuple[object, str]] = [
-        (means, "not a table of means: write hersey.fit(hersey.SteadyPoints.from_table(table))"),
-        (pl.DataFrame(), f"not a frame: write hersey.fit(hersey.read(frame){STANDING}){ZEROED}"),
-        (3.0, f"not a float: write hersey.fit(log{STANDING}){ZEROED}"),
+        (means, "not a table of means. Write hersey.fit(hersey.SteadyPoints.from_table(table))"),
+        (pl.DataFrame(), f"not a frame. Write hersey.fit(hersey.read(frame){STANDING}){ZEROED}"),
+        (3.0, f"not a float. Write hersey.fit(log{STANDING}){ZEROED}"),
         (
             'a "b".csv',
-            f'not the name of a file: write hersey.fit(hersey.read("a \\"b\\".csv"){STANDING}){ZEROED}',
+            f'not a file name. Write hersey.fit(hersey.read("a \\"b\\".csv"){STANDING}){ZEROED}',
         ),
     ]
     for thing, words in given:

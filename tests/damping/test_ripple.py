@@ -46,7 +46,7 @@ def test_a_swing_that_a_law_cannot_be_straight_over_is_in_the_error() -> None:
 
 def test_a_sweep_is_no_ripple() -> None:
     speed = np.geomspace(3.0, 20.0, 15_000) * RPM
-    with pytest.raises(hersey.HerseyError, match="no steady stretch"):
+    with pytest.raises(hersey.HerseyError, match="no dwell found"):
         log_of(speed, np.ones(speed.size)).steady()
 
 
@@ -84,14 +84,16 @@ def test_what_is_dropped_is_said_in_a_sentence() -> None:
     torque[:500] += 0.4 * swing
     torque[500:1000] += 0.5 * swing
     points = log_of(speed, torque).steady()
-    assert points.dropped() == "2 of 5 dwells, all below 30 rpm, were dropped: torque swings by 40 to 50 %."
+    assert (
+        points.dropped() == "2 of 5 dwells (all below 30 rpm) were excluded: torque fluctuates by 40 to 50 %."
+    )
     assert points.dropped() in points.summary()
     torque[2000:] = np.linspace(1.0, 1.5, 500)
     assert (
         log_of(speed, torque).steady().dropped()
         == (
-            "3 of 5 dwells, at 5 to 90 rpm, were dropped: torque swings by 40 to 50 % (2), "
-            "torque drifts by 5 % (1)."
+            "3 of 5 dwells (at 5 to 90 rpm) were excluded: torque fluctuates by 40 to 50 % in 2 "
+            "dwells; torque drifts by 5 % in 1 dwell."
         )
         or "torque drifts by" in log_of(speed, torque).steady().dropped()
     )
@@ -106,7 +108,7 @@ def test_a_speed_that_is_not_held_says_from_where_to_where() -> None:
     speed = dwells(30, 60)
     speed[:500] *= 1.0 + 0.6 * np.where(np.arange(500) % 2, 1.0, -1.0)
     points = log_of(speed, np.ones(1000)).steady()
-    assert points.rejected[0].reason == (
-        "speed not held: it varies by 60% (standard deviation), 12 to 48 rpm"
+    assert points.rejected[0].reason == ("speed not constant: 12 to 48 rpm, standard deviation 60 %")
+    assert (
+        points.dropped() == "1 of 2 dwells (below 60 rpm) was excluded: speed not constant (varies by 60 %)."
     )
-    assert points.dropped() == "1 of 2 dwells, below 60 rpm, was dropped: speed not held by 60 %."

@@ -60,13 +60,17 @@ def test_the_range_measured_is_left_with_a_warning(surface: DampingSurface) -> N
         warnings.simplefilter("error")
         for speed, kelvin in ((0.1, cold), (15.0, hot), (0.09995, 362.9), (15.01, 453.5), (-15.0, hot)):
             surface.torque(speed=speed, temperature=kelvin)
-    low, high = r"0\.1 to 15 rad/s: extrapolated", r"363\.1 to 453\.1 K: extrapolated"
+    low, high = r"0\.1 to 15 rad/s, so", r"363\.1 to 453\.1 K, so"
     for speed in (0.0997, 15.03, -15.03):
-        with pytest.warns(ExtrapolationWarning, match=f"speed outside the measured {low}") as caught:
+        with pytest.warns(
+            ExtrapolationWarning, match=f"speed is outside the measured range, {low}"
+        ) as caught:
             surface.damping(speed=speed, temperature=400.0)
         assert len(caught) == 1
     for kelvin in (cold - 0.5, hot + 0.6):
-        with pytest.warns(ExtrapolationWarning, match=f"temperature outside the measured {high}") as caught:
+        with pytest.warns(
+            ExtrapolationWarning, match=f"temperature is outside the measured range, {high}"
+        ) as caught:
             surface.damping(speed=3.0, temperature=kelvin)
         assert len(caught) == 1
     with pytest.warns(ExtrapolationWarning, match="speed"):
@@ -84,7 +88,9 @@ def test_the_transition_moves_with_temperature(scale: str) -> None:
 
 
 def test_no_power_of_a_temperature_below_zero(surface: DampingSurface) -> None:
-    with pytest.raises(ParameterError, match=r"temperature is 273 K: a law in degC holds above 0 degC only"):
+    with pytest.raises(
+        ParameterError, match=r"temperature is 273 K, but a law in degC holds only above 0 degC"
+    ):
         surface.transition_speed(273.0)
     with pytest.raises(ParameterError, match="temperature is nan K"):
         surface.drag(roll_radius=RADIUS, stick_speed=STICK, temperature=float("nan"))
@@ -210,7 +216,7 @@ def test_a_seed_names_its_draws() -> None:
 def test_draws_without_two_branches_are_drawn_again_and_counted() -> None:
     surface = few()
     uncertain = replace(surface, covariance=100.0 * surface.covariance)
-    with pytest.warns(UserWarning, match="had no falling branch and were drawn again") as caught:
+    with pytest.warns(UserWarning, match="had no falling branch and were replaced") as caught:
         found = draws(uncertain, 4000)
     refused, _, drawn = str(caught[0].message).split()[:3]
     assert drawn == "8000"
@@ -229,13 +235,13 @@ def test_draws_stick_below_their_transition() -> None:
     surface = few()
     at = surface.transition_speed() * RADIUS
     error = surface.covariance[-1, -1] ** 0.5
-    with pytest.warns(UserWarning, match="drawn again"):
+    with pytest.warns(UserWarning, match="were replaced"):
         found = surface.drag_samples(1000, 1, roll_radius=RADIUS, stick_speed=at * np.exp(-error))
     assert np.all(found["transition_speed"] > at * np.exp(-error))
     assert found["transition_speed"].min() < at
     hopeless = replace(surface, covariance=1e4 * surface.covariance)
     with pytest.raises(
-        InsufficientDataError, match=r"of 1000 draws of the fit have no falling branch: the data"
+        InsufficientDataError, match="of 1000 draws of the fit have no falling branch, so the data"
     ):
         draws(hopeless, 1000)
 
@@ -246,9 +252,9 @@ def test_draws_that_cannot_be_asked_for_are_refused(surface: DampingSurface) -> 
     with pytest.raises(ParameterError, match="seed is -1: it must be at least 0"):
         draws(surface, 1, -1, celsius=150.0)
     assert draws(surface, 1, 0, celsius=150.0)["ehl_exponent"].shape == (1,)
-    with pytest.raises(ParameterError, match="this law depends on temperature: give it one, in K"):
+    with pytest.raises(ParameterError, match=r"this law depends on temperature. Give the temperature in K"):
         draws(surface)
-    with pytest.raises(ParameterError, match="temperature is given, but this law does not depend on it"):
+    with pytest.raises(ParameterError, match="this law does not depend on temperature"):
         draws(few(), celsius=150.0)
     with pytest.raises(ParameterError):
         surface.drag_samples(1, 1, roll_radius=RADIUS, stick_speed=-1.0, temperature=423.0)

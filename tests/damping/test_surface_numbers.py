@@ -259,14 +259,14 @@ def test_a_corner_is_as_uncertain_as_the_profile_of_its_likelihood() -> None:
 
 def test_why_no_transition_is_said() -> None:
     few = hersey.fit(points_of(SPEEDS[:5], SPEEDS[:5] ** 0.3, error=0.01))
-    assert few.rejected_transition == "too few points for a second branch"
+    assert few.rejected_transition == "too few dwells for a second branch"
     straight = hersey.fit(points_of(SPEEDS, SPEEDS**0.3 * np.exp(wave(8, 0.01)), error=0.03))
-    assert "a second branch does not pay: its AICc is better by -" in straight.rejected_transition
+    assert "a second branch is not supported by the data (AICc gain -" in straight.rejected_transition
     w = np.geomspace(0.4, 15, 12)
     rising = hersey.fit(points_of(w, np.where(w > 2, (w / 2) ** 0.7, (w / 2) ** 0.1), error=0.005))
-    assert "torque does not fall with speed beyond doubt" in rising.rejected_transition
+    assert "does not prove that torque falls with speed" in rising.rejected_transition
     falling = hersey.fit(points_of(w, np.where(w > 2, (w / 2) ** -0.1, (w / 2) ** -0.7), error=0.005))
-    assert "torque does not rise with speed beyond doubt" in falling.rejected_transition
+    assert "does not prove that torque rises with speed" in falling.rejected_transition
     for surface in (few, straight, rising, falling):
         assert surface.transition is None
         assert len(surface.values) == 2
@@ -274,11 +274,11 @@ def test_why_no_transition_is_said() -> None:
 
 def test_an_estimate_is_printed_with_its_interval() -> None:
     known = Estimate(-0.70123, 0.01, -0.72, -0.68)
-    assert str(known) == "-0.7012 [-0.72, -0.68]"
-    assert repr(known) == "Estimate(-0.7012 [-0.72, -0.68] at 95 %)"
+    assert str(known) == "-0.701 [-0.720, -0.680]"
+    assert repr(known) == "Estimate(-0.701 [-0.720, -0.680] at 95 %)"
     sensors = known.with_systematic(0.0123)
-    assert repr(sensors) == "Estimate(-0.7012 [-0.72, -0.68] at 95 %, sensor errors add up to 0.012)"
-    assert repr(Estimate(0.5, np.inf, -np.inf, np.inf)) == "Estimate(0.5, interval unknown)"
+    assert repr(sensors) == "Estimate(-0.701 [-0.720, -0.680] at 95 %, sensor errors add up to 0.012)"
+    assert repr(Estimate(0.5, np.inf, -np.inf, np.inf)) == "Estimate(0.5, interval not known)"
 
 
 def test_the_summary_prints_the_numbers() -> None:

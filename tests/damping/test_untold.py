@@ -27,8 +27,8 @@ def test_limits_of_two_visits_say_that_they_are_those_of_these_visits() -> None:
     assert surface.b is not None
     assert not surface.b.estimable
     assert surface.c.estimable
-    assert "interval not told" in surface.summary()
-    assert "by the dwells of a visit: not told, they are too few" in surface.summary()
+    assert "interval not known" in surface.summary()
+    assert "cannot be determined for a visit: too few" in surface.summary()
     with pytest.warns(UntoldWarning, match="visits recorded"):
         surface.predict(speed="20 rpm", temperature="120 degC")
     with pytest.warns(UntoldWarning):

@@ -62,7 +62,7 @@ def test_a_drift_is_said_with_its_size() -> None:
     (drift,) = points.warnings
     assert drift.kind == "zero drifts"
     assert drift.number("rise") == pytest.approx(0.0275, abs=0.0025)
-    assert "7 standing stretches" in str(drift)
+    assert "7 standstills" in str(drift)
     assert drift.sentence in points.summary()
     tares = points.table["tare"].to_numpy()
     assert tares[-1] - tares[0] == pytest.approx(0.03 * 28 / 31, abs=0.003)
@@ -73,7 +73,7 @@ def test_one_standing_stretch_cannot_see_a_drift() -> None:
     torque = np.concatenate([np.full(350, v) for v in (0.1, 1.0, 1.1)])
     log = log_of(dwells(0, 30, 60, seconds=7.0), torque)
     (once,) = log.steady(tare="standing").warnings
-    assert once.sentence.startswith("One standing stretch: a drift of the zero cannot be seen")
+    assert once.sentence.startswith("The drive stood still only once, so drift of the torque zero")
     assert log.steady().warnings == ()
 
 
@@ -96,7 +96,7 @@ def test_a_drift_that_is_not_subtracted_is_asked_about() -> None:
     points = log_of(speed, torque + 0.001 * random.standard_normal(speed.size)).steady()
     (drift,) = points.warnings
     assert drift.kind == "zero drifts, not subtracted"
-    assert "the zero drifts. It is not subtracted" in str(drift)
+    assert "and is not subtracted" in str(drift)
     assert points.tare_errors.shape == (2, 0)
 
 

@@ -124,7 +124,7 @@ def test_no_profile_is_faster_than_the_drive(found: Posterior) -> None:
     [obstacle] = plan_start_up(made, HOT, 0.6).obstacles
     assert (obstacle.limit, obstacle.given, obstacle.needed) == ("speed", 0.4, 0.6)
     for confidence in (0.0, 2.0):
-        with pytest.raises(hersey.HerseyError, match=r"0\.5 to 0\.999 is possible"):
+        with pytest.raises(hersey.HerseyError, match=r"from 0\.5 to 0\.999"):
             plan_start_up(made, HOT, 0.1, confidence=confidence)
 
 
@@ -146,7 +146,7 @@ def test_design_ranks_what_would_narrow_v_star(found: Posterior) -> None:
     assert len(lines) == 2 + len(ranked)
     assert part.fold is not None
     assert part.fold.low < part.fold.value < part.fold.high
-    assert ranking(found, ())[-1] == "No measurement would narrow it much."
+    assert ranking(found, ())[-1] == "No measurement would make the interval much narrower."
 
 
 def test_a_belt_let_go_later_than_two_laps_after_the_ramp_does_not_count(found: Posterior) -> None:

@@ -84,6 +84,6 @@ def test_the_first_screen_asks_and_concludes_nothing(bench_csv: Path, machine: h
     assert said is not None
     assert said.instruction.startswith("Is torque in mN·m? It is ")
     assert said.signal == "act"
-    assert said.otherwise.endswith("Nothing is concluded until then.")
+    assert said.otherwise.endswith("Until then, nothing is concluded.")
     assert {point.words for point in said.points} == {"not judged until the question is answered"}
     assert said.safe_speed is None

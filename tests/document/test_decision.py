@@ -43,7 +43,7 @@ def test_the_first_sentence_is_about_the_users_points(decide: Decide, found: Beh
         "100 mm/s and 360 mm/s run smoothly"
     )
     _, low, high = found.posterior.fold_interval(HOT)
-    ends = f"[{figures(1e3 * low, up=False)}, {figures(1e3 * high, up=True)}] mm/s"
+    ends = f"[{figures(1e3 * low, up=False)}, {figures(1e3 * high, up=True)}]"
     assert said.interval.startswith("At 180 °C V* is ")
     assert said.interval.endswith(ends)
     safe = figures(1e3 * found.posterior.safe_speed(HOT), up=True)
@@ -104,7 +104,7 @@ def test_a_plan_that_is_impossible_is_something_to_act_on(decide: Decide, found:
     assert said.signal == said.points[0].signal == "act"
     assert (
         said.points[0].words
-        == "may stick from rest, smooth once it slides: no start-up within the limits works"
+        == "may stick from rest, smooth once it slides: no start-up profile within the limits works"
     )
     assert said.instruction == "45 mm/s may stick from rest, and is smooth once it slides"
     assert said.flags[0].title == "No start for thick paper"
@@ -122,9 +122,9 @@ def test_a_point_that_may_lie_below_the_transition_is_not_blamed_on_a_limit(
     point = replace(moved.points[1], plan=below)
     said = decide(replace(moved, points=(point,)))
     assert said.points[0].verdict == "unknown"
-    assert said.points[0].words == "may stick: lies below the speed of least drag with 50 %"
+    assert said.points[0].words == "may stick: with 50 % probability it is below the speed of lowest drag"
     assert said.instruction == "45 mm/s may stick"
-    assert said.flags[0].title == "No plan for thick paper"
+    assert said.flags[0].title == "No start-up profile for thick paper"
 
 
 def test_v_star_without_an_upper_end_gives_no_speed(decide: Decide, found: Behaviour) -> None:
@@ -142,11 +142,11 @@ def test_beyond_the_drive_nothing_is_good(decide: Decide, found: Behaviour) -> N
     assert found.map is not None
     slow = replace(found, posterior=drawn, points=points, map=replace(found.map, speed_limit=0.06))
     said = decide(slow)
-    assert said.points[-1].words.startswith("faster than the drive, 60 mm/s")
+    assert said.points[-1].words.startswith("exceeds the maximum speed of the drive, 60 mm/s")
     assert "100 mm/s and 360 mm/s are faster than the drive" in said.instruction
     bare = decide(replace(slow, points=()))
     assert bare.signal == "act"
-    assert "more than the 60 mm/s of the drive" in bare.instruction
+    assert "exceeds the maximum speed of the drive, 60 mm/s" in bare.instruction
 
 
 def _with_motor(found: Behaviour, share: float) -> Behaviour:
@@ -210,8 +210,10 @@ def test_lines_for_a_file_that_is_there_do_not_repeat_its_tables(
     assert "[uncertainty]\nstick_speed" in lines
     stated = (ROOT / "tests" / "stand" / "machine.toml").read_text().split("[limits]")[0]
     file = tmp_path / "machine.toml"
-    within_limits = next(part.lines for part in said.missing if part.lines.startswith("# in [limits]"))
-    others = "".join(part.lines for part in said.missing if not part.lines.startswith(("# in", "[rest]")))
+    within_limits = next(
+        part.lines for part in said.missing if part.lines.startswith("# add to the existing table [limits]")
+    )
+    others = "".join(part.lines for part in said.missing if not part.lines.startswith(("# add", "[rest]")))
     file.write_text(f'{stated}\n[limits]\nmotor_torque = "8 N*m"\n{within_limits}\n{others}')
     assert read_machine(file).limits.grip is not None
 
@@ -224,7 +226,9 @@ def test_no_falling_branch_says_how_far_down() -> None:
     said = rising.decision
     assert said is not None
     assert said.signal == "watch"  # from rest the belt passes speeds that nobody measured
-    assert said.instruction.startswith("Measure dwells slower than 9.5 rpm: down to there torque rises")
+    assert said.instruction.startswith(
+        "Measure dwells slower than 9.5 rpm: torque rises with speed down to there"
+    )
     assert "keeps sliding down to 9.5 rpm. From rest it may stick" in said.otherwise
     falling = _table(speeds, 0.2 * speeds**-0.3 * np.exp(0.005 * rng.standard_normal(speeds.size)))
     assert falling.decision is not None
@@ -280,7 +284,7 @@ def test_what_cannot_be_computed_is_said(
     monkeypatch.setattr(behaviour, "plan_start_up", refuse)
     steps: list[str] = []
     found = Working(points, surface, machine, draws=80).result(steps.append)
-    assert steps[:2] == ["drawing what dwells and starts leave open", "finding the bands"]
+    assert steps[:2] == ["drawing from the posterior", "computing V* and the bands"]
     assert "planning thick paper" in steps
     said = decide(found)
     assert "rpm" in said.instruction
@@ -343,7 +347,7 @@ def test_how_the_belt_stops_is_said_where_it_moves_v_star(decide: Decide, found:
     said = decide(replace(open_, points=()))
     [flag] = [flag for flag in said.flags if "comes to rest" in flag.title]
     assert flag.title == "The safe speed depends on how the belt comes to rest"
-    assert flag.text.endswith("V* is 60 or 200 mm/s")
+    assert flag.text.endswith("(50 %, V* 200 mm/s)")
     assert (flag.number("retained"), flag.number("stiction")) == (0.06, 0.2)
     # where the evidence decides, or both are nearly the same, nothing is said
     same = with_draws(open_, fold=np.where(closure == 0, 0.06, 0.065))
@@ -358,7 +362,7 @@ def test_torque_of_the_whole_drive_is_never_good(
     assert decide(near).points[0].signal == "good"
     whole = decide(near, dwells=points)
     assert whole.signal == whole.points[0].signal == "watch"
-    assert whole.points[0].words == "smooth from any start, over 99 %, if all torque is the film's"
+    assert whole.points[0].words == "smooth from any start, over 99 %, if all torque comes from the film"
     assert whole.flags[0].title == "Torque may hold more than the film"
     assert decide(replace(found, points=())).signal == "watch"  # good for what?
 
@@ -373,7 +377,10 @@ def test_torque_of_the_whole_drive_is_never_good(
                 value=0.036,
                 limit=0.033,
             ),
-            "the stick speed, up to 36 mm/s there, reaches the transition speed, 33 mm/s: state less",
+            (
+                "the stick speed, up to 36 mm/s here, reaches the transition speed, 33 mm/s. State a "
+                "lower stick speed"
+            ),
         ),
         (
             ParameterError(
@@ -395,7 +402,7 @@ def test_torque_of_the_whole_drive_is_never_good(
         ),
         (
             UnfinishedError("no end after 7 steps, all that are allowed: allow more by most_steps", steps=7),
-            "look at their units",
+            "stick speed in the machine file",
         ),
         (ParameterError("the bands cannot be computed"), "the bands cannot be computed"),
     ],
@@ -431,8 +438,8 @@ def test_torque_has_one_unit(
     for unit, factor in (("N·m", 1.0), ("mN·m", 1e3)):
         said = decide(weak, unit=unit)
         gives = figures(factor * float(weak.map.torque_limit or 0.0))  # type: ignore[union-attr]
-        assert f" {unit}: the motor's {gives} {unit} do not start" in said.instruction
-        assert f" {unit}, the motor gives {gives}" in said.points[-1].words
+        assert f" {unit}: the motor's {gives} {unit} cannot start" in said.instruction
+        assert f", the motor gives {gives} {unit}" in said.points[-1].words
     large = float(np.abs(points.column("torque")).max())
     assert large > 1.0
     assert unit_of(points) == "N·m"

@@ -78,8 +78,8 @@ def test_warnings_of_the_machine(decide: Decide, found: Behaviour, map_: Operati
     bare = replace(map_, train=replace(map_.train, grip=None))
     far = tuple(replace(p, at=replace(p.at, extrapolated=p.name == "crawl")) for p in map_.points)
     titles = {f.title: f.text for f in decide(replace(found, points=(), map=replace(bare, points=far))).flags}
-    assert titles["Points are extrapolated"] == "no dwell lies as far out as crawl"
-    assert titles["The roll may slip at the start"].startswith("the roll's grip is not stated")
+    assert titles["Operating points are extrapolated"] == "the dwells do not reach crawl"
+    assert titles["The roll may slip at the start"].startswith("the grip of the roll is not stated")
     gripping = replace(map_, train=replace(map_.train, grip=1e6))
     assert "The roll may slip at the start" not in {
         flag.title for flag in decide(replace(found, points=(), map=gripping)).flags
@@ -89,7 +89,7 @@ def test_warnings_of_the_machine(decide: Decide, found: Behaviour, map_: Operati
 @pytest.mark.parametrize(
     ("rises", "falls", "said"),
     [
-        (True, False, "Measure dwells slower than 9.5 rpm: down to there torque rises with speed"),
+        (True, False, "Measure dwells slower than 9.5 rpm: torque rises with speed down to there"),
         (False, True, "Measure faster dwells: torque falls as speed rises, from 9.5 to "),
         (True, True, "Keep the roll well above 19 rpm: below it torque rises as the drive slows"),
         (False, False, "Record dwells slower than 9.5 and faster than "),
@@ -103,7 +103,7 @@ def test_words_follow_what_the_dwells_show(
     assert found.instruction.startswith(said)
     assert found.signal == "watch"
     if not rises and not falls:
-        assert found.instruction.endswith("torque stays about its mean within 1.3 %")
+        assert found.instruction.endswith("torque varies about its mean by up to 1.3 %")
         level = replace(straight, c=replace(straight.c, low=-1.2, high=-0.5))
         assert of_log(level, Trend(False, False, 2.0, 0.013)).instruction.endswith(
             "torque is constant within 1.3 %"
@@ -117,7 +117,7 @@ def test_an_interval_of_the_transition_that_is_not_told_gives_no_speed(
     monkeypatch.setattr(DampingSurface, "transition_estimate", lambda *_: open_ended)
     said = of_log(surface, Trend(True, True, 1.0, 0.1))
     assert "keep the roll well above 9.5 rpm" in said.instruction
-    assert said.interval.endswith("interval not told")
+    assert said.interval.endswith("interval not known")
 
 
 def test_warnings_of_the_log(points: hersey.SteadyPoints, surface: DampingSurface, seen: Regime) -> None:
@@ -130,7 +130,7 @@ def test_warnings_of_the_log(points: hersey.SteadyPoints, surface: DampingSurfac
         return {flag.title: flag.text for flag in flags(Findings(points=dwells, surface=fit, regime=log))}
 
     calm = told(named="soft EHL")
-    titles = ("Few dwells hold the falling branch", "The load differs", "No regime is known")
+    titles = ("Few dwells support the falling branch", "The load varies", "No regime can be named")
     assert not {*titles, "Points scatter 6 % about the fit"} & calm.keys()
     noisy = replace(surface, statistics=replace(surface.statistics, scatter=0.06))
     shown = told(fit=noisy, named="soft EHL")
@@ -138,19 +138,22 @@ def test_warnings_of_the_log(points: hersey.SteadyPoints, surface: DampingSurfac
     unnamed = replace(seen, named=None, why_unnamed="two explain it")
     known = Findings(points=points, surface=surface, regime=unnamed)
     [flag] = [f for f in flags(known) if f.where == "regime"]
-    assert (flag.title, flag.text) == ("No regime is known", "two explain it")
+    assert (flag.title, flag.text) == ("No regime can be named", "two explain it")
     assert surface.transition is not None
     by_itself = replace(surface, transition=replace(surface.transition, freed=24.0))
-    freed = "One Hersey number does not hold"
+    freed = "The transition is not at a fixed Hersey number"
     assert freed in told(fit=by_itself, named="soft EHL")
     assert freed not in calm
     loads = np.linspace(10.0, 20.0, len(points))
     loaded = replace(points, table=points.table.with_columns(load=pl.Series(loads)))
-    assert told(dwells=loaded, named="soft EHL")["The load differs"] == "from 10 to 20 N: fit each load alone"
+    assert (
+        told(dwells=loaded, named="soft EHL")["The load varies"]
+        == "it ranges from 10 to 20 N. Fit each load separately"
+    )
     fast = points.table.filter(pl.col("speed").abs() > 1.2 * surface.transition_speed(HOT + 30.0))
     few = replace(points, table=pl.concat([points.table.filter(pl.col("speed").abs() < 0.6).head(2), fast]))
-    text = told(dwells=few, named="soft EHL")["Few dwells hold the falling branch"]
-    assert text == f"1 of {len(few)} dwells lie below the transition: measure slower ones"
+    text = told(dwells=few, named="soft EHL")["Few dwells support the falling branch"]
+    assert text == f"only 1 of {len(few)} dwells lie below the transition. Measure slower dwells"
 
 
 @pytest.mark.parametrize(
@@ -162,7 +165,7 @@ def test_torque_far_from_the_file_is_a_warning(
 ) -> None:
     torque_budget = TorqueBudgetPart.model_construct(ratio=ratio)
     titles = {flag.title for flag in decide(replace(found, points=()), torque_budget=torque_budget).flags}
-    assert ("Torque and file disagree" in titles) == told
+    assert ("Torque and machine file disagree" in titles) == told
 
 
 def test_without_a_map_only_what_was_measured_is_judged(surface: DampingSurface, machine: Machine) -> None:

@@ -59,7 +59,7 @@ def test_a_number_that_no_fit_can_have(
 )
 def test_no_document(text: str, tmp_path: Path) -> None:
     (tmp_path / "fit.json").write_text(text, encoding="utf-8")
-    with pytest.raises(ParameterError, match=r"fit.json: .*save the fit again"):
+    with pytest.raises(ParameterError, match=r"fit.json: .*Save the fit again"):
         read_fit(tmp_path / "fit.json")
 
 

@@ -191,7 +191,7 @@ def test_a_stick_speed_that_is_fixed_holds_at_one_temperature(typed: Typed) -> N
         (
             HOT,
             {"fit": "cycle.json"},
-            "cycle.json: fit: Field required; save the fit again: hersey fit LOG",
+            "cycle.json: fit: Field required. Save the fit again with: hersey fit LOG",
         ),
         (HOT, {"fit": "none.json"}, "none.json"),
         (

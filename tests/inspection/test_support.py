@@ -58,7 +58,7 @@ def test_an_exponent_that_does_not_hold_says_nothing_of_where_torque_rises() -> 
     surface = hersey.fit(two)
     assert surface.transition is None
     assert surface.c.high < -1.0
-    assert not any("torque does not rise towards" in said for said in support_of_points(two).cannot)
+    assert not any("torque does not rise up to" in said for said in support_of_points(two).cannot)
     said = regime(two, surface).verdict
-    assert said.startswith("No one exponent holds")
+    assert said.startswith("No single exponent")
     assert "Torque falls as speed rises where its exponent is below -1" in said

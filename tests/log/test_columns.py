@@ -202,20 +202,20 @@ PROFILES: dict[str, tuple[str, type[HerseyError], str]] = {
     "no name of time": (
         "t [s],temperature [K]\n0,300\n",
         ChannelError,
-        "no column named time: write 'time [s]' in the first line",
+        "no column is named time. Write 'time [s]' in the first line",
     ),
     "two temperatures": (
         "time [s],temperature 1 [K],temperature 2 [K]\n0,300,1\n",
         ChannelError,
-        "more than one column named temperature",
+        "more than one column is named temperature",
     ),
     "no unit": (
         "time [s],temperature\n0,300\n",
         ChannelError,
-        "temperature has no unit: write 'temperature [degC]'",
+        "temperature has no unit. Write 'temperature [degC]'",
     ),
     "a unit of length": ("time [m],temperature [K]\n0,300\n", UnitError, "'time': unit 'm' is not a unit"),
-    "no header": ("0,300\n1,310\n", UnreadableLogError, "a line of names"),
+    "no header": ("0,300\n1,310\n", UnreadableLogError, "needs a header line"),
     "no rows": ("time [s],temperature [K]\n", UnreadableLogError, "no rows of numbers"),
     "a word": (
         "time [s],temperature [K]\n0,300\n1,warm\n",
@@ -226,7 +226,7 @@ PROFILES: dict[str, tuple[str, type[HerseyError], str]] = {
     "too many points": (
         "time [s],temperature [K]\n" + "".join(f"{i},300\n" for i in range(MOST_POINTS + 1)),
         ParameterError,
-        f"{MOST_POINTS + 1} points, but {MOST_POINTS} are possible: thin it",
+        f"{MOST_POINTS + 1} points are too many. Keep at most {MOST_POINTS}",
     ),
     "too long": (
         "time [s],temperature [K]\n" + "0,300\n" * 200_000,

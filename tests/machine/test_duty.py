@@ -96,21 +96,32 @@ def test_starts_of_one_page(tmp_path: Path) -> None:
         ("coldest", "cold", "[life] has no key 'cold': coldest"),
         ("slope = 7\n", "", "[gear] lacks 'slope'"),
         ("slope = 7", "slope = -7", "gear.slope is -7: it must be greater than 0"),
-        ('"haibach"', '"miner"', "gear.second_slope is 'miner': write a number such as 9, or 'haibach'"),
-        ("20 per 1000", "20 x 1000", "gear.starts is '20 x 1000 pages': write how many in what age"),
-        ("20 per", "0 per", "gear.starts is '0 per 1000 pages': write how many in what age"),
-        ('"10 %"', '"110 %"', "[gear]: cold_starts are 110 %: no more than 100 % can be cold"),
-        ('starts = "20 per 1000 pages"\ncold', "cold", "[gear] has cold_starts without a number of starts"),
-        ('duty = "duty.csv"\n', "", '[gear] has a duty_age without a log: add duty = "duty.csv"'),
+        ('"haibach"', '"miner"', "gear.second_slope is 'miner'. Write a number such as 9, or 'haibach'"),
+        ("20 per 1000", "20 x 1000", "gear.starts is '20 x 1000 pages'. Write a number per age"),
+        ("20 per", "0 per", "gear.starts is '0 per 1000 pages'. Write a number per age"),
+        ('"10 %"', '"110 %"', "[gear]: cold_starts are 110 %, but must not exceed 100 %"),
+        ('starts = "20 per 1000 pages"\ncold', "cold", "[gear] has cold_starts but no starts"),
+        ('duty = "duty.csv"\n', "", '[gear] has duty_age but no duty. Add the log, e.g. duty = "duty.csv"'),
         (
             'duty_age = "1200 pages"',
             "",
-            '[gear] has a duty without the age it took: add duty_age = "1200 pages"',
+            (
+                "[gear] has duty but no duty_age. Add the age over which duty was recorded, e.g. "
+                'duty_age = "1200 pages"'
+            ),
         ),
-        ('"1200 pages"', '"1200"', "gear.duty_age is '1200': write a number and what it counts"),
-        ("duty.csv", "other.csv", "[gear] names the log other.csv, and there is no such file beside it"),
-        ('"40 %"', '"30 %"', "points: the shares sum up to 90 %: they are to make 100 %"),
-        ('share = "40 %"', "", "points: 'thick' lacks a share, and others have one: state all, or none"),
+        ('"1200 pages"', '"1200"', "gear.duty_age is '1200'. Write a number and its unit of age"),
+        (
+            "duty.csv",
+            "other.csv",
+            "[gear] names the log other.csv, but there is no such file beside the machine file",
+        ),
+        ('"40 %"', '"30 %"', "points: the shares add up to 90 %, but must add up to 100 %"),
+        (
+            'share = "40 %"',
+            "",
+            "points: 'thick' has no share, but other points have one. State all shares, or none",
+        ),
         ('"40 %"', "0.4", "points 2.share is 0.4: write a share such as '20 %'"),
     ],
 )

@@ -23,10 +23,10 @@ def test_a_belt_at_rest_asks_more_from_a_moment_that_is_known() -> None:
         assert use.exceeded_from == pytest.approx(0.2, rel=1e-9)
         assert (use.torque, use.time, use.limit) == (pytest.approx(6.0), 0.3, 4.0)
         assert use.exceeded == pytest.approx(1 / 3, abs=0.05)
-        assert "asks 6 N m at 0.3 s: more than the limit from 0.2 s on" in str(use)
+        assert "needs up to 6 N m (at 0.3 s) and exceeds the limit from 0.2 s on" in str(use)
     enough = motor_use(run, motor_torque=7.0, roll_radius=0.02)
     assert (enough.exceeded_from, enough.exceeded) == (None, 0.0)
-    assert str(enough) == "the motor suffices: 6 of 7 N m"
+    assert str(enough) == "the motor is strong enough: the motion needs 6 of 7 N m"
 
 
 def test_the_motor_bears_no_more_than_the_roll_grips() -> None:

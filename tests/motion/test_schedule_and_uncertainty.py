@@ -59,13 +59,17 @@ def test_spreads_as_people_write_them(parameter: str, text: str, expected: Uncer
     ("parameter", "text", "words"),
     [
         ("weight", "10 %", "there is no such parameter"),
-        ("mass", 0.1, "it is 0.1: write a string such as '10 %'"),
+        ("mass", 0.1, "it is 0.1. Write a string such as '10 %'"),
         ("mass", "0 %", "'0 %' is not a share"),
         ("mass", "1.2.3 %", "'1.2.3 %' is not a share"),
         ("mass", "10", "'10' is neither a share"),
-        ("mass", "2 kg to 1 kg", "range 2 to 1: the ends must ascend, both on one side of 0"),
-        ("mass", "1 kg to 1 kg", "the ends must ascend"),
-        ("ehl_exponent", "-0.5 to 0.5", "both on one side of 0"),
+        (
+            "mass",
+            "2 kg to 1 kg",
+            "range 2 to 1: give the lower end first, and both ends on the same side of 0",
+        ),
+        ("mass", "1 kg to 1 kg", "give the lower end first"),
+        ("ehl_exponent", "-0.5 to 0.5", "both ends on the same side of 0"),
         ("ehl_exponent", "low to high", "is not a range of two numbers"),
     ],
 )
@@ -82,13 +86,13 @@ def test_a_range_in_the_wrong_unit() -> None:
 
 def test_either_share_or_limits() -> None:
     for given in ({}, {"share": 0.1, "limits": (1.0, 2.0)}):
-        with pytest.raises(ParameterError, match=r"^give either a share or limits$"):
+        with pytest.raises(ParameterError, match=r"^give either share or limits$"):
             Uncertainty(**given)  # type: ignore[arg-type]
     with pytest.raises(ParameterError, match=r"^share is 0: it must be greater than 0$"):
         Uncertainty(share=0)
     with pytest.raises(ParameterError, match="share is 100"):
         Uncertainty(share=100.0)
-    with pytest.raises(ParameterError, match="must ascend"):
+    with pytest.raises(ParameterError, match="lower end first"):
         Uncertainty(limits=(1.0, float("inf")))
 
 

@@ -340,8 +340,7 @@ def test_what_the_fit_says_of_its_draws_is_said_by_the_map(surface: DampingSurfa
     drawn = map_of(wide, machine.train, **AT, draws=2, temperatures=[450.0, 451.0])
     said = str(caught[0].message)
     assert said.endswith(
-        "draws of the fit had no falling branch and were drawn again: the intervals hold for fits that "
-        "have one"
+        "draws of the fit had no falling branch and were replaced: intervals hold only if there is one"
     )
     words = [str(each) for each in drawn.warnings]
     assert said in words

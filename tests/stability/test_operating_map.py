@@ -397,8 +397,10 @@ def test_bad_look_ups_are_refused(
 
 
 def test_without_a_falling_branch_there_is_no_map(surface: DampingSurface, machine: Machine) -> None:
-    rising = replace(surface, transition=None, rejected_transition="a second branch does not pay")
-    with pytest.raises(InsufficientDataError, match=r"does not pay.*record slower dwells"):
+    rising = replace(
+        surface, transition=None, rejected_transition="a second branch is not supported by the data"
+    )
+    with pytest.raises(InsufficientDataError, match=r"not supported.*Record slower dwells"):
         map_of(rising, machine.train, **QUICK)
 
 

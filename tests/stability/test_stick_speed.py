@@ -73,15 +73,17 @@ def test_the_rule_is_that_of_the_transition_or_none(fitted: hersey.DampingSurfac
     assert fitted.stick_speed_at(420.0, **given) == pytest.approx(3e-4, rel=1e-12)
     assert fitted.stick_speed_at(HOT, **given, stick_speed_rule=FIXED) == 3e-4
     with pytest.raises(
-        ParameterError, match="stick_speed_rule 'still' is not known: 'with transition' or 'fixed'"
+        ParameterError, match=r"stick_speed_rule 'still' is not known. Use 'with transition' or 'fixed'"
     ):
         fitted.stick_speed_at(HOT, **given, stick_speed_rule="still")
 
 
 def test_a_fixed_stick_speed_needs_one_temperature(fitted: hersey.DampingSurface) -> None:
-    with pytest.raises(ParameterError, match="give one temperature, or stick_speed_rule 'with transition'"):
+    with pytest.raises(
+        ParameterError, match="Give one temperature, or use stick_speed_rule 'with transition'"
+    ):
         fitted.drag(**machine(FIXED).belt)
-    with pytest.raises(ParameterError, match="give one temperature"):
+    with pytest.raises(ParameterError, match="Give one temperature"):
         drag_and_draws(fitted, machine(FIXED), None, 1, varies=True)
 
 

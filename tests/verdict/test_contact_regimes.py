@@ -97,7 +97,7 @@ def test_a_log_of_the_own_film_does_not_exclude_it(made_by: Contact) -> None:
     found = seen(made_by, seed=3)
     assert name in [e.key for e in found.explanations]
     assert "Dowson-Higginson EHL" not in [e.key for e in found.explanations]
-    assert "as theory has it for this contact" in found.verdict
+    assert "as predicted for this contact" in found.verdict
 
 
 def test_a_constant_torque_beside_the_own_film_is_seen() -> None:

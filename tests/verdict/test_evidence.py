@@ -130,7 +130,7 @@ def test_an_isothermal_log_needs_its_temperature(
     points: hersey.SteadyPoints, surface: DampingSurface, contact: Contact, oil: Lubricant
 ) -> None:
     cold = replace(points, table=points.table.with_columns(temperature=np.full(len(points), np.nan)))
-    with pytest.raises(InsufficientDataError, match=r"give that of the film, temperature=453.15"):
+    with pytest.raises(InsufficientDataError, match=r"Give that of the film, temperature=453.15"):
         measured_film(cold, surface, contact, oil)
     stated = measured_film(cold, surface, contact, oil, temperature=430.0)
     assert set(stated.temperature) == {430.0}
@@ -214,12 +214,12 @@ def test_the_verdict_in_whole_sentences(says: Verdict, log_says: Regime) -> None
     assert says.thermal is not None
     agrees = says.thermal.low <= says.thermal_expected <= says.thermal.high
     sentences = (
-        "The regime chart puts this contact in the isoviscous-elastic regime, where damping goes as speed to "
-        f"the power {says.expected:.2f}; measured {says.exponent}. "
-        f"Solved numerically for this roll, the film gives the power {says.solved:.2f}. ",
-        "The log alone names no regime",
-        " Eq. 5 of the paper (Dowson-Higginson) does not apply to this contact, whatever the exponent. "
-        f"With temperature (K) damping goes to the power {says.thermal}; the film of this lubricant predicts "
+        "By the regime chart this contact is isoviscous-elastic, and damping should vary as "
+        f"speed^{says.expected:.2f}; measured: {says.exponent}. "
+        f"A numerical solution for this roll gives {says.solved:.2f}. ",
+        "From the log alone no regime can be named",
+        " Eq. 5 of the paper (Dowson-Higginson) does not apply to this contact. "
+        f"The exponent of damping in temperature (K) is {says.thermal}; the film of this lubricant predicts "
         f"{says.thermal_expected:.2f}, which {'agrees' if agrees else 'disagrees'}.",
     )
     places = [says.text.find(sentence) for sentence in sentences]
@@ -236,16 +236,16 @@ def test_where_the_log_names_no_regime_the_contact_names_none(
         return verdict(measured, replace(surface, c=c), contact, oil, says).text
 
     same = text(-0.58, seen(log_says, "soft EHL"))
-    assert "The measured exponent is the one of that regime." in same
-    assert "contradict" not in same
+    assert "The measured exponent agrees with that regime." in same
+    assert "Log and film theory disagree" not in same
     # the exponent is that of the regime chart, but the log does not let it be named
     for value, keys in ((-0.58, ("soft EHL", "THAT")), (-0.3, ("THIS", "THAT"))):
         unnamed = text(value, seen(log_says, None, *keys))
-        assert "The log alone names no regime" in unnamed
-        assert "is the one of that regime" not in unnamed
+        assert "From the log alone no regime can be named" in unnamed
+        assert "agrees with that regime" not in unnamed
     other = text(-0.7, seen(log_says, "Dowson-Higginson EHL"))
-    assert "contradict" in other
-    assert "is the one of that regime" not in other
+    assert "Log and film theory disagree" in other
+    assert "agrees with that regime" not in other
 
 
 def test_the_exponent_of_temperature_agrees_within_its_interval(
@@ -290,8 +290,10 @@ def test_extrapolation_is_said_of_the_cold_and_the_hot(
 def test_statements_that_disagree(machine: Machine, contact: Contact, oil: Lubricant) -> None:
     other = replace(contact, roll_radius=16e-3, load=310.0)
     notes = check_film(replace(machine, contact=other), film_at(other, oil))
-    assert "[contact] roll_radius is 16 mm, [drivetrain] roll_radius 15 mm: one roll has one radius" in notes
-    assert "[contact] load is 310 N, [limits] nip_load 300 N: say which" in notes
+    assert (
+        "[contact] roll_radius is 16 mm, but [drivetrain] roll_radius is 15 mm. Use the same value in both"
+    ) in notes
+    assert "[contact] load is 310 N, but [limits] nip_load is 300 N. Use the same value in both" in notes
     near = replace(contact, roll_radius=15.1e-3, load=302.0)
     assert not [
         n for n in check_film(replace(machine, contact=near), film_at(near, oil)) if n.startswith("[")
@@ -303,8 +305,8 @@ def test_the_lambda_ratio_is_named_by_its_band(machine: Machine, contact: Contac
     for ratio, kind, limit in ((0.5, "boundary", 1), (2.0, "mixed", 3)):
         rough = replace(contact, roughness=least / ratio)
         assert (
-            f"predicted lambda ratio down to {ratio:.2g} (minimum film over composite rms roughness): by "
-            f"convention {kind} lubrication below {limit}"
+            "predicted lambda ratio (minimum film over composite rms roughness) falls to "
+            f"{ratio:.2g}; below {limit} lubrication is {kind} by convention"
         ) in check_film(replace(machine, contact=rough), film_at(rough, oil))
     smooth = replace(contact, roughness=least / 3.1)
     assert not [
@@ -317,17 +319,17 @@ def test_nip_strain_and_inlet(machine: Machine, contact: Contact, oil: Lubricant
     nip = thick.nip
     off = 100 * (nip.paper_width / nip.width - 1)
     assert (
-        f"nip/h = {nip.paper_width / 9e-3:.2g} is outside the range of the regression of Eq. 8, 1 to 4: "
-        f"it is {off:+.0f} % off the solved nip"
+        f"nip/h = {nip.paper_width / 9e-3:.2g} is outside the range of Eq. 8, 1 to 4, "
+        f"which is {off:+.0f} % off the solved nip"
     ) in check_film(replace(machine, contact=thick), film_at(thick, oil))
     pressed = replace(contact, load=900.0)
     share = 100 * (pressed.nip.width / 2) ** 2 / (2 * 15e-3 * 3.5e-3)
     assert share > 15
     assert (
-        f"the rubber is strained by {share:.0f} % (a^2/(2 R h)): linear elasticity ends near 15 %"
+        f"the rubber strain (a^2/(2 R h)) is {share:.0f} %; linear elasticity holds only up to about 15 %"
     ) in check_film(replace(machine, contact=pressed), film_at(pressed, oil))
     film = film_at(contact, oil)
-    short = "the inlet of the film is not short against rubber and nip: the soft law is rough there"
+    short = "the inlet is not short compared with rubber and nip, so the soft-EHL law is only approximate"
     assert short not in check_film(machine, film)
     assert short in check_film(machine, replace(film, inlet_short=np.array(False)))
     rigid = replace(film, inlet_short=np.array(False), regime=np.array(0))
@@ -338,7 +340,7 @@ def test_what_is_said_of_the_lubricant(machine: Machine, contact: Contact, oil: 
     film = film_at(contact, oil)
     thickening = 20e-9 * contact.nip.pressure_max
     assert (
-        f"pressure does not thicken this lubricant in this nip (alpha p = {thickening:.2g}), so Eqs. 5, 9 "
+        f"pressure does not thicken this lubricant here (alpha p = {thickening:.2g}), so Eqs. 5, 9 "
         "and 10 of the paper do not apply"
     ) in check_film(machine, film)
     hard = replace(oil, pressure_viscosity=((300.0, 0.11 / contact.nip.pressure_max),))
@@ -347,7 +349,7 @@ def test_what_is_said_of_the_lubricant(machine: Machine, contact: Contact, oil: 
     flagged = replace(
         film, corrections={"starvation": Correction(np.array([0.5, 0.25]), np.array([True, False]))}
     )
-    assert "starvation: the factor (down to 0.25) is outside the validity of its rule" in check_film(
+    assert "starvation: the factor (as low as 0.25) is outside the valid range of its formula" in check_film(
         machine, flagged
     )
     fine = replace(
@@ -360,7 +362,7 @@ def test_shear_that_warms(machine: Machine, contact: Contact, oil: Lubricant) ->
     eta = float(oil.viscosity(350.0))
     for rise, said in ((2.5, True), (1.9, False)):
         speed = np.sqrt(rise * 8 * 0.1 / eta) / 15e-3
-        text = f"shear warms the film by up to {rise:.2g} K over its walls: it is thinner than stated"
+        text = f"shear heats the film by up to {rise:.2g} K above its walls, so it is thinner than stated"
         assert (text in check_film(machine, film_at(contact, oil, speed=float(speed)))) == said
 
 
@@ -383,22 +385,23 @@ def test_what_is_said_of_a_log(machine: Machine, measured: MeasuredFilm) -> None
 
     assert notes() == alone
     assert more(friction=np.full(on.size, 0.35)) == (
-        "friction coefficient 0.35 is not a fluid film: above 0.3 surfaces touch, or torque holds more than "
-        "the nip's drag",
+        "friction coefficient 0.35 is too high for a film. Above 0.3, surfaces touch or torque "
+        "contains more than the nip's drag",
     )
-    assert more(grip=0.15) == ("friction coefficient 0.2 exceeds that of belt on roll, 0.15: it would slip",)
+    assert more(grip=0.15) == (
+        "friction coefficient 0.2 exceeds that of belt on roll, 0.15, so the belt would slip",
+    )
     assert notes(grip=0.25) == alone
     for value, said in ((3.1, True), (2.9, False), (0.3, True), (0.35, False)):
         text = (
-            f"measured torque is {value:.3g} times the predicted one: viscosity, nip or what the torque "
-            f"holds "
-            "besides the film is not as stated; the last of these moves exponents too"
+            f"measured torque is {value:.3g} times the prediction. Viscosity or nip is not as stated, or "
+            "torque contains more than the film, which also changes the exponents"
         )
         assert (text in notes(calibration=Estimate(value, 0.1, value, value))) == said
     rough = np.where(on > 0.5, 0.8, 0.1)
     assert more(lambda_ratio=rough) == (
-        "the measured film is down to 0.8 of the roughness (1.5 um) where torque rises with speed: not "
-        "thickness alone makes this drag",
+        "on the rising branch the measured film falls to 0.8 of the roughness (1.5 "
+        "um), so film thickness alone does not explain the torque",
     )
     assert notes(lambda_ratio=np.where(on > 0.5, 1.1, 0.1)) == alone
 
@@ -436,7 +439,7 @@ def test_an_exponent_is_off_by_its_interval(machine: Machine, measured: Measured
         return [each for each in found if each.kind.startswith("exponent")]
 
     [one] = off(True, -0.6, -0.58, -5.6)
-    assert "the film of this nip gives -0.58" in one.text
+    assert "the film of this nip predicts -0.58" in one.text
     assert one.number("off") == pytest.approx(0.32 / 0.04)
     assert off(False, -0.6, None, -4.4) == []
     [other] = off(False, -0.6, None, -3.5)
@@ -459,13 +462,13 @@ def test_a_transition_is_off_by_the_interval_of_the_log(machine: Machine, measur
     assert slow.number("off") == pytest.approx(2.0)
     assert turn([9.0, 9.0], [0.0, 0.1], [np.inf, np.inf]) == []  # not told
     [none] = turn([np.nan, 1.0], [0.9, 0.9], [1.1, 1.1])
-    assert "drag falls nowhere at 90 degC" in none.text
+    assert "at 90 degC the contact model has no torque minimum" in none.text
 
 
 def test_a_machine_without_its_tables(machine: Machine, contact: Contact, oil: Lubricant) -> None:
     film = film_at(contact, oil)
     for name in ("contact", "lubricant"):
-        with pytest.raises(ParameterError, match=rf"the machine has no \[{name}\]: state it in machine.toml"):
+        with pytest.raises(ParameterError, match=rf"the machine has no \[{name}\]. Add it to machine.toml"):
             check_film(replace(machine, **{name: None}), film)  # type: ignore[arg-type]
 
 
@@ -547,9 +550,9 @@ def test_the_thinnest_of_several_films_names_the_band(
     cold, hot = film.lambda_ratio(1.0)
     rough = replace(contact, roughness=float(hot) / 0.25)
     assert cold / hot > 4.0  # more than 1 where it is cold
-    thin = "predicted lambda ratio down to 0.25 (minimum film over composite rms roughness)"
+    thin = "predicted lambda ratio (minimum film over composite rms roughness) falls to 0.25"
     notes = check_film(replace(machine, contact=rough), film_at(rough, oil, kelvin=[330.0, 420.0]))
-    assert f"{thin}: by convention boundary lubrication below 1" in notes
+    assert f"{thin}; below 1 lubrication is boundary by convention" in notes
 
 
 def test_a_recorded_load_is_that_of_the_dwells(

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import hersey
+from hersey.verdict.regimes import named_in_words
 from tests.damping.test_surface import grid, points_of
 
 SPEEDS = np.geomspace(0.5, 15.0, 12)
@@ -36,8 +37,8 @@ def test_a_clean_power_law_of_each_regime_is_named(name: str) -> None:
     found = seen(2.0 * SPEEDS ** (1.0 + REGIMES[name]))
     assert found.named == name
     assert name in keys(found)
-    assert f"has the exponent of {name}" in found.headline()
-    assert f"has the exponent of {name}" in found.verdict
+    assert f"as expected for {named_in_words(name)}" in found.headline()
+    assert f"as expected for {named_in_words(name)}" in found.verdict
 
 
 @pytest.mark.parametrize("ratio", [0.1, 0.5, 2.0])
@@ -48,7 +49,7 @@ def test_friction_and_viscous_drag_names_no_regime(ratio: float) -> None:
         assert found.named is None
         assert found.why_unnamed
         assert "Coulomb + viscous" in keys(found)
-        assert "has the exponent" not in found.verdict
+        assert "as expected for" not in found.verdict
         assert "no regime named" in found.headline()
     (both,) = (e for e in found.explanations if e.key == "Coulomb + viscous")
     assert both.constant_share == pytest.approx(1.0 / (1.0 + ratio), abs=0.05)
@@ -110,7 +111,7 @@ def test_torque_falls_over_the_whole_range_only_if_it_falls_at_both_ends() -> No
 def test_a_fall_is_claimed_only_where_the_dwells_show_it() -> None:
     """With 6 % of scatter an exponent below -1 may come from a few dwells; with 1 % torque falls."""
     words = [seen(SPEEDS**-0.15, scatter, 2).verdict for scatter in (0.06, 0.01)]
-    assert "the dwells alone do not show that it falls" in words[0]
+    assert "the dwells alone do not show it" in words[0]
     assert "Torque falls as speed rises" in words[1]
 
 
@@ -118,7 +119,7 @@ def test_a_hump_is_not_said_to_fall_below_a_speed() -> None:
     """Torque that rises and then falls is least at an end: no falling branch lies below that."""
     z = np.log(SPEEDS / MIDDLE)
     found = seen(np.exp(-0.06 * z**2), 0.003, 1)
-    assert "it rises first" in found.verdict
+    assert "Torque rises first" in found.verdict
     assert "too few dwells lie there" not in found.verdict
 
 
@@ -126,7 +127,7 @@ def test_an_exponent_between_two_regimes_says_why_none_is_named() -> None:
     """One law holds, and it is that of no regime: the reason is never empty."""
     found = seen(2.0 * SPEEDS**0.2)
     assert found.named is None
-    assert found.why_unnamed.startswith(("none that is known", "the dwells do not exclude "))
+    assert found.why_unnamed.startswith(("no known regime", "the dwells do not exclude "))
 
 
 def test_too_few_speeds_name_nothing() -> None:
@@ -147,7 +148,7 @@ def test_what_too_few_dwells_cannot_try_is_listed() -> None:
     assert found.named is None
     assert keys(found)[0] == "Dowson-Higginson EHL"
     assert "film + constant torque" in keys(found)
-    assert "any film beside a constant torque (too few dwells to try it)" in found.verdict
+    assert "any film plus a constant torque (too few dwells to test it)" in found.verdict
     assert "film + constant torque" not in keys(seen(2.0 * SPEEDS**0.3))
 
 

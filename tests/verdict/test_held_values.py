@@ -35,8 +35,8 @@ def test_a_torque_at_the_end_of_its_range(tmp_path: Path) -> None:
     rows = plateaus[plateaus >= 3].sum()
     assert said.values == {"channel": "torque", "fault": "clipped above", "value": end, "rows": rows}
     assert said.sentence == (
-        f"log.csv: torque is clipped above at 0.095 N m for {rows} rows: the range of sensor or "
-        "logger ends there, and dwells at it are wrong."
+        f"log.csv: torque is clipped above at 0.095 N m for {rows} rows, because the range of "
+        "sensor or logger ends there, so dwells at this value are wrong."
     )
 
 
@@ -46,6 +46,6 @@ def test_a_temperature_that_is_stuck(tmp_path: Path) -> None:
     [said] = held_values(log(tmp_path, TORQUE, frozen))
     assert (said.kind, said.where, said.number("rows")) == ("stuck", "log.csv", 400)
     assert said.sentence == (
-        f"log.csv: temperature is stuck at {frozen[800]:.4g} degC for 400 rows: "
-        "what it was there is not known."
+        f"log.csv: temperature is stuck at {frozen[800]:.4g} degC for 400 rows, "
+        "so its true value there is unknown."
     )

@@ -49,8 +49,8 @@ def test_the_contact_stands_beside_the_log() -> None:
     assert len(turn.summary().splitlines()) == 4
     note = turn.warnings()[0]
     assert (note.number("speed"), note.number("ratio")) == (turn.speed[0], turn.ratio[0])
-    assert f"at {rpm(turn.speed[0]):.3g} rpm, by the log at {rpm(turn.measured[0]):.3g}" in str(note)
-    assert f"{turn.ratio[0]:.2f} times that" in str(note)
+    assert f"at {rpm(turn.speed[0]):.3g} rpm in the contact model" in str(note)
+    assert f"{turn.ratio[0]:.2f} times the measured {rpm(turn.measured[0]):.1f} rpm [" in str(note)
 
 
 def test_the_interval_of_the_log_is_that_of_its_draws() -> None:
@@ -68,12 +68,12 @@ def test_the_interval_of_the_log_is_that_of_its_draws() -> None:
 def test_without_a_log_or_a_minimum_it_is_said() -> None:
     turn = contact_transition(mixed(), WARM)
     assert "none shown" in turn.summary()
-    assert "the log" not in str(turn.warnings()[0])
+    assert "measured" not in str(turn.warnings()[0])
     flat = replace(machine(), boundary=hersey.BoundaryFriction(1e-6)).mixed
     assert flat is not None
     nowhere = contact_transition(flat, WARM, surface())
     assert "nowhere" in nowhere.summary()
-    assert "falls nowhere" in str(nowhere.warnings()[0])
+    assert "no minimum" in str(nowhere.warnings()[0])
     assert json.dumps(nowhere.to_dict(), allow_nan=False)
     with pytest.raises(InsufficientDataError, match="no falling branch"):
         replace(surface(), transition=None).transition_estimate(400.0)

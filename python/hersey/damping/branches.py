@@ -52,20 +52,20 @@ class Branches:
 
 @dataclass(frozen=True)
 class Transition(Record):
-    """Where torque is least, between the falling (mixed) and the rising (EHL) branch."""
+    """Transition: where torque is lowest, between the falling (mixed) and the rising (EHL) branch."""
 
     speed: Estimate  #: rad/s, at the reference temperature of the surface
-    meeting_speed: Annotated[float, Means("where the lines of the branches meet; speed if in a corner")]
+    meeting_speed: Annotated[float, Means("speed at which the trend lines meet; equal to speed at a corner")]
     mixed_exponent: Estimate  #: exponent of damping in speed below it, of the trend line if gradual
     temperature_exponent: float  #: transition speed varies as T to this power
-    evidence: Annotated[float, Means("gain in AICc over a single power law")]
+    evidence: Annotated[float, Means("AICc improvement over a single power law")]
     closure: Annotated[
         Closure | None,
-        Means("what motion is given of a gradual bend, its branches trend lines; null for a corner"),
+        Means("corner that replaces a gradual bend in the motion; null for a corner"),
     ] = None
     #: AICc of a transition at one Hersey number minus that of this one, where it moves by itself
     freed: Annotated[
-        float | None, Means("where one Hersey number does not hold: by how much its AICc is worse")
+        float | None, Means("AICc penalty of a fixed Hersey number, if that is rejected; else null")
     ] = None
 
     @property
@@ -95,29 +95,36 @@ def fit_branches(data: Observations, single: LawFit) -> Branches | None:
 
 
 def why_no_transition(data: Observations, single: LawFit, branches: Branches) -> str:
-    """Return why a second branch is not announced; empty if torque falls and rises beyond doubt."""
+    """Return why there is no second branch; empty if torque clearly falls and then rises."""
     fit = branches.fit
     below, above, at = branches.mixed, fit.estimate("c"), branches.least
     if branches.closure is None and (few := _few(data, fit)):
         return few
     gain = single.aicc - fit.aicc
     if gain < EVIDENCE:
-        return f"a second branch does not pay: its AICc is better by {gain:.1f}, {EVIDENCE:g} are asked"
+        return (
+            f"a second branch is not supported by the data (AICc gain {gain:.1f}, at least {EVIDENCE:g} "
+            "needed)"
+        )
     if below.high >= -1.0:
-        bend = rpm(data.reference_speed * float(np.exp(_corner_of(fit))))
-        return f"below {bend:.3g} rpm the exponent is {below}: torque does not fall with speed beyond doubt"
+        if not (meeting := _meeting(data, fit)):
+            return (
+                "two branches would meet outside the measured speeds, and the slower one, with "
+                f"exponent {below}, does not prove that torque falls with speed"
+            )
+        return f"the exponent below {meeting}, {below}, does not prove that torque falls with speed there"
     if above.low <= -1.0:
-        return f"above the bend the exponent is {above}: torque does not rise with speed beyond doubt"
+        return f"the exponent above the bend, {above}, does not prove that torque rises with speed there"
     scaled = scaled_speed(data, fit)
     if not scaled.min() < at < scaled.max():
-        return "the falling and the rising branch do not meet within the speeds measured"
+        return "the falling and the rising branch would meet outside the measured speeds"
     if not np.all(np.isfinite(branches.ends)):
-        return "where the falling and the rising branch meet has no bound in these data"
+        return "the data do not bound the speed at which the falling and the rising branch meet"
     return ""
 
 
 def transition(data: Observations, single: LawFit, branches: Branches) -> Transition:
-    """Return the transition that branches show."""
+    """Return the transition between two branches."""
     fit = branches.fit
     best, low, high, meeting = (
         data.reference_speed * float(np.exp(v)) for v in (branches.least, *branches.ends, _corner_of(fit))
@@ -152,7 +159,7 @@ def _parted(data: Observations, trend: LawFit, splits: list[tuple[float, BoolArr
 def _freed(data: Observations, corner: LawFit) -> tuple[LawFit, float | None]:
     """The corner, or one that moves by itself where one Hersey number is excluded, and its gain in AICc."""
     law = replace(law_of(corner), branches=FREE)
-    # where it is not told how far visits scatter, what parts two of them would pass for another transition
+    # where it is unknown how far visits scatter, what parts two of them would pass for another transition
     if law.thermal is None or any(not shared.estimable for shared in corner.shared):
         return corner, None
     free = fit_law(law, data, [np.append(corner.values, move_of(corner)), *starts_of(law, data)])
@@ -273,17 +280,27 @@ def _corner_of(fit: LawFit) -> float:
     return float(fit.values[law_of(fit).index("at")])
 
 
+def _meeting(data: Observations, fit: LawFit) -> str:
+    """Where the lines meet at the reference temperature, in rpm; empty if outside the measured speeds."""
+    at, measured = _corner_of(fit), data.inputs.log_speed
+    if not measured.min() <= at <= measured.max():
+        return ""
+    return f"{rpm(data.reference_speed * float(np.exp(at))):.3g} rpm"
+
+
 def _few(data: Observations, corner: LawFit) -> str:
     """Return which side of a corner has too few dwells to be a branch; empty if both have enough."""
     at = _corner_of(corner)
     away = scaled_speed(data, corner) - at
-    speed = f"{rpm(data.reference_speed * float(np.exp(at))):.3g} rpm"
+    speed = _meeting(data, corner)
     for side, where, what in ((away < 0.0, "below", "slower"), (away >= 0.0, "above", "faster")):
         if not _enough(data, side):
             held, levels = int(np.count_nonzero(side)), distinct_speeds(data.speed[side])
+            if not speed:
+                return f"two branches would meet outside the measured speeds. Record {what} dwells"
             return (
-                f"{where} {speed}, where two branches would meet, lie {held} dwells at {levels} speeds, and "
-                f"{MIN_BRANCH_POINTS} at {MIN_BRANCH_SPEEDS} are asked: record {what} dwells"
+                f"only {held} dwells at {levels} speeds lie {where} {speed}, where two branches would meet; "
+                f"{MIN_BRANCH_POINTS} dwells at {MIN_BRANCH_SPEEDS} speeds are needed. Record {what} dwells"
             )
     return ""
 

@@ -4,7 +4,7 @@ Both are given the candidate that describes them best together (least sum of AIC
 larger law is beyond doubt). The ratio of damping, B over A, is taken where both were measured; its interval
 is simultaneous over that range (Scheffe), so that a verdict of a difference anywhere in it is wrong in 5 %
 of cases at most. Where a log does not tell how far visits scatter, it is a difference of the visits recorded,
-and what hangs on temperature is not compared.
+and what depends on temperature is not compared.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ _QUOTED = ("b", "c", "c below the transition", "transition speed", "Stribeck spe
 
 @dataclass(frozen=True)
 class Change(Record):
-    """How a quantity differs: B minus A, or B over A for a speed.
+    """Difference of a quantity: B minus A, or B divided by A for a speed.
 
     ``p_value`` is that of no difference, corrected for all the quantities compared (Holm, Scand. J. Stat. 6
     (1979) 65); the interval of the change is its own.
@@ -63,24 +63,24 @@ class Change(Record):
 
     @property
     def real(self) -> bool:
-        """Whether it differs at the 5 % level."""
+        """Whether the quantity differs at the 5 % level."""
         return self.p_value < 1.0 - CONFIDENCE
 
 
 @dataclass(frozen=True, repr=False)
 class LogComparison(Result):
-    """Damping of B over that of A, and what else differs; arrays of shape (temperatures, speeds)."""
+    """Damping of B relative to A, and other differences; arrays of shape (temperatures, speeds)."""
 
     also_stated = ("a", "b")
     not_stated = ("names",)
 
     candidate: str
     speeds: Annotated[FloatArray, Means(unit="rad/s")]
-    temperatures: Annotated[FloatArray, Means("empty if the law has none", "K")]
-    ratio: Annotated[FloatArray, Means("of B to A", shape="(n, m)")]
+    temperatures: Annotated[FloatArray, Means("empty if the law has no temperature", "K")]
+    ratio: Annotated[FloatArray, Means("B divided by A", shape="(n, m)")]
     low: Annotated[FloatArray, Means("simultaneous 95 % limit", shape="(n, m)")]
     high: Annotated[FloatArray, Means("simultaneous 95 % limit", shape="(n, m)")]
-    mean_ratio: Annotated[Estimate, Means("geometric mean over the range")]
+    mean_ratio: Annotated[Estimate, Means("geometric mean over the shared range")]
     changes: tuple[Change, ...]
     verdict: str
     warnings: tuple[Warning, ...]
@@ -99,8 +99,8 @@ class LogComparison(Result):
     def summary(self) -> str:
         """Return the comparison as text."""
         a, b = self.names
-        lines = [f"A: {a}", f"B: {b}", f"law for both: {self.candidate}", self.verdict]
-        lines.append(f"damping of B over A, mean over the shared range: {self.mean_ratio}")
+        lines = [f"A: {a}", f"B: {b}", f"model for both: {self.candidate}", self.verdict]
+        lines.append(f"damping ratio B/A, mean over the shared range: {self.mean_ratio}")
         for row, kelvin in enumerate(self.temperatures if self.temperatures.size else [None]):
             hot = "" if kelvin is None else f"{convert(float(kelvin), 'K', 'degC'):.0f} degC: "
             ratios = []
@@ -118,7 +118,7 @@ class LogComparison(Result):
 
     def headline(self) -> str:
         """Return the mean ratio of damping."""
-        return f"damping of {self.names[1]} over {self.names[0]}: {self.mean_ratio}"
+        return f"damping of {self.names[1]} relative to {self.names[0]}: {self.mean_ratio}"
 
     def to_frame(self) -> pl.DataFrame:
         """Return the ratio with its limits at each temperature (null if none) and speed."""
@@ -147,12 +147,12 @@ def compare(
     a, b
         From `TorqueLog.steady`.
     names
-        What to call them.
+        Names of the two logs.
 
     Raises
     ------
     InsufficientDataError
-        If the two share no range of speed or temperature, or no law fits both; it names the log.
+        If the logs have no speed or temperature in common, or no model fits both; the message names the log.
     """
     for points, call in ((a, "hersey.compare({points}, b)"), (b, "hersey.compare(a, {points})")):
         if not isinstance(points, Observations):
@@ -216,8 +216,8 @@ def _once(candidate: CandidateFit, data: Observations) -> bool:
 
 def _of_visits(names: list[str]) -> Warning:
     words = (
-        "{logs} {count:does|do} not show how far one visit to a temperature differs from the next: limits "
-        "are those of the visits recorded; record one again"
+        "{logs} {count:does|do} not show how much visits to one temperature differ, so limits hold "
+        "only for these visits. Record one temperature again"
     )
     return Warning("visited once", words, severity="watch", logs=" and ".join(names), count=len(names))
 
@@ -226,18 +226,17 @@ def _shared(a: Observations, b: Observations, names: tuple[str, str]) -> tuple[F
     slow, fast = max(a.speed.min(), b.speed.min()), min(a.speed.max(), b.speed.max())
     if fast < LEAST_SPAN * slow:
         raise InsufficientDataError(
-            "the logs share no range of speed: "
-            f"{names[0]} has {rpm(a.speed.min()):.3g} to {rpm(a.speed.max()):.3g} rpm, "
-            f"{names[1]} {rpm(b.speed.min()):.3g} to {rpm(b.speed.max()):.3g} rpm; "
-            "record one of them at speeds of the other"
+            f"the logs have no speed in common: {names[0]} covers {rpm(a.speed.min()):.3g} to "
+            f"{rpm(a.speed.max()):.3g} rpm, {names[1]} covers {rpm(b.speed.min()):.3g} to "
+            f"{rpm(b.speed.max()):.3g} rpm. Record one at speeds of the other"
         )
     speeds = np.geomspace(slow, fast, SPEEDS)
     if a.inputs.kelvin is None or b.inputs.kelvin is None:
         if (a.inputs.kelvin is None) != (b.inputs.kelvin is None):
             bare = names[0] if a.inputs.kelvin is None else names[1]
             raise InsufficientDataError(
-                f"only one of the logs has a temperature, {bare} has none: compare both at one "
-                f"temperature with {ISOTHERMAL.to()}"
+                f"{bare} has no temperature, but the other log has. Compare both at one temperature "
+                f"with {ISOTHERMAL.to()}"
             )
         return speeds, np.empty(0)
     cold = max(float(a.inputs.kelvin.min()), float(b.inputs.kelvin.min()))
@@ -245,8 +244,9 @@ def _shared(a: Observations, b: Observations, names: tuple[str, str]) -> tuple[F
     if hot < cold - 3.0:
         below, above = names if a.inputs.kelvin.max() < b.inputs.kelvin.min() else names[::-1]
         raise InsufficientDataError(
-            f"the logs share no temperature: {below} ends at {convert(hot, 'K', 'degC'):.0f} degC, {above} "
-            f"begins at {convert(cold, 'K', 'degC'):.0f} degC; record one at temperatures of the other"
+            f"the logs have no temperature in common: {below} ends at {convert(hot, 'K', 'degC'):.0f} "
+            f"degC, {above} starts at {convert(cold, 'K', 'degC'):.0f} degC. Record one at "
+            "temperatures of the other"
         )
     return speeds, np.linspace(min(cold, hot), max(cold, hot), TEMPERATURES)
 
@@ -262,7 +262,7 @@ def _common_candidate(
             pairs.append((one.fit.aicc + other.fit.aicc, one, other))
     if not pairs:
         raise InsufficientDataError(
-            f"no law is determined by both {names[0]} and {names[1]}: record more dwells of each"
+            f"no model can be determined from both {names[0]} and {names[1]}. Record more dwells of each"
         )
     least = min(total for total, _, _ in pairs)
     tied = [p for p in pairs if p[0] <= least + EVIDENCE]
@@ -366,20 +366,25 @@ def _verdict(
     a, b = names
     higher, lower = bool(np.any(low > 1.0)), bool(np.any(high < 1.0))
     if higher and lower:
-        said = f"{b} drags more than {a} in one part of the shared range and less in another"
+        said = (
+            f"Damping of {b} is higher than that of {a} in one part of the shared range and lower in another"
+        )
     elif higher or lower:
-        sign = "more" if higher else "less"
+        sign = "higher" if higher else "lower"
         share = np.mean(low > 1.0) if higher else np.mean(high < 1.0)
-        where = "throughout" if share == 1.0 else f"over {share:.0%} of"
-        said = f"{b} drags {sign} than {a} {where} the shared range, {mean.value - 1.0:+.1%} on the mean"
+        where = "throughout" if share == 1.0 else f"over {100 * share:.0f} % of"
+        said = (
+            f"Damping of {b} is {sign} than that of {a} {where} the shared range, "
+            f"{100 * (mean.value - 1.0):+.1f} % on average"
+        )
     else:
         widest = max(float(np.max(high)) - 1.0, 1.0 - float(np.min(low)))
-        said = f"No difference of damping is proven: any there is stays within {widest:.1%}"
+        said = f"No difference in damping is proven; any difference is at most {100 * widest:.1f} %"
     if of_visits and (higher or lower):
         said += ", in the visits recorded"
     real = [c.name for c in changes if c.real]
     if real:
-        said += f"; also different: {', '.join(real)}"
+        said += f". Also different: {', '.join(real)}"
     return said + "."
 
 
@@ -388,10 +393,10 @@ def _warnings(a: ModelComparison, b: ModelComparison, common: CandidateFit) -> l
     for name, comparison in (("A", a), ("B", b)):
         own = comparison.chosen.candidate
         if own != common.candidate:
-            words = "{log} alone would be given {law}"
+            words = "fitted separately, {log} would get another model: {law}"
             found.append(Warning("another law alone", words, log=name, law=own.name))
     if a.chosen.fit.law.broken != b.chosen.fit.law.broken:
-        words = "only one of the two shows a falling branch within its range"
+        words = "only one of the two logs shows a falling branch"
         found.append(Warning("one falling branch", words, severity="watch"))
     return found
 

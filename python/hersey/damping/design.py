@@ -34,17 +34,17 @@ DRAWS = 40
 
 @dataclass(frozen=True)
 class DesignPoint(Record):
-    """A dwell to record, and what is known of the quantity after it and those before it."""
+    """A dwell to record, and the precision reached after it and the dwells before it."""
 
     speed: Annotated[float, Means(unit="rad/s")]
     kelvin: Annotated[float | None, Means(unit="K")]
-    error: Annotated[float | None, Means("of the quantity, in its unit")]
-    volume: Annotated[float, Means("of the confidence region over that of today", open=True)]
+    error: Annotated[float | None, Means("of the quantity after this dwell, in its unit")]
+    volume: Annotated[float, Means("volume of the confidence region, relative to the present one", open=True)]
 
 
 @dataclass(frozen=True, repr=False)
 class TestDesign(Result):
-    """The next dwells, in the order of their worth."""
+    """The next dwells to record, the most useful first."""
 
     __test__ = False  # no test of pytest's
 
@@ -56,23 +56,23 @@ class TestDesign(Result):
     seed: int
 
     def summary(self) -> str:
-        """Return the points as text."""
-        what = f"to know the {self.quantity} best" if self.quantity else "to know all parameters best"
-        lines = [f"Next dwells {what} (law: {self.law}; seed {self.seed}):"]
+        """Return the dwells as text."""
+        what = f"to determine the {self.quantity}" if self.quantity else "to determine all parameters"
+        lines = [f"Next dwells {what} (model: {self.law}; seed {self.seed}):"]
         if self.error_now is not None:
-            lines.append(f"  today's standard error: {self._shown(self.error_now)}")
+            lines.append(f"  present standard error: {self._shown(self.error_now)}")
         for number, point in enumerate(self.points, 1):
             hot = "" if point.kelvin is None else f" at {convert(point.kelvin, 'K', 'degC'):.0f} degC"
             then = (
-                f"region of all parameters {point.volume:.0%} of today's"
+                f"confidence region of all parameters shrinks to {100 * point.volume:.0f} %"
                 if point.error is None
                 else f"standard error {self._shown(point.error)}"
             )
-            lines.append(f"  {number}. {rpm(point.speed):.3g} rpm{hot}: then {then}")
+            lines.append(f"  {number}. {rpm(point.speed):.3g} rpm{hot}: {then}")
         return "\n".join(lines)
 
     def to_frame(self) -> pl.DataFrame:
-        """Return one row per dwell, in their order."""
+        """Return one row per dwell, in order."""
         import polars as pl
 
         unit = self.unit or "1"
@@ -96,26 +96,26 @@ def design(
     temperatures: tuple[float, float] | None = None,
     seed: int = 1,
 ) -> TestDesign:
-    """Return the next dwells to record, by the law that a comparison chose.
+    """Return the next dwells to record, for the model that a comparison chose.
 
     Parameters
     ----------
     count
-        How many.
+        Number of dwells.
     quantity
-        Name, or its beginning, of the parameter to know best, as ``transition speed``; all if not given.
+        Parameter to determine best, by name or its beginning, e.g. ``transition speed``; default: all.
     speeds, temperatures
-        Ranges that can be run, rad/s and K, or with units as ``("2 rpm", "200 rpm")``; those measured if not
-        given.
+        Ranges that can be run, rad/s and K, or with units, e.g. ``("2 rpm", "200 rpm")``; default: the
+        measured ranges.
     seed
-        Of the draws of the fit.
+        Random seed of the draws of the fit.
 
     Raises
     ------
     ParameterError
         If no parameter has that name, or a range is not ascending.
     InsufficientDataError
-        If the data leave the law so open that no gain can be computed.
+        If the data do not determine the model.
     """
     if count < 1:
         raise ParameterError(f"count is {count}: it must be at least 1")
@@ -165,12 +165,12 @@ def _information(
     information = np.einsum("kni,knj->kij", measured, measured)
     scale = np.sqrt(np.diag(fit.covariance))
     if not np.all(np.isfinite(scale)) or np.any(scale <= 0):
-        raise InsufficientDataError("the law is not determined by these data: record more of them first")
+        raise InsufficientDataError("these data do not determine the model. Record more dwells first")
     return rows * scale, information * np.outer(scale, scale), scale
 
 
 def _beside_shared(fit: LawFit, slopes: FloatArray) -> FloatArray:
-    """Derivatives (points, parameters) in standard errors, what shared errors explain taken off."""
+    """Derivatives (points, parameters) in standard errors, what shared errors explain subtracted."""
     modes = fit.disturbances.shape[1]
     own = np.vstack([slopes / fit.sigma[:, None], np.zeros((modes, slopes.shape[1]))])
     common = np.linalg.qr(np.vstack([fit.disturbances / fit.sigma[:, None], np.eye(modes)]))[0]
@@ -186,7 +186,7 @@ def _wanted(comparison: ModelComparison, quantity: str) -> Quantity | None:
     if len(matches) != 1:
         listed = ", ".join(f"'{q.name}'" for q in known)
         raise ParameterError(
-            f"'{quantity}' names {len(matches) or 'no'} parameters of this law: take one of {listed}"
+            f"'{quantity}' matches {len(matches) or 'no'} parameters of this model. Use one of {listed}"
         )
     return matches[0]
 
@@ -197,7 +197,9 @@ def _dwells_to_try(
     data = comparison.data
     slow, fast = (data.speed.min(), data.speed.max()) if speeds is None else speeds
     if not 0 < slow < fast:
-        raise ParameterError(f"speeds are {slow:g} to {fast:g} rad/s: they must ascend from above 0")
+        raise ParameterError(
+            f"speeds are {slow:g} to {fast:g} rad/s: both must be above 0, the lower one first"
+        )
     grid = np.geomspace(slow, fast, SPEEDS)
     if data.inputs.kelvin is None or comparison.chosen.fit.law.thermal is None:
         return data.at(grid, None if data.inputs.kelvin is None else data.temperatures[0])
@@ -205,7 +207,9 @@ def _dwells_to_try(
     if temperatures is not None:
         cold, hot = temperatures
         if not 0 < cold < hot:
-            raise ParameterError(f"temperatures are {cold:g} to {hot:g} K: they must ascend from above 0")
+            raise ParameterError(
+                f"temperatures are {cold:g} to {hot:g} K: both must be above 0, the lower one first"
+            )
         hots = np.linspace(cold, hot, 7)
     both = np.meshgrid(grid, hots)
     return data.at(both[0].ravel(), both[1].ravel())

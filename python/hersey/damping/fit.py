@@ -52,7 +52,7 @@ def fit(points: SteadyPoints, *, temperature_scale: str = "degC") -> DampingSurf
     """
     require_points(points, "hersey.fit({points})")
     if temperature_scale not in SCALES:
-        raise ParameterError(f"temperature scale '{temperature_scale}' is not known: degC or K")
+        raise ParameterError(f"temperature scale '{temperature_scale}' is not known. Use degC or K")
     data = Observations.of(points)
     _require_temperatures(data, temperature_scale)
     _require_dwells(data)
@@ -62,7 +62,7 @@ def fit(points: SteadyPoints, *, temperature_scale: str = "degC") -> DampingSurf
     single = fit_law(law, data)
     branches = fit_branches(data, single)
     if branches is None:
-        return _surface(points, data, single, None, "too few points for a second branch", temperature_scale)
+        return _surface(points, data, single, None, "too few dwells for a second branch", temperature_scale)
     refused = why_no_transition(data, single, branches) or why_not_shown(points, data, branches)
     if refused:
         return _surface(points, data, single, None, refused, temperature_scale)
@@ -75,14 +75,15 @@ def _require_temperatures(data: Observations, scale: str) -> None:
     if kelvin is None:
         return
     if sum(1 for _ in groups_of_temperature(kelvin)) < 2:
-        low, high = celsius(float(kelvin.min())), celsius(float(kelvin.max()))
+        ends = {f"{celsius(float(each)):.1f}": None for each in (kelvin.min(), kelvin.max())}
+        at = " to ".join(ends)
         raise InsufficientDataError(
-            f"all steady points are at one temperature ({low:.1f} to {high:.1f} degC): no exponent b can be "
-            f"claimed; record other temperatures, or use {ISOTHERMAL.to()} to fit B = a w^c at this one"
+            f"all dwells are at one temperature ({at} degC), so exponent b cannot be estimated. "
+            f"Record other temperatures, or fit without b by {ISOTHERMAL.to()}"
         )
     if np.any(scaled_temperature(kelvin, scale) <= 0):
         raise InsufficientDataError(
-            f"T^b has no meaning at or below 0 degC, and the steady points go down to {_lowest(kelvin)}"
+            f"T^b is not defined at or below 0 degC, but the coldest dwell is at {_lowest(kelvin)}"
         )
 
 
@@ -91,16 +92,16 @@ def _lowest(kelvin: FloatArray) -> str:
     low = float(kelvin.min())
     if low < NO_OIL_FLOWS:
         how = Setting("temperature", "unit").to("degC")
-        return f"{celsius(low):.0f} degC: if the numbers are degC and no K, use {how}"
-    return f"{celsius(low):.3g} degC: fit with {Setting('temperature_scale').to('K')}"
+        return f"{celsius(low):.0f} degC. If temperatures are in degC and not in K, use {how}"
+    return f"{celsius(low):.3g} degC. Fit with {Setting('temperature_scale').to('K')}"
 
 
 def _require_dwells(data: Observations) -> None:
     needed = 3 + (data.inputs.kelvin is not None)
     if len(data) <= needed:
         raise InsufficientDataError(
-            f"{len(data)} steady points cannot determine {needed - 1} coefficients and their errors: "
-            f"at least {needed + 1} are needed"
+            f"{len(data)} dwells are too few for {needed - 1} coefficients and their errors; at least "
+            f"{needed + 1} are needed"
         )
 
 

@@ -30,7 +30,7 @@ SCALES = {"degC": CELSIUS, "K": KELVIN}
 
 @dataclass(frozen=True)
 class FitStatistics:
-    """How well the law describes the points."""
+    """Goodness of fit."""
 
     points: int
     variables: int
@@ -50,8 +50,8 @@ class FittedLaw(Result):
 
     ``b`` is None for isothermal data. ``covariance`` is that of ``variables``, the numbers fitted, about
     ``reference_speed`` (rad/s) and ``reference_temperature`` (K). ``torque_space`` holds a, b, c
-    of the fit to torque. ``speed_range`` and ``temperature_range`` (SI) bound the data. Where a ``rest`` of
-    the drive was taken off, all of this is of the film alone; `total_torque` is what the log shows.
+    of the fit to torque. ``speed_range`` and ``temperature_range`` (SI) bound the data. If a no-load torque
+    (``rest``) was subtracted, all of this is for the film alone; `total_torque` is that of the log.
     """
 
     a: Estimate
@@ -70,19 +70,19 @@ class FittedLaw(Result):
     speed_range: tuple[float, float]
     temperature_range: tuple[float, float] | None
     residuals: FloatArray  #: ln(measured/fitted), shape (points,)
-    rejected_transition: str  #: why a second branch is not announced, empty if it is
+    rejected_transition: str  #: why there is no transition; empty if there is one
     data_sha256: tuple[str, ...]
-    sensors: str = ""  #: their errors in words, which the systematic parts stand for
-    rest: NoLoadTorque | None = None  #: taken off the torque before the fit
+    sensors: str = ""  #: sensor errors behind the systematic parts, in words
+    rest: NoLoadTorque | None = None  #: no-load torque subtracted before the fit
     version: str = field(default=_core.VERSION)
 
     @takes_si(speed="speed", temperature="temperature")
     def damping(self, *, speed: ArrayLike, temperature: ArrayLike | None = None) -> FloatArray:
         """Return damping in N m s/rad at speeds (rad/s) and temperatures (K), broadcast together.
 
-        Warns with `ExtrapolationWarning` outside the range of the data. Around a gradual bend it is that of
-        the trend lines on either side, as are `torque` and `predict`: they describe each branch, but meet
-        below the torque measured, so that `drag` has the torque of the dwells at the transition instead.
+        Warns with `ExtrapolationWarning` outside the range of the data. Around a gradual bend, it follows the
+        trend lines on either side, as do `torque` and `predict`. These lines meet below the measured torque,
+        so `drag` uses the torque of the dwells at the transition instead.
         """
         speeds, inputs = self._points(speed, temperature)
         return np.asarray(np.exp(self._law.predict(self._law_values, inputs)).reshape(speeds.shape) / speeds)
@@ -112,7 +112,7 @@ class FittedLaw(Result):
         kelvin = None
         if self.b is not None:
             if temperature is None:
-                raise ParameterError("this law depends on temperature: give it one, in K")
+                raise ParameterError("this law depends on temperature. Give the temperature in K")
             kelvin = np.asarray(temperature, dtype=float)
             self._warn_outside("temperature", kelvin, self.temperature_range)
             speeds, kelvin = np.broadcast_arrays(speeds, kelvin)
@@ -130,13 +130,13 @@ class FittedLaw(Result):
 
     @takes_si(speed="speed", temperature="temperature")
     def total_torque(self, *, speed: ArrayLike, temperature: ArrayLike | None = None) -> FloatArray:
-        """Return the torque of the log in N m: that of the film and, if one was taken off, of the rest."""
+        """Return the torque of the log (N m): that of the film plus any no-load torque subtracted."""
         film = self.torque(speed=speed, temperature=temperature)
         return film if self.rest is None else film + self.rest.torque(speed, temperature)
 
     @takes_si(speed="speed", temperature="temperature")
     def predict(self, *, speed: Any, temperature: Any = None) -> Band:
-        """Return torque with its 95 % limits: of the law, and of one further dwell in a visit of its own.
+        """Return torque with 95 % limits: of the law, and of one further dwell in a separate visit.
 
         Parameters
         ----------
@@ -181,7 +181,8 @@ class FittedLaw(Result):
         if limits and (np.any(values < limits[0] * 0.999) or np.any(values > limits[1] * 1.001)):
             unit = "rad/s" if name == "speed" else "K"
             warnings.warn(
-                f"{name} outside the measured {limits[0]:.4g} to {limits[1]:.4g} {unit}: extrapolated",
+                f"{name} is outside the measured range, {limits[0]:.4g} to {limits[1]:.4g} {unit}, so "
+                "the result is extrapolated",
                 ExtrapolationWarning,
                 stacklevel=5,
             )

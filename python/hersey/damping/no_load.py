@@ -1,4 +1,4 @@
-"""The no-load torque from a log recorded without the film: roll lifted, or belt taken off.
+"""The no-load torque from a log recorded without the film: roll lifted, or belt removed.
 
 Fitted in the likelihood of the candidate laws, to torque itself: dwells with their errors, a scatter between
 them, and what they share (the zero of torque, visits to a temperature, runs).
@@ -24,30 +24,30 @@ from hersey.schema.warning import Warning
 
 #: Dwells beyond the numbers fitted.
 _SPARE = 2
-#: Variance of the slope by a scatter of visits that is not told, over that by as much of dwells: a little.
+#: Variance of the slope by a scatter of visits that is unknown, over that by as much of dwells: a little.
 _LITTLE = 0.1
 #: Deviation from the line, as a share of the torque, from which a bend is spoken of.
 _SEEN = 1e-3
 
 
 def no_load_torque(points: SteadyPoints) -> NoLoadTorque:
-    """Fit what the drive takes without the film: constant, by speed, and its change with temperature.
+    """Fit the no-load torque: a constant part, a part proportional to speed, and its temperature slope.
 
     Parameters
     ----------
     points
-        Steady points of a log recorded without the film: the roll lifted, or the belt taken off.
+        Steady points of a log recorded without the film, e.g. with the roll lifted or the belt removed.
 
     Returns
     -------
     NoLoadTorque
-        What the log cannot tell is taken as nothing, with an unbounded interval and a note: with one speed
-        the part that rises with speed, with one temperature the slope in temperature.
+        A part that the log cannot show is set to zero, with an unbounded interval and a warning: with one
+        speed the part proportional to speed, with one temperature the temperature slope.
 
     Raises
     ------
     InsufficientDataError
-        If there are too few dwells, or torque is not against the rotation.
+        If there are too few dwells, or the fitted torque is not positive.
 
     Examples
     --------
@@ -65,9 +65,9 @@ def no_load_torque(points: SteadyPoints) -> NoLoadTorque:
     least = float(np.min(law.predict(fit.values, data.inputs))) * scale
     if not least > 0:
         raise InsufficientDataError(
-            f"{name}: without the film torque is fitted as {1e3 * least:.3g} mN m at its least, and what a "
-            f"drive takes is greater than nothing: subtract the zero of the sensor ({TARE.to('standing')}), "
-            f"or turn a sign with {turned('torque')}"
+            f"{name}: the fitted no-load torque falls to {1e3 * least:.3g} mN m but must be positive. "
+            f"Subtract the sensor's zero ({TARE.to('standing')}), or flip the sign with "
+            f"{turned('torque')}"
         )
     units = {"constant": scale, "per_speed": scale / data.reference_speed, "temperature_slope": 1.0 / KELVIN}
     by = np.array([[units[n] if n == fitted else 0.0 for fitted in law.names] for n in units])
@@ -98,8 +98,8 @@ def no_load_torque(points: SteadyPoints) -> NoLoadTorque:
 def _refuse_corrected(points: SteadyPoints, name: str) -> None:
     if any(c.name.startswith("no-load") for c in points.log.corrections):
         raise ParameterError(
-            f"{name}: the mapping takes a no-load torque off this log too, so that nothing is left: leave "
-            "out no_load of the mapping"
+            f"{name}: the mapping subtracts a no-load torque from this log too. Remove no_load from "
+            "the mapping"
         )
 
 
@@ -111,8 +111,8 @@ def _law(name: str, data: Observations) -> RestLaw:
     )
     if len(data) < len(law.names) + _SPARE:
         raise InsufficientDataError(
-            f"{name}: {len(data)} steady points cannot tell the no-load torque with its error: "
-            f"at least {len(law.names) + _SPARE} are needed"
+            f"{name}: {len(data)} dwells are too few for the no-load torque and its error; at least "
+            f"{len(law.names) + _SPARE} are needed"
         )
     return law
 
@@ -135,7 +135,7 @@ def _observations(points: SteadyPoints) -> tuple[Observations, float]:
 
 
 def _of_visits(fit: LawFit) -> bool:
-    """Whether the slope in temperature hangs on a scatter of visits that is not told."""
+    """Whether the slope in temperature depends on a scatter of visits that is unknown."""
     moved = fit.freedoms.moved_by_untold
     return bool(moved.size and moved[fit.law.index("temperature_slope")] >= _LITTLE)
 
@@ -146,25 +146,25 @@ def _warnings(law: RestLaw, fit: LawFit, data: Observations) -> tuple[Warning, .
     found = []
     if not law.with_speed:
         words = (
-            "the no-load log holds one speed, {speed:.3g rpm}: how torque rises with speed is not known and "
-            "taken as nothing; record other speeds"
+            "the no-load log has only one speed, {speed:.3g rpm}, so its increase with speed is "
+            "assumed zero. Record other speeds"
         )
         found.append(Warning("one speed", words, severity="watch", speed=float(np.mean(data.speed))))
     if kelvin is not None and law.reference is None:
         words = (
-            "the no-load log holds one temperature, {temperature:.0f degC}: how torque varies with it is not "
-            "known and taken as nothing; record another"
+            "the no-load log has only one temperature, {temperature:.0f degC}, so its temperature "
+            "dependence is assumed zero. Record another"
         )
         temperature = float(np.mean(kelvin))
         found.append(Warning("one temperature", words, severity="watch", temperature=temperature))
     if law.reference is not None and _of_visits(fit):
         words = (
-            "the no-load log visits each temperature once: the interval of the temperature slope is not "
-            "known; visit one again"
+            "the no-load log visits each temperature once, so its temperature slope has no interval. "
+            "Visit one again"
         )
         found.append(Warning("each temperature once", words, severity="watch"))
     lack = lack_of_fit(fit, data)
     if lack.curvature is not None and lack.curvature < DOES_NOT_HOLD and np.std(fit.residuals) > _SEEN:
-        words = "without the film torque bends with speed as no line does ({p_value:p})"
+        words = "the no-load torque is not a straight line against speed ({p_value:p})"
         found.append(Warning("no line", words, severity="watch", p_value=lack.curvature))
     return tuple(found)

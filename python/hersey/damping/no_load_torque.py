@@ -1,4 +1,4 @@
-"""The no-load torque: what turning the roll takes besides the film (bearings, gears, the rubber).
+"""The no-load torque: what turning the roll takes without the film (bearings, gears, the rubber).
 
     torque = (constant + per_speed w) (1 + temperature_slope (T - T_ref))
 
@@ -38,7 +38,7 @@ _DEVIATIONS = quantile(np.inf)
 
 @dataclass(frozen=True, repr=False)
 class NoLoadTorque(Result):
-    """Torque beside the film, at the roll: ``(constant + per_speed w) (1 + temperature_slope (T - T_ref))``.
+    """No-load torque at the roll: ``(constant + per_speed w) (1 + temperature_slope (T - T_ref))``.
 
     ``constant`` is in N m, ``per_speed`` in N m s/rad, ``temperature_slope`` in 1/K about
     ``reference_temperature`` (K; None if it does not vary). A part that is unknown is zero and has an
@@ -49,13 +49,13 @@ class NoLoadTorque(Result):
     per_speed: Estimate
     temperature_slope: Estimate
     reference_temperature: float | None
-    covariance: Annotated[FloatArray, Means("of the three", shape="(n, m)")]
-    freedom: Annotated[float, Means("degrees of freedom; null if it was stated", open=True)]
+    covariance: Annotated[FloatArray, Means("of the three numbers", shape="(n, m)")]
+    freedom: Annotated[float, Means("degrees of freedom; null if stated", open=True)]
     source: str
     sha256: tuple[str, ...] = ()
     speed_range: Annotated[tuple[float, float] | None, Means("of the no-load log", "rad/s")] = None
     temperature_range: Annotated[tuple[float, float] | None, Means("of the no-load log", "K")] = None
-    warnings: Annotated[tuple[Warning, ...], Means("what is not known of it")] = ()
+    warnings: Annotated[tuple[Warning, ...], Means("what is not known about it")] = ()
 
     @classmethod
     @takes_si(constant="torque", per_speed="rotational damping", reference_temperature="temperature")
@@ -69,16 +69,16 @@ class NoLoadTorque(Result):
         uncertainty: float = 0.0,
         source: str = "stated",
     ) -> NoLoadTorque:
-        """Return the no-load torque as stated.
+        """Return a no-load torque from stated numbers.
 
         Parameters
         ----------
         constant, per_speed
             N m, and N m s/rad; not negative, and one of them positive.
         temperature_slope
-            Change of the whole as a share of it, 1/K, from ``reference_temperature`` (K).
+            Relative change with temperature, 1/K, from ``reference_temperature`` (K).
         uncertainty
-            Share by which the whole torque may be off, at 95 %.
+            Relative error of the whole torque, at 95 %.
 
         Raises
         ------
@@ -95,17 +95,19 @@ class NoLoadTorque(Result):
             if not (np.isfinite(value) and value >= 0):
                 raise ParameterError(f"{name} is {value:g}: it must not be negative")
         if constant == 0 and per_speed == 0:
-            raise ParameterError("the no-load torque is nothing: give constant or per_speed, or leave it out")
+            raise ParameterError(
+                "the no-load torque is zero. Give constant or per_speed, or omit the no-load torque"
+            )
         if not np.isfinite(temperature_slope):
             raise ParameterError(f"temperature_slope is {temperature_slope}: it must be finite")
         if temperature_slope and reference_temperature is None:
             raise ParameterError(
-                "a temperature_slope needs the reference_temperature at which the torque holds"
+                "temperature_slope needs reference_temperature, the temperature at which the torque holds"
             )
         values = np.array([constant, per_speed, temperature_slope], dtype=float)
         error = np.log1p(uncertainty) / _DEVIATIONS * np.array([constant, per_speed, 0.0])
         covariance = np.outer(error, error)
-        exact = Warning("counts as exact", "its uncertainty is not stated, so that it counts as exact")
+        exact = Warning("counts as exact", "its uncertainty is not stated, so it is treated as exact")
         level, by_speed, slope = estimates_of(values, covariance, np.full(3, np.inf), NUMBERS)
         return cls(
             constant=level,
@@ -120,9 +122,9 @@ class NoLoadTorque(Result):
 
     @takes_si(speed="speed", temperature="temperature")
     def torque(self, speed: ArrayLike, temperature: ArrayLike | None = None) -> FloatArray:
-        """Return the torque in N m at speeds (rad/s), with their sign; temperature in K.
+        """Return the torque (N m) at speeds (rad/s), with the sign of the speed; temperature in K.
 
-        Without a temperature it is that at the reference temperature.
+        Without a temperature, the torque at the reference temperature is returned.
         """
         speeds = np.asarray(speed, dtype=float)
         at_reference = self.constant.value + self.per_speed.value * np.abs(speeds)
@@ -130,7 +132,7 @@ class NoLoadTorque(Result):
 
     @takes_si(speed="speed", temperature="temperature")
     def errors(self, speed: ArrayLike, temperature: ArrayLike | None = None) -> FloatArray:
-        """Return what one standard error of each independent error does to the torque, N m.
+        """Return the change of torque (N m) by one standard error of each independent error.
 
         Shape (speeds, errors); wider than the covariance has it where few degrees of freedom stand behind it.
         """
@@ -153,9 +155,9 @@ class NoLoadTorque(Result):
 
     @takes_si(roll_radius="length", temperature="temperature")
     def at_the_belt(self, roll_radius: float, temperature: float | None = None) -> dict[str, float]:
-        """Return it at the surface of a roll of a radius (m), as a drag law takes it at a temperature (K).
+        """Return the no-load force at the surface of a roll (radius in m), at a temperature (K).
 
-        A part fitted below nothing counts as nothing. ``rest_force`` in N, ``rest_damping`` in N s/m, and
+        A part fitted below zero counts as zero. ``rest_force`` in N, ``rest_damping`` in N s/m, and
         ``rest_temperature_slope``, their relative change from that temperature on, in 1/K.
         """
         factor = float(self._at_temperature(temperature))
@@ -193,7 +195,7 @@ class NoLoadTorque(Result):
         return np.maximum(1.0 + self.temperature_slope.value * away, 0.0)
 
     def refuse_beyond(self, speed: FloatArray, what: str) -> None:
-        """Refuse speeds (rad/s) that the no-load log does not cover; ``what`` names the log they are of."""
+        """Raise for speeds (rad/s) that the no-load log does not cover; ``what`` names their log."""
         if self.speed_range is None:
             return
         low, high = self.speed_range
@@ -203,12 +205,13 @@ class NoLoadTorque(Result):
             covered = f"{rpm(low):.3g} to {rpm(high):.3g} rpm"
             covered = covered if self.per_speed.estimable else f"{rpm(low):.3g} rpm"
             raise InsufficientDataError(
-                f"{self.source} holds the no-load torque at {covered}, and {what} goes from "
-                f"{rpm(slow):.3g} to {rpm(fast):.3g} rpm: record the drive without the film there too"
+                f"{self.source} covers the no-load torque at {covered}, but {what} runs from "
+                f"{rpm(slow):.3g} to {rpm(fast):.3g} rpm. Record these speeds without the lubricated "
+                "contact too"
             )
 
     def summary(self) -> str:
-        """Return the three numbers with their intervals, where they are from, and what is not told."""
+        """Return the three numbers with their intervals, their source, and warnings."""
         rows = [("constant", self.constant, "N m"), ("per speed", self.per_speed, "N m s/rad")]
         if self.reference_temperature is not None:
             about = f"1/K about {celsius(self.reference_temperature):.4g} degC"
@@ -219,7 +222,7 @@ class NoLoadTorque(Result):
 
     def headline(self) -> str:
         """Return the law in numbers, and its source."""
-        return f"no-load torque, {self}"
+        return f"no-load torque: {self}"
 
     def __str__(self) -> str:
         """Return the law in numbers, and its source, for a sentence."""
@@ -255,7 +258,8 @@ def with_rest(film: AnyLaw, rest: NoLoadTorque, roll_radius: float, temperature:
     of_one = isinstance(film, DragTable) and not film.varies_with_temperature
     if of_one and at_the_belt["rest_temperature_slope"] and temperature is None:
         raise ParameterError(
-            "the no-load torque changes with temperature, and a drag table holds at one: give temperature"
+            "the no-load torque depends on temperature, but a drag table holds at one temperature. "
+            "Give temperature"
         )
     return replace(film, **at_the_belt)  # type: ignore[type-var]
 

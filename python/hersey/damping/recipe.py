@@ -112,7 +112,7 @@ class Recipe:
     temperature_scale
         Scale of T in the fit: ``degC`` or ``K``.
     no_load
-        Log of the drive without the film, read in the same way: its torque is subtracted.
+        Log of the drive without the lubricated contact; its torque is subtracted.
     """
 
     logs: Annotated[tuple[Path, ...], _Paths(None)] = ()
@@ -149,9 +149,9 @@ class Recipe:
             object.__setattr__(self, name, value)
 
     def log(self, drive: KnownDrive | None = None, *, progress: Progress | None = None) -> Any:
-        """Read the logs as one.
+        """Read the logs as one log.
 
-        Errors of a sensor of which the mapping states none are those of the drive.
+        Sensor errors that the mapping does not state are those of the drive.
 
         Returns
         -------
@@ -166,9 +166,9 @@ class Recipe:
         return log if drive is None else replace(log, sensors=log.sensors.or_else(drive.sensors))
 
     def dwells(self, log: TorqueLog | MeansTable, drive: KnownDrive | None = None) -> SteadyPoints:
-        """Reduce a log to dwells, or take those that a table of means states; torque is that of the film.
+        """Reduce a log, or a table of means, to dwells with the torque of the film.
 
-        What the drive takes besides is that of ``no_load``, or that of the drive. The dwells keep the recipe.
+        The no-load torque is that of ``no_load``, or else of the drive. The dwells keep the recipe.
 
         Raises
         ------
@@ -180,7 +180,7 @@ class Recipe:
         return points if rest is None else points.without(rest)
 
     def points(self, drive: KnownDrive | None = None, *, progress: Progress | None = None) -> SteadyPoints:
-        """Read the logs and reduce them to dwells; what is wrong begins with the name of the log.
+        """Read the logs and reduce them to dwells; errors begin with the name of the log.
 
         Raises
         ------
@@ -191,7 +191,7 @@ class Recipe:
             return self.dwells(self.log(drive, progress=progress), drive)
 
     def rest(self, stated: NoLoadTorque | None = None) -> NoLoadTorque | None:
-        """Return what the log without the film shows, or what is ``stated`` where there is none.
+        """Return the no-load torque from its log, or what is ``stated`` if there is no such log.
 
         Raises
         ------
@@ -202,9 +202,7 @@ class Recipe:
             return stated
         if stated is not None:
             how = Setting("no_load").to()
-            raise ParameterError(
-                f"{how} and {stated.source} both say what the drive takes without the film: leave one out"
-            )
+            raise ParameterError(f"{how} and {stated.source} both give the no-load torque. Omit one of them")
         channels, units = _without("load", self.channels), _without("load", self.units)
         alone = replace(self, logs=(self.no_load,), no_load=None, load=None, channels=channels, units=units)
         return no_load_torque(alone._dwells(alone.log()))
@@ -216,7 +214,7 @@ class Recipe:
 
     @property
     def are_means(self) -> bool:
-        """Whether the logs are called tables of means, or plainly are."""
+        """Whether the logs are tables of means, by statement or by their content."""
         if self.means or self.every is not None or {"time", "run"} & self.channels.keys():
             return self.means
         mapping = self.chosen
@@ -226,7 +224,7 @@ class Recipe:
         return all(is_means_table(path, channels, units) for path in self.logs)
 
     def save(self, path: str | Path, *, overwrite: bool = False) -> None:
-        """Write the recipe as TOML, each amount with its unit and each file as it lies from there.
+        """Write the recipe as TOML, with units, and with files relative to that place.
 
         Raises
         ------
@@ -239,7 +237,7 @@ class Recipe:
 
     @classmethod
     def from_file(cls, path: str | Path) -> Recipe:
-        """Read a recipe that was saved.
+        """Read a saved recipe.
 
         Raises
         ------
@@ -249,7 +247,7 @@ class Recipe:
         return cls(**vars(read_tables(path, _RecipeFile)))
 
     def by_name(self) -> Recipe:
-        """Return the same with each file by its name alone, to be used where all files lie in one folder.
+        """Return the same recipe with files by name only, for use with all files in one folder.
 
         Files of one name in several folders keep as much of their folders as distinguishes them.
 
@@ -266,7 +264,7 @@ class Recipe:
         return replace(self, logs=named[:count], **changed)
 
     def toml(self, folder: Path = Path()) -> str:
-        """Return the recipe as TOML; files are named as they lie from ``folder``."""
+        """Return the recipe as TOML, with files relative to ``folder``."""
         plain, tables = [], []
         for name, value in self.stated().items():
             if isinstance(value, dict):
@@ -277,12 +275,12 @@ class Recipe:
         return "\n".join([*plain, *tables, ""])
 
     def stated(self) -> dict[str, Any]:
-        """Return what is no default, by name."""
+        """Return all values that differ from the default, by name."""
         usual = vars(Recipe())
         return {name: value for name, value in vars(self).items() if value != usual[name]}
 
     def to_dict(self) -> dict[str, Any]:
-        """Return what is no default as JSON, in SI."""
+        """Return all values that differ from the default as JSON, in SI."""
         return json_record({name: _plain(value) for name, value in self.stated().items()})
 
     def _trace(self, progress: Progress | None) -> TorqueLog:
@@ -320,8 +318,8 @@ class Recipe:
         if isinstance(log, MeansTable):
             if self.tare != "none":
                 raise ParameterError(
-                    f"a table of means has no stretch in which the drive stands: leave out {TARE.to()}, and "
-                    "subtract the zero in the table if it has one"
+                    f"a table of means has no standstill for a tare. Omit {TARE.to()}, and subtract "
+                    "the zero in the table"
                 )
             return SteadyPoints.from_table(log, rotation=self.rotation)
         return log.steady(min_dwell=self.min_dwell, tare=self.tare, rotation=self.rotation)

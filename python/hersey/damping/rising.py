@@ -42,7 +42,8 @@ def rising(points: SteadyPoints, surface: DampingSurface) -> Rising:
     if loads := points.varying_load:
         low, high = loads
         why_not = (
-            f"the load varies from {low:.3g} to {high:.3g} N, and no law here has a load: take one at a time"
+            f"the load varies from {low:.3g} to {high:.3g} N, which the models do not include. "
+            "Analyse one load at a time"
         )
         return Rising(data, None, None, None, False, why_not)
     thermal = None
@@ -53,8 +54,8 @@ def rising(points: SteadyPoints, surface: DampingSurface) -> Rising:
     if len(data) < dwells or speeds < SPEEDS_OF_CURVATURE:
         where = "" if surface.transition is None else " above the transition"
         why_not = (
-            f"whether one exponent holds takes {SPEEDS_OF_CURVATURE} speeds and {dwells} dwells{where}, and "
-            f"there are {speeds} and {len(data)}"
+            f"a test for one exponent needs {SPEEDS_OF_CURVATURE} speeds and {dwells} dwells{where}, "
+            f"and there are only {speeds} and {len(data)}"
         )
         return Rising(data, thermal, None, None, False, why_not)
     fit = fit_law(law, data)

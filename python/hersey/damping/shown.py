@@ -35,8 +35,8 @@ def why_not_shown(points: SteadyPoints, data: Observations, branches: Branches) 
         high, speeds = _higher(z, y, side, branches, _least(branches, float(np.log(data.reference_speed))))
         if high < ABOVE_LEAST:
             return (
-                f"{where} {at} torque is beyond its errors above the least at {high} of {speeds} speeds, and "
-                f"{ABOVE_LEAST} are asked: record more dwells {where}"
+                f"{where} {at}, torque clearly exceeds its minimum at only {high} of {speeds} speeds, "
+                f"and {ABOVE_LEAST} are needed. Record more dwells {where} this speed"
             )
     for ways, advice in _directions(points):
         judged = [
@@ -45,7 +45,7 @@ def why_not_shown(points: SteadyPoints, data: Observations, branches: Branches) 
         for side, where, does in sides:
             missing = [way for way, dwells in judged if _trend(z, y, branches, side & dwells) < _IN_EACH]
             if missing:
-                return f"{where} {at} torque does not {does} in the dwells {' or '.join(missing)}{advice}"
+                return f"{where} {at}, torque does not {does} in the dwells {' or '.join(missing)}{advice}"
     return ""
 
 
@@ -82,14 +82,20 @@ def _directions(points: SteadyPoints) -> list[tuple[list[tuple[str, BoolArray]],
     out = [
         (
             [("of forward rotation", forward), ("of reverse rotation", ~forward)],
-            f": fit each alone with {ROTATION.to()}",
+            f". Fit each rotation separately with {ROTATION.to()}",
         )
     ]
     if "approach" in points.table.columns:
         approach = np.asarray(points.table["approach"].to_list())
         ways = [(f"approached {way}", np.asarray(approach == way)) for way in ("from below", "from above")]
         out.append(
-            (ways, ": warming or running in can do that; let it run in, then record up and down again")
+            (
+                ways,
+                (
+                    ". Warming or running-in can cause this. Run the drive in, then record speeds up "
+                    "and down again"
+                ),
+            )
         )
     return out
 

@@ -19,7 +19,7 @@ from hersey.damping.estimate import CONFIDENCE
 
 #: Variances of the curve that are weighed, over that of the dwells, by mean of what each adds.
 _RATIOS = np.geomspace(1e-3, 1e9, 49)
-#: Weight below which a variance is left out, of the likeliest.
+#: Weight below which a variance is excluded, of the likeliest.
 _LEAST_WEIGHT = 1e-3
 #: Speeds at which the slope of the curve is looked at.
 _SLOPES = 241

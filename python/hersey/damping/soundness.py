@@ -70,7 +70,7 @@ def faults_of_estimate(name: str, part: Estimate, scale: str = "linear") -> Iter
             yield name, "with both ends of its interval, or none"
         for end, found, expected in zip(("low", "high"), (part.low, part.high), ends, strict=True):
             if np.isfinite(found) and not np.isclose(found, expected, rtol=AGREES, atol=AGREES * reach):
-                yield f"{name}.{end}", "what value, error and freedom give"
+                yield f"{name}.{end}", "consistent with value, error and freedom"
     elif max(abs(end) for end in (part.low, part.high) if np.isfinite(end)) > LARGEST:
         yield name, f"at most {LARGEST:g}"
 
@@ -89,13 +89,13 @@ def faults_of_rest(rest: NoLoadTorque) -> Iterator[Fault]:
     found = list(faults_of_covariance("covariance", rest.covariance, len(NUMBERS)))
     yield from found
     if not found and not agree(np.sqrt(np.diag(rest.covariance)), np.array([part.error for part in parts])):
-        yield "covariance", "the squares of the three errors on its diagonal"
+        yield "covariance", "consistent with the three errors (their squares on its diagonal)"
     if not rest.freedom > 0.0:
         yield "freedom", "greater than 0"
     reference = rest.reference_temperature
     if reference is not None and not 0.0 < reference <= LARGEST:
         yield "reference_temperature", "above 0 K"
     if reference is None and rest.temperature_slope.value != 0.0:
-        yield "reference_temperature", "there, for a temperature_slope is"
+        yield "reference_temperature", "given, because there is a temperature_slope"
     yield from faults_of_range("speed_range", rest.speed_range)
     yield from faults_of_range("temperature_range", rest.temperature_range)

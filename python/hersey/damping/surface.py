@@ -39,7 +39,7 @@ _HELD = 5
 
 @dataclass(frozen=True, repr=False)
 class DampingSurface(FittedLaw):
-    """A `FittedLaw`, where its transition is, and the drag on a belt that follows from both."""
+    """A `FittedLaw` with its transition, and the drag on a belt that follows from both."""
 
     @property
     def _closure(self) -> tuple[FloatArray, FloatArray]:
@@ -60,9 +60,9 @@ class DampingSurface(FittedLaw):
 
     @takes_si(temperature="temperature")
     def transition_speed(self, temperature: float | None = None) -> float:
-        """Return the transition speed in rad/s at a temperature (K); NaN where the data show none.
+        """Return the transition speed (rad/s) at a temperature (K); NaN if the data show none.
 
-        It is where torque is least: the corner, or the minimum of a gradual bend.
+        Torque is lowest there: at the corner, or at the minimum of a gradual bend.
         """
         if self.transition is None:
             return float("nan")
@@ -73,7 +73,7 @@ class DampingSurface(FittedLaw):
 
     @takes_si(temperature="temperature")
     def transition_estimate(self, temperature: float | None = None) -> Estimate:
-        """Return the transition speed (rad/s) at a temperature (K) with its interval, unbounded if not told.
+        """Return the transition speed (rad/s) at a temperature (K) with its interval, unbounded if unknown.
 
         Raises
         ------
@@ -81,7 +81,7 @@ class DampingSurface(FittedLaw):
             If the data show no transition.
         """
         if self.transition is None:
-            raise InsufficientDataError(f"the data show no falling branch ({self.rejected_transition})")
+            raise InsufficientDataError(f"the data show no falling branch: {self.rejected_transition}")
         if temperature is None or self.b is None or self.reference_temperature is None:
             return self.transition.speed
         x = self._checked_temperature(temperature)
@@ -103,9 +103,9 @@ class DampingSurface(FittedLaw):
 
     @takes_si(temperature="temperature")
     def transition_torque(self, temperature: float | None = None) -> float:
-        """Return the torque in N m there, at a temperature (K); NaN where the data show no transition.
+        """Return the torque (N m) at the transition, at a temperature (K); NaN if the data show none.
 
-        In a gradual bend it is that of a smooth curve through the dwells.
+        At a gradual bend, a smooth curve through the dwells gives it.
         """
         if self.transition is None:
             return float("nan")
@@ -125,19 +125,19 @@ class DampingSurface(FittedLaw):
         stick_speed_temperature: float | None = None,
         stick_speed_rule: str = WITH_TRANSITION,
     ) -> float:
-        """Return the stick speed (m/s) at a temperature (K) of one stated at another: the one rule for it.
+        """Return the stick speed (m/s) at a temperature (K), from the one stated at another temperature.
 
-        It moves with the transition speed, or is fixed. Without ``stick_speed_temperature`` it is stated at
-        the reference temperature of the fit; an isothermal fit has one temperature.
+        It moves with the transition speed, or is fixed. Without ``stick_speed_temperature`` it holds at the
+        reference temperature of the fit; an isothermal fit has only one temperature.
 
         Raises
         ------
         ParameterError
-            If the rule is not known, or a temperature not one that the law allows.
+            If the rule is unknown, or the law does not hold at a temperature.
         """
         if stick_speed_rule not in (WITH_TRANSITION, FIXED):
             raise ParameterError(
-                f"stick_speed_rule '{stick_speed_rule}' is not known: '{WITH_TRANSITION}' or '{FIXED}'"
+                f"stick_speed_rule '{stick_speed_rule}' is not known. Use '{WITH_TRANSITION}' or '{FIXED}'"
             )
         if stick_speed_rule == FIXED or self.b is None or self.transition is None:
             return stick_speed
@@ -168,13 +168,13 @@ class DampingSurface(FittedLaw):
         roll_radius
             Radius at which torque acts on the belt, m.
         stick_speed
-            Belt speed below which the belt sticks, m/s; no steady log can show it.
+            Belt speed below which the belt sticks, m/s; steady dwells do not show it.
         temperature
             K; without it the drag of a thermal law keeps its dependence on temperature: forces vary as
             T^(b + (1 + c) d) and speeds, the stick speed among them, as T^d, which is the fitted law.
         stick_speed_temperature, stick_speed_rule
-            At which the stick speed holds (K; by default the reference temperature of the fit), and how it
-            goes with temperature: ``with transition``, or ``fixed``, which needs a temperature.
+            Temperature at which the stick speed holds (K; default: reference temperature of the fit), and how
+            it depends on temperature: ``with transition``, or ``fixed``, which needs a temperature.
 
         Raises
         ------
@@ -183,8 +183,8 @@ class DampingSurface(FittedLaw):
         """
         if self.transition is None:
             raise InsufficientDataError(
-                f"the data show no falling branch ({self.rejected_transition}); "
-                "record slower dwells, until torque rises as the drive slows"
+                f"the data show no falling branch: {self.rejected_transition}. Record slower dwells, "
+                "until torque rises as the drive slows"
             )
         sticking: dict[str, Any] = {
             "stick_speed": stick_speed,
@@ -209,8 +209,8 @@ class DampingSurface(FittedLaw):
         assert self.transition is not None
         if sticking["stick_speed_rule"] == FIXED:
             raise ParameterError(
-                f"a stick speed that is '{FIXED}' at all temperatures cannot be followed while it "
-                f"varies: give one temperature, or stick_speed_rule '{WITH_TRANSITION}'"
+                f"stick_speed_rule '{FIXED}' cannot be used while temperature varies. Give one "
+                f"temperature, or use stick_speed_rule '{WITH_TRANSITION}'"
             )
         moved = self.transition.temperature_exponent
         return replace(
@@ -225,7 +225,7 @@ class DampingSurface(FittedLaw):
     def drag_samples(
         self, count: int, seed: int, *, roll_radius: float, temperature: float | None = None, **sticking: Any
     ) -> dict[str, FloatArray]:
-        """Return draws of the drag that the fit's covariance allows, for `hysteresis` and the like.
+        """Return draws of the drag from the covariance of the fit, e.g. for `hysteresis`.
 
         They follow Student's t with the degrees of freedom of the fit, as its intervals do: the normal
         distribution of the values, widened where few points measure it. The same seed gives draws that
@@ -236,7 +236,7 @@ class DampingSurface(FittedLaw):
         count
             Draws, at least 1.
         seed
-            Of the random draws, at least 0.
+            Random seed, at least 0.
         roll_radius
             m, as in `drag`.
         temperature
@@ -269,18 +269,18 @@ class DampingSurface(FittedLaw):
     def drawn_drag(
         self, count: int, seed: int, *, roll_radius: float, temperature: float | None = None, **sticking: Any
     ) -> tuple[dict[str, FloatArray], tuple[Warning, ...]]:
-        """Return the draws of `drag_samples`, and what that warns of: for threads, which share warnings."""
+        """Return the draws of `drag_samples` and its warnings; for threads, which share warnings."""
         if self.transition is None:
             raise InsufficientDataError(
-                f"the data show no falling branch ({self.rejected_transition}); "
-                "record slower dwells, until torque rises as the drive slows"
+                f"the data show no falling branch: {self.rejected_transition}. Record slower dwells, "
+                "until torque rises as the drive slows"
             )
         if count < 1 or seed < 0:
             name, value, least = ("count", count, 1) if count < 1 else ("seed", seed, 0)
             raise ParameterError(f"{name} is {value}: it must be at least {least}")
         if (temperature is None) != (self.b is None):
-            reason = "this law depends on temperature: give it one, in K"
-            other = "temperature is given, but this law does not depend on it"
+            reason = "this law depends on temperature. Give the temperature in K"
+            other = "this law does not depend on temperature. Omit temperature"
             raise ParameterError(reason if self.b is not None else other)
         at = self.drag(roll_radius=roll_radius, temperature=temperature, **sticking)
         x = 0.0
@@ -291,8 +291,8 @@ class DampingSurface(FittedLaw):
         kept, total, failed = self._draws(count, seed, x, slowest)
         if failed:
             again = (
-                f"{failed} of {total} draws of the fit had no falling branch and were drawn again: "
-                "the intervals hold for fits that have one"
+                f"{failed} of {total} draws of the fit had no falling branch and were replaced: "
+                "intervals hold only if there is one"
             )
             said.append(UserWarning(again))
         level, b, c, mixed, corner, move = kept.T
@@ -317,8 +317,8 @@ class DampingSurface(FittedLaw):
             kept, total = np.concatenate([kept, values[falls]]), total + count
             if 2 * len(kept) < total:
                 raise InsufficientDataError(
-                    f"{total - len(kept)} of {total} draws of the fit have no falling branch: "
-                    "the data do not prove one; record more dwells below the transition"
+                    f"{total - len(kept)} of {total} draws of the fit have no falling branch, so the "
+                    "data do not prove one. Record more dwells below the transition"
                 )
         return kept[:count], total, total - len(kept)
 
@@ -358,13 +358,13 @@ class DampingSurface(FittedLaw):
         return 0.0 if self.temperature_scale == "K" else ZERO_CELSIUS
 
     def check_temperature(self, temperature: float | None) -> None:
-        """Refuse a temperature (K) at which the powers of the law have no meaning."""
+        """Raise `ParameterError` for a temperature (K) at which the law is not defined."""
         if self.b is None:
             return
         if temperature is None or not (np.isfinite(temperature) and temperature > self.temperature_zero):
             given = "missing" if temperature is None else f"{temperature:g} K"
             scale = self.temperature_scale
-            raise ParameterError(f"temperature is {given}: a law in {scale} holds above 0 {scale} only")
+            raise ParameterError(f"temperature is {given}, but a law in {scale} holds only above 0 {scale}")
 
     def _checked_temperature(self, temperature: float) -> float:
         """The same for one temperature where the powers of the law have a meaning."""

@@ -18,6 +18,10 @@ if TYPE_CHECKING:
     import polars as pl
 
 
+#: An error beyond this many times its value is not shown as a share.
+_MOST_SHARE = 10.0
+
+
 def headline_of(s: FittedLaw) -> str:
     """Return the law and its exponents."""
     law = "B = a T^b w^c" if s.b else "B = a w^c"
@@ -38,18 +42,18 @@ def summary_of(s: FittedLaw) -> str:
         f"    {law}    (B in N m s/rad, {unit}w in rad/s)",
         "[[Fit Statistics]]",
         "    # fitting method   = robust likelihood of ln torque, errors of torque, speed and temperature",
-        f"    # scatter added    = {st.scatter:.3%} between dwells, beyond the errors of their means",
+        f"    # scatter added    = {100 * st.scatter:.3f} % between dwells, beyond the errors of their means",
         *(f"    # scatter shared   = {_shared_text(shared)}" for shared in st.shared),
         *(_wrapped(f"    # sensors +/-      = {s.sensors}") if s.sensors else []),
-        *(_wrapped(f"    # torque of film   = measured less the no-load torque: {s.rest}") if s.rest else []),
+        *(_wrapped(f"    # torque of film   = measured minus no-load torque: {s.rest}") if s.rest else []),
         f"    # data points      = {st.points}",
         f"    # variables        = {st.variables}",
-        f"    chi-square         = {st.chi_square:.6g}  (against the errors of the dwells alone)",
-        f"    reduced chi-square = {st.reduced_chi_square:.6g}  (1 if these errors explained it all)",
+        f"    chi-square         = {st.chi_square:.6g}  (from the errors of the dwells alone)",
+        f"    reduced chi-square = {st.reduced_chi_square:.6g}  (1 if these errors explained all scatter)",
         f"    Akaike (AICc)      = {st.aicc:.6g}",
         f"    R-squared, torque  = {st.r_squared_torque:.6f}",
-        f"    R-squared, damping = {st.r_squared_damping:.6f}  (division by speed spreads the values:",
-        "                         nearer 1, yet it tells no more)",
+        f"    R-squared, damping = {st.r_squared_damping:.6f}  (nearer 1 only because division by speed",
+        "                         spreads the values)",
         "[[Variables]]                                        95 % interval",
     ]
     lines += [_variable("a", s.a), *([_variable("b", s.b)] if s.b else []), _variable("c", s.c)]
@@ -74,11 +78,11 @@ def _transition_text(s: FittedLaw) -> list[str]:
         freed = s.transition.freed
         why = "fixed Hersey number"
         if freed is not None:
-            why = f"by itself: one Hersey number does not hold, its AICc is worse by {freed:.1f}"
+            why = f"fitted separately: a fixed Hersey number is worse by {freed:.1f} in AICc"
         lines.append(f"    w_t varies as T^{s.transition.temperature_exponent:.3g} ({why})")
     lines.append("    below w_t the exponent is c_mixed")
     if s.transition.gradual:
-        lines.append("    the bend is gradual: w_t is where a smooth curve through the dwells is least,")
+        lines.append("    the bend is gradual: w_t is the minimum of a smooth curve through the dwells;")
         lines.append(f"    the trend lines on either side meet at {s.transition.meeting_speed:.4g} rad/s")
     return lines
 
@@ -127,11 +131,11 @@ def table_of(s: FittedLaw) -> pl.DataFrame:
 
 def _variable(name: str, e: Estimate) -> str:
     if not e.estimable:
-        return f"    {name:8s} {e.value: .7g}, interval not told"
-    share = f"({abs(e.error / e.value):.2%})" if e.value else ""
+        return f"    {name:8s} {e.value: .7g}, interval not known"
+    share = f" ({100 * abs(e.error / e.value):.2f} %)" if e.error < _MOST_SHARE * abs(e.value) else ""
     ends = f"[{e.low:.6g}, {e.high:.6g}]"
     sensors = f"  sensors +/- {e.systematic:.2g}" if e.systematic else ""
-    return f"    {name:8s} {e.value: .7g} +/- {e.error:.3g} {share:10s} {ends}{sensors}"
+    return f"    {name:8s} {e.value: .7g} +/- {f'{e.error:.3g}{share}':18s} {ends}{sensors}"
 
 
 def _wrapped(text: str) -> list[str]:
@@ -141,9 +145,12 @@ def _wrapped(text: str) -> list[str]:
 
 def _shared_text(shared: SharedScatter) -> str:
     if not shared.estimable:
-        few = "too few, or the law takes up what they differ by"
-        return f"by the dwells of a {shared.name}: not told, they are {few}"
-    return f"{shared.deviation:.3%} by the dwells of a {shared.name} (p = {shared.p_value:.2g} for none)"
+        few = "too few of them, or the law absorbs their differences"
+        return f"cannot be determined for a {shared.name}: {few}"
+    return (
+        f"{100 * shared.deviation:.3f} % common to all dwells of a {shared.name} (p = "
+        f"{shared.p_value:.2g} if there is none)"
+    )
 
 
 def _correlations(s: FittedLaw) -> list[str]:

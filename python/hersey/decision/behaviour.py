@@ -73,13 +73,15 @@ class StickSpeeds(Record):
     """
 
     temperature: Annotated[float | None, Means("null if isothermal", "K")]
-    stated: Annotated[float, Means("stick speed of the machine's file, there", "m/s")]
-    known: Annotated[tuple[float, float] | None, Means("range that the file states, 95 %, there", "m/s")]
+    stated: Annotated[float, Means("stick speed in the machine file, at this temperature", "m/s")]
+    known: Annotated[
+        tuple[float, float] | None, Means("its 95 % range in the machine file, at this temperature", "m/s")
+    ]
     stick_speed: Annotated[list[float], Means(unit="m/s")]
     transition: Annotated[list[float], Means(unit="m/s")]
-    upper: Annotated[list[float], Means("V*; null beyond the search", "m/s", open=True)]
+    upper: Annotated[list[float], Means("V*; null outside the search range", "m/s", open=True)]
     stiction: Annotated[
-        float | None, Means("V* at the stated stick speed of a belt that stops dead", "m/s")
+        float | None, Means("V* at the stated stick speed if the belt stops abruptly", "m/s")
     ] = None
 
 
@@ -145,9 +147,9 @@ class Working:
         HerseyError
             If not even a posterior can be computed.
         """
-        step("drawing what dwells and starts leave open")
+        step("drawing from the posterior")
         found = self._posterior.result()
-        step("finding the bands")
+        step("computing V* and the bands")
         bands, no_band = _done(self._band)
         band, stick = bands or (None, None)
         map_, no_map = _done(self._map)
@@ -308,7 +310,7 @@ def _against_stick_speed(found: Posterior, machine: Machine) -> StickSpeeds:
 
 
 def ranges(machine: Machine) -> dict[str, tuple[float, float]]:
-    """Return the 95 % ranges (SI) of stiffness, mass and stick speed that the machine's file states."""
+    """Return the 95 % ranges (SI) of stiffness, mass and stick speed that the machine file states."""
     found = {}
     for name, known in machine.uncertainty.items():
         if name in ("stiffness", "mass", "stick_speed"):

@@ -101,7 +101,7 @@ def plan_start_up(
         raise ParameterError(f"target_speed is {target_speed}: it must be greater than 0")
     low, high = CONFIDENCES
     if not low <= confidence <= high:
-        raise ParameterError(f"confidence is {confidence}: {low} to {high} is possible")
+        raise ParameterError(f"confidence is {confidence}: it must be from {low} to {high}")
     machine = found.model.machine
     limit = drive_limit(machine.limits, machine.roll_radius, machine.train.grip)
     if machine.limits.spring_force is not None:
@@ -214,18 +214,18 @@ def _obstacle(asked: _Asked, below_transition: float) -> Obstacle:
     speed = f"{1e3 * asked.target:.3g} mm/s"
     if below_transition > 0.0:
         text = (
-            f"{speed} lies below the speed of least drag, where steady sliding is unstable, with a "
-            f"probability of {100 * below_transition:.0f} %"
+            f"{speed} is below the speed of lowest drag, where steady sliding is unstable, with "
+            f"{100 * below_transition:.0f} % probability"
         )
         needed = float(np.quantile(asked.found.edges(asked.kelvin).transition, SEARCHED))
         return Obstacle("target_speed", asked.target, needed, text)
     if asked.limits.speed is not None and asked.target > asked.limits.speed:
-        text = f"{speed} is faster than the drive, {1e3 * asked.limits.speed:.3g} mm/s"
+        text = f"{speed} exceeds the maximum speed of the drive, {1e3 * asked.limits.speed:.3g} mm/s"
         return Obstacle("speed", asked.limits.speed, asked.target, text)
     searched = 100 * max(SEARCHED, 0.5 * (1.0 + asked.confidence))
     text = (
-        f"no profile tried within the limits brings {searched:.3g} % of the draws to slide at {speed}, "
-        f"which the search asks for to be sure of {100 * asked.confidence:.3g} %"
+        f"no profile within the limits makes {searched:.3g} % of the draws slide at {speed} "
+        f"({100 * asked.confidence:.3g} % confidence)"
     )
     return Obstacle("speed", asked.limits.speed or math.inf, None, text)
 

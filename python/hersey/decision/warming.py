@@ -50,8 +50,8 @@ def plan_warm_start(
     model, machine = found.model, found.model.machine
     if machine.stick_speed_rule == FIXED:
         raise ParameterError(
-            f"a stick speed that is '{FIXED}' at all temperatures cannot be followed while temperature "
-            f"changes: give one temperature, or stick_speed_rule '{WITH_TRANSITION}'"
+            f"stick_speed_rule '{FIXED}' cannot be used while temperature changes. Give one "
+            f"temperature, or use stick_speed_rule '{WITH_TRANSITION}'"
         )
     if isinstance(temperature, HeatBalance):
         coldest = min(float(temperature.film_temperature), float(temperature.roll_temperature))
@@ -62,7 +62,7 @@ def plan_warm_start(
         last = course.at(course.end)
     kelvin = last or found.temperature or model.surface.reference_temperature
     if kelvin is None:
-        raise ParameterError("the log is isothermal: its drag does not vary with temperature")
+        raise ParameterError("the log is isothermal, so its drag does not depend on temperature")
     [(train, drag)] = drags_through(model, typical_draw(found, kelvin), kelvin, coldest)
     if drag.closure == "stribeck":  # what is drawn of a plan needs a stuck phase
         drag = replace(drag, closure="retained")

@@ -35,17 +35,18 @@ class Analysis(Part):
     hersey_version: str
     title: str
     command: str
-    made: str | None = Field(default=None, description="when, UTC, ISO 8601; null where nobody said so")
+    made: str | None = Field(default=None, description="when, UTC, ISO 8601; null if not stated")
     recipe: RecipePart | None = Field(
-        default=None, description="null for dwells that no `hersey.Recipe` made"
+        default=None, description="null for dwells not made by a `hersey.Recipe`"
     )
     machine: MachineFilePart | None = None
-    synthetic: bool = Field(default=False, description="a log says of itself that it is no measurement")
+    synthetic: bool = Field(default=False, description="whether a log says of itself that it is synthetic")
     units: dict[str, str] = Field(
-        default={}, description="in which torque, belt_speed, roll_speed, temperature and force are shown"
+        default={},
+        description="units in which torque, belt_speed, roll_speed, temperature and force are shown",
     )
     decision: DecisionPart | None = None
-    verdict: list[str] = Field(description="in paragraphs; a contradiction first")
+    verdict: list[str] = Field(description="paragraphs; a disagreement comes first")
     warnings: list[Warning]
     files: list[InputFile]
     quality: Quality
@@ -55,20 +56,22 @@ class Analysis(Part):
     film: FilmPart | None = None
     torque_budget: TorqueBudgetPart | None = None
     simulation: SimulationPart | None = Field(
-        default=None, description="below the transition; null without a machine or a transition"
+        default=None, description="motion below the transition; null without a machine or a transition"
     )
     timeline: Timeline
     models: ModelsPart | None = None
-    compare: LogComparison | None = Field(default=None, description="this log (B) over another (A)")
-    against: list[InputFile] | None = Field(default=None, description="files of the log compared with")
+    compare: LogComparison | None = Field(default=None, description="this log (B) compared with another (A)")
+    against: list[InputFile] | None = Field(
+        default=None, description="files of the log (A) used for comparison"
+    )
     band: HysteresisBand | None = None
     map: OperatingMap | None = None
     uncertainty: dict[str, tuple[float, float]] = Field(
-        default={}, description="95 % ranges of stiffness, mass and stick_speed by the machine's file, SI"
+        default={}, description="95 % ranges of stiffness, mass and stick_speed from the machine file, SI"
     )
     stick_speed_sweep: StickSpeeds | None = None
     posterior: PosteriorPart | None = Field(
-        default=None, description="what dwells, starts and stick-slip say together"
+        default=None, description="result of dwells, starts and stick-slip together"
     )
     plan: Plan | None = None
     warm_up: WarmUp | None = None

@@ -300,4 +300,4 @@ def load(text: str) -> Analysis:
     except ValidationError as error:
         first = error.errors()[0]
         place = ".".join(str(part) for part in first["loc"]) or "document"
-        raise ParameterError(f"not an analysis document: {place}: {first['msg']}") from None
+        raise ParameterError(f"this is not an analysis document. {place}: {first['msg']}") from None

@@ -56,7 +56,7 @@ def _ranges(surface: DampingSurface, fit: FitPart) -> Iterator[Fault]:
         yield from faults_of_covariance("variance_parts", part, size)
     estimated = 1 + sum(shared.deviation > 0 for shared in stated.shared)
     if surface.freedoms.parts and len(surface.freedoms.parts) != estimated:
-        yield "variance_parts", "one for the dwells and one for each of shared that is not 0"
+        yield "variance_parts", "one for the dwells and one for each nonzero entry of shared"
     if surface.freedoms.parts:
         count = len(surface.freedoms.parts)
         yield from faults_of_covariance("variance_uncertainty", surface.freedoms.uncertainty, count)
@@ -65,7 +65,7 @@ def _ranges(surface: DampingSurface, fit: FitPart) -> Iterator[Fault]:
     if not 0.0 <= stated.chi_square <= LARGEST:
         yield "chi_square", f"from 0 to {LARGEST:g}"
     if not agree(stated.reduced_chi_square, stated.chi_square / (stated.points - size)):
-        yield "reduced_chi_square", "chi_square over points less values"
+        yield "reduced_chi_square", "chi_square divided by (points - values)"
     for name in ("scatter", "dwell_error"):
         if not 0.0 <= getattr(stated, name) <= _MOST_SCATTER:
             yield name, f"from 0 to {_MOST_SCATTER:g}"
@@ -100,15 +100,15 @@ def _coefficients(surface: DampingSurface) -> Iterator[Fault]:
                 continue
             yield from faults_of_estimate(key, part, scale)
             if not agree(part.freedom, freedom):
-                yield f"{key}.freedom", "what the covariance and its parts give"
+                yield f"{key}.freedom", "consistent with the covariance and its parts"
         with np.errstate(over="ignore"):
             expected = float(np.exp(value)) if name == "a" else float(of @ surface.values)
         if not agree(estimated.value, expected):
-            yield f"coefficients.{name}", "what follows from values"
+            yield f"coefficients.{name}", "consistent with values"
         variance = float(of @ surface.covariance @ of)
         error = max(variance, 0.0) ** 0.5 * (expected if name == "a" else 1.0)
         if not np.isclose(estimated.error, error, rtol=1e-6, atol=1e-9 * abs(expected)):
-            yield f"coefficients.{name}.error", "what follows from covariance"
+            yield f"coefficients.{name}.error", "consistent with covariance"
         if surface.torque_space[name].systematic != 0.0:
             yield f"torque_space.{name}.systematic", "0"
 
@@ -139,15 +139,15 @@ def _transition(surface: DampingSurface) -> Iterator[Fault]:
         if not low > 0.0:
             yield "transition.speed.low", "greater than 0"
         elif not agree(found.speed.error, found.speed.value * float(np.log(high / low)) / (2.0 * reach)):
-            yield "transition.speed.error", "what its interval gives"
+            yield "transition.speed.error", "consistent with its interval"
     part = found.mixed_exponent
     if np.isfinite(part.freedom) and not agree(part.freedom, surface.freedoms.of(mixed)):
-        yield "transition.mixed_exponent.freedom", "what the covariance and its parts give"
+        yield "transition.mixed_exponent.freedom", "consistent with the covariance and its parts"
     if part.estimable and not agree(part.error, (part.high - part.low) / (2.0 * quantile(part.freedom))):
-        yield "transition.mixed_exponent.error", "what its interval gives"
+        yield "consistent with its interval", "what its interval gives"
     error = max(float(mixed @ surface.covariance @ mixed), 0.0) ** 0.5
     if found.closure is not None and not agree(part.error, error):
-        yield "transition.mixed_exponent.error", "what follows from covariance"
+        yield "consistent with covariance", "what follows from covariance"
     if not 0.0 < found.evidence <= LARGEST:
         yield "transition.evidence", "greater than 0"
     if found.freed is not None and not 0.0 < found.freed <= LARGEST:
@@ -162,19 +162,19 @@ def _closure(surface: DampingSurface) -> Iterator[Fault]:
     assert closure is not None
     yield from faults_of_covariance("transition.closure.covariance", closure.covariance, surface.values.size)
     if not agree(closure.values[1:-1], surface.values[1:-1]):
-        yield "transition.closure.values", "the exponents of values"
+        yield "the same exponents as in values", "the exponents of values"
     if not abs(closure.values[0] - surface.values[0]) <= _MOST_LIFT:
-        yield "transition.closure.values", "a torque near that of values"
+        yield "transition.closure.values", "a torque close to that of values"
     if speed.estimable and not agree(
         float(np.sqrt(abs(closure.covariance[-1, -1]))), speed.error / speed.value
     ):
-        yield "transition.closure.covariance", "the error of transition.speed at its end"
+        yield "transition.closure.covariance", "the relative error of transition.speed as its last entry"
 
 
 def _points(surface: DampingSurface, points: list[Point]) -> Iterator[Fault]:
     """The dwells, and what the fit says of them."""
     if len(points) != surface.statistics.points:
-        yield "points", "as many as the document's points"
+        yield "points", "as many as the document has"
         return
     speed, torque, residual = (
         np.array([getattr(p, n) for p in points]) for n in ("speed", "torque", "residual")
@@ -182,21 +182,21 @@ def _points(surface: DampingSurface, points: list[Point]) -> Iterator[Fault]:
     kelvin = np.array([np.nan if p.temperature is None else p.temperature for p in points])
     heats = surface.temperature_range is not None
     if np.any(speed == 0.0) or np.any(torque / speed <= 0.0) or (heats and not np.all(kelvin > 0.0)):
-        yield "points", "dwells that turn, with torque against them, above 0 K"
+        yield "points", "dwells with speed, with torque of the same sign, above 0 K"
         return
     if not agree(np.array(surface.speed_range), np.array([np.abs(speed).min(), np.abs(speed).max()])):
-        yield "speed_range", "least and greatest speed of the document's points"
+        yield "speed_range", "lowest and highest speed of the document's points"
         return
     heating = _heating(surface, kelvin)
     if not 0.0 <= heating <= _MOST_HEATING:
-        yield "temperature_range", "least and greatest temperature of the document's points"
+        yield "temperature_range", "lowest and highest temperature of the document's points"
         return
     damping, fitted = (np.array([getattr(p, n) for p in points]) for n in ("damping", "damping_fitted"))
     if np.any(wrong := ~np.isclose(damping, torque / speed, rtol=AGREES)):
-        yield f"points.{int(np.argmax(wrong))}.damping", "torque over speed"
+        yield "torque divided by speed", "torque over speed"
     lines = [] if heating else _lines(surface, np.abs(speed), kelvin)
     if lines and np.any(wrong := ~np.any([np.isclose(fitted, line, rtol=AGREES) for line in lines], axis=0)):
-        yield f"points.{int(np.argmax(wrong))}.damping_fitted", "what the fit gives"
+        yield "consistent with the fit", "what the fit gives"
     wrong = np.abs(residual - np.log(damping / np.where(fitted > 0, fitted, 1.0))) > 1e-6 * np.maximum(
         np.abs(residual), 1e-3
     )
@@ -209,7 +209,7 @@ def _points(surface: DampingSurface, points: list[Point]) -> Iterator[Fault]:
         left = float(np.sum((measured * -np.expm1(-residual)) ** 2))
         expected_share = 1.0 - left / total if total > 0 else 0.0
         if not np.isclose(getattr(stated, name), expected_share, rtol=1e-6, atol=1e-9):
-            yield name, "what the document's points give"
+            yield name, "consistent with the document's points"
 
 
 def _heating(surface: DampingSurface, kelvin: FloatArray) -> float:

@@ -73,8 +73,8 @@ def read_fit(path: str | Path) -> DampingSurface:
 
 
 def _broken(path: Path, field: str, reason: str) -> ParameterError:
-    how = f": hersey fit LOG --json > {path.name}" if way_in() == "terminal" else ""
-    return ParameterError(f"{path.name}: {field}: {reason}; save the fit again{how}")
+    how = f" with: hersey fit LOG --json > {path.name}" if way_in() == "terminal" else ""
+    return ParameterError(f"{path.name}: {field}: {reason}. Save the fit again{how}")
 
 
 def _check(path: Path, document: _FitFile) -> None:
@@ -92,9 +92,11 @@ def _check(path: Path, document: _FitFile) -> None:
     if any(np.shape(part) != (size, size) for part in parts) or uncertainty.shape != (
         (len(parts), len(parts)) if parts else (0,)
     ):
-        raise _broken(path, "fit.variance_parts", f"not {size} rows of {size} numbers for each variance")
+        raise _broken(
+            path, "fit.variance_parts", f"it must have {size} rows of {size} numbers for each variance"
+        )
     if not _is_covariance(np.array(fit.covariance)):
-        raise _broken(path, "fit.covariance", "it is not symmetric with no negative variance")
+        raise _broken(path, "fit.covariance", "it must be symmetric, without negative variances")
     if fit.transition is not None and fit.transition.closure is not None:
         _check_closure(path, fit.transition.closure, size)
     if fit.rest is not None:
@@ -108,7 +110,7 @@ def _rules(fit: FitPart, size: int) -> Iterator[tuple[str, bool, str]]:
     """What each field of a fit of so many variables must be, and whether it is."""
     thermal = "b" in fit.coefficients
     names, kelvin = set(fit.coefficients), fit.reference_temperature
-    yield "coefficients", {"a", "c"} <= names <= {"a", "b", "c"}, "a, c and, if thermal, b"
+    yield "coefficients", {"a", "c"} <= names <= {"a", "b", "c"}, "a, c and, for a fit with temperature, b"
     yield "torque_space", set(fit.torque_space) == names, "the names of the coefficients"
     yield "reference_speed", fit.reference_speed > 0, "greater than 0"
     yield "reference_temperature", (kelvin is not None) == thermal, "there if b is"
@@ -165,15 +167,17 @@ def _check_dwells(path: Path, document: _FitFile) -> None:
 def _check_closure(path: Path, closure: Closure, size: int) -> None:
     rows = {len(row) for row in closure.covariance}
     if len(closure.values) != size or len(closure.covariance) != size or rows != {size}:
-        raise _broken(path, "fit.transition.closure", f"not {size} values and {size} rows of {size} numbers")
+        raise _broken(
+            path, "fit.transition.closure", f"it must have {size} values and {size} rows of {size} numbers"
+        )
     if not _is_covariance(np.array(closure.covariance)):
-        raise _broken(path, "fit.transition.closure", "it is not symmetric with no negative variance")
+        raise _broken(path, "fit.transition.closure", "it must be symmetric, without negative variances")
 
 
 def _check_rest(path: Path, rest: NoLoadTorque) -> None:
     shape = [len(row) for row in rest.covariance]
     if shape != [3, 3, 3] or not _is_covariance(np.array(rest.covariance)):
-        raise _broken(path, "fit.rest.covariance", "it is no covariance of three numbers")
+        raise _broken(path, "fit.rest.covariance", "it must be a covariance of three numbers")
     for name in ("speed_range", "temperature_range"):
         ends = getattr(rest, name)
         if ends is not None and not 0 < ends[0] <= ends[1]:

@@ -50,7 +50,7 @@ class Clock(Record):
     duration: Annotated[float, OPEN]
     interval: Annotated[float, OPEN]
     resolution: float | None
-    uneven: Annotated[float, Means("share of the intervals off the usual one", open=True)]
+    uneven: Annotated[float, Means("share of intervals that differ from the usual one", open=True)]
     gaps: int
     longest_gap: Annotated[float, OPEN]
     lost: Annotated[float, OPEN]
@@ -64,7 +64,7 @@ class Clock(Record):
         return self.uneven > UNEVEN_SHARE
 
     @property
-    def warnings(self) -> Annotated[tuple[Warning, ...], Means("what one must know of this clock")]:
+    def warnings(self) -> Annotated[tuple[Warning, ...], Means("what is wrong with this clock")]:
         """What one must know of this clock."""
         found = (self._back(), self._uneven(), self._gaps(), self._repeated(), self._without_time())
         return tuple(each for each in found if each is not None)
@@ -88,7 +88,7 @@ class Clock(Record):
             return None
         return Warning(
             "clock uneven",
-            "the clock is uneven: {share:.1%} of its intervals are off by over {limit:.0%}",
+            "the clock is uneven: {share:.1f %} of its intervals are off by more than {limit:.0f %}",
             severity="watch",
             share=self.uneven,
             limit=UNEVEN,
@@ -99,8 +99,8 @@ class Clock(Record):
             return None
         return Warning(
             "rows missing",
-            "rows are missing at {places} {places:place|places}: {lost:.3g} s in all, {longest:.3g} s at the "
-            "longest",
+            "rows are missing at {places} {places:place|places}: {lost:.3g} s in total, at most "
+            "{longest:.3g} s at once",
             severity="watch",
             places=self.gaps,
             lost=self.lost,
@@ -112,7 +112,7 @@ class Clock(Record):
             return None
         return Warning(
             "times repeated",
-            "{rows} {rows:row carries|rows carry} the time of the row before",
+            "{rows} {rows:row repeats|rows repeat} the time of the previous row",
             rows=self.repeated,
         )
 

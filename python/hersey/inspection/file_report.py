@@ -124,7 +124,7 @@ def _warnings(channel: RawChannel, channel_traits: Traits, role: str) -> tuple[W
         found.append(
             Warning(
                 "cells that are no numbers",
-                "{cells} {cells:cell holds|cells hold} no number",
+                "{cells} {cells:cell contains|cells contain} no number",
                 severity="watch",
                 cells=channel.odd,
             )
@@ -133,7 +133,7 @@ def _warnings(channel: RawChannel, channel_traits: Traits, role: str) -> tuple[W
         found.append(
             Warning(
                 "numbers missing",
-                "{rows} {rows:row lacks|rows lack} a number",
+                "a number is missing in {rows} {rows:row|rows}",
                 severity="watch",
                 rows=lacking,
             )
@@ -142,7 +142,7 @@ def _warnings(channel: RawChannel, channel_traits: Traits, role: str) -> tuple[W
         found.append(
             Warning(
                 "sensor slower than the log",
-                "each value is held for {rows} rows: the sensor is slower than the log",
+                "each value repeats for {rows} rows, so the sensor is slower than the log",
                 rows=channel_traits.refresh,
             )
         )
@@ -166,28 +166,30 @@ def _of_fault(fault: Fault, channel_traits: Traits, unit: str, role: str) -> War
     }
     match fault.kind:
         case "constant":
-            return Warning(fault.kind, "{reading} throughout: a dead channel, or nothing changed", **numbers)
+            return Warning(
+                fault.kind, "reads {reading} throughout: the channel is dead, or nothing changed", **numbers
+            )
         case "stuck":
             return Warning(
                 fault.kind,
                 ("the sensor is stuck" if role else "held")
                 + (" at {reading}" if fault.places == 1 else "")
-                + " for {rows} {rows:row|rows} ({share:.2g} of all) {place}",
+                + " for {rows} {rows:row|rows} ({share:.2g %}) {place}",
                 **numbers,
             )
         case "spikes":
             return Warning(
                 fault.kind,
-                "spikes in {rows} {rows:row|rows} ({share:.2g} of all) {place}, as far as {reading}",
+                "spikes of up to {reading} in {rows} {rows:row|rows} ({share:.2g %}) {place}",
                 **numbers,
             )
         case "drop-outs":
             return Warning(
-                fault.kind, "drops out to 0 in {rows} {rows:row|rows} ({share:.2g} of all) {place}", **numbers
+                fault.kind, "drops to 0 in {rows} {rows:row|rows} ({share:.2g %}) {place}", **numbers
             )
     return Warning(
         fault.kind,
-        "{fault} at {reading}: {rows} {rows:row|rows} ({share:.2g} of all) {place}",
+        "{fault} at {reading} in {rows} {rows:row|rows} ({share:.2g %}) {place}",
         fault=fault.kind,
         **numbers,
     )
@@ -205,7 +207,7 @@ def _coarse(values: FloatArray, channel_traits: Traits, unit: str) -> list[Warni
     return [
         Warning(
             "coarse",
-            "coarse: its step of {step:.3g} {unit} is {share:.0%} of its small readings",
+            "its resolution, {step:.3g} {unit}, is {share:.0f %} of its small readings",
             severity="watch",
             step=step,
             unit=unit,
@@ -224,12 +226,12 @@ def file_lines(file: FileReport, *, table: bool) -> list[str]:
     for clock in file.clocks:
         lines.append(
             f"  clock '{clock.name}': every {clock.interval:.4g} s ({_rate(clock.interval)}), "
-            f"{clock.duration:.5g} s in all"
+            f"{clock.duration:.5g} s in total"
         )
         lines += [f"  ! {warning}" for warning in clock.warnings]
     if not file.clocks and MEANS not in file.format:
         named = Setting("time", "channel").to()
-        lines.append(f"  ! no channel is a clock: rates and gaps are not known; name it with {named}")
+        lines.append(f"  ! no time column found, so rates and gaps are unknown. Name it with {named}")
     lines += _table(file) if table else []
     channels = sorted(file.channels, key=lambda channel: not channel.role)
     warnings = [(c, warning.within(c.name)) for c in channels for warning in c.warnings]

@@ -57,26 +57,26 @@ class Inspection(Result):
     files
         One report each.
     problem
-        Why they cannot be read as a log of torque, or empty.
+        Why they cannot be read as a torque log; may be empty.
     needed
-        Names of switches without which they could not: ``isothermal``, ``drop_missing``.
+        Switches needed to read them: ``isothermal``, ``drop_missing``.
     dropped
-        Rows left out because a number is missing or cannot be right, by file.
+        Rows excluded because a number is missing or impossible, by file.
     corrections
-        What the mapping had corrected.
+        Corrections made by the mapping.
     support
-        Dwells and what they can tell, or None if the logs cannot be read.
+        Dwells and what can be determined from them, or None if the logs cannot be read.
     warnings
-        Units, tare and order of the dwells where they are doubtful, as a fit says them too.
+        Doubtful units, tare and order of the dwells; a fit gives the same warnings.
     """
 
     files: tuple[FileReport, ...]
     problem: str
     needed: tuple[str, ...]
-    dropped: Annotated[Mapping[str, int], Means("rows left out, by file")]
+    dropped: Annotated[Mapping[str, int], Means("rows excluded, by file")]
     corrections: tuple[Correction, ...]
     support: Support | None
-    warnings: Annotated[tuple[Warning, ...], Means("units, tare and order that are doubtful")] = ()
+    warnings: Annotated[tuple[Warning, ...], Means("doubtful units, tare and order of the dwells")] = ()
 
     def to_frame(self) -> pl.DataFrame:
         """Return one row per channel; its numbers in its own ``unit``."""
@@ -113,18 +113,18 @@ class Inspection(Result):
             lines += [*file_lines(file, table=len(self.files) <= _TABLES), ""]
         lines += [f"corrected: {correction}" for correction in self.corrections]
         lines += [
-            f"{rows} rows of {name} are left out: a number is missing or cannot be right"
+            f"{rows} rows of {name} are excluded, because a number is missing or impossible"
             for name, rows in self.dropped.items()
         ]
         if self.needed:
-            lines.append(f"readable as a log of torque with {_switches(self.needed)}")
+            lines.append(f"this log can be read with {_switches(self.needed)}")
         lines += [f"! {warning.sentence}" for warning in self.warnings]
         if self.support is None:
             return "\n".join([*lines, f"No fit is possible: {self._hindrance()}"])
         lines.append(f"{self.support.dwells} dwells")
-        lines += [f"  not used: {rows} rows, {LABELS[kind]}" for kind, rows in self.support.rejected.items()]
-        lines += [f"  can tell    {said}" for said in self.support.can]
-        lines += [f"  cannot tell {said}" for said in self.support.cannot]
+        lines += [f"  excluded: {rows} rows, {LABELS[kind]}" for kind, rows in self.support.rejected.items()]
+        lines += [f"  can determine     {said}" for said in self.support.can]
+        lines += [f"  cannot determine  {said}" for said in self.support.cannot]
         return "\n".join(lines)
 
     def _hindrance(self) -> str:
@@ -138,14 +138,13 @@ class Inspection(Result):
             return self.problem
         names = bare[0] if len(bare) == 1 else f"{bare[0]} and {len(bare) - 1} more"
         return (
-            f"there is no torque channel in {names}. If a channel is torque, name it with "
-            f"{Setting('torque', 'channel').to()}; if one is the motor's current, give its motor_constant in "
-            "a mapping"
+            f"{names} has no torque channel. Name one with {Setting('torque', 'channel').to()}, or "
+            "give motor_constant in a mapping if one is the motor current"
         )
 
     @property
     def channel_warnings(self) -> tuple[Warning, ...]:
-        """Every warning of a clock or of a channel that plays a role, with its file."""
+        """Every warning of a clock or of a channel with a role, with its file."""
         found: list[Warning] = []
         for file in self.files:
             found += [each.within(file.name) for clock in file.clocks for each in clock.warnings]
@@ -169,7 +168,7 @@ def inspect(
     means: bool = False,
     **reading: Unpack[Reading],
 ) -> Inspection:
-    """Look at logs before a fit: also at such that cannot be fitted, or have no torque.
+    """Inspect logs before a fit, even if they cannot be fitted or have no torque.
 
     Parameters
     ----------

@@ -14,7 +14,7 @@ from hersey.arrays import FloatArray
 from hersey.damping.dwells import SteadyPoints, distinct_speeds, groups_of_temperature
 from hersey.damping.dwells.constant import constant_torque
 from hersey.damping.dwells.reasons import Kind
-from hersey.damping.estimate import Estimate
+from hersey.damping.estimate import Estimate, rounded
 from hersey.damping.fit import fit
 from hersey.damping.rising import Rising, rising
 from hersey.damping.surface import DampingSurface
@@ -108,8 +108,8 @@ def _fitted(points: SteadyPoints, scale: str) -> DampingSurface | str:
 def _nothing(torque: float) -> Said:
     """What a torque that stands still tells."""
     return [], [
-        f"any exponent: torque does not vary from {1e3 * torque:.4g} mN m; check the sensor and its cable, "
-        f"or name another column with {Setting('torque', 'channel').to()}"
+        f"any exponent: torque always reads {1e3 * torque:.4g} mN m. Check the sensor, or name "
+        f"another column with {Setting('torque', 'channel').to()}"
     ]
 
 
@@ -119,33 +119,38 @@ def _speed(speed: FloatArray) -> Said:
     if count < 3:
         held = f"{rpm(low):.4g} rpm" if count == 1 else span
         few = "one speed" if count == 1 else "two speeds"
-        return [], [f"exponent c of speed: {few} ({held}); record dwells at three speeds or more"]
+        return [], [f"exponent c (speed): {few} ({held}). Record dwells at three or more speeds"]
     if high < NARROW_SPEEDS * low:
-        return [], [f"exponent c of speed, well: {count} speeds span only {span}; go beyond a factor of 2"]
-    return [f"exponent c of speed: {count} speeds, {span}"], []
+        return [], [
+            f"exponent c (speed) accurately: {count} speeds span only {span}. Cover more than a factor of 2"
+        ]
+    return [f"exponent c (speed): {count} speeds, {span}"], []
 
 
 def _temperature(levels: tuple[float, ...], points: SteadyPoints, fitted: DampingSurface | str) -> Said:
     if not levels:
-        return [], ["anything of temperature: none was recorded"]
+        return [], ["any dependence on temperature: none was recorded"]
     temperatures = _levels(levels)
     if len(levels) == 1:
-        return [], [f"exponent b of temperature: all dwells are at {temperatures}; record other temperatures"]
+        return [], [f"exponent b (temperature): all dwells are at {temperatures}. Record other temperatures"]
     kelvin, speed = points.column("temperature"), np.abs(points.column("speed"))
     if distinct_speeds(speed) > 1 and abs(np.corrcoef(np.log(speed), kelvin)[0, 1]) > TOGETHER:
-        return [], ["b apart from c: speed and temperature vary together; record several speeds at each"]
+        return [], [
+            "b separately from c: speed and temperature vary together. Record several speeds at each "
+            "temperature"
+        ]
     if levels[-1] - levels[0] < NARROW_TEMPERATURES:
         span = f"only {levels[-1] - levels[0]:.0f} K ({temperatures})"
-        return [], [f"exponent b of temperature, well: the dwells span {span}; go beyond 30 K"]
-    can, cannot = [f"exponent b of temperature: {len(levels)} temperatures, {temperatures}"], []
+        return [], [f"exponent b (temperature) accurately: the dwells span {span}. Cover more than 30 K"]
+    can, cannot = [f"exponent b (temperature): {len(levels)} temperatures, {temperatures}"], []
     if isinstance(fitted, DampingSurface) and fitted.b is not None and not fitted.b.estimable:
-        once = f"{temperatures} were visited once each; visit one again, or record another"
-        can, cannot = [], [f"how far exponent b of temperature may be off: {once}"]
-    laws = "which law of temperature holds (power, Arrhenius, VFT)"
+        once = f"{temperatures} were visited once each. Visit one again, or record another"
+        can, cannot = [], [f"the interval of exponent b (temperature): {once}"]
+    laws = "which temperature law holds (power, Arrhenius, VFT)"
     if len(levels) > 3:
         can.append(laws)
     else:
-        cannot.append(f"{laws}: {len(levels)} temperatures; four or more are needed")
+        cannot.append(f"{laws}: {len(levels)} temperatures, but four are needed")
     return can, cannot
 
 
@@ -154,7 +159,7 @@ def _branches(
 ) -> Said:
     most = max(distinct_speeds(speed[group]) for group in groups)
     few = f"at most {most} speed{'s' if most > 1 else ''} at one temperature"
-    too_few = [f"a transition: {few}; two branches need {BRANCH_SPEEDS} or more"]
+    too_few = [f"a transition: {few}, but two branches need {BRANCH_SPEEDS}"]
     if isinstance(surface, str):
         return [], too_few if most < BRANCH_SPEEDS else [f"a transition: {surface}"]
     branch = rising(_comparable(points, 0 if surface.b is None else 2), surface)
@@ -163,7 +168,7 @@ def _branches(
     if surface.transition is None:
         return _one_exponent(branch, [f"a transition: {_without(surface, branch)}"])
     at = surface.transition.speed
-    said = f"a transition: torque falls, then rises, beyond doubt; {_in_rpm(at)}"
+    said = f"a transition: torque falls, then rises; it is lowest at {_in_rpm(at)}"
     if surface.reference_temperature is not None:
         said += f" at {_levels([surface.reference_temperature])}"
     can, cannot = _one_exponent(branch, [])
@@ -177,9 +182,9 @@ def _without(surface: DampingSurface, branch: Rising) -> str:
     if branch.bent and branch.lack_of_fit is not None:
         ends += [*branch.lack_of_fit.local_exponents, *branch.lack_of_fit.by_temperature]
     if min(ends) > -1.0:
-        return f"torque rises from {low:.3g} rpm on; one could lie at slower speeds"
+        return f"torque rises from {low:.3g} rpm on, so a transition may lie at slower speeds"
     if max(ends) < -1.0:
-        return f"torque does not rise towards {high:.3g} rpm; one could lie at faster speeds"
+        return f"torque does not rise up to {high:.3g} rpm, so a transition may lie at faster speeds"
     return surface.rejected_transition
 
 
@@ -204,12 +209,14 @@ def _one_exponent(branch: Rising, cannot: list[str]) -> Said:
         return [], [*cannot, branch.why_not]
     if branch.bent:
         return [], [*cannot, f"one exponent of speed: {'; '.join(branch.lack_of_fit.misses())}"]
-    return ["one exponent of speed: it holds as far as the dwells tell"], cannot
+    return ["one exponent of speed: consistent with all dwells"], cannot
 
 
 def _in_rpm(speed: Estimate) -> str:
-    ends = f"[{rpm(speed.low):.3g}, {rpm(speed.high):.3g}]" if speed.estimable else "(interval not known)"
-    return f"{rpm(speed.value):.3g} rpm {ends}"
+    if not speed.estimable:
+        return f"{rpm(speed.value):.3g} rpm (interval not known)"
+    value, low, high = (rpm(each) for each in (speed.value, speed.low, speed.high))
+    return rounded(value, low, high, "rpm")
 
 
 def _levels(kelvin: Sequence[float]) -> str:
@@ -220,11 +227,11 @@ def _approach(points: SteadyPoints) -> Said:
     ways = Counter(points.table["approach"].to_list())
     if ways["from below"] > 2 and ways["from above"] > 2:
         below, above = ways["from below"], ways["from above"]
-        return [f"whether the way up differs from the way down: {below} and {above} dwells"], []
-    return [], ["whether the way up differs from the way down: record speeds up and down"]
+        return [f"the difference between speeding up and slowing down: {below} and {above} dwells"], []
+    return [], ["the difference between speeding up and slowing down. Record speeds on the way up and down"]
 
 
 def _tare(points: SteadyPoints) -> Said:
     if points.standing_torque is None:
-        return [], ["a tare: the drive never stands for 2 s"]
-    return [f"a tare: torque reads {points.standing_torque * 1e3:.3g} mN m while the drive stands"], []
+        return [], ["a tare: the drive never stands still for 2 s"]
+    return [f"a tare: torque reads {points.standing_torque * 1e3:.3g} mN m at standstill"], []

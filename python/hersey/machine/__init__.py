@@ -1,4 +1,4 @@
-"""The machine's file: what the log cannot tell, each value with its unit.
+"""The machine file: what the log cannot tell, each value with its unit.
 
 ===================  ==============================================================
 machine              `Machine` and the file as a whole
@@ -12,7 +12,7 @@ sharing              the tables of what shares the load with the film
 uncertainty          how far a parameter is known
 temperature_profile  temperature against time, from a file
 questions            what is asked about a machine and the channels of its log
-writing              a machine's file and hersey.toml from answers
+writing              a machine file and hersey.toml from answers
 ===================  ==============================================================
 """
 

@@ -1,4 +1,4 @@
-"""The tables [life] and [gear] of the machine's file: how the machine is used, and what it may take."""
+"""The tables [life] and [gear] of the machine file: how the machine is used, and what it may take."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _SLIP = 0.001
 def _age(given: Any, info: ValidationInfo[Any]) -> Any:
     """A number of what the age of a unit counts; the campaign knows what that is."""
     if info.context is not None and not (isinstance(given, str) and _COUNTED.fullmatch(given[:100])):
-        raise ParameterError(f"is {shown(given)}: write a number and what it counts, such as '1200 pages'")
+        raise ParameterError(f"is {shown(given)}. Write a number and its unit of age, e.g. '1200 pages'")
     return given
 
 
@@ -37,7 +37,7 @@ def _starts(given: Any, info: ValidationInfo[Any]) -> Any:
         return given
     match = _STARTS.fullmatch(given[:100]) if isinstance(given, str) else None
     if match is None or not float(match[1]) > 0.0:
-        raise ParameterError(f"is {shown(given)}: write how many in what age, such as '20 per 1000 pages'")
+        raise ParameterError(f"is {shown(given)}. Write a number per age, e.g. '20 per 1000 pages'")
     return float(match[1]), f"{(match[2] or '1').strip()} {match[3]}"
 
 
@@ -45,7 +45,7 @@ def _slope(given: Any, info: ValidationInfo[Any]) -> Any:
     if info.context is None or given == "haibach":
         return given
     if isinstance(given, bool) or not isinstance(given, int | float) or not 0 < given < 1e3:
-        raise ParameterError(f"is {shown(given)}: write a number such as 9, or 'haibach'")
+        raise ParameterError(f"is {shown(given)}. Write a number such as 9, or 'haibach'")
     return float(given)
 
 
@@ -75,7 +75,7 @@ class GearTable(Table):
     ``torque`` (N m, amplitude at the part), ``cycles``, ``slope``, ``second_slope``, ``endurance`` (N m) and
     ``ultimate`` (N m) are the curve; ``ratio`` is the torque at the part over that at the roll. ``starts``
     says how many in what age, of which ``cold_starts`` are at the coldest temperature. ``duty`` is a log of
-    the torque in use, a path beside the machine's file, recorded over ``duty_age``. The part is taken to
+    the torque in use, a path beside the machine file, recorded over ``duty_age``. The part is taken to
     fail at Miner's sum ``damage``.
     """
 
@@ -105,7 +105,7 @@ class GearTable(Table):
     damage: Annotated[float, Quantity(None, 1e-6, 1e3, "0.5")] = 1.0
 
     def gear(self, path: Path) -> GearTable:
-        """Return it with the full path of its log; ``path`` is that of the machine's file.
+        """Return it with the full path of its log; ``path`` is that of the machine file.
 
         Raises
         ------
@@ -115,23 +115,25 @@ class GearTable(Table):
             If there is no such log.
         """
         if self.duty is not None and self.duty_age is None:
-            raise ParameterError('has a duty without the age it took: add duty_age = "1200 pages"')
+            raise ParameterError(
+                "has duty but no duty_age. Add the age over which duty was recorded, e.g. duty_age = "
+                '"1200 pages"'
+            )
         if self.duty is None and self.duty_age is not None:
-            raise ParameterError('has a duty_age without a log: add duty = "duty.csv"')
+            raise ParameterError('has duty_age but no duty. Add the log, e.g. duty = "duty.csv"')
         if self.cold_starts is not None and self.starts is None:
             raise ParameterError(
-                'has cold_starts without a number of starts: add starts = "20 per 1000 pages"'
+                'has cold_starts but no starts. Add the number of starts, e.g. starts = "20 per 1000 pages"'
             )
         if self.cold_starts is not None and self.cold_starts > 1.0:
-            raise ParameterError(
-                f"cold_starts are {100 * self.cold_starts:g} %: no more than 100 % can be cold"
-            )
+            raise ParameterError(f"cold_starts are {100 * self.cold_starts:g} %, but must not exceed 100 %")
         if self.duty is None:
             return self
         log = path.parent / self.duty
         if not log.is_file():
             raise MissingFileError(
-                f"{path.name}: [gear] names the log {self.duty}, and there is no such file beside it"
+                f"{path.name}: [gear] names the log {self.duty}, but there is no such file beside the "
+                "machine file"
             )
         return replace(self, duty=str(log.absolute()))
 
@@ -149,6 +151,6 @@ def refuse_other_than_all(points: Sequence[OperatingPoint]) -> None:
         return
     if len(shares) < len(points):
         bare = next(point.name for point in points if point.share is None)
-        raise ParameterError(f"'{bare}' lacks a share, and others have one: state all, or none")
+        raise ParameterError(f"'{bare}' has no share, but other points have one. State all shares, or none")
     if abs(sum(shares) - 1.0) > _SLIP:
-        raise ParameterError(f"the shares sum up to {100 * sum(shares):.4g} %: they are to make 100 %")
+        raise ParameterError(f"the shares add up to {100 * sum(shares):.4g} %, but must add up to 100 %")

@@ -1,4 +1,4 @@
-"""The table [heat] of the machine's file: what warms the nip, and what the rest takes away."""
+"""The table [heat] of the machine file: what warms the nip, and what the rest takes away."""
 
 from __future__ import annotations
 

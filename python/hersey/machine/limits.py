@@ -15,7 +15,7 @@ _Speed = Annotated[float, Quantity("belt speed", 1e-6, 1e3)]
 
 @dataclass(frozen=True)
 class Limits(Table):
-    """What the machine can bear, in SI; none where nothing is stated.
+    """Limits of the machine, in SI; None where not stated.
 
     ``motor_torque`` (N m) at the roll, ``roll_friction`` (coefficient) and ``nip_load`` (N), whose product is
     the drag at which the belt slips on the roll, ``acceleration`` (m/s^2) and ``speed`` (m/s) of the drive,
@@ -58,7 +58,7 @@ class Limits(Table):
 class OperatingPoint(Table):
     """A named state of the machine: belt speed (m/s) and temperature (K).
 
-    ``share`` is that of the running time; None for all points alike.
+    ``share`` is the fraction of the running time; None if no point states one.
     """
 
     name: Text

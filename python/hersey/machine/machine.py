@@ -99,7 +99,7 @@ class Machine:
 
     @property
     def mixed(self) -> MixedContact | None:
-        """What shares the load, and how; None where no asperities and no boundary friction are stated.
+        """Load sharing of film and asperities; None if neither asperities nor boundary friction is stated.
 
         The film is by the law that holds at the points of the machine, in their mean.
 
@@ -113,13 +113,13 @@ class Machine:
         for table, needed in NEEDED.items():
             if getattr(self, table) is None:
                 raise ParameterError(
-                    "film and asperities share the load of contact, lubricant, asperities and boundary: "
-                    f"[{table}] is missing, with {needed}"
+                    f"load sharing needs contact, lubricant, asperities and boundary, but [{table}] "
+                    f"is missing. Add it with {needed}"
                 )
         assert self.contact and self.lubricant and self.asperities and self.boundary  # noqa: PT018
         if self.contact.roughness is None:
             raise ParameterError(
-                '[contact] lacks the roughness of both faces together, rms: add roughness = "0.4 um"'
+                '[contact] has no roughness (both surfaces together, rms). Add e.g. roughness = "0.4 um"'
             )
         speed = float(np.mean([point.speed for point in self.points])) if self.points else _USUAL_SPEED
         kelvin = [point.temperature for point in self.points] or self.lubricant.temperature_range
@@ -147,8 +147,8 @@ class Machine:
         mixed = self.mixed
         if mixed is None:
             raise ParameterError(
-                "the machine does not say what shares the load with the film: state "
-                f"[asperities] {NEEDED['asperities']} and [boundary] {NEEDED['boundary']}"
+                "the machine has no load sharing between film and asperities. Add [asperities] "
+                f"{NEEDED['asperities']} and [boundary] {NEEDED['boundary']}"
             )
         stick = self.stick_speed
         if self.stick_speed_temperature is not None and self.stick_speed_rule == WITH_TRANSITION:
@@ -190,7 +190,7 @@ class DrivetrainTable(Table):
 def _named(rows: object) -> object:
     """Points, those without a name called after their number."""
     if not isinstance(rows, list):
-        raise ParameterError("is no list: write each point as a table of its own, [[points]]")
+        raise ParameterError("is not a list. Write each point as a separate table, [[points]]")
     return [{"name": f"point {i}", **row} if isinstance(row, dict) else row for i, row in enumerate(rows, 1)]
 
 
@@ -232,8 +232,8 @@ def read_machine(path: str | Path) -> Machine:
     document = read_toml(path)
     if "drivetrain" not in document and {"torque", "speed"} & set(document):
         raise ParameterError(
-            f"{path.name} is a mapping of a log, with [{min({'torque', 'speed'} & set(document))}], and no "
-            f"machine's file: give it as {MAPPING.to(printable(str(path)))}"
+            f"{path.name} contains [{min({'torque', 'speed'} & set(document))}], so it is the mapping "
+            f"of a log, not a machine file. Give it as {MAPPING.to(printable(str(path)))}"
         )
     tables = read_tables(path, _MachineFile)
     uncertainty = {}

@@ -31,19 +31,19 @@ class MotorUse(Record):
     def __str__(self) -> str:
         """Return it in words."""
         if self.exceeded_from is None:
-            return f"the motor suffices: {self.torque:.4g} of {self.limit:.4g} N m"
+            return f"the motor is strong enough: the motion needs {self.torque:.4g} of {self.limit:.4g} N m"
         return (
-            f"the motor gives {self.limit:.4g} N m, and this motion asks {self.torque:.4g} N m at "
-            f"{self.time:.4g} s: more than the limit from {self.exceeded_from:.4g} s on, "
+            f"the motor gives {self.limit:.4g} N m, but this motion needs up to {self.torque:.4g} N m "
+            f"(at {self.time:.4g} s) and exceeds the limit from {self.exceeded_from:.4g} s on, "
             f"{100 * self.exceeded:.2g} % of the time"
         )
 
 
 @takes_si(motor_torque="torque", roll_radius="length")
 def motor_use(run: Trajectory, *, motor_torque: float, roll_radius: float) -> MotorUse:
-    """Return what a motion asks of a motor that gives ``motor_torque`` (N m) at a roll of a radius (m).
+    """Return the torque that a motion needs from a motor of ``motor_torque`` (N m) at a roll (radius in m).
 
-    The motor bears the spring force: film, contact and the no-load torque act beyond the spring. The
+    The motor carries the spring force: film, contact and the no-load torque act beyond the spring. The
     inertia of the drive itself is not in the model. Between samples the torque is a straight line.
 
     Raises

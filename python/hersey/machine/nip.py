@@ -19,7 +19,7 @@ _ANY = "298.15 K"
 
 @dataclass(frozen=True)
 class ContactTable(Table):
-    """The nip as a machine's file states it; radius and load may stand in other tables."""
+    """The nip as a machine file states it; radius and load may stand in other tables."""
 
     #: Outer radius of the roll; without it that of [drivetrain].
     roll_radius: Annotated[float, Quantity("length", 1e-4, 10.0)] | None = None
@@ -78,7 +78,7 @@ class _Viscosity(Quantity):
         if info.context is None:
             return kinematic
         if info.data.get("density") is None:
-            raise ParameterError(f"holds {given}: a kinematic viscosity needs 'density'")
+            raise ParameterError(f"is {given}, a kinematic viscosity. Add 'density'")
         return kinematic * float(info.data["density"])
 
 
@@ -86,7 +86,7 @@ def _pairs(given: object) -> object:
     """One coefficient is that of all temperatures."""
     if not isinstance(given, list) or not all(isinstance(row, list) and len(row) == 2 for row in given):
         example = '[["40 degC", "400 mm^2/s"], ["100 degC", "40 mm^2/s"]]'
-        raise ParameterError(f"is no list of pairs: write it as {example}")
+        raise ParameterError(f"is not a list of pairs. Write e.g. {example}")
     return given
 
 
@@ -100,7 +100,7 @@ _Alpha = Annotated[float, Quantity("pressure-viscosity coefficient", 1e-12, 1e-6
 
 @dataclass(frozen=True)
 class LubricantTable(Table):
-    """The lubricant as a machine's file states it: one of the examples, or points of a data sheet."""
+    """The lubricant as a machine file states it: one of the examples, or points of a data sheet."""
 
     #: Name of an oil with published values, instead of model and viscosities.
     example: str = ""
@@ -149,11 +149,11 @@ class LubricantTable(Table):
 
     def _of_example(self) -> Lubricant:
         if self.example not in EXAMPLES:
-            raise ParameterError(f"has no example '{self.example}': {', '.join(EXAMPLES)} are known")
+            raise ParameterError(f"has no example '{self.example}'. Use one of {', '.join(EXAMPLES)}")
         plain = LubricantTable()
         for key in ("viscosities", "pressure_viscosity", "name", "source", "model"):
             if getattr(self, key) != getattr(plain, key):
-                raise ParameterError(f"has both 'example' and '{key}': leave one out")
+                raise ParameterError(f"has both 'example' and '{key}'. Remove one")
         return EXAMPLES[self.example]
 
     def _through_points(self) -> Lubricant:
@@ -174,5 +174,7 @@ class LubricantTable(Table):
         if time is None and exponent is None and not self.viscosity_left:
             return None
         if time is None or exponent is None:
-            raise ParameterError("needs both 'relaxation_time' and 'carreau_exponent' for shear thinning")
+            raise ParameterError(
+                "has shear thinning with only one of 'relaxation_time' and 'carreau_exponent'. State both"
+            )
         return ShearThinning(time, exponent, self.viscosity_left)

@@ -1,4 +1,4 @@
-"""The table [rest] of the machine's file: what the drive takes without the film."""
+"""The table [rest] of the machine file: what the drive takes without the film."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ def _slope(given: Any, info: ValidationInfo[Any]) -> Any:
         return given
     match = _SLOPE.fullmatch(given.strip()) if isinstance(given, str) and len(given) < 60 else None
     if match is None:
-        raise ParameterError(f"is {shown(given)}: write a share for each kelvin, such as '-0.2 %/K'")
+        raise ParameterError(f"is {shown(given)}. Write a share per kelvin, e.g. '-0.2 %/K'")
     if abs(float(match[1])) / 100 > _STEEPEST:
-        raise ParameterError(f"is {shown(given)}: up to {100 * _STEEPEST:g} %/K is believed")
+        raise ParameterError(f"is {shown(given)}, but at most {100 * _STEEPEST:g} %/K is plausible")
     return float(match[1]) / 100
 
 
@@ -39,7 +39,7 @@ PerKelvin = Annotated[float, BeforeValidator(_slope)]
 
 @dataclass(frozen=True)
 class RestTable(Table):
-    """Either the numbers, or a ``log`` recorded without the film, beside the machine's file."""
+    """Either the numbers, or a ``log`` recorded without the film, beside the machine file."""
 
     #: No-load torque, at the roll: the part that does not depend on speed.
     torque: Annotated[float, Quantity("torque", 0.0, 1e6, "20 mN*m")] | None = None
@@ -57,22 +57,20 @@ class RestTable(Table):
     tare: Text | None = None
 
     def rest(self, path: Path) -> NoLoadTorque:
-        """Return the no-load torque; ``path`` is that of the machine's file."""
+        """Return the no-load torque; ``path`` is that of the machine file."""
         numbers = ("torque", "damping", "temperature_slope", "at", "uncertainty")
         stated = [name for name in numbers if getattr(self, name) is not None]
         if self.log is not None:
             if stated:
-                raise ParameterError(
-                    f"has both log and {stated[0]}: state the numbers, or the log they are in"
-                )
+                raise ParameterError(f"has both log and {stated[0]}. State either the numbers or the log")
             return self._of_log(path)
         if self.tare is not None:
-            raise ParameterError("has a tare without a log: it is how the zero of the log is taken off")
+            raise ParameterError("has tare but no log. tare says how the zero of the log is subtracted")
         if not self.torque and not self.damping:
-            raise ParameterError('lacks torque, damping or log: write torque = "20 mN*m"')
+            raise ParameterError('has no torque, damping or log. Add e.g. torque = "20 mN*m"')
         if self.temperature_slope is not None and self.at is None:
             raise ParameterError(
-                'has a temperature_slope and no temperature from which it counts: add at = "180 degC"'
+                'has temperature_slope but no reference temperature. Add e.g. at = "180 degC"'
             )
         return NoLoadTorque.stated(
             constant=self.torque or 0.0,
@@ -87,6 +85,7 @@ class RestTable(Table):
         named = path.parent / str(self.log)
         if not named.is_file():
             raise MissingFileError(
-                f"{path.name}: [rest] names the log {self.log}, and there is no such file beside it"
+                f"{path.name}: [rest] names the log {self.log}, but there is no such file beside the "
+                "machine file"
             )
         return no_load_torque(Recipe(logs=(named,), tare=self.tare or "none").points())

@@ -1,6 +1,6 @@
 """What is asked about a machine and the channels of its log: one table for the terminal and for the app.
 
-Each question is a key of a table of the machine's file or of ``hersey.toml``; what can be answered is what
+Each question is a key of a table of the machine file or of ``hersey.toml``; what can be answered is what
 the reader of that file takes, in its words.
 """
 
@@ -95,7 +95,7 @@ class Question:
         """
         text = text.strip()
         if not text:
-            raise ParameterError(f"{self.field} is blank")
+            raise ParameterError(f"{self.field} is empty")
         if self.uncertain:
             return self._uncertain(text)
         if self.field == "viscosities":
@@ -121,7 +121,7 @@ class Question:
         pairs = [[part.strip() for part in pair.split(":")] for pair in text.split(",")]
         if not all(len(pair) == 2 for pair in pairs):
             raise ParameterError(
-                f"viscosities is '{text}': write temperature and viscosity, as '{self.example}'"
+                f"viscosities is '{text}'. Write temperature and viscosity, e.g. '{self.example}'"
             )
         kinematic = False
         for hot, thick in pairs:
@@ -134,7 +134,7 @@ class Question:
                     parse("viscosity", thick)
         models = [name for name, points in MODELS.items() if points == len(pairs)]
         if not models:
-            raise ParameterError(f"viscosities are {len(pairs)}: two or three temperatures make a law")
+            raise ParameterError(f"{len(pairs)} points of viscosity are given, but a law needs two or three")
         model = "walther" if kinematic and "walther" in models else models[0]
         return {self.key: pairs, "lubricant.model": model}
 
@@ -167,7 +167,7 @@ MACHINE = (
         "11 N/mm", "N/mm", "k", needed=True, first=True, uncertain=True,
     ),
     Question(
-        "drivetrain", "mass", "all that moves with the belt, at the belt: the motor too",
+        "drivetrain", "mass", "all that moves with the belt, including the motor, at the belt",
         "11 kg", "kg", "m", needed=True, first=True, uncertain=True,
     ),
     Question(
@@ -175,21 +175,21 @@ MACHINE = (
         "15 mm", "mm", "R", needed=True, first=True,
     ),
     Question(
-        "drivetrain", "stick_speed", "below which the belt sticks; nobody measures it: a range is an answer",
+        "drivetrain", "stick_speed", "the belt sticks below it; rarely measured, so a range is fine",
         "0.1 mm/s to 1 mm/s", "mm/s", "", needed=True, first=True, uncertain=True,
     ),
     Question(
         "drivetrain", "stick_speed_temperature",
-        "at which that holds; without it the reference temperature of the fit", "180 degC", "degC",
+        "temperature of the stick speed; default: reference temperature of the fit", "180 degC", "degC",
     ),
     Question("limits", "nip_load", "load that presses the roll on the heater", "300 N", "N", "N", first=True),
-    Question("limits", "motor_torque", "greatest torque of the motor, at the roll", "1 N*m", "N*m"),
+    Question("limits", "motor_torque", "maximum torque of the motor, at the roll", "1 N*m", "N*m"),
     Question("limits", "roll_friction", "friction coefficient of the belt on the roll", "0.6", "", "µ"),
-    Question("limits", "acceleration", "greatest of the drive, at the belt", "500 mm/s^2", "mm/s^2"),
-    Question("limits", "speed", "greatest of the drive, at the belt", "400 mm/s", "mm/s"),
+    Question("limits", "acceleration", "maximum of the drive, at the belt", "500 mm/s^2", "mm/s^2"),
+    Question("limits", "speed", "maximum of the drive, at the belt", "400 mm/s", "mm/s"),
     Question("contact", "rubber_thickness", "rubber on the roll", "3.5 mm", "mm", "h", needed=True),
     Question(
-        "contact", "modulus", "Young's modulus of the rubber when warm", "0.65 MPa", "MPa", "E", needed=True
+        "contact", "modulus", "Young's modulus of the warm rubber", "0.65 MPa", "MPa", "E", needed=True
     ),
     Question("contact", "poisson_ratio", "Poisson's ratio of the rubber, up to 0.5", "0.48", needed=True),
     Question("contact", "length", "of the nip, along the roll", "220 mm", "mm", "L", needed=True),
@@ -203,57 +203,57 @@ MACHINE = (
     ),
     Question("lubricant", "pressure_viscosity", "pressure-viscosity coefficient", "20 GPa^-1", "GPa^-1"),
     Question(
-        "rest", "torque", "what the drive takes without film and contact, at the roll",
+        "rest", "torque", "no-load torque (without film and contact), at the roll",
         "180 mN*m", "mN*m", needed=True,
     ),
 )  # fmt: skip
 
 #: What is asked of each operating point.
 POINT = (
-    Question("points", "name", "what this state of the machine is called", "full speed"),
+    Question("points", "name", "name of this operating point", "full speed"),
     Question("points", "speed", "of the belt", "200 mm/s", "mm/s", needed=True, first=True),
     Question("points", "temperature", "of the belt", "180 degC", "degC", needed=True, first=True),
 )
 
 #: What is asked about a log, for ``hersey.toml``.
 MAPPING = (
-    Question("torque", "channel", "channel of the torque", "Drive torque", needed=True, first=True),
+    Question("torque", "channel", "torque channel", "Drive torque", needed=True, first=True),
     Question("torque", "unit", "its unit", "N*m", needed=True, first=True),
-    Question("torque", "sign", "-1 turns it", "-1"),
-    Question("torque", "gear_ratio", "turns of the sensor's shaft for each turn of the roll", "12.5"),
+    Question("torque", "sign", "-1 flips it", "-1"),
+    Question("torque", "gear_ratio", "turns of the sensor shaft per turn of the roll", "12.5"),
     Question("torque", "efficiency", "of those gears", "0.9"),
     Question("torque", "tare", "what the sensor shows without load", "4 mN*m", "mN*m"),
-    Question("torque", "motor_constant", "if the channel is the motor's current", "35 mN*m/A", "mN*m/A"),
-    Question("speed", "channel", "channel of the speed", "Drive speed", needed=True, first=True),
+    Question("torque", "motor_constant", "if the channel is the motor current", "35 mN*m/A", "mN*m/A"),
+    Question("speed", "channel", "speed channel", "Drive speed", needed=True, first=True),
     Question("speed", "unit", "its unit", "rpm", needed=True, first=True),
-    Question("speed", "sign", "-1 turns it", "-1"),
-    Question("speed", "gear_ratio", "turns of its shaft for each turn of the roll", "12.5"),
-    Question("temperature", "channel", "channel of the temperature", "Temperature", first=True),
+    Question("speed", "sign", "-1 flips it", "-1"),
+    Question("speed", "gear_ratio", "turns of its shaft per turn of the roll", "12.5"),
+    Question("temperature", "channel", "temperature channel", "Temperature", first=True),
     Question("temperature", "unit", "its unit", "degC", first=True),
     Question("temperature", "offset", "film minus reading", "-1.5 K", "K"),
     Question("temperature", "time_constant", "lag of the sensor", "4 s", "s"),
-    Question("time", "channel", "channel of the time", "Time", first=True),
+    Question("time", "channel", "time channel", "Time", first=True),
     Question("time", "unit", "its unit", "s", first=True),
-    Question("time", "every", "time between rows, where no channel is a clock", "2 ms", "ms"),
+    Question("time", "every", "time between rows, if there is no time channel", "2 ms", "ms"),
     Question("radius", "value", "at which a friction force acts", "25 mm", "mm"),
-    Question("load", "value", "normal load: a friction coefficient needs it", "50 N", "N"),
+    Question("load", "value", "normal load; needed for a friction coefficient", "50 N", "N"),
 )
 
 #: Titles of the tables, as the files have them above.
 TITLES = {
-    "drivetrain": "What the log cannot tell: the drivetrain, every value with its unit.",
-    "limits": "What the machine can bear: for the map and for profiles of drive speed.",
+    "drivetrain": "What the log cannot show: the drivetrain. Give every value with its unit.",
+    "limits": "Limits of the machine, for the map and for start-up profiles.",
     "contact": "The nip, for the film: a rubber-covered roll presses the belt on the heater.",
-    "lubricant": "What is in the nip: points of the data sheet.",
-    "rest": "What the drive takes besides film and contact (bearings, gears), at the roll.",
-    "uncertainty": "How far these are known: a share (95 % of the values within it) or a range.",
-    "points": "States of the machine that the map names.",
-    "torque": "Channels: name and unit as the log has them; the rest says what lies between sensor and roll.",
+    "lubricant": "The lubricant: points of the data sheet.",
+    "rest": "No-load torque without film and contact (bearings, gears), at the roll.",
+    "uncertainty": "Uncertainties: a share (95 % of the values lie within it) or a range.",
+    "points": "Operating points to judge.",
+    "torque": "Channels: name and unit as in the log. The rest describes the path from sensor to roll.",
     "speed": "",
     "temperature": "",
     "time": "",
-    "radius": "Where the log holds a friction force: the radius at which it acts.",
-    "load": "Where the log holds a friction coefficient: the normal load.",
+    "radius": "For a friction force in the log: the radius at which it acts.",
+    "load": "For a friction coefficient in the log: the normal load.",
 }
 BY_KEY: Mapping[str, Question] = {q.key: q for q in (*MACHINE, *POINT, *MAPPING)}
 

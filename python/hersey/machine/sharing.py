@@ -54,7 +54,7 @@ class BoundaryTable(Table):
             return BoundaryFriction(self.friction)
         if self.at is None:
             raise ParameterError(
-                'has a temperature_slope and no temperature from which it counts: add at = "180 degC"'
+                'has temperature_slope but no reference temperature. Add e.g. at = "180 degC"'
             )
         return BoundaryFriction(self.friction, self.friction * self.temperature_slope, self.at)
 

@@ -34,7 +34,9 @@ def read_temperature_profile(path: str | Path) -> Schedule:
     _refuse_long_text(path)
     with open_columns(path) as opened:
         if opened.headless:
-            raise UnreadableLogError(f"{path.name}: it needs a line of names and at least one point")
+            raise UnreadableLogError(
+                f"{path.name}: a temperature profile needs a header line and at least one point"
+            )
         temperature = _column(opened, "temperature")
         times = opened.clock(temperature)
         if times is None:
@@ -44,7 +46,7 @@ def read_temperature_profile(path: str | Path) -> Schedule:
         else:
             values = opened.numbers(temperature, complete=True)[0]
     if values.size > MOST_POINTS:
-        raise ParameterError(f"{path.name}: {values.size} points, but {MOST_POINTS} are possible: thin it")
+        raise ParameterError(f"{path.name}: {values.size} points are too many. Keep at most {MOST_POINTS}")
     try:
         return Schedule(times, _in_si(path.name, "temperature", temperature, values))
     except ParameterError as error:
@@ -55,18 +57,18 @@ def _refuse_long_text(path: Path) -> None:
     with suppress(OSError):  # reading it says what is wrong
         if path.is_file() and path.stat().st_size > _MOST_BYTES and format_of(path) is None:
             raise ParameterError(
-                f"{path.name} is too long for a temperature profile: {MOST_POINTS} points are possible"
+                f"{path.name} is too long for a temperature profile. Keep at most {MOST_POINTS} points"
             )
 
 
 def _column(opened: OpenColumns, role: str) -> Column:
     named = [column for column in opened.columns if column.name.lower().startswith(role)]
-    example = f"write '{role} [{_UNITS[role]}]' in the first line"
+    example = f"Write '{role} [{_UNITS[role]}]' in the first line"
     if len(named) != 1:
         what = "more than one column" if named else "no column"
-        raise ChannelError(f"{opened.file}: {what} named {role}: {example}")
+        raise ChannelError(f"{opened.file}: {what} is named {role}. {example}")
     if not named[0].unit:
-        raise ChannelError(f"{opened.file}: {role} has no unit: {example}")
+        raise ChannelError(f"{opened.file}: {role} has no unit. {example}")
     return named[0]
 
 

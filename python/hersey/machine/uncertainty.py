@@ -30,14 +30,15 @@ class Uncertainty:
     def __post_init__(self) -> None:
         """Check that one of them is given, and is possible."""
         if (self.share is None) == (self.limits is None):
-            raise ParameterError("give either a share or limits")
+            raise ParameterError("give either share or limits")
         if self.share is not None and not 0 < self.share < 100:
             raise ParameterError(f"share is {self.share}: it must be greater than 0")
         if self.limits is not None:
             low, high = self.limits
             if not (np.isfinite([low, high]).all() and low < high and low * high > 0):
                 raise ParameterError(
-                    f"range {low:g} to {high:g}: the ends must ascend, both on one side of 0"
+                    f"range {low:g} to {high:g}: give the lower end first, and both ends on the same "
+                    "side of 0"
                 )
 
     def times(self, factor: float) -> Uncertainty:
@@ -71,15 +72,15 @@ def read_uncertainty(parameter: str, text: object) -> Uncertainty:
     (0.0001, 0.001)
     """
     if parameter not in OF_THE_BELT:
-        raise ParameterError(f"there is no such parameter: {', '.join(OF_THE_BELT)} are known")
+        raise ParameterError(f"there is no such parameter. Use one of {', '.join(OF_THE_BELT)}")
     if not isinstance(text, str):
-        raise ParameterError(f"it is {text!r}: write a string such as '10 %'")
+        raise ParameterError(f"it is {text!r}. Write a string such as '10 %'")
     share = re.fullmatch(r"\s*(?:±\s*|\+/-\s*)?([0-9.]+)\s*%\s*", text)
     if share:
         try:
             return Uncertainty(share=float(share[1]) / 100)
         except ValueError:
-            raise ParameterError(f"'{text}' is not a share: write '10 %'") from None
+            raise ParameterError(f"'{text}' is not a share. Write e.g. '10 %'") from None
     ends = re.split(r"\s+to\s+", text.strip())
     if len(ends) != 2:
         raise ParameterError(f"'{text}' is neither a share ('10 %') nor a range ('... to ...')")

@@ -1,4 +1,4 @@
-"""A machine's file and ``hersey.toml`` from answers, with comments that teach what was not answered."""
+"""A machine file and ``hersey.toml`` from answers, with comments that teach what was not answered."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ _COMMENTS = 32
 def machine_text(
     answers: Mapping[str, str], points: Sequence[Mapping[str, Any]] = (), others: Others | None = None
 ) -> str:
-    """Return a machine's file as text.
+    """Return a machine file as text.
 
     Parameters
     ----------
     answers
-        Answers by the key of their question; blank ones are left out.
+        Answers by the key of their question; blank ones are skipped.
     points
         Answers of each operating point by field: ``name``, ``speed``, ``temperature``; what else it holds
         is written as it is.
@@ -40,7 +40,7 @@ def machine_text(
     Examples
     --------
     >>> print(machine_text({"drivetrain.mass": "11 kg"}).splitlines()[3])
-    mass = "11 kg"                  # all that moves with the belt, at the belt: the motor too
+    mass = "11 kg"                  # all that moves with the belt, including the motor, at the belt
     """
     values = _values(answers)
     known = {key: values.pop(key) for key in list(values) if key.startswith("uncertainty.")}
@@ -146,7 +146,7 @@ def _values(answers: Mapping[str, str]) -> dict[str, Any]:
     values: dict[str, Any] = {}
     for key, text in answers.items():
         if key not in BY_KEY:
-            raise ParameterError(f"'{key}' is not asked")
+            raise ParameterError(f"there is no question '{key}'")
         if text.strip():
             values |= BY_KEY[key].values(text)
     return values
@@ -172,7 +172,7 @@ def _tables(
                 lines.append(_line(q.field, values[q.key], q.words))
             elif q.key in lacking:
                 lines.append(
-                    _line(q.field, "", f"write the {q.words.removeprefix('its ')}, as {_example(q)}")
+                    _line(q.field, "", f"write the {q.words.removeprefix('its ')}, e.g. {_example(q)}")
                 )
             else:
                 lines.append(f"# {_line(q.field, _example(q), q.words)}")

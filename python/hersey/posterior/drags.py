@@ -60,7 +60,7 @@ def drags_through(
     """
     surface, radius = model.surface, model.machine.roll_radius
     if surface.b is None or surface.temperature_range is None:
-        raise ParameterError("the log is isothermal: its drag does not vary with temperature")
+        raise ParameterError("the log is isothermal, so its drag does not depend on temperature")
     low, high = surface.temperature_range
     low = low if coldest is None else min(coldest, low)
     levels = np.linspace(low, high, _LEVELS)

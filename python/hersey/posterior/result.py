@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from hersey.arrays import BoolArray, FloatArray, refuse_without_xarray
 from hersey.damping.curves import LawWeight
 from hersey.damping.curves.words import weight_lines
+from hersey.damping.estimate import rounded
 from hersey.errors import ParameterError
 from hersey.posterior.drives import DriveModel, Drives
 from hersey.posterior.evidence import Evidence
@@ -87,13 +88,13 @@ class Convergence(Record):
 
     also_stated = ("converged",)
 
-    ratio: Annotated[float, Means("greatest ratio of their quantiles of V*")]
+    ratio: Annotated[float, Means("largest ratio of their quantiles of V*")]
     width: Annotated[float, Means("ratio of the outer quantiles of all")]
-    accepted: Annotated[float, Means("share of moves accepted in the last stage")]
-    distinct: Annotated[float, Means("share of draws that no other equals")]
+    accepted: Annotated[float, Means("fraction of moves accepted in the last stage")]
+    distinct: Annotated[float, Means("fraction of distinct draws")]
     stages: int
     log_evidence: tuple[float, ...]
-    counted: Annotated[float, Means("degree to which the evidence is in, 1 where all of it is")]
+    counted: Annotated[float, Means("degree to which the evidence is included; 1 is all of it")]
 
     @property
     def converged(self) -> bool:
@@ -104,10 +105,10 @@ class Convergence(Record):
 
 @dataclass(frozen=True, repr=False)
 class Posterior(Result):
-    """Draws of curve, closure and drive that dwells and evidence allow.
+    """Draws of drag curve, closure and drive, given the dwells and other evidence.
 
-    ``temperature`` (K; None if isothermal) is that of the headline. ``laws`` tells of the curves,
-    ``evidence`` what counted beyond the dwells, ``warnings`` what did not, and why.
+    ``temperature`` (K; None if isothermal) is that of the headline. ``laws`` are the drag curves by weight,
+    ``evidence`` what was used besides the dwells, ``warnings`` what was not, and why.
     """
 
     model: DriveModel = field(repr=False)
@@ -217,7 +218,7 @@ class Posterior(Result):
         }
 
     def dataset(self) -> xr.Dataset:
-        """Return the draws as ArviZ takes them: dimensions ``chain`` and ``draw``, units as attributes."""
+        """Return the draws in the format of ArviZ: dimensions ``chain`` and ``draw``, units as attributes."""
         refuse_without_xarray("dataset()")
         import xarray as xr
 
@@ -245,7 +246,7 @@ class Posterior(Result):
         )
 
     def to_dict(self) -> dict[str, Any]:
-        """Return what the posterior says, in SI; the draws are in `dataset`."""
+        """Return the posterior in SI; the draws are in `dataset`."""
         value, low, high = self.fold_interval(self.temperature)
         return json_record(
             {
@@ -284,7 +285,7 @@ class Posterior(Result):
         """Return V* with its interval."""
         value, low, high = (1e3 * v for v in self.fold_interval(self.temperature))
         where = "" if self.temperature is None else f" at {celsius(self.temperature):.0f} degC"
-        return f"V*{where}: {value:.3g} mm/s, 95 %: {low:.3g} to {high:.3g}"
+        return f"V*{where}: {value:.3g} mm/s [{low:.3g}, {high:.3g}]"
 
     def summary(self) -> str:
         """Return the posterior as text."""
@@ -310,8 +311,8 @@ def edges_at(model: DriveModel, drives: Drives, kelvin: float | None, *, threads
     if np.mean(lost) > _LOST:
         why = f" ({found.failures[0].error})" if found.failures else ""
         raise ParameterError(
-            f"V* of {100 * np.mean(lost):.0f} % of the draws cannot be computed{why}: "
-            "check stick speed, stiffness and mass"
+            f"V* cannot be computed for {100 * np.mean(lost):.0f} % of the draws{why}. Check stick "
+            "speed, stiffness and mass"
         )
     transition, fold, holding = (np.where(lost, np.nanmax(each), each) for each in columns)
     return Edges(transition, fold, holding, found.stalls.astype(bool), turns_by)
@@ -336,15 +337,15 @@ def _lines(found: Posterior) -> list[str]:
     ]
     for name, (value, low, high) in found.intervals().items():
         unit, factor = _SHOWN[name]
-        shown = [f"{factor * v:.3g}" for v in (value, low, high)]
-        lines.append(f"{name.replace('_', ' '):14s} {shown[0]} [{shown[1]}, {shown[2]}] {unit}".rstrip())
+        shown = rounded(factor * value, factor * low, factor * high, unit)
+        lines.append(f"{name.replace('_', ' '):14s} {shown}")
     lines += ["", "drag curves by weight", *weight_lines(found.laws)]
     counted = [type(each).__name__ for each in found.evidence]
-    lines += ["", f"evidence beyond the dwells: {', '.join(counted) or 'none'}"]
+    lines += ["", f"evidence besides the dwells: {', '.join(counted) or 'none'}"]
     lines += [f"  not used: {each}" for each in found.warnings]
     c = found.convergence
-    state = "converged" if c.converged else "NOT converged: use more draws"
-    agreement = f"quantiles of V* of {found.chains} populations within {100 * (c.ratio - 1):.0f} %"
+    state = "converged" if c.converged else "NOT converged, use more draws"
+    agreement = f"quantiles of V* of {found.chains} populations agree within {100 * (c.ratio - 1):.0f} %"
     lines.append(f"{len(found.drives)} draws, seed {found.seed}; {state} ({agreement})")
     return lines
 

@@ -35,7 +35,7 @@ CHAINS = 2
 #: Misfit (a chi-square) from which evidence contradicts dwells and machine file together, and does not count:
 #: of figures; of an outcome, which most draws then do not show.
 CONTRADICTS, UNLIKE = 20.0, 5.0
-#: Rounds in which evidence is left out, the worst first.
+#: Rounds in which evidence is excluded, the worst first.
 _ROUNDS = 3
 #: Relative standard error of a static friction that is stated without one.
 _STATED_STATIC = 0.05
@@ -76,7 +76,7 @@ def posterior(
     temperature: float | None = None,
     **sampling: Unpack[Sampling],
 ) -> Posterior:
-    """Return draws of drag curve, closure, stick speed, stiffness and mass that all evidence allows.
+    """Return draws of drag curve, closure, stick speed, stiffness and mass, given all evidence.
 
     Parameters
     ----------
@@ -243,7 +243,7 @@ def _seen(
         if surface.b is not None and each.temperature is None:
             words = Warning(
                 "evidence without temperature",
-                "it has no temperature, and the fit needs one",
+                "it has no temperature, but the fit needs one",
                 severity="watch",
                 where=each.source,
             )

@@ -183,8 +183,8 @@ def _of_stretch(run: Run, stretch: _Stretch, machine: Machine, zero: float) -> F
 def _of_another_drive(where: str, times: float) -> Warning:
     return Warning(
         "stick-slip of another drive",
-        "the force of this stick-slip grows {times:.1f} times as fast as the stiffness of the machine "
-        "allows, so it is of another drive",
+        "its force rises {times:.1f} times as fast as the machine's stiffness allows, so another "
+        "drive was recorded",
         severity="watch",
         where=where,
         times=times,

@@ -62,12 +62,12 @@ class Study(Findings, Result):
     def summary(self) -> str:
         """Return decision, comparison, verdict, warnings and fit, as text."""
         decision = self.decision
-        interval = f" ({decision.interval})" if decision.interval else ""
-        lines = [f"{decision.instruction}{interval}. {decision.otherwise}"]
+        said = (decision.instruction, decision.interval[:1].upper() + decision.interval[1:])
+        lines = [f"{'. '.join(filter(None, said))}. {decision.otherwise}"]
         lines += [f"{decision.measurement.text}."] if decision.measurement is not None else []
         lines += [f"{point.name}: {point.words}" for point in decision.points]
         if self.comparison is not None:
-            lines.append(f"Against {self.comparison.names[0]}: {self.comparison.verdict}")
+            lines.append(f"Compared with {self.comparison.names[0]}: {self.comparison.verdict}")
         lines += [*self.verdict, *(f"- {warning.sentence}" for warning in self.warnings)]
         return "\n".join([*lines, self.surface.summary()])
 
@@ -95,14 +95,14 @@ def study(
     machine_file: Path | None = None,
     step: Step = lambda _what: None,
 ) -> Study:
-    """Fit the dwells of a log, judge the regime, and work out what its machine does.
+    """Fit the dwells of a log, judge the regime, and predict the behaviour of the machine.
 
     Parameters
     ----------
     machine
         The machine, or its file.
     against
-        Dwells of an earlier log, which this one is compared with as `hersey.compare` does (this is B).
+        Dwells of an earlier log (A) to compare with this one (B), as by `hersey.compare`.
     traces
         Recordings of the machine that show starts from rest or stick-slip: evidence of V*.
     temperature_scale
@@ -117,7 +117,7 @@ def study(
     InsufficientDataError
         If the points cannot determine the surface, or share nothing with those of the other log.
     ParameterError
-        If a file is in both logs, the machine's file is wrong, or a log is given in the place of its points.
+        If a file is in both logs, the machine file is wrong, or a log is given in the place of its points.
 
     Examples
     --------
@@ -177,7 +177,7 @@ def _compared(points: SteadyPoints, against: SteadyPoints) -> LogComparison:
     here = {file.sha256 for file in points.log.files}
     for file in against.log.files:
         if file.sha256 in here:
-            raise ParameterError(f"{file.name} is in both logs: name another to compare this one with")
+            raise ParameterError(f"{file.name} is in both logs. Name another log to compare with")
     names = against.log.title, points.log.title
     if names[0] == names[1]:
         names = f"{names[0]} (earlier)", names[1]

@@ -62,8 +62,8 @@ class SharedLoad:
     def warnings(self, names: Sequence[str]) -> list[Warning]:
         """Return both as warnings, for a page; names of the points."""
         words = (
-            "the film is {ratio:.3g} of the roughness (lambda), asperities carry {share:.2%} of the load, "
-            "and film and asperities take {torque:.3g mN m}"
+            "film thickness is {ratio:.3g} of the roughness (lambda), asperities carry {share:.2f %} "
+            "of the load, and the torque of film and asperities is {torque:.3g mN m}"
         )
         columns = (self.film.lambda_ratio, self.film.share, self.film.torque)
         points = [

@@ -101,15 +101,16 @@ class FilmPart(Part):
     lubricant: Lubricant
     nip: NipPart
     laws: list[LawPart]
-    film: FilmStatesPart = Field(description="at the points of interest")
+    film: FilmStatesPart = Field(description="film at the points of interest")
     measured: MeasuredFilmPart | None = None
     exponents: VerdictPart | None = None
     verdict: str = ""
     contradicted: bool = Field(default=False, description="the log excludes the film of this nip")
-    mixed: MixedPart | None = Field(default=None, description="who carries what, at the points")
-    transition: ContactTransition | None = Field(default=None, description="where drag is least")
+    mixed: MixedPart | None = Field(default=None, description="load sharing at the points")
+    transition: ContactTransition | None = Field(default=None, description="where torque is lowest")
     warnings: list[Warning] = Field(
-        default=[], description="what does not fit, the farthest off first, then notes and those of the log"
+        default=[],
+        description="what disagrees, the largest disagreement first, then remarks and warnings of the log",
     )
     points: list[FilmPoint] = Field(default=[], description="points of interest on the regime chart")
     dwells: list[FilmPoint] = Field(default=[], description="dwells on the regime chart")

@@ -50,7 +50,7 @@ def simulation(found: Behaviour) -> SimulationPart:
     slow = max(SIMULATED_SPEED * turn, 1.05 * drag.stick_speed)
     roll = slow / found.posterior.model.machine.roll_radius
     title = (
-        f"This machine{at}, driven at {rpm(roll):.3g} rpm, {100 * slow / turn:.0f} % of its transition speed"
+        f"This machine{at}, driven at {rpm(roll):.3g} rpm ({100 * slow / turn:.0f} % of its transition speed)"
     )
     return _simulated(train, drag, slow, title)
 

@@ -11,7 +11,7 @@ from hersey.arrays import FloatArray, IntArray
 def kept(values: FloatArray, points: int, known: FloatArray | None = None) -> IntArray:
     """Return the indices of about so many samples: the least and the greatest of each stretch, and the ends.
 
-    Samples that are not finite are left out, and those where ``known`` is not.
+    Samples that are not finite are excluded, and those where ``known`` is not.
     """
     finite = np.isfinite(values) if known is None else np.isfinite(values) & np.isfinite(known)
     good = np.flatnonzero(finite)

@@ -22,18 +22,18 @@ _AGREES = 2.0
 
 
 class TorqueBudgetPart(Part):
-    """Parts of the torque, N m at rad/s, at one temperature by the machine's file; and the dwells."""
+    """Parts of the torque, N m at rad/s, at one temperature by the machine file; and the dwells."""
 
     temperature: float = Field(description="K, of the hottest dwells")
     speed: Numbers = Field(description="shape (speeds,)")
-    rest: Numbers = Field(description="what the drive takes besides, shape (speeds,)")
-    contact: Numbers = Field(description="asperities, shape (speeds,)")
-    shear: Numbers = Field(description="film sheared over the nip, shape (speeds,)")
+    rest: Numbers = Field(description="no-load torque, shape (speeds,)")
+    contact: Numbers = Field(description="asperity contact, shape (speeds,)")
+    shear: Numbers = Field(description="shear of the film, shape (speeds,)")
     inlet: Numbers = Field(description="inlet and pressure of the film, shape (speeds,)")
-    measured_speed: Numbers = Field(description="of the dwells there")
-    measured_torque: Numbers = Field(description="whole torque of the dwells there")
+    measured_speed: Numbers = Field(description="of the dwells at this temperature")
+    measured_torque: Numbers = Field(description="whole torque of these dwells")
     ratio: tuple[float, float, float] = Field(
-        description="measured over predicted torque of all dwells: least, geometric mean, largest"
+        description="measured / predicted torque over all dwells: minimum, geometric mean, maximum"
     )
     text: list[str] = Field(description="in sentences")
 
@@ -82,11 +82,10 @@ def _shares(mixed: MixedContact, points: SteadyPoints, speed: FloatArray, level:
     parts = []
     for i, whole in enumerate((rest + state.torque).tolist()):
         film = float(state.shear_torque[i] + state.rolling_torque[i])
-        shares = ((film, "film"), (float(state.boundary_torque[i]), "contact"), (float(rest[i]), "rest"))
-        listed = ", ".join(f"{name} {torque / whole:.0%}" for torque, name in shares)
+        shares = ((film, "film"), (float(state.boundary_torque[i]), "contact"), (float(rest[i]), "no-load"))
+        listed = ", ".join(f"{name} {100 * torque / whole:.0f} %" for torque, name in shares)
         parts.append(f"{1e3 * whole:.3g} mN m at {rpm(float(speed[i])):.3g} rpm ({listed})")
-    lead = "By the machine's file film, contact and the no-load torque take"
-    return f"{lead} {'; '.join(parts)}, at {celsius(level):.0f} degC."
+    return f"Torque predicted at {celsius(level):.0f} degC by the machine file: {'; '.join(parts)}."
 
 
 def _agreement(ratio: tuple[float, float, float]) -> str:
@@ -94,8 +93,8 @@ def _agreement(ratio: tuple[float, float, float]) -> str:
     low, mean, high = ratio
     agrees = low > 1 / _AGREES and high < _AGREES
     return (
-        f"Measured torque is {mean:.2f} times that, {low:.2f} to {high:.2f} times by dwell"
-        f"{'' if agrees else ': what the file states does not make this log'}."
+        f"Measured torque is {mean:.2f} times that ({low:.2f} to {high:.2f} for single dwells)"
+        f"{'' if agrees else ', so the machine file does not describe this log'}."
     )
 
 
@@ -119,14 +118,14 @@ def _paper(mixed: MixedContact, speed: float, level: float) -> list[str]:
     )
     soft = float(_at(mixed, np.array([speed]), np.array([level])).torque[0])
     return [
-        f"Eq. 9 of the paper gives {hard:.3g} N m at {rpm(speed):.3g} rpm, {hard / soft:.2g} times film "
-        "and contact: it is for hard faces, between which the film is far thinner, and no flooded film of a "
-        "soft nip makes such a level."
+        f"Eq. 9 of the paper gives {hard:.3g} N m at {rpm(speed):.3g} rpm, {hard / soft:.2g} times "
+        "film and contact. It is for hard surfaces; no flooded film in a soft nip reaches this "
+        "torque."
     ]
 
 
 def _rest(points: SteadyPoints, speed: FloatArray, kelvin: FloatArray) -> FloatArray:
-    """What was taken off as the no-load torque, N m."""
+    """What was subtracted as the no-load torque, N m."""
     return np.zeros_like(speed) if points.rest is None else points.rest.torque(speed, kelvin)
 
 

@@ -8,6 +8,7 @@ from typing import Literal
 import numpy as np
 
 from hersey import _core
+from hersey.damping.estimate import rounded
 from hersey.errors import ParameterError
 from hersey.lubrication.contact import Contact
 from hersey.lubrication.film import shear_heating
@@ -15,6 +16,7 @@ from hersey.lubrication.film_result import REGIMES, Film
 from hersey.lubrication.lubricant import Lubricant
 from hersey.machine.machine import Machine
 from hersey.schema.warning import Warning
+from hersey.units import rpm
 from hersey.verdict.contact_verdict import Verdict, agrees
 from hersey.verdict.evidence import MeasuredFilm
 from hersey.verdict.transition import ContactTransition
@@ -81,8 +83,8 @@ def _on_thickening(lubricant: Lubricant, film: Film) -> Iterator[Warning]:
     if thickening < MIN_THICKENING:
         yield Warning(
             "no thickening",
-            "pressure does not thicken this lubricant in this nip (alpha p = {thickening:.2g}), so Eqs. 5, 9 "
-            "and 10 of the paper do not apply",
+            "pressure does not thicken this lubricant here (alpha p = {thickening:.2g}), so Eqs. 5, "
+            "9 and 10 of the paper do not apply",
             thickening=thickening,
         )
 
@@ -98,8 +100,8 @@ def _thin(least: float, kind: Literal["boundary", "mixed"], bound: float) -> War
     """A film that by convention surfaces pierce; below the lower band it does not fit."""
     return Warning(
         f"{kind} lubrication",
-        "predicted lambda ratio down to {ratio:.2g} (minimum film over composite rms roughness): by "
-        "convention {lubrication} lubrication below {bound:g}",
+        "predicted lambda ratio (minimum film over composite rms roughness) falls to {ratio:.2g}; "
+        "below {bound:g} lubrication is {lubrication} by convention",
         severity="watch" if kind == "boundary" else "note",
         ratio=least,
         lubrication=kind,
@@ -111,7 +113,7 @@ def _thin(least: float, kind: Literal["boundary", "mixed"], bound: float) -> War
 def _both(machine: Machine) -> tuple[Contact, Lubricant]:
     if machine.contact is None or machine.lubricant is None:
         missing = "contact" if machine.contact is None else "lubricant"
-        raise ParameterError(f"the machine has no [{missing}]: state it in machine.toml")
+        raise ParameterError(f"the machine has no [{missing}]. Add it to machine.toml")
     return machine.contact, machine.lubricant
 
 
@@ -124,8 +126,8 @@ def _check_statements(machine: Machine, contact: Contact) -> Iterator[Warning]:
     if abs(contact.roll_radius / machine.roll_radius - 1.0) > _SAME:
         yield Warning(
             "two roll radii",
-            "[contact] roll_radius is {contact:.4g mm}, [drivetrain] roll_radius {drivetrain:.4g mm}: one "
-            "roll has one radius",
+            "[contact] roll_radius is {contact:.4g mm}, but [drivetrain] roll_radius is "
+            "{drivetrain:.4g mm}. Use the same value in both",
             severity="act",
             contact=contact.roll_radius,
             drivetrain=machine.roll_radius,
@@ -135,7 +137,8 @@ def _check_statements(machine: Machine, contact: Contact) -> Iterator[Warning]:
     if load is not None and abs(contact.load / load - 1.0) > _SAME:
         yield Warning(
             "two loads",
-            "[contact] load is {contact:.4g} N, [limits] nip_load {limits:.4g} N: say which",
+            "[contact] load is {contact:.4g} N, but [limits] nip_load is {limits:.4g} N. Use the "
+            "same value in both",
             severity="act",
             contact=contact.load,
             limits=load,
@@ -150,7 +153,7 @@ def _check_contact(contact: Contact, film: Film) -> Iterator[Warning]:
         ratio = nip.paper_width / contact.rubber_thickness
         yield Warning(
             "beyond the regression of the nip",
-            "nip/h = {ratio:.2g} is outside the range of the regression of Eq. 8, {low:g} to {high:g}: it is "
+            "nip/h = {ratio:.2g} is outside the range of Eq. 8, {low:g} to {high:g}, which is "
             "{error:+.0f %} off the solved nip",
             severity="watch",
             ratio=ratio,
@@ -162,15 +165,15 @@ def _check_contact(contact: Contact, film: Film) -> Iterator[Warning]:
     if nip.strain > MAX_STRAIN:
         yield Warning(
             "large strain",
-            "the rubber is strained by {strain:.0f %} (a^2/(2 R h)): linear elasticity ends near {limit:.0f "
-            "%}",
+            "the rubber strain (a^2/(2 R h)) is {strain:.0f %}; linear elasticity holds only up to "
+            "about {limit:.0f %}",
             severity="watch",
             strain=nip.strain,
             limit=MAX_STRAIN,
             off=nip.strain / MAX_STRAIN,
         )
     if not np.all(film.inlet_short) and np.any(film.regime == REGIMES.index("isoviscous-elastic")):
-        words = "the inlet of the film is not short against rubber and nip: the soft law is rough there"
+        words = "the inlet is not short compared with rubber and nip, so the soft-EHL law is only approximate"
         yield Warning("long inlet", words, severity="watch", off=1.0)
     if contact.roughness is not None:
         least = float(film.lambda_ratio(contact.roughness).min())
@@ -198,7 +201,7 @@ def _check_lubricant(lubricant: Lubricant, film: Film) -> Iterator[Warning]:
             factor = float(correction.factor.min())
             yield Warning(
                 "correction beyond its range",
-                "{correction}: the factor (down to {factor:.3g}) is outside the validity of its rule",
+                "{correction}: the factor (as low as {factor:.3g}) is outside the valid range of its formula",
                 severity="watch",
                 correction=name,
                 factor=factor,
@@ -208,7 +211,7 @@ def _check_lubricant(lubricant: Lubricant, film: Film) -> Iterator[Warning]:
         sliding, kelvin = 2.0 * film.entrainment_speed, film.temperature
         rise = float(np.max(shear_heating(lubricant, sliding_speed=sliding, temperature=kelvin)))
         if rise > _WARM:
-            words = "shear warms the film by up to {rise:.2g} K over its walls: it is thinner than stated"
+            words = "shear heats the film by up to {rise:.2g} K above its walls, so it is thinner than stated"
             yield Warning("shear heating", words, severity="watch", rise=rise, off=rise / _WARM)
 
 
@@ -218,8 +221,8 @@ def _check_measured(measured: MeasuredFilm, contact: Contact) -> Iterator[Warnin
     if not 1 / _FAR < factor < _FAR:
         yield Warning(
             "torque off",
-            "measured torque is {factor:.3g} times the predicted one: viscosity, nip or what the torque "
-            "holds besides the film is not as stated; the last of these moves exponents too",
+            "measured torque is {factor:.3g} times the prediction. Viscosity or nip is not as "
+            "stated, or torque contains more than the film, which also changes the exponents",
             severity="act",
             factor=factor,
             off=_apart(factor, 1.0) / _FAR,
@@ -230,8 +233,8 @@ def _check_measured(measured: MeasuredFilm, contact: Contact) -> Iterator[Warnin
             least = float(thin.min())
             yield Warning(
                 "measured film below roughness",
-                "the measured film is down to {ratio:.2g} of the roughness ({roughness:.2g um}) where torque "
-                "rises with speed: not thickness alone makes this drag",
+                "on the rising branch the measured film falls to {ratio:.2g} of the roughness "
+                "({roughness:.2g um}), so film thickness alone does not explain the torque",
                 severity="watch",
                 ratio=least,
                 roughness=contact.roughness or 0.0,
@@ -243,8 +246,8 @@ def _check_friction(highest: float, grip: float | None) -> Iterator[Warning]:
     if highest > MAX_FILM_FRICTION:
         yield Warning(
             "friction above a film",
-            "friction coefficient {friction:.2g} is not a fluid film: above {limit:g} surfaces touch, or "
-            "torque holds more than the nip's drag",
+            "friction coefficient {friction:.2g} is too high for a film. Above {limit:g}, surfaces "
+            "touch or torque contains more than the nip's drag",
             severity="act",
             friction=highest,
             limit=MAX_FILM_FRICTION,
@@ -253,7 +256,8 @@ def _check_friction(highest: float, grip: float | None) -> Iterator[Warning]:
     if grip is not None and highest > grip:
         yield Warning(
             "friction above the grip",
-            "friction coefficient {friction:.2g} exceeds that of belt on roll, {grip:g}: it would slip",
+            "friction coefficient {friction:.2g} exceeds that of belt on roll, {grip:g}, so the belt "
+            "would slip",
             severity="act",
             friction=highest,
             grip=grip,
@@ -267,7 +271,8 @@ def _check_exponents(says: Verdict) -> Iterator[Warning]:
     if says.contradicted:
         yield Warning(
             "exponent of speed",
-            "damping goes as speed to the power {shown}; the film of this nip gives {predicted:.2f}",
+            "the measured exponent of damping in speed is {shown}; the film of this nip predicts "
+            "{predicted:.2f}",
             severity="act",
             shown=str(c),
             exponent=c.value,
@@ -277,8 +282,8 @@ def _check_exponents(says: Verdict) -> Iterator[Warning]:
     if thermal is not None and thermal.estimable and not agrees(thermal, says.thermal_expected):
         yield Warning(
             "exponent of temperature",
-            "with temperature (K) damping goes to the power {shown}; the film of this lubricant predicts "
-            "{predicted:.2f}",
+            "the measured exponent of damping in temperature (K) is {shown}; the film of this "
+            "lubricant predicts {predicted:.2f}",
             severity="watch",
             shown=str(thermal),
             exponent=thermal.value,
@@ -300,17 +305,18 @@ def _check_transition(turn: ContactTransition) -> list[Warning]:
         found.append(
             Warning(
                 "transition",
-                "by the contact as stated drag falls nowhere at {temperature:.0f degC}, by the log it is "
-                "least at {measured:.3g rpm} [{low:.3g rpm}, {high:.3g rpm}]"
+                "at {temperature:.0f degC} the contact model has no torque minimum, but the log has "
+                "one at {shown}"
                 if nowhere
-                else "by the contact as stated drag is least at {temperature:.0f degC} at {speed:.3g rpm}, "
-                "by the log at {measured:.3g rpm} [{low:.3g rpm}, {high:.3g rpm}]",
+                else "at {temperature:.0f degC} torque is lowest at {speed:.3g rpm} in the contact model, "
+                "at {shown} in the log",
                 severity="watch",
                 temperature=kelvin,
                 speed=speed,
                 measured=measured,
                 low=low,
                 high=high,
+                shown=rounded(rpm(measured), rpm(low), rpm(high), "rpm"),
                 off=_NONE if nowhere else _reaches(*ends),
             )
         )

@@ -55,7 +55,7 @@ def contact_regimes(
             low=float(band.min()),
             high=float(band.max()),
             film="" if starved else row.film,
-            meaning="isoviscous film in a rubber nip: range of the local exponent of this contact, flooded",
+            meaning="isoviscous film in a rubber nip, flooded: range of the local exponent in this contact",
         )
         if row.name == SOFT
         else row
@@ -63,7 +63,7 @@ def contact_regimes(
     ]
     if starved:
         thin = damping_exponent(contact, lubricant, *at)
-        meaning = "the soft film of this contact, starved by its supply: range of the local exponent"
+        meaning = "soft film of this contact, starved by its supply: range of the local exponent"
         row = RegimeRow(STARVED, float(thin.min()), float(thin.max()), _SOFT_FILM, meaning)
         rows.insert([r.name for r in rows].index(SOFT), row)
     return tuple(rows)

@@ -158,26 +158,24 @@ def _text(
     """The verdict in words; ``excluded`` are films of theory that the log excludes, None if none."""
     lines = []
     if excluded is not None:
-        ours = f"{listed(excluded)}, alone or beside a constant torque"
-        films = ours if excluded else "every film of theory"
-        lines.append(f"Log and film theory contradict each other: the log excludes {films}.")
+        ours = f"{listed(excluded)}, alone or with a constant torque"
+        films = ours if excluded else "every film of the theory"
+        lines.append(f"Log and film theory disagree: the log excludes {films}.")
     lines += [
-        f"The regime chart puts this contact in the {held} regime, where damping goes as speed to the power "
-        f"{expected:.2f}; measured {c}."
+        f"By the regime chart this contact is {held}, and damping should vary as "
+        f"speed^{expected:.2f}; measured: {c}."
     ]
     if solved is not None:
-        lines.append(f"Solved numerically for this roll, the film gives the power {solved:.2f}.")
+        lines.append(f"A numerical solution for this roll gives {solved:.2f}.")
     if seen.named is None:
-        lines.append("The log alone names no regime.")
+        lines.append("From the log alone no regime can be named.")
     elif excluded is None:
-        lines.append("The measured exponent is the one of that regime.")
+        lines.append("The measured exponent agrees with that regime.")
     if held != "piezoviscous-elastic":
-        lines.append(
-            "Eq. 5 of the paper (Dowson-Higginson) does not apply to this contact, whatever the exponent."
-        )
+        lines.append("Eq. 5 of the paper (Dowson-Higginson) does not apply to this contact.")
     if thermal is not None:
         lines.append(
-            f"With temperature (K) damping goes to the power {thermal}; the film of this lubricant predicts "
+            f"The exponent of damping in temperature (K) is {thermal}; the film of this lubricant predicts "
             f"{thermal_expected:.2f}, {_agreement(thermal, thermal_expected)}."
         )
     return " ".join(lines)
@@ -186,7 +184,7 @@ def _text(
 def _agreement(measured: Estimate, expected: float) -> str:
     """Whether an exponent agrees with the one expected, errors of the sensors allowed for."""
     if not measured.estimable:
-        return "which these data do not test"
+        return "which these data cannot test"
     return "which agrees" if agrees(measured, expected) else "which disagrees"
 
 

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, repr=False)
 class MeasuredFilm(Result):
-    """What each dwell says of the film; arrays of shape (points,), SI.
+    """Film thickness measured by each dwell; arrays of shape (points,), SI.
 
     ``temperature`` is the one read; that of the film, to which viscosity belongs, is
     ``predicted.temperature``. ``low`` and ``high`` enclose ``thickness`` at 95 %: errors of torque and
@@ -67,12 +67,12 @@ class MeasuredFilm(Result):
         return "\n".join([*_dwell_lines(self), *_systematic_lines(self)])
 
     def headline(self) -> str:
-        """Return how many dwells, and the range of the film."""
+        """Return the number of dwells and the range of film thickness."""
         film = 1e6 * self.thickness
         return f"{film.size} dwells, measured film {film.min():.3g} to {film.max():.3g} um"
 
     def to_dict(self) -> dict[str, Any]:
-        """Return what each dwell says, and the predicted states, in SI."""
+        """Return the measured and the predicted film of each dwell, in SI."""
         return json_record({**vars(self), "predicted": self.predicted.states()})
 
     def to_frame(self) -> pl.DataFrame:
@@ -106,16 +106,16 @@ def measured_film(
     temperature: float | None = None,
     grip: float | None = None,
 ) -> MeasuredFilm:
-    """Return the film that the dwells measure, beside the predicted one.
+    """Return the measured film thickness at each dwell, with the predicted one.
 
     Parameters
     ----------
     points, surface
-        Of a log, and the surface fitted to it.
+        Steady points of a log, and the surface fitted to them.
     contact, lubricant
-        The nip and what is in it.
+        The nip and its lubricant.
     temperature
-        K, of an isothermal log.
+        K, for an isothermal log.
     grip
         Friction coefficient at which the belt slips on the roll.
 
@@ -164,7 +164,7 @@ def _temperatures(points: SteadyPoints, surface: DampingSurface, temperature: fl
     if surface.b is None or not np.isfinite(kelvin).all():
         if temperature is None:
             raise InsufficientDataError(
-                "the log holds no temperatures: give that of the film, "
+                "the log has no temperatures. Give that of the film, "
                 f"{Setting('temperature', flag='--at').to('180 degC', python='453.15')}"
             )
         kelvin = np.full(len(points), temperature)
@@ -213,7 +213,9 @@ def _dwell_lines(measured: MeasuredFilm) -> list[str]:
             f"{1e6 * film.central[i] * film.factor[i]:10.3g} {measured.friction[i]:9.3g} "
             f"{1e6 * measured.hersey_number[i]:11.3g} {measured.sommerfeld_number[i]:10.3g}"
         )
-    lines.append("  measured film eta A/B, A the nip, rolling as predicted; U sliding speed, p mean pressure")
+    lines.append(
+        "  measured film: eta A/B with nip area A and rolling as predicted; U sliding speed, p mean pressure"
+    )
     lines.append("  of the nip; all dwells: --json" if way_in() == "terminal" else "  of the nip")
     return lines
 
@@ -222,11 +224,13 @@ def _systematic_lines(measured: MeasuredFilm) -> list[str]:
     lines = []
     if measured.systematic > 1:
         lines.append(
-            f"  intervals hold a common factor {measured.systematic:.3g} for viscosity and nip as stated"
+            f"  intervals include a common factor {measured.systematic:.3g} for viscosity and nip, as stated"
         )
     else:
-        lines.append("  intervals leave out what is unknown of viscosity and nip: state their uncertainty")
-    lines.append(f"  measured torque over predicted, where torque rises with speed: {measured.calibration}")
+        lines.append(
+            "  intervals do not include the uncertainty of viscosity and nip. State it in the machine file"
+        )
+    lines.append(f"  measured / predicted torque, where torque rises with speed: {measured.calibration}")
     return lines
 
 

@@ -34,7 +34,7 @@ from hersey.verdict.regimes import COULOMB, FALLING, Hypothesis
 
 #: Share of the torque from which a constant part, or the film beside it, counts.
 LEAST_SHARE = 0.02
-#: Half width of the interval of c within which level torque is told from falling torque.
+#: Half width of the interval of c within which level torque is distinguished from falling torque.
 LEVEL = 0.05
 #: By how much the exponent of the film's formula may be off.
 FORMULA = 0.01
@@ -50,11 +50,11 @@ _ANYTHING = 1e3
 UNTRIED, POWER = "film" + CONSTANT, "one power of speed"
 _WORDS = {
     POWER: "one power of speed",
-    STRIBECK: "a Stribeck curve near its least torque",
-    THINNING: "a lubricant that thins with shear",
-    HEATING: "a film warmed by its own shear",
-    OTHER: "a bend that none of the laws tried describes",
-    UNTRIED: "any film beside a constant torque (too few dwells to try it)",
+    STRIBECK: "a Stribeck curve near its torque minimum",
+    THINNING: "a shear-thinning lubricant",
+    HEATING: "a film heated by its own shear",
+    OTHER: "a curvature that none of the models describes",
+    UNTRIED: "any film plus a constant torque (too few dwells to test it)",
 }
 
 
@@ -68,9 +68,9 @@ class Explanation(Record):
 
     key: str
     name: str
-    constant_share: Annotated[float | None, Means("of torque at the middle speed; null if there is none")] = (
-        None
-    )
+    constant_share: Annotated[
+        float | None, Means("share of torque at the middle speed; null if there is none")
+    ] = None
     p_value: float | None = None
 
 
@@ -84,9 +84,11 @@ class Tried(Record):
 
     name: str
     parameters: Annotated[dict[str, float], OPEN]
-    constant_share: Annotated[float | None, Means("of torque at the middle speed; null if there is none")]
+    constant_share: Annotated[
+        float | None, Means("share of torque at the middle speed; null if there is none")
+    ]
     aicc: float
-    curvature: Annotated[float | None, Means("p-value of the law's bend with speed")]
+    curvature: Annotated[float | None, Means("p-value of the curvature against speed that the law leaves")]
     verdict: str = ""
 
 
@@ -149,7 +151,7 @@ def explained(
     if not bent and surface.c.low > -1.0 and surface.c.high < -LEVEL:
         # a power-law fluid between walls: neither speed nor temperature can tell it from a film
         n = 1.0 + surface.c.value
-        words = f"{_WORDS[THINNING]} (as shear rate to the power {n:.2f}) in a film of fixed thickness"
+        words = f"{_WORDS[THINNING]} (shear rate^{n:.2f}) in a film of fixed thickness"
         listed.append(Explanation(THINNING, words))
     if too_few and not beside:
         listed.append(Explanation(UNTRIED, _WORDS[UNTRIED]))
@@ -158,9 +160,9 @@ def explained(
     named = None if bent else _sole(films, surface)
     why = "; ".join(lack.misses()) if bent else ""
     if named and beside:
-        named, why = None, f"{beside[0].name} explains the dwells as well"
+        named, why = None, f"{beside[0].name} fits as well"
     if named and too_few:
-        named, why = None, "too few dwells to try a constant torque beside the film"
+        named, why = None, "there are too few dwells to test the film plus a constant torque"
     power = Explanation(POWER, _WORDS[POWER])
     fitted += [(power, branch.fit, not bent, lack.curvature)]
     fitted += [] if own is None else [(*own, own[0].key in {e.key for e in listed}, own[0].p_value)]
@@ -176,11 +178,11 @@ def _laws_tried(fitted: list[_Fitted]) -> tuple[Tried, ...]:
         if kept:
             verdict = "not excluded"
         elif p is not None and p < 1.0 - CONFIDENCE:
-            verdict = f"bends otherwise with speed (p = {p:.1g})"
+            verdict = f"rejected, as its curvature against speed differs (p = {p:.1g})"
         elif away > EVIDENCE:
             verdict = "less likely"
         else:
-            verdict = "no more than the film alone"
+            verdict = "no better than the film alone"
         known = [value if abs(value) < _ANYTHING else math.nan for value in fit.values.tolist()]
         values = dict(zip(fit.law.names, known, strict=True))
         out.append(Tried(said.name, values, said.constant_share, fit.aicc, p, verdict))
@@ -245,7 +247,7 @@ def _own_film(
 ) -> tuple[Explanation, LawFit] | None:
     """The film of this contact alone, with the exponent of each dwell, unless the data exclude it.
 
-    What the film's law has beyond the best power law is taken off the dwells: if the film made them one
+    What the film's law has beyond the best power law is subtracted from the dwells: if the film made them one
     exponent holds for the rest, and it is that of the best power law.
     """
     assert branch.fit is not None
@@ -262,7 +264,7 @@ def _own_film(
     p = min(1.0, tests * 2.0 * float(student_above(away / max(c.error, 1e-12), max(c.freedom, 1))))
     if p <= 1.0 - CONFIDENCE or lack.bent_by(2.0 * surface.c.systematic):
         return None
-    return Explanation(law.regime, f"{law.regime} as theory has it for this contact", None, p), fit
+    return Explanation(law.regime, f"{law.regime} as predicted for this contact", None, p), fit
 
 
 def _tried(row: Hypothesis) -> list[float]:
@@ -302,9 +304,15 @@ def _with_constant(regime: str, fit: LawFit, lack: LackOfFit, data: Observations
     film: FloatArray = fit.law.film_share(fit.values, data.inputs)
     share = float(1.0 - np.median(film))
     if regime == "constant film":
-        words = f"Coulomb friction or another constant torque, {share:.0%} of the whole, and a viscous part"
+        words = (
+            f"a constant torque, e.g. Coulomb friction, {100 * share:.0f} % of the total, plus a viscous "
+            "torque"
+        )
         return Explanation(COULOMB_VISCOUS, words, share, lack.curvature)
-    words = f"{regime} beside a constant torque (no-load torque, Coulomb) of {share:.0%} of the whole"
+    words = (
+        f"{regime} plus a constant torque (no-load torque or Coulomb friction), {100 * share:.0f} % of "
+        "the total"
+    )
     return Explanation(regime + CONSTANT, words, share, lack.curvature)
 
 

@@ -24,11 +24,11 @@ def _said(name: str, fault: Fault, file: str) -> Warning:
         fault.kind,
         "{channel} is {fault} at "
         + ("{value:.4g degC}" if name == "temperature" else "{value:.4g} N m")
-        + " for {rows} rows: "
+        + " for {rows} rows, "
         + (
-            "what it was there is not known"
+            "so its true value there is unknown"
             if fault.kind == "stuck"
-            else "the range of sensor or logger ends there, and dwells at it are wrong"
+            else "because the range of sensor or logger ends there, so dwells at this value are wrong"
         ),
         severity="watch",
         where=file,

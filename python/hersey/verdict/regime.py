@@ -13,7 +13,7 @@ from hersey.damping.candidates.lack_of_fit import LackOfFit
 from hersey.damping.candidates.observations import Observations
 from hersey.damping.dwells import SteadyPoints, distinct_speeds, groups_of_temperature
 from hersey.damping.dwells.reduced import require_points
-from hersey.damping.estimate import Estimate, estimate
+from hersey.damping.estimate import Estimate, estimate, rounded
 from hersey.damping.surface import DampingSurface
 from hersey.damping.trend import Trend, trend_of
 from hersey.lubrication.contact import Contact
@@ -22,7 +22,7 @@ from hersey.result import Means, Record, Result
 from hersey.units import celsius, rpm
 from hersey.verdict.contact_regimes import film_law, log_regimes
 from hersey.verdict.explanations import Explained, Explanation, Tried, explained
-from hersey.verdict.regimes import REGIMES, Hypothesis, RegimeRow, judged, listed
+from hersey.verdict.regimes import REGIMES, Hypothesis, RegimeRow, judged, listed, named_in_words
 
 if TYPE_CHECKING:
     import polars as pl
@@ -45,10 +45,10 @@ class BranchExponent(Record):
 
 @dataclass(frozen=True, repr=False)
 class Regime(Result):
-    """Evidence and verdict.
+    """Verdict on the lubrication regime, with its evidence.
 
-    ``named`` is the one regime that the data leave, None if none may be named, with ``why_unnamed``;
-    ``explanations`` are all that they do not exclude.
+    ``named`` is the only regime that the data do not exclude, or None, with ``why_unnamed``;
+    ``explanations`` are all that the data do not exclude.
     """
 
     exponents: tuple[BranchExponent, ...]
@@ -69,7 +69,7 @@ class Regime(Result):
         for h in self.hypotheses:
             values = f"{h.high:.3g}" if h.low == h.high else f"{h.low:.3g} to {h.high:.3g}"
             lines.append(
-                f"  {h.name:24s}  {values:16s}  {h.p_value:.2g}{'' if h.consistent else '  refuted'}"
+                f"  {h.name:24s}  {values:16s}  {h.p_value:.2g}{'' if h.consistent else '  excluded'}"
             )
         for e in self.exponents:
             where = "" if e.temperature is None else f" at {celsius(e.temperature):.0f} degC"
@@ -78,11 +78,11 @@ class Regime(Result):
         return "\n".join(lines)
 
     def headline(self) -> str:
-        """Return the regime named, or what is not excluded."""
+        """Return the named regime, or what is not excluded."""
         if self.named:
-            return f"has the exponent of {self.named}"
+            return f"exponent as expected for {named_in_words(self.named)}"
         if not self.explanations:
-            return "no regime named: the exponent is that of none"
+            return "no regime named: the exponent fits none"
         return "no regime named; not excluded: " + listed([e.name for e in self.explanations])
 
     def to_frame(self) -> pl.DataFrame:
@@ -104,14 +104,14 @@ def regime(
     lubricant: Lubricant | None = None,
     temperature: float | None = None,
 ) -> Regime:
-    """Return the evidence on the lubrication regime, from steady points and the surface fitted to them.
+    """Return the verdict on the lubrication regime, from steady points and the surface fitted to them.
 
     Parameters
     ----------
     contact, lubricant
-        The nip and what is in it, if both are known: then the band of the soft film is the contact's own.
+        The nip and its lubricant; if both are given, the exponent of the soft film is that of this contact.
     temperature
-        K, of a log that holds none.
+        K, for a log without temperatures.
     """
     require_points(points, "hersey.regime({points}, surface)")
     table, law = REGIMES, None
@@ -128,16 +128,14 @@ def regime(
         by.named,
         by.why_unnamed or _left(by),
         by.lack_of_fit,
-        " ".join(filter(None, (verdict, _taken_off(points), points.dropped()))),
+        " ".join(filter(None, (verdict, _of_film_alone(points), points.dropped()))),
         by.tried,
     )
 
 
-def _taken_off(points: SteadyPoints) -> str:
-    """What was taken off before any of this was judged; empty if nothing was."""
-    if points.rest is None:
-        return ""
-    return f"This is of the film alone, the no-load torque taken off: {points.rest}."
+def _of_film_alone(points: SteadyPoints) -> str:
+    """That no-load torque was subtracted before any of this was judged; empty if none was."""
+    return "" if points.rest is None else "All this is for the film alone: no-load torque is subtracted."
 
 
 def branch_exponents(points: SteadyPoints, surface: DampingSurface) -> tuple[BranchExponent, ...]:
@@ -186,19 +184,16 @@ def _verdict(surface: DampingSurface, by: Explained, table: tuple[RegimeRow, ...
     if surface.transition is None:
         return f"{exponent} {_no_transition(surface, by, trend)}"
     t = surface.transition
-    where = f"{rpm(t.speed.value):.3g} rpm"
-    where += (
-        f" [{rpm(t.speed.low):.3g}, {rpm(t.speed.high):.3g}]" if t.speed.estimable else " (interval not told)"
-    )
-    where += f" (sensors +/- {rpm(t.speed.systematic):.2g} rpm)" if t.speed.systematic else ""
+    value, low, high = (rpm(each) for each in (t.speed.value, t.speed.low, t.speed.high))
+    where = rounded(value, low, high, "rpm") if t.speed.estimable else f"{value:.3g} rpm (interval not known)"
+    where += f" (sensors ± {rpm(t.speed.systematic):.2g})" if t.speed.systematic else ""
     if surface.reference_temperature is not None:
         where += f" at {_degrees(surface.reference_temperature, surface.temperature_scale)}"
-        where += " (higher when hotter)" if t.temperature_exponent > 0 else ""
-    least = ", where torque is least," if t.gradual else ""
+        where += ", and at higher speed when hotter" if t.temperature_exponent > 0 else ""
     return (
-        f"Above {where}{least} torque rises with speed, as under a carrying film: "
-        f"{exponent[0].lower()}{exponent[1:]} Below it torque rises as the drive slows (exponent "
-        f"{_in_words(t.mixed_exponent)}, below -1): mixed lubrication, where the drive can stick and slip."
+        f"Torque is lowest at {where}. Above this speed torque rises, as with a film that carries the load. "
+        f"{exponent} Below it torque rises as the drive slows: lubrication is mixed, and stick-slip is "
+        f"possible. The exponent of damping there is {_in_words(t.mixed_exponent)}."
     )
 
 
@@ -206,17 +201,18 @@ def _exponent(surface: DampingSurface, by: Explained, table: tuple[RegimeRow, ..
     """What the exponent of the (rising) branch says, and what else explains it."""
     c = _in_words(surface.c)
     others = [e.name for e in by.explanations]
+    kept = f" Not excluded: {_or(others)}." if others else ""
     if by.lack_of_fit is not None and by.why_unnamed and not _films(by, table):
-        return f"No one exponent holds: {by.why_unnamed}. No regime is named; not excluded: {_or(others)}."
-    said = f"Damping varies as speed to the power {c}"
+        return f"No single exponent holds: {by.why_unnamed}. No regime can be named.{kept}"
+    said = f"Damping varies as speed^{c}"
     if by.named:
-        return f"{said}, which has the exponent of {by.named}."
+        return f"{said}, as expected for {named_in_words(by.named)}."
     if by.lack_of_fit is None:
-        kept = f"which does not exclude {_or(others)}" if others else _between(surface.c.value, table)
-        return f"{said}, {kept}; no regime is named, for {by.why_unnamed}."
+        ends = "." if others else f", {_between(surface.c.value, table)}."
+        return f"{said}{ends} No regime can be named, because {by.why_unnamed}.{kept}"
     if not _films(by, table):
-        return f"{said}, {_between(surface.c.value, table)}; not excluded: {_or(others)}."
-    return f"{said}, which does not exclude {_or(others)}."
+        return f"{said}, {_between(surface.c.value, table)}.{kept}"
+    return f"{said}.{kept}"
 
 
 def _left(by: Explained) -> str:
@@ -224,7 +220,7 @@ def _left(by: Explained) -> str:
     if by.named:
         return ""
     if not by.explanations:
-        return "none that is known explains the dwells"
+        return "no known regime explains the dwells"
     return f"the dwells do not exclude {_or([each.name for each in by.explanations])}"
 
 
@@ -235,27 +231,29 @@ def _films(by: Explained, table: tuple[RegimeRow, ...]) -> list[Explanation]:
 
 def _no_transition(surface: DampingSurface, by: Explained, trend: Trend) -> str:
     if not trend.falls and surface.c.high < -1.0:
-        return "So torque would fall as speed rises, but the dwells alone do not show that it falls."
+        return "By this exponent torque falls as speed rises, but the dwells alone do not show it."
     if not trend.falls:
-        return "No transition to a falling branch shows in these data."
+        return "The data show no transition to a falling branch."
     if surface.c.high >= -1.0 and not trend.rises:
-        return "Torque falls with speed among the dwells; the exponent does not exclude a level torque."
+        return "In the dwells torque falls with speed, but the exponent does not exclude a constant torque."
     low, high = surface.speed_range
     if surface.c.high >= -1.0 and not 1.01 * low < trend.least < 0.99 * high:
-        return "Torque also falls with speed, but not below a speed at which it is least: it rises first."
+        return "Torque rises first and then falls with speed, so it has no minimum between two branches."
     if surface.c.high >= -1.0:
-        where = f"below about {rpm(trend.least):.3g} rpm"
-        return f"Torque also falls with speed, {where}: too few dwells lie there to fit a falling branch."
+        return (
+            f"Below about {rpm(trend.least):.3g} rpm torque falls with speed, but too few dwells lie there "
+            "to fit a falling branch."
+        )
     lack = by.lack_of_fit
     ends = (surface.c.high,) if lack is None else (*lack.local_exponents, *lack.by_temperature)
     bent = " where its exponent is below -1" if lack is not None and lack.in_speed else ""
     where = " over the whole range" if max(ends) < -1.0 else bent
     steep = ""
     if surface.c.value < STEEP:
-        steep = " So steep a fall also comes from magnetic braking, a controller or heating."
+        steep = " Magnetic braking, a controller or heating can also cause so steep a fall."
     return (
-        f"Torque falls as speed rises{where}: mixed or boundary lubrication can do so, and stick and slip."
-        f"{steep}"
+        f"Torque falls as speed rises{where}. Mixed or boundary lubrication can cause this, and stick-slip "
+        f"is then possible.{steep}"
     )
 
 
@@ -264,9 +262,8 @@ def _or(names: list[str]) -> str:
 
 
 def _in_words(e: Estimate) -> str:
-    digits = int(np.clip(1 - np.floor(np.log10(max(e.high - e.low, 1e-4))), 2, 4))
-    sensors = f" (sensors +/- {e.systematic:.2g})" if e.systematic else ""
-    return f"{e.value:.{digits}f} [{e.low:.{digits}f}, {e.high:.{digits}f}]{sensors}"
+    sensors = f" (sensors ± {e.systematic:.2g})" if e.systematic else ""
+    return f"{e}{sensors}"
 
 
 def _degrees(kelvin: float, scale: str) -> str:
@@ -277,5 +274,5 @@ def _between(c: float, table: tuple[RegimeRow, ...]) -> str:
     above = [row for row in table if row.low > c]
     below = [row for row in table if row.high < c]
     if above and below:
-        return f"which is the exponent of no regime: it lies between {above[-1].name} and {below[0].name}"
-    return "which is the exponent of no regime"
+        return f"which lies between {above[-1].name} and {below[0].name} and fits no regime"
+    return "which fits no regime"

@@ -24,6 +24,8 @@ class RegimeRow(NamedTuple):
 
 COULOMB, FALLING = "dry Coulomb friction or a rigid film", "falling branch"
 SOFT, STARVED = "soft EHL", "partly starved soft film"
+#: Names that need an article in a sentence.
+_COUNTED = frozenset({"constant film", "rigid piezoviscous film", FALLING, STARVED})
 
 #: In the order of the exponents.
 REGIMES: tuple[RegimeRow, ...] = (
@@ -32,16 +34,18 @@ REGIMES: tuple[RegimeRow, ...] = (
         0.0,
         0.0,
         "",
-        "a film of fixed thickness, as when starved: torque proportional to speed",
+        "film of fixed thickness, e.g. if starved: torque proportional to speed",
     ),
     RegimeRow(
         SOFT,
         -0.60,
         -0.56,
         "isoviscous-elastic",
-        "isoviscous film in a rubber nip; on a bonded layer down to -0.56 by numerical solutions",
+        "isoviscous film in a rubber nip; down to -0.56 on a bonded layer, by numerical solutions",
     ),
-    RegimeRow("rigid piezoviscous film", -2 / 3, -2 / 3, "piezoviscous-rigid", "film as speed^(2/3)"),
+    RegimeRow(
+        "rigid piezoviscous film", -2 / 3, -2 / 3, "piezoviscous-rigid", "film thickness as speed^(2/3)"
+    ),
     RegimeRow(
         "Dowson-Higginson EHL",
         -0.70,
@@ -63,7 +67,7 @@ class Hypothesis(Record):
     name: str
     low: Annotated[float, OPEN]
     high: float
-    film: Annotated[str, Means("regime of film theory that predicts it, or empty")]
+    film: Annotated[str, Means("regime of film theory that predicts it; may be empty")]
     meaning: str
     p_value: float
     holds_here: Annotated[
@@ -104,6 +108,11 @@ def _p_value(exponent: Estimate, row: RegimeRow) -> float:
     sides = 1.0 if np.isinf(row.low) else 2.0
     deviation = max(away, 0.0) / max(exponent.error, 1e-12)
     return min(1.0, sides * float(student_above(deviation, max(exponent.freedom, 1))))
+
+
+def named_in_words(name: str) -> str:
+    """Return the name of a regime with its article, for a sentence."""
+    return f"a {name}" if name in _COUNTED else name
 
 
 def listed(names: list[str]) -> str:

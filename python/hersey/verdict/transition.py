@@ -8,6 +8,7 @@ from typing import Annotated
 import numpy as np
 
 from hersey.arrays import FloatArray
+from hersey.damping.estimate import rounded
 from hersey.damping.surface import DampingSurface
 from hersey.lubrication.film_temperature import film_temperature
 from hersey.lubrication.mixed import MixedContact
@@ -23,15 +24,17 @@ class ContactTransition(Record):
     also_stated = ("ratio",)
 
     temperature: Annotated[FloatArray, Means("as read", "K")]
-    speed: Annotated[FloatArray, Means("by the contact, rad/s; null where drag falls nowhere", open=True)]
+    speed: Annotated[
+        FloatArray, Means("from the contact model, rad/s; null if torque has no minimum", open=True)
+    ]
     measured: Annotated[
-        FloatArray, Means("of the fitted surface, rad/s; null where it shows none", open=True)
+        FloatArray, Means("from the fitted surface, rad/s; null if it has no transition", open=True)
     ]
     low: Annotated[FloatArray, Means("of measured, rad/s, 95 %", open=True)]
     high: Annotated[FloatArray, Means("of measured, rad/s, 95 %", open=True)]
     by_roughness: Annotated[FloatArray, Means("d ln speed/d ln roughness", open=True)]
     by_boundary: Annotated[
-        FloatArray, Means("d ln speed/d ln boundary friction; by viscosity it is -1", open=True)
+        FloatArray, Means("d ln speed/d ln boundary friction (-1 for viscosity)", open=True)
     ]
 
     @property
@@ -42,13 +45,14 @@ class ContactTransition(Record):
     def summary(self) -> str:
         """Return a row for each temperature."""
         lines = [
-            "transition speed (least torque), rpm, and d ln speed/d ln of what is stated (viscosity: -1)",
+            "transition speed (lowest torque), rpm, and its sensitivity d ln speed/d ln input "
+            "(viscosity: -1)",
             f"  {'degC':>6s} {'contact':>9s} {'measured':>26s} {'ratio':>7s} {'roughness':>10s} "
             f"{'boundary friction':>18s}",
         ]
         for i, kelvin in enumerate(self.temperature.tolist()):
             speed = "nowhere" if np.isnan(self.speed[i]) else f"{rpm(self.speed[i]):.3g}"
-            seen, ratio = self._seen(i), self.ratio[i]
+            seen, ratio = self._seen(i).replace(" rpm", ""), self.ratio[i]
             shown = "" if np.isnan(ratio) else f"{ratio:.3g}"
             shifts = (self.by_roughness[i], self.by_boundary[i])
             roughness, boundary = ("" if np.isnan(shift) else f"{shift:.2f}" for shift in shifts)
@@ -68,20 +72,16 @@ class ContactTransition(Record):
         if np.isnan(speed):
             return Warning(
                 "no transition of the contact",
-                "by the contact as stated drag falls nowhere at {temperature:.0f degC}: there is no "
-                "transition",
+                "in the contact model torque has no minimum at {temperature:.0f degC}, so there is "
+                "no transition",
                 temperature=kelvin,
             )
         return Warning(
             "transition of the contact",
-            "by the contact as stated drag is least at {temperature:.0f degC} at {speed:.3g rpm}"
-            + (
-                ""
-                if np.isnan(self.measured[i])
-                else ", by the log at {shown}: the contact has {ratio:.2f} times that"
-            )
-            + ". It goes as roughness to the power {by_roughness:.2f}, as boundary friction to "
-            "{by_boundary:.2f}, as the inverse of viscosity",
+            "at {temperature:.0f degC} torque is lowest at {speed:.3g rpm} in the contact model"
+            + ("" if np.isnan(self.measured[i]) else ", {ratio:.2f} times the measured {shown}")
+            + ". This speed varies as roughness^{by_roughness:.2f}, boundary "
+            "friction^{by_boundary:.2f} and 1/viscosity",
             temperature=kelvin,
             speed=speed,
             shown=self._seen(i),
@@ -93,9 +93,10 @@ class ContactTransition(Record):
     def _seen(self, i: int) -> str:
         if np.isnan(self.measured[i]):
             return "none shown"
-        known = np.isfinite(self.low[i]) and np.isfinite(self.high[i])
         value, low, high = (rpm(x[i]) for x in (self.measured, self.low, self.high))
-        return f"{value:.3g}" + (f" [{low:.3g}, {high:.3g}]" if known else " (not known)")
+        if np.isfinite(low) and np.isfinite(high):
+            return rounded(value, low, high, "rpm")
+        return f"{value:.3g} rpm (interval not known)"
 
 
 def contact_transition(

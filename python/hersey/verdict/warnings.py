@@ -41,14 +41,12 @@ def warnings_of(points: SteadyPoints, surface: DampingSurface | None) -> tuple[W
     found += [*doubtful_units(log), *held_values(log), *doubtful_tare(points), *points.warnings]
     found += _of_rest(points)
     if loads := points.varying_load:
-        words = (
-            "the load differs from {low:.3g} to {high:.3g} N, and one law is fitted to all dwells: fit each "
-            "load alone"
-        )
+        words = "one law is fitted to loads from {low:.3g} to {high:.3g} N. Fit each load separately"
         found.append(Warning("loads differ", words, severity="watch", low=loads[0], high=loads[1]))
     if swinging := sum(each.why.kind == "stick-slip" for each in points.rejected):
         words = (
-            "stick-slip was recorded: {count} {count:stretch|stretches} of held speed, left out of the fit"
+            "the log contains {count} {count:stretch|stretches} of stick-slip at constant speed, "
+            "which the fit excludes"
         )
         found.append(Warning("stick-slip", words, count=swinging))
     if surface is not None:
@@ -63,10 +61,10 @@ def _of_file(log: TorqueLog | MeansTable, i: int) -> Iterator[Warning]:
     """What is to be known of a file of a log, which has one run, or none if it states means."""
     file, run = log.files[i], (log.runs[i] if log.runs else None)
     if file.synthetic:
-        words = "it is synthetic, by its own words: no measurement"
+        words = "the log says of itself that it is synthetic, not a measurement"
         yield Warning("synthetic", words, severity="watch", where=file.name)
     if file.cut_off:
-        yield Warning("cut off", "the file ends before its time", severity="watch", where=file.name)
+        yield Warning("cut off", "the file ends too early", severity="watch", where=file.name)
     yield from (warning.within(file.name) for warning in file.warnings)
     if run is not None and (gaps := run.gaps()):
         share = 1.0 - run.time.size * run.sampling_interval / max(float(run.time[-1] - run.time[0]), 1e-9)
@@ -89,7 +87,7 @@ def _of_rest(points: SteadyPoints) -> Iterator[Warning]:
     yield from (warning.within("no-load torque") for warning in rest.warnings)
     if not points.log.has_temperature:
         if rest.reference_temperature is not None:
-            words = "the log holds no temperatures: the no-load torque is that at {temperature:.0f degC}"
+            words = "the log has no temperatures, so the no-load torque at {temperature:.0f degC} is used"
             at = rest.reference_temperature
             yield Warning("no-load torque of one temperature", words, severity="watch", temperature=at)
     elif rest.temperature_range is not None:
@@ -98,8 +96,8 @@ def _of_rest(points: SteadyPoints) -> Iterator[Warning]:
         if coldest < cold - FAR or hottest > hot + FAR:
             yield Warning(
                 "no-load torque extrapolated",
-                "{source} holds the no-load torque at {cold:.0f degC} to {hot:.0f degC}, and the dwells lie "
-                "at {coldest:.0f degC} to {hottest:.0f degC}: it is extrapolated",
+                "{source} covers {cold:.0f degC} to {hot:.0f degC}, the dwells {coldest:.0f degC} to "
+                "{hottest:.0f degC}: no-load torque is extrapolated",
                 severity="watch",
                 source=rest.source,
                 cold=cold,
@@ -115,7 +113,12 @@ def _of_directions(points: SteadyPoints, surface: DampingSurface) -> Iterator[Wa
     below, above = approach == "from below", approach == "from above"
     pairs: Sequence[tuple[FloatArray, FloatArray, str, str]] = (
         (surface.residuals[forward], surface.residuals[~forward], "forward", "reverse rotation"),
-        (surface.residuals[below], surface.residuals[above], "dwells approached from below", "from above"),
+        (
+            surface.residuals[below],
+            surface.residuals[above],
+            "dwells approached from below",
+            "those from above",
+        ),
     )
     for first, second, name, other in pairs:
         if first.size > 2 and second.size > 2:
@@ -124,8 +127,9 @@ def _of_directions(points: SteadyPoints, surface: DampingSurface) -> Iterator[Wa
             if abs(difference) > max(NOTABLE_DIFFERENCE, SIGNIFICANT * error):
                 yield Warning(
                     "directions differ",
-                    "torque differs by {share:+.1f %} between {first} and {second}: one surface does not "
-                    "describe both" + ("; fit one alone with {how}" if name == "forward" else ""),
+                    "torque differs by {share:+.1f %} between {first} and {second}, so one surface "
+                    "does not describe both"
+                    + (". Fit each separately with {how}" if name == "forward" else ""),
                     severity="watch",
                     share=float(np.expm1(difference)),
                     first=name,
@@ -143,8 +147,8 @@ def _of_fit(surface: DampingSurface) -> Iterator[Warning]:
         if abs(value - other) > max(0.005, 2.0 * np.hypot(coefficient.error, estimate.error)):
             yield Warning(
                 "fitted in torque",
-                "exponent {name} is {value:.3f} fitted in logarithms but {other:.3f} fitted in torque, which "
-                "weighs dwells of great torque most: look at the residuals",
+                "exponent {name} is {value:.3f} fitted in logarithms, but {other:.3f} fitted in "
+                "torque, where high torques weigh most. Look at the residuals",
                 severity="watch",
                 name=name,
                 value=value,
@@ -155,8 +159,8 @@ def _of_fit(surface: DampingSurface) -> Iterator[Warning]:
         if high - low < LEAST_SPAN:
             yield Warning(
                 "few temperatures",
-                "temperature spans only {low:.0f degC} to {high:.0f degC}: a and b are strongly correlated, "
-                "and the law must not be used far outside",
+                "temperature ranges only from {low:.0f degC} to {high:.0f degC}, so a and b are "
+                "strongly correlated. Do not extrapolate far",
                 severity="watch",
                 low=low,
                 high=high,
@@ -164,8 +168,8 @@ def _of_fit(surface: DampingSurface) -> Iterator[Warning]:
     yield from _of_visits(surface)
     if (scatter := surface.statistics.scatter) > SCATTER:
         words = (
-            "dwells scatter {scatter:.0f %} about the surface, more than their noise explains: something "
-            "unrecorded varied, or the law does not hold"
+            "points scatter {scatter:.0f %} about the fit, more than sensor noise explains. "
+            "Something unrecorded varied, or the model is wrong"
         )
         yield Warning("scatter", words, severity="watch", scatter=scatter)
 
@@ -176,16 +180,17 @@ def _of_visits(surface: DampingSurface) -> Iterator[Warning]:
         if not shared.estimable and surface.b is not None and not surface.b.estimable:
             yield Warning(
                 "temperatures visited once",
-                "exponent b is {value:.3g}, its interval not known: each temperature was visited once, so "
-                "that an error of a whole visit would pass for temperature. Visit one again, or a third",
+                "exponent b is {value:.3g} without an interval: each temperature was visited once, "
+                "so errors of a whole visit cannot be excluded. Visit one temperature again, or a "
+                "third one",
                 severity="watch",
                 value=surface.b.value,
             )
         if shared.deviation > 0 and shared.p_value < SURE:
             yield Warning(
                 "dwells off together",
-                "all dwells of one {visit} are off the law together, by {deviation:.1f %} ({p_value:p} for "
-                "chance): the intervals count {visit}s, not dwells",
+                "all dwells of one {visit} deviate together by {deviation:.1f %} ({p_value:p} for "
+                "chance), so intervals count {visit}s, not dwells",
                 severity="watch",
                 visit=shared.name,
                 deviation=shared.deviation,

@@ -141,27 +141,25 @@ def test_the_likeliest_is_chosen_and_the_next_is_named() -> None:
     lost = entry(1.0, branches=FREE, lost="too few")
     bic = [replace(r, fit=replace(r.fit, deviance=r.fit.deviance + 50)) for r in (second, third, lost)]
     assert said(bic, chosen) == [
-        f"Chosen: {NAMES[ONE]}, with 4 numbers fitted to 72 dwells.",
-        f"Next is {NAMES[HELD]}: its AICc is worse by 2.5.",
-        "BIC puts the same candidate first.",
+        f"Chosen: {NAMES[ONE]}, with 4 parameters fitted to 72 dwells.",
+        f"Next best is {NAMES[HELD]} (AICc higher by 2.5).",
+        "BIC selects the same model.",
     ]
     near = replace(bic[0], delta_aicc=1.99)
-    assert said([near], chosen)[1] == (
-        f"Next is {NAMES[HELD]}: its AICc is worse by 2.0; the data do not tell the two apart."
-    )
+    assert said([near], chosen)[1] == (f"Next best is {NAMES[HELD]} (AICc higher by 2.0, not significant).")
     even_two = replace(bic[0], delta_aicc=2.0)
-    assert said([even_two], chosen)[1] == f"Next is {NAMES[HELD]}: its AICc is worse by 2.0."
-    assert said([bic[2]], chosen) == [said([], chosen)[0], "BIC puts the same candidate first."]
+    assert said([even_two], chosen)[1] == f"Next best is {NAMES[HELD]} (AICc higher by 2.0)."
+    assert said([bic[2]], chosen) == [said([], chosen)[0], "BIC selects the same model."]
 
 
 def test_what_the_choice_does_not_determine_and_where_it_fails_is_said() -> None:
     chosen = entry(0.0, lost="too few", lack=BENT)
     assert said([], chosen) == [
-        f"Chosen: {NAMES[ONE]}, with 4 numbers fitted to 72 dwells.",
-        "Not determined, at: too few.",
-        "It does not hold: the local exponent of damping drifts from -0.90 at the slow end to 0.10 at the "
-        "fast one (p = 0.0004).",
-        "BIC puts the same candidate first.",
+        f"Chosen: {NAMES[ONE]}, with 4 parameters fitted to 72 dwells.",
+        "Parameter at cannot be determined: too few.",
+        "The model is rejected: the local exponent of damping changes from -0.90 at the slowest "
+        "speeds to 0.10 at the fastest (p = 0.0004).",
+        "BIC selects the same model.",
     ]
 
 
@@ -172,33 +170,35 @@ def test_likelier_laws_that_were_not_chosen_are_accounted_for() -> None:
     tied = entry(2.4, branches=HELD)
     best = replace(best, fit=replace(best.fit, deviance=-900.0))
     assert said([best, lost, tied], chosen) == [
-        f"Chosen: {NAMES[ONE]}, with 4 numbers fitted to 72 dwells.",
-        f"{NAMES[HELD]}, with 2 more numbers, has an AICc better by 4.3: 6 are asked.",
-        f"{NAMES[FREE]} has an AICc better by 3.3, but is not determined: too few speeds.",
-        f"{NAMES[HELD]}, with 2 more numbers, has an AICc better by 1.9: the data do not tell the two apart.",
-        f"BIC puts {NAMES[HELD]} first (by 3.2).",
+        f"Chosen: {NAMES[ONE]}, with 4 parameters fitted to 72 dwells.",
+        f"{NAMES[HELD]}, with 2 more parameters, fits better (AICc lower by 4.3), but 6 is needed.",
+        f"{NAMES[FREE]} fits better (AICc lower by 3.3), but one of its parameters cannot be determined: "
+        "too few speeds.",
+        f"{NAMES[HELD]}, with 2 more parameters, fits better (AICc lower by 1.9), but this difference is not "
+        "significant.",
+        f"BIC selects {NAMES[HELD]} (BIC lower by 3.2).",
     ]
     worse = replace(entry(7.0, branches=FREE), fit=entry(7.0).fit)
-    assert said([best, worse], chosen)[2] == f"Next is {NAMES[FREE]}: its AICc is worse by 2.7."
+    assert said([best, worse], chosen)[2] == f"Next best is {NAMES[FREE]} (AICc higher by 2.7)."
     one_more = replace(entry(2.0, branches=HELD), delta_aicc=3.0)
     free = entry(0.9, branches=FREE)
     assert said([free], one_more)[1] == (
-        f"{NAMES[FREE]}, with 1 more number, has an AICc better by 2.1: 6 are asked."
+        f"{NAMES[FREE]}, with 1 more parameter, fits better (AICc lower by 2.1), but 6 is needed."
     )
-    assert "tell the two apart" in said([replace(free, delta_aicc=1.01)], one_more)[1]
-    assert said([replace(free, delta_aicc=1.0)], one_more)[1].endswith("better by 2.0: 6 are asked.")
+    assert "this difference is not significant" in said([replace(free, delta_aicc=1.01)], one_more)[1]
+    assert said([replace(free, delta_aicc=1.0)], one_more)[1].endswith("lower by 2.0), but 6 is needed.")
 
 
 def test_cross_validation_says_whether_another_is_better_beyond_chance() -> None:
     random = np.random.default_rng(1)
     good, bad = 0.02 * random.standard_normal(72), 0.02 * random.standard_normal(72)
     what = (
-        "Cross-validation, leaving out one level at a time: "
-        "the chosen candidate predicts the dwells left out to "
+        "Cross-validation, excluding one level at a time: the chosen model predicts the excluded "
+        "dwells within "
     )
     best = entry(0.0, missed=0.5 * good)
     assert _by_cross_validation((best, entry(1.0, missed=bad)), best, DATA) == (
-        f"{what}{best.cross_validation:.2%}, the best of all.",
+        f"{what}{100 * best.cross_validation:.2f} %, the best of all models.",
     )
     # the gain of squares against twice its own standard error over the dwells
     for factor in (0.3, 0.7, 0.8, 0.9, 0.95):
@@ -208,12 +208,12 @@ def test_cross_validation_says_whether_another_is_better_beyond_chance() -> None
         error = np.sqrt(np.sum((gain - gain.mean()) ** 2) / 71) * np.sqrt(72)
         apart = "beyond" if gain.sum() > 2 * error else "within"
         assert _by_cross_validation((chosen, other), chosen, DATA) == (
-            f"{what}{chosen.cross_validation:.2%}; {NAMES[HELD]} does so to {other.cross_validation:.2%}, "
-            f"{apart} chance.",
+            f"{what}{100 * chosen.cross_validation:.2f} %; {NAMES[HELD]} within "
+            f"{100 * other.cross_validation:.2f} %, a difference {apart} chance.",
         )
     assert _by_cross_validation((entry(0.0), best), entry(0.0), DATA) == ()
     one = entry(0.0, missed=np.zeros(72))
-    assert _by_cross_validation((one, entry(1.0)), one, DATA) == (f"{what}0.00%, the best of all.",)
+    assert _by_cross_validation((one, entry(1.0)), one, DATA) == (f"{what}0.00 %, the best of all models.",)
 
 
 @pytest.mark.parametrize(("ratio", "apart"), [(1.99, "within"), (2.01, "beyond")])
@@ -223,7 +223,7 @@ def test_beyond_chance_is_two_standard_errors(ratio: float, apart: str) -> None:
     mean = ratio * np.std(swing, ddof=1) / np.sqrt(72)
     chosen = entry(0.0, missed=np.sqrt(4e-4 + swing + mean))
     other = entry(1.0, branches=HELD, missed=np.full(72, 0.02))
-    assert f", {apart} chance." in _by_cross_validation((chosen, other), chosen, DATA)[0]
+    assert f"a difference {apart} chance." in _by_cross_validation((chosen, other), chosen, DATA)[0]
 
 
 def arrhenius(branches: str, aicc: float, lost: str = "", each: bool = False) -> CandidateFit:
@@ -310,7 +310,7 @@ def test_candidates_are_found_by_key_and_runners_up_by_rank() -> None:
     assert [r.delta_aicc for r in more.runners_up] == [0.0, 3.25, 4.0]
     with pytest.raises(
         ParameterError,
-        match=r"^no candidate 'x' was fitted; there are power-K/two-free, power-K/two-hersey, power-K/one$",
+        match=r"^no model 'x' was fitted. Use one of power-K/two-free, power-K/two-hersey, power-K/one$",
     ):
         found.candidate("x")
 
@@ -327,7 +327,9 @@ def test_torque_is_predicted_by_the_law_chosen() -> None:
     assert hot.torque == pytest.approx(
         [np.exp(0.1 - 2.4 * np.log(t / 400) + 0.3 * np.log(3.0 / w)) for t in (410.0, 380.0)]
     )
-    with pytest.raises(ParameterError, match=r"^this law depends on temperature: give it one, in K$"):
+    with pytest.raises(
+        ParameterError, match=r"^this model depends on temperature. Give the temperature in K$"
+    ):
         found.predict(speed=3.0)
     law = Law(None, ONE)
     fit = hand_fit(law, [0.1, -0.7])
@@ -355,7 +357,7 @@ def test_a_comparison_is_what_its_parts_are() -> None:
     bare = compare_models(DATA, candidates=candidates[:1], bootstrap=0, cross_validate=False)
     assert all("bootstrap" not in p.intervals for p in bare.parameters)
     assert bare.candidates[0].cross_validation is None
-    assert bare.reasons == (*found.reasons[:1], "BIC puts the same candidate first.")
+    assert bare.reasons == (*found.reasons[:1], "BIC selects the same model.")
     plain = compare_models(DATA, candidates=candidates[:1], cross_validate=False)
     assert (plain.bootstrap, plain.seed) == (300, 1)
     assert plain.candidates[0].left_out is None
@@ -370,8 +372,8 @@ def test_a_comparison_refuses_what_it_cannot_do() -> None:
     assert all(candidate.refused(few) for candidate in all_candidates())
     with pytest.raises(
         InsufficientDataError,
-        match=r"^no law can be fitted: no temperature x power of speed, one branch 2 parameters need 5 "
-        r"dwells, the log has 4$",
+        match=r"^no model can be fitted\. no temperature x power of speed, one branch: its 2 parameters "
+        "need 5 dwells; the log has 4$",
     ):
         compare_models(few)
     cold = dwells(Law(None, ONE), [0.1, -0.7], temperatures=None)
@@ -383,15 +385,15 @@ def test_a_comparison_refuses_what_it_cannot_do() -> None:
 def test_a_comparison_as_text_line_by_line() -> None:
     found = made()
     turn = 30.0 / np.pi  # rpm in a rad/s
-    header = "    " + "candidate".ljust(66) + "numbers".rjust(8) + "dAICc".rjust(9) + "dBIC".rjust(9)
-    header += "left out".rjust(10) + "scatter".rjust(9)
+    header = "    " + "model".ljust(66) + "parameters".rjust(11) + "dAICc".rjust(9) + "dBIC".rjust(9)
+    header += "CV error".rjust(10) + "scatter".rjust(9)
     assert found.collapse is not None
     lines = [
-        "[[Candidates]]  (same dwells, same robust likelihood of ln torque; numbers include the scatter)",
+        "[[Models]]  (same dwells and robust likelihood of ln torque; parameters include the scatter)",
         header,
-        f"    {NAMES[FREE]:<66}       7      0.0      4.5         -    3.00%  not determined",
-        f"  * {NAMES[HELD]:<66}       6      1.5      0.0     2.13%    3.00%",
-        f"    {NAMES[ONE]:<66}       4      3.2      2.2         -    3.00%  does not hold",
+        f"    {NAMES[FREE]:<66}          7      0.0      4.5         -   3.00 %  not determined",
+        f"  * {NAMES[HELD]:<66}          6      1.5      0.0    2.13 %   3.00 %",
+        f"    {NAMES[ONE]:<66}          4      3.2      2.2         -   3.00 %  rejected",
         "    not fitted: VFT: needs 3 temperatures",
         "[[Choice]]",
         "    Because.",
@@ -404,8 +406,8 @@ def test_a_comparison_as_text_line_by_line() -> None:
         f"        bootstrap   [{1.9 * turn:.6g}, {3.1 * turn:.6g}]",
         "    c = -0.712346",
         "        covariance  [-0.73, -0.69]",
-        "    T0: not determined: no lower bound",
-        "    (bootstrap: 30 resampled fits by level, seed 9)",
+        "    T0: cannot be determined: no lower bound",
+        "    (bootstrap: 30 fits resampled by level, seed 9)",
         f"    {found.orthogonal.verdict}",
         "[[Activation energy]]",
         *(f"    {line}" for line in found.energies.lines()),
@@ -413,14 +415,14 @@ def test_a_comparison_as_text_line_by_line() -> None:
     for kelvin, celsius in ((363.0, 90), (400.0, 127), (453.0, 180)):
         energy = 2.4 * R * kelvin  # of the power law chosen
         lines.append(
-            f"    chosen law, apparent energy of torque at {celsius} degC: "
+            f"    chosen model, apparent energy of torque at {celsius} degC: "
             f"{energy / 1e3:.4g} kJ/mol = {energy / 4.184:.0f} cal/mol"
         )
     lines += ["[[Hersey collapse]]", f"    {found.collapse.verdict}"]
     assert found.summary().split("\n") == lines
     cold = replace(DATA, inputs=replace(DATA.inputs, kelvin=None))
     short = made(bootstrap=0, collapse=None, data=cold).summary().split("\n")
-    none = "    (bootstrap: none: not asked for, or hardly a resample holds every temperature)"
+    none = "    (bootstrap: not requested, or most resamples lack a temperature)"
     assert short == [*lines[:18], none, lines[19]]
 
 

@@ -81,14 +81,14 @@ def test_known_hersey_numbers_are_judged_by_an_f_test(
     assert found.collapses is collapses
     if collapses:
         assert found.verdict == (
-            f"The curves collapse onto one against the Hersey number: they stand {deviation:.1%} off it "
-            f"(root mean square), and scatter by {spread:.1%}."
+            "The curves collapse onto one against the Hersey number: they differ by "
+            f"{100 * deviation:.1f} % rms and scatter by {100 * spread:.1f} %."
         )
     else:
         assert found.verdict == (
-            f"The curves do NOT collapse onto one against the Hersey number: they stand {deviation:.0%} "
-            f"(root mean square) off a common curve, about which each scatters by {spread:.1%} "
-            f"(p = {p:.1g}). No clean Stribeck curve may be drawn from them."
+            "The curves do NOT collapse onto one against the Hersey number: they differ by "
+            f"{100 * deviation:.0f} % rms and each scatters by {100 * spread:.1f} % (p = {p:.1g}). Do not "
+            "draw one Stribeck curve through them."
         )
 
 
@@ -151,8 +151,8 @@ def test_three_points_in_ten_must_share_a_number(shared: int, told: bool) -> Non
     assert (found.collapses is not None) is told
     if not told:
         assert found.verdict == (
-            "Whether the curves collapse cannot be told: only 20% of the points share a Hersey "
-            "number with another curve. Widen the range of speeds."
+            "Whether the curves collapse cannot be determined: only 20 % of the points "
+            "share a Hersey number with another curve. Widen the speed range."
         )
 
 
@@ -206,29 +206,29 @@ def test_viscosities_of_exact_curves_come_back(e: float) -> None:
 def test_what_is_too_little_is_refused() -> None:
     x = np.arange(6.0)
     with pytest.raises(
-        InsufficientDataError, match=r"^one curve alone cannot collapse: record other temperatures or loads$"
+        InsufficientDataError, match=r"^one curve cannot collapse. Record other temperatures or loads$"
     ):
         hersey_collapse(x, x, np.zeros(6))
-    with pytest.raises(InsufficientDataError, match=r"^a curve has fewer than 3 points: record more speeds$"):
+    with pytest.raises(InsufficientDataError, match=r"^a curve has fewer than 3 points. Record more speeds$"):
         hersey_collapse(x, x, [0, 0, 0, 0, 1, 1])
     # six points, a line each and none to spare: 6 - 4 = 2 is enough, with a kink more it is not
     found = hersey_collapse(x, x**2, [0, 0, 0, 1, 1, 1])
     assert found.p_value == pytest.approx(by_hand(x, x**2, np.repeat([0, 1], 3))[2], rel=1e-6)
     cold = dwells(Law(Thermal(KELVIN, REFERENCE), ONE), [0.1, -2.0, -0.7], temperatures=np.array([400.0]))
-    with pytest.raises(InsufficientDataError, match="one curve alone"):
+    with pytest.raises(InsufficientDataError, match="one curve cannot collapse"):
         temperature_collapse(cold)
     one = dwells(
         Law(Thermal(KELVIN, REFERENCE), ONE), [0.1, -2.0, -0.7], temperatures=np.array([390.0, 410.0])
     )
     few = one.take(np.array([0, 4, 8, 18, 22, 26]))
     with pytest.raises(
-        InsufficientDataError, match=r"^too few points to tell curves from scatter: record more speeds$"
+        InsufficientDataError, match=r"^too few points to separate curves from scatter. Record more speeds$"
     ):
         temperature_collapse(few)
 
 
 def test_what_is_no_list_of_logarithms_is_refused() -> None:
-    said = r"^log_hersey, log_friction and groups must be one-dimensional and of one length$"
+    said = "^log_hersey, log_friction and groups must be one-dimensional and of equal length$"
     x = np.arange(6.0)
     for bad in (
         (x, x[:5], np.repeat([0, 1], 3)),
@@ -243,7 +243,7 @@ def test_what_is_no_list_of_logarithms_is_refused() -> None:
         for pair in ((x, y), (y, x)):
             with pytest.raises(
                 ParameterError,
-                match=r"^a Hersey number or a friction is not positive: its logarithm has no meaning$",
+                match=r"^Hersey number and friction must be positive and finite$",
             ):
                 hersey_collapse(*pair, np.repeat([0, 1], 3))
 
@@ -263,5 +263,5 @@ def test_temperatures_that_stand_off_as_whole_visits_do_are_not_said_to_part() -
     assert [b.deviation for b in beside] == [a.deviation for a in alone]
     assert any(a.collapses is False for a in alone)
     assert all(b.collapses is not False for b in beside)
-    assert any("no more than whole visits scatter (8%)" in b.verdict for b in beside)
+    assert any("no more than whole visits do (8 %)" in b.verdict for b in beside)
     assert judged(0.5, 1, 0.05).collapses is False

@@ -172,14 +172,14 @@ def test_temperatures_below_freezing_refuse_powers_of_degrees_celsius() -> None:
     data = dwells(law, [0.1, 2.8, -0.7], temperatures=np.array([263.0, 283.0, 313.0]))
     refused = dict(compare_models(data, bootstrap=0, cross_validate=False).refused)
     assert (
-        refused["power law in degC x power of speed, one branch"] == "T^b has no meaning at or below 0 degC"
+        refused["power law in degC x power of speed, one branch"] == "T^b is not defined at or below 0 degC"
     )
 
 
 def test_one_speed_yields_no_law(points: hersey.SteadyPoints) -> None:
     speed = np.abs(points.column("speed"))
     kept = np.abs(np.log(speed / np.median(speed))) < 0.02
-    with pytest.raises(InsufficientDataError, match="record dwells at three speeds"):
+    with pytest.raises(InsufficientDataError, match="Record dwells at three or more speeds"):
         compare_models(replace(points, table=points.table.filter(kept)))
 
 

@@ -15,6 +15,7 @@ from hersey.damping.candidates.energy import CALORIE, activation_energies, scale
 from hersey.damping.candidates.fitting import LawFit, fit_law
 from hersey.damping.candidates.stribeck import StribeckLaw
 from hersey.damping.candidates.thermal import ARRHENIUS, CELSIUS, VFT, Thermal
+from hersey.damping.estimate import rounded
 from tests.damping.candidates.cases import hand_fit, some_covariance
 from tests.damping.candidates.test_comparison import REFERENCE, TEMPERATURES, dwells
 
@@ -99,13 +100,13 @@ def test_the_transition_s_energy_against_that_of_viscosity(d: float) -> None:
     both = f"{-d * UNIT / 1e3:.3g} and {2.8 / 0.4 * UNIT / 1e3:.3g} kJ/mol, p = {p:.2g}"
     if p < 0.05:
         assert found.verdict == (
-            f"The energies of viscosity from the transition speed and from torque disagree ({both}): the "
+            f"Viscosity's energies from the transition speed and from torque disagree ({both}): the "
             "transition is not at one Hersey number, or the exponent is not that of viscosity."
         )
     else:
         assert found.verdict == (
-            f"The energies of viscosity from the transition speed and from torque agree ({both}): the "
-            "transition sits at one Hersey number as far as these data tell."
+            f"Viscosity's energies from the transition speed and from torque agree ({both}), as "
+            "expected for a fixed Hersey number."
         )
     assert (p < 0.05) is (d == -9.0)
 
@@ -131,13 +132,13 @@ def test_torque_that_hardly_depends_on_viscosity_gives_no_energy_of_it(low: floa
     assert (found.viscosity is None) is (low < 0.05)
     if found.viscosity is None:
         assert found.verdict == (
-            f"Torque varies as viscosity to the power {found.power}, not told from zero: torque gives no "
-            "energy of viscosity; record faster speeds, where it rises with speed."
+            f"The exponent of torque in viscosity, {found.power}, does not exclude 0, so torque gives "
+            "no activation energy. Record faster speeds, where torque rises with speed."
         )
     else:
         assert found.verdict == (
-            "The transition does not move measurably of its own: there is nothing to check the energy of "
-            "torque against; record speeds around the transition at more temperatures."
+            "The log does not show how the transition moves with temperature, so this energy cannot "
+            "be checked. Record speeds around the transition at more temperatures."
         )
     assert found.transition is None
     assert found.p_value is None
@@ -171,7 +172,7 @@ def test_there_is_no_energy_without_temperatures() -> None:
         activation_energies(cold, None, cold, DATA),
     ):
         assert found.torque is found.power is found.viscosity is found.transition is found.p_value is None
-        assert found.verdict == "No activation energy: the log holds fewer than two temperatures."
+        assert found.verdict == "No activation energy: the log has fewer than two temperatures."
         assert found.local == ()
         assert found.lines() == [found.verdict]
 
@@ -191,8 +192,8 @@ def test_energies_are_printed_in_kilojoules_and_calories() -> None:
         assert energy is not None
         v, low, high = energy.value, energy.low, energy.high
         assert line == (
-            f"{name}: {v / 1e3:.4g} [{low / 1e3:.4g}, {high / 1e3:.4g}] kJ/mol = {v / 4.184:.0f} "
-            f"[{low / 4.184:.0f}, {high / 4.184:.0f}] cal/mol"
+            f"{name}: {rounded(v / 1e3, low / 1e3, high / 1e3, 'kJ/mol')} = {v / 4.184:.0f} cal/mol "
+            f"[{low / 4.184:.0f}, {high / 4.184:.0f}]"
         )
     assert lines[3:] == [found.verdict]
     half = scaled(found.torque, 0.5)  # type: ignore[arg-type]
@@ -216,7 +217,7 @@ def test_a_law_without_a_transition_has_no_energy_of_one() -> None:
     found = compare_models(straight, candidates=laws, bootstrap=0, cross_validate=False)
     assert found.chosen.candidate.key == "power-degC/one"
     assert found.energies.transition is None
-    assert found.energies.verdict.startswith("The transition does not move measurably")
+    assert found.energies.verdict.startswith("The log does not show how the transition moves")
 
 
 def test_energies_of_temperatures_visited_once_are_not_held_against_each_other() -> None:
@@ -228,4 +229,4 @@ def test_energies_of_temperatures_visited_once_are_not_held_against_each_other()
     assert found.p_value is None
     assert found.viscosity is not None
     assert not found.viscosity.estimable
-    assert "is not told: each temperature was visited once" in found.verdict
+    assert "cannot be compared" in found.verdict

@@ -325,7 +325,7 @@ def test_what_one_temperature_and_speed_cannot_tell_apart() -> None:
     # speed and temperature rise together
     tied = replace(data, inputs=replace(data.inputs, log_speed=3.0 * np.log(data.inputs.kelvin / REFERENCE)))
     fit = replace(hand_fit(STRAIGHT, VALUES, points=len(data)), errors=np.full(len(data), 0.01))
-    why = "other parameters can make up for any change of it: vary speed and temperature independently"
+    why = "other parameters can compensate any change of it. Vary speed and temperature independently"
     assert not_identified(fit, tied) == {"e": why, "c": why}
     assert not_identified(fit, data) == {}
 
@@ -347,7 +347,7 @@ def test_parts_of_stribeck_s_curve_must_show() -> None:
         "stick": np.sqrt(np.sum((np.exp(-0.2 - h**2) / total) ** 2)),
         "viscous": np.sqrt(np.sum((np.exp(-2.0) * h / total) ** 2)),
     }
-    why = "the part it scales hardly shows: record dwells at {} speeds"
+    why = "the part that it scales is too small in this log. Record dwells at {} speeds"
     expected = {"stick": why.format("slower"), "viscous": why.format("faster")}
     for name, norm in norms.items():
         assert name not in not_identified(fitted(0.49 * norm, small), data)
@@ -362,7 +362,7 @@ def test_parts_of_stribeck_s_curve_must_show() -> None:
 def test_the_pole_of_vft_must_be_two_errors_from_none() -> None:
     law = Law(Thermal(VFT, REFERENCE), ONE)
     data = dwells(law, [0.1, 2.8, 0.004, -0.7])
-    why = "T0 has no lower bound in these data: record temperatures further apart"
+    why = "the data do not bound T0 from below. Record temperatures further apart"
     for error, lost in ((0.00201, {"q": why}), (0.00199, {})):
         covariance = 1e-4 * np.eye(4)
         covariance[2, 2] = error**2
@@ -374,8 +374,8 @@ def test_a_transition_needs_torque_to_tell_viscosity() -> None:
     law = Law(Thermal(ARRHENIUS, REFERENCE), HELD)
     data = dwells(law, [0.1, 0.02, -0.94, -1.6, -0.2])
     why = (
-        "torque hardly depends on viscosity above it (1 + c is at its bound), so where one Hersey "
-        "number lies at other temperatures is not determined: record faster speeds"
+        "torque above the transition hardly depends on viscosity (1 + c is at its bound), so its "
+        "place at other temperatures is unknown. Record faster speeds"
     )
     for c, lost in ((-0.9499, {}), (-0.9501, {"at": why})):
         fit = hand_fit(law, [0.1, 0.02, c, -1.6, -0.2], points=len(data))
@@ -401,7 +401,7 @@ def test_a_corner_needs_three_dwells_on_either_side(at: float, lost: set[str]) -
     here = float(np.interp(at, np.arange(9.0), z))
     fit = hand_fit(law, [0.1, -0.7, -1.2, here], points=9, covariance=1e-6 * np.eye(4))
     where, what = ("below", "slower") if at < 4 else ("above", "faster")
-    why = f"only 2 dwells lie {where} the transition: record dwells at {what} speeds"
+    why = f"only 2 dwells lie {where} the transition. Record dwells at {what} speeds"
     assert not_identified(fit, data) == dict.fromkeys(lost, why)
 
 
@@ -421,7 +421,7 @@ def test_a_corner_needs_two_speeds_on_either_side() -> None:
         if lost:
             where, what = ("below", "slower") if "c_mixed" in lost else ("above", "faster")
             assert found["at"] == (
-                f"only 3 dwells lie {where} the transition: record dwells at {what} speeds"
+                f"only 3 dwells lie {where} the transition. Record dwells at {what} speeds"
             )
 
 
@@ -429,7 +429,7 @@ def test_an_error_of_a_quarter_of_the_speeds_is_no_transition() -> None:
     law = Law(None, FREE)
     data = dwells(law, [0.1, -0.7, -1.2, -0.9], temperatures=None)
     quarter = 0.25 * np.log(40.0)  # from 0.4 to 16 rad/s
-    why = "the branches differ too little to say where they meet: record slower and faster speeds"
+    why = "the branches differ too little to show where they meet. Record slower and faster speeds"
     for error, lost in ((0.999 * quarter, {}), (1.001 * quarter, {"at": why})):
         covariance = 1e-4 * np.eye(4)
         covariance[3, 3] = error**2

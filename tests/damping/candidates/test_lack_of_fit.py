@@ -92,7 +92,7 @@ def test_coulomb_and_viscous_is_no_power_law() -> None:
         assert found.drift == pytest.approx(share[-1] - share[0], rel=0.2)
         (miss,) = found.misses()
         slow, fast = found.local_exponents
-        assert f"from {slow:.2f} at the slow end to {fast:.2f} at the fast one" in miss
+        assert f"from {slow:.2f} at the slowest speeds to {fast:.2f} at the fastest" in miss
 
 
 def test_an_exponent_that_varies_with_temperature_and_a_bend_in_temperature() -> None:
@@ -199,6 +199,6 @@ def test_a_law_without_temperature_does_not_hold_where_torque_varies_with_it() -
     assert found.temperature is not None
     assert found.in_temperature
     assert not found.holds
-    assert found.misses()[-1].startswith("torque varies with temperature as the law does not")
+    assert found.misses()[-1].startswith("the model does not describe how torque varies with temperature")
     alike = dwells(ISOTHERMAL, [0.1, -0.7])
     assert lack_of_fit(fit_law(ISOTHERMAL, alike), alike).holds

@@ -97,7 +97,7 @@ def test_as_many_residuals_as_parameters_are_enough_and_fewer_are_not() -> None:
         return np.array([v[0] + v[1] - 3.0, v[0] - v[1] - 1.0])
 
     assert minimise(line, None, np.zeros(2)).values == pytest.approx([2.0, 1.0], abs=1e-7)
-    with pytest.raises(InsufficientDataError, match=r"^1 points cannot determine 2 parameters$"):
+    with pytest.raises(InsufficientDataError, match=r"^1 points are too few for 2 parameters$"):
         minimise(lambda v: v[:1] - 1.0, None, np.zeros(2))
 
 

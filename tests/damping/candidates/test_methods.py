@@ -133,7 +133,8 @@ def open_to(data: Observations, fit: LawFit, aside: float, share: float, cost: f
 
 def test_an_open_profile_says_to_which_side(data: Observations, fit: LawFit) -> None:
     said = (
-        "not determined: the likelihood is open to {}: record more temperatures and slower and faster speeds"
+        "cannot be determined: the data do not bound it from {}. Record more temperatures and slower "
+        "and faster speeds"
     )
     # eight steps of a hundredth of an error raise the cost by next to nothing
     assert open_to(data, fit, 0.0, 0.01, fit.cost) == said.format("either side")
@@ -151,7 +152,7 @@ def test_what_is_quoted_is_the_profile_else_the_covariance() -> None:
     assert str(alone) == "0.51235 [0.3, 0.7]"
     none = ParameterEstimate("c", "", 0.5, None, {}, "too few")
     assert none.interval is None
-    assert str(none) == "not determined: too few"
+    assert str(none) == "cannot be determined: too few"
     assert METHODS == ("covariance", "clustered", "profile", "bootstrap")
 
 

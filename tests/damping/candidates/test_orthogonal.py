@@ -112,23 +112,25 @@ def test_inputs_without_errors_are_exact() -> None:
         (
             0.1,
             False,
-            "; orthogonal distance regression (ODRPACK) did not converge, so it checks nothing.",
+            ". The check by orthogonal distance regression (ODRPACK) did not converge.",
         ),
         (
             0.4999,
             True,
-            "; orthogonal distance regression (ODRPACK) moves no parameter by more than 0.5 of its standard "
-            "error: the effective variance is good enough.",
+            ". Orthogonal distance regression (ODRPACK) moves no parameter by more than 0.5 of its standard "
+            "error, so the effective variance is accurate enough.",
         ),
         (
             0.5,
             True,
-            "; orthogonal distance regression (ODRPACK) moves a parameter by 0.5 of its standard error: the "
-            "law bends within an error bar; hold speed and temperature better.",
+            (
+                ". Orthogonal distance regression (ODRPACK) moves a parameter by 0.5 of its standard "
+                "error, so the law bends within an error bar. Hold speed and temperature more constant."
+            ),
         ),
     ],
 )
 def test_what_is_said_of_it(shift: float, converged: bool, said: str) -> None:
     found = OrthogonalFit(np.zeros(2), shift, 0.1234, converged)
-    start = "Errors of speed and temperature make 12.3% of the variance of a dwell"
+    start = "Errors of speed and temperature make up 12.3 % of the variance of a dwell"
     assert found.verdict == start + said

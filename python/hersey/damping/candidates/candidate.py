@@ -122,9 +122,9 @@ class Candidate:
             if data.inputs.kelvin is None:
                 return "the log has no temperature"
             if levels < needed:
-                return f"needs {needed} temperatures, the log has {_listed(data)}"
+                return f"needs {needed} temperatures; the log has {_listed(data)}"
             if self.thermal == CELSIUS and np.min(data.inputs.kelvin) <= convert(0.0, "degC", "K"):
-                return "T^b has no meaning at or below 0 degC"
+                return "T^b is not defined at or below 0 degC"
         if self.per_temperature:
             for group in range(levels):
                 speeds = distinct_speeds(data.speed[data.inputs.group == group])
@@ -136,11 +136,12 @@ class Candidate:
         needed = SPEEDS_OF_TWO if self.branches in (REST_PLUS, SHARED) else needed
         speeds = distinct_speeds(data.speed) if needed else 0
         if speeds < needed:
-            return f"needs {needed} speeds, the log has {speeds}"
+            return f"needs {needed} speeds; the log has {speeds}"
         parameters = len(self.law(data).names)
         if len(data) < parameters + LEAST_FREEDOM:
             return (
-                f"{parameters} parameters need {parameters + LEAST_FREEDOM} dwells, the log has {len(data)}"
+                f"its {parameters} parameters need {parameters + LEAST_FREEDOM} dwells; the log has "
+                f"{len(data)}"
             )
         return ""
 

@@ -72,9 +72,11 @@ def hersey_collapse(
     x, y = np.asarray(log_hersey, dtype=np.float64), np.asarray(log_friction, dtype=np.float64)
     _, group = np.unique(np.asarray(groups), return_inverse=True)
     if not (x.shape == y.shape == group.shape and x.ndim == 1):
-        raise ParameterError("log_hersey, log_friction and groups must be one-dimensional and of one length")
+        raise ParameterError(
+            "log_hersey, log_friction and groups must be one-dimensional and of equal length"
+        )
     if not (np.all(np.isfinite(x)) and np.all(np.isfinite(y))):
-        raise ParameterError("a Hersey number or a friction is not positive: its logarithm has no meaning")
+        raise ParameterError("Hersey number and friction must be positive and finite")
     _require(group)
     return _judged(x, y, group, np.empty(0), 0.0)
 
@@ -114,9 +116,9 @@ def temperature_collapse(data: Observations, shared: float = 0.0) -> HerseyColla
 def _require(group: IntArray) -> None:
     groups, counts = np.unique(group, return_counts=True)
     if groups.size < 2:
-        raise InsufficientDataError("one curve alone cannot collapse: record other temperatures or loads")
+        raise InsufficientDataError("one curve cannot collapse. Record other temperatures or loads")
     if counts.min() < 3:
-        raise InsufficientDataError("a curve has fewer than 3 points: record more speeds")
+        raise InsufficientDataError("a curve has fewer than 3 points. Record more speeds")
 
 
 def _judged(
@@ -128,26 +130,26 @@ def _judged(
     if overlap < 0.3:
         collapses = None
         verdict = (
-            f"Whether the curves collapse cannot be told: only {overlap:.0%} of the points share a Hersey "
-            "number with another curve. Widen the range of speeds."
+            f"Whether the curves collapse cannot be determined: only {100 * overlap:.0f} % of the "
+            "points share a Hersey number with another curve. Widen the speed range."
         )
     elif p_value < _CHANCE and max(NEGLIGIBLE, 0.5 * scatter) < deviation <= 2.0 * shared:
         collapses = None
         verdict = (
-            f"Whether the curves collapse cannot be told: they stand {deviation:.0%} (root mean square) off "
-            f"a common curve, no more than whole visits scatter ({shared:.0%})."
+            f"Whether the curves collapse cannot be determined: they differ by {100 * deviation:.0f} "
+            f"% rms, no more than whole visits do ({100 * shared:.0f} %)."
         )
     elif p_value < _CHANCE and deviation > max(NEGLIGIBLE, 0.5 * scatter):
         collapses = False
         verdict = (
-            f"The curves do NOT collapse onto one against the Hersey number: they stand {deviation:.0%} "
-            f"(root mean square) off a common curve, about which each scatters by {scatter:.1%} "
-            f"(p = {p_value:.1g}). No clean Stribeck curve may be drawn from them."
+            "The curves do NOT collapse onto one against the Hersey number: they differ by "
+            f"{100 * deviation:.0f} % rms and each scatters by {100 * scatter:.1f} % (p = "
+            f"{p_value:.1g}). Do not draw one Stribeck curve through them."
         )
     else:
         verdict = (
-            f"The curves collapse onto one against the Hersey number: they stand {deviation:.1%} off it "
-            f"(root mean square), and scatter by {scatter:.1%}."
+            "The curves collapse onto one against the Hersey number: they differ by "
+            f"{100 * deviation:.1f} % rms and scatter by {100 * scatter:.1f} %."
         )
     return HerseyCollapse(collapses, deviation, scatter, before, p_value, overlap, shifts, verdict)
 
@@ -165,7 +167,7 @@ def _deviation(x: FloatArray, y: FloatArray, group: IntArray, fitted: int = 0) -
     rank_common, rank_own = (int(np.linalg.matrix_rank(m)) for m in (common, both))
     freedom, more = y.size - rank_own - fitted, max(rank_own - rank_common, 1)
     if freedom < 2:
-        raise InsufficientDataError("too few points to tell curves from scatter: record more speeds")
+        raise InsufficientDataError("too few points to separate curves from scatter. Record more speeds")
     variance = s_own / freedom
     ratio = (s_common - s_own) / more / max(variance, 1e-24)
     deviation = float(np.sqrt(max(s_common - s_own - more * variance, 0.0) / y.size))

@@ -46,20 +46,20 @@ def compare_models(
     cross_validate: bool = True,
     progress: Callable[[int, int], None] | None = None,
 ) -> ModelComparison:
-    """Fit every candidate to the same dwells and choose one.
+    """Fit every model to the same dwells and choose one.
 
     Parameters
     ----------
     points
         From `TorqueLog.steady`.
     candidates
-        Those to fit; all if not given.
+        Models to fit; default: all.
     contact
         Film and asperities of the machine (`hersey.MixedContact`), whose laws are candidates then.
     bootstrap
-        Resampled fits of the candidate chosen; 0 leaves that interval out.
+        Number of resampled fits of the chosen model; 0 omits that interval.
     seed
-        Of the resampling.
+        Random seed of the resampling.
     cross_validate
         Whether to predict dwells from the others.
     progress
@@ -90,7 +90,7 @@ def compare_models(
     refused = [(candidate.name, why) for candidate in candidates if (why := candidate.refused(data))]
     carried = [candidate for candidate in candidates if not candidate.refused(data)]
     if not carried:
-        raise InsufficientDataError(f"no law can be fitted: {refused[0][0]} {refused[0][1]}")
+        raise InsufficientDataError(f"no model can be fitted. {refused[0][0]}: {refused[0][1]}")
     by_aicc = ranked(_fitted(carried, data, progress), data, cross_validate)
     chosen = choose(by_aicc)
     draws = bootstrap_draws(chosen.fit, data, bootstrap, seed) if bootstrap else np.empty(0)
@@ -130,7 +130,7 @@ def choose(candidates: tuple[CandidateFit, ...]) -> CandidateFit:
 def ranked(
     fits: list[tuple[Candidate, LawFit]], data: Observations, cross_validate: bool
 ) -> tuple[CandidateFit, ...]:
-    """Return fits by AICc, with what is not determined and the errors of dwells left out."""
+    """Return fits by AICc, with what is not determined and the errors of excluded dwells."""
     least_aicc, least_bic = min(f.aicc for _, f in fits), min(f.bic for _, f in fits)
     weights = np.array([np.exp(-0.5 * (f.aicc - least_aicc)) for _, f in fits])
     weights /= weights.sum()
@@ -159,9 +159,9 @@ def _reasons(ranked: tuple[CandidateFit, ...], chosen: CandidateFit, data: Obser
     """Return why this candidate, and what may be said for the others."""
     numbers = chosen.fit.parameters
     said = [
-        f"Chosen: {chosen.candidate.name}, with {numbers} numbers fitted to {len(data)} dwells.",
-        *(f"Not determined, {name}: {why}." for name, why in chosen.not_identified.items()),
-        *(f"It does not hold: {miss}." for miss in chosen.lack_of_fit.misses()),
+        f"Chosen: {chosen.candidate.name}, with {numbers} parameters fitted to {len(data)} dwells.",
+        *(f"Parameter {name} cannot be determined: {why}." for name, why in chosen.not_identified.items()),
+        *(f"The model is rejected: {miss}." for miss in chosen.lack_of_fit.misses()),
     ]
     for other in ranked:
         if other.delta_aicc >= chosen.delta_aicc or other is chosen:
@@ -170,24 +170,28 @@ def _reasons(ranked: tuple[CandidateFit, ...], chosen: CandidateFit, data: Obser
         if other.not_identified:
             reason = next(iter(other.not_identified.values()))
             said.append(
-                f"{other.candidate.name} has an AICc better by {better:.1f}, but is not determined: {reason}."
+                f"{other.candidate.name} fits better (AICc lower by {better:.1f}), but one of its parameters "
+                f"cannot be determined: {reason}."
             )
         else:
             more = other.fit.parameters - chosen.fit.parameters
-            price = f"{more} more number{'s' if more > 1 else ''}"
-            doubt = "the data do not tell the two apart" if better < TIED else f"{EVIDENCE:g} are asked"
-            said.append(f"{other.candidate.name}, with {price}, has an AICc better by {better:.1f}: {doubt}.")
+            price = f"{more} more parameter{'s' if more > 1 else ''}"
+            doubt = "this difference is not significant" if better < TIED else f"{EVIDENCE:g} is needed"
+            said.append(
+                f"{other.candidate.name}, with {price}, fits better (AICc lower by {better:.1f}), "
+                f"but {doubt}."
+            )
     worse = [r for r in ranked if r.delta_aicc > chosen.delta_aicc and not r.not_identified]
     if worse:
         next_best = worse[0]
         gap = next_best.delta_aicc - chosen.delta_aicc
-        tie = "; the data do not tell the two apart" if gap < TIED else ""
-        said.append(f"Next is {next_best.candidate.name}: its AICc is worse by {gap:.1f}{tie}.")
+        tie = ", not significant" if gap < TIED else ""
+        said.append(f"Next best is {next_best.candidate.name} (AICc higher by {gap:.1f}{tie}).")
     best = min(ranked, key=lambda r: r.fit.bic)
     said.append(
-        "BIC puts the same candidate first."
+        "BIC selects the same model."
         if best is chosen
-        else f"BIC puts {best.candidate.name} first (by {chosen.delta_bic:.1f})."
+        else f"BIC selects {best.candidate.name} (BIC lower by {chosen.delta_bic:.1f})."
     )
     return (*said, *_by_cross_validation(ranked, chosen, data))
 
@@ -199,15 +203,19 @@ def _by_cross_validation(
     if chosen.left_out is None or not tried:
         return ()
     best = min(tried, key=lambda r: float(r.cross_validation or 0.0))
-    what = f"leaving out one {data.clustered_by} at a time"
-    error = f"the chosen candidate predicts the dwells left out to {chosen.cross_validation:.2%}"
+    what = f"excluding one {data.clustered_by} at a time"
+    error = f"the chosen model predicts the excluded dwells within {_per_cent(chosen)}"
     if best is chosen or best.left_out is None:
-        return (f"Cross-validation, {what}: {error}, the best of all.",)
+        return (f"Cross-validation, {what}: {error}, the best of all models.",)
     gain = chosen.left_out**2 - best.left_out**2
     chance = float(np.std(gain, ddof=1) * np.sqrt(gain.size))
     apart = "beyond chance" if float(np.sum(gain)) > 2 * chance else "within chance"
-    other = f"{best.candidate.name} does so to {best.cross_validation:.2%}, {apart}"
+    other = f"{best.candidate.name} within {_per_cent(best)}, a difference {apart}"
     return (f"Cross-validation, {what}: {error}; {other}.",)
+
+
+def _per_cent(candidate: CandidateFit) -> str:
+    return f"{100.0 * (candidate.cross_validation or 0.0):.2f} %"
 
 
 def _energies(

@@ -17,7 +17,7 @@ from hersey.damping.candidates.constant_plus import ConstantPlusLaw
 from hersey.damping.candidates.fitting import LawFit
 from hersey.damping.candidates.observations import Observations
 from hersey.damping.distributions import student_above
-from hersey.damping.estimate import Estimate, estimate, quantile
+from hersey.damping.estimate import Estimate, estimate, quantile, rounded
 
 #: Joules in a thermochemical calorie.
 CALORIE = 4.184
@@ -31,7 +31,7 @@ class ActivationEnergies:
 
     ``local`` holds the chosen law's apparent energy of torque at the coldest, the reference and the hottest
     temperature, K: equal if the law is Arrhenius. ``of_film`` says that a constant part of the torque is
-    left out of them: ``torque`` is then that of the film.
+    excluded from them: ``torque`` is then that of the film.
     """
 
     torque: Estimate | None
@@ -56,10 +56,14 @@ class ActivationEnergies:
                 continue
             kj, cal = scaled(energy, 1e-3), scaled(energy, 1.0 / CALORIE)
             if not energy.estimable:
-                lines.append(f"{name}: {kj.value:.4g} kJ/mol = {cal.value:.0f} cal/mol, interval not told")
+                lines.append(f"{name}: {kj.value:.4g} kJ/mol = {cal.value:.0f} cal/mol, interval not known")
             else:
-                lines.append(f"{name}: {kj} kJ/mol = {cal.value:.0f} [{cal.low:.0f}, {cal.high:.0f}] cal/mol")
+                lines.append(f"{name}: {_with(kj, 'kJ/mol')} = {_with(cal, 'cal/mol')}")
         return [*lines, self.verdict]
+
+
+def _with(energy: Estimate, unit: str) -> str:
+    return rounded(energy.value, energy.low, energy.high, unit)
 
 
 def scaled(energy: Estimate, factor: float) -> Estimate:
@@ -86,7 +90,7 @@ def activation_energies(
     """
     if best is None or data.reference_kelvin is None or best.law.thermal is None:
         return ActivationEnergies(
-            None, None, None, None, None, "No activation energy: the log holds fewer than two temperatures."
+            None, None, None, None, None, "No activation energy: the log has fewer than two temperatures."
         )
     per_unit = best.law.thermal.energy(data.reference_kelvin)
     torque = _untold(best, _linear(best, {"e": per_unit}))
@@ -160,28 +164,28 @@ def _verdict(
 ) -> str:
     if viscosity is None:
         return (
-            f"Torque varies as viscosity to the power {power}, not told from zero: torque gives no energy of "
-            "viscosity; record faster speeds, where it rises with speed."
+            f"The exponent of torque in viscosity, {power}, does not exclude 0, so torque gives no "
+            "activation energy. Record faster speeds, where torque rises with speed."
         )
     if transition is not None and p_value is None:
         return (
-            "Whether the energies of viscosity from the transition speed and from torque agree is not told: "
-            "each temperature was visited once; visit one again, or record another."
+            "Each temperature was visited once, so the energies from transition speed and torque "
+            "cannot be compared. Visit one again, or record another."
         )
     if transition is None or p_value is None:
         return (
-            "The transition does not move measurably of its own: there is nothing to check the energy of "
-            "torque against; record speeds around the transition at more temperatures."
+            "The log does not show how the transition moves with temperature, so this energy cannot "
+            "be checked. Record speeds around the transition at more temperatures."
         )
     both = f"{transition.value / 1e3:.3g} and {viscosity.value / 1e3:.3g} kJ/mol, p = {p_value:.2g}"
     if p_value < _DISAGREE:
         return (
-            f"The energies of viscosity from the transition speed and from torque disagree ({both}): the "
+            f"Viscosity's energies from the transition speed and from torque disagree ({both}): the "
             "transition is not at one Hersey number, or the exponent is not that of viscosity."
         )
     return (
-        f"The energies of viscosity from the transition speed and from torque agree ({both}): the "
-        "transition sits at one Hersey number as far as these data tell."
+        f"Viscosity's energies from the transition speed and from torque agree ({both}), as expected "
+        "for a fixed Hersey number."
     )
 
 

@@ -40,16 +40,17 @@ class OrthogonalFit(Record):
     @property
     def verdict(self) -> str:
         """What to make of it."""
-        part = f"Errors of speed and temperature make {self.share:.1%} of the variance of a dwell"
+        part = f"Errors of speed and temperature make up {100 * self.share:.1f} % of the variance of a dwell"
         if not self.converged:
-            return f"{part}; orthogonal distance regression (ODRPACK) did not converge, so it checks nothing."
-        moved = "orthogonal distance regression (ODRPACK) moves no parameter by more than "
+            return f"{part}. The check by orthogonal distance regression (ODRPACK) did not converge."
+        moved = "Orthogonal distance regression (ODRPACK) moves no parameter by more than "
         moved += f"{self.largest_shift:.2g}"
         if self.largest_shift < _NOTICEABLE:
-            return f"{part}; {moved} of its standard error: the effective variance is good enough."
+            return f"{part}. {moved} of its standard error, so the effective variance is accurate enough."
         return (
-            f"{part}; orthogonal distance regression (ODRPACK) moves a parameter by {self.largest_shift:.2g} "
-            "of its standard error: the law bends within an error bar; hold speed and temperature better."
+            f"{part}. Orthogonal distance regression (ODRPACK) moves a parameter by "
+            f"{self.largest_shift:.2g} of its standard error, so the law bends within an error bar. "
+            "Hold speed and temperature more constant."
         )
 
 

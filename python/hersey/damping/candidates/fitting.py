@@ -46,12 +46,12 @@ _FIRST_SCATTER = 0.03
 _STRAINED = 4.0
 #: That scatter.
 _WIDE_SCATTER = 0.3
-#: Variance of a value by a scatter of groups that is not told, over that by as much of dwells, that is
+#: Variance of a value by a scatter of groups that is unknown, over that by as much of dwells, that is
 #: little: groups may scatter several times as much as dwells.
 _LITTLE = 0.1
 #: Resamples tried for one that holds every temperature.
 _MOST_TRIES = 300
-#: Largest number of parts in which data are left out in turn.
+#: Largest number of parts in which data are excluded in turn.
 MOST_FOLDS = 40
 
 
@@ -68,7 +68,7 @@ class LawFit:
     scatter: float  #: relative, between dwells, beyond their errors
     shared: tuple[SharedScatter, ...]  #: of visits and runs
     errors: FloatArray  #: effective standard error of each ln torque, without the scatter
-    residuals: FloatArray  #: ln(measured/fitted), the disturbances taken off
+    residuals: FloatArray  #: ln(measured/fitted), the disturbances subtracted
     cost: float
     deviance: float  #: twice the negative log-likelihood at its least
     freedoms: Freedom
@@ -105,7 +105,7 @@ class LawFit:
         """Return why a parameter has no interval though the dwells determine its value; empty if it has.
 
         A law of temperature that takes up every difference between the visits leaves nothing to say how
-        far visits scatter. That leaves open what hangs on temperature: its law, and a transition that moves
+        far visits scatter. That leaves open what depends on temperature: its law, and a transition that moves
         with it; levels and exponents of speed are those of these visits.
         """
         thermal = name in ("e", "q", "at", "d") and self.law.thermal is not None
@@ -113,8 +113,8 @@ class LawFit:
         if not thermal or not moved.size or moved[self.law.index(name)] < _LITTLE:
             return ""
         return (
-            "each temperature was visited once, and the law of temperature takes up every difference between "
-            "the visits: how far visits scatter is not told; visit a temperature again, or record another"
+            "each temperature was visited once, so visits cannot be separated from temperature. "
+            "Visit one again, or record another"
         )
 
     def error(self, name: str) -> float:
@@ -123,7 +123,7 @@ class LawFit:
         return float(np.sqrt(max(self.covariance[index, index], 0.0)))
 
     def estimate(self, name: str) -> Estimate:
-        """Return a parameter of the law with its interval by covariance; unbounded if it is not told."""
+        """Return a parameter of the law with its interval by covariance; unbounded if it is unknown."""
         value, error = float(self.values[self.law.index(name)]), self.error(name)
         if self.not_estimable(name):
             return Estimate(value, error, -np.inf, np.inf)
@@ -340,7 +340,7 @@ def search(
 def left_out(fit: LawFit, data: Observations) -> FloatArray:
     """Return residuals of dwells predicted without their own cluster; NaN where a law cannot say.
 
-    A law with an exponent per temperature cannot predict a temperature that was left out.
+    A law with an exponent per temperature cannot predict a temperature that was excluded.
     """
     start = np.append(fit.values, fit.effects)
     parts = data.cluster % MOST_FOLDS

@@ -24,13 +24,15 @@ def not_identified(fit: LawFit, data: Observations) -> dict[str, str]:
     for value, axis in zip(singular, axes, strict=True):
         if value < 1e-6 * singular[0]:
             for index in np.flatnonzero(np.abs(axis) > 0.1):
-                out[law.names[index]] = "other parameters can make up for any change of it: vary speed and "
+                out[law.names[index]] = "other parameters can compensate any change of it. Vary speed and "
                 out[law.names[index]] += "temperature independently"
     if isinstance(law, StribeckLaw):
         for name, what in (("stick", "slower"), ("viscous", "faster")):
             part = law.index(name)  # a factor e of it, in standard errors of all dwells together
             if norms[part] < 2.0 or fit.covariance[part, part] > 1.0:
-                out[name] = f"the part it scales hardly shows: record dwells at {what} speeds"
+                out[name] = (
+                    f"the part that it scales is too small in this log. Record dwells at {what} speeds"
+                )
         return out
     if isinstance(law, ConstantPlusLaw):
         return out | _parts_shown(fit, norms)
@@ -43,13 +45,13 @@ def not_identified(fit: LawFit, data: Observations) -> dict[str, str]:
     if "q" in law.names:
         q, error = fit.values[law.index("q")], fit.error("q")
         if q <= 2.0 * error:
-            out["q"] = "T0 has no lower bound in these data: record temperatures further apart"
+            out["q"] = "the data do not bound T0 from below. Record temperatures further apart"
     if "q" not in out and law.branches == "two branches, one Hersey number" and law.thermal:
         c = fit.values[law.index("c")]
         if 1.0 + c <= LEAST_POWER:
             out["at"] = (
-                "torque hardly depends on viscosity above it (1 + c is at its bound), so where one Hersey "
-                "number lies at other temperatures is not determined: record faster speeds"
+                "torque above the transition hardly depends on viscosity (1 + c is at its bound), so "
+                "its place at other temperatures is unknown. Record faster speeds"
             )
     return out
 
@@ -61,7 +63,7 @@ def _parts_shown(fit: LawFit, norms: FloatArray) -> dict[str, str]:
         part = fit.law.index(name) if name in fit.law.names else None
         if part is None or (norms[part] >= 2.0 and fit.covariance[part, part] <= 1.0):
             continue
-        why = f"the {what} torque hardly shows beside the film, or the film beside it: record a wider range"
+        why = f"the {what} torque cannot be separated from the film. Record a wider speed range"
         out |= {lost: why for lost in (name, "r") if lost in fit.law.names}
     return out
 
@@ -69,12 +71,12 @@ def _parts_shown(fit: LawFit, norms: FloatArray) -> dict[str, str]:
 def _contact_shown(fit: LawFit) -> dict[str, str]:
     """Which numbers of a contact the log hardly tells: a factor e of it is within the errors."""
     more = {
-        "viscosity": "speeds at which the film carries all, and the no-load torque by itself",
+        "viscosity": "speeds at which the film carries the whole load, and the no-load torque separately",
         "roughness": "speeds on both sides of the transition",
-        "boundary": "slower speeds, at which asperities carry more",
+        "boundary": "slower speeds, at which asperities carry more load",
     }
     return {
-        name: f"not told: a factor {np.e:.1f} of it is within the errors; record {what}"
+        name: f"unknown within a factor of {np.e:.1f}. Record {what}"
         for name, what in more.items()
         if name in fit.law.names
         and (fit.error(name) > 1.0 or abs(fit.values[fit.law.index(name)]) >= 0.99 * BOUND)
@@ -90,11 +92,11 @@ def _branches_shown(fit: LawFit, data: Observations) -> dict[str, str]:
         if np.count_nonzero(side) < 3 or levels < 2:
             count = int(np.count_nonzero(side))
             where = "below" if what == "slower" else "above"
-            reason = f"only {count} dwells lie {where} the transition: record dwells at {what} speeds"
+            reason = f"only {count} dwells lie {where} the transition. Record dwells at {what} speeds"
             lost = ["at", "c_mixed"] if what == "slower" else ["at", "c"]
             return {name: reason for name in lost if name in fit.law.names}
     if fit.error("at") > 0.25 * float(np.ptp(data.inputs.log_speed)):
         return {
-            "at": "the branches differ too little to say where they meet: record slower and faster speeds"
+            "at": "the branches differ too little to show where they meet. Record slower and faster speeds"
         }
     return {}

@@ -71,7 +71,7 @@ class ParameterEstimate(Record):
     def __str__(self) -> str:
         """Return value and interval, or why there is none."""
         if self.interval is None:
-            return f"not determined: {self.not_identified}"
+            return f"cannot be determined: {self.not_identified}"
         low, high = self.interval
         return f"{self.value:.5g} [{low:.5g}, {high:.5g}]"
 
@@ -280,7 +280,7 @@ def _exp(value: float) -> float:
 
 def _open(ends: Ends) -> str:
     side = "either side" if not np.any(np.isfinite(ends)) else ("above" if np.isinf(ends[1]) else "below")
-    return f"the likelihood is open to {side}: record more temperatures and slower and faster speeds"
+    return f"the data do not bound it from {side}. Record more temperatures and slower and faster speeds"
 
 
 def _mapped(of: Callable[[float], float], ends: Ends) -> Ends:

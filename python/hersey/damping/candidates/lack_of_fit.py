@@ -70,17 +70,19 @@ class LackOfFit(Record):
         out = []
         if self.curvature is not None and self.curvature < DOES_NOT_HOLD:
             out.append(
-                f"the local exponent of damping drifts from {slow:.2f} at the slow end to {fast:.2f} at the "
-                f"fast one (p = {self.curvature:.1g})"
+                f"the local exponent of damping changes from {slow:.2f} at the slowest speeds to "
+                f"{fast:.2f} at the fastest (p = {self.curvature:.1g})"
             )
         if self.exponent_with_temperature is not None and self.exponent_with_temperature < DOES_NOT_HOLD:
             cold, hot = self.by_temperature
             out.append(
-                f"the exponent of damping drifts from {cold:.2f} at the coldest temperature to {hot:.2f} at "
-                f"the hottest (p = {self.exponent_with_temperature:.1g})"
+                f"the exponent of damping changes from {cold:.2f} at the coldest temperature to "
+                f"{hot:.2f} at the hottest (p = {self.exponent_with_temperature:.1g})"
             )
         if self.in_temperature:
-            out.append(f"torque varies with temperature as the law does not (p = {self.temperature:.1g})")
+            out.append(
+                f"the model does not describe how torque varies with temperature (p = {self.temperature:.1g})"
+            )
         return out
 
     @property

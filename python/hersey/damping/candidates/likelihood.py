@@ -102,7 +102,7 @@ def minimise(
         return np.asarray(share[:, None] * slopes(values))
 
     if (count := residual(start).size) < start.size:
-        raise InsufficientDataError(f"{count} points cannot determine {start.size} parameters")
+        raise InsufficientDataError(f"{count} points are too few for {start.size} parameters")
     with np.errstate(over="ignore", invalid="ignore"):  # of a covariance that is not used
         solution, *_ = optimize.leastsq(
             shrunk,

@@ -43,14 +43,14 @@ class CandidateFit:
     delta_aicc: float  #: to the least of all candidates
     delta_bic: float
     weight: float  #: Akaike weight
-    cross_validation: float | None  #: relative error of dwells left out, root mean square
+    cross_validation: float | None  #: relative error of excluded dwells, root mean square
     left_out: FloatArray | None  #: ln(measured/predicted) of each dwell from the others
     lack_of_fit: LackOfFit  #: whether its residuals still depend on speed or temperature
 
 
 @dataclass(frozen=True, repr=False)
 class ModelComparison(Result):
-    """All candidates by AICc, those refused and why, the one chosen, and what follows from it."""
+    """All models by AICc, those refused and why, and the one chosen with its parameters."""
 
     candidates: tuple[CandidateFit, ...]
     refused: tuple[tuple[str, str], ...]  #: name and reason
@@ -67,16 +67,16 @@ class ModelComparison(Result):
 
     @property
     def runners_up(self) -> tuple[CandidateFit, ...]:
-        """The candidates next in AICc."""
+        """The models next in AICc."""
         return tuple(r for r in self.candidates if r is not self.chosen)[:RUNNERS_UP]
 
     def candidate(self, key: str) -> CandidateFit:
-        """Return a candidate by its key, as ``arrhenius/two-hersey``."""
+        """Return a model by its key, e.g. ``arrhenius/two-hersey``."""
         for candidate in self.candidates:
             if candidate.candidate.key == key:
                 return candidate
         known = ", ".join(r.candidate.key for r in self.candidates)
-        raise ParameterError(f"no candidate '{key}' was fitted; there are {known}")
+        raise ParameterError(f"no model '{key}' was fitted. Use one of {known}")
 
     @takes_si(speed="speed", temperature="temperature")
     def predict(self, *, speed: FloatArray | float, temperature: FloatArray | float | None = None) -> Band:
@@ -84,7 +84,7 @@ class ModelComparison(Result):
         speeds = np.atleast_1d(np.asarray(speed, dtype=np.float64))
         law = self.chosen.fit.law
         if (law.thermal is not None or isinstance(law, SharedLoadLaw)) and temperature is None:
-            raise ParameterError("this law depends on temperature: give it one, in K")
+            raise ParameterError("this model depends on temperature. Give the temperature in K")
         hot = None
         if temperature is not None:
             speeds, hot = np.broadcast_arrays(speeds, np.asarray(temperature, dtype=np.float64))
@@ -97,15 +97,15 @@ class ModelComparison(Result):
         return _summary(self)
 
     def headline(self) -> str:
-        """Return the candidate chosen, among how many."""
-        return f"{self.chosen.candidate.name}, chosen among {len(self.candidates)} candidates"
+        """Return the chosen model and the number of models."""
+        return f"{self.chosen.candidate.name}, chosen among {len(self.candidates)} models"
 
     def to_dict(self) -> dict[str, Any]:
         """Return the comparison in SI; energies in J/mol and cal/mol."""
         return json_record(_document(self))
 
     def to_frame(self) -> pl.DataFrame:
-        """Return one row per candidate."""
+        """Return one row per model."""
         import polars as pl
 
         rows = [
@@ -130,8 +130,8 @@ def _summary(comparison: ModelComparison) -> str:
     """Return the table of candidates, the choice with its reasons, and what follows."""
     data = comparison.data
     lines = [
-        "[[Candidates]]  (same dwells, same robust likelihood of ln torque; numbers include the scatter)",
-        f"    {'candidate':<66} {'numbers':>7} {'dAICc':>8} {'dBIC':>8} {'left out':>9} {'scatter':>8}",
+        "[[Models]]  (same dwells and robust likelihood of ln torque; parameters include the scatter)",
+        f"    {'model':<66} {'parameters':>10} {'dAICc':>8} {'dBIC':>8} {'CV error':>9} {'scatter':>8}",
     ]
     lines += [_row(r, chosen=r is comparison.chosen) for r in comparison.candidates]
     lines += [f"    not fitted: {name}: {why}" for name, why in comparison.refused]
@@ -139,8 +139,8 @@ def _summary(comparison: ModelComparison) -> str:
     lines.append("[[Parameters]]  95 % intervals")
     for parameter in comparison.parameters:
         lines += _parameter_lines(parameter)
-    counted = f"{comparison.bootstrap} resampled fits by {data.clustered_by}, seed {comparison.seed}"
-    none = "none: not asked for, or hardly a resample holds every temperature"
+    counted = f"{comparison.bootstrap} fits resampled by {data.clustered_by}, seed {comparison.seed}"
+    none = "not requested, or most resamples lack a temperature"
     lines.append(f"    (bootstrap: {counted if comparison.bootstrap else none})")
     lines.append(f"    {comparison.orthogonal.verdict}")
     if data.inputs.kelvin is not None:
@@ -174,20 +174,20 @@ def _document(comparison: ModelComparison) -> dict[str, object]:
 
 
 def _row(r: CandidateFit, *, chosen: bool) -> str:
-    missed = "-" if r.cross_validation is None else f"{r.cross_validation:.2%}"
+    missed = "-" if r.cross_validation is None else f"{100 * r.cross_validation:.2f} %"
     mark = "*" if chosen else " "
     lost = "  not determined" if r.not_identified else ""
-    lost += "" if r.lack_of_fit.holds else "  does not hold"
+    lost += "" if r.lack_of_fit.holds else "  rejected"
     return (
-        f"  {mark} {r.candidate.name:<66} {r.fit.parameters:>7} {r.delta_aicc:>8.1f} {r.delta_bic:>8.1f} "
-        f"{missed:>9} {r.fit.scatter:>8.2%}{lost}"
+        f"  {mark} {r.candidate.name:<66} {r.fit.parameters:>10} {r.delta_aicc:>8.1f} {r.delta_bic:>8.1f} "
+        f"{missed:>9} {100 * r.fit.scatter:>6.2f} %{lost}"
     )
 
 
 def _parameter_lines(p: ParameterEstimate) -> list[str]:
     unit = _SHOWN.get(p.unit, p.unit)
     if p.not_identified:
-        return [f"    {p.name}: not determined: {p.not_identified}"]
+        return [f"    {p.name}: cannot be determined: {p.not_identified}"]
     lines = [f"    {p.name} = {_in(p.value, p):.6g} {unit}".rstrip()]
     for method in METHODS:
         if method in p.intervals:
@@ -202,7 +202,7 @@ def _in(value: float, p: ParameterEstimate) -> float:
 
 def _local(kelvin: float, energy: float) -> str:
     return (
-        f"    chosen law, apparent energy of torque at {convert(kelvin, 'K', 'degC'):.0f} degC: "
+        f"    chosen model, apparent energy of torque at {convert(kelvin, 'K', 'degC'):.0f} degC: "
         f"{energy / 1e3:.4g} kJ/mol = {energy / CALORIE:.0f} cal/mol"
     )
 

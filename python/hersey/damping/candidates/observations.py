@@ -17,7 +17,7 @@ from hersey.units import rpm
 
 #: Change of temperature from dwell to dwell, K, that ends a stay.
 STEP = 6.0
-#: Runs from which on they are resampled and left out whole; fewer say too little of their spread.
+#: Runs from which on they are resampled and excluded whole; fewer say too little of their spread.
 MANY_RUNS = 8
 
 
@@ -48,7 +48,7 @@ class Observations:
     tare: FloatArray
     visit: IntArray  #: which stay at a temperature a dwell belongs to, shape (points,)
     run: IntArray
-    cluster: IntArray  #: points that share it are left out and resampled together
+    cluster: IntArray  #: points that share it are excluded and resampled together
     clustered_by: str  #: ``run`` or ``level``
     reference_speed: float  #: rad/s
     reference_kelvin: float | None
@@ -75,10 +75,7 @@ class Observations:
         speed, torque = np.abs(points.column("speed")), np.abs(points.column("torque"))
         if distinct_speeds(speed) < fewest_speeds:
             held = " and ".join(f"{v} rpm" for v in sorted({f"{rpm(w):.3g}" for w in speed}, key=float)[:2])
-            raise InsufficientDataError(
-                f"the steady points are all at {held}: no law of speed can be fitted or compared; "
-                "record dwells at three speeds or more"
-            )
+            raise InsufficientDataError(f"all dwells are at {held}. Record dwells at three or more speeds")
         if fewest_speeds > 1:
             refuse_constant_torque(points)
         kelvin = points.column("temperature") if points.log.has_temperature else None

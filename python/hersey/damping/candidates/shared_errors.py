@@ -70,7 +70,7 @@ class SharedScatter(Record):
     name: str
     deviation: float
     p_value: Annotated[float, Means("of none, by an F test")]
-    estimable: Annotated[bool, Means("whether the dwells say anything of it")]
+    estimable: Annotated[bool, Means("whether the dwells show anything of it")]
 
 
 def shared_variance(scatter: tuple[SharedScatter, ...]) -> float:
@@ -113,7 +113,7 @@ def shared_scatter(
     by_heat
         Its derivative by temperature, 1/K, shape (points,).
     residuals
-        ln(measured/fitted), no disturbance taken off, shape (points,).
+        ln(measured/fitted), no disturbance subtracted, shape (points,).
     sigma
         Standard error of each dwell on its own, those of outlying dwells widened, shape (points,).
     """

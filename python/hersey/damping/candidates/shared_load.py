@@ -2,7 +2,7 @@
 
     torque = R F(eta U exp(viscosity); roughness exp(roughness), friction exp(boundary)) + rest
 
-F is the force of the core's law of mixed lubrication for the contact of the machine's file; the parameters
+F is the force of the core's law of mixed lubrication for the contact of the machine file; the parameters
 are logarithms of factors on what is stated. Other roughness moves the product of viscosity and speed at
 which film and roughness are alike, and leaves a film that carries all as it is; the shape of the summits is
 held. The inlet of a film as thick as the roughness is longer for it. Viscosity varies with temperature as the

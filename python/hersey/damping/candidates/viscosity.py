@@ -48,9 +48,9 @@ def viscosity_laws(kelvin: ArrayLike, viscosity: ArrayLike, *, relative_error: f
     """
     hot, value = np.asarray(kelvin, dtype=np.float64), np.asarray(viscosity, dtype=np.float64)
     if hot.shape != value.shape or hot.ndim != 1:
-        raise ParameterError("kelvin and viscosity must be one-dimensional and of one length")
+        raise ParameterError("kelvin and viscosity must be one-dimensional and of equal length")
     if not (np.all(value > 0) and np.all(hot > 0) and np.all(np.isfinite(value + hot))):
-        raise ParameterError("a viscosity or a temperature is not positive: laws are fitted to logarithms")
+        raise ParameterError("viscosity and temperature must be positive")
     levels, group = np.unique(hot, return_inverse=True)
     zero = np.zeros_like(hot)
     data = Observations(

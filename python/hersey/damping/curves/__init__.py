@@ -11,7 +11,7 @@ words        the laws by weight, as text
 ===========  ======================================================================
 
 A law is a function of the Hersey number, viscosity times speed: temperature moves its speeds. Laws are
-weighted by AICc, which estimates how well they predict dwells that were left out. One that misses the dwells
+weighted by AICc, which estimates how well they predict dwells that were excluded. One that misses the dwells
 by more than chance, judged by the curve without a formula, is rejected. Beyond the dwells the slope of every
 curve is free to drift, and each drawn curve drifts in its own way.
 """

@@ -26,7 +26,7 @@ from hersey.result import Means, Record
 #: A law whose misfit is as large by chance in fewer logs than this is rejected. The chances are a little too
 #: small: of 40 logs of true laws two had less than a hundred times this.
 REJECTED = 1e-5
-#: A law that weighs less is left out.
+#: A law that weighs less is excluded.
 LEAST_WEIGHT = 0.002
 #: Temperature (K) of the boundary friction of a contact where the dwells have none.
 _WARM = 400.0
@@ -44,7 +44,7 @@ class LawWeight(Record):
     words: str
     weight: float
     delta_aicc: float
-    p_value: Annotated[float, Means("probability of so large a misfit by chance")]
+    p_value: Annotated[float, Means("probability that chance alone makes so large a deviation")]
     rejected: bool
 
 
@@ -164,7 +164,7 @@ def fit_curves(
     dwells = dwells_of(points, surface)
     own: tuple[Shape, ...] = ()
     if contact is not None:
-        # boundary friction that is stated for other temperatures may not hold here: then the law is left out
+        # boundary friction that is stated for other temperatures may not hold here: then the law is excluded
         with suppress(ParameterError):
             own = (shared_load_shape(contact, surface.reference_temperature or _WARM),)
     fits = [fit_shape(shape, dwells, _starts(shape, dwells, surface)) for shape in (*own, *SHAPES)]

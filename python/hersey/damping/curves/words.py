@@ -16,5 +16,5 @@ def weight_lines(laws: Sequence[LawWeight]) -> list[str]:
 
 def drag_curves(laws: Sequence[LawWeight]) -> str:
     """Return the laws by weight under their heading, for the terminal."""
-    heading = "[[Drag curves]]    (V* and verdicts are made of these, by weight)"
+    heading = "[[Drag curves]]    (weights with which they enter V* and the decision)"
     return "\n".join([heading, *weight_lines(laws)])

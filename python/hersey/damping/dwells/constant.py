@@ -40,10 +40,9 @@ def refuse_constant_torque(points: SteadyPoints) -> None:
     torque = constant_torque(points)
     if torque is not None:
         raise InsufficientDataError(
-            f"{points.log.files[0].name}: torque ({_name(points)}) does not vary: it reads "
-            f"{1e3 * torque:.4g} mN m at all speeds, to one step of its resolution, so it measures no "
-            "friction; check the sensor and its cable, or name another column with "
-            f"{Setting('torque', 'channel').to()}"
+            f"{points.log.files[0].name}: torque ({_name(points)}) reads {1e3 * torque:.4g} mN m at "
+            "all speeds, within its resolution, so it does not measure friction. Check the sensor, "
+            f"or name another column with {Setting('torque', 'channel').to()}"
         )
 
 

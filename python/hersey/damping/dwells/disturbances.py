@@ -1,6 +1,6 @@
 """What spoils a dwell that would be steady without it: spikes of the sensor, or a periodic ripple.
 
-Nothing is taken off here: a dwell that is lost stays lost, and the reason names the cause.
+Nothing is subtracted here: a dwell that is lost stays lost, and the reason names the cause.
 """
 
 from __future__ import annotations

@@ -27,15 +27,15 @@ def doubtful_tare(points: SteadyPoints) -> list[Warning]:
     if points.tare:
         share = abs(points.tare) / least
         words = (
-            "the tare, {tare:.3g mN m}, is {share:.0%} of the least dwell: is it the sensor's offset, and "
-            "did the drive stand free?"
+            "the tare, {tare:.3g mN m}, is {share:.0f %} of the lowest torque. Check that it is the "
+            "sensor's offset and the drive stood free"
         )
         found = Warning("large tare", words, severity="watch", tare=points.tare, share=share)
         return [found] if share >= LARGE_TARE else []
     share = abs(standing) / least
     words = (
-        "while the drive stood, torque read {standing:.3g mN m}, {share:.1%} of the least dwell. It is not "
-        "subtracted; if it is the sensor's offset, use {how:standing}"
+        "torque at standstill, {standing:.3g mN m} ({share:.1f %} of the lowest dwell), is not "
+        "subtracted. If it is the sensor's offset, use {how:standing}"
     )
     found = Warning("zero not subtracted", words, severity="watch", standing=standing, share=share, how=TARE)
     return [found] if share >= MATTERS else []
@@ -53,10 +53,10 @@ def doubtful_order(points: SteadyPoints) -> list[Warning]:
     return [
         Warning(
             "in order",
-            "wear-in or any other drift would pass for {quantity} in exponent {exponent}. Go back to the "
-            "first {quantity} at the end",
+            "wear-in or other drift cannot be separated from {quantity} and would bias exponent "
+            "{exponent}. Repeat the first {quantity} at the end",
             severity="watch",
-            title="{quantity:capital} and time go together",
+            title="{quantity:capital} and time changed together",
             quantity=what,
             exponent=exponent,
         )

@@ -116,9 +116,9 @@ def _one_way(points: SteadyPoints) -> Warning | None:
     way = 1.0 if float(np.sum(sign)) >= 0.0 else -1.0
     return Warning(
         "one direction",
-        "speeds were approached from {side} only, so hysteresis of the torque sensor cannot be checked: it "
-        "reads less while torque rises than while it falls. The sensor part of the interval of c allows for "
-        "{allowed:.2g %} of the largest torque. Record the same speeds on the way {other} too",
+        "speeds were approached only from {side}, so sensor hysteresis cannot be checked. The sensor "
+        "part of c allows for {allowed:.2g %} of the largest torque. Also record the speeds on the "
+        "way {other}",
         severity="watch",
         side="below" if way > 0 else "above",
         other="down" if way > 0 else "up",
@@ -146,8 +146,8 @@ def _relaxing(points: SteadyPoints) -> Warning | None:
             else "torque is still relaxing after each change of speed, with a time constant of about "
             "{time:.3g} s"
         )
-        + ". The mean of a dwell is off by up to {off:.2g %}, and the intervals allow for that. Hold each "
-        "speed for at least {hold:.3g} s",
+        + ". Dwell means are off by up to {off:.2g %}, which the intervals include. Hold each speed "
+        "for at least {hold:.3g} s",
         severity="watch",
         time=found.time,
         shortest=low,
@@ -165,10 +165,9 @@ def _late(points: SteadyPoints) -> Warning | None:
         return None
     return Warning(
         "temperature lag",
-        "temperature still changed during {dwells} {dwells:dwell|dwells}. There, a temperature sensor that "
-        "lags by {time:.0f} s is off by up to {off:.1f} K, which biases exponents b and c. Wait until the "
-        "temperature reading is steady, or set time_constant of the sensor under [temperature] in "
-        "hersey.toml",
+        "temperature was still changing in {dwells} {dwells:dwell|dwells}: a sensor lag of "
+        "{time:.0f} s means an error of up to {off:.1f} K, which biases b and c. Wait longer, or set "
+        "time_constant under [temperature] in hersey.toml",
         severity="watch",
         time=TEMPERATURE_LAG,
         quantity="temperature",
@@ -183,10 +182,9 @@ def _apart(points: SteadyPoints) -> Warning | None:
         return None
     return Warning(
         "unlinked runs",
-        "the runs form {sets} sets without a common temperature. A torque gain that differs between them, or "
-        "any other change from day to day, cannot be separated from temperature in exponent b. The sensor "
-        "part of its interval allows for a gain error of {off:.2g %} in each. Repeat one temperature in "
-        "every run",
+        "{sets} sets of runs share no temperature, so changes between sets (e.g. of torque gain) "
+        "cannot be separated from temperature. The sensor part of b allows for {off:.2g %} gain "
+        "error. Repeat one temperature in every run",
         severity="watch",
         sets=int(np.unique(member).size),
         quantity="torque",
@@ -215,11 +213,11 @@ def _resolution(name: str, step: float, off: float, dwells: int) -> Warning:
         "resolution",
         "{quantity} is recorded with a resolution of "
         + ("{step:.3g mN m}" if torque else "{step:.3g} K" if kelvin else "{step:.3g} rad/s")
-        + ", coarser than its noise in {dwells} {dwells:dwell|dwells}. The standard error by rounding is up "
-        "to "
+        + ", coarser than its noise in {dwells} {dwells:dwell|dwells}. Rounding adds a standard error "
+        "of up to "
         + ("{off:.2g} K, " if kelvin else "{off:.2g %}, ")
         + (
-            "and the intervals allow for that"
+            "which the intervals include"
             if kelvin or off <= TOO_COARSE
             else "too much for reliable exponents"
         ),

@@ -39,7 +39,7 @@ def nothing_steady(
     for r in rejected:
         reasons.setdefault(r.why.label, []).append(r.why)
     listed = ", ".join(f"{len(alike)} x {_in_short(alike)}" for alike in reasons.values())
-    return f"{name}: no steady stretch ({listed}); {_way_out(log, rejected, asked, dwells_with)}"
+    return f"{name}: no dwell found ({listed}). {_way_out(log, rejected, asked, dwells_with)}"
 
 
 def _in_short(alike: list[Reason]) -> str:
@@ -52,29 +52,29 @@ def _in_short(alike: list[Reason]) -> str:
 def _way_out(
     log: TorqueLog, rejected: tuple[Rejection, ...], asked: Asked, dwells_with: Callable[[float], int]
 ) -> str:
-    held = f"a dwell holds one speed for at least {asked.min_dwell:g} s"
+    held = f"A dwell must hold one speed for at least {asked.min_dwell:g} s"
     lasted = sum(float(run.time[-1] - run.time[0]) for run in log.runs)
     if lasted < _TOO_BRIEF * asked.min_dwell:
-        return f"{held}, and the whole log lasts {lasted:.3g} s: {_other_clock(log)}"
+        return f"{held}, but the whole log lasts only {lasted:.3g} s. {_other_clock(log)}"
     if any(r.why.kind == "other rotation" for r in rejected):
         other = "reverse" if asked.rotation == "forward" else "forward"
-        return f"the drive turns {other}: use {ROTATION.to(other)}"
+        return f"The drive turns in {other} direction. Use {ROTATION.to(other)}"
     short = [(r.why.lasts, r.why.rows) for r in rejected if r.why.kind == "too short"]
     if _runs_up_and_down(log, rejected):
         slow, fast = (rpm(float(f([f(np.abs(run.speed)) for run in log.runs]))) for f in (np.min, np.max))
         count = sum(map(_ramps, log.runs))
         kind = "short step" if all(map(_steps, log.runs)) else "ramp"
         ramps = f"{count} {kind}{'s' if count > 1 else ''} between {slow:.3g} and {fast:.3g} rpm"
-        return f"the speed never holds: {ramps}. Record dwells: {held}"
+        return f"The speed never holds: {ramps}. {held}"
     enough = sorted({math.floor(10 * s - 0.5) / 10 for s, rows in short if rows >= MIN_SAMPLES and s > 0.2})
     for shorter in enough:
         if (count := dwells_with(shorter)) >= WORTH_IT:
             how = Setting("min_dwell").to(f"{shorter:g} s", python=f"{shorter:g}")
-            return f"{held}: {count} dwells are there with {how}"
+            return f"{held}. {count} dwells are found with {how}"
     if (speed := _only_speed(rejected)) is not None:
         return (
-            f"the speed is {rpm(speed):.3g} rpm throughout, so no law of speed can be fitted: record dwells "
-            f"at three speeds or more, or name another column with {Setting('speed', 'channel').to()}"
+            f"The speed is always {rpm(speed):.3g} rpm. Record dwells at three or more speeds, or "
+            f"name another column with {Setting('speed', 'channel').to()}"
         )
     return held
 
@@ -94,8 +94,8 @@ def _other_clock(log: TorqueLog) -> str:
     if any(c.name == NO_CLOCK for file in log.files for c in file.channels):
         rarer = _RARER * log.runs[0].sampling_interval
         how = EVERY.to(f"{rarer:.3g} s", python=f"{rarer:.3g}")
-        return f"if rows come less often, give the time between them, e.g. {how}"
-    return f"if its clock counts seconds, use {Setting('time', 'unit').to('s')}"
+        return f"If rows come less often, give the time between them, e.g. {how}"
+    return f"If the clock counts seconds, use {Setting('time', 'unit').to('s')}"
 
 
 def _runs_up_and_down(log: TorqueLog, rejected: tuple[Rejection, ...]) -> bool:

@@ -89,7 +89,7 @@ class SteadyPoints(Result):
     log
         What was reduced, or the table that states them.
     rest
-        The no-load torque, taken off so that torque is that of the film (see `without`); None if none is.
+        The no-load torque, subtracted so that torque is that of the film (see `without`); None if none is.
     rest_errors
         What one standard error of each independent error of it does to the torque of each dwell, N m, shape
         (points, errors).
@@ -122,7 +122,7 @@ class SteadyPoints(Result):
     recipe: HowRead | None = None
 
     def __post_init__(self) -> None:
-        """Give what has no tare, no rest taken off or no relaxation, no disturbances of it."""
+        """Give what has no tare, no rest subtracted or no relaxation, no disturbances of it."""
         for name in ("tare_errors", "rest_errors", "relaxation_errors"):
             if not getattr(self, name).size:
                 object.__setattr__(self, name, np.empty((self.table.height, 0)))
@@ -149,7 +149,7 @@ class SteadyPoints(Result):
         radius: float | Sequence[float] | None = None,
         load: float | Sequence[float] | None = None,
     ) -> SteadyPoints:
-        """Return the steady points that a table of means states: one row per dwell, no clock.
+        """Return the steady points of a table of means: one row per dwell, no time column.
 
         Parameters
         ----------
@@ -190,16 +190,16 @@ class SteadyPoints(Result):
         return cls(frame, tuple(rejected), 0.0, None, table, warnings=(_of_means(table),))
 
     def without(self, rest: NoLoadTorque) -> SteadyPoints:
-        """Return the same dwells with the torque of the film alone, that of the no-load torque taken off.
+        """Return the same dwells with the torque of the film alone: the no-load torque is subtracted.
 
-        Its errors are errors that the dwells share, as those of the tare.
+        Its errors are shared by all dwells, like those of the tare.
 
         Raises
         ------
         InsufficientDataError
             If a no-load log does not cover the speeds, or nothing beyond the errors is left for the film.
         ParameterError
-            If something was taken off already.
+            If a no-load torque was already subtracted.
 
         Examples
         --------
@@ -212,8 +212,8 @@ class SteadyPoints(Result):
         name = self.log.files[0].name
         if self.rest is not None or any(c.name.startswith("no-load") for c in self.log.corrections):
             raise ParameterError(
-                f"{name}: what the drive takes without the film is taken off already: leave out no_load of "
-                "the mapping, or the no-load torque"
+                f"{name}: the no-load torque is already subtracted. Remove no_load from the mapping, "
+                "or omit the no-load torque"
             )
         speed, torque, error = (self.column(n) for n in ("speed", "torque", "torque_error"))
         kelvin = None
@@ -227,15 +227,15 @@ class SteadyPoints(Result):
         if not np.sign(speed[worst]) * film[worst] > _BEYOND * unsure[worst]:
             raise InsufficientDataError(
                 f"{name}: at {rpm(abs(float(speed[worst]))):.3g} rpm torque is "
-                f"{1e3 * abs(float(torque[worst])):.3g} mN m, and the no-load torque takes "
-                f"{1e3 * abs(float(taken[worst])):.3g} mN m of it ({rest.source}): nothing beyond the errors "
-                "is left for the film; was it stated in another unit, or recorded with the film?"
+                f"{1e3 * abs(float(torque[worst])):.3g} mN m and no-load torque "
+                f"{1e3 * abs(float(taken[worst])):.3g} mN m ({rest.source}), which leaves nothing for "
+                "the film. Check its unit, and that it was recorded without the film"
             )
         table = self.table.with_columns(torque=film)
         return replace(self, table=table, rest=rest, rest_errors=errors)
 
     def __len__(self) -> int:
-        """Return how many steady points there are."""
+        """Return the number of steady points."""
         return self.table.height
 
     def column(self, name: str) -> FloatArray:
@@ -243,14 +243,14 @@ class SteadyPoints(Result):
         return self.table[name].to_numpy()
 
     def summary(self) -> str:
-        """Return how many dwells, their ranges, the tare, and what is not used, as text."""
+        """Return the number of dwells, their ranges, the tare, and what is excluded, as text."""
         rows = f"{self.table['rows'].sum()} of {self.log.rows} rows used"
         lines = [f"{self.headline()}; {rows}", f"tare {self.tare:.4g} N m"]
         if self.standing_torque is not None:
-            lines[-1] += f", standing torque {self.standing_torque:.4g} N m"
+            lines[-1] += f", torque at standstill {self.standing_torque:.4g} N m"
         if self.rest is not None:
             lines.append(f"no-load torque subtracted: {self.rest}")
-        lines += [f"  not used: {rows} rows, {why}" for why, rows in self._unused().items()]
+        lines += [f"  excluded: {rows} rows, {why}" for why, rows in self._unused().items()]
         return "\n".join(
             [
                 *lines,
@@ -260,7 +260,7 @@ class SteadyPoints(Result):
         )
 
     def headline(self) -> str:
-        """Return how many dwells, and the ranges of speed and torque."""
+        """Return the number of dwells and the ranges of speed and torque."""
         speed, torque = np.abs(self.column("speed")), np.abs(self.column("torque"))
         return (
             f"{len(self)} dwells, {rpm(float(speed.min())):.4g} to {rpm(float(speed.max())):.4g} rpm, "
@@ -277,7 +277,7 @@ class SteadyPoints(Result):
         return (low, high) if high > (1.0 + SAME_LOAD) * low else None
 
     def dropped(self) -> str:
-        """Return in a sentence which dwells are not used, at which speeds, and why; empty if none are."""
+        """Return a sentence on the excluded dwells, their speeds and the reasons; empty if there are none."""
         lost = [r for r in self.rejected if r.is_dwell]
         if not lost:
             return ""
@@ -285,7 +285,7 @@ class SteadyPoints(Result):
         where = _placed(speeds, np.abs(self.column("speed")))
         verb = "was" if len(lost) == 1 else "were"
         why = joined([r.why for r in lost])
-        return f"{len(lost)} of {len(lost) + len(self)} dwells, {where}, {verb} dropped: {why}."
+        return f"{len(lost)} of {len(lost) + len(self)} dwells ({where}) {verb} excluded: {why}."
 
     def _unused(self) -> dict[str, int]:
         """Rows of every other stretch by its reason."""
@@ -295,7 +295,7 @@ class SteadyPoints(Result):
         return rows
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the dwells, what is not used, and the tare, in SI."""
+        """Return the dwells, what is excluded, and the tare, in SI."""
         plain = ("tare", "tare_error", "tare_errors", "warnings", "standing_torque", "rest", "rest_errors")
         return json_record(
             {"points": self.table.to_dicts(), "rejected": [_record(r) for r in self.rejected]}
@@ -373,13 +373,9 @@ def _of_means(table: MeansTable) -> Warning:
     """What a table of means cannot tell, and what it leaves out."""
     return Warning(
         "table of means",
-        "a table of means, one row per dwell. Without a trace, stick-slip, drift within a dwell, settling, "
-        "the zero of the torque and the clock cannot be judged. Errors of torque: "
-        + (
-            "as stated"
-            if table.stated_errors
-            else "none are stated: the scatter about the law stands for them"
-        ),
+        "a table of means, one row per dwell: stick-slip, drift, settling, torque zero and clock "
+        "cannot be checked. Errors of torque: "
+        + ("as stated" if table.stated_errors else "not stated; the scatter about the fit is used instead"),
         where=table.files[0].name + (f" and {len(table.files) - 1} more" if len(table.files) > 1 else ""),
         files=len(table.files),
     )

@@ -29,19 +29,19 @@ _OWN = "look for an oscillation of the drive, a controller or the mains"
 #: What each kind is called, where the words do not depend on a number.
 LABELS: dict[Kind, str] = {
     "changing": "speed changing",
-    "standing": "drive standing",
-    "other rotation": "rotation not as asked",
+    "standing": "drive at standstill",
+    "other rotation": "other direction of rotation",
     "too short": "dwell too short",
     "zero torque": "torque is zero",
-    "speed not held": "speed not held",
+    "speed not held": "speed not constant",
     "stick-slip": "stick-slip",
-    "swing": "torque swings",
+    "swing": "torque fluctuates",
     "speed drift": "speed drifts",
     "temperature drift": "temperature drifts",
     "torque drift": "torque drifts",
     "opposite signs": "torque and speed have opposite signs",
-    "spikes": "spikes of the torque",
-    "ripple": "ripple of the torque",
+    "spikes": "torque spikes",
+    "ripple": "torque ripple",
 }
 
 
@@ -74,7 +74,7 @@ class Reason:
     def label(self) -> str:
         """Return what is wrong, without numbers."""
         if self.kind == "other rotation":
-            return f"rotation not {self.asked}, as asked"
+            return f"rotation is not {self.asked}"
         return LABELS[self.kind] + (self._few() if self.kind == "changing" else "")
 
     def _few(self) -> str:
@@ -85,30 +85,28 @@ class Reason:
         share = 0.0 if self.share is None else self.share
         match self.kind:
             case "too short":
-                how = f": {self.lasts:.1f} s or {self.rows} rows are settled, "
+                how = f": {self.lasts:.1f} s and {self.rows} rows are settled, but "
                 how += f"{self.needed:g} s and {MIN_SAMPLES} rows are needed"
             case "zero torque":
-                how = ": is the sensor connected?"
+                how = ". Check that the sensor is connected"
             case "speed not held":
-                how = (
-                    f": it varies by {share:.0%} (standard deviation), {self.slow:.3g} to {self.fast:.3g} rpm"
-                )
+                how = f": {self.slow:.3g} to {self.fast:.3g} rpm, standard deviation {100 * share:.0f} %"
             case "stick-slip":
-                how = f": torque swings by {share:.0%} (standard deviation), rising slowly and dropping fast"
+                how = f": torque rises slowly and drops fast, standard deviation {100 * share:.0f} %"
             case "swing":
-                how = f" by {share:.0%} (standard deviation): no steady sliding"
+                how = f": standard deviation {100 * share:.0f} %, so sliding is not steady"
             case "speed drift" | "torque drift":
-                how = f" by {share:+.1%} over the dwell"
+                how = f" by {100 * share:+.1f} % over the dwell"
             case "temperature drift":
                 how = f" by {self.kelvin or 0.0:+.1f} K over the dwell"
             case "opposite signs":
-                how = f": turn one with {turned('torque')}"
+                how = f". Flip one with {turned('torque')}"
             case "spikes":
-                how = f": {self.count} samples lie {_times(share)} the mean apart from their neighbours, "
-                how += f"and without them the dwell is steady; {_SPIKES}"
+                how = f": {self.count} samples differ from their neighbours by {_times(share)} the mean; "
+                how += f"without them the dwell is steady. {_sentence(_SPIKES)}"
             case "ripple":
                 how = f" at {self.frequency:.3g} Hz, amplitude {_times(share)} the mean, {self.turns()}; "
-                how += f"without it the dwell is steady; {self.remedy()}"
+                how += f"without it the dwell is steady. {_sentence(self.remedy())}"
             case _:
                 how = ""
         return self.label + how
@@ -119,15 +117,15 @@ class Reason:
         if 1 <= times <= MOST_WHOLE and abs(self.per_turn - times) <= WHOLE_TURN:
             return "once per roll revolution" if times == 1 else f"{times} times per roll revolution"
         if self.per_turn < 1.0:
-            return f"once in {1.0 / self.per_turn:.3g} roll revolutions, as a belt that long would do"
+            return f"once in {1.0 / self.per_turn:.3g} roll revolutions, possibly once per turn of the belt"
         return f"{self.per_turn:.3g} times per roll revolution"
 
     def remedy(self) -> str:
         """Return what to do about a ripple."""
         enough = MANY_PERIODS / self.frequency
         if self.seen_as != "swing" and self.lasts < enough:
-            return f"hold each speed for {enough:.0f} s or longer, which averages it out"
-        return "find what turns at this frequency, and true it"
+            return f"hold each speed for at least {enough:.0f} s to average it out"
+        return "find the part that turns at this frequency, and true it"
 
 
 def joined(reasons: list[Reason]) -> str:
@@ -137,9 +135,10 @@ def joined(reasons: list[Reason]) -> str:
         kinds.setdefault(reason.label, []).append(reason)
     said = []
     for label, alike in kinds.items():
-        numbers = cause(alike) if alike[0].kind in CAUSES else _shares(alike)
-        said.append(f"{label}{numbers}" + (f" ({len(alike)})" if len(kinds) > 1 else ""))
-    return ", ".join(said)
+        dwells = f" in {len(alike)} dwell{'' if len(alike) == 1 else 's'}" if len(kinds) > 1 else ""
+        caused = alike[0].kind in CAUSES
+        said.append(f"{label}{dwells}{cause(alike)}" if caused else f"{label}{_shares(alike)}{dwells}")
+    return "; ".join(said)
 
 
 def _shares(alike: list[Reason]) -> str:
@@ -149,14 +148,15 @@ def _shares(alike: list[Reason]) -> str:
     if not shares:
         return ""
     low, high = f"{min(shares):.3g}", f"{max(shares):.3g}"
-    return f" by {low} %" if low == high else f" by {low} to {high} %"
+    by = {"stick-slip": " with torque varying by", "speed not held": " (varies by"}.get(alike[0].kind, " by")
+    return f"{by} {low if low == high else f'{low} to {high}'} %" + (")" if "(" in by else "")
 
 
 def cause(alike: list[Reason]) -> str:
     """Return numbers of spikes, or of ripples, over several dwells, and what to do."""
     size = _times(float(median(r.share or 0.0 for r in alike)))
     if alike[0].kind == "spikes":
-        return f" ({sum(r.count for r in alike)} samples, {size} the mean apart): {_SPIKES}"
+        return f" ({sum(r.count for r in alike)} samples, off by {size} the mean): {_SPIKES}"
     longest = max(alike, key=lambda r: r.frequency * r.lasts)
     slow, fast = min(r.frequency for r in alike), max(r.frequency for r in alike)
     low, high = f"{slow:.3g}", f"{fast:.3g}"
@@ -165,10 +165,14 @@ def cause(alike: list[Reason]) -> str:
     if max(turns) - min(turns) <= 2.0 * WHOLE_TURN * max(turns):
         return f"{at}{longest.turns()}: {longest.remedy()}"
     if len(alike) > 1 and fast - slow <= WHOLE_TURN * fast:
-        return f"{at}the same at every speed, so not of roll or belt: {_OWN}"
+        return f"{at}the same at every speed, so not from roll or belt: {_OWN}"
     return f"{at}{min(turns):.3g} to {max(turns):.3g} times per roll revolution: {longest.remedy()}"
+
+
+def _sentence(text: str) -> str:
+    return f"{text[:1].upper()}{text[1:]}"
 
 
 def _times(share: float) -> str:
     """A share of the mean."""
-    return f"{share:.0%} of" if share < 2.0 else f"{share:.3g} times"
+    return f"{100 * share:.0f} % of" if share < 2.0 else f"{share:.3g} times"

@@ -35,7 +35,7 @@ def require_points(given: object, call: str) -> None:
     >>> require_points("bench.csv", "hersey.fit({points})")
     Traceback (most recent call last):
         ...
-    hersey.errors.ParameterError: hersey.fit needs steady points, not the name of a file: write \
+    hersey.errors.ParameterError: hersey.fit needs steady points, not a file name. Write \
 hersey.fit(hersey.read("bench.csv").steady(tare="standing")), or tare="none" if the torque is zeroed already
     """
     if isinstance(given, SteadyPoints):
@@ -54,7 +54,7 @@ def refuse_unfitted(given: object, call: str, needed: str) -> None:
     what, points = _written(given)
     function = call.split("(", 1)[0]
     zeroed = ', or tare="none" if the torque is zeroed already' if _REDUCED in points else ""
-    raise ParameterError(f"{function} needs {needed}, not {what}: write {call.format(points=points)}{zeroed}")
+    raise ParameterError(f"{function} needs {needed}, not {what}. Write {call.format(points=points)}{zeroed}")
 
 
 def _written(given: object) -> tuple[str, str]:
@@ -67,7 +67,7 @@ def _written(given: object) -> tuple[str, str]:
         return "a table of means", "hersey.SteadyPoints.from_table(table)"
     if isinstance(given, str | Path):
         name = json.dumps(str(given), ensure_ascii=False)
-        return "the name of a file", f"hersey.read({name}){_REDUCED}"
+        return "a file name", f"hersey.read({name}){_REDUCED}"
     if is_frame(given):
         return "a frame", f"hersey.read(frame){_REDUCED}"
     return f"a {type(given).__name__}", f"log{_REDUCED}"

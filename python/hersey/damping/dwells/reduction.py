@@ -51,14 +51,14 @@ def steady_points(
         If no dwell is found, or there is no standing stretch to tare with.
     """
     if tare not in ("none", "standing"):
-        raise ParameterError(f"tare '{tare}' is not known: none or standing")
+        raise ParameterError(f"tare '{tare}' is not known. Use none or standing")
     if rotation not in ("both", "forward", "reverse"):
-        raise ParameterError(f"rotation '{rotation}' is not known: both, forward or reverse")
+        raise ParameterError(f"rotation '{rotation}' is not known. Use both, forward or reverse")
     if not 0 < min_dwell < float("inf"):
         raise ParameterError(f"min_dwell is {min_dwell:g} s: it must be greater than 0")
     if log.rows < MIN_SAMPLES:
         raise InsufficientDataError(
-            f"{log.files[0].name} has {log.rows} rows; one dwell alone needs {MIN_SAMPLES}"
+            f"{log.files[0].name} has {log.rows} rows, but one dwell needs at least {MIN_SAMPLES}"
         )
     return _Reduction(log, tare == "standing", Asked(min_dwell, rotation)).points()
 
@@ -79,9 +79,8 @@ class _Reduction:
         self.zero = self._zero(None)
         if subtracted and self.zero is None:
             raise InsufficientDataError(
-                "the drive never stands still for 2 s: there is no torque to tare with; leave out "
-                f"{TARE.to()}, or write the zero into hersey.toml beside the log, under [torque], as "
-                'tare = "4 mN*m"'
+                f"the drive never stands still for 2 s, so there is no tare. Omit {TARE.to()}, or set "
+                'tare = "4 mN*m" under [torque] in hersey.toml'
             )
 
     def points(self) -> SteadyPoints:

@@ -1,7 +1,7 @@
 """Dwells whose speed ripples with the shaft: one speed held, revolution by revolution.
 
 A slow shaft that runs unevenly within a turn looks like changing speed. Its mean over each whole turn does
-not change: such dwells are put together again, cut to whole turns, and the ripple is taken off before drift
+not change: such dwells are put together again, cut to whole turns, and the ripple is subtracted before drift
 and noise are judged.
 """
 
@@ -25,7 +25,7 @@ SAME_TURN, DRIFT = 0.02, 0.01
 TURNS = 3
 #: A piece that holds this share of them is a dwell by itself.
 WHOLE = 0.9
-#: Harmonics of the revolution that are taken off.
+#: Harmonics of the revolution that are subtracted.
 HARMONICS = 4
 
 

@@ -31,7 +31,7 @@ BAND = 1.3
 BAND_COUNT = 16.0
 #: Slowest cosines, whose power is that of the slow part of a dwell.
 SLOW = 6
-#: Powers beyond so many times their expectation are ripple, not noise; the first few are never left out.
+#: Powers beyond so many times their expectation are ripple, not noise; the first few are never excluded.
 RIPPLE, NEVER_RIPPLE = 16.0, 3
 #: Dwells do not share a shape if their slow parts scatter by so many standard errors more than chance.
 DISAGREE = 5.0
@@ -39,7 +39,7 @@ DISAGREE = 5.0
 LONGEST_TIME = 0.22
 #: Steps of the search for the mixture.
 STEPS = 200
-#: Those after ripple was left out.
+#: Those after ripple was excluded.
 MORE_STEPS = 60
 #: Factor from one time of the mixture to the next.
 TIME_STEP = 2.0
@@ -147,7 +147,7 @@ def _basis(order: FloatArray, duration: float, times: FloatArray) -> FloatArray:
 
 
 def _level(powers: Powers, expected: FloatArray) -> float:
-    """Level of a dwell beside what is expected of noise of the level 1, its ripple left out."""
+    """Level of a dwell beside what is expected of noise of the level 1, its ripple excluded."""
     ratio, weight = powers.power / expected, powers.count
     for _ in range(3):
         level = float(np.sum(weight * ratio) / np.sum(weight))
@@ -187,7 +187,7 @@ class _Pooled:
         self.dwells = len(dwells)
 
     def fitted(self) -> SharedNoise | None:
-        """The mixture, ripple left out as soon as it is seen; None if dwells differ in more than level."""
+        """The mixture, ripple excluded as soon as it is seen; None if dwells differ in more than level."""
         shares = np.ones(self.basis.shape[1])
         weight = self.count.copy()
         for steps in (STEPS, MORE_STEPS):

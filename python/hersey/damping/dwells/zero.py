@@ -122,7 +122,7 @@ class Zero:
         """Return what one standard error of each disturbance does at these times, and the error left over.
 
         Shapes (times, disturbances), the largest first, and (times,); ``errors`` are those of the dwells
-        themselves, beside which small disturbances are not told apart.
+        themselves, beside which small disturbances cannot be distinguished.
         """
         known = np.unique(times)
         if known.size > MOST_TIMES:
@@ -214,8 +214,8 @@ class Zero:
             out.append(_drifting(rise, p, count))
         if count == 2:
             words = (
-                "two standing stretches: only by how much the zero differs between them is seen, not what it "
-                "did between and beyond them"
+                "the drive stood still only twice, so drift of the torque zero is known only between "
+                "these times"
             )
             out.append(Warning("two standing stretches", words))
         return tuple(out)
@@ -224,8 +224,8 @@ class Zero:
 def _drifting_unsubtracted(rise: float, p_value: float) -> Warning:
     return Warning(
         "zero drifts, not subtracted",
-        "while the drive stands, torque differs by {rise:.3g} N m from stretch to stretch ({p_value:p}): "
-        "the zero drifts. It is not subtracted; if the drive stands free, use {how:standing}",
+        "torque at standstill drifts by {rise:.3g} N m ({p_value:p}) and is not subtracted. If the "
+        "drive stands free, use {how:standing}",
         severity="watch",
         rise=rise,
         p_value=p_value,
@@ -236,9 +236,8 @@ def _drifting_unsubtracted(rise: float, p_value: float) -> Warning:
 def _drifting(rise: float, p_value: float, count: int) -> Warning:
     return Warning(
         "zero drifts",
-        "the tare drifts by {rise:.3g} N m over the dwells ({p_value:p}, {count} standing stretches). "
-        "The zero of the sensor drifts, or its reading depends on whether torque rose or fell before "
-        "(hysteresis). Each dwell has the tare of its time, and its error",
+        "the torque zero varies by {rise:.3g} N m ({p_value:p}, {count} standstills), by drift or "
+        "hysteresis. Each dwell is corrected by the zero at its time; intervals include its error",
         severity="watch",
         rise=rise,
         p_value=p_value,
@@ -249,7 +248,8 @@ def _drifting(rise: float, p_value: float, count: int) -> Warning:
 def _seen_once() -> Warning:
     return Warning(
         "one standing stretch",
-        "one standing stretch: a drift of the zero cannot be seen; it would shift torque more the later a "
-        "dwell, and tilt its exponents. Let the drive stand again at the end, better every few dwells",
+        "the drive stood still only once, so drift of the torque zero, which would bias the "
+        "exponents, cannot be checked. Record another standstill at the end, or better, every few "
+        "dwells",
         severity="watch",
     )

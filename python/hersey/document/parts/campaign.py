@@ -17,10 +17,10 @@ class CampaignRun(Part):
     log: str
     sha256: str
     dwells: int
-    exponent: float | None = Field(description="c of the damping surface; null without a fit")
-    transition_speed: float | None = Field(description="rad/s; null where none is seen")
-    no_fit: str = Field(description="why there is no fit, or empty")
-    version: str = Field(description="of hersey that read the log")
+    exponent: float | None = Field(description="exponent c; null without a fit")
+    transition_speed: float | None = Field(description="rad/s; null without a transition")
+    no_fit: str = Field(description="why there is no fit; may be empty")
+    version: str = Field(description="version of hersey that read the log")
     added: str = Field(description="UTC")
 
 

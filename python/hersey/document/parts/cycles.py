@@ -18,13 +18,13 @@ class CyclesPart(Part):
     kind: Literal["steady_sliding", "inertial", "stick_slip"]
     quantity: str
     slips: int
-    falls: int | None = Field(default=None, description="beyond the noise, counted or not")
-    drive_speed: float | None = Field(description="m/s; rad/s with a torque")
+    falls: int | None = Field(default=None, description="falls beyond the noise, counted or not")
+    drive_speed: float | None = Field(description="m/s, or rad/s for a torque")
     drive_speed_uncertainty: float | None = Field(
-        default=None, description="share, half of its 95 % interval"
+        default=None, description="relative, half of its 95 % interval"
     )
     loading_slope: float | None = Field(description="unit of the trace per s")
-    stiffness: float | None = Field(description="unit of the trace per m; per rad with a torque")
+    stiffness: float | None = Field(description="unit of the trace per m, or per rad for a torque")
     free_period: float | None = Field(description="s")
     stuck_fraction: float | None
     least_drop: float | None
@@ -39,5 +39,5 @@ class CyclesPart(Part):
     force_max: Scatter
     force_min: Scatter
     fall_duration: Scatter
-    unit: str = Field(default="", description="of the trace")
+    unit: str = Field(default="", description="unit of the trace")
     drive: IdentifiedDrive | None = None

@@ -15,14 +15,14 @@ class UnitVariablePart(Part):
     causality: str
     unit: str
     description: str
-    start: float | None = Field(description="null where the motion makes it")
+    start: float | None = Field(description="null if the motion determines it")
 
 
 class TrialPart(Part):
     """What FMPy found in a unit: problems, and the greatest differences from the core, as shares."""
 
     problems: list[str]
-    differences: dict[str, float | None] = Field(description="null where no number came")
+    differences: dict[str, float | None] = Field(description="null if there is no number")
     events: int = Field(description="changes of mode in the run")
 
 
@@ -32,10 +32,10 @@ class UnitPart(Part):
     file: str
     fmi: str = Field(description="version of the interface")
     drive: str = Field(description="speed, or torque")
-    port: str | None = Field(description="of a speed: translational, or rotational; null with a torque")
+    port: str | None = Field(description="for a speed: translational or rotational; null for a torque")
     start: str
-    token: str = Field(description="sum of the content, by which library and description belong together")
+    token: str = Field(description="checksum that ties library and description together")
     platforms: list[str]
-    facts: dict[str, str] = Field(description="what it was made of")
+    facts: dict[str, str] = Field(description="inputs from which it was made")
     variables: list[UnitVariablePart]
-    check: TrialPart | None = Field(default=None, description="null where it was not tried")
+    check: TrialPart | None = Field(default=None, description="null if not tested")

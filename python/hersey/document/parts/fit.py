@@ -21,7 +21,7 @@ class TrendPart(Part):
 
     rises: bool
     falls: bool
-    least: float = Field(description="speed of least mean torque, rad/s")
+    least: float = Field(description="speed of lowest mean torque, rad/s")
     spread: float = Field(description="half the range of mean torques at one temperature, relative")
 
 
@@ -65,10 +65,10 @@ class FitPart(Part):
     values: list[float]
     covariance: list[list[float]]
     variance_parts: list[list[list[float]]] = Field(
-        default=[], description="how the covariance rises with each variance that was estimated"
+        default=[], description="change of the covariance with each estimated variance"
     )
     variance_uncertainty: list[list[float]] = Field(
-        default=[], description="covariance of these variances: of dwells, then as in shared"
+        default=[], description="covariance of these variances, for dwells and then as in shared"
     )
     points: int
     chi_square: float
@@ -81,16 +81,16 @@ class FitPart(Part):
     r_squared_torque: float
     speed_range: tuple[float, float] = Field(description="rad/s")
     temperature_range: tuple[float, float] | None = Field(description="K")
-    sensors: str = Field(default="", description="errors that the systematic parts stand for, in words")
+    sensors: str = Field(default="", description="sensor errors behind the systematic parts, in words")
     rest: NoLoadTorque | None = Field(
-        default=None, description="taken off the torque before the fit, which is that of the film"
+        default=None, description="no-load torque subtracted before the fit, which is of the film alone"
     )
     summary: str
-    laws: list[LawWeight] = Field(default=[], description="drag curves, of which decisions are made")
+    laws: list[LawWeight] = Field(default=[], description="models of the drag curve behind the decision")
     trend: TrendPart | None = None
-    curves: list[Curve] = Field(default=[], description="those by weight at the temperatures measured")
-    cells: list[Cell] = Field(default=[], description="the law over the range measured")
-    transition_curve: list[TransitionAt] = Field(default=[], description="over the range measured")
+    curves: list[Curve] = Field(default=[], description="drag curves by weight at the measured temperatures")
+    cells: list[Cell] = Field(default=[], description="fitted law over the measured range")
+    transition_curve: list[TransitionAt] = Field(default=[], description="over the measured range")
 
 
 class FitDocument(Part):

@@ -19,10 +19,10 @@ class PopulationPart(Part):
     shape_interval: Holed | None = Field(description="low and high")
     scale_interval: Holed | None = Field(description="low and high")
     level: float = Field(description="of the intervals")
-    unit: str = Field(description="of ages; empty if none was said")
+    unit: str = Field(description="unit of the ages; may be empty")
     warnings: list[Warning]
     seed: int
     b10: BLife | None
     b50: BLife | None
-    median_ranks: Numbers = Field(description="shares failed at the ages at failure, ascending")
+    median_ranks: Numbers = Field(description="fractions failed at the ages at failure, ascending")
     verdict: str

@@ -24,7 +24,7 @@ class RecipePart(Part):
     """How the logs became dwells, as far as it is not the default; files by name."""
 
     settings: dict[str, Any] = Field(description="fields of `hersey.Recipe`, in SI")
-    toml: str = Field(description="the same as a file, which `hersey.Recipe.from_file` reads")
+    toml: str = Field(description="the same as a file for `hersey.Recipe.from_file`")
 
 
 class InputFile(Part):
@@ -37,7 +37,7 @@ class InputFile(Part):
     missing_rows: int
     duration: float = Field(description="s")
     sampling_interval: float = Field(description="s")
-    gaps: int = Field(description="times that rows are missing")
+    gaps: int = Field(description="how often rows are missing")
     channels: list[Channel]
     comments: list[str] = Field(description="comment lines above the header")
 
@@ -56,7 +56,7 @@ class DwellPart(Part):
     temperature_error: float | None
     rows: int
     effective_rows: float = Field(description="independent samples")
-    settling_rows: int = Field(description="cut at the ends")
+    settling_rows: int = Field(description="rows cut at the ends")
     approach: Literal["from below", "from above", "start"]
     load: float | None = Field(description="N, null if not known")
     tare: float = Field(description="N m, subtracted")
@@ -79,7 +79,7 @@ class RejectedStretch(Part):
     end: float
     rows: int
     kind: str = Field(description="what is wrong")
-    label: str = Field(description="the same in words, without numbers")
+    label: str = Field(description="kind in words, without numbers")
     reason: str
     speed: float | None = Field(default=None, description="rad/s, mean")
 
@@ -107,7 +107,7 @@ class PointsPart(Part):
     warnings: list[Warning]
     standing_torque: float | None
     rest: NoLoadTorque | None = Field(
-        default=None, description="taken off, so that torque is that of the film"
+        default=None, description="no-load torque, subtracted so that torque is that of the film"
     )
     rest_errors: list[list[float]] = Field(default=[], description="N m, shape (points, errors)")
 
@@ -118,7 +118,7 @@ class RunPart(Part):
     name: str
     rows: int
     sampling_interval: float = Field(description="s")
-    gaps: int = Field(description="times that rows are missing")
+    gaps: int = Field(description="how often rows are missing")
     time: tuple[float, float]
     torque: tuple[float, float]
     speed: tuple[float, float]

@@ -26,7 +26,7 @@ class CandidatePart(Part):
     delta_aicc: float | None
     delta_bic: float | None
     akaike_weight: float | None
-    cross_validation: float | None = Field(description="relative error of dwells left out")
+    cross_validation: float | None = Field(description="relative error in predicting excluded dwells")
     scatter: float | None = Field(description="relative")
     shared_scatter: list[SharedScatter]
     lack_of_fit: LackOfFit
@@ -80,7 +80,7 @@ class CollapsePart(Part):
     scatter: float | None
     p_value: float | None
     overlap: float | None
-    log_viscosity: Holed = Field(description="of each group over the first")
+    log_viscosity: Holed = Field(description="of each group, relative to the first")
     verdict: str
 
 
@@ -94,14 +94,14 @@ class ModelsPart(Part):
     temperatures: Holed = Field(description="mean of each group, K")
     candidates: list[CandidatePart]
     refused: list[RefusedPart]
-    chosen: str = Field(description="key of a candidate")
+    chosen: str = Field(description="key of the chosen model")
     reasons: list[str]
     drag_curves: list[LawWeight] = Field(
-        default=[], description="laws of drag curves, of which decisions are made"
+        default=[], description="models of the drag curve behind the decision"
     )
     parameters: list[ParameterEstimate]
     bootstrap: BootstrapPart
     errors_in_variables: OrthogonalFit
     activation_energy: ActivationPart
     hersey_collapse: CollapsePart | None
-    warnings: list[Warning] = Field(default=[], description="what must be known before a fit is trusted")
+    warnings: list[Warning] = Field(default=[], description="what to know before trusting the fit")

@@ -27,5 +27,5 @@ class StickSlipPart(part_of(StickSlipCycle)):  # type: ignore[misc]  # made as i
     check: SelfCheck | None = None
     motor: MotorUse | None = None
     warming: Trajectory | None = Field(
-        default=None, description="the run in which temperature was a state; the rest holds where it ends"
+        default=None, description="run with temperature as a state; the rest describes its end"
     )

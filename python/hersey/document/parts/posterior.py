@@ -22,8 +22,8 @@ class PosteriorPart(Part):
     closures: dict[str, float] = Field(description="probability of each closure")
     numbers: dict[str, Edge] = Field(description="medians and 95 % intervals, SI")
     laws: list[LawWeight]
-    evidence: list[dict[str, Any]] = Field(description="what counted beside the dwells")
-    warnings: list[Warning] = Field(description="recordings that did not count, and why")
+    evidence: list[dict[str, Any]] = Field(description="evidence used besides the dwells")
+    warnings: list[Warning] = Field(description="recordings not used, and why")
     convergence: Convergence
     draws: int
     seed: int

@@ -18,10 +18,12 @@ class StudyPart(Part):
     """Decision, verdict, fit, regime, nip and torque budget of one log and one machine."""
 
     decision: DecisionPart
-    verdict: list[str] = Field(description="in paragraphs; a contradiction first")
+    verdict: list[str] = Field(description="paragraphs; a disagreement comes first")
     warnings: list[Warning]
     fit: FitPart
     regime: Regime
     nip: FilmPart | None = None
     torque_budget: TorqueBudgetPart | None = None
-    comparison: LogComparison | None = Field(default=None, description="this log (B) over another (A)")
+    comparison: LogComparison | None = Field(
+        default=None, description="this log (B) compared with another (A)"
+    )

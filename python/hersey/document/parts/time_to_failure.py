@@ -12,4 +12,6 @@ from hersey.schema.record import part_of
 class TimeToFailurePart(part_of(TimeToFailure)):  # type: ignore[misc]  # made as it runs
     """What ends each specimen and the population, and when; ages in ``age_unit``."""
 
-    population: PopulationPart = Field(description="the specimens that have ended, the others as not failed")
+    population: PopulationPart = Field(
+        description="the specimens that have failed; the others count as not failed"
+    )

@@ -47,8 +47,8 @@ def ranking(found: Posterior, ranked: Sequence[Measurement]) -> list[str]:
     value, low, high = found.fold_interval(found.temperature)
     lines = [f"{at(found.temperature)}{between('V* is', value, low, high)}."]
     if not ranked:
-        return [*lines, "No measurement would narrow it much."]
-    lines.append("What would narrow it most:")
+        return [*lines, "No measurement would make the interval much narrower."]
+    lines.append("These measurements would narrow it most:")
     for number, each in enumerate(ranked, 1):
         gain = _within(each) if each.left <= WORTH else "hardly narrower"
         lines.append(f"  {number}. {_capital(_action(each))}: {gain}.")

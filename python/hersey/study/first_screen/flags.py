@@ -1,4 +1,4 @@
-"""The warnings of the first screen: contradictions, what V* hangs on, what the log leaves open."""
+"""The warnings of the first screen: contradictions, what V* depends on, what the log leaves open."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from hersey.verdict.warnings import SCATTER
 MOST = 3
 #: Measured over stated torque beyond which the file does not make the log.
 _FAR = 2.0
-#: Dwells of a falling branch that are few: a transition is told from three on.
+#: Dwells of a falling branch that are few: a transition is fitted from three on.
 _FEW = 4
 #: Probability of a closure from which it counts as known, and ratio of V* of two from which they differ.
 _DECIDED, _APART = 0.95, 1.25
@@ -82,9 +82,9 @@ def _compared(found: LogComparison) -> Warning:
         severity="watch" if drags or differs else "good",
         title="Damping has changed since {log}"
         if drags
-        else "The law has changed since {log}"
+        else "The model has changed since {log}"
         if differs
-        else "Nothing really changed since {log}",
+        else "Nothing significant has changed since {log}",
         where="compare",
         log=found.a,
         verdict=found.verdict,
@@ -113,7 +113,7 @@ def _exponent(e: VerdictPart) -> Warning:
         "exponent and nip disagree",
         "the film solved for this nip gives {gives}"
         if value is None
-        else "measured {measured}; the film solved for this nip gives {gives}",
+        else "the measured exponent is {measured}, but the film solved for this nip gives {gives}",
         severity="watch",
         title="Exponent and nip disagree",
         where="regime",
@@ -127,9 +127,10 @@ def _exponent(e: VerdictPart) -> Warning:
 def _torque(low: float, mean: float, high: float) -> Warning:
     return Warning(
         "torque and file disagree",
-        "measured torque is {shown} times what the file states, {least} to {most} by dwell",
+        "measured torque is {shown} times the prediction of the machine file ({least} to {most} for "
+        "single dwells)",
         severity="watch",
-        title="Torque and file disagree",
+        title="Torque and machine file disagree",
         where="regime",
         low=low,
         ratio=mean,
@@ -145,7 +146,8 @@ def _whole(points: SteadyPoints) -> Iterator[Warning]:
     if points.rest is None:
         yield Warning(
             "torque of more than the film",
-            "V* is of the whole torque, and too low if bearings, rubber or gears are in it: state [rest]",
+            "V* is from the whole torque; if that includes bearings, rubber or gears, V* is too low. "
+            "State [rest]",
             severity="watch",
             title="Torque may hold more than the film",
             where="data",
@@ -159,8 +161,8 @@ def _of_machine(found: Behaviour, map_: OperatingMap, unit: str) -> Iterator[War
         pulls = [p.plan.peak_force for p in found.points if p.plan is not None and p.plan.found]
         yield Warning(
             "grip not stated",
-            ("the first slip pulls {shown} N; " if pulls else "")
-            + "the roll's grip is not stated, so it is not in the model",
+            ("the first slip pulls with {shown} N, but " if pulls else "")
+            + "the grip of the roll is not stated and therefore not in the model",
             severity="watch",
             title="The roll may slip at the start",
             where="plan",
@@ -169,8 +171,8 @@ def _of_machine(found: Behaviour, map_: OperatingMap, unit: str) -> Iterator[War
         )
     far = [p.name for p in map_.points if p.at.extrapolated]
     if far:
-        words = "no dwell lies as far out as {points}"
-        title = "Points are extrapolated"
+        words = "the dwells do not reach {points}"
+        title = "Operating points are extrapolated"
         yield Warning(
             "points extrapolated", words, severity="watch", title=title, where="data", points=listed(far)
         )
@@ -215,8 +217,8 @@ def _closures(found: Behaviour) -> Iterator[Warning]:
         return
     yield Warning(
         "closure undecided",
-        "it may come to rest gradually ({gradually:.0f %}) or stop abruptly ({abruptly:.0f %}). V* is {soft} "
-        "or {dead} mm/s",
+        "it comes to rest gradually ({gradually:.0f %} probability, V* {soft} mm/s) or stops "
+        "abruptly ({abruptly:.0f %}, V* {dead} mm/s)",
         severity="watch",
         title="The safe speed depends on how the belt comes to rest",
         where="band",
@@ -233,7 +235,7 @@ def _unused(found: Behaviour) -> list[Warning]:
     """Evidence that does not count, and draws that do not agree."""
     out = [each.titled("A recording was not used", section="band") for each in found.posterior.warnings[:1]]
     if not found.posterior.convergence.converged:
-        words = "two runs of the sampler differ: take the intervals as rough, or run hersey posterior"
+        words = "two runs of the sampler differ. Treat the intervals as rough, or run hersey posterior"
         title = "V* has not converged"
         out.append(Warning("not converged", words, severity="watch", title=title, where="band"))
     return out
@@ -248,7 +250,7 @@ def _plans(found: Behaviour) -> Iterator[Warning]:
                 "no plan" if below else "no start",
                 "{why}",
                 severity="act",
-                title="No plan for {point}" if below else "No start for {point}",
+                title="No start-up profile for {point}" if below else "No start for {point}",
                 where="plan",
                 point=each.point.name,
                 why="; ".join(obstacle.text for obstacle in each.plan.obstacles),
@@ -264,9 +266,9 @@ def _of_log(points: SteadyPoints, surface: DampingSurface) -> Iterator[Warning]:
     if surface.transition is not None and (below := _below(points, surface)) <= _FEW:
         yield Warning(
             "few slow dwells",
-            "{below} of {dwells} dwells lie below the transition: measure slower ones",
+            "only {below} of {dwells} dwells lie below the transition. Measure slower dwells",
             severity="watch",
-            title="Few dwells hold the falling branch",
+            title="Few dwells support the falling branch",
             where="torque",
             below=below,
             dwells=len(points),
@@ -274,17 +276,18 @@ def _of_log(points: SteadyPoints, surface: DampingSurface) -> Iterator[Warning]:
     if surface.transition is not None and surface.transition.freed is not None:
         yield Warning(
             "transition apart from viscosity",
-            "the transition moves with temperature differently from viscosity, so it is fitted separately",
+            "the transition does not move with temperature as viscosity does, so its temperature "
+            "exponent is fitted separately",
             severity="watch",
-            title="One Hersey number does not hold",
+            title="The transition is not at a fixed Hersey number",
             where="torque",
         )
     if loads := points.varying_load:
         yield Warning(
             "loads differ",
-            "from {low:.3g} to {high:.3g} N: fit each load alone",
+            "it ranges from {low:.3g} to {high:.3g} N. Fit each load separately",
             severity="watch",
-            title="The load differs",
+            title="The load varies",
             where="data",
             low=loads[0],
             high=loads[1],
@@ -303,8 +306,8 @@ def _below(points: SteadyPoints, surface: DampingSurface) -> int:
 def _left_open(points: SteadyPoints, seen: Regime, scatter: float) -> Iterator[Warning]:
     yield from (each.titled(each.heading, section="data") for each in doubtful_order(points)[:1])
     if seen.named is None:
-        why = seen.why_unnamed or "several explain the dwells"
-        title = "No regime is known"
+        why = seen.why_unnamed or "several regimes fit the dwells"
+        title = "No regime can be named"
         yield Warning("no regime", "{why}", severity="watch", title=title, where="regime", why=why)
     if scatter > SCATTER:
         yield Warning(

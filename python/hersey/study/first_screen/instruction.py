@@ -80,7 +80,7 @@ def of_machine(found: Behaviour, map_: OperatingMap, unit: str) -> Instruction:
     elif edges.bistable:
         interval = _interval(f"{where}V* is", fold)
     else:
-        interval = _interval(f"{where}drag is least at", turn)
+        interval = _interval(f"{where}drag is lowest at", turn)
     said, signal = _of_points(found)
     general, of_general = _general(edges, map_, unit)
     if not said:
@@ -132,9 +132,9 @@ def _general(edges: Edges, map_: OperatingMap, unit: str) -> tuple[str, Signal]:
         return "do not rely on a start from rest: no speed is known to be smooth", "watch"
     run = f"run above {_up(edges.safe)} mm/s"
     if edges.safe > edges.greatest:
-        return f"{run}, more than the {mm(edges.greatest)} mm/s of the drive", "act"
+        return f"{run}, which exceeds the maximum speed of the drive, {mm(edges.greatest)} mm/s", "act"
     if edges.starts is None:
-        return f"{run}, and make sure that it starts: {_starting(edges, map_, unit)}", "watch"
+        return f"{run}, and check that it starts: {_starting(edges, map_, unit)}", "watch"
     return run, "good"
 
 
@@ -160,18 +160,16 @@ def of_log(surface: DampingSurface, trend: Trend) -> Instruction:
     kelvin = max(ends, key=surface.transition_speed)
     found = surface.transition_estimate(kelvin)
     lead = at(kelvin)
-    slower = "Below it torque rises as the drive slows, and the drive can stick and slip"
+    slower = "Below it torque rises as the drive slows, and stick-slip is possible"
     if not found.estimable:
         text = _lead(lead, f"keep the roll well above {roll(found.value)} rpm")
-        interval = f"torque is least at {roll(found.value)} rpm, interval not told"
+        interval = f"torque is lowest at {roll(found.value)} rpm, interval not known"
         return Instruction("watch", text, interval, f"{slower}.")
     factor = 60.0 / math.tau
     value, low, high = found.value, found.low, found.high
     text = _lead(lead, f"keep the roll above {figures(high * factor, up=True)} rpm")
-    interval = f"torque is least at {roll(value)} {within(low, high, factor)} rpm"
-    return Instruction(
-        "watch", text, interval, f"{slower}; how far above it that lasts, only the machine tells."
-    )
+    interval = f"torque is lowest at {roll(value)} rpm {within(low, high, factor)}"
+    return Instruction("watch", text, interval, f"{slower}. To find the safe speed, add stiffness and mass.")
 
 
 def _one_branch(surface: DampingSurface, trend: Trend) -> Instruction:
@@ -185,32 +183,32 @@ def _one_branch(surface: DampingSurface, trend: Trend) -> Instruction:
             "watch",
             f"Measure faster dwells: torque falls as speed rises, from {low} to {high} rpm",
             interval,
-            "Where torque falls with speed the drive can stick and slip. Where that ends is not known.",
+            "Where torque falls with speed, stick-slip is possible. The end of that range is not known.",
         )
     if trend.falls:
         return Instruction(
             "watch",
             f"Keep the roll well above {roll(trend.least)} rpm: below it torque rises as the drive slows",
             interval,
-            "Torque falls and rises with speed, but no transition is determined: record more dwells below "
-            f"{roll(trend.least)} rpm.",
+            "Torque falls and rises with speed, but no transition can be determined. Record more "
+            f"dwells below {roll(trend.least)} rpm.",
         )
     if trend.constant:
         # the exponent of one law may exclude a level torque where no test without a law does
         level = not c.estimable or c.low <= -1.0 <= c.high
-        what = "torque is constant within" if level else "torque stays about its mean within"
+        what = "torque is constant within" if level else "torque varies about its mean by up to"
         return Instruction(
             "watch",
             f"Record dwells slower than {low} and faster than {high} rpm: {what} {per_cent_of(trend.spread)}",
             interval,
-            "Whether torque falls at lower speeds is not known, so sticking cannot be ruled out.",
+            "This log cannot show whether torque falls at lower speeds, so sticking cannot be ruled out.",
         )
     return Instruction(
         "watch",
-        f"Measure dwells slower than {low} rpm: down to there torque rises with speed",
+        f"Measure dwells slower than {low} rpm: torque rises with speed down to there",
         interval,
-        f"A belt that slides keeps sliding down to {low} rpm. From rest it may stick: "
-        "torque below that speed is not known.",
+        f"Once sliding, the belt keeps sliding down to {low} rpm. From rest it may stick: torque at "
+        "lower speeds is not known.",
     )
 
 
@@ -219,15 +217,15 @@ def _not_started(
 ) -> Instruction:
     needed, limit = torque(edges.holding.high, unit, up=True), torque(edges.limit, unit)
     if map_.limited_by == "motor torque":
-        what = f"give the roll more than {needed}: the motor's {limit} do not start a belt at rest"
+        what = f"give the roll more than {needed}: the motor's {limit} cannot start a belt at rest"
     else:
         what = f"let the roll grip more than {needed}: at {limit} it slips on a belt at rest"
     turn = figures(1e3 * edges.transition.high, up=True)
     takes = map_.state_at(kelvin, edges.transition.high).torque
     if takes <= edges.limit:
-        otherwise = f"A belt that slides already goes on sliding above {turn} mm/s."
+        otherwise = f"A belt that already slides keeps sliding above {turn} mm/s."
     else:
-        otherwise = f"It does not slide on either: sliding takes {torque(takes, unit)} at {turn} mm/s."
+        otherwise = f"It cannot keep sliding either: that takes {torque(takes, unit)} at {turn} mm/s."
     return Instruction("act", _lead(where, what), _starting(edges, map_, unit), otherwise)
 
 

@@ -40,22 +40,25 @@ def missing(known: Findings) -> list[MissingPart]:
 
 def _table(name: str, stated: bool) -> str:
     """The head of a table; one that the file has already takes the lines as they are."""
-    return f"# in [{name}], which is there:\n" if stated else f"[{name}]\n"
+    return f"# add to the existing table [{name}]:\n" if stated else f"[{name}]\n"
 
 
 def _drivetrain(file: str) -> MissingPart:
     return MissingPart(
-        purpose="from which drive speed the belt slides after any start, and how to start it: V*, map, plan",
+        purpose=(
+            "the drive speed above which the belt slides from any start (V*), the map, and the "
+            "start-up profile"
+        ),
         file=file,
         lines=(
             "[drivetrain]\n"
-            'stiffness = "11 N/mm"    # put yours: gear train, roll core and rubber together, at the belt\n'
-            'mass = "11 kg"           # put yours: what moves with the belt, the motor through its gears\n'
-            'roll_radius = "15 mm"    # put yours: at which the torque acts on the belt\n'
-            'stick_speed = "1 mm/s"   # put yours: below which the belt sticks; results depend on it\n'
+            'stiffness = "11 N/mm"    # enter yours: gears, roll core and rubber together, at the belt\n'
+            'mass = "11 kg"           # enter yours: all that moves with the belt, including the motor\n'
+            'roll_radius = "15 mm"    # enter yours: radius at which the torque acts on the belt\n'
+            'stick_speed = "1 mm/s"   # enter yours: the belt sticks below it; results depend on it\n'
             "\n"
             "[uncertainty]\n"
-            'stick_speed = "0.3 mm/s to 3 mm/s"   # put yours: as long as nobody measured it\n'
+            'stick_speed = "0.3 mm/s to 3 mm/s"   # enter yours, until it is measured\n'
         ),
     )
 
@@ -66,7 +69,7 @@ def _temperature() -> MissingPart:
         file=_MAPPING,
         lines=(
             "[temperature]\n"
-            'channel = "Heater"   # put yours: the column of the log, which is then no longer isothermal\n'
+            'channel = "Heater"   # enter yours: the temperature column of the log\n'
             'unit = "degC"\n'
         ),
     )
@@ -77,16 +80,20 @@ def _points(file: str, surface: DampingSurface, machine: Machine | None) -> Miss
     level = f"{celsius(hot[1]):.0f} degC" if hot else "25 degC"
     middle = math.sqrt(surface.speed_range[0] * surface.speed_range[1])
     speed = f"{1e3 * middle * machine.roll_radius:.3g} mm/s" if machine else f"{rpm(middle):.3g} rpm"
-    note = "put yours" if machine else f"put yours, of the belt: the log's middle is {speed} of the roll"
+    note = (
+        "enter yours"
+        if machine
+        else f"enter yours, for the belt; the middle of the log is {speed} at the roll"
+    )
     stated = speed if machine else "100 mm/s"
     return MissingPart(
-        purpose="what your own speeds do, and the plan that starts them",
+        purpose="what happens at your speeds, and the start-up profile for them",
         file=file,
         lines=(
             "[[points]]\n"
             'name = "today"\n'
             f'speed = "{stated}"   # {note}\n'
-            f'temperature = "{level}"   # put yours\n'
+            f'temperature = "{level}"   # enter yours\n'
         ),
     )
 
@@ -94,15 +101,15 @@ def _points(file: str, surface: DampingSurface, machine: Machine | None) -> Miss
 def _limits(file: str, machine: Machine | None) -> MissingPart:
     stated = {} if machine is None else {k: v for k, v in vars(machine.limits).items() if v is not None}
     rows = {
-        "motor_torque": 'motor_torque = "1 N*m"         # put yours: at the roll\n',
-        "roll_friction": "roll_friction = 0.6            # put yours: of the belt on the roll\n",
-        "nip_load": 'nip_load = "300 N"             # put yours\n',
-        "acceleration": 'acceleration = "500 mm/s^2"    # put yours: of the drive, at the belt\n',
-        "speed": 'speed = "400 mm/s"             # put yours: the greatest of the drive, at the belt\n',
+        "motor_torque": 'motor_torque = "1 N*m"         # enter yours: maximum, at the roll\n',
+        "roll_friction": "roll_friction = 0.6            # enter yours: friction of the belt on the roll\n",
+        "nip_load": 'nip_load = "300 N"             # enter yours\n',
+        "acceleration": 'acceleration = "500 mm/s^2"    # enter yours: maximum of the drive, at the belt\n',
+        "speed": 'speed = "400 mm/s"             # enter yours: maximum of the drive, at the belt\n',
     }
     lines = "".join(row for name, row in rows.items() if name not in stated)
     return MissingPart(
-        purpose="whether the drive starts the belt, and a plan that it can follow",
+        purpose="whether the drive starts the belt, and a start-up profile that it can follow",
         file=file,
         lines=f"{_table('limits', bool(stated))}{lines}",
     )
@@ -113,8 +120,8 @@ def _grip(file: str, machine: Machine) -> MissingPart:
         purpose="whether the roll slips on the belt at the start",
         file=file,
         lines=(
-            f"{_table('limits', True)}roll_friction = 0.6   # put yours: of the belt on the roll\n"
-            + ("" if machine.limits.nip_load is not None else 'nip_load = "300 N"    # put yours\n')
+            f"{_table('limits', True)}roll_friction = 0.6   # enter yours: friction of the belt on the roll\n"
+            + ("" if machine.limits.nip_load is not None else 'nip_load = "300 N"    # enter yours\n')
         ),
     )
 
@@ -122,11 +129,11 @@ def _grip(file: str, machine: Machine) -> MissingPart:
 def _stick_speed(file: str, machine: Machine) -> MissingPart:
     low, high = (f"{1e3 * machine.stick_speed * by:.2g} mm/s" for by in (1 / 3, 3))
     return MissingPart(
-        purpose="how far V* is known: its interval does not yet count the stick speed",
+        purpose="the full interval of V*, which does not yet include the uncertain stick speed",
         file=file,
         lines=(
             f"{_table('uncertainty', bool(machine.uncertainty))}"
-            f'stick_speed = "{low} to {high}"   # put yours\n'
+            f'stick_speed = "{low} to {high}"   # enter yours\n'
         ),
     )
 
@@ -134,7 +141,7 @@ def _stick_speed(file: str, machine: Machine) -> MissingPart:
 def _nip(file: str, machine: Machine) -> MissingPart:
     contact = (
         "[contact]\n"
-        'rubber_thickness = "3.5 mm"   # put yours, all of them\n'
+        'rubber_thickness = "3.5 mm"   # enter yours, all of them\n'
         'modulus = "0.65 MPa"\n'
         "poisson_ratio = 0.48\n"
         'length = "220 mm"\n'
@@ -143,14 +150,14 @@ def _nip(file: str, machine: Machine) -> MissingPart:
     contact += "" if machine.limits.nip_load is not None else 'load = "300 N"\n'
     lubricant = (
         "[lubricant]\n"
-        'model = "walther"             # put yours: two points of the data sheet\n'
+        'model = "walther"             # enter yours: two points of the data sheet\n'
         'viscosities = [["40 degC", "500 mm^2/s"], ["200 degC", "7.2 mm^2/s"]]\n'
         'density = "1.9 g/cm^3"\n'
     )
     parts = [contact] if machine.contact is None else []
     parts += [lubricant] if machine.lubricant is None else []
     return MissingPart(
-        purpose="whether a film of this nip can make the exponent, and how thick it is",
+        purpose="whether a film in this nip explains the exponent, and how thick it is",
         file=file,
         lines="\n".join(parts),
     )
@@ -158,7 +165,7 @@ def _nip(file: str, machine: Machine) -> MissingPart:
 
 def _rest(file: str) -> MissingPart:
     return MissingPart(
-        purpose="what the film takes alone: bearings and gears are in the torque",
+        purpose="the torque of the film alone, without bearings and gears",
         file=file,
-        lines='[rest]\nlog = "no-load.csv"   # put yours: a log of the drive without belt and heater\n',
+        lines='[rest]\nlog = "no-load.csv"   # enter yours: a log of the drive without belt and heater\n',
     )

@@ -41,7 +41,7 @@ def point_decision(
     kelvin = point.temperature if map_.drag.varies_with_temperature else None
     signal, words = _judged(found, verdict, edges_of(drawn, kelvin), map_, unit)
     if signal == "good" and not film_alone:
-        signal, words = "watch", f"{words}, if all torque is the film's"
+        signal, words = "watch", f"{words}, if all torque comes from the film"
     if map_.state_at(kelvin, point.speed).extrapolated:
         signal, words = worst([signal, "watch"]), f"{words}; extrapolated"
     chances = verdict.probability
@@ -83,9 +83,9 @@ def points_of_log(surface: DampingSurface, machine: Machine, *, rises: bool) -> 
         measured = slowest <= speed <= fastest
         measured &= heat is None or heat[0] - 1.0 <= point.temperature <= heat[1] + 1.0
         if not measured:
-            words = "not judged: no dwell lies that far out"
+            words = "not judged: outside the measured range"
         elif rises:
-            words = "keeps sliding once it slides; from rest it may stick"
+            words = "keeps sliding once it slides; may stick from rest"
         else:
             words = "not judged: there is no map"
         out.append(
@@ -107,7 +107,7 @@ def _judged(
     held = edges.holding
     needs = starting(held.low, held.value, held.high, edges.limit, map_.limited_by, unit)
     if kind == "too fast":
-        return "act", f"faster than the drive, {mm(map_.speed_limit or math.nan)} mm/s"
+        return "act", f"exceeds the maximum speed of the drive, {mm(map_.speed_limit or math.nan)} mm/s"
     if kind == "not started":
         return "act", f"does not start: {needs}"
     if kind == "stalls":
@@ -116,11 +116,14 @@ def _judged(
         turn = edges.transition
         if not edges.turns:
             return "act", "sticks from any start: drag falls at this speed"
-        return "act", f"sticks from any start: {between('drag is least at', turn.value, turn.low, turn.high)}"
+        return (
+            "act",
+            f"sticks from any start: {between('drag is lowest at', turn.value, turn.low, turn.high)}",
+        )
     if kind == "smooth":
         return "good", f"smooth from any start, {per_cent(chances.smooth)}"
     if chances.unknown > 1.0 - SAFE:
-        return "watch", "not known: torque may still fall at the fastest dwell"
+        return "watch", "cannot be judged: torque may still fall at the fastest dwell"
     if verdict.starts < 1.0 and edges.starts is None:
         return "watch", f"may not start: {needs}"
     return _with_plan(found, verdict)
@@ -135,10 +138,13 @@ def _with_plan(found: PointBehaviour, verdict: Verdict) -> tuple[Signal, str]:
         words = "needs the start-up profile"
         return "watch", f"{words}; {chance}" if chance else words
     if plan is not None and any(each.limit == "target_speed" for each in plan.obstacles):
-        return "act", f"may stick: lies below the speed of least drag with {per_cent(chances.sticks)}"
+        return (
+            "act",
+            f"may stick: with {per_cent(chances.sticks)} probability it is below the speed of lowest drag",
+        )
     if plan is not None:
         why = "may stick from rest, smooth once it slides" if sure else "may stick"
-        return "act", f"{why}: no start-up within the limits works"
+        return "act", f"{why}: no start-up profile within the limits works"
     return "watch", f"may stick from rest, smooth once it slides{f'; {chance}' if chance else ''}"
 
 

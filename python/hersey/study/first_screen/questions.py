@@ -20,7 +20,7 @@ def unanswered(
         signal="act",
         instruction=text,
         interval="",
-        otherwise=f"{remedy} Nothing is concluded until then.",
+        otherwise=f"{remedy} Until then, nothing is concluded.",
         points=[
             PointDecisionPart(
                 name=point.name,
@@ -41,9 +41,9 @@ def in_words(question: Question) -> tuple[str, str]:
     times = figures(question.times)
     of = {
         "motor": "your motor's limit",
-        "friction": "what friction in the nip can take",
-        "drive": "your drive's greatest speed",
-        "usual": "what such machines have",
+        "friction": "what friction in the nip allows",
+        "drive": "your drive's maximum speed",
+        "usual": "the usual value of such machines",
     }[question.of]
     if question.kind == "swapped":
         torque, speed = Setting("torque", "channel"), Setting("speed", "channel")

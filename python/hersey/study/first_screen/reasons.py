@@ -7,7 +7,7 @@ import math
 from hersey.errors import HerseyError, ParameterError, UnfinishedError
 from hersey.study.first_screen.words import figures, mm
 
-#: Quantities of a machine's file that the core names, as people call them, and their units.
+#: Quantities of a machine file that the core names, as people call them, and their units.
 _NAMED = {
     "stick_speed": "the stick speed",
     "transition_speed": "the transition speed",
@@ -28,15 +28,15 @@ def in_words(error: HerseyError) -> str:
     """Return the reason without names of code, with units, and with what to do about it."""
     if isinstance(error, UnfinishedError):
         return (
-            "the motion comes to no end in the steps allowed: stiffness, mass and stick speed of the "
-            "machine's file lie too far apart; look at their units"
+            "the simulation did not finish. Check the units of stiffness, mass and stick speed in "
+            "the machine file"
         )
     if not isinstance(error, ParameterError) or error.quantity is None or error.value is None:
         return str(error)
     if error.quantity == "stick_speed" and error.limit:
         return (
-            f"the stick speed, up to {mm(error.value)} mm/s there, reaches the transition speed, "
-            f"{mm(error.limit)} mm/s: state less"
+            f"the stick speed, up to {mm(error.value)} mm/s here, reaches the transition speed, "
+            f"{mm(error.limit)} mm/s. State a lower stick speed"
         )
     name = _NAMED.get(error.quantity, error.quantity.replace("_", " "))
     if not math.isfinite(error.value):

@@ -24,69 +24,71 @@ class StartPart(Part):
     time: Numbers
     drive_speed: Numbers
     belt_speed: Numbers
-    straight: Numbers = Field(description="belt speed where the drive comes straight up to the point")
+    straight: Numbers = Field(description="belt speed if the drive goes straight to the point")
 
 
 class PointDecisionPart(Part):
-    """An operating point of the machine's file: speed in m/s, temperature in K."""
+    """An operating point of the machine file: speed in m/s, temperature in K."""
 
     name: str
     speed: float
     temperature: float
     signal: Signal
-    words: str = Field(description="such as 'smooth from any start, 99 %'")
+    words: str = Field(description="e.g. 'smooth from any start, 99 %'")
     verdict: Literal["smooth", "depends", "sticks", "not started", "stalls", "too fast", "unknown"] = Field(
         default="unknown", description="'smooth' is from any start; 'depends' on how the speed is reached"
     )
     smooth: float | None = Field(default=None, description="probability: smooth from any start")
     from_above: float | None = Field(
-        default=None, description="probability: smooth only if it slides already, or starts by the profile"
+        default=None, description="probability: smooth only if already sliding, or if started by the profile"
     )
     sticks: float | None = Field(default=None, description="probability: sticks from any start")
-    disturbance: Disturbance | None = Field(default=None, description="what sliding there bears")
-    steps: list[SafeStep] = Field(default=[], description="from the other points to this one")
-    plan: Plan | None = Field(default=None, description="where the belt does not slide from every start")
-    motion: StartPart | None = Field(default=None, description="the plan's motion at the nominal parameters")
-    reason: str = Field(default="", description="why there is no plan, or no figure, where one is wanted")
+    disturbance: Disturbance | None = Field(default=None, description="disturbance that sliding withstands")
+    steps: list[SafeStep] = Field(default=[], description="steps from the other points to this one")
+    plan: Plan | None = Field(default=None, description="start-up profile, if a direct start may fail")
+    motion: StartPart | None = Field(
+        default=None, description="motion under the profile, with nominal parameters"
+    )
+    reason: str = Field(default="", description="why a profile or a number is missing")
 
 
 class MissingPart(Part):
     """What would let the report say more: lines to add to a file."""
 
-    purpose: str = Field(description="what the report would then say")
+    purpose: str = Field(description="what the report would add")
     file: str
-    lines: str = Field(description="TOML, to be copied; values of the user's are named in comments")
+    lines: str = Field(description="TOML to copy; the user's values are named in comments")
 
 
 class MeasurementPart(Part):
     """The measurement that would narrow V* most."""
 
     kind: Literal["starts", "break-away", "stick-slip", "dwell"]
-    text: str = Field(description="what to do, in one sentence, and what it would bring")
+    text: str = Field(description="what to do, and what it would bring, in one sentence")
     temperature: float | None = Field(description="K")
     speeds: Numbers = Field(description="m/s, of starts, of a dwell or of a stretch of stick-slip")
-    left: float = Field(description="expected width of the interval of V* over that of today, in logarithms")
+    left: float = Field(
+        description="expected width of the interval of V*, relative to the present one, in logarithms"
+    )
 
 
 class DecisionPart(Part):
     """The first screen of the report."""
 
     signal: Signal
-    instruction: str = Field(description="one sentence in the imperative, on the safe side")
-    interval: str = Field(
-        description="the estimate and its 95 % interval behind the instruction; may be empty"
-    )
+    instruction: str = Field(description="one imperative sentence, on the safe side")
+    interval: str = Field(description="estimate and 95 % interval behind the instruction; may be empty")
     otherwise: str = Field(description="what happens otherwise")
-    temperature: float | None = Field(default=None, description="K, at which safe speed and V* hold")
+    temperature: float | None = Field(default=None, description="K, at which the safe speed and V* hold")
     safe_speed: float | None = Field(
-        default=None, description="m/s, above which the belt is smooth from any start with 97.5 % probability"
+        default=None, description="m/s; above it the belt is smooth from any start with 97.5 % probability"
     )
     fold: Edge | None = Field(default=None, description="V*")
     closures: dict[str, float] = Field(default={}, description="probability of each closure")
     measurement: MeasurementPart | None = None
     points: list[PointDecisionPart]
     flags: list[Warning] = Field(
-        description="three at the most, the gravest first; ``where`` is a section of the page"
+        description="at most three, the most serious first; ``where`` is a section of the page"
     )
     missing: list[MissingPart]
 
@@ -94,5 +96,5 @@ class DecisionPart(Part):
 class DesignPart(part_of(TestDesign)):  # type: ignore[misc]  # made as it runs
     """The next dwells, or measurements that narrow V*, in the order of their worth."""
 
-    fold: Edge | None = Field(default=None, description="V* of the machine that was named, m/s")
-    measurements: list[MeasurementPart] = Field(default=[], description="what would narrow it")
+    fold: Edge | None = Field(default=None, description="V* of the stated machine, m/s")
+    measurements: list[MeasurementPart] = Field(default=[], description="measurements that would narrow V*")

@@ -63,7 +63,7 @@ def between(what: str, value: float, low: float, high: float) -> str:
     if math.isnan(value):
         ends = figures(1e3 * low, up=False), figures(1e3 * high, up=True)
         return f"{what} {ends[0]} to {ends[1]} mm/s"
-    return f"{what} {mm(value)} {within(low, high, 1e3)} mm/s"
+    return f"{what} {mm(value)} mm/s {within(low, high, 1e3)}"
 
 
 def torque(value: float, unit: str, *, up: bool | None = None) -> str:
@@ -75,8 +75,8 @@ def starting(low: float, value: float, high: float, limit: float, by: str, unit:
     """Return what starts a belt beside what the drive gives (N m, in a unit); ``by`` is what limits it."""
     ends = within(low, high, PER[unit]) if low < high else ""
     gives = "the motor gives" if by == "motor torque" else "the roll grips"
-    said = " ".join(filter(None, ("starting from rest takes", figures(value * PER[unit]), ends, unit)))
-    return f"{said}, {gives} {figures(limit * PER[unit])}"
+    said = " ".join(filter(None, ("starting from rest takes", figures(value * PER[unit]), unit, ends)))
+    return f"{said}, {gives} {torque(limit, unit)}"
 
 
 def per_cent(share: float) -> str:
