@@ -70,5 +70,5 @@ def test_a_surface_needs_a_machine() -> None:
     surface, machine = fitted()
     with pytest.raises(ParameterError, match="needs the machine"):
         hersey.hysteresis(machine.train, surface, temperature=AT)
-    with pytest.raises(ParameterError, match="which states roll radius and stick speed"):
+    with pytest.raises(ParameterError, match="needs roll radius and stick speed"):
         hersey.operating_map(surface, machine.train)  # type: ignore[arg-type]
