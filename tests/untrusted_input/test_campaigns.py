@@ -128,7 +128,7 @@ TABLES: dict[str, tuple[Spoil, str]] = {
     ),
     "generated column": (
         execute("ALTER TABLE runs ADD COLUMN g AS (zeroblob(1000000000))"),
-        "table 'runs' is not as hersey makes it",
+        "table 'runs' is not the one that hersey creates",
     ),
     "full-text search": (execute("CREATE VIRTUAL TABLE f USING fts5(x)"), "'f'"),
     "virtual table of trees": (execute("CREATE VIRTUAL TABLE r USING rtree(id, a, b)"), "'r'"),
@@ -148,12 +148,12 @@ TABLES: dict[str, tuple[Spoil, str]] = {
             "PRAGMA writable_schema = ON",
             "UPDATE sqlite_master SET sql = replace(sql, 'exponent REAL', 'exponent REAL DEFAULT (hex(1))')",
         ),
-        "table 'runs' is not as hersey makes it",
+        "table 'runs' is not the one that hersey creates",
     ),
     "statistics of a planner": (execute("ANALYZE"), "table 'sqlite_stat1'"),
     "another program's": (execute("PRAGMA application_id = 7"), "is no campaign"),
     "no program's": (execute("PRAGMA application_id = 0"), "is no campaign"),
-    "a newer version": (execute(f"PRAGMA user_version = {store.VERSION + 1}"), "a newer hersey"),
+    "a newer version": (execute(f"PRAGMA user_version = {store.VERSION + 1}"), "a newer version"),
     "version 0": (execute("PRAGMA user_version = 0"), "version 0"),
     "version -1": (execute("PRAGMA user_version = -1"), "version -1"),
     "twenty thousand tables": (
@@ -174,7 +174,7 @@ def test_other_tables_are_refused(name: str, tmp_path: Path) -> None:
     path = spoiled(tmp_path, spoil)
     for verb, done in typed(tmp_path).items():
         if verb == "add" and name in ("version 0", "version -1"):
-            words = "cannot bring up to date"
+            words = "cannot update"
         refused(done, words)
         assert "\x1b" not in done.stderr
     with pytest.raises(HerseyError):
