@@ -37,7 +37,7 @@ def test_runs_are_added_listed_shown_checked_and_exported(folder: Path) -> None:
     assert done.stdout.startswith("0.csv: added as run 1, F12 at 1000 pages, 10 dwells\n1.csv: added as")
     assert "already there as run 1" in typed(folder, "add", "life.hersey", "0.csv", *F12).stdout
     assert typed(folder, "list", "life.hersey").stdout == (
-        "life.hersey: 2 runs of 1 units\nF12: 2 runs, at 1000 pages, 20 dwells\n"
+        "life.hersey: 2 runs of 1 specimen\nF12: 2 runs, at 1000 pages, 20 dwells\n"
     )
     shown = typed(folder, "show", "life.hersey", "F12").stdout.splitlines()
     assert len(shown) == 2

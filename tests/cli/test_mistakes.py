@@ -315,7 +315,7 @@ MISTAKES: dict[str, Mistake] = {
         GOOD, "fit log.csv --min-dwell '20 s'", ("dwell too short", "at least 20 s")
     ),
     "a duration without a unit": Mistake(
-        GOOD, "fit log.csv --min-dwell 3", ("'3' is not a number with a unit of time",), example_taken
+        GOOD, "fit log.csv --min-dwell 1", ("'1' is not a number with a unit of time",), example_taken
     ),
     "one temperature": Mistake(
         {"log.csv": table(rows(temperatures=(100,)))},

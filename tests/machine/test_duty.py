@@ -98,7 +98,7 @@ def test_starts_of_one_page(tmp_path: Path) -> None:
         ('"10 J"', '"-10 J"', "life.energy is -10 J: it must be greater than 0"),
         ('"10 J"', '"10 N"', "life.energy: unit 'N' is not a unit of energy"),
         ("coldest", "cold", "[life] has an unknown key 'cold'. Did you mean 'coldest'? Known keys: coldest"),
-        ("slope = 7\n", "", "[gear] lacks 'slope'"),
+        ("slope = 7\n", "", "[gear] needs the key 'slope'"),
         ("slope = 7", "slope = -7", "gear.slope is -7: it must be greater than 0"),
         ('"haibach"', '"miner"', "gear.second_slope is 'miner': write a number such as 9, or 'haibach'"),
         ("20 per 1000", "20 x 1000", "gear.starts is '20 x 1000 pages': write how many in what age"),

@@ -269,8 +269,9 @@ def test_every_sentence_of_a_map(few: OperatingMap, surface: DampingSurface) -> 
     cold_stick, hot_stick = (few.drag.at(t).stick_speed for t in (KELVIN[0], KELVIN[-1]))
     assert [str(each) for each in few.warnings] == [
         f"V* depends on the stick speed, 0.3 mm/s at {hot - 273.15:.0f} degC here (it moves with the "
-        f"transition speed, from {1e3 * cold_stick:.3g} mm/s to {1e3 * hot_stick:.3g} mm/s), which was not "
-        "measured. The interval of V* includes the uncertainty of the fit, stiffness and stick speed",
+        f"transition speed, from {1e3 * cold_stick:.3g} mm/s to {1e3 * hot_stick:.3g} mm/s), which the "
+        "dwells do not show. "
+        "The interval of V* includes the uncertainty of the fit, stiffness and stick speed",
         f"the drive gives at most 4.5 N m (motor torque); a belt at rest needs {rest:.3g} N m to start",
         "the drive may be unable to start a belt at rest",
         "thick paper: the verdict is uncertain, because the point lies within the 95 % interval of V* "
@@ -303,7 +304,7 @@ def test_sentences_of_a_map_that_knows_little(
         surface, machine.train, **AT, draws=1, temperatures=KELVIN, points=points, limits=Limits(speed=0.4)
     )
     assert str(bare.warnings[0]).endswith(
-        "which was not measured. The interval of V* includes the uncertainty of the fit. "
+        "which the dwells do not show. The interval of V* includes the uncertainty of the fit. "
         "State the uncertainty of stick_speed"
     )
     assert [str(each) for each in bare.warnings[1:]] == [
@@ -315,7 +316,7 @@ def test_sentences_of_a_map_that_knows_little(
     assert bare.warnings[-1].values == {"limit": 0.4}
     one = map_of(isothermal, machine.train, **AT, draws=1)
     said = str(one.warnings[0])
-    assert said.startswith("V* depends on the stick speed, 0.3 mm/s here, which was not measured.")
+    assert said.startswith("V* depends on the stick speed, 0.3 mm/s here, which the dwells do not show.")
     assert one.warnings[0].values["temperature"] is None
     assert one.warnings[1].kind == "isothermal fit"
     assert str(one.warnings[1]) == (

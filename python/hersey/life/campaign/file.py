@@ -351,7 +351,8 @@ class Campaign:
     def summary(self) -> str:
         """Return an overview and one line per specimen."""
         runs = self.runs()
-        lines = [f"{self.path.name}: {runs.height} runs of {runs['unit'].n_unique()} specimens"]
+        units = runs["unit"].n_unique()
+        lines = [f"{self.path.name}: {runs.height} runs of {units} specimen{'s' * (units != 1)}"]
         for (unit,), of in runs.group_by("unit", maintain_order=True):
             first, last = Age(of["age"][0], self.age_unit), Age(of["age"][-1], self.age_unit)
             failed = int((of["no_fit"] != "").sum())

@@ -82,7 +82,7 @@ def _check_kind(h5py: Any, path: str, item: Any) -> None:
 def _check_place(path: str, item: Any) -> None:
     """Numbers in another file are not those that were hashed, nor those that a user means to give."""
     if item.external or item.is_virtual:
-        raise UnreadableLogError(f"data set '{path}' stores its numbers elsewhere. {_WAY_OUT}")
+        raise UnreadableLogError(f"data set '{path}' stores its numbers in another place. {_WAY_OUT}")
 
 
 def _numbers(path: str, item: Any) -> Callable[[], Any]:

@@ -46,7 +46,7 @@ def _of_the_stick_speed(map_: OperatingMap) -> Warning:
                 "mm/s} to {hottest:.3g mm/s})"
             )
         )
-        + ", which was not measured. The interval of V* includes the uncertainty of {counted}"
+        + ", which the dwells do not show. The interval of V* includes the uncertainty of {counted}"
         + ("" if "stick_speed" in map_.uncertain else ". State the uncertainty of stick_speed"),
         stick_speed=map_.drag.stick_speed,
         temperature=hot,
