@@ -11,8 +11,8 @@ _OPTION = re.compile(
     r"(?<![\w-])(--[a-z][a-z-]*)(?: (?:'([^']*)'|(-?[0-9.]+)(?=[ ,.;:)]|$)|([A-Za-z]+)(?=[.,;:)]|$)))?"
 )
 _OTHERWISE = re.compile(r",? or (?=say |name |leave |write |add )")
-_MEANT = re.compile(r"^hersey: (\S+): there is no such file: did you mean '([^']*)'\?")
-_IN_IT = re.compile(r"^hersey: (\S+) is a directory: name a file in it, as '([^']*)'")
+_MEANT = re.compile(r"^hersey: File not found: (\S+)\. Did you mean '([^']*)'\?")
+_IN_IT = re.compile(r"^hersey: (\S+) is a folder\. Name a file in it, e\.g\. '([^']*)'")
 
 
 def followed(arguments: list[str], message: str) -> list[list[str]]:

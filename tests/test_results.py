@@ -274,8 +274,8 @@ def test_without_pandas_the_way_out_is_said(monkeypatch: pytest.MonkeyPatch) -> 
     with pytest.raises(MissingFileError) as caught:
         points().to_pandas()
     assert str(caught.value) == (
-        "to_pandas needs pandas, which is not installed: pip install pandas, "
-        "or use to_frame(), which returns a polars frame"
+        "to_pandas needs pandas, which is not installed. Run pip install pandas, "
+        "or use to_frame() for a polars frame"
     )
 
 

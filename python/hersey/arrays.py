@@ -105,15 +105,15 @@ def refuse_unknown(
     >>> refuse_unknown("sweep", ["stifness"], ["stiffness", "mass"])
     Traceback (most recent call last):
         ...
-    hersey.errors.ParameterError: sweep does not take 'stifness': did you mean stiffness?
+    hersey.errors.ParameterError: sweep has no argument 'stifness'. Did you mean stiffness?
     """
     for name in given:
         if name not in known:
             near = meant(name, known)
-            remedy = f"did you mean {near}?" if near else f"it takes {', '.join(known)}"
+            remedy = f"Did you mean {near}?" if near else f"Its arguments are {', '.join(known)}"
             if elsewhere and name in elsewhere:
-                remedy = f"write {elsewhere[name]}"
-            raise ParameterError(f"{taker} does not take '{printable(name)}': {remedy}", quantity=name)
+                remedy = f"Write {elsewhere[name]}"
+            raise ParameterError(f"{taker} has no argument '{printable(name)}'. {remedy}", quantity=name)
 
 
 def crossed(given: dict[str, FloatArray]) -> tuple[list[str], dict[str, FloatArray]]:
@@ -121,7 +121,7 @@ def crossed(given: dict[str, FloatArray]) -> tuple[list[str], dict[str, FloatArr
     for name, numbers in given.items():
         if numbers.ndim > 1:
             raise ParameterError(
-                f"{name} has {numbers.ndim} dimensions: say zip=True to take arrays together"
+                f"{name} has {numbers.ndim} dimensions. To take arrays element by element, use zip=True"
             )
     axes = [name for name, numbers in given.items() if numbers.ndim]
     grids = np.meshgrid(*(np.atleast_1d(given[name]) for name in given), indexing="ij")
@@ -135,7 +135,7 @@ def together(given: dict[str, FloatArray]) -> tuple[list[str], dict[str, FloatAr
         arrays = np.broadcast_arrays(*given.values())
     except ValueError:
         shapes = ", ".join(f"{name} {numbers.shape}" for name, numbers in given.items() if numbers.ndim)
-        raise ParameterError(f"the arrays do not fit together: {shapes}") from None
+        raise ParameterError(f"the shapes of the arrays do not match: {shapes}") from None
     dimensions = arrays[0].ndim
     axes = ["set"] if dimensions == 1 else [f"dim_{i}" for i in range(dimensions)]
     return axes[:dimensions], dict(zip(given, arrays, strict=True))

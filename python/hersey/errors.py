@@ -1,7 +1,7 @@
-"""The closed table of what can go wrong for a user, each error also the matching built-in.
+"""Errors that a user can correct; each is also the matching built-in error.
 
-Also how a message quotes text of a stranger, what was probably meant by a name that is none, and what to set
-to correct a mistake.
+Also: quoting untrusted text in messages, finding the known name closest to an unknown one, and naming the
+setting that corrects a mistake.
 """
 
 from __future__ import annotations
@@ -20,21 +20,21 @@ _way: list[Way] = ["python"]
 
 
 def speak(way: Way) -> None:
-    """Give ways out in the words of this way in, in the whole process."""
+    """Set the interface whose words remedies use, for the whole process."""
     _way[0] = way
 
 
 def way_in() -> Way:
-    """Return the way in whose words a way out is given."""
+    """Return the interface whose words remedies use."""
     return _way[0]
 
 
 @dataclass(frozen=True)
 class Setting:
-    """What a person sets to correct a mistake: an argument in Python, a flag in the terminal, a control.
+    """A setting that corrects a mistake: a Python argument, a command-line flag or a control of the app.
 
-    ``name`` is that of the argument, or the role of a ``channel`` or of its ``unit``; a ``switch`` is set
-    or not. ``flag`` and ``argument`` are its names on the command line and in Python, where they differ.
+    ``name`` is the name of the argument, or the role of a ``channel`` or of its ``unit``; a ``switch`` takes
+    no value. ``flag`` and ``argument`` are its names on the command line and in Python, if they differ.
     """
 
     name: str
@@ -43,7 +43,7 @@ class Setting:
     argument: str = ""
 
     def to(self, value: str = "", *, python: str = "") -> str:
-        """Return what to write for a value, or the name alone, in the words of the way in.
+        """Return the text to type for a value, or for the name alone, in the words of the interface.
 
         ``python`` is the value as an expression, where it is not the text itself.
         """
@@ -73,14 +73,14 @@ ROTATION = Setting("rotation")
 
 
 def turned(role: str) -> str:
-    """How the sign of torque or speed is turned."""
+    """Return the setting that flips the sign of torque or speed."""
     return Setting(f"{role}_sign", argument="signs").to("-1", python=f"{{'{role}': -1}}")
 
 
 class HerseyError(Exception):
     """A mistake that the user can correct: what is wrong, where, and what to do.
 
-    ``remedy`` says what to do where that is known apart from what is wrong; ``setting`` is what to set.
+    ``remedy`` says what to do, if it is not part of the message; ``setting`` is what to set.
     """
 
     def __init__(self, *message: object, remedy: str = "", setting: Setting | None = None) -> None:
@@ -90,19 +90,18 @@ class HerseyError(Exception):
 
     @property
     def reason(self) -> str:
-        """What is wrong on one line, whatever names and cells of a file it quotes."""
+        """What is wrong, on one line and with only printable characters."""
         return printable(" ".join(str(part) for part in self.args))
 
     def __str__(self) -> str:
         """Return what is wrong and what to do."""
         if not self.remedy:
             return self.reason
-        if self.reason[-1:] in (".", "?"):
-            return f"{self.reason} {printable(self.remedy[:1].upper() + self.remedy[1:])}"
-        return f"{self.reason}: {printable(self.remedy)}"
+        stop = "" if self.reason[-1:] in (".", "?") else "."
+        return f"{self.reason}{stop} {printable(self.remedy[:1].upper() + self.remedy[1:])}"
 
     def to_dict(self) -> dict[str, Any]:
-        """Return it as JSON: the error, reason, remedy, and name and kind of the setting or empty texts."""
+        """Return error, reason, remedy, and name and kind of the setting (or empty texts) as JSON."""
         setting = self.setting or Setting("")
         return {
             "error": type(self).__name__,
@@ -113,14 +112,14 @@ class HerseyError(Exception):
         }
 
     def within(self, place: str) -> Self:
-        """Return the same error, its message led by where it happened."""
+        """Return the same error with the place in front of its message."""
         again = type(self)(f"{place}: {self.reason}")
         again.__dict__.update(self.__dict__)
         return again
 
 
 class MissingFileError(HerseyError, FileNotFoundError):
-    """A file that is not there, or is not a file."""
+    """A file that does not exist, or is not a file."""
 
 
 class UnreadableLogError(HerseyError, ValueError):
@@ -130,7 +129,7 @@ class UnreadableLogError(HerseyError, ValueError):
 class ChannelError(HerseyError, LookupError):
     """A channel that cannot be found, or could be several.
 
-    ``columns`` are the indices of those that it could be, where they are known.
+    ``columns`` are the indices of the possible columns, if known.
     """
 
     def __init__(self, *message: object, columns: tuple[int, ...] = (), **remedy: Any) -> None:
@@ -152,9 +151,9 @@ class UnitError(HerseyError, ValueError):
 
 
 class UnstatedRoleError(UnitError):
-    """A radius or a normal load that a quantity needs and nobody stated.
+    """A radius or normal load that is needed but was not given.
 
-    ``role`` is ``radius`` or ``load``, ``proposed`` the columns that are called so.
+    ``role`` is ``radius`` or ``load``; ``proposed`` are the columns with such a name.
     """
 
     def __init__(
@@ -175,15 +174,15 @@ class WrongKindError(UnitError):
 
 
 class InsufficientDataError(HerseyError, ValueError):
-    """Data that cannot answer the question asked of it."""
+    """Data that are not sufficient for the question."""
 
 
 class ParameterError(HerseyError, ValueError):
     """A parameter outside what the physics allows.
 
-    ``quantity`` names it as the message does, ``value`` and ``limit`` are in ``unit``; ``bound`` says where
-    the value must lie: ``above`` the limit, ``at most`` at it or ``below`` it; ``index`` is the place among
-    the sets or points of a call that takes many. Each is None where it is not known.
+    ``quantity`` is its name in the message, ``value`` and ``limit`` are in ``unit``; ``bound`` says where the
+    value must lie: ``above`` the limit, ``at most`` the limit or ``below`` it; ``index`` is the index of the
+    set or point in a call with many. Each is None if unknown.
     """
 
     def __init__(
@@ -203,15 +202,15 @@ class ParameterError(HerseyError, ValueError):
 
 
 class ForkedError(HerseyError, RuntimeError):
-    """A process forked from one whose threads it would need."""
+    """A forked process that would need threads of its parent."""
 
 
 class UnfinishedError(HerseyError, RuntimeError):
-    """A computation on sound input that did not come to its end.
+    """A computation on valid input that did not finish.
 
-    ``quantity`` and ``value`` (in ``unit``) tell where a solution was lost, ``time`` is that which a motion
-    had reached; ``steps`` are those that were allowed, where they did not suffice; ``index`` as in
-    `ParameterError`. Each is None where it is not known.
+    ``quantity`` and ``value`` (in ``unit``) say where a solution was lost, ``time`` how far a motion got;
+    ``steps`` is the number allowed, if it was too small; ``index`` as in `ParameterError`. Each is None if
+    unknown.
     """
 
     def __init__(
@@ -235,26 +234,26 @@ class OutputError(HerseyError, OSError):
 
 
 class ExistingFileError(OutputError, FileExistsError):
-    """A result whose file is there already, and which nobody said to replace."""
+    """A result whose file exists and was not to be replaced."""
 
 
 class ExtrapolationWarning(UserWarning):
-    """A fitted law is used outside the range of its data."""
+    """A fitted law was used outside the range of its data."""
 
 
 class UntoldWarning(UserWarning):
-    """Limits that hold for the visits recorded alone: the data do not tell how far visits scatter."""
+    """Limits that hold only for the recorded visits, because the scatter between visits is unknown."""
 
     def __init__(self) -> None:
         """Say it."""
         super().__init__(
-            "limits hold for the visits recorded: each temperature was visited once, and how far visits "
-            "scatter is not told"
+            "Limits are known only for the recorded visits: each temperature was visited once, so the "
+            "scatter between visits is unknown."
         )
 
 
 class SandboxWarning(UserWarning):
-    """Untrusted files are read without a whole sandbox; ``missing`` names what the system lacks.
+    """Untrusted files are read in an incomplete sandbox; ``missing`` names what the system does not have.
 
     These are ``landlock`` (which files the reading process can open) and ``seccomp`` (which system calls
     it can make).
@@ -268,11 +267,13 @@ class SandboxWarning(UserWarning):
     def __str__(self) -> str:
         """Return it in words."""
         lacking = {
-            "landlock": "could open other files (this system lacks Landlock)",
-            "seccomp": "could start processes and change files (this system lacks seccomp)",
+            "landlock": "open other files (this system has no Landlock)",
+            "seccomp": "start processes and change files (this system has no seccomp)",
         }
         could = " and ".join(lacking.get(name, name) for name in self.missing)
-        return f"Untrusted files are not fully sandboxed: one {could}. Open only files that you trust."
+        return (
+            f"The sandbox for untrusted files is incomplete. A file could {could}. Open only files you trust."
+        )
 
 
 def printable(text: str, *, lines: bool = False) -> str:

@@ -71,8 +71,8 @@ class Result(Record):
             import pandas as pd
         except ImportError:
             raise MissingFileError(
-                "to_pandas needs pandas, which is not installed: pip install pandas, "
-                "or use to_frame(), which returns a polars frame"
+                "to_pandas needs pandas, which is not installed. Run pip install pandas, or use "
+                "to_frame() for a polars frame"
             ) from None
         # polars' own conversion needs pyarrow
         return pd.DataFrame({column.name: column.to_numpy() for column in self.to_frame()})

@@ -188,8 +188,8 @@ def conversion(kind: str, unit: str) -> Conversion:
     """
     si, example = KINDS[kind]
     if len(unit) > _LONGEST_UNIT:
-        shown = f"'{unit[:20]}...' of {len(unit)} characters, {_LONGEST_UNIT} at the most"
-        raise UnitError(f"unknown unit {shown}: write one such as {example}")
+        shown = f"'{unit[:20]}...' ({len(unit)} characters, at most {_LONGEST_UNIT} are allowed)"
+        raise UnitError(f"unknown unit {shown}", remedy=f"write one such as {example}")
     factor, text = _split_factor(unit.strip(), unit, kind)
     line, standard = (_from_table(each, energy=kind in _ENERGY_KINDS) for each in (text, si))
     if line and standard and line[2] == standard[2]:
@@ -199,7 +199,7 @@ def conversion(kind: str, unit: str) -> Conversion:
     else:  # a unit beside the table, or one that differs by an angle, which need not matter
         scale, zero = _from_registry(kind, text, unit)
     if not 1e-15 < abs(factor * scale) < 1e15:
-        raise UnitError(f"unit '{unit}' has an impossible factor")
+        raise UnitError(f"the factor in unit '{unit}' is impossible")
     return Conversion(unit, factor * scale, zero)
 
 
@@ -229,20 +229,23 @@ def _from_registry(kind: str, text: str, unit: str) -> tuple[float, float]:
     si = KINDS[kind][0]
     parsed = _parsed(text)
     if parsed is None:
-        raise UnitError(f"unknown unit '{unit}': {_meant(kind, unit)}")
+        raise UnitError(f"unknown unit '{unit}'", remedy=_meant(kind, unit))
     names = " ".join(str(name) for name in parsed._units)
     if kind == "speed" and parsed.dimensionality == {"[time]": -1} and not _ANGLES.search(names):
-        raise UnitError(f"unit '{unit}' of a speed could count revolutions or radians: write rev/s or rad/s")
+        raise UnitError(
+            f"unit '{unit}' of a speed could mean revolutions or radians", remedy="write rev/s or rad/s"
+        )
     if parsed.dimensionality != registry.parse_units(si).dimensionality or (
         kind == "torque" and _ENERGIES.search(names)
     ):
         if unit.strip() in ("%", "percent") and kind == "torque":
             raise WrongKindError(
-                "unit '%' of a torque needs the torque that 100 % stands for, as in '9.84 mN*m / 100'"
+                "unit '%' of a torque needs the torque at 100 %",
+                remedy="write it as '9.84 mN*m / 100', with your value",
             )
         raise _wrong_kind(kind, unit)
     if "delta_" in names:
-        raise UnitError(f"unit '{unit}' is a difference of temperatures: write degC or K")
+        raise UnitError(f"unit '{unit}' is a temperature difference. Write degC or K")
     zero, far = (float(registry.Quantity(x, parsed).to(si).magnitude) for x in (0.0, 1e6))
     return (far - zero) / 1e6, zero
 
@@ -258,7 +261,7 @@ def _parsed(text: str) -> Any:
 
 def _wrong_kind(kind: str, unit: str) -> WrongKindError:
     meant = _meant(kind, unit, _ALIKE_OF_ANOTHER_KIND)
-    return WrongKindError(f"unit '{unit}' is not a unit of {kind}: {meant}")
+    return WrongKindError(f"unit '{unit}' is not a unit of {kind}", remedy=meant)
 
 
 def _meant(kind: str, unit: str, alike: float = _ALIKE) -> str:
@@ -286,14 +289,14 @@ def _split_factor(text: str, unit: str, kind: str) -> tuple[float, str]:
         number, plain = (times[1], times[2]) if times[1] else (times[4], times[3])
         number = number.replace("10^", "1e")
         raise UnitError(
-            f"unit '{unit}' has two meanings: write '{number} {plain}' if 1 in the file stands for "
-            f"{number} {plain}, '{plain} / {number}' if the numbers are {number} times too large"
+            f"unit '{unit}' is ambiguous. Write '{number} {plain}' if 1 in the file means {number} "
+            f"{plain}, or '{plain} / {number}' if the numbers are {number} times too large"
         )
     match = _FACTORED.fullmatch(text)
     if match is None or _ALPHABET.fullmatch(re.sub(_NUMBER, "", text)) is None:
         if not text:
-            raise UnitError(f"no unit is given: write one such as {KINDS[kind][1]}")
-        raise UnitError(f"unknown unit '{unit[:40]}': {_meant(kind, unit)}")
+            raise UnitError("the unit is missing", remedy=f"write one such as {KINDS[kind][1]}")
+        raise UnitError(f"unknown unit '{unit[:40]}'", remedy=_meant(kind, unit))
     factor = float(match[1] or 1.0) / (float(match[3] or 1.0) or math.nan)
     plain = f"1{match[2]}" if match[2].startswith("/") else match[2]
     if plain == "1":
@@ -303,7 +306,7 @@ def _split_factor(text: str, unit: str, kind: str) -> tuple[float, str]:
             return factor, re.sub(f"^(?:{spelling})$", standard, plain)
     plain = re.sub(r"(?<=[A-Za-z])[.·](?=[A-Za-z])", "*", plain)
     if re.search(r"\d", _POWER.sub("", re.sub(r"^1\s*/", "/", plain))):
-        raise UnitError(f"unknown unit '{unit}': {_meant(kind, unit)}")
+        raise UnitError(f"unknown unit '{unit}'", remedy=_meant(kind, unit))
     return factor, plain
 
 
@@ -317,11 +320,12 @@ def parse(kind: str, text: str) -> float:
     """
     example = KINDS[kind][1]
     if len(text) > _LONGEST_QUANTITY:
-        shown = f"'{text[:20]}...' has {len(text)} characters, {_LONGEST_QUANTITY} at the most"
-        raise UnitError(f"{shown}: write a number and a unit of {kind}, such as '1 {example}'")
+        shown = f"'{text[:20]}...' has {len(text)} characters; at most {_LONGEST_QUANTITY} are allowed"
+        raise UnitError(f"{shown}. Write a number and a unit of {kind}, e.g. '1 {example}'")
     match = re.fullmatch(rf"\s*({_NUMBER})\s*([A-Za-z°ºµμ%℃℉].*?)\s*", text)
     if match is None:
-        raise UnitError(f"'{text}' needs a number and a unit of {kind}, such as '1 {example}'")
+        number = text.strip() if re.fullmatch(_NUMBER, text.strip()) else "1"
+        raise UnitError(f"'{text}' is not a number with a unit of {kind}. Write e.g. '{number} {example}'")
     line = conversion(kind, match[2])
     value = line.scale * float(match[1]) + line.offset
     if not math.isfinite(value):

@@ -154,7 +154,7 @@ MISTAKES: dict[str, tuple[bytes, str, str, str]] = {
         "A friction force needs its radius.",
         "",
     ),
-    "not a log": (b"%PDF-1.4\n1 0 obj\n<<>>\nendobj\n", "file:", "holds no table of numbers", "Remove"),
+    "not a log": (b"%PDF-1.4\n1 0 obj\n<<>>\nendobj\n", "file:", "has no table of numbers", "Remove"),
     "an empty file": (b"", "file:", "is empty", "Remove"),
     "a damaged file": (b"\x89HDF\r\n\x1a\n" + bytes(200), "file:", "damaged", "Remove"),
 }
@@ -248,7 +248,7 @@ MACHINES: dict[str, tuple[dict[str, Any], str, str]] = {
         "field:drivetrain.mass",
         "'N' is not a unit of mass",
     ),
-    "a word": ({"answers": {"limits.roll_friction": "low"}}, "field:limits.roll_friction", "write a number"),
+    "a word": ({"answers": {"limits.roll_friction": "low"}}, "field:limits.roll_friction", "not a number"),
     "a negative value": (
         {"answers": {"drivetrain.roll_radius": "-15"}},
         "field:drivetrain.roll_radius",
@@ -264,7 +264,7 @@ MACHINES: dict[str, tuple[dict[str, Any], str, str]] = {
     "TOML without a unit": (
         {"text": "[drivetrain]\nmass = 11\n"},
         "toml",
-        "drivetrain.mass is 11: write a string with its unit",
+        "drivetrain.mass is 11, without a unit. Write it in quotes with its unit",
     ),
     "a log in its place": ({"text": "a,b\n1,2\n"}, "toml", "not valid TOML"),
 }
@@ -442,7 +442,7 @@ def test_a_mapping_of_another_log_says_so_at_the_channels(tmp_path: Path) -> Non
     [
         ("[torque]\ntare = 4\n", "tare"),
         ('[torque]\nunit = "kg"\n', "'kg'"),
-        ("[torque]\nsing = -1\n", "did you mean 'sign'"),
+        ("[torque]\nsing = -1\n", "Did you mean 'sign'"),
         ("[torque\n", "not valid TOML"),
     ],
 )
@@ -493,7 +493,7 @@ def test_a_recipe_that_is_dropped_sets_the_options(tmp_path: Path) -> None:
         ('load = "50 N"\ntare = "none"\n', "cannot set load, which this recipe states"),
         ('tare = "halting"\n', "tare is 'halting': write none or standing"),
         ("tare = 3\n", "tare is 3"),
-        ('logs = ["a.csv"]\ntara = "none"\n', "did you mean [tare]"),
+        ('logs = ["a.csv"]\ntara = "none"\n', "Did you mean [tare]"),
     ],
 )
 def test_a_recipe_that_the_page_cannot_hold_is_refused(text: str, said: str, tmp_path: Path) -> None:

@@ -113,10 +113,10 @@ def test_a_sweep_takes_from_the_machine_what_its_file_lacks(tmp_path: Path) -> N
     path = tmp_path / "sweep.toml"
     path.write_text("\n".join(lines))
     refused = run("sweep", path, "--machine", MACHINE, cwd=tmp_path)
-    assert "[parameters] lacks 'transition_speed', and machine.toml does not state it: add " in refused.stderr
-    lines.append(refused.stderr.strip().split(": add ")[1])
+    assert "[parameters] has no 'transition_speed', and machine.toml does not have it. Add " in refused.stderr
+    lines.append(refused.stderr.strip().split(". Add ")[1])
     path.write_text("\n".join(lines))
-    assert run("sweep", path, cwd=tmp_path).stderr.endswith("[parameters] lacks 'stiffness'\n")
+    assert run("sweep", path, cwd=tmp_path).stderr.endswith("[parameters] has no 'stiffness'\n")
     done = json.loads(run("sweep", path, "--machine", MACHINE, "--json", cwd=tmp_path).stdout)
     assert done["kinds"] == {"stick_slip": 1, "steady_sliding": 1}
     path.write_text("\n".join([*lines, "[options]", 'units = "consistent"']))
@@ -152,7 +152,7 @@ def test_a_machine_brings_grip_motor_and_rest(tmp_path: Path) -> None:
     typed = ["simulate", *drag, "--drive-speed", "20 mm/s", "--machine"]
     weak = run(*typed, "weak.toml", cwd=tmp_path).stdout
     assert weak.startswith("stalled")
-    assert "the roll slips on the belt from 0.0818182 on" in weak
+    assert ", starting at 0.0818182" in weak
     assert "the motor gives 0.2 N m, but this motion needs up to 0.27 N m" in weak
     assert "the roll grips the belt with up to 18 N; it does not start one at rest" in weak
     free = json.loads(run(*typed, "free.toml", "--json", cwd=tmp_path).stdout)

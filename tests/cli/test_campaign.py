@@ -34,10 +34,10 @@ def typed(folder: Path, *arguments: str) -> Done:
 def test_runs_are_added_listed_shown_checked_and_exported(folder: Path) -> None:
     done = typed(folder, "add", "life.hersey", "0.csv", "1.csv", *F12)
     assert (done.returncode, done.stderr) == (0, "")
-    assert done.stdout.startswith("0.csv: added: run 1, F12 at 1000 pages, 10 dwells\n1.csv: added: run 2")
-    assert "already there: run 1" in typed(folder, "add", "life.hersey", "0.csv", *F12).stdout
+    assert done.stdout.startswith("0.csv: added as run 1, F12 at 1000 pages, 10 dwells\n1.csv: added as")
+    assert "already there as run 1" in typed(folder, "add", "life.hersey", "0.csv", *F12).stdout
     assert typed(folder, "list", "life.hersey").stdout == (
-        "life.hersey: 2 runs of 1 units\nF12: 2 runs, at 1000 pages, 20 dwells\n"
+        "life.hersey: 2 runs of 1 specimen\nF12: 2 runs, at 1000 pages, 20 dwells\n"
     )
     shown = typed(folder, "show", "life.hersey", "F12").stdout.splitlines()
     assert len(shown) == 2
@@ -45,7 +45,7 @@ def test_runs_are_added_listed_shown_checked_and_exported(folder: Path) -> None:
     listed = json.loads(typed(folder, "list", "life.hersey", "--json").stdout)
     assert [each["log"] for each in listed["runs"]] == [str(folder / "0.csv"), str(folder / "1.csv")]
     assert json.loads(typed(folder, "show", "life.hersey", "F12", "--json").stdout)["runs"] == listed["runs"]
-    assert typed(folder, "check", "life.hersey").stdout == "2 runs: all as it should be\n"
+    assert typed(folder, "check", "life.hersey").stdout == "2 runs: no problems found\n"
     (folder / "0.csv").unlink()
     done = typed(folder, "check", "life.hersey", "--json")
     assert done.returncode == 1
@@ -77,7 +77,7 @@ def test_a_table_of_runs_leaves_out_what_fails_and_tells_it(folder: Path) -> Non
     assert done.returncode == 1
     assert done.stdout == "life.hersey: 3 added, 2 failed\n"
     assert "broken.csv: " in done.stderr
-    assert "none.csv: there is no such file" in done.stderr
+    assert "none.csv: File not found" in done.stderr
     again = typed(folder, "add", "life.hersey", "--table", "runs.csv", "--isothermal")
     assert again.stdout == "life.hersey: 3 already there, 2 failed\n"
     with hersey.Campaign.open(folder / "life.hersey") as campaign:
@@ -92,7 +92,7 @@ def test_what_is_read_beside_the_log_is_kept(folder: Path) -> None:
         assert len(campaign.settings(1)["files"]["mapping"]["sha256"]) == 64
     (folder / "hersey.toml").write_text('# other\n[torque]\nunit = "mN*m"\n')
     done = typed(folder, "add", "life.hersey", "0.csv", *F12)
-    assert (done.returncode, "read in another way: use --force" in done.stderr) == (2, True)
+    assert (done.returncode, "read with other settings. Use --force" in done.stderr) == (2, True)
 
 
 @pytest.mark.parametrize(
@@ -104,7 +104,7 @@ def test_what_is_read_beside_the_log_is_kept(folder: Path) -> None:
         ("log,unit,age\n0.csv,F1,5\n", "line 2, column 'age': age '5' has no unit"),
         ("log,unit,age [h]\n0.csv,F1,5\n1.csv,,6\n", "line 3: column 'unit' is empty"),
         ("log,unit,age [h]\n0.csv,F1,-5\n", "it must be 0 (new) or greater"),
-        ("log,unit,age [h]\n", "names no run"),
+        ("log,unit,age [h]\n", "lists no runs"),
     ],
 )
 def test_a_table_with_a_mistake_is_refused_whole(folder: Path, table: str, said: str) -> None:
@@ -122,12 +122,12 @@ def test_a_table_with_a_mistake_is_refused_whole(folder: Path, table: str, said:
         (["add", "life.hersey", "0.csv", "--unit", "F12"], "add --age '120000 pages'"),
         (["add", "life.hersey", *F12], "give either RUN..."),
         (["add", "life.hersey", "--table", "0.csv", *F12], "stand in the table"),
-        (["add", "0.csv", "1.csv", *F12], "0.csv is no campaign"),
-        (["add", "life.hersey", "none.csv", *F12], "there is no such file"),
-        (["add", "life.hersey", "0.csv", "none.csv", *F12], "there is no such file"),
-        (["add", "life.hersey", "0.csv", "?.csv", *F12], "0.csv is named twice"),
-        (["add", "life.hersey", "x*.csv", *F12], "x*.csv: no file matches"),
-        (["list", "life.hersey"], "there is no such campaign"),
+        (["add", "0.csv", "1.csv", *F12], "0.csv is not a campaign file"),
+        (["add", "life.hersey", "none.csv", *F12], "File not found: none.csv"),
+        (["add", "life.hersey", "0.csv", "none.csv", *F12], "File not found: none.csv"),
+        (["add", "life.hersey", "0.csv", "?.csv", *F12], "0.csv is given twice"),
+        (["add", "life.hersey", "x*.csv", *F12], "no file matches x*.csv"),
+        (["list", "life.hersey"], "life.hersey does not exist. Create it with"),
         (["export", "life.hersey", "--out", "x.xlsx"], "ends in .csv or .parquet"),
     ],
 )
@@ -146,7 +146,7 @@ def test_logs_by_a_pattern_go_with_the_rows_of_a_table(folder: Path) -> None:
     assert (done.returncode, done.stdout) == (1, "life.hersey: 3 added, 1 failed\n")
     assert done.stderr == (
         "runs.csv: of 4 runs the logs given are 3\n"
-        "- 3.csv: runs.csv has no row for it: add one, or leave the log out\n"
+        "- 3.csv: runs.csv has no row for it. Add one, or do not give this log\n"
     )
     with hersey.Campaign.open(folder / "life.hersey") as campaign:
         listed = campaign.runs().sort("run")
@@ -162,7 +162,7 @@ def test_of_logs_and_rows_of_one_name_paths_decide(folder: Path) -> None:
     assert (done.returncode, done.stdout) == (1, "life.hersey: 1 added, 1 failed\n")
     assert (
         done.stderr
-        == "- a/0.csv: runs.csv has several runs of this name: write the paths of the logs there\n"
+        == "- a/0.csv: runs.csv has several runs with this file name. Write the paths of the logs there\n"
     )
     (folder / "runs.csv").write_text("log,unit,age [h]\n0.csv,F12,0\na/0.csv,F13,0\n")
     done = typed(folder, "add", "life.hersey", "**/0.csv", "--table", "runs.csv")

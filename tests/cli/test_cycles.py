@@ -72,16 +72,18 @@ def test_the_uncertainty_of_the_drive_speed_and_falls_that_are_not_counted(tmp_p
     speed = ["--drive-speed", "20 mm/s", "--drive-speed-uncertainty", "2 %"]
     known = ["--known", "stick_speed=0.2 mm/s", "--closures", "retained"]
     text = printed(CSV, *speed, "--identify", *known)
-    assert "intervals hold for a drive speed of 0.02 m/s to within 2 %" in text
+    assert "intervals assume a drive speed of 0.02 m/s within 2 %" in text
     document = json.loads(printed(CSV, *speed, "--identify", *known, "--json"))["drive"]
     stiffness = document["estimates"]["stiffness"]
     assert document["systematic"]["stiffness"] == pytest.approx(0.02 * stiffness["value"], rel=0.1)
-    assert printed(CSV, "--least-drop", "1 kN").startswith("stick slip: 110 falls beyond the noise, none of")
+    assert printed(CSV, "--least-drop", "1 kN").startswith(
+        "stick slip: 110 drops exceed the noise, none of at least"
+    )
     path = tmp_path / "share.csv"
     path.write_text("\n".join(["time [s],force [1]", *(f"{0.01 * i},{i % 50 / 500}" for i in range(600))]))
     for least in ("20 %", "0.2"):
         told = printed(path, "--least-drop", least)
-        assert "falls beyond the noise, none of 20 % of the load or more: the greatest is 9" in told
+        assert "drops exceed the noise, none of at least 20 % of the load; the largest is 9" in told
 
 
 def numbers_of(heading: str, tmp_path: Path) -> Path:
@@ -98,13 +100,13 @@ def numbers_of(heading: str, tmp_path: Path) -> Path:
             "time [s],torque [N*m]",
             "0.02 rad/s",
             {"mass": "5000 kg*cm^2", "stick_speed": "0.0019098593 rpm", "transition_force": "1000 mN*m"},
-            "'1' needs a number and a unit of moment of inertia, such as '1 kg*m^2'",
+            "'1' is not a number with a unit of moment of inertia. Write e.g. '1 kg*m^2'",
         ),
         (
             "time [s],force [1]",
             "20 mm/s",
             {"mass": "500 s^2/km", "stick_speed": "0.2 mm/s", "transition_force": "100 %"},
-            "'1' needs a number and a unit of mass per weight, such as '1 s^2/m'",
+            "'1' is not a number with a unit of mass per weight. Write e.g. '1 s^2/m'",
         ),
     ],
 )
@@ -124,7 +126,7 @@ def test_a_torque_is_told_in_its_units(tmp_path: Path) -> None:
     path = numbers_of("time [s],torque [mN*m]", tmp_path)
     told = printed(path, "--drive-speed", "0.02 rad/s", "--least-drop", "0.1 mN*m")
     assert "N m/rad (slope / speed)" in told
-    assert "falls beyond the noise, none of 1 N m or more" in printed(path, "--least-drop", "1 N*m")
+    assert "drops exceed the noise, none of at least 1 N m" in printed(path, "--least-drop", "1 N*m")
     known = ["--known", "mass=5 kg*cm^2", "--closures", "retained"]
     told = printed(path, "--drive-speed", "0.02 rad/s", "--identify", *known)
     assert "mass               0.0005 kg m^2 (given)" in told
@@ -146,7 +148,7 @@ def test_a_channel_of_the_drive_speed(tmp_path: Path) -> None:
 def test_a_mistake_ends_in_one_line(tmp_path: Path) -> None:
     result = run("cycles", CSV, "--drive-speed", "20", cwd=tmp_path)
     assert (result.returncode, result.stdout) == (2, "")
-    assert "needs a number and a unit" in result.stderr
+    assert "is not a number with a unit" in result.stderr
     assert result.stderr.count("\n") == 1
 
 
@@ -156,17 +158,17 @@ def test_a_mistake_ends_in_one_line(tmp_path: Path) -> None:
         (["--drive-speed", "0 mm/s"], "must be greater than 0"),
         (["--drive-speed", "3 rpm"], "--drive-speed with a trace of force in N"),
         (["--known", "mass=1 kg"], "--known needs --identify"),
-        (["--identify"], "give drive_speed"),
+        (["--identify"], "Give it with --drive-speed"),
         (["--identify", "--known", "weight=1 kg"], "write NAME=VALUE with one of stiffness, mass"),
         (["--identify", "--known", "mass=1 s"], "--known mass: unit 's' is not a unit of mass"),
-        (["--identify", "--known", "mass=1"], "--known mass: '1' needs a number and a unit of mass"),
+        (["--identify", "--known", "mass=1"], "--known mass: '1' is not a number with a unit of mass"),
         (["--identify", "--known", "ehl_exponent=-0.7 s"], "ehl_exponent is '-0.7 s': write a number"),
         (["--least-drop", "5 mm"], "--least-drop: unit 'mm' is not a unit of force"),
-        (["--least-drop", "5"], "--least-drop: '5' needs a number and a unit of force"),
+        (["--least-drop", "5"], "--least-drop: '5' is not a number with a unit of force"),
         (["--drive-speed-uncertainty", "2"], "--drive-speed-uncertainty is '2': write a share such as '2 %'"),
         (["--drive-speed-uncertainty", "90 %"], "drive_speed_uncertainty is 0.9: it must be greater than 0"),
-        (["--value", "pull"], "there is no column 'pull': it has time [s], force [N]"),
-        (["--quantity", "heat"], "quantity 'heat' is not known"),
+        (["--value", "pull"], "there is no column 'pull'. Columns: time [s], force [N]"),
+        (["--quantity", "heat"], "unknown quantity 'heat'"),
         (["--figure", "fit.bmp"], "name a file that ends in .html"),
     ],
 )
@@ -186,13 +188,13 @@ def test_units_and_names_of_a_csv_file(tmp_path: Path) -> None:
     pull = read_trace(path, value="pull", unit="lbf")
     assert pull.value[0] == pytest.approx(4.4482216)
     assert np.isnan(pull.value[1:]).all()
-    with pytest.raises(UnitError, match=r"pull has no unit: give unit='N'"):
+    with pytest.raises(UnitError, match=r"pull has no unit. Give unit='N'"):
         read_trace(path, value="pull")
     path.write_text("time [s],force [N]\n0,1\n1,l0\n")
     with pytest.raises(UnreadableLogError, match=r"line 3, column 'force': 'l0' is not a number"):
         read_trace(path)
     path.write_text("time [s],a,b\n0,1,2\n")
-    with pytest.raises(ChannelError, match="holds no force, torque or speed"):
+    with pytest.raises(ChannelError, match="has no force, torque or speed"):
         read_trace(path)
     with pytest.raises(MissingFileError):
         read_trace(tmp_path / "none.csv")
@@ -203,9 +205,9 @@ def test_mat_files(tmp_path: Path) -> None:
     savemat(path, {"t": np.arange(5.0), "force": np.arange(5.0), "long": np.arange(9.0), "note": "x"})
     found = read_trace(path, time_unit="ms", unit="N")
     np.testing.assert_allclose(found.time, np.arange(5) * 1e-3)
-    with pytest.raises(UnitError, match="t has no unit: give time_unit='s'"):
+    with pytest.raises(UnitError, match=r"t has no unit. Give time_unit='s'"):
         read_trace(path, unit="N")
-    with pytest.raises(UnreadableLogError, match="t has 5 numbers, long 9"):
+    with pytest.raises(UnreadableLogError, match="t has 5 numbers, but long has 9"):
         read_trace(path, value="long", time_unit="s", unit="N")
 
 
@@ -261,12 +263,12 @@ def test_a_clock_that_starts_anew_parts_the_trace_as_it_parts_a_log(tmp_path: Pa
         halves.append(json.loads(printed(tmp_path / name, "--json"))["slips"])
     text = printed(twice)
     assert [f"stick slip: {slips} slips" in text for slips in halves] == [True, True]
-    assert "run 2 of 2: the clock starts anew" in text
+    assert "run 2 of 2, because the time restarts" in text
     for number, slips in enumerate(halves, start=1):
         assert json.loads(printed(twice, "--run-number", str(number), "--json"))["slips"] == slips
     refused = run("cycles", twice, "--json", cwd=tmp_path)
     assert (refused.returncode, "--run-number 1 to 2" in refused.stderr) == (2, True)
     refused = run("cycles", twice, "--run-number", "3", cwd=tmp_path)
     assert (refused.returncode, "holds 2 runs" in refused.stderr) == (2, True)
-    with pytest.raises(UnreadableLogError, match=r"twice\.csv holds 2 runs, for its clock starts anew"):
+    with pytest.raises(UnreadableLogError, match=r"twice\.csv has 2 runs, because its time restarts"):
         read_trace(twice)

@@ -81,7 +81,7 @@ def test_what_fails_is_left_out_only_when_asked(folder: Path) -> None:
         (["--workers", "2"], "go with --each TABLE"),
         (["--each", "fits.csv", "--workers", "2", "--scheduler", "tcp://x:1"], "give one"),
         (["x*.csv", "--each", "fits.csv"], "no file matches"),
-        (["logs/0.csv", "--each", "fits.csv"], "is named twice"),
+        (["logs/0.csv", "--each", "fits.csv"], "is given twice"),
     ],
 )
 def test_a_mistake_is_one_line(folder: Path, arguments: list[str], said: str) -> None:

@@ -101,7 +101,7 @@ def typed(it: Refused) -> list[str]:
 
 def key_renamed(it: Refused) -> list[str]:
     """Write the key that was meant for the one that is none, in the file that is named."""
-    match = re.search(r"hersey: (\S+): .*(?:no key|no table) '(\w+)': .*did you mean \[?'?(\w+)", it.message)
+    match = re.search(r"hersey: (\S+): .*unknown (?:key|table) '(\w+)'. Did you mean \[?'?(\w+)", it.message)
     assert match
     path = it.folder / match[1]
     path.write_text(path.read_text().replace(match[2], match[3], 1))
@@ -110,7 +110,7 @@ def key_renamed(it: Refused) -> list[str]:
 
 def value_replaced(it: Refused) -> list[str]:
     """Write the example of the message for the value of the key that it names."""
-    match = re.search(r"hersey: (\S+): \w+\.(\w+) is .*such as (\S+)$", it.message)
+    match = re.search(r"hersey: (\S+): \w+\.(\w+) is .*e\.g\. (\S+)$", it.message)
     assert match
     path = it.folder / match[1]
     path.write_text(re.sub(rf"{match[2]} = .*", f"{match[2]} = {match[3]}", path.read_text()))
@@ -140,7 +140,7 @@ def marked(it: Refused) -> list[str]:
 
 def split_there(it: Refused) -> list[str]:
     """Split the file at the line that the message names."""
-    match = re.search(r"hersey: (\S+), line (\d+): .*split the file there", it.message)
+    match = re.search(r"hersey: (\S+), line (\d+): .*Split the file there", it.message)
     assert match
     lines = (it.folder / match[1]).read_text().splitlines()
     cut = int(match[2]) - 1
@@ -170,7 +170,7 @@ def recorded(it: Refused) -> list[str]:
 
 def swapped(it: Refused) -> list[str]:
     """Swap the two files of a command."""
-    assert it.message.endswith("are the two files swapped?")
+    assert it.message.endswith("Did you swap the two files?")
     files = [argument for argument in it.arguments if (it.folder / argument).is_file()]
     return [{files[0]: files[1], files[1]: files[0]}.get(argument, argument) for argument in it.arguments]
 
@@ -185,7 +185,7 @@ def with_unit(it: Refused) -> list[str]:
 
 def example_taken(it: Refused) -> list[str]:
     """Write the example of the message for what it quotes."""
-    match = re.search(r"'([^']*)' needs a number and a unit of \w+, such as '([^']*)'", it.message)
+    match = re.search(r"'([^']*)' is not a number with a unit of \w+\. Write e\.g\. '([^']*)'", it.message)
     assert match
     return [match[2] if argument == match[1] else argument for argument in it.arguments]
 
@@ -199,7 +199,7 @@ def ending_taken(it: Refused) -> list[str]:
 
 def named_once(it: Refused) -> list[str]:
     """Name each file once; the one that is named is too many."""
-    assert it.message.endswith("name each file once")
+    assert it.message.endswith("Give each file once")
     many = it.message.split()[1]
     last = len(it.arguments) - 1 - it.arguments[::-1].index(many)
     return [*it.arguments[:last], *it.arguments[last + 1 :]]
@@ -207,7 +207,7 @@ def named_once(it: Refused) -> list[str]:
 
 def given_as(it: Refused) -> list[str]:
     """Give a file by the option that the message names, in place of the one it was given by."""
-    match = re.search(r"hersey: (\S+) is .* give it as (--\w+) '?([^']*)'?$", it.message)
+    match = re.search(r"hersey: (\S+) is .* Give it as (--\w+) '?([^']*)'?$", it.message)
     assert match
     at = it.arguments.index(match[1])
     return [*it.arguments[: at - 1], match[2], match[3], *it.arguments[at + 1 :]]
@@ -244,25 +244,25 @@ MISTAKES: dict[str, Mistake] = {
     "a unit of torque with a slip": Mistake(
         {"log.csv": named(1, "Torque [Nmz]")},
         "fit log.csv",
-        ("'Torque'", "unknown unit 'Nmz'", "did you mean Nm?"),
+        ("'Torque'", "unknown unit 'Nmz'", "--torque-unit 'Nm',"),
     ),
     "a unit of speed with a slip": Mistake(
         {"log.csv": named(2, "Speed [rmp]")},
         "fit log.csv",
-        ("'Speed'", "unknown unit 'rmp'", "did you mean rpm?"),
+        ("'Speed'", "unknown unit 'rmp'", "--speed-unit 'rpm',"),
     ),
     "an option's unit with a slip": Mistake(GOOD, "fit log.csv --torque-unit Nmz", ("'Torque'", "'Nmz'")),
     "speed in Hz": Mistake({"log.csv": named(2, "Speed [Hz]")}, "fit log.csv", ("revolutions or radians",)),
     "percent of an unknown torque": Mistake(
-        {"log.csv": named(1, "Torque [%]")}, "fit log.csv", ("'Torque'", "what 100 % stands for"[5:])
+        {"log.csv": named(1, "Torque [%]")}, "fit log.csv", ("'Torque'", "needs the torque at 100 %")
     ),
     "amperes as torque": Mistake(
         {"log.csv": named(1, "Torque [A]")},
         "fit log.csv",
-        ("'Torque'", "'A' is not a unit of torque", "of 1 A"),
+        ("'Torque'", "'A' is not a unit of torque", "torque per A"),
     ),
     "a current and no torque": Mistake(
-        {"log.csv": named(1, "Current [A]")}, "fit log.csv", ("no torque column", "motor's current")
+        {"log.csv": named(1, "Current [A]")}, "fit log.csv", ("no torque column", "motor current")
     ),
     "torque in newtons": Mistake(
         {"log.csv": named(1, "Torque [N]")}, "fit log.csv", ("'Torque [N]' is a force", "radius")
@@ -276,10 +276,10 @@ MISTAKES: dict[str, Mistake] = {
         ("log.csv", "opposite signs"),
     ),
     "columns swapped": Mistake(
-        GOOD, "fit log.csv --torque Speed --speed Torque", ("'Speed'", "it is one of speed", "swapped")
+        GOOD, "fit log.csv --torque Speed --speed Torque", ("'Speed'", "but a unit of speed", "swapped")
     ),
     "a column with a slip": Mistake(
-        GOOD, "fit log.csv --torque Torqe", ("--torque", "no column 'Torqe'", "did you mean")
+        GOOD, "fit log.csv --torque Torqe", ("--torque", "no column 'Torqe'", "Did you mean")
     ),
     "two columns of torque": Mistake(
         {
@@ -292,7 +292,7 @@ MISTAKES: dict[str, Mistake] = {
             )
         },
         "fit log.csv",
-        ("torque could be", "'Torque A [N*m]' or 'Torque B [N*m]'"),
+        ("the torque column could be", "'Torque A [N*m]' or 'Torque B [N*m]'"),
     ),
     "two columns of one name": Mistake(
         {"log.csv": table([(t, q, q, w, k) for t, q, w, k in rows()], *HEADER[:2], *HEADER[1:])},
@@ -315,7 +315,7 @@ MISTAKES: dict[str, Mistake] = {
         GOOD, "fit log.csv --min-dwell '20 s'", ("dwell too short", "at least 20 s")
     ),
     "a duration without a unit": Mistake(
-        GOOD, "fit log.csv --min-dwell 3", ("'3' needs a number and a unit of time",), example_taken
+        GOOD, "fit log.csv --min-dwell 1", ("'1' is not a number with a unit of time",), example_taken
     ),
     "one temperature": Mistake(
         {"log.csv": table(rows(temperatures=(100,)))},
@@ -348,7 +348,7 @@ MISTAKES: dict[str, Mistake] = {
     "decimal commas between commas": Mistake(
         {"log.csv": table(rows(), number="{:.3f}").replace(".", ",").replace("N*m", "N*m")},
         "fit log.csv",
-        ("line 1", "header has 4 cells where the rows have 8", "decimal commas"),
+        ("line 1", "header has 4 cells, but the rows have 8", "decimal commas"),
         marked,
     ),
     "commas for thousands between commas": Mistake(
@@ -358,16 +358,16 @@ MISTAKES: dict[str, Mistake] = {
             )
         },
         "fit log.csv",
-        ("line 1", "header has 4 cells where the rows have 5", "marks thousands"),
+        ("line 1", "header has 4 cells, but the rows have 5", "separates thousands"),
         marked,
     ),
     "many bad cells": Mistake(
         {"log.csv": spoilt(5, "err")},
         "fit log.csv",
-        ("line 2, column 'Torque'", "'err'", "180 such rows of 900"),
+        ("line 2, column 'Torque'", "'err'", "180 such rows, of 900"),
     ),
-    "a folder": Mistake({"logs/log.csv": GOOD["log.csv"]}, "fit logs", ("logs is a directory",)),
-    "a file that is not there": Mistake(GOOD, "fit lug.csv", ("lug.csv: there is no such file",)),
+    "a folder": Mistake({"logs/log.csv": GOOD["log.csv"]}, "fit logs", ("logs is a folder",)),
+    "a file that is not there": Mistake(GOOD, "fit lug.csv", ("File not found: lug.csv",)),
     "an output that exists": Mistake(
         {**GOOD, "report.html": "mine"}, "report log.csv", ("report.html exists",)
     ),
@@ -385,19 +385,19 @@ MISTAKES: dict[str, Mistake] = {
     "an unknown key of a mapping": Mistake(
         {**GOOD, "hersey.toml": '[torque]\nchanel = "Torque"\n'},
         "fit log.csv",
-        ("hersey.toml: [torque] has no key 'chanel'",),
+        ("hersey.toml: [torque] has an unknown key 'chanel'",),
         key_renamed,
     ),
     "an unknown table of a mapping": Mistake(
         {**GOOD, "hersey.toml": "[torqe]\nsign = 1\n"},
         "fit log.csv",
-        ("hersey.toml: there is no table 'torqe'",),
+        ("hersey.toml: unknown table 'torqe'",),
         key_renamed,
     ),
     "an unknown key of a machine": Mistake(
         {**GOOD, "machine.toml": MACHINE.replace("stiffness", "stifness")},
         "report log.csv --machine machine.toml",
-        ("machine.toml: [drivetrain] has no key 'stifness'",),
+        ("machine.toml: [drivetrain] has an unknown key 'stifness'",),
         key_renamed,
     ),
     "an unknown kind of figure": Mistake(
@@ -421,7 +421,7 @@ MISTAKES: dict[str, Mistake] = {
     "a machine's file with a slip": Mistake(
         {**GOOD, "machine.toml": MACHINE},
         "report log.csv --machine machine.tml",
-        ("machine.tml: there is no such file",),
+        ("File not found: machine.tml",),
     ),
     "logs without common speeds": Mistake(
         {"a.csv": table(rows()), "log.csv": table(rows((200, 300, 400, 500)))},
@@ -438,7 +438,7 @@ MISTAKES: dict[str, Mistake] = {
     "a machine given as mapping": Mistake(
         {**GOOD, "machine.toml": MACHINE},
         "report log.csv --mapping machine.toml",
-        ("machine.toml is a machine's file",),
+        ("machine.toml is a machine file",),
         given_as,
     ),
     "a mapping given as machine": Mistake(
@@ -447,14 +447,14 @@ MISTAKES: dict[str, Mistake] = {
         ("so it is the mapping of a log",),
         given_as,
     ),
-    "one file twice": Mistake(GOOD, "fit log.csv log.csv", ("is named twice",), named_once),
+    "one file twice": Mistake(GOOD, "fit log.csv log.csv", ("is given twice",), named_once),
     "a copy beside its file": Mistake(
-        {**GOOD, "copy.csv": GOOD["log.csv"]}, "fit log.csv copy.csv", ("same bytes",), named_once
+        {**GOOD, "copy.csv": GOOD["log.csv"]}, "fit log.csv copy.csv", ("same content",), named_once
     ),
     "a word for a sign": Mistake(
         {"log.csv": table(column(1, lambda x: -x))}, "fit log.csv --torque-sign 2", ("sign of torque is 2",)
     ),
-    "a trace of two quantities": Mistake(GOOD, "cycles log.csv", ("holds torque and speed",)),
+    "a trace of two quantities": Mistake(GOOD, "cycles log.csv", ("has torque and speed",)),
 }
 
 
@@ -514,7 +514,7 @@ DOUBTFUL: dict[str, tuple[str, str, str]] = {
         "Temperature reaches 433 degC",
         "temperature",
     ),
-    "milliseconds called seconds": (table(column(0, lambda x: 1000 * x)), "Rows come every 100 s", "end"),
+    "milliseconds called seconds": (table(column(0, lambda x: 1000 * x)), "one row every 100 s", "end"),
 }
 
 
@@ -542,9 +542,9 @@ def test_one_bad_cell_costs_its_row_and_is_named(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("content", "says"),
     [
-        ("", "log.csv is empty: a header and rows of numbers are needed"),
-        (table([]), "log.csv has a header but no rows of numbers below it"),
-        (spoilt(1, "err"), "name another column, or mend the file"),
+        ("", "log.csv is empty. A log needs a header and rows of numbers"),
+        (table([]), "log.csv has a header but no rows of numbers"),
+        (spoilt(1, "err"), "Name another column, or correct the file"),
     ],
 )
 def test_a_log_that_holds_nothing_says_what_it_should(content: str, says: str, tmp_path: Path) -> None:

@@ -77,7 +77,7 @@ def test_a_dash_leaves_out_and_the_end_leaves_out_the_rest(folder: Path) -> None
     ("answers", "said"),
     [
         ([], "hersey new asks questions: type it in a terminal, or pipe the answers"),
-        (["Moment"], "answer 1, channel of the torque: log.csv: torque: there is no column 'Moment'"),
+        (["Moment"], "answer 1, channel of the torque: log.csv: there is no column 'Moment' (torque)"),
         (["", "rpm"], "answer 2, unit of the torque: unit 'rpm' is not a unit of torque"),
         ([*CHANNELS, "11"], "answer 9, k stiffness: '11' has no unit: write one, as in '11 N/mm'"),
         ([*CHANNELS, "11 N/mm", ""], "answer 10, m mass: this is needed: nothing is written"),
@@ -207,7 +207,7 @@ def test_what_no_log_tells_is_left_to_be_completed(
     assert [i for i, line in enumerate(written, 1) if re.match(r'\w+ = "" ', line)] == named
     refused = run("report", "log.csv", cwd=tmp_path)
     assert refused.returncode == 2
-    assert re.search("hersey.toml: [a-z]+[.](unit|channel) is empty: fill it in", refused.stderr)
+    assert re.search("hersey.toml: [a-z]+[.](unit|channel) is empty. Fill it in", refused.stderr)
     role = ""
     for i, line in enumerate(written):
         role = line.strip("[]") if line.startswith("[") else role

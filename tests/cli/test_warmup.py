@@ -40,7 +40,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_the_course_is_written_and_serves_a_plan(folder: Path) -> None:
     done = run(*TYPED, "--out", "course.csv", cwd=folder)
     assert done.returncode == 0, done.stderr
-    assert done.stdout.startswith("Start at once, slow until warm: full speed 200 mm/s after ")
+    assert done.stdout.startswith("Start at once, slowly until warm: full speed 200 mm/s after ")
     assert "the limit is that of the motor torque" in done.stdout
     assert "extrapolated" in done.stdout
     course = read_temperature_profile(folder / "course.csv")
@@ -72,7 +72,7 @@ def test_a_motion_with_heat_is_told_and_written(folder: Path) -> None:
         ([*TYPED[:1], "free.toml", *TYPED[2:]], "free.toml states no limit of force"),
         ([*TYPED[:4], "--from", "20 degC"], "give the target"),
         ([*TYPED, "--margin", "0.1"], "--margin is '0.1'"),
-        ([*TYPED, "--longest", "30"], "needs a number and a unit"),
+        ([*TYPED, "--longest", "30"], "is not a number with a unit"),
         ([*TYPED[:6], "--from", "-300 degC"], "--from is -300 degC"),
         ([*TYPED, "--out", "w.svg", "--figure", "w.svg"], "name two files"),
         (HEATED[:5] + HEATED[6:], "--heat"),

@@ -107,7 +107,10 @@ def test_one_bad_cell_costs_its_row(tmp_path: Path) -> None:
     assert file.missing_rows == 2
     (warning,) = file.warnings
     assert (warning.kind, warning.values["rows"]) == ("rows of means left out", 2)
-    assert str(warning) == "left out for a cell that is no number: row 3 (torque 'n/a'), row 7 (no speed)"
+    assert (
+        str(warning)
+        == "2 rows were skipped because a cell is not a number: row 3 (torque 'n/a'), row 7 (no speed)"
+    )
 
 
 def test_rows_that_state_no_dwell_are_said() -> None:

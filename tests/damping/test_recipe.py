@@ -113,8 +113,8 @@ def test_amounts_of_a_recipe_take_units() -> None:
 @pytest.mark.parametrize(
     ("text", "error", "says"),
     [
-        ("tarre = 'standing'", ParameterError, r"recipe\.toml: .*'tarre'.* did you mean .*tare"),
-        ("every = 3", UnitError, "recipe.toml: every is 3: write a string with its unit"),
+        ("tarre = 'standing'", ParameterError, r"recipe\.toml: .*'tarre'.* Did you mean .*tare"),
+        ("every = 3", UnitError, "recipe.toml: every is 3, without a unit"),
         ("load = ['2 N', '3 m']", UnitError, "recipe.toml: load: unit 'm' is not a unit of force"),
         ("signs = {torque = 'x'}", ParameterError, r"recipe\.toml: signs\.torque is 'x'"),
         ("logs = [3]", ParameterError, "recipe.toml: logs is 3: write the name of a file"),

@@ -130,7 +130,7 @@ def test_typed(folder: Path, less: Analysis) -> None:
         ("Speed [rad/s],Current [A]\n" + "1,2\n" * 9, r"^hersey: odd\.csv: .*torque"),
         ("Speed [rad/s],Torque [N*m]\n" + "1,2\n2,3\n" * 9, r"^hersey: odd\.csv: .*three or more speeds"),
         ("", r"^hersey: odd\.csv is empty"),
-        (None, r"^hersey: odd\.csv: there is no such file"),
+        (None, r"^hersey: File not found: odd\.csv"),
     ],
 )
 def test_another_log_that_is_none_is_named_in_one_line(folder: Path, text: str | None, said: str) -> None:

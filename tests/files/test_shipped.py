@@ -56,7 +56,7 @@ def test_nothing_that_exists_is_touched(kind: str, tmp_path: Path) -> None:
         taken.write_text("mine")
     else:
         taken.symlink_to(tmp_path / "nowhere")
-    with pytest.raises(ExistingFileError, match="exists: name a folder that does not exist yet"):
+    with pytest.raises(ExistingFileError, match=r"already exists. Name a new folder"):
         copy_examples(taken)
     assert list(tmp_path.iterdir()) == [taken]
     assert kind != "file" or taken.read_text() == "mine"
@@ -80,7 +80,7 @@ def test_the_command_says_what_to_type_next(tmp_path: Path) -> None:
     ]
     done = run("examples", "my examples", cwd=tmp_path)
     assert (done.returncode, done.stdout) == (2, "")
-    assert done.stderr == "hersey: my examples exists: name a folder that does not exist yet\n"
+    assert done.stderr == "hersey: my examples already exists. Name a new folder\n"
     done = run("examples", "no/where", cwd=tmp_path)
     assert done.returncode == 2
     assert done.stderr.startswith("hersey: no/where cannot be written: ")

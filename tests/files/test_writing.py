@@ -66,7 +66,7 @@ def test_what_a_killed_command_left_does_not_fill_a_folder(tmp_path: Path) -> No
     folder.mkdir()
     (folder / ".fig9.svg.abc.part").write_text("half")
     shown = run("report", ROOT / "examples" / "none.csv", "--figures", folder, cwd=tmp_path)
-    assert "no such file" in shown.stderr
+    assert "File not found" in shown.stderr
     (folder / "mine.part").write_text("mine")
     shown = run("report", ROOT / "examples" / "none.csv", "--figures", folder, cwd=tmp_path)
     assert "is not empty" in shown.stderr

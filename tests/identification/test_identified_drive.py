@@ -114,7 +114,8 @@ def test_words_for_directions() -> None:
     (product,) = not_estimable(names, pair)
     assert product.values["error"] == pytest.approx(0.01 * np.sqrt(2.0))
     assert str(product) == (
-        "transition force and stick speed only as the product transition force x stick speed^-1 (to 1.4%)"
+        "transition force and stick speed can only be estimated as the product "
+        "transition force x stick speed^-1 (to 1.4%)"
     )
     assert not_estimable(names, 1e-4 * np.eye(3)) == []
 
@@ -151,12 +152,12 @@ def test_records_without_an_answer_are_refused() -> None:
         identify(good, known={"weight": 1.0})
     with pytest.raises(ParameterError, match="known mass is -1"):
         identify(good, known={"mass": -1.0})
-    with pytest.raises(ParameterError, match="closures lugre"):
+    with pytest.raises(ParameterError, match="unknown closures: lugre"):
         identify(good, closures=("lugre",))
     run = hersey.simulate(TRAIN, drag("retained"), drive_speed=1.0, duration=10, samples=10_001)
     with pytest.raises(ParameterError, match="a trace of speed has no force"):
         identify(cycles(run.time, run.belt_speed, quantity="speed", drive_speed=1.0))
-    with pytest.raises(InsufficientDataError, match="whole laps"):
+    with pytest.raises(InsufficientDataError, match="whole cycles"):
         identify(cycles(good.samples.time[:1200], good.samples.value[:1200], drive_speed=1.0))
 
 

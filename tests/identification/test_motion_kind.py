@@ -58,7 +58,7 @@ def test_nearly_inertial_motion_is_found(
 def test_slower_noise_is_said() -> None:
     found = record(1.6, samples=2000, noise=0.1, memory=0.9).warnings
     (slower,) = (each for each in found if each.kind == "slower noise")
-    assert "falls are beyond the noise from sample to sample, without a rhythm" in str(slower)
+    assert "drops exceed the sample-to-sample noise but have no rhythm" in str(slower)
     assert slower.values["falls"] > 90
 
 
@@ -71,7 +71,7 @@ def test_noise_alone_is_no_cycle(memory: float) -> None:
         assert found.kind == "steady_sliding", seed
         assert np.isnan(found.free_period)
         if found.falls >= 3:
-            assert found.headline() == f"wandering: {found.falls} falls beyond the noise, but no cycles"
+            assert found.headline() == f"irregular force: {found.falls} drops exceed the noise, but no cycles"
 
 
 @pytest.mark.parametrize("least_drop", [1.0, 30.0, 100.0, 137.0, 1000.0])
@@ -90,11 +90,11 @@ def test_falls_that_are_not_counted_are_said() -> None:
     times, force = quiet(1.0, 254)
     none = cycles(times, force / 1000, least_drop=0.2, drive_speed=1.0)
     assert none.summary("1").splitlines()[0] == (
-        f"stick slip: {none.falls} falls beyond the noise, none of 20 % of the load or more: "
-        "the greatest is 13.6 % of the load"
+        f"stick slip: {none.falls} drops exceed the noise, none of at least 20 % of the load; "
+        "the largest is 13.6 % of the load"
     )
-    assert "none of 0.2 N or more" in none.summary("N")
-    with pytest.raises(InsufficientDataError, match="leave least_drop out to identify"):
+    assert "none of at least 0.2 N" in none.summary("N")
+    with pytest.raises(InsufficientDataError, match="Do not set least_drop to identify"):
         identify(none)
 
 
@@ -112,7 +112,7 @@ def test_free_periods_are_plausible_or_not_given() -> None:
     (longer,) = (each for each in slow.warnings if each.kind == NO_FREE_PERIOD)
     assert longer.values["free"] > LONGEST_OF_LAP * longer.values["lap"]
     assert longer.values["lap"] == pytest.approx(1.0, rel=1e-3)
-    assert "longer than the lap" in str(longer)
+    assert "longer than the cycle" in str(longer)
     assert np.isnan(slow.free_period)
 
 
@@ -122,7 +122,7 @@ def test_gaps_in_every_lap_part_all_falls() -> None:
     kept = (time % 2.0 < 0.5) | (time % 2.0 > 0.9)
     record = cycles(time[kept], force[kept])
     assert record.falls > 100
-    assert "no cycles" not in record.summary().splitlines()[0] or "falls beyond the noise" in record.summary()
+    assert "no cycles" not in record.summary().splitlines()[0] or "drops exceed the noise" in record.summary()
     assert "gaps part the falls" in [each.kind for each in record.warnings]
 
 
@@ -134,7 +134,7 @@ def test_the_slider_is_the_same_at_every_least_drop(speed: int, kind: str) -> No
         assert found.kind == kind, least_drop
         assert "no cycles" not in found.summary("1")
         assert 0.5 < found.free_period / 0.03478 < 1.3  # 2 pi sqrt(30.7 g / 1002 N/m)
-    assert "falls beyond the noise, none of 50 % of the load or more" in found.summary("1")
+    assert "drops exceed the noise, none of at least 50 % of the load" in found.summary("1")
 
 
 def test_a_fitted_free_period_is_plausible_or_taken_back(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -145,4 +145,4 @@ def test_a_fitted_free_period_is_plausible_or_taken_back(monkeypatch: pytest.Mon
     assert "free_period" not in taken.derived
     (why,) = (each for each in taken.warnings if each.kind == NO_FREE_PERIOD)
     assert why.values["free"] == told.derived["free_period"].value
-    assert str(why).startswith("no free period is given: 0.19")
+    assert str(why).startswith("no free period is reported, because 0.19")

@@ -100,7 +100,7 @@ def test_missing_samples_are_counted_and_said() -> None:
     gone[500:512] = gone[1790] = True
     record = cycles(time, np.where(gone, np.nan, force))
     assert record.samples.missing == 13
-    sentence = "13 samples are missing; no cycle across a gap that hides part of it is used"
+    sentence = "13 samples are missing; cycles that a gap hides in part are not used"
     assert of_kind(record, "samples missing").values == {"count": 13}
     assert f"- {sentence}" in record.summary().splitlines()
     assert sentence in [each["text"] for each in record.to_dict()["warnings"]]
@@ -132,19 +132,19 @@ def test_spikes_are_removed_and_said() -> None:
 def test_other_warnings_of_a_record() -> None:
     time, force = saw(rise=20, fall=120)
     turned = of_kind(cycles(time, force), "sign may be turned")
-    assert turned.sentence == "The force rises faster than it falls: is its sign turned?"
+    assert turned.sentence == "The force rises faster than it falls. Is its sign flipped?"
     time, force = saw(rise=30, fall=3)
     coarse = cycles(time, force)
     lasts = np.median(coarse.steep_duration) / 0.01
     few = of_kind(coarse, "falls of few samples")
     assert few.values == {"samples": pytest.approx(lasts)}
-    assert str(few) == f"a fall lasts {lasts:.1f} samples: sample faster to see the slip"
+    assert str(few) == f"a drop lasts only {lasts:.1f} samples. Sample faster to resolve the slip"
     time, force = saw()
     noisy = force + np.random.default_rng(0).normal(0, 0.5, force.size)
     record = cycles(time, noisy, least_drop=0.1)
     within = of_kind(record, "least drop within noise")
     assert within.values == {"least_drop": 0.1, "taken": record.least_drop}
-    assert str(within) == f"least_drop 0.1 is within the noise: {record.least_drop:.3g} was taken"
+    assert str(within) == f"least_drop 0.1 is within the noise, so {record.least_drop:.3g} was used"
     assert record.samples.noise == pytest.approx(0.5, rel=0.1)
     less = cycles(time, noisy, least_drop=8.0).warnings
     assert "least drop within noise" not in [each.kind for each in less]
@@ -165,8 +165,8 @@ def test_small_slips_are_said_and_left_out() -> None:
         "least": record.least_drop,
     }
     assert str(last).startswith(
-        f"{count} of {record.slips} slips fall by less than half the median: their number depends on "
-        "the least fall counted, "
+        f"{count} of {record.slips} slips are smaller than half the median, so their number depends on "
+        "the smallest drop counted ("
     )
     assert (
         cycles(3.0 + 0.01 * np.arange(both.size), both, least_drop=5.0).slips == 19
@@ -225,7 +225,7 @@ def test_the_stretch_of_a_trace_of_speed() -> None:
     np.testing.assert_allclose(mean.samples.value, expected, atol=2e-5 + 20 * abs(speed.mean() - 0.4))
     faster = cycles(time, speed, quantity="speed", drive_speed=0.5)
     np.testing.assert_allclose(faster.samples.value, expected + 0.1 * time, atol=2e-5)
-    with pytest.raises(ParameterError, match="quantity 'torque' is not known: force, speed"):
+    with pytest.raises(ParameterError, match=r"unknown quantity 'torque'. Use force, speed"):
         cycles(time, speed, quantity="torque")
 
 
@@ -248,7 +248,7 @@ def test_samples_on_even_times() -> None:
     stairs = even_samples(time, np.round(np.sin(time / 5) * 20) / 20)
     assert stairs.noise == pytest.approx(0.05 / np.sqrt(12), rel=1e-6)
     with pytest.raises(
-        InsufficientDataError, match=r"^29 samples of force: at least 30 are needed to see a cycle$"
+        InsufficientDataError, match=r"^force has 29 samples; at least 30 are needed to find a cycle$"
     ):
         even_samples(time[:29], value[:29])
     assert even_samples(time[:30], value[:30]).value.size == 30
@@ -418,7 +418,7 @@ def test_a_drive_in_words(drive: IdentifiedDrive) -> None:
     assert "stick_speed        0.01 m/s (given)" in lines
     assert f"stiffness          {drive.estimates['stiffness']} N/m" in lines
     assert f"free_period        {drive.derived['free_period']} s" in lines
-    assert f"mean cycle within {drive.misfit:.2%} of the drop" in lines
+    assert f"the model matches the mean cycle within {drive.misfit:.2%} of the drop" in lines
     document = drive.to_dict()
     assert document["known"] == dict(drive.known)
     assert document["best_fit"] == dict(drive.values)
@@ -436,17 +436,17 @@ def test_directions_are_those_of_the_covariance() -> None:
     names = ("mass", "ehl_exponent", "stick_speed")
     three = np.ones(3) / np.sqrt(3)
     assert list(map(str, not_estimable(names, 4.0 * np.outer(three, three) + 1e-6 * np.eye(3)))) == [
-        "mass, ehl exponent and stick speed only together: they can change at once and leave the record "
-        "as it is"
+        "mass, ehl exponent and stick speed can only be estimated together: they can change at once "
+        "without changing the record"
     ]
     both = np.diag([4.0, 4.1, 1e-6]) + 0.0
     both[0, 1] = both[1, 0] = 0.5
-    assert "mass and ehl exponent: neither can be estimated, nor a product of them" in [
+    assert "mass and ehl exponent cannot be estimated, nor can their product" in [
         str(each) for each in not_estimable(names, both)
     ]
     pair = np.array([2.0, 1.0, 0.0]) / np.sqrt(5)
     (product,) = not_estimable(names, 4.0 * np.outer(pair, pair) + 1e-4 * np.eye(3))
-    assert str(product).startswith("mass and ehl exponent only as the product ")
+    assert str(product).startswith("mass and ehl exponent can only be estimated as the product ")
     assert "exp(" in product.values["product"]
     assert product.values["parameters"] == "mass and ehl exponent"
     assert product.values["error"] == pytest.approx(np.linalg.norm([1.0, -2.0]) / 2.0 * 0.01)

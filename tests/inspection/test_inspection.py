@@ -177,7 +177,7 @@ def test_clock_faults() -> None:
     assert (stepped.back, stepped.first_back) == (1, 7000)
     back = stepped.warnings[0]
     assert (back.kind, back.values) == ("time steps back", {"times": 1, "row": 7001})
-    assert str(back) == "time steps back once, first at row 7001: split or sort the file there"
+    assert str(back) == "time steps back once, first at row 7001. Split or sort the file there"
     assert clock_of("t", even + 0.002 * random.uniform(-1, 1, even.size)).is_uneven
     coarse = clock_of("t", np.floor(np.arange(0.0, 60.0, 0.0117) / 0.01) * 0.01)
     assert not coarse.is_uneven
@@ -258,7 +258,7 @@ def test_a_row_left_out_is_shown_with_line_and_column(tmp_path: Path) -> None:
     (tmp_path / "log.csv").write_text("\n".join([*lines, ""]))
     found = inspect(tmp_path / "log.csv")
     assert found.dropped == {"log.csv": 1}
-    assert "left out: line 101, column 'Drive torque': 'OVERFLOW' is not a number" in found.summary()
+    assert "excluded: line 101, column 'Drive torque': 'OVERFLOW' is not a number" in found.summary()
 
 
 def test_couette_cell_without_torque() -> None:
@@ -300,7 +300,7 @@ def test_other_formats_are_shown_channel_by_channel() -> None:
 def test_wear_tests_and_a_dynamometer() -> None:
     for path in sorted(shared("data/friction/te67_pin_on_disc").glob("*.tsv")):
         found = inspect(path)
-        assert "told apart as 'Friction Force#1' or 'Friction Force#2'" in found.summary()
+        assert "Refer to them as 'Friction Force#1' or 'Friction Force#2'" in found.summary()
         assert found.files[0].clocks[0].interval == 1.0
         flagged = {c.name for c in found.files[0].channels for f in c.traits.faults if f.kind == "stuck"}
         assert flagged == set()
@@ -352,7 +352,7 @@ def test_the_mapping_is_proposed_once_and_never_replaced(bench_csv: Path, tmp_pa
     kept.write_text("[torque]\ntar = 1\n")
     wrong = run("inspect", "log.csv", cwd=tmp_path)
     assert wrong.returncode == 2
-    assert f"{FILE_NAME}: [torque] has no key 'tar'" in wrong.stderr
+    assert f"{FILE_NAME}: [torque] has an unknown key 'tar'" in wrong.stderr
 
 
 def test_what_is_no_log_is_refused(tmp_path: Path) -> None:
@@ -361,11 +361,13 @@ def test_what_is_no_log_is_refused(tmp_path: Path) -> None:
         inspect(tmp_path / "words.csv")
     result = run("inspect", "none.csv", cwd=tmp_path)
     assert result.returncode == 2
-    assert "there is no such file" in result.stderr
+    assert "File not found" in result.stderr
 
 
 def test_a_word_that_inspect_does_not_know_is_named(root: Path) -> None:
-    with pytest.raises(ParameterError, match=r"inspect does not take 'isotermal': did you mean isothermal\?"):
+    with pytest.raises(
+        ParameterError, match=r"inspect has no argument 'isotermal'. Did you mean isothermal\?"
+    ):
         inspect(root / "examples" / "bench.csv", isotermal=True)  # type: ignore[call-arg]
     given = {"every": "20 ms", "radius": "15 mm"}
     with pytest.raises(UnitError, match="every: "):
@@ -397,7 +399,8 @@ def test_a_doubtful_unit_is_told_of_logs_and_of_tables_of_means(tmp_path: Path) 
     assert seen.support.dwells == 0
     assert (seen.warnings[0].kind, seen.warnings[0].values["interval"]) == ("unit of time doubtful", 50)
     assert seen.warnings[0].sentence == (
-        "Rows come every 50 s, as the clock is read: if it counts milliseconds, use units={'time': 'ms'}."
+        "The clock gives one row every 50 s, which is unusually slow. "
+        "If it counts milliseconds, use units={'time': 'ms'}."
     )
     log.write_text("speed [rpm],torque [N*m],temp [degC]\n10,1,420\n20,1.1,421\n30,1.3,422\n")
     assert inspect(log, means=True).warnings[0].sentence.startswith("Temperature reaches 422 degC")

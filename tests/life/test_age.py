@@ -47,5 +47,5 @@ def test_times_are_converted_and_other_words_are_not() -> None:
     assert Age.parse("1 page").as_unit("pages") == Age(1.0, "pages")
     assert Age.parse("310 h").as_unit("h").value == 310.0
     for one, other in (("5 pages", "h"), ("5 h", "pages"), ("5 pages", "prints"), ("5 cycles", "pages")):
-        with pytest.raises(UnitError, match=f"give it in {other}"):
+        with pytest.raises(UnitError, match=f"Give it in {other}"):
             Age.parse(one).as_unit(other)

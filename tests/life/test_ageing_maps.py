@@ -77,7 +77,7 @@ def test_a_state_is_that_of_its_region() -> None:
         when=("new",),
     )
     states = [own.state(0, OperatingPoint("p", v, 420.0)) for v in (0.012, 0.02, 0.04, 0.075)]
-    assert states == ["stick-slip", "depends on the past", "smooth", "motor stops"]
+    assert states == ["stick-slip", "depends on start", "smooth", "motor stops"]
     assert replace(own, torque_limit=None).state(0, OperatingPoint("p", 0.075, 420.0)) == "smooth"
 
 
@@ -87,9 +87,9 @@ def test_a_unit_that_has_ended_has_no_end_ahead() -> None:
 
 
 def test_what_cannot_be_drawn_is_told() -> None:
-    with pytest.raises(ParameterError, match="no specimen 'U11': did you mean 'U1'"):
+    with pytest.raises(ParameterError, match=r"no specimen 'U11'. Did you mean 'U1'"):
         ageing_maps(shipped.opened(1), shipped.machine(), told("U1", 230e3), unit="U11")
-    with pytest.raises(InsufficientDataError, match="runs of U7 do not show torque"):
+    with pytest.raises(InsufficientDataError, match="runs of U7 do not show how torque"):
         ageing_maps(shipped.opened(1), shipped.machine(), told("U7", 230e3))
 
 

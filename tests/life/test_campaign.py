@@ -123,13 +123,13 @@ def test_a_changed_log_is_told_and_replaced_when_forced(campaign: Campaign, run_
     add(campaign, run_csv)
     means(run_csv, level=6.0)
     with pytest.raises(
-        ParameterError, match=r"run\.csv has changed .* run 1 of F12 at 1000 pages: use force=True"
+        ParameterError, match=r"run\.csv has changed .* run 1 .F12 at 1000 pages.\. Use force=True"
     ):
         add(campaign, run_csv)
     assert add(campaign, run_csv, force=True) == "replaced"
     assert campaign.runs()["run"].to_list() == [2]
     means(run_csv, level=7.0)
-    with pytest.raises(ParameterError, match="add it beside"):
+    with pytest.raises(ParameterError, match="keep that run"):
         add(campaign, run_csv, age="2000 pages")
     assert add(campaign, run_csv, age="2000 pages", force=True) == "added"
     assert campaign.runs()["age"].to_list() == [1000.0, 2000.0]
@@ -140,9 +140,9 @@ def test_the_same_content_elsewhere_is_told(campaign: Campaign, run_csv: Path) -
     copy = run_csv.with_name("copy.csv")
     copy.write_bytes(run_csv.read_bytes())
     assert add(campaign, copy) == "already there"
-    with pytest.raises(ParameterError, match="same content as run 1 of F12 at 1000 pages"):
+    with pytest.raises(ParameterError, match=r"same content as run 1 .F12 at 1000 pages."):
         add(campaign, copy, unit="F13")
-    with pytest.raises(ParameterError, match="use force=True for F12 at 2000 pages"):
+    with pytest.raises(ParameterError, match="Use force=True to move it to F12 at 2000 pages"):
         add(campaign, run_csv, age="2000 pages")
     assert add(campaign, run_csv, age="2000 pages", force=True) == "replaced"
     assert campaign.runs()["age"].to_list() == [2000.0]
@@ -152,7 +152,7 @@ def test_another_reading_is_told(campaign: Campaign) -> None:
     age = Age(1.0, "h")
     campaign.add_entries([(sample(), "F1", age)])
     other = replace(sample(), settings='{"tare": "standing"}')
-    with pytest.raises(ParameterError, match="read in another way"):
+    with pytest.raises(ParameterError, match="read with other settings"):
         campaign.add_entries([(other, "F1", age)])
     assert campaign.add_entries([(other, "F1", age)], force=True)[0].outcome == "replaced"
 
@@ -160,19 +160,19 @@ def test_another_reading_is_told(campaign: Campaign) -> None:
 def test_a_unit_renamed_is_told(campaign: Campaign, run_csv: Path) -> None:
     add(campaign, run_csv)
     other = means(run_csv.with_name("other.csv"), 6.0)
-    with pytest.raises(ParameterError, match="'f-12' is called 'F12' so far"):
+    with pytest.raises(ParameterError, match="'f-12' differs only slightly from the existing 'F12'"):
         add(campaign, other, unit="f-12")
     for unit in ("", " ", "x" * 61, "F\x1b[2J"):
-        with pytest.raises(ParameterError, match="is no name"):
+        with pytest.raises(ParameterError, match="is not valid"):
             add(campaign, other, unit=unit)
-    with pytest.raises(ParameterError, match="did you mean 'F12'"):
+    with pytest.raises(ParameterError, match="Did you mean 'F12'"):
         campaign.runs("F1")
 
 
 def test_a_campaign_has_one_unit_of_age(campaign: Campaign, run_csv: Path) -> None:
     add(campaign, run_csv, age="2 h")
     other = means(run_csv.with_name("other.csv"), 6.0)
-    with pytest.raises(UnitError, match="give it in h"):
+    with pytest.raises(UnitError, match="Give it in h"):
         add(campaign, other, age="5 pages")
     add(campaign, other, age="30 min")
     assert campaign.runs()["age"].to_list() == [0.5, 2.0]
@@ -193,7 +193,7 @@ def test_a_run_without_a_fit_is_kept_and_told(campaign: Campaign, tmp_path: Path
     points = hersey.SteadyPoints.from_table(tmp_path / "short.csv")
     added = campaign.add(points, log=tmp_path / "short.csv", unit="F1", age="1 h")
     assert [each.kind for each in added.warnings] == ["added without a fit"]
-    assert "kept without a fit" in added.summary()
+    assert "added without a fit" in added.summary()
     assert campaign.fit(added.run) is None
     (no_fit,) = campaign.check().warnings
     assert (no_fit.kind, no_fit.where) == ("no fit", "run 1, F1 at 1 h: short.csv")
@@ -265,7 +265,7 @@ def test_dwells_say_what_was_taken_off_as_the_rest(campaign: Campaign) -> None:
 def test_two_hold_it_at_once_and_one_waits_then_is_told(campaign: Campaign) -> None:
     with Campaign.open(campaign.path, wait=0.05) as other:
         campaign._database.execute("BEGIN IMMEDIATE")
-        with pytest.raises(OutputError, match=r"held by another program .* wait until"):
+        with pytest.raises(OutputError, match=r"in use by another program. Wait until"):
             other.add_entries([(sample(), "F1", Age(1.0, "h"))])
         assert len(other) == 0  # one may read meanwhile
         campaign._database.execute("ROLLBACK")
@@ -311,16 +311,16 @@ def test_what_is_no_campaign_is_refused_and_left_as_it_is(tmp_path: Path, run_cs
     for path in (run_csv, foreign):
         before = path.read_bytes()
         for way in (Campaign.open, Campaign.create):
-            with pytest.raises(ParameterError, match="is no campaign: name the file"):
+            with pytest.raises(ParameterError, match=r"is not a campaign file. Name a file"):
                 way(path)
         assert path.read_bytes() == before
     with pytest.raises(MissingFileError, match="hersey campaign add"):
         Campaign.open(tmp_path / "none.hersey")
-    with pytest.raises(ParameterError, match="is no file"):
+    with pytest.raises(ParameterError, match="is not a file"):
         Campaign.create(tmp_path)
     with pytest.raises(ParameterError, match=r"ends in \.hersey"):
         Campaign.create(tmp_path / "life.csv")
-    with pytest.raises(OutputError, match="there is no directory"):
+    with pytest.raises(OutputError, match="does not exist"):
         Campaign.create(tmp_path / "none" / "life.hersey")
 
 
@@ -330,9 +330,9 @@ def test_another_version_is_refused_or_brought_up_to_date(
     campaign.add_entries([(sample(), "F1", Age(1.0, "h"))])
     campaign.close()
     monkeypatch.setattr(storing, "VERSION", storing.VERSION + 1)
-    with pytest.raises(ParameterError, match=r"older hersey .* next 'hersey campaign add"):
+    with pytest.raises(ParameterError, match=r"older version of hersey .* 'hersey campaign add"):
         Campaign.open(campaign.path, write=False)
-    with pytest.raises(ParameterError, match="cannot bring up to date: add the logs to a new one"):
+    with pytest.raises(ParameterError, match=r"cannot update. Add the logs to a new campaign"):
         Campaign.open(campaign.path)
 
     def halfway(database: sqlite3.Connection) -> None:
@@ -350,14 +350,14 @@ def test_another_version_is_refused_or_brought_up_to_date(
     with Campaign.open(campaign.path) as again:
         assert len(again) == 1
     monkeypatch.undo()
-    with pytest.raises(ParameterError, match="a newer hersey"):
+    with pytest.raises(ParameterError, match="a newer version"):
         Campaign.open(campaign.path)
 
 
 def test_a_file_for_reading_alone_is_told(campaign: Campaign) -> None:
     with (
         Campaign.open(campaign.path, write=False) as other,
-        pytest.raises(OutputError, match="who may write it"),
+        pytest.raises(OutputError, match="Check the permissions"),
     ):
         other.add_entries([(sample(), "F1", Age(1.0, "h"))])
 
@@ -377,11 +377,11 @@ def test_a_full_disk_is_told_and_loses_nothing(campaign: Campaign) -> None:
     campaign.add_entries([(another(1), "F1", Age(1.0, "h"))])
     wal = campaign.path.with_name("life.hersey-wal").stat().st_size
     many = [(another(number), "F1", Age(2.0, "h")) for number in range(2, 40)]
-    with room(wal + 5000), pytest.raises(OutputError, match="what was added before stays"):
+    with room(wal + 5000), pytest.raises(OutputError, match="earlier runs are kept"):
         campaign.add_entries(many)
     assert len(campaign) == 1
     campaign._database.execute("PRAGMA max_page_count = 30")
-    with pytest.raises(OutputError, match="the disk is full: make room"):
+    with pytest.raises(OutputError, match=r"the disk is full. Free some space"):
         campaign.add_entries(many)
     assert campaign._database.execute("PRAGMA integrity_check").fetchall() == [("ok",)]
     campaign._database.execute("PRAGMA max_page_count = 1000000")

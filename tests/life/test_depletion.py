@@ -214,7 +214,7 @@ def test_starvation_is_an_indicator() -> None:
     assert told.limit == 1.0
     assert told.value[23] > 1.0  # U4 at 170,000 pages
     assert np.nanmax(told.value[:18]) < 1.0
-    with pytest.raises(ParameterError, match="other runs"):
+    with pytest.raises(ParameterError, match="different runs"):
         film.with_starvation(Indicators(Runs((1,), ("A",), np.zeros(1), "h"), ()))
 
 
@@ -249,8 +249,8 @@ def test_given_numbers_of_the_law_are_kept() -> None:
 @pytest.mark.parametrize(
     ("kept", "said"),
     [
-        (pl.col("temperature (K)") < 335.0, "one temperature cannot distinguish"),
-        (pl.col("run_id") == 1, "no specimen was seen at two ages"),
+        (pl.col("temperature (K)") < 335.0, "At one temperature, a thin oil layer looks like"),
+        (pl.col("run_id") == 1, "no specimen was measured at two ages"),
     ],
 )
 def test_what_the_dwells_do_not_tell_is_said(kept: pl.Expr, said: str) -> None:
@@ -266,7 +266,7 @@ def test_a_film_that_is_not_that_of_the_file_is_not_told() -> None:
     runs, dwells = whole.runs(), whole.dwells()
     slow = dwells.with_columns(pl.col("torque (N m)") * (1.0 + 5.0 * (pl.col("speed (rad/s)") > 5.0)))
     some = SimpleNamespace(path=whole.path, age_unit="pages", runs=lambda: runs, dwells=lambda: slow)
-    with pytest.raises(InsufficientDataError, match="are not those of the machine's file"):
+    with pytest.raises(InsufficientDataError, match="differ from the machine file"):
         film_life(some, shipped.machine())  # type: ignore[arg-type]
 
 

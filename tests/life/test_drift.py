@@ -96,7 +96,7 @@ def test_without_temperatures_it_says_what_cannot_be_told() -> None:
     hot = runs.filter(pl.col("temperature (K)") > 450.0)
     drift = fit_drift(hot.with_columns(pl.lit(None, pl.Float64).alias("temperature (K)")))
     assert (drift.warnings[0].kind, drift.warnings[0].severity) == ("no temperatures", "act")
-    assert "- Temperature does not vary enough" in drift.summary()
+    assert "- Temperature varies too little" in drift.summary()
     assert "temperature law" not in [each.name for each in drift.quantities]
     assert drift["speed of least torque"].change.low > 0.0
 
@@ -112,7 +112,7 @@ def test_what_cannot_be_fitted_says_why() -> None:
         fit_drift(runs.with_columns(missing.alias("temperature (K)")))
     with pytest.raises(ParameterError, match=r"speed of dwell 1 .* is 0"):
         fit_drift(runs.with_columns(pl.lit(0.0).alias("speed (rad/s)")))
-    with pytest.raises(ParameterError, match=r"torque \(N m\) of dwell 1 \(run 1\) is no number"):
+    with pytest.raises(ParameterError, match=r"torque \(N m\) of dwell 1 \(run 1\) is not a number"):
         fit_drift(runs.with_columns(pl.lit(np.inf).alias("torque (N m)")))
     with pytest.raises(InsufficientDataError, match="no dwell"):
         fit_drift(runs.clear())

@@ -194,8 +194,8 @@ def test_units_at_the_door() -> None:
         (lambda: SNCurve(0.0, 2e6, 5.0), "amplitude is 0"),
         (lambda: SNCurve(20.0, math.nan, 5.0), "cycles is nan"),
         (lambda: SNCurve(20.0, 2e6, None), "slope is None"),  # type: ignore[arg-type]
-        (lambda: SNCurve(20.0, 2e6, 5.0, second_slope=3.0), "less than the slope"),
-        (lambda: SNCurve(20.0, 2e6, 5.0, second_slope="miner"), "give a number or 'haibach'"),
+        (lambda: SNCurve(20.0, 2e6, 5.0, second_slope=3.0), "at least the slope"),
+        (lambda: SNCurve(20.0, 2e6, 5.0, second_slope="miner"), "it must be a number or 'haibach'"),
         (lambda: SNCurve(20.0, 2e6, 5.0, endurance=30.0), "above the point"),
         (lambda: SNCurve(20.0, 2e6, 5.0, ultimate=10.0), "at once"),
         (lambda: CURVE.life(-1.0), "not negative"),

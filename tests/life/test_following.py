@@ -62,8 +62,8 @@ def test_what_is_not_known_is_said() -> None:
     assert found.film is None
     assert ("not computed", "film through life") in [(each.kind, each.where) for each in found.warnings]
     assert "one specimen does not show how specimens differ" in found.summary()
-    assert found.headline().startswith("U1 ends at ")  # not when half of new specimens do
-    with pytest.raises(InsufficientDataError, match="nothing that ends a specimen"):
+    assert found.headline().startswith("U1 fails at ")  # not when half of new specimens do
+    with pytest.raises(InsufficientDataError, match="no failure mode can be judged"):
         follow(shipped.opened(1), hersey.Machine(11e3, 11.0, 15e-3, 3e-3))
 
 

@@ -130,12 +130,12 @@ def test_what_the_machine_does_not_state_is_said(campaign: Campaign) -> None:
     found = indicators_of(campaign, replace(machine(), points=()))
     assert found.each == ()
     for lacks in (
-        '[limits] motor_torque = "1 N*m"',
-        '[limits] roll_friction = 0.6 and nip_load = "300 N"',
+        'motor_torque = "1 N*m" to [limits]',
+        'roll_friction = 0.6 and nip_load = "300 N" to [limits]',
         "[[points]] with speed and temperature",
         "[gear] with torque, cycles and slope",
-        '[life] continuous_torque = "0.5 N*m"',
-        '[life] energy = "10 J"',
+        'continuous_torque = "0.5 N*m" to [life]',
+        'energy = "10 J" to [life]',
     ):
         assert sum(f"add {lacks}" in each.text for each in found.warnings if each.kind == NOT_JUDGED) == 1
     assert found.warnings[0].values == {"table": "limits", "keys": 'motor_torque = "1 N*m"'}
@@ -145,11 +145,11 @@ def test_what_the_machine_does_not_state_is_said(campaign: Campaign) -> None:
 @pytest.mark.parametrize(
     ("life", "gear", "lacks"),
     [
-        ({"energy": 10.0}, {}, 'energy per page: add [life] travel = "300 mm"'),
+        ({"energy": 10.0}, {}, 'energy per page: add travel = "300 mm" to [life] of the machine file'),
         (
             {},
             {},
-            'gear fatigue: [gear] states no load: add starts = "20 per 1000 pages", or duty and duty_age',
+            'gear fatigue: [gear] states no load. Add starts = "20 per 1000 pages", or duty and duty_age',
         ),
     ],
 )
@@ -254,7 +254,7 @@ def test_a_duty_grows_with_the_torque(campaign: Campaign, tmp_path: Path) -> Non
     by_hand = 5.0 / (1e6 * (3.0 / (3.5 * 0.1 * scale / new)) ** 7.0)
     assert found.value == pytest.approx(by_hand, rel=0.3)
     wrong = replace(machined, gear=replace(machined.gear, duty_age="10 h"))  # type: ignore[type-var]
-    with pytest.raises(UnitError, match=r"\[gear\] duty_age: an age in h among ages in pages"):
+    with pytest.raises(UnitError, match=r"\[gear\] duty_age: an age is in h, but the others are in pages"):
         indicators_of(campaign, wrong)
 
 

@@ -41,7 +41,7 @@ def test_a_warning_comes_back_with_kind_numbers_and_words() -> None:
     assert again.to_dict() == warning.to_dict()
     assert again.values["speed"] == 0.1 + 0.2
     assert type(again.values["count"]) is int
-    assert str(again) == "bench.csv: 3 late: rows of '{speed.real}' at 2.86 rpm: set rotation"
+    assert str(again) == "bench.csv: 3 late: rows of '{speed.real}' at 2.86 rpm. Set rotation"
     assert kept(again) == kept(warning)
 
 
@@ -54,20 +54,20 @@ def test_sentences_of_an_earlier_version_are_warnings() -> None:
         found = restored({"note": said}, KINDS)["warnings"]
         assert [each.kind for each in found] == kinds
         assert "".join(map(str, found)) == said
-    with pytest.raises(ParameterError, match="'notes' holds another kind"):
+    with pytest.raises(ParameterError, match="'notes' has a value of the wrong type"):
         restored({"notes": [1]}, KINDS)
 
 
 @pytest.mark.parametrize(
     ("change", "said"),
     [
-        ({"severity": "grave"}, "'Warning.severity' holds another kind"),
-        ({"values": [["count", []]]}, "'Warning.values' holds another kind"),
-        ({"values": [["severity", 1]]}, "'Warning.values' holds another kind"),
-        ({"values": [[1, 1]]}, "'Warning.values' holds another kind"),
-        ({"values": 3}, "'Warning.values' holds another kind"),
-        ({"text": None}, "'Warning.text' holds another kind"),
-        ({"more": 1}, "'Warning.more' is not known"),
+        ({"severity": "grave"}, "'Warning.severity' has a value of the wrong type"),
+        ({"values": [["count", []]]}, "'Warning.values' has a value of the wrong type"),
+        ({"values": [["severity", 1]]}, "'Warning.values' has a value of the wrong type"),
+        ({"values": [[1, 1]]}, "'Warning.values' has a value of the wrong type"),
+        ({"values": 3}, "'Warning.values' has a value of the wrong type"),
+        ({"text": None}, "'Warning.text' has a value of the wrong type"),
+        ({"more": 1}, "'Warning.more' is unknown"),
     ],
 )
 def test_what_is_no_warning_is_refused(change: dict[str, Any], said: str) -> None:

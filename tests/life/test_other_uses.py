@@ -95,7 +95,7 @@ def test_a_duty_moves_what_sums_over_the_points(told: tuple[OtherUses, hersey.Ti
 def test_nothing_to_change_is_said() -> None:
     bare = replace(shipped.machine(), limits=hersey.Limits())
     found = hersey.Indicators(hersey.Runs((1,), ("U1",), np.zeros(1), "pages"), ())
-    with pytest.raises(ParameterError, match=r"\[limits\] motor_torque"):
+    with pytest.raises(ParameterError, match=r"motor_torque in \[limits\]"):
         other_uses(shipped.opened(2), bare, found)
 
 

@@ -93,7 +93,7 @@ def test_units_of_age_do_not_matter(units: list[tuple[float, bool]], factor: flo
     ("failed", "words"),
     [
         ([False, False, False], "No specimen has failed up to 30 pages"),
-        ([True, False, False], "One specimen has failed, at 10 pages"),
+        ([True, False, False], "Only one specimen has failed, at 10 pages"),
     ],
 )
 def test_too_few_failures_are_warned_of(failed: list[bool], words: str) -> None:
@@ -114,7 +114,7 @@ def test_two_failures_show_little() -> None:
     assert "Two failures show little" in law.summary()
     b10 = law.b_life(0.10)
     assert b10.low < b10.age / 100
-    assert "one age shows no spread" in weibull([10, 10], [True, True]).summary()
+    assert "which shows no spread" in weibull([10, 10], [True, True]).summary()
 
 
 def test_what_the_shape_says() -> None:

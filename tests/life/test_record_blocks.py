@@ -46,9 +46,9 @@ def test_a_record_without_noise_has_no_error() -> None:
 def test_what_is_no_record_is_refused() -> None:
     with pytest.raises(InsufficientDataError, match="100 samples are too few"):
         blocks_of_record(TIME[:100], np.ones(100))
-    with pytest.raises(ParameterError, match="sample 8 is below that before"):
+    with pytest.raises(ParameterError, match="sample 8 is below that of the sample before"):
         blocks_of_record(np.where(TIME == 7.0, 1.0, TIME), np.ones(TIME.size))
-    with pytest.raises(ParameterError, match="value of sample 3 is no number"):
+    with pytest.raises(ParameterError, match="value of sample 3 is not a number"):
         blocks_of_record(TIME, np.where(TIME == 2.0, np.nan, 1.0))
     with pytest.raises(InsufficientDataError, match="not positive"):
         blocks_of_record(TIME, np.where(TIME < 600.0, 0.0, 1.0))

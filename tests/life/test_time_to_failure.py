@@ -80,21 +80,21 @@ def test_where_two_ways_are_near_both_are_named() -> None:
     assert sum(first.first.values()) == pytest.approx(1.0)
     unknown = warned(told())["first mode unknown"]
     assert unknown.values == {"specimens": "F1"}
-    assert str(unknown) == "which failure mode comes first is unknown for F1: all that remain are named"
+    assert str(unknown) == "the first failure mode is uncertain for F1; all possible ones are named"
 
 
 def test_an_early_sign_ends_no_unit() -> None:
     assert [mode.name for mode in told().modes] == ["torque", "film", "noise"]
     assert [mode.name for mode in told().ending] == ["torque", "film"]
     assert all("noise" not in end.first for end in told().units)
-    assert "noise (a precursor: it ends no specimen)" in told().summary()
+    assert "noise (a precursor, not a failure)" in told().summary()
 
 
 def test_what_has_passed_is_said_and_fails_in_the_weibull_plot() -> None:
     assert told().units[5].age.passed > 0.9
     assert warned(told())["limit reached"].values == {"specimens": "F6"}
     assert warned(told())["limit reached"].severity == "act"
-    assert "passed already" in str(told().units[5])
+    assert "already passed" in str(told().units[5])
     population = told().population
     assert population.failed.tolist() == [True, False, False, False, False, False]
     assert population.ages[0] == pytest.approx(1.0 / RATE[5], rel=0.05)
@@ -105,8 +105,8 @@ def test_what_cannot_be_judged_keeps_its_reason() -> None:
     stated, grip = (each for each in told().warnings if each.kind == NOT_JUDGED)
     assert str(stated) == "heat: no table [motor]"
     assert grip.where == "grip"
-    assert str(grip.values["reason"]).startswith("no specimen was seen at two ages")
-    assert "\nnot judged: heat: no table [motor]\n" in told().summary()
+    assert str(grip.values["reason"]).startswith("no specimen was measured at two ages")
+    assert "\nheat is not judged: no table [motor]\n" in told().summary()
     with pytest.raises(InsufficientDataError, match="grip: no run shows it"):
         time_to_failure(of(indicator("grip", np.full(AGE.size, np.nan), 2.0)))
 
@@ -140,7 +140,7 @@ def test_a_unit_that_tells_nothing_is_one_of_the_others() -> None:
     found = time_to_failure(of(indicator("torque", value, 2.0), names=NAMES[:28], age=AGE[:28]))
     (of_torque,) = (each for each in found.warnings if each.kind == "specimens without a value")
     assert (of_torque.where, of_torque.values) == ("torque", {"specimens": "F4"})
-    assert "- torque: no run of F4 shows it: taken as any new specimen" in found.summary()
+    assert "- torque: no run of F4 shows it. Such specimens are treated like any new one" in found.summary()
     wide, narrow = (found.units[i].age.age for i in (3, 0))
     assert wide.high / wide.low > 1.5 * narrow.high / narrow.low
 
@@ -256,7 +256,7 @@ def test_what_to_measure_next_is_said() -> None:
     assert len(of_f1) == 3
     assert of_f1[-1].after < of_f1[0].after
     assert "again at" in told().advice[0]
-    assert "the interval of its end narrows from" in told().advice[0]
+    assert "this narrows the interval of its end from" in told().advice[0]
     assert any(run.unit is None for run in runs)
 
 

@@ -171,14 +171,16 @@ def test_stamps_and_missing_numbers(tmp_path: Path) -> None:
     np.testing.assert_allclose(trace.time, [0.0, 1.0, 3.0])
     np.testing.assert_allclose(trace.value, [1.0, np.nan, 3.0])
     with pytest.raises(
-        UnreadableLogError, match=r"table\.csv, line 4, column 'temperature': '-' stands"
+        UnreadableLogError, match=r"table\.csv, line 4, column 'temperature': '-' instead"
     ) as told:
         read_temperature_profile(path)
     assert "drop_missing" not in str(told.value)
     pl.DataFrame({"time [s]": [0.0, 1.0], "temperature [K]": [300.0, None]}).write_parquet(
         tmp_path / "a.parquet"
     )
-    with pytest.raises(UnreadableLogError, match=r"a\.parquet, channel 'temperature', sample 2: no number"):
+    with pytest.raises(
+        UnreadableLogError, match=r"a\.parquet, channel 'temperature', sample 2: the number is missing"
+    ):
         read_temperature_profile(tmp_path / "a.parquet")
 
 
@@ -188,10 +190,10 @@ def test_names_of_a_trace(tmp_path: Path) -> None:
     assert read_trace(path).value[0] == 2.0
     assert read_trace(path, value="pull#2").value[0] == 3.0
     assert read_trace(path, value="force (N)").value[0] == 2.0
-    with pytest.raises(ChannelError, match=r"pull \[N\], pull \[N\] could be the force: name it with value"):
+    with pytest.raises(ChannelError, match=r"pull \[N\], pull \[N\] Name it with value"):
         read_trace(path, value="pull")
     path.write_text("0,1\n1,2\n2,3\n")
-    with pytest.raises(UnreadableLogError, match=r"line 1: no header stands above .* such as value='#2'"):
+    with pytest.raises(UnreadableLogError, match=r"line 1: there is no header above .* such as value='#2'"):
         read_trace(path)
     assert read_trace(path, time="#1", value="#2", time_unit="ms", unit="N").time[2] == pytest.approx(2e-3)
     savemat(tmp_path / "a.mat", {"t": TIME, "force_N": FORCE})
@@ -252,5 +254,5 @@ def test_as_many_points_as_are_possible(tmp_path: Path) -> None:
     path = tmp_path / "warming.csv"
     path.write_text("time [s],temperature [K]\n" + "".join(f"{i},300\n" for i in range(MOST_POINTS)))
     assert np.asarray(read_temperature_profile(path).times).size == MOST_POINTS
-    with pytest.raises(MissingFileError, match="no such file"):
+    with pytest.raises(MissingFileError, match="File not found"):
         read_temperature_profile(tmp_path / "none.csv")

@@ -97,7 +97,7 @@ def test_tare_is_a_shift() -> None:
     log = log_of(np.full(TIME.size, 0.5), np.full(TIME.size, 3.0))
     done = corrections.tare(log, torque=0.02)
     np.testing.assert_allclose(torque_of(done), 0.48)
-    assert "0.02 N m at most" in str(done.corrections[0])
+    assert "at most 0.02 N m" in str(done.corrections[0])
     assert done.corrections[0].effects[0].share == pytest.approx(0.04)
 
 
@@ -197,7 +197,7 @@ def test_an_effect_is_largest_rms_and_share_of_the_median() -> None:
     assert effect.largest == pytest.approx(height, rel=5e-3)
     assert effect.typical == pytest.approx(height / np.sqrt(2), rel=1e-3)
     assert effect.share == pytest.approx(height / np.sqrt(2) / 0.4, rel=1e-3)
-    assert str(effect) == "torque by 0.315 N m at most, 0.222 N m rms, 55 % of its median"
+    assert str(effect) == "torque by at most 0.315 N m, 0.222 N m rms, 55 % of its median"
     np.testing.assert_allclose(
         torque_of(done), -0.4 - height * np.cos(2 * np.pi * TIME / 20.0), atol=1e-2 * height
     )
@@ -207,14 +207,14 @@ def test_a_share_needs_something_to_be_a_share_of() -> None:
     done = corrections.tare(log_of(np.zeros(TIME.size), np.full(TIME.size, 3.0)), torque=0.25)
     (effect,) = done.corrections[-1].effects
     assert (effect.largest, effect.typical, effect.share) == (0.25, 0.25, None)
-    assert str(effect) == "torque by 0.25 N m at most, 0.25 N m rms"
+    assert str(effect) == "torque by at most 0.25 N m, 0.25 N m rms"
     warmed = corrections.temperature_offset(
         log_of(np.ones(TIME.size), np.ones(TIME.size), np.full(TIME.size, 400.0)), offset=-3.0
     )
     (effect,) = warmed.corrections[-1].effects
-    assert str(effect) == "temperature by 3 K at most, 3 K rms"
+    assert str(effect) == "temperature by at most 3 K, 3 K rms"
     assert str(warmed.corrections[-1]) == (
-        "temperature offset (offset -3 K): changed temperature by 3 K at most, 3 K rms"
+        "temperature offset (offset -3 K): changed temperature by at most 3 K, 3 K rms"
     )
 
 
@@ -241,7 +241,10 @@ def test_the_no_load_curve_is_held_beyond_its_dwells() -> None:
     beyond = int(np.sum((TIME < 20.0) | (TIME >= 40.0)))
     (warning,) = done.corrections[-1].warnings
     assert warning.values == {"rows": beyond}
-    assert str(warning) == f"{beyond} rows move slower or faster than its dwells: the nearest was used"
+    assert (
+        str(warning) == f"{beyond} rows lie outside the speed range of the no-load log; "
+        "the nearest no-load torque was used"
+    )
 
 
 def test_a_current_becomes_a_torque_and_says_so() -> None:
@@ -250,8 +253,9 @@ def test_a_current_becomes_a_torque_and_says_so() -> None:
     )
     np.testing.assert_allclose(torque_of(done), np.where(TIME < 20.0, 0.1, -0.2), rtol=1e-12)
     assert str(done.corrections[-1]) == (
-        "torque from current (motor_constant 0.05 N m/A); the torque channel was a current in A; the median "
-        "torque is now 0.2 N m"
+        "torque from current (motor_constant 0.05 N m/A); the torque channel was a motor current in A; "
+        "after conversion the median "
+        "torque is 0.2 N m"
     )
 
 
@@ -275,7 +279,8 @@ def test_samples_alone_between_gaps_are_left_and_counted() -> None:
     (warning,) = done.corrections[-1].warnings
     assert warning.values == {"rows": 2}
     assert (
-        str(warning) == "2 rows stand alone between gaps, where no derivative can be had: left as they were"
+        str(warning)
+        == "2 rows stand alone between gaps, so no derivative can be computed there; they were not corrected"
     )
 
 

@@ -199,10 +199,10 @@ def test_what_cannot_be_right_is_left_out_by_name(name: str, as_text: bool, tmp_
         assert (warning.values["rows"], warning.values["role"]) == (each.rows, role)
         assert (warning.values["low"], warning.values["high"]) == (each.low, each.high)
         assert warning.values["reason"] == each.reason
-        assert str(warning).startswith(f"{each.rows} row{' was' if each.rows == 1 else 's were'} left out: ")
+        assert str(warning).startswith(f"{each.rows} row{' was' if each.rows == 1 else 's were'} excluded, ")
         assert f"'{column.partition(' ')[0]}" in str(warning)
     words = " ".join(map(str, file.warnings))
-    assert f"is no {role}" in words
+    assert f"impossible {role} " in words
     assert says is None or says in words
     if as_text:
         first = min(int(each.where.split(",")[0].removeprefix("line ")) for each in file.impossible)
@@ -230,14 +230,16 @@ def test_words_for_no_number_cost_their_rows(word: str, tmp_path: Path) -> None:
     assert log.files[0].missing_rows == 5
     (warning,) = log.files[0].warnings
     assert (warning.kind, warning.values["rows"], warning.values["others"]) == ("rows left out", 5, 0)
-    assert f"5 rows were left out: line 102, column 'Temperature': '{word}' stands" in str(warning)
+    assert f"5 rows were excluded: line 102, column 'Temperature': '{word}' instead of a number" in str(
+        warning
+    )
 
 
 def test_too_many_are_refused_with_their_share() -> None:
     columns = clean()
     rows = columns[HOT].size
     columns[HOT][: rows // 3] = 65535.0
-    says = f"33% of temperature 'Temperature' cannot be right .{rows // 3} of {rows} rows..*drop_missing=True"
+    says = f"33% of temperature 'Temperature' is impossible .{rows // 3} of {rows} rows..*drop_missing=True"
     with pytest.raises(UnreadableLogError, match=says):
         hersey.read(pl.DataFrame(columns))
     assert hersey.read(pl.DataFrame(columns), drop_missing=True).rows == rows - rows // 3
@@ -283,7 +285,10 @@ def test_every_verb_says_so(verb: str, tmp_path: Path) -> None:
     result = run(verb, tmp_path / "log.csv", cwd=tmp_path)
     assert result.returncode == 0, result.stderr
     said = " ".join(f"{result.stdout} {result.stderr}".split())
-    assert "5 rows were left out: line 102, column 'Temperature': 1000000 degC (5 times)" in said
+    assert (
+        "excluded, the first at line 102, column 'Temperature': impossible temperature 1000000 degC (5 times)"
+        in said
+    )
 
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

@@ -165,11 +165,11 @@ MISREAD = {
     ),
     "a row behind a comment mark": (
         HEADER + BODY + "#8,0.5,60,150\n" + "9,0.5,60,150\n",
-        "like a comment",
+        "comment sign",
     ),
     "values beyond belief": (
         HEADER + BODY + 8 * "9,1e200,60,150\n",
-        r"line 32, column 'Torque'.* is no torque.*21% of torque 'Torque' cannot be right \(8 of 38",
+        r"line 32, column 'Torque': impossible torque.*21% of torque 'Torque' is impossible \(8 of 38",
     ),
     "two readings of the same column": (HEADER + BODY, "cannot be both"),
 }
@@ -309,7 +309,7 @@ def test_a_time_of_day_passes_midnight(tmp_path: Path) -> None:
     np.testing.assert_allclose(log.runs[0].time, [0, 0.4, 0.8], atol=1e-9)
     (warning,) = log.files[0].warnings
     assert (warning.kind, warning.values["midnights"]) == ("time stamps read", 1)
-    assert str(warning).endswith("since 23:59:59, past midnight 1 time")
+    assert str(warning).endswith("since 23:59:59, with 1 change of day")
 
 
 @pytest.mark.parametrize("code", ["cp1252", "latin-1"])
@@ -354,7 +354,7 @@ def test_a_last_row_cut_off_is_left_out(last: str, tmp_path: Path) -> None:
     assert log.files[0].cut_off
     (warning,) = log.files[0].warnings
     assert (warning.kind, warning.values) == ("last line cut off", {"line": last})
-    assert str(warning) == f"the last line, '{last}', was cut off: it was left out"
+    assert str(warning) == f"the last line, '{last}', was cut off and was skipped"
 
 
 def test_a_number_that_reads_in_two_ways_is_refused(tmp_path: Path) -> None:
@@ -391,7 +391,7 @@ def test_a_header_and_a_row_of_units_that_differ_are_refused(tmp_path: Path) -> 
     rows = "".join(f"{i / 10},0.3,60,150\n" for i in range(30))
     path.write_text("Time [s],Torque [N*m],Speed [rpm],Temp [degC]\ns,mN*m,rpm,degC\n" + rows)
     with pytest.raises(
-        UnreadableLogError, match=r"line 1, column 2: the header says 'Torque \[N\*m\]' and .* mN\*m"
+        UnreadableLogError, match=r"line 1, column 2: the header says 'Torque \[N\*m\]', but .* mN\*m"
     ):
         hersey.read(path)
     path.write_text("Time [s],Torque [N*m],Speed [rpm],Temp [degC]\ns,Nm,1/min,degC\n" + rows)
@@ -404,6 +404,6 @@ def test_a_set_point_beside_another_column_of_its_unit_is_asked_about(tmp_path: 
         "t [s],Torque Command [N*m],Speed [rpm],Temp [degC],Trq Fbk [N*m]\n"
         + "".join(f"{i / 10},0.5,60,150,0.3\n" for i in range(30))
     )
-    with pytest.raises(ChannelError, match=r"torque could be 'Torque Command \[N\*m\]' or 'Trq Fbk"):
+    with pytest.raises(ChannelError, match=r"torque column could be 'Torque Command \[N\*m\]' or 'Trq Fbk"):
         hersey.read(path)
     assert hersey.read(path, channels={"torque": "Trq Fbk"}).runs[0].torque == pytest.approx(0.3)

@@ -57,7 +57,7 @@ def test_they_are_those_of_one_by_one_however_many_threads() -> None:
         )
         assert list(read.items()) == list(means.items())
         assert read["3.csv"] == means[Path("3.csv")]
-        assert repr(read) == "<ManyLogs: 5 logs, 0 left out>"
+        assert repr(read) == "<ManyLogs: 5 logs, 0 skipped>"
     assert seen == [(count, 5) for count in range(1, 6)] * 2
 
 
@@ -76,7 +76,7 @@ def test_what_fails_is_left_out_and_told(folder: Path) -> None:
     assert kinds.pop("1.csv").__mro__.index(HerseyError)
     assert kinds == {"0.csv": InsufficientDataError, "3.csv": ChannelError, "none.csv": MissingFileError}
     head, *lines = many.summary().splitlines()
-    assert head == "2 of 6 logs"
+    assert head == "read 2 of 6 logs"
     assert [line.split(": ")[0] for line in lines] == ["- 0.csv", "- 1.csv", "- 3.csv", "- none.csv"]
     assert lines[0] == "- 0.csv: too short"
     # which of two is raised hangs on their order, not on the time that they take
@@ -89,11 +89,11 @@ def test_what_fails_is_left_out_and_told(folder: Path) -> None:
     ("call", "kind", "said"),
     [
         (lambda: hersey.read_many("x*.csv", keep_going=True), MissingFileError, "no file matches"),
-        (lambda: hersey.read_many(["0.csv", "?.csv"], keep_going=True), ParameterError, "is named twice"),
-        (lambda: hersey.read_many("0.csv", channels={"tork": "x"}), ParameterError, "is no role"),
+        (lambda: hersey.read_many(["0.csv", "?.csv"], keep_going=True), ParameterError, "is given twice"),
+        (lambda: hersey.read_many("0.csv", channels={"tork": "x"}), ParameterError, "unknown role 'tork'"),
         (lambda: hersey.read_many("0.csv", threads=0), ParameterError, "threads is 0"),
-        (lambda: hersey.read_many(3), ParameterError, "an? int is no log"),  # type: ignore[arg-type]
-        (lambda: hersey.read_many([]), ParameterError, "no log file was named"),
+        (lambda: hersey.read_many(3), ParameterError, "an? int is not a log"),  # type: ignore[arg-type]
+        (lambda: hersey.read_many([]), ParameterError, "no log file is given"),
     ],
 )
 def test_a_mistake_is_one_line(call: Callable[[], Any], kind: type[HerseyError], said: str) -> None:
@@ -124,12 +124,12 @@ def test_no_more_logs_are_held_than_are_read_at_once() -> None:
 def test_a_file_that_ends_its_workers_is_named() -> None:
     def ends_workers(path: Path) -> int:
         if path.name == "1.csv":
-            raise UnfinishedError("item 1 has ended 48 workers", index=1)
+            raise UnfinishedError("item 1 ended 48 workers", index=1)
         return 0
 
     found = each_of(ends_workers, [Path("logs/0.csv"), Path("logs/1.csv")])
     assert next(found) == 0
-    with pytest.raises(UnfinishedError, match=r"^logs/1\.csv: item 1 has ended 48 workers$"):
+    with pytest.raises(UnfinishedError, match=r"^logs/1\.csv: item 1 ended 48 workers$"):
         next(found)
 
 

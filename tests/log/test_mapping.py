@@ -42,7 +42,7 @@ def test_a_proposal_reads_the_log_it_was_made_for(bench_csv: Path, tmp_path: Pat
     np.testing.assert_array_equal(done.log.runs[0].torque, plain.runs[0].torque)
     (warning,) = done.log.files[0].warnings
     assert (warning.kind, warning.values) == ("mapping used", {"mapping": FILE_NAME})
-    assert str(warning) == f"channels, units and corrections are those of {FILE_NAME}"
+    assert str(warning) == f"channels, units and corrections come from {FILE_NAME}"
 
 
 def test_every_comment_of_a_proposal_becomes_a_key_that_is_known(bench_csv: Path, tmp_path: Path) -> None:
@@ -61,7 +61,7 @@ def test_every_comment_of_a_proposal_becomes_a_key_that_is_known(bench_csv: Path
 def test_what_cannot_be_told_is_said_in_the_proposal(tmp_path: Path) -> None:
     path = write(tmp_path / "odd.csv", "t [s],Torque 1 [N*m],Torque 2 [N*m],Drehzahl", 1.0, 2.0, 3.0)
     text = propose_mapping(path)
-    assert "# torque could be 'Torque 1 [N*m]' or 'Torque 2 [N*m]'" in text
+    assert "# the torque column could be 'Torque 1 [N*m]' or 'Torque 2 [N*m]'" in text
     assert "# column 'Drehzahl' has no unit" in text
     text = propose_mapping(path, channels={"torque": "Torque 2"}, units={"speed": "-1 rpm"})
     assert 'channel = "Torque 2"' in text
@@ -148,27 +148,27 @@ def test_a_no_load_log_beside_the_mapping_is_subtracted(tmp_path: Path) -> None:
 
 
 BAD = {
-    "a table that is not known": ('[torqe]\nchannel = "x"\n', "no table 'torqe'"),
-    "a key that is not known": ('[torque]\ngear = 2\n', r"\[torque\] has no key 'gear'"),
-    "a key of another role": ('[speed]\ntare = "1 N*m"\n', r"\[speed\] has no key 'tare'"),
-    "a role that is no table": ('torque = "x"\n', r"write \[torque\]"),
+    "a table that is not known": ('[torqe]\nchannel = "x"\n', "unknown table 'torqe'"),
+    "a key that is not known": ('[torque]\ngear = 2\n', r"\[torque\] has an unknown key 'gear'"),
+    "a key of another role": ('[speed]\ntare = "1 N*m"\n', r"\[speed\] has an unknown key 'tare'"),
+    "a role that is no table": ('torque = "x"\n', r"Write \[torque\]"),
     "an empty channel": ('[torque]\nchannel = ""\n', "torque.channel is empty"),
     "a number as channel": ("[torque]\nchannel = 3\n", "torque.channel is 3"),
-    "a sign of two": ("[torque]\nsign = 2\n", "torque.sign is 2: write 1 or -1"),
+    "a sign of two": ("[torque]\nsign = 2\n", "torque.sign is 2: it must be 1 or -1"),
     "a sign that is true": ("[torque]\nsign = true\n", "torque.sign is True"),
-    "a gear ratio in words": ('[speed]\ngear_ratio = "12:1"\n', "speed.gear_ratio is '12:1': write a number"),
+    "a gear ratio in words": ('[speed]\ngear_ratio = "12:1"\n', "speed.gear_ratio is '12:1', not a number"),
     "a gear ratio of nothing": ("[speed]\ngear_ratio = 0\n", "speed.gear_ratio is 0"),
-    "an efficiency over one": ("[torque]\nefficiency = 1.1\n", "0.05 to 1 is believed"),
+    "an efficiency over one": ("[torque]\nefficiency = 1.1\n", "it must be within 0.05 to 1"),
     "a not-a-number": ("[torque]\nefficiency = nan\n", "torque.efficiency is nan"),
 }  # fmt: skip
 BAD_UNITS = {
-    "a tare without unit": ("[torque]\ntare = 0.004\n", "torque.tare is 0.004: write a string with its unit"),
+    "a tare without unit": ("[torque]\ntare = 0.004\n", "torque.tare is 0.004, without a unit"),
     "a tare in rpm": ('[torque]\ntare = "4 rpm"\n', "torque.tare: unit 'rpm' is not a unit of torque"),
     "an unknown unit": ('[speed]\nunit = "furlong"\n', "speed.unit"),
-    "a current without constant": ('[torque]\nunit = "A"\n', "a motor's current needs motor_constant"),
-    "a constant of a torque": ('[torque]\nunit = "N*m"\nmotor_constant = "1 N*m/A"\n', "no unit of a cur"),
+    "a current without constant": ('[torque]\nunit = "A"\n', "If it is a motor current, set motor_constant"),
+    "a constant of a torque": ('[torque]\nunit = "N*m"\nmotor_constant = "1 N*m/A"\n', "unit of current"),
     "a constant in N m": ('[torque]\nunit = "A"\nmotor_constant = "1 N*m"\n', "motor_constant is '1 N"),
-    "an offset in degC": ('[temperature]\noffset = "2 degC"\n', "such as \"-1.5 K\""),
+    "an offset in degC": ('[temperature]\noffset = "2 degC"\n', "e.g. \"-1.5 K\""),
     "an offset without unit": ("[temperature]\noffset = 2\n", "temperature.offset is 2"),
     "code for a unit": ('[torque]\ninertia = "1 __import__(os)"\n', "torque.inertia"),
     "a tower of powers": ('[torque]\ninertia = "1 kg**9**9**9"\n', "torque.inertia"),
@@ -188,7 +188,7 @@ def test_what_is_wrong_is_named_with_file_and_key(case: str, tmp_path: Path) -> 
 def test_a_log_without_the_channels_of_its_mapping_names_the_mapping(tmp_path: Path) -> None:
     path = write(tmp_path / "log.csv", "t [s],Torque [N*m],n [rpm]", 1.0, 2.0)
     (tmp_path / FILE_NAME).write_text('[torque]\nchannel = "Tq"\n')
-    with pytest.raises(ChannelError, match=r"no column 'Tq'.*those of hersey.toml"):
+    with pytest.raises(ChannelError, match=r"no column 'Tq'.*come from hersey.toml"):
         read_with_mapping(path, isothermal=True)
     (tmp_path / FILE_NAME).write_text('[torque]\nno_load = "gone.csv"\n')
     with pytest.raises(ParameterError, match=r"torque\.no_load is 'gone\.csv'"):
@@ -250,7 +250,7 @@ def test_a_dead_channel_is_not_proposed(tmp_path: Path) -> None:
     header = "t [s],Torque 1 [N*m],Torque 2 [N*m],Speed [rpm],Temp [degC]"
     text = propose_mapping(write(tmp_path / "a.csv", header, 1.5, 1.0 + TIME, 60.0 + TIME, 0.0))
     assert 'channel = "Torque 2"' in text
-    assert "'Temp [degC]' is zero throughout, or empty: it is dead" in text
+    assert "'Temp [degC]' is zero throughout or empty" in text
     assert 'channel = "Temp"' not in text
 
 

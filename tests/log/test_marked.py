@@ -74,7 +74,7 @@ def test_samples_marked_invalid_cost_their_rows(case: str, tmp_path: Path) -> No
     assert {role: each.values["rows"] for role, each in warned.items()} == counts
     for role, count in counts.items():
         times = "once" if count == 1 else f"{count} times"
-        assert f": {role} is marked as invalid by the file itself ({times})" in str(warned[role])
+        assert f": {role} is marked as invalid in the file ({times})" in str(warned[role])
 
 
 def test_the_first_of_them_is_named(tmp_path: Path) -> None:
@@ -114,7 +114,7 @@ def test_inspect_shows_them_as_missing(tmp_path: Path) -> None:
     found = inspect(write(tmp_path / "log.mf4", {"torque": [5, 100, 300]}))
     (torque,) = (c for c in found.files[0].channels if c.role == "torque")
     assert torque.traits.missing == 3
-    assert "torque is marked as invalid by the file itself (3 times)" in found.summary()
+    assert "torque is marked as invalid in the file (3 times)" in found.summary()
 
 
 def test_a_file_without_marks_keeps_every_row(tmp_path: Path) -> None:

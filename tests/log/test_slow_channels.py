@@ -53,7 +53,7 @@ def test_a_slow_temperature_is_interpolated_between_its_values(tmp_path: Path) -
             "rows outside a slow channel",
         )
         assert [interpolated.values[key] for key in ("rows_per_value", "interval")] == pytest.approx([50, 1])
-        assert "temperature 'Temp' has 1 value in 50 rows, every 1 s" in str(interpolated)
+        assert "temperature 'Temp' has 1 value per 50 rows (every 1 s)" in str(interpolated)
         assert outside.values["rows"] == 49
 
 
@@ -83,7 +83,7 @@ def test_a_long_gap_is_not_bridged(tmp_path: Path) -> None:
 def test_torque_and_speed_are_never_interpolated(role: str, tmp_path: Path) -> None:
     for source in sources(table(**{role: sparse(TORQUE), "Temp [degC]": HEAT}), tmp_path):
         for drop in (False, True):
-            with pytest.raises(UnreadableLogError, match=r"2940 such rows of 3000\): too few rows are left"):
+            with pytest.raises(UnreadableLogError, match=r"2940 such rows, of 3000\)\. Too few rows remain"):
                 hersey.read(source, drop_missing=drop)
 
 
@@ -96,7 +96,7 @@ def test_a_slow_load_is_interpolated_unless_the_torque_is_made_of_it(tmp_path: P
         np.testing.assert_allclose(run.load, load[TIME <= 59.0], rtol=1e-12)
     coefficient = table(**columns).rename({"Torque [N*m]": "COF"})
     for source in sources(coefficient, tmp_path):
-        with pytest.raises(UnreadableLogError, match="2940 such rows of 3000"):
+        with pytest.raises(UnreadableLogError, match="2940 such rows, of 3000"):
             hersey.read(source, channels={"load": "Load"}, radius=0.02)
 
 
@@ -114,7 +114,7 @@ def test_no_value_is_interpolated_across_two_runs(tmp_path: Path) -> None:
 def test_what_is_not_slow_is_missing_as_before(tmp_path: Path) -> None:
     holes = [None if i % 10 == 3 else v for i, v in enumerate(HEAT)]
     for source in sources(table(**{"Temp [degC]": holes}), tmp_path):
-        with pytest.raises(UnreadableLogError, match="the first of 300 such rows of 3000"):
+        with pytest.raises(UnreadableLogError, match="the first of 300 such rows, of 3000"):
             hersey.read(source)
         assert hersey.read(source, drop_missing=True).rows == 2700
 
@@ -125,7 +125,7 @@ def test_values_few_and_far_between_tell_nothing_of_what_lies_between(every: int
     long = pl.concat([table(), *(table(**{"Time [s]": TIME + 60.0 * i}) for i in range(1, 4))])
     heat = pl.Series("Temp [degC]", sparse(np.tile(HEAT, 4), every))
     for source in sources(long.with_columns(heat), tmp_path):
-        with pytest.raises(UnreadableLogError, match=r"such rows of 12000.*: too few rows are left"):
+        with pytest.raises(UnreadableLogError, match=r"such rows, of 12000.*\. Too few rows remain"):
             hersey.read(source, drop_missing=True)
 
 

@@ -32,7 +32,10 @@ def test_midnights_are_kept_from_block_to_block() -> None:
     assert stamps.midnights == 2
     warning = stamps.warning("Clock")
     assert (warning.kind, warning.values["midnights"]) == ("time stamps read", 2)
-    assert str(warning) == "'Clock' holds a time of day: read in s since 23:59:58, past midnight 2 times"
+    assert (
+        str(warning)
+        == "'Clock' contains a time of day and was read as seconds since 23:59:58, with 2 changes of day"
+    )
 
 
 def test_two_midnights_in_one_block() -> None:
@@ -61,34 +64,34 @@ def test_a_block_of_missing_stamps_changes_nothing() -> None:
         (
             ("2026-03-01 23:59:59.5", "2026-03-02 00:00:00,25"),
             [0.0, 0.75],
-            "an ISO date: read in s since 2026-03-01 23:59:59",
+            "an ISO date and was read as seconds since 2026-03-01 23:59:59",
         ),
         (
             ("2026/3/1T12:00:00", "2026/3/1T12:01:00"),
             [0.0, 60.0],
-            "an ISO date: read in s since 2026-03-01 12:00:00",
+            "an ISO date and was read as seconds since 2026-03-01 12:00:00",
         ),
         (
             ("2026-03-01T12:00:00+01:00", "2026-03-01T12:00:00Z", "2026-03-01T12:00:00 -0130"),
             [0.0, 3600.0, 9000.0],
-            "an ISO date: read in s since 2026-03-01 11:00:00",
+            "an ISO date and was read as seconds since 2026-03-01 11:00:00",
         ),
         (
             ("1.3.2026 12:00:00", "02.03.2026 12:00:01"),
             [0.0, 86401.0],
-            "a German date: read in s since 2026-03-01 12:00:00",
+            "a German date and was read as seconds since 2026-03-01 12:00:00",
         ),
         (
             ("1-Mar-2026 12:00:00", "02 march 2026 12:00:01", "03-MAR-2026 12:00:01.5"),
             [0.0, 86401.0, 172801.5],
-            "a date with the month's name: read in s since 2026-03-01 12:00:00",
+            "a date with the month's name and was read as seconds since 2026-03-01 12:00:00",
         ),
     ],
 )
 def test_dates(cells: tuple[str, ...], times: list[float], says: str) -> None:
     stamps = stamps_of(*cells)
     assert seconds(stamps, *cells) == pytest.approx(times, abs=1e-6)
-    assert str(stamps.warning("t")) == f"'t' holds {says}"
+    assert str(stamps.warning("t")) == f"'t' contains {says}"
 
 
 def test_what_is_no_stamp() -> None:
@@ -113,7 +116,7 @@ def test_counts_since_1970_show_by_their_size() -> None:
 
 def test_days_of_excel_need_the_name_of_a_date() -> None:
     days = np.array([45000.0, np.nan, 45000.1])
-    assert counted_since("Datum", days) == ("d", "days of Excel")
+    assert counted_since("Datum", days) == ("d", "Excel days")
     assert counted_since("time", days) == ("", "")
     assert counted_since("Datum", np.array([2e4, 45000.0])) == ("", "")
     assert counted_since("Datum", np.array([45000.0, 7.1e4])) == ("", "")

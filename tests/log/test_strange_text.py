@@ -99,10 +99,10 @@ def test_integers_of_toml_have_64_bits(integer: str, key: str, tmp_path: Path) -
 @pytest.mark.parametrize(
     ("document", "told"),
     [
-        ("x = " + "[" * 30 + "]" * 30, "over 20 tables or lists within each other"),
-        (f'x = "{"a" * 1001}"', "a text of 1001 characters: 1000 at the most"),
-        ("a" + ".a" * 21 + " = 1", "a key has over 20 dots"),
-        ("#" * 4_000_001, "over 4000000 bytes"),
+        ("x = " + "[" * 30 + "]" * 30, "more than 20 levels of nested tables or lists"),
+        (f'x = "{"a" * 1001}"', "a text of 1001 characters; at most 1000"),
+        ("a" + ".a" * 21 + " = 1", "a key has more than 20 dots"),
+        ("#" * 4_000_001, "larger than 4000000 bytes"),
     ],
 )
 def test_documents_have_limits(document: str, told: str, tmp_path: Path) -> None:
@@ -205,5 +205,5 @@ def test_a_table_that_is_written_anew_between_two_looks_is_refused(tmp_path: Pat
 
 
 def test_a_file_that_is_not_there() -> None:
-    with pytest.raises(MissingFileError, match="no such file"), open_delimited(Path("none.csv")):
+    with pytest.raises(MissingFileError, match="File not found"), open_delimited(Path("none.csv")):
         pass

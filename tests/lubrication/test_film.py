@@ -58,8 +58,8 @@ def test_the_tables_are_read(machine: Machine) -> None:
         ('model = "walther"', 'model = "walther"\nexample = "cylinder oil"', ["both"]),
         ('uncertainty = "20 %"', "uncertainty = 0.2", ["20 %"]),
         ('conductivity = "0.1 W/m/K"', 'relaxation_time = "1 us"', ["carreau_exponent"]),
-        ("[contact]", "[nip]", ["no table 'nip'"]),
-        ("[contact]", "[contact]\nwidth = 3", ["no key 'width'"]),
+        ("[contact]", "[nip]", ["unknown table 'nip'"]),
+        ("[contact]", "[contact]\nwidth = 3", ["unknown key 'width'"]),
     ],
 )
 def test_mistakes_are_named(tmp_path: Path, old: str, new: str, words: list[str]) -> None:

@@ -90,11 +90,15 @@ def test_starts_of_one_page(tmp_path: Path) -> None:
     ("old", "new", "told"),
     [
         ('"15 degC"', '"15 mm"', "life.coldest: unit 'mm' is not a unit of temperature"),
-        ('"300 mm"', "300", 'life.travel is 300: write a string with its unit, such as "300 mm"'),
+        (
+            '"300 mm"',
+            "300",
+            'life.travel is 300, without a unit. Write it in quotes with its unit, e.g. "300 mm"',
+        ),
         ('"10 J"', '"-10 J"', "life.energy is -10 J: it must be greater than 0"),
         ('"10 J"', '"10 N"', "life.energy: unit 'N' is not a unit of energy"),
-        ("coldest", "cold", "[life] has no key 'cold': coldest"),
-        ("slope = 7\n", "", "[gear] lacks 'slope'"),
+        ("coldest", "cold", "[life] has an unknown key 'cold'. Did you mean 'coldest'? Known keys: coldest"),
+        ("slope = 7\n", "", "[gear] needs the key 'slope'"),
         ("slope = 7", "slope = -7", "gear.slope is -7: it must be greater than 0"),
         ('"haibach"', '"miner"', "gear.second_slope is 'miner'. Write a number such as 9, or 'haibach'"),
         ("20 per 1000", "20 x 1000", "gear.starts is '20 x 1000 pages'. Write a number per age"),
@@ -122,7 +126,7 @@ def test_starts_of_one_page(tmp_path: Path) -> None:
             "",
             "points: 'thick' has no share, but other points have one. State all shares, or none",
         ),
-        ('"40 %"', "0.4", "points 2.share is 0.4: write a share such as '20 %'"),
+        ('"40 %"', "0.4", "points 2.share is 0.4, not a percentage. Write e.g. '20 %'"),
     ],
 )
 def test_a_mistake_is_told_with_its_key(tmp_path: Path, old: str, new: str, told: str) -> None:

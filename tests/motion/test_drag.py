@@ -61,9 +61,9 @@ def test_temperature_is_given_where_it_is_needed() -> None:
     assert WARM.varies_with_temperature
     assert not PLAIN.varies_with_temperature
     assert PLAIN.at(None) is PLAIN
-    with pytest.raises(ParameterError, match=r"^the drag varies with temperature: give temperature$"):
+    with pytest.raises(ParameterError, match=r"^the drag depends on temperature. Give temperature$"):
         WARM.at(None)
-    with pytest.raises(ParameterError, match=r"^temperature is given, but the drag does not vary with it$"):
+    with pytest.raises(ParameterError, match=r"^temperature is given, but the drag does not depend on it$"):
         PLAIN.at(400.0)
 
 

@@ -115,11 +115,11 @@ def test_any_balance_keeps_the_energy(speed: float, power: float, capacity: floa
 
 
 def test_what_is_refused() -> None:
-    with pytest.raises(ParameterError, match=r"write temperature=HeatBalance\(\.\.\.\)"):
+    with pytest.raises(ParameterError, match=r"Write temperature=HeatBalance\(\.\.\.\)"):
         hersey.simulate(_TRAIN, _DRAG, drive_speed=1.0, heat=_HEAT, duration=1.0)  # type: ignore[call-arg]
-    with pytest.raises(ParameterError, match=r"did you mean tolerance\?"):
+    with pytest.raises(ParameterError, match=r"Did you mean tolerance\?"):
         hersey.simulate(_TRAIN, _DRAG, drive_speed=1.0, duration=1.0, tolerence=1e-3)  # type: ignore[call-arg]
-    with pytest.raises(ParameterError, match="does not vary"):
+    with pytest.raises(ParameterError, match="does not depend"):
         hersey.simulate(_TRAIN, _DRAG.at(400.0), drive_speed=1.0, temperature=_HEAT, duration=1.0)
     with pytest.raises(ParameterError, match="heat capacity is 0"):
         hersey.simulate(

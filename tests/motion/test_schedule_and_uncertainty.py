@@ -141,12 +141,12 @@ def test_a_number_is_a_schedule_that_stays() -> None:
     ("times", "values", "smooth", "words"),
     [
         ([0, 1], [1], False, "schedule: 2 times, but 1 values"),
-        ([], [], False, "schedule: it is empty"),
+        ([], [], False, "schedule: there are no points"),
         ([0, np.nan], [1, 2], False, "schedule: a number is not finite"),
         ([0, 1], [1, np.inf], False, "schedule: a number is not finite"),
-        ([0, 2, 1], [1, 1, 1], False, "schedule: time runs backwards: 1.0 comes after 2.0"),
-        ([0, 1, 1], [1, 2, 3], True, "schedule: time runs backwards: 1.0 comes after 1.0"),
-        ([0], [1], True, "schedule: a smooth one needs two points"),
+        ([0, 2, 1], [1, 1, 1], False, "schedule: times must ascend, but 1.0 follows 2.0"),
+        ([0, 1, 1], [1, 2, 3], True, "schedule: times must ascend, but 1.0 follows 1.0"),
+        ([0], [1], True, "schedule: a smooth schedule needs two points"),
     ],
 )
 def test_schedules_that_cannot_be(times: list[float], values: list[float], smooth: bool, words: str) -> None:

@@ -227,7 +227,7 @@ def test_where_drag_falls_steeply_there_may_be_no_cycle() -> None:
         ({}, 0.009, "slowest"),
         ({}, 1.0, "slowest"),
         ({}, math.nan, "slowest"),
-        ({}, "fast", "slowest: 'fast' needs a number and a unit"),
+        ({}, "fast", "slowest: 'fast' is not a number with a unit"),
     ],
 )
 def test_what_has_no_cycles_is_refused(change: dict[str, float], slowest: float, words: str) -> None:

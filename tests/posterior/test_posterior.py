@@ -137,8 +137,8 @@ def test_evidence_of_another_machine_does_not_count(whole: Posterior, demo: hers
     [contradicting] = found.warnings
     assert contradicting.kind == "evidence contradicts dwells and machine"
     assert str(contradicting) == (
-        f"{seen.source}: stick-slip contradicts dwells and machine file: "
-        "check stiffness, mass and stick speed"
+        f"{seen.source}: stick-slip contradicts dwells and machine file. "
+        "Check stiffness, mass and stick speed"
     )
 
 
@@ -155,7 +155,7 @@ def test_the_same_seed_gives_the_same_bits_and_the_rest_is_told(
     for draws, seed in ((10, 1), (400, -1)):
         with pytest.raises(hersey.HerseyError, match="must be at least"):
             posterior(demo, model.machine, surface=model.surface, draws=draws, seed=seed)
-    with pytest.raises(hersey.errors.ParameterError, match=r"take 'thread': did you mean threads\?"):
+    with pytest.raises(hersey.errors.ParameterError, match=r"argument 'thread'. Did you mean threads\?"):
         posterior(demo, model.machine, surface=model.surface, thread=2)  # type: ignore[call-arg]
 
 

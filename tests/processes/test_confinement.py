@@ -189,7 +189,7 @@ def test_one_that_heeds_no_signal_is_ended_at_its_time(hostile: Child) -> None:
 
 def test_one_that_answers_a_byte_at_a_time_is_late(hostile: Child) -> None:
     hostile.ask({"do": "thread"})
-    with pytest.raises(LostError, match="does not answer"):
+    with pytest.raises(LostError, match="does not respond"):
         hostile.ask({"do": "dribble"}, within=0.5)
 
 
@@ -238,9 +238,9 @@ def test_a_container_that_forbids_the_sandbox_has_one_line_on_the_terminal(log: 
         capture_output=True, text=True, check=False,
     )  # fmt: skip
     assert done.stderr == (
-        "hersey: Untrusted files are not fully sandboxed: one could open other files (this system lacks "
-        "Landlock) and could start processes and change files (this system lacks seccomp). Open only files "
-        "that you trust.\n"
+        "hersey: The sandbox for untrusted files is incomplete. A file could open other files (this system "
+        "has no Landlock) and start processes and change files (this system has no seccomp). Open only files "
+        "you trust.\n"
     )
     assert done.returncode == 0
     assert "60" in done.stdout

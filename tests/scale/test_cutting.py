@@ -40,10 +40,10 @@ def test_chunks_are_about_as_large_as_asked() -> None:
 @pytest.mark.parametrize(
     ("asked", "says"),
     [
-        (0, "chunk is 0: of 1000000000 sets a chunk takes 1 to 1000000000"),
+        (0, "chunk is 0: it must be from 1 to 1000000000 sets"),
         (-3, "chunk is -3"),
         (10**9 + 1, "chunk is 1000000001"),
-        (999, "1001002 chunks of 1000000000 sets, and 1000000 are the most: take 2000"),
+        (999, "1001002 chunks of 1000000000 sets; at most 1000000 are allowed. Use 2000"),
     ],
 )
 def test_absurd_sizes_are_refused(asked: int, says: str) -> None:

@@ -96,7 +96,7 @@ def test_a_killed_worker_costs_its_task_alone(workers: LocalWorkers, tmp_path: P
 
 
 def test_an_item_that_ends_every_worker_is_an_error(workers: LocalWorkers) -> None:
-    with pytest.raises(UnfinishedError, match="4 worker processes ended at the same item"):
+    with pytest.raises(UnfinishedError, match="4 worker processes in a row ended at the same item"):
         workers.do(ending, 1)
     assert workers.do(math.factorial, 3) == 6
 

@@ -34,10 +34,10 @@ def test_words_show_numbers_in_the_units_of_people() -> None:
 
 def test_a_way_out_is_in_the_words_of_the_way_in() -> None:
     warning = Warning("apart", "they differ", remedy="fit one alone with {how}", how=ROTATION)
-    assert str(warning) == "they differ: fit one alone with rotation"
+    assert str(warning) == "they differ. Fit one alone with rotation"
     speak("terminal")
     try:
-        assert str(warning) == "they differ: fit one alone with --rotation"
+        assert str(warning) == "they differ. Fit one alone with --rotation"
     finally:
         speak("python")
     assert warning.to_dict()["values"] == {}

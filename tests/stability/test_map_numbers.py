@@ -248,14 +248,14 @@ def test_states_and_torques_go_with_their_temperatures(few: OperatingMap) -> Non
     assert not any(state.doubtful for state in strong.look_up(467.0, [0.01, 0.3]))
     assert strong.look_up(467.0, 0.3)[0].verdict() == "Smooth."
     weak = replace(few, torque_limit=3.0)
-    assert weak.look_up(467.0, 0.3)[0].verdict().startswith("The motor does not start")
-    may = "The drive may not start a belt at rest. If it does:"
+    assert weak.look_up(467.0, 0.3)[0].verdict().startswith("The motor cannot start")
+    may = "The drive may be unable to start a belt at rest. If it starts:"
     words = {
         s: few.look_up(467.0, v)[0].verdict() for s, v in (("slow", 0.01), ("band", 0.045), ("fast", 0.3))
     }
     assert words == {
         "slow": f"{may} Stick-slip is certain.",
-        "band": f"{may} Smooth only if it comes from above; from rest it sticks and slips.",
+        "band": f"{may} Smooth only if slowed from above; sticks if started from rest.",
         "fast": f"{may} Smooth.",
     }
 
@@ -268,13 +268,14 @@ def test_every_sentence_of_a_map(few: OperatingMap, surface: DampingSurface) -> 
     assert low < 0.045 < high
     cold_stick, hot_stick = (few.drag.at(t).stick_speed for t in (KELVIN[0], KELVIN[-1]))
     assert [str(each) for each in few.warnings] == [
-        f"V* depends on the stick speed, 0.3 mm/s at {hot - 273.15:.0f} degC here (with the transition speed "
-        f"it moves from {1e3 * cold_stick:.3g} mm/s to {1e3 * hot_stick:.3g} mm/s), which nobody measures; "
-        "its interval counts the fit, stiffness and stick speed",
+        f"V* depends on the stick speed, 0.3 mm/s at {hot - 273.15:.0f} degC here (it moves with the "
+        f"transition speed, from {1e3 * cold_stick:.3g} mm/s to {1e3 * hot_stick:.3g} mm/s), which the "
+        "dwells do not show. "
+        "The interval of V* includes the uncertainty of the fit, stiffness and stick speed",
         f"the drive gives at most 4.5 N m (motor torque); a belt at rest needs {rest:.3g} N m to start",
-        "the drive may not start a belt at rest",
-        f"thick paper: within the 95 % interval of V* ({1e3 * low:.3g} mm/s to {1e3 * high:.3g} mm/s), so "
-        "the verdict is not certain",
+        "the drive may be unable to start a belt at rest",
+        "thick paper: the verdict is uncertain, because the point lies within the 95 % interval of V* "
+        f"({1e3 * low:.3g} mm/s to {1e3 * high:.3g} mm/s)",
     ]
     stick, limit, doubtful, point = few.warnings
     assert stick.values == {
@@ -303,29 +304,31 @@ def test_sentences_of_a_map_that_knows_little(
         surface, machine.train, **AT, draws=1, temperatures=KELVIN, points=points, limits=Limits(speed=0.4)
     )
     assert str(bare.warnings[0]).endswith(
-        "which nobody measures; its interval counts the fit: state how far stick_speed is known"
+        "which the dwells do not show. The interval of V* includes the uncertainty of the fit. "
+        "State the uncertainty of stick_speed"
     )
     assert [str(each) for each in bare.warnings[1:]] == [
-        "no stall is shown: state motor_torque, or roll_friction and nip_load, among the limits",
-        "fast: extrapolated, no dwell lies that far out",
-        "fast: faster than the drive, 400 mm/s",
+        "the map shows no stall, because no torque limit is stated. "
+        "Add motor_torque, or roll_friction and nip_load, to [limits]",
+        "fast: extrapolated, because no dwell is near this point",
+        "fast: faster than the drive can run (400 mm/s)",
     ]
     assert bare.warnings[-1].values == {"limit": 0.4}
     one = map_of(isothermal, machine.train, **AT, draws=1)
     said = str(one.warnings[0])
-    assert said.startswith("V* depends on the stick speed, 0.3 mm/s here, which nobody measures;")
+    assert said.startswith("V* depends on the stick speed, 0.3 mm/s here, which the dwells do not show.")
     assert one.warnings[0].values["temperature"] is None
     assert one.warnings[1].kind == "isothermal fit"
     assert str(one.warnings[1]) == (
-        "the fit is isothermal: the map holds at the temperature of the log, for the points too"
+        "the fit is isothermal, so the map and its points hold at the temperature of the log"
     )
     at = float(one.transition[0])
     near = map_of(isothermal, machine.train, **AT, draws=1, points=[OperatingPoint("edge", at, 400.0)])
     low, high = (edge[0] for edge in near.transition_interval)
     assert near.warnings[-1].values == {"edge": "the transition speed", "low": low, "high": high}
     assert str(near.warnings[-1]) == (
-        f"edge: within the 95 % interval of the transition speed ({1e3 * low:.3g} mm/s to "
-        f"{1e3 * high:.3g} mm/s), so the verdict is not certain"
+        "edge: the verdict is uncertain, because the point lies within the 95 % interval of the transition "
+        f"speed ({1e3 * low:.3g} mm/s to {1e3 * high:.3g} mm/s)"
     )
 
 
@@ -367,10 +370,10 @@ def test_the_summary_is_a_table_of_the_map(few: OperatingMap) -> None:
     ]
     assert "".join(f"{cell:<26s}" for cell in cells).rstrip() in lines
     torque = 0.015 * float(few.drag.at(453.15).force(0.12))
-    may = "The drive may not start a belt at rest. If it does:"
+    may = "The drive may be unable to start a belt at rest. If it starts:"
     assert f"full speed (120 mm/s, 180 degC, {torque:.3g} N m): {may} Smooth." in lines
     free = replace(few, torque_limit=None, stall_above=np.full(3, np.inf))
-    assert free.summary().splitlines()[2].endswith("not known")
+    assert free.summary().splitlines()[2].endswith("unknown")
     never = replace(few, stall_above=np.full(3, np.inf))
     assert never.summary().splitlines()[2].endswith("never, may not start")
 

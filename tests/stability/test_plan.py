@@ -83,7 +83,12 @@ def test_the_same_seed_gives_the_same_plan() -> None:
 @pytest.mark.parametrize(
     ("limits", "target", "limit", "text"),
     [
-        (Limits(speed=1.5), 1.9, "speed", "the drive speed is limited to 1.5 m/s: 1.9 m/s would do"),
+        (
+            Limits(speed=1.5),
+            1.9,
+            "speed",
+            "the drive speed is limited to 1.5 m/s, but 1.9 m/s would be enough",
+        ),
         (WIDE, 0.9, "target_speed", "not above the transition speed 1.001 m/s"),
         (
             Limits(speed=4.0, acceleration=10.0, spring_force=60.0),
@@ -114,7 +119,7 @@ def test_the_number_that_would_do_does() -> None:
     assert plan.found
     assert [each.kind for each in plan.warnings] == ["grip not in the plan"]
     assert str(plan.warnings[0]) == (
-        "the roll's grip is not stated (roll_friction and nip_load): it is taken to hold throughout"
+        "the grip of the roll is not stated (roll_friction and nip_load), so the roll is assumed not to slip"
     )
 
 
@@ -136,7 +141,7 @@ def test_a_roll_that_cannot_start_the_belt_has_no_plan() -> None:
     enough = refused.obstacles[0].needed
     assert enough is not None
     assert enough > FUSER_DRAG.holding_force > 180.0
-    assert f"the roll's grip of 180 N does not start this belt: {enough:g} N are needed" in refused.verdict()
+    assert f"the roll grip of 180 N cannot start this belt; {enough:g} N is needed" in refused.verdict()
     assert hersey.stick_slip(replace(FUSER, grip=180.0), FUSER_DRAG, drive_speed=0.045).kind == "stalled"
 
 
@@ -199,9 +204,9 @@ def test_motor_torque_is_a_limit_at_the_roll() -> None:
         ({"target_speed": math.nan}, "target_speed is nan"),
         ({"confidence": 1.0}, "confidence is 1.0"),
         ({"seed": -1}, "seed is -1"),
-        ({"uncertainty": {"colour": Uncertainty(share=0.1)}}, "'colour' is no parameter"),
-        ({"samples": {"stiffness": [1.0, 2.0], "mass": [1.0]}}, "differ in length"),
-        ({"samples": [(TRAIN, DRAG)]}, "at least 40 machines"),
+        ({"uncertainty": {"colour": Uncertainty(share=0.1)}}, "unknown parameter 'colour'"),
+        ({"samples": {"stiffness": [1.0, 2.0], "mass": [1.0]}}, "must have equal lengths"),
+        ({"samples": [(TRAIN, DRAG)]}, "too few machines. Give at least 40"),
         ({"limits": Limits(speed=-1.0)}, "speed is -1"),
         ({"temperature": 300.0}, "temperature"),
     ],
@@ -235,7 +240,7 @@ def test_the_command_writes_table_and_figure(examples_here: Path) -> None:
     assert (examples_here / "p.csv").read_text().startswith("time [s],drive speed [m/s]\n")
     assert table.tolist() == [[row["time"], row["drive_speed"]] for row in document["rows"]]
     assert table[-1, 1] == 0.045
-    assert "slides for good" in (examples_here / "p.svg").read_text()
+    assert "slides steadily" in (examples_here / "p.svg").read_text()
     again = run(*asked, "--out", "p.csv", cwd=examples_here)
     assert (again.returncode, "exists" in again.stderr) == (2, True)
 
@@ -254,7 +259,7 @@ def test_the_command_says_what_forbids_a_profile(examples_here: Path) -> None:
     cold = ["--target", "45 mm/s", "--heat", "--from", "20 degC", "--out", "p.csv"]
     never = run("plan", "weak.toml", *command[2:], *cold, cwd=examples_here)
     assert never.returncode == 1
-    assert "the motor torque of 0.1 N m does not start this belt" in never.stdout
+    assert "the motor torque of 0.1 N m cannot start this belt" in never.stdout
     assert not (examples_here / "p.csv").exists()
     for arguments, words in (
         (["--target", "45"], "45"),

@@ -66,7 +66,7 @@ def test_the_course_is_that_of_the_plan_itself(plan: Plan) -> None:
     said = [plan.course.at(t) for t in run.time.tolist()]
     np.testing.assert_allclose(run.film_temperature, said, atol=0.05 + 0.02)
     assert apart(plan.course, course_of(TRAIN, DRAG, HEAT)) > 0.3  # friction warms it, too
-    assert "film: 26.85 degC at first" in plan.summary()
+    assert "film: 26.85 degC initially" in plan.summary()
     assert plan.to_dict()["temperature"] == pytest.approx(plan.course.at(1e9))
 
 
@@ -145,9 +145,9 @@ def test_rounds_that_do_not_end_are_said(monkeypatch: pytest.MonkeyPatch) -> Non
     assert math.isnan(found.duration)
     [obstacle] = found.obstacles
     assert obstacle.limit == "temperature"
-    assert "do not agree after 1 rounds" in obstacle.text
+    assert "do not agree after 1 iterations" in obstacle.text
 
 
 def test_heat_needs_a_drag_that_varies() -> None:
-    with pytest.raises(ParameterError, match="does not vary with temperature"):
+    with pytest.raises(ParameterError, match="does not depend on temperature"):
         plan_profile(TRAIN, DRAG.at(400.0), target_speed=0.12, temperature=HEAT)

@@ -218,7 +218,7 @@ def test_draws_that_are_no_belt_are_left_out_and_counted() -> None:
     lower = {"stick_speed": Uncertainty(limits=(0.05, 5.0))}
     _, none = drawn(TRAIN, DRAG, lower, {}, np.random.default_rng(4), 400)
     assert none == pytest.approx(math.log(5) / math.log(100), abs=0.05)
-    with pytest.raises(ParameterError, match="hardly a draw is possible: state less"):
+    with pytest.raises(ParameterError, match=r"almost no draw is possible. Give a smaller range"):
         drawn(
             TRAIN, DRAG, {"stick_speed": Uncertainty(limits=(0.9, 90.0))}, {}, np.random.default_rng(4), 400
         )
@@ -339,14 +339,16 @@ def test_reach_of_a_drive() -> None:
         ("spring_force", 150.0, 80.0),
         ("motor_torque", pytest.approx(2.0), pytest.approx(1.6)),
     ]
-    assert reach.broken == "the motor's torque does not suffice"
+    assert reach.broken == "the motor torque is not sufficient"
     gripped = replace(limits, roll_friction=0.6, nip_load=100.0)
     assert (Reach.of(gripped, 0.02).force, Reach.of(gripped, 0.02, 50.0).force) == (pytest.approx(60.0), 50.0)
     assert Reach.of(gripped, 0.02).broken == "the roll slips on the belt"
     assert _obstacle("motor_torque", 2.0, 5.3821, held=True).text == (
-        "the motor torque of 2 N m does not start this belt: 5.39 N m are needed"
+        "the motor torque of 2 N m cannot start this belt; 5.39 N m is needed"
     )
-    assert _obstacle("grip", 180.0, 434.0).text == "the roll's grip is limited to 180 N: 434 N would do"
+    assert (
+        _obstacle("grip", 180.0, 434.0).text == "the roll grip is limited to 180 N, but 434 N would be enough"
+    )
     free = Reach.of(Limits(), None)
     assert (free.speed, free.acceleration, free.force, free.uses(shape, 80.0)) == (
         math.inf,
@@ -466,20 +468,19 @@ def test_numbers_of_a_plan_belong_together(plan: Plan) -> None:
 
 
 def test_what_a_plan_says(plan: Plan) -> None:
-    hold = f"hold {plan.hold:.4g} s, " if plan.hold > 0 else ""
+    hold = f"hold for {plan.hold:.4g} s, " if plan.hold > 0 else ""
     assert plan.verdict() == (
-        f"Go up to {plan.peak_speed:.4g} m/s in {plan.rise:.4g} s, {hold}come down to 1.9 m/s in "
-        f"{plan.fall:.4g} s. From {plan.duration:.5g} s on the drive is there and the belt slides for good."
+        f"Accelerate to {plan.peak_speed:.4g} m/s in {plan.rise:.4g} s, {hold}slow down to 1.9 m/s in "
+        f"{plan.fall:.4g} s. After {plan.duration:.5g} s the drive runs at the target "
+        "and the belt slides steadily."
     )
     drawn_often = replace(plan, draws=1500, share=0.97, share_low=0.96178)
     assert drawn_often.proof() == (
-        "Smooth and within the limits in 97.0 % of 1500 fresh draws (more than 96.1 % at the 95 % "
-        "level; asked "
-        "for 90 %)."
+        "Smooth and within the limits for 97.0 % of 1500 new draws (95 % lower bound 96.1 %; 90 % required)."
     )
     waits = replace(plan, kind="direct", wait=3.0, rise=0.0, target_speed=0.05)
-    assert waits.verdict().startswith("Wait 3 s. Come straight up to 50 mm/s at once. From")
-    assert plan.proof() == "Verified at the nominal parameters only, which are taken as known to 0.1 %."
+    assert waits.verdict().startswith("Wait 3 s. Accelerate directly to 50 mm/s at once. After")
+    assert plan.proof() == "Checked at the nominal parameters only, which are assumed known within 0.1 %."
     assert plan.table().splitlines()[0] == "time [s],drive speed [m/s]"
     assert [tuple(map(float, line.split(","))) for line in plan.table().splitlines()[1:]] == [
         pytest.approx(row, rel=1e-11) for row in plan.rows()
@@ -498,16 +499,13 @@ def test_what_forbids_a_plan_in_numbers() -> None:
     assert (slow.obstacles[0].given, slow.obstacles[0].needed) == (1.5, 1.9)
     low = hersey.plan_profile(TRAIN, DRAG, target_speed=0.9)
     assert low.obstacles[0].text == (
-        "the target speed 900 mm/s is not above the transition speed 1.001 m/s, where steady sliding is "
-        "unstable: a target above it would do"
+        "the target speed 900 mm/s is not above the transition speed 1.001 m/s, so steady sliding is "
+        "unstable there; choose a higher target"
     )
     assert low.obstacles[0].needed == pytest.approx(1.02, abs=0.005)
     assert (low.obstacles[0].limit, low.obstacles[0].given) == ("target_speed", 0.9)
     hot = hersey.plan_profile(TRAIN, WARM, target_speed=0.9, temperature=Schedule([0.0, 5.0], [380.0, 400.0]))
-    assert (
-        "1.001 m/s at the temperature in which the temperature profile ends, where steady"
-        in hot.obstacles[0].text
-    )
+    assert "1.001 m/s at the final temperature of the profile, so steady" in hot.obstacles[0].text
     assert (hot.temperature, hot.share, hot.draws, hot.kind) == (400.0, 0.0, 0, "impossible")
     assert math.isnan(hot.duration)
     band = hersey.hysteresis(TRAIN, DRAG, sensitivity=False)

@@ -114,7 +114,7 @@ def test_map_and_plan_say_which_stick_speed_they_took(fitted: hersey.DampingSurf
     said = map_of(fitted, m.train, **m.belt, temperatures=[430.0, HOT], draws=2).warnings[0]
     assert said.values["stick_speed"] == 3e-4
     assert "0.3 mm/s at" in str(said)
-    assert "with the transition speed it moves from" in str(said)
+    assert "it moves with the transition speed, from" in str(said)
     fixed = map_of(fitted, m.train, **machine(FIXED).belt, temperatures=[430.0, HOT], draws=2).warnings[0]
     assert "0.3 mm/s at all temperatures" in str(fixed)
     plan = hersey.plan_profile(m.train, fitted.drag(**m.belt, temperature=HOT), target_speed=0.2)

@@ -146,7 +146,7 @@ def test_a_transition_that_passes_the_target_is_warned_of() -> None:
     temperature = unstable.values["temperature"]
     assert isinstance(temperature, float)
     assert moving.at(temperature - 3.0).transition_speed < 0.02 <= moving.at(temperature).transition_speed
-    assert "goes on warming" in str(unstable)
+    assert "keeps warming" in str(unstable)
     hot = replace(_HEAT, film_temperature=450.0, roll_temperature=450.0)
     sticks = hersey.warm_up(
         _TRAIN, moving, hot, target_speed=0.02, force_limit=300.0, acceleration=0.5, longest=20.0
@@ -179,7 +179,7 @@ def test_bad_input() -> None:
         hersey.warm_up(_TRAIN, _DRAG, _HEAT, margin=1.0, **_LIMITS)
     with pytest.raises(ParameterError, match="longest"):
         hersey.warm_up(_TRAIN, _DRAG, _HEAT, longest=0.0, **_LIMITS)
-    with pytest.raises(ParameterError, match="does not vary"):
+    with pytest.raises(ParameterError, match="does not depend"):
         hersey.warm_up(_TRAIN, _DRAG.at(400.0), _HEAT, **_LIMITS)
     with pytest.raises(HerseyError, match="heat capacity"):
         hersey.warm_up(_TRAIN, _DRAG, replace(_HEAT, roll_capacity=-1.0), **_LIMITS)

@@ -128,18 +128,18 @@ TABLES: dict[str, tuple[Spoil, str]] = {
     ),
     "generated column": (
         execute("ALTER TABLE runs ADD COLUMN g AS (zeroblob(1000000000))"),
-        "table 'runs' is not as hersey makes it",
+        "table 'runs' is not the one that hersey creates",
     ),
     "full-text search": (execute("CREATE VIRTUAL TABLE f USING fts5(x)"), "'f'"),
     "virtual table of trees": (execute("CREATE VIRTUAL TABLE r USING rtree(id, a, b)"), "'r'"),
     "a table more": (execute("CREATE TABLE mine (x)"), "table 'mine'"),
-    "a table of terminal codes": (execute("CREATE TABLE '\x1b[2J' (x)"), "which no campaign has"),
+    "a table of terminal codes": (execute("CREATE TABLE '\x1b[2J' (x)"), "which does not belong there"),
     "cyclic references": (
         execute(
             "CREATE TABLE a (x PRIMARY KEY REFERENCES b (x))",
             "CREATE TABLE b (x PRIMARY KEY REFERENCES a (x))",
         ),
-        "which no campaign has",
+        "which does not belong there",
     ),
     "a table less": (execute("DROP TABLE dwells"), "no table 'dwells'"),
     "an index less": (execute("DROP INDEX runs_of_a_file"), "no index 'runs_of_a_file'"),
@@ -148,12 +148,12 @@ TABLES: dict[str, tuple[Spoil, str]] = {
             "PRAGMA writable_schema = ON",
             "UPDATE sqlite_master SET sql = replace(sql, 'exponent REAL', 'exponent REAL DEFAULT (hex(1))')",
         ),
-        "table 'runs' is not as hersey makes it",
+        "table 'runs' is not the one that hersey creates",
     ),
     "statistics of a planner": (execute("ANALYZE"), "table 'sqlite_stat1'"),
-    "another program's": (execute("PRAGMA application_id = 7"), "is no campaign"),
-    "no program's": (execute("PRAGMA application_id = 0"), "is no campaign"),
-    "a newer version": (execute(f"PRAGMA user_version = {store.VERSION + 1}"), "a newer hersey"),
+    "another program's": (execute("PRAGMA application_id = 7"), "is not a campaign file"),
+    "no program's": (execute("PRAGMA application_id = 0"), "is not a campaign file"),
+    "a newer version": (execute(f"PRAGMA user_version = {store.VERSION + 1}"), "a newer version"),
     "version 0": (execute("PRAGMA user_version = 0"), "version 0"),
     "version -1": (execute("PRAGMA user_version = -1"), "version -1"),
     "twenty thousand tables": (
@@ -174,7 +174,7 @@ def test_other_tables_are_refused(name: str, tmp_path: Path) -> None:
     path = spoiled(tmp_path, spoil)
     for verb, done in typed(tmp_path).items():
         if verb == "add" and name in ("version 0", "version -1"):
-            words = "cannot bring up to date"
+            words = "cannot update"
         refused(done, words)
         assert "\x1b" not in done.stderr
     with pytest.raises(HerseyError):
@@ -367,7 +367,7 @@ def test_what_is_no_whole_file(tmp_path: Path) -> None:
     done = typed(tmp_path)
     assert done.pop("add").returncode == 0
     for each in done.values():
-        refused(each, "is no campaign")
+        refused(each, "is not a campaign file")
 
 
 def test_flipped_bits_end_in_one_error_or_are_read(tmp_path: Path) -> None:
@@ -453,11 +453,11 @@ def test_rows_beyond_number(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
     spoiled(tmp_path, execute())
     monkeypatch.setattr(content, "MOST_RUNS", 3)
     for done in typed(tmp_path).values():
-        refused(done, "and 3 are the most")
+        refused(done, "at most 3 are allowed")
     monkeypatch.undo()
     monkeypatch.setattr(content, "MOST_DWELLS", 9)
     for done in typed(tmp_path).values():
-        refused(done, "and 9 are the most")
+        refused(done, "at most 9 are allowed")
 
 
 def test_work_is_counted_and_ended() -> None:

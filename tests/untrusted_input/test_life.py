@@ -270,7 +270,7 @@ def test_a_process_that_does_not_start_is_no_damage_of_the_file(
     with monkeypatch.context() as broken:
         broken.setattr(sys, "executable", str(tmp_path / "no-python"))
         with pytest.raises(
-            hersey.HerseyError, match="the process that reads such files does not run"
+            hersey.HerseyError, match="the process that reads such files cannot be started"
         ) as told:
             hersey.read(tmp_path / "log.parquet")
     assert "damaged" not in str(told.value)
@@ -300,7 +300,7 @@ def test_the_limit_of_memory_holds_for_threads(tmp_path: Path) -> None:
             file.create_dataset(name, shape=(15_000_000,), dtype="f8", chunks=(1_000_000,), fillvalue=1.0)
     with hersey.memory_limit("300 MB"), ThreadPoolExecutor(1) as threads:
         told = threads.submit(hersey.read, path).exception()
-    assert "takes more than 0.3 GB" in str(told)
+    assert "needs more than 0.3 GB" in str(told)
 
 
 def test_signals_beyond_all_bounds_are_refused(tmp_path: Path) -> None:
@@ -308,7 +308,7 @@ def test_signals_beyond_all_bounds_are_refused(tmp_path: Path) -> None:
     with h5py.File(path, "w") as file:
         for number in range(400):
             file.create_dataset(f"m{number}", shape=(1000, 256), dtype="f4", chunks=(1000, 256))
-    with pytest.raises(hersey.HerseyError, match=r"wide\.h5: holds 102400 channels: 100000 at the most"):
+    with pytest.raises(hersey.HerseyError, match=r"wide\.h5: holds 102400 channels; at most 100000"):
         hersey.read(path)
 
 

@@ -18,7 +18,10 @@ COPYRIGHT, LICENSE = "Copyright (c) 2026 The hersey authors", "MIT"
 _TYPES_2 = {"Float64": "Real", "Enumeration": "Enumeration", "Boolean": "Boolean"}
 #: How a variable begins, where FMI lets one say so.
 _INITIAL = {"parameter": "exact", "output": "calculated"}
-_CATEGORIES = {"logStatusWarning": "What is odd, but goes on", "logStatusError": "What is refused, and why"}
+_CATEGORIES = {
+    "logStatusWarning": "Unusual values; the simulation continues",
+    "logStatusError": "Calls that are refused, with the reason",
+}
 
 
 @dataclass(frozen=True)

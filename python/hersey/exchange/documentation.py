@@ -47,27 +47,29 @@ code { font-family: ui-monospace, Consolas, "DejaVu Sans Mono", monospace; font-
 """
 #: What each group of variables is, in the order of the page.
 _GROUPS = {
-    "input": ("Inputs", "They may jump at any communication point."),
+    "input": ("Inputs", "Inputs may jump at any communication point."),
     "output": ("Outputs", ""),
-    "parameter": ("Parameters", "They may be changed before the initialization ends; then they hold."),
+    "parameter": (
+        "Parameters",
+        "Parameters may be changed until initialization ends, and are fixed after it.",
+    ),
 }
 _EVENTS = {
     "3.0": (
-        "With event mode a step returns early at every change of mode (stick, release, entry of mixed "
-        "lubrication or of the full film, the roll beginning and ceasing to slip), so that outputs can be "
-        "read just there. Without it steps go through changes of mode; the motion is the same, since each "
+        "With event mode a step returns early at every change of mode (stick, release, start of mixed "
+        "lubrication or full film, start and end of roll slip), so outputs can be read at that moment. "
+        "Without it, steps continue through changes of mode. The motion is the same, because each "
         "change is located to rounding inside the step."
     ),
     "2.0": (
-        "Between two points an input may have a slope. Steps go through changes of mode (stick, release, "
-        "entry of mixed lubrication or of the full film), each of which is located to rounding inside the "
-        "step."
+        "Inputs may have a slope between two points. Steps continue through changes of mode (stick, "
+        "release, start of mixed lubrication or full film), each located to rounding inside the step."
     ),
 }
 _USE = {
-    "Simulink": "add the block FMU, name the file; inputs and outputs are its ports, parameters its mask.",
-    "OpenModelica": "in OMEdit: File, Import FMU (the 2.0 unit); or OMSimulator: a component of a system.",
-    "Amesim": "FMI import assistant, co-simulation; the unit is a component of the sketch.",
+    "Simulink": "add the FMU block and name the file. Ports are inputs and outputs, the mask has parameters.",
+    "OpenModelica": "OMEdit: File, Import FMU (version 2.0). OMSimulator: add it as a component of a system.",
+    "Amesim": "FMI import assistant, co-simulation; the FMU is a component of the sketch.",
     "Python": "<code>fmpy.simulate_fmu('drive.fmu', stop_time=2, output_interval=1e-3)</code>.",
 }
 
@@ -84,12 +86,12 @@ def page(model: Model, variables: Sequence[Variable], facts: Mapping[str, str], 
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         '<meta name="viewport" content="width=device-width">\n'
         f"<title>{escape(model.name)}</title>\n<style>\n{_STYLE}</style>\n</head>\n<body>\n"
-        f"<h1>{escape(model.name)}</h1>\n<p>A belt on its drive, which may stick and slip: a unit for "
-        f"co-simulation by FMI {fmi}, with the core of hersey in it.</p>\n"
+        f"<h1>{escape(model.name)}</h1>\n<p>A belt drive that may stick and slip, as an FMU for "
+        f"co-simulation (FMI {fmi}). It contains the hersey core.</p>\n"
         f'<ul class="facts">{listed}</ul>\n{tables}'
-        f"<h2>Steps and events</h2>\n<p>{_EVENTS[fmi]} The size of a communication step changes nothing "
-        "else: the library takes its own steps. State can be saved, restored and serialized, to the bit; any "
-        "number of instances may run in one process.</p>\n"
+        f"<h2>Steps and events</h2>\n<p>{_EVENTS[fmi]} The communication step size affects nothing else, "
+        "because the library chooses its own steps. State can be saved, restored and serialized exactly. "
+        "Any number of instances may run in one process.</p>\n"
         f"<h2>Use</h2>\n<ul>{uses}</ul>\n"
         "<h2>Licence</h2>\n<p>MIT: see licenses/license.txt.</p>\n</body>\n</html>\n"
     )

@@ -18,7 +18,7 @@ def drive_values(train: Drivetrain, drag: AnyDrag) -> dict[str, Wire]:
         If the drag has no wire form.
     """
     if not isinstance(drag, BesideShape):
-        raise ParameterError(f"a unit knows no drag of the kind {type(drag).__name__}")
+        raise ParameterError(f"an FMU cannot use a drag of type {type(drag).__name__}")
     values: dict[str, Wire] = {"stiffness": train.stiffness, "mass": train.mass}
     if train.grip is not None:
         values["grip"] = train.grip

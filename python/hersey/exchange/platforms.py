@@ -33,7 +33,7 @@ class Platform:
         folder = self.name if fmi == "3.0" else self.folder_2
         if not folder:
             raise ParameterError(
-                f"FMI {fmi} has no folder for {self.name}: leave it out, or use {Setting('fmi').to('3.0')}"
+                f"FMI {fmi} has no folder for {self.name}. Omit it, or use {Setting('fmi').to('3.0')}"
             )
         return f"binaries/{folder}/{LIBRARY}{self.ending}"
 
@@ -103,13 +103,13 @@ def read_library(path: Path, wanted: Platform, fmi: str) -> bytes:
         raise MissingFileError(f"{path} cannot be read: {error.strerror}") from None
     found = _platforms_of(content)
     if wanted.name not in found:
-        what = f"is a library for {' and '.join(found)}" if found else "is no shared library"
+        what = f"is a library for {' and '.join(found)}" if found else "is not a shared library"
         raise ParameterError(
-            f"{path} {what}: {wanted.name} needs one of its own (see docs/reference/exchange.md)"
+            f"{path} {what}, but {wanted.name} needs its own (see docs/reference/exchange.md)"
         )
     step = f"fmi{fmi[0]}DoStep"
     if step.encode() not in content:
-        raise ParameterError(f"{path} has no function {step}: it is no library of hersey's crates/c")
+        raise ParameterError(f"{path} has no function {step}, so it was not built from hersey's crates/c")
     return content
 
 

@@ -50,10 +50,10 @@ class Trial:
     def summary(self) -> str:
         """Return it in words."""
         if self.problems:
-            return "\n".join(["FMPy finds the unit not valid:", *(f"- {each}" for each in self.problems)])
+            return "\n".join(["FMPy reports an invalid FMU:", *(f"- {each}" for each in self.problems)])
         said = ", ".join(f"{gap:.1e} in {name.replace('_', ' ')}" for name, gap in self.differences.items())
-        verdict = "it runs as the core does" if self.ok else "it does NOT run as the core does"
-        return f"FMPy finds the unit valid; {verdict}: {said}, over {self.events} changes of mode"
+        verdict = "its results agree with hersey" if self.ok else "its results DIFFER from hersey"
+        return f"FMPy reports a valid FMU; {verdict} ({said}, over {self.events} changes of mode)"
 
 
 def try_unit(unit: ExportedUnit, train: Drivetrain, drag: AnyDrag) -> Trial:
@@ -105,7 +105,7 @@ def try_unit(unit: ExportedUnit, train: Drivetrain, drag: AnyDrag) -> Trial:
                 validate=False,
             )
     except Exception as error:  # FMPy raises that of Python's for all that a library refuses
-        return Trial((f"it does not run: {error}",), {}, 0)
+        return Trial((f"it cannot be run: {error}",), {}, 0)
     return Trial((), _differences(run, ran), len(run.events))
 
 
@@ -129,4 +129,4 @@ def _fmpy() -> Any:
     try:
         return import_module("fmpy")
     except ImportError:
-        raise ParameterError("to check a unit FMPy is needed: pip install 'hersey[exchange]'") from None
+        raise ParameterError("checking an FMU needs FMPy. Run pip install 'hersey[exchange]'") from None

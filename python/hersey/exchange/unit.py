@@ -44,10 +44,9 @@ _NONE: Mapping[str, str | Path] = MappingProxyType({})
 
 @dataclass(frozen=True)
 class ExportedUnit:
-    """A unit that was written: file, version, drive, start, token, platforms, variables and their starts.
+    """A written FMU: file, version, drive, start, token, platforms, variables and their start values.
 
-    ``facts`` say what it was made of, by what they are about; ``port`` is the coupling of a drive that is
-    given a speed.
+    ``facts`` says what it was made from, by topic; ``port`` is the coupling of a speed-controlled drive.
     """
 
     path: Path
@@ -67,7 +66,7 @@ class ExportedUnit:
         return PORTS[self.port] if self.drive == "speed" else DRIVES[self.drive]
 
     def summary(self) -> str:
-        """Return the unit in words: what it takes, gives and is made of."""
+        """Return inputs, outputs and origin of the FMU as text."""
         names = {
             kind: ", ".join(v.name for v in self.variables if v.causality == kind)
             for kind in ("input", "output")
@@ -82,7 +81,7 @@ class ExportedUnit:
         )
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the unit, its variables with their starts in SI."""
+        """Return the FMU and its variables, start values in SI."""
         rows = [
             {name: getattr(v, name) for name in ("reference", "name", "causality", "unit", "description")}
             | {"start": self.starts.get(v.name)}
@@ -115,7 +114,7 @@ def export_fmu(
     tolerance: float = TOLERANCE,
     overwrite: bool = False,
 ) -> ExportedUnit:
-    """Write a drive as a Functional Mock-up Unit for co-simulation, and return what is in it.
+    """Write a drive as a Functional Mock-up Unit (FMU) for co-simulation, and return its content.
 
     The same input gives the same bits. Variables, events and platforms: ``docs/reference/exchange.md``.
 
@@ -124,42 +123,42 @@ def export_fmu(
     out
         File to write, ``.fmu``.
     train, drag
-        As of `simulate`, in SI.
+        As for `simulate`, in SI.
     drive
-        ``speed``: of the far end of the spring, or ``torque``: on a roll that a spring holds to the ground.
+        ``speed`` (of the far end of the spring) or ``torque`` (on a roll that a spring holds to the ground).
     port
-        Of a drive by its speed. ``translational``: the input is the belt-side speed ``drive_speed``, m/s.
+        For drive ``speed``. ``translational``: the input is the belt-side speed ``drive_speed``, m/s.
         ``rotational``: the input is the speed of the roll's shaft, ``roll_speed`` (rad/s), and the output
-        ``reaction_torque`` (N m) is what brakes that shaft, to be coupled to a motor; needs ``roll_radius``.
+        ``reaction_torque`` (N m) brakes that shaft, so it can be coupled to a motor; needs ``roll_radius``.
     drive_speed, drive_torque, temperature
-        Values of the inputs until the tool gives others, m/s, N m and K; a temperature is needed, and an
-        input, where the drag varies with it.
+        Start values of the inputs, m/s, N m and K. If the drag depends on temperature, temperature is an
+        input and must be given.
     start
-        ``rest``, ``steady`` (sliding with the drive as it is when the initialization ends), or a pair of belt
+        ``rest``, ``steady`` (sliding at the drive speed at the end of initialization), or a pair of belt
         speed and stretch.
     roll_radius
-        m, at which a torque acts; needed for that drive, for a rotational port, and for the unit to know
-        the range of speeds of ``fitted``.
+        Radius at which a torque acts, m. Needed for drive ``torque``, for a rotational port, and to check the
+        speed range of ``fitted``.
     fitted
-        The fit that the drag is of: its logs and the range of its data are written down, and the unit warns
-        when it is run beyond that range. Of a `MixedDrag` that range is the temperatures of its lubricant.
+        Fit behind the drag. Its logs and data range are recorded, and the FMU warns outside that range. For a
+        `MixedDrag` the range is the temperatures of its lubricant.
     name
-        Of the model, as tools show it.
+        Name of the model in tools.
     fmi
         ``3.0``, or ``2.0`` for older tools.
     libraries
         Files of the library built for other platforms, by name (``x86_64-windows``, ``aarch64-darwin``).
     tolerance
-        Relative, of the steps.
+        Relative tolerance of the steps.
     overwrite
         Whether a file of that name may be replaced.
 
     Raises
     ------
     ParameterError
-        If a value is out of range, or a library is not of its platform.
+        If a value is out of range, or a library is for another platform.
     MissingFileError
-        If this install has no library, or one that is named is not there.
+        If this installation has no library, or a named one does not exist.
     OutputError
         If the file exists, or cannot be written.
     """
@@ -219,11 +218,11 @@ def _try(
 ) -> None:
     """Refuse what a motion cannot start with; ``given`` are the inputs in the units of the belt."""
     if drive == "torque" and start == "steady":
-        raise ParameterError("start 'steady' goes with drive 'speed'")
+        raise ParameterError("start 'steady' needs drive 'speed'")
     temperature, torque = given["temperature"], given["drive_torque"]
     if temperature is not None and temperature <= drag.temperature_zero:
         raise ParameterError(
-            f"temperature is {celsius(temperature):.6g} degC: the law holds above "
+            f"temperature is {celsius(temperature):.6g} degC: the law needs temperatures above "
             f"{celsius(drag.temperature_zero):.6g} degC"
         )
     simulate(
@@ -248,13 +247,15 @@ def _refuse(out: str | Path, name: str, drive: str, port: str, fmi: str, roll_ra
         if value not in known:
             raise ParameterError(f"{said} is '{value}': it must be {' or '.join(known)}")
     if not (name.strip() and name.isprintable()):
-        raise ParameterError(f"name is '{name}': it must be a line of visible characters")
+        raise ParameterError(f"name is '{name}': it must be one line of visible characters")
     if Path(out).suffix != ".fmu":
-        raise ParameterError(f"{out}: name a file that ends in .fmu")
+        raise ParameterError(f"{out} is not the name of an FMU. Name a file that ends in .fmu")
     if drive == "torque" and roll_radius is None:
-        raise ParameterError("a drive by a torque needs the roll_radius at which it acts")
+        raise ParameterError("drive 'torque' needs the roll_radius at which it acts")
     if port == ROTATIONAL and drive != "speed":
-        raise ParameterError("port 'rotational' goes with drive 'speed': a torque acts on the roll already")
+        raise ParameterError(
+            "port 'rotational' needs drive 'speed', because a torque already acts on the roll"
+        )
     if port == ROTATIONAL and roll_radius is None:
         raise ParameterError("a rotational port needs the roll_radius")
     if roll_radius is not None and not 0 < roll_radius < float("inf"):
@@ -328,7 +329,7 @@ def _binaries(libraries: Mapping[str, str | Path], fmi: str) -> tuple[dict[str, 
         where = (wanted := platform_named(name)).path(fmi)
         if where in found:
             raise ParameterError(
-                f"FMI {fmi} keeps the libraries of both processors in {where}: give one file that holds both"
+                f"FMI {fmi} keeps the libraries of both processors in {where}. Give one file with both"
             )
         found[where] = read_library(file, wanted, fmi)
     return found, tuple(files)
@@ -348,20 +349,20 @@ def _facts(
                 f"mixed contact: film of {drag.contact.lubricant.name} and asperities share the load"
             )
             if temperatures is not None:
-                facts["Viscosity known at"] = f"{_degrees(temperatures)}; beyond, it is extrapolated"
+                facts["Viscosity known at"] = f"{_degrees(temperatures)}; extrapolated outside"
         return facts
     facts["Law"] = " ".join(fitted.headline().split())
     facts["Fitted by"] = f"hersey {fitted.version}"
-    facts["Logs (SHA-256)"] = ", ".join(fitted.data_sha256) or "not known"
+    facts["Logs (SHA-256)"] = ", ".join(fitted.data_sha256) or "unknown"
     low, high = fitted.speed_range
     ranges = f"roll speeds of {rpm(low):.4g} to {rpm(high):.4g} rpm"
     if roll_radius is not None:
         ranges += f" ({1e3 * low * roll_radius:.4g} to {1e3 * high * roll_radius:.4g} mm/s at the belt)"
     if temperatures is not None:
         ranges += f" and {_degrees(temperatures)}"
-    facts["Measured at"] = f"{ranges}; beyond, the law is extrapolated"
+    facts["Measured at"] = f"{ranges}; extrapolated outside"
     if fitted.rest is not None:
-        facts["Beside it"] = " ".join(fitted.rest.headline().split())
+        facts["No-load torque"] = " ".join(fitted.rest.headline().split())
     return facts
 
 

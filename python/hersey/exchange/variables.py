@@ -45,13 +45,13 @@ def variables_of(library: Path) -> tuple[Variable, ...]:
     """
     if not library.is_file():
         raise MissingFileError(
-            f"this install has no library for units ({library.name} is missing): build it with make build, "
-            "or install a wheel of hersey"
+            f"this installation has no library for FMUs ({library.name} is missing). Build it with make "
+            "build, or install a hersey wheel"
         )
     try:
         tell = getattr(ctypes.CDLL(str(library)), _TABLE)
     except (OSError, AttributeError) as error:
-        raise ParameterError(f"{library} cannot be used as hersey's library: {error}") from None
+        raise ParameterError(f"{library} cannot be loaded: {error}") from None
     tell.restype = ctypes.c_char_p
     return table(tell().decode("utf-8"))
 

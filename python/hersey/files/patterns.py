@@ -31,17 +31,17 @@ def files_of(patterns: str | Path | Iterable[str | Path]) -> list[Path]:
     for path in found:
         real = os.path.realpath(path)
         if real in seen:
-            raise ParameterError(f"{path} is named twice: name each file once")
+            raise ParameterError(f"{path} is given twice. Give each file once")
         seen.add(real)
     return found
 
 
 def _matched(name: str | Path) -> list[Path]:
     if not isinstance(name, str | os.PathLike):
-        raise ParameterError(f"a {type(name).__name__} is no log file: give its path")
+        raise ParameterError(f"a {type(name).__name__} is not a log file. Give the path of the file")
     text = os.fspath(name)
     if "\0" in text:
-        raise MissingFileError(f"{text}: no file is called so")
+        raise MissingFileError(f"File not found: {text}")
     if not glob.has_magic(text) or os.path.lexists(text):
         return [Path(name)]
     once: dict[str, str] = {}
@@ -50,5 +50,5 @@ def _matched(name: str | Path) -> list[Path]:
             once.setdefault(os.path.realpath(path), path)
     files = list(once.values())
     if not files:
-        raise MissingFileError(f"{text}: no file matches: see the folder and the ending")
+        raise MissingFileError(f"no file matches {text}. Check the folder and the file extension")
     return [Path(path) for path in files]

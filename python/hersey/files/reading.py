@@ -17,7 +17,7 @@ from typing import BinaryIO
 from hersey.errors import HerseyError, MissingFileError, UnreadableLogError, meant, printable
 from hersey.schema.warning import Warning
 
-_WAY_OUT = "wait until the logger has closed it, or copy it first"
+_WAY_OUT = "Wait until the logger has closed it, or copy it first"
 _CHUNK = 1 << 20
 #: Endings of files of which one is named where a folder was given.
 _OF_A_LOG = frozenset((".csv", ".txt", ".tsv", ".dat", ".xlsx", ".lvm", ".tdms", ".mf4", ".mat", ".parquet"))
@@ -42,7 +42,7 @@ class OpenFile:
             return f"it {what} from {before.st_size} to {now.st_size} bytes"
         if (now.st_mtime_ns, now.st_ctime_ns) != (before.st_mtime_ns, before.st_ctime_ns):
             return "it was written to"
-        return "" if self._is_there() else "it was moved, removed or replaced"
+        return "" if self._is_there() else "it was moved, deleted or replaced"
 
     def refuse_change(self) -> None:
         """Raise if the file is no longer what it was when it was opened.
@@ -77,7 +77,7 @@ class OpenFile:
             It names the file and the way out.
         """
         if self.sha256() != sha256:
-            raise self._changed("it was written anew")
+            raise self._changed("its content was replaced")
 
     def growth(self, sha256: str) -> list[Warning]:
         """Return a warning if a logger still appends to the file; ``sha256`` is that of the bytes read.
@@ -96,15 +96,15 @@ class OpenFile:
         return [
             Warning(
                 "file grew while it was read",
-                "the file grew from {before} to {after} bytes while it was read: its first {before} bytes "
-                "were used",
+                "the file grew from {before} to {after} bytes while it was read; only the first "
+                "{before} bytes were used",
                 before=self.size,
                 after=now,
             )
         ]
 
     def _changed(self, change: str) -> UnreadableLogError:
-        return UnreadableLogError(f"{self.path.name} changed while it was read: {change}: {_WAY_OUT}")
+        return UnreadableLogError(f"{self.path.name} changed while it was read ({change}). {_WAY_OUT}")
 
     def _is_young(self) -> bool:
         """Whether a change right after the opening could bear the same time as the one before it."""
@@ -153,7 +153,7 @@ def open_file(path: Path) -> Iterator[BinaryIO]:
     """
     try:
         if path.exists() and not path.is_file():
-            what = f"a directory: name a file in it{_one_in(path)}" if path.is_dir() else "no ordinary file"
+            what = f"a folder. Name a file in it{_one_in(path)}" if path.is_dir() else "not a regular file"
             raise MissingFileError(f"{path} is {what}")
         try:
             file = path.open("rb")
@@ -164,7 +164,7 @@ def open_file(path: Path) -> Iterator[BinaryIO]:
     except HerseyError:
         raise
     except FileNotFoundError:
-        raise MissingFileError(f"{path}: there is no such file{_near(path)}") from None
+        raise MissingFileError(f"File not found: {path}{_near(path)}") from None
     except OSError as error:
         raise MissingFileError(f"{path} cannot be read: {error.strerror}") from None
 
@@ -175,7 +175,7 @@ def _near(path: Path) -> str:
         near = meant(path.name, [each.name for each in path.parent.iterdir() if each.is_file()])
     except (OSError, ValueError):
         return ""
-    return f": did you mean '{printable(str(path.with_name(near)))}'?" if near else ""
+    return f". Did you mean '{printable(str(path.with_name(near)))}'?" if near else ""
 
 
 def _one_in(folder: Path) -> str:
@@ -184,7 +184,7 @@ def _one_in(folder: Path) -> str:
         files = sorted(each for each in folder.iterdir() if each.is_file() and each.suffix in _OF_A_LOG)
     except OSError:
         return ""
-    return f", as '{printable(str(files[0]))}'" if files else ""
+    return f", e.g. '{printable(str(files[0]))}'" if files else ""
 
 
 @contextmanager

@@ -30,7 +30,7 @@ def copy_examples(folder: Path) -> list[Path]:
     try:
         folder.mkdir()
     except FileExistsError:
-        raise ExistingFileError(f"{folder} exists: name a folder that does not exist yet") from None
+        raise ExistingFileError(f"{folder} already exists. Name a new folder") from None
     except OSError as error:
         raise OutputError(f"{folder} cannot be written: {error.strerror}") from None
     try:
@@ -49,4 +49,4 @@ def _home() -> Path:
     for home in (here.with_name("examples"), here.parents[3] / "examples"):
         if (home / _LOG).is_file():
             return home
-    raise OutputError("This installation has no examples: install hersey from a wheel made by `make wheel`")
+    raise OutputError("This installation has no examples. Build a wheel with `make wheel` and install that")

@@ -28,7 +28,7 @@ def read_text(path: Path, *, most: int = MOST_BYTES) -> str:
     with open_file(path) as file:
         text = file.read(most + 1)
     if len(text) > most:
-        raise ParameterError(f"{path.name} has over {most} bytes: no such file is as long")
+        raise ParameterError(f"{path.name} is larger than {most} bytes, the limit for such a file")
     return text.decode("utf-8-sig").replace("\r\n", "\n")
 
 
@@ -37,5 +37,5 @@ def shown(value: object) -> str:
     try:
         text = repr(value)
     except ValueError:  # an integer with more digits than Python writes
-        return "a number of thousands of digits"
+        return "a number with thousands of digits"
     return text if len(text) <= _SHOWN else f"{text[:_SHOWN]}..."

@@ -57,9 +57,9 @@ _PART = re.compile(
 )
 #: The way out where a value is none of the type that is needed.
 _WAY_OUT = {
-    "string_type": "write a text",
-    "bool_type": "write true or false",
-    "literal_error": "write {expected}",
+    "string_type": "Write it as text in quotes",
+    "bool_type": "Write true or false",
+    "literal_error": "Write {expected}",
 }
 
 
@@ -90,11 +90,11 @@ class Quantity:
         value = self._number(given) if self.kind is None or info.context.plain else self._with_unit(given)
         if self.low > 0 >= value:
             example = f'"{self.example}"' if self.kind else self.example
-            such = f", such as {example}" if self.example else ""
+            such = f", e.g. {example}" if self.example else ""
             raise ParameterError(f"is {_written(given)}: it must be greater than 0{such}")
         if not self.low <= value <= self.high:
             believed = f"{self.low:g} to {self.high:g} {self.unit}".rstrip()
-            raise ParameterError(f"is {_written(given)}: {believed} is believed")
+            raise ParameterError(f"is {_written(given)}: it must be within {believed}")
         return value
 
     @property
@@ -109,15 +109,27 @@ class Quantity:
 
     def _with_unit(self, given: object) -> float:
         if not isinstance(given, str):
-            such = f', such as "{self.example}"' if self.example else ""
-            raise UnitError(f"is {_written(given)}: write a string with its unit{such}")
+            assert self.kind is not None
+            number = given if isinstance(given, int | float) and math.isfinite(given) else 1
+            example = self.example or f"{number} {KINDS[self.kind][1]}"
+            such = f', e.g. "{example}"'
+            raise UnitError(f"is {_written(given)}, without a unit. Write it in quotes with its unit{such}")
         return self.parsed(given)
 
     def _number(self, given: object) -> float:
         if isinstance(given, bool) or not isinstance(given, int | float) or not abs(given) < _LARGEST:
-            such = f" such as {self.example}" if self.example else ""
-            raise ParameterError(f"is {shown(given)}: write a number{such}")
+            numeric = isinstance(given, str) and _is_number(given)
+            such = f". Write a number, e.g. {self.example}" if self.example else ""
+            remedy = ". Write it without quotes" if numeric else such
+            raise ParameterError(f"is {shown(given)}, not a number{remedy}")
         return float(given)
+
+
+def _is_number(text: str) -> bool:
+    try:
+        return math.isfinite(float(text))
+    except ValueError:
+        return False
 
 
 def _share(given: object, info: ValidationInfo[Any]) -> object:
@@ -125,13 +137,13 @@ def _share(given: object, info: ValidationInfo[Any]) -> object:
         return given
     match = _SHARE.fullmatch(given.strip()) if isinstance(given, str) and len(given) < 60 else None
     if match is None or not 0 < float(match[1]) < 1000:
-        raise ParameterError(f"is {shown(given)}: write a share such as '20 %'")
+        raise ParameterError(f"is {shown(given)}, not a percentage. Write e.g. '20 %'")
     return float(match[1]) / 100
 
 
 def _not_blank(text: str, info: ValidationInfo[Any]) -> str:
     if info.context is not None and not text.strip():
-        raise ParameterError("is empty: fill it in, or delete its line")
+        raise ParameterError("is empty. Fill it in, or delete its line")
     return text
 
 
@@ -184,8 +196,8 @@ def _no_toml(path: Path, text: str) -> str:
     if path.suffix == ".toml" or ("," not in first and ";" not in first and "\t" not in first):
         return ""
     return (
-        "; it looks like a log, and a machine's file or a mapping (TOML) is needed here: "
-        "are the two files swapped?"
+        ". It looks like a log, but a machine file or a mapping (TOML) is needed here. Did you swap "
+        "the two files?"
     )
 
 
@@ -199,7 +211,7 @@ def _refuse_long_keys(text: str) -> None:
         elif part[0][0] in ",=\n\r{}[]#":
             dots = 0
         if dots > _MOST_DOTS:
-            raise ValueError(f"a key has over {_MOST_DOTS} dots")
+            raise ValueError(f"a key has more than {_MOST_DOTS} dots")
 
 
 def _refuse_large(document: dict[str, Any]) -> None:
@@ -213,12 +225,14 @@ def _refuse_large(document: dict[str, Any]) -> None:
             elif isinstance(value, list):
                 within += value
             elif isinstance(value, int) and not -_WHOLE <= value < _WHOLE:
-                raise ParameterError("is not valid TOML: a whole number has over 64 bits")
+                raise ParameterError("is not valid TOML: an integer has more than 64 bits")
             elif isinstance(value, str) and len(value) > _LONGEST_TEXT:
-                raise ParameterError(f"has a text of {len(value)} characters: {_LONGEST_TEXT} at the most")
+                raise ParameterError(
+                    f"has a text of {len(value)} characters; at most {_LONGEST_TEXT} are allowed"
+                )
         level = within
     if level:
-        raise ParameterError(f"has over {_DEEPEST} tables or lists within each other")
+        raise ParameterError(f"has more than {_DEEPEST} levels of nested tables or lists")
 
 
 def _written(given: object) -> str:
@@ -296,26 +310,26 @@ def _words(kind: str, loc: tuple[str | int, ...], given: object, about: Mapping[
     """What is wrong, and the way out, of a mistake that pydantic knows."""
     match kind:
         case "missing" if len(loc) == 1:
-            return f"there is no table [{loc[0]}]"
+            return f"table [{loc[0]}] is missing"
         case "missing":
-            return f"{_place(loc[:-1], {})} lacks '{loc[-1]}'"
+            return f"{_place(loc[:-1], {})} needs the key '{loc[-1]}'"
         case "unknown" if not loc:
             tables = ", ".join(f"[{name}]" for name in about["known"])
-            return f"there is no table '{about['key']}': {tables} are known{_near(about, '[{}]')}"
+            return f"unknown table '{about['key']}'.{_near(about, '[{}]')} Known tables: {tables}"
         case "unknown":
             known = ", ".join(about["known"])
-            return f"{_place(loc, {})} has no key '{about['key']}': {known} are known{_near(about)}"
+            return f"{_place(loc, {})} has an unknown key '{about['key']}'.{_near(about)} Known keys: {known}"
         case "dataclass_type" | "dict_type":
             table = ".".join(name for name in loc if isinstance(name, str))
-            return f"{_place(loc, given)} is not a table: write [{table}]"
-    way_out = _WAY_OUT.get(kind, "another kind of value is needed")
-    return f"{_place(loc, given)} is {shown(given)}: {way_out.format(**about)}"
+            return f"{_place(loc, given)} is not a table. Write [{table}]"
+    way_out = _WAY_OUT.get(kind, "Write a value of the right type")
+    return f"{_place(loc, given)} is {shown(given)}. {way_out.format(**about)}"
 
 
 def _near(about: Mapping[str, Any], written: str = "'{}'") -> str:
     """Which of the known names was probably meant, or nothing."""
     near = meant(str(about["key"]), about["known"])
-    return f"; did you mean {written.format(near)}?" if near else ""
+    return f" Did you mean {written.format(near)}?" if near else ""
 
 
 def _place(loc: tuple[str | int, ...], given: object) -> str:

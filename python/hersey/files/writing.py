@@ -84,7 +84,7 @@ def written(path: Path, *, overwrite: bool) -> Iterator[BinaryIO]:
 def _part_of(path: Path, overwrite: bool) -> Iterator[Path]:
     """Yield the name of what will replace a file; at the end nothing of that name is there."""
     if path.is_dir():
-        raise OutputError(f"{path} is a directory: name a file in it")
+        raise OutputError(f"{path} is a folder. Name a file in it")
     if path.exists() and not overwrite:
         raise _exists(path)
     part = unfinished(path)

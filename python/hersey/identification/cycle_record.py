@@ -66,12 +66,12 @@ class CycleRecord(Result):
     """Cycles of a trace at one drive speed.
 
     ``kind`` is ``steady_sliding`` (no cycles), ``inertial`` (an oscillation near the free period in which the
-    belt sticks for less than 15 % of the time) or ``stick_slip``; like all of ``motion`` it follows from all
-    falls beyond the noise, whatever slips are counted. Arrays have one value per slip counted, ``period`` one
-    per pair of slips with no gap between, ``rise_slope`` (of the steepest part of a rise) up to 4000 of them.
-    ``fall_duration`` is the time from maximum to minimum, ``steep_duration`` that of half a cosine as steep.
-    Force is in the unit of the trace, time in s; for a trace of speed the "force" is the stretch of the
-    spring, m, from an unknown zero.
+    belt sticks for less than 15 % of the time) or ``stick_slip``. Like all of ``motion`` it follows from all
+    drops that exceed the noise, whichever slips are counted. Arrays have one value per counted slip;
+    ``period`` has one per pair of slips without a gap between them, ``rise_slope`` (of the steepest part of a
+    rise) at most 4000. ``fall_duration`` is the time from maximum to minimum, ``steep_duration`` that of a
+    half cosine of the same steepness. Force is in the unit of the trace, time in s; for a trace of speed the
+    "force" is the stretch of the spring, m, from an unknown zero.
     """
 
     motion: Motion
@@ -97,7 +97,7 @@ class CycleRecord(Result):
 
     @property
     def drop(self) -> FloatArray:
-        """Fall of the force in each slip."""
+        """Drop of the force in each slip."""
         return self.force_max - self.force_min
 
     @property
@@ -107,42 +107,42 @@ class CycleRecord(Result):
 
     @property
     def falls(self) -> int:
-        """Number of falls beyond the noise, counted as slips or not."""
+        """Number of drops that exceed the noise, counted as slips or not."""
         return self.motion.falls
 
     @property
     def loading_slope(self) -> float:
-        """Slope of the force while the belt is held, per s: the steepest part of the rises.
+        """Slope of the force while the belt is held, per s, from the steepest part of the rises.
 
-        Creep before a slip and the rounded ends only lower a slope. Where the oscillation is inertial no
-        part is straight, and the greatest slope of the ellipse is given.
+        Creep before a slip and rounded ends only lower the slope. In an inertial oscillation no part is
+        straight, so the greatest slope of the ellipse is returned.
         """
         return self.motion.loading_slope
 
     @property
     def free_period(self) -> float:
-        """Period of the free oscillation, 2 pi sqrt(m/k), s: twice the typical fall, from its steep part.
+        """Period of the free oscillation, 2 pi sqrt(m/k), s: twice the typical drop, from its steep part.
 
-        Good to 5 % where drag varies little in a slip; creep and drag that grows with speed cost up to 25 %.
-        Not a number, and a warning says why, where it would be longer than a lap or shorter than the samples
-        resolve.
+        Accurate to 5 % if drag varies little during a slip; creep, and drag that grows with speed, cause
+        errors up to 25 %. NaN, with a warning, if it would be longer than a cycle or too short for the
+        samples.
         """
         return self.motion.free_period
 
     @property
     def stuck_fraction(self) -> float:
-        """Share of the typical lap during which the belt sticks."""
+        """Share of the typical cycle during which the belt sticks."""
         return self.motion.stuck_fraction
 
     @property
     def stiffness(self) -> float | None:
-        """Loading slope over drive speed, unit of the trace per m; none without a drive speed."""
+        """Loading slope divided by drive speed, unit of the trace per m; None without a drive speed."""
         if self.drive_speed is None or self.kind == "steady_sliding" or self.quantity != "force":
             return None
         return self.loading_slope / self.drive_speed
 
     def slips_of_at_least(self, drop: float) -> int:
-        """Return the number of slips whose fall is at least ``drop``; smaller ones part their neighbours."""
+        """Return the number of slips that drop by at least ``drop``; smaller ones separate others."""
         return int(np.sum(self.drop >= drop))
 
     def to_dict(self) -> dict[str, Any]:
@@ -166,21 +166,23 @@ class CycleRecord(Result):
         )
 
     def headline(self, unit: str = "") -> str:
-        """Return the kind and the number of slips, or of the falls that are none."""
+        """Return the kind of motion and the number of slips or drops."""
         words = self.kind.replace("_", " ")
-        beyond = f"{self.falls} falls beyond the noise"
+        beyond = f"{self.falls} drops exceed the noise"
         if self.kind == "steady_sliding":
             return (
-                f"{words}: no cycles" if self.falls < FEWEST_SLIPS else f"wandering: {beyond}, but no cycles"
+                f"{words}: no cycles"
+                if self.falls < FEWEST_SLIPS
+                else f"irregular force: {beyond}, but no cycles"
             )
         if self.slips >= FEWEST_SLIPS:
             return f"{words}: {self.slips} slips"
         number = self.slips or "none"
         least, greatest = (_amount(amount, unit) for amount in (self.least_drop, self.motion.greatest))
-        return f"{words}: {beyond}, {number} of {least} or more: the greatest is {greatest}"
+        return f"{words}: {beyond}, {number} of at least {least}; the largest is {greatest}"
 
     def summary(self, unit: str = "") -> str:
-        """Return the figures in words, a line each; ``unit`` is that of the trace, for the words."""
+        """Return the results as text, one per line; ``unit`` is the unit of the trace."""
         of = f" {unit}" if unit not in ("", "1") else ""
         heading = self.headline(unit)
         if self.kind == "steady_sliding" or self.slips < FEWEST_SLIPS:
@@ -216,35 +218,35 @@ def cycles(
     quantity: str = "force",
     least_drop: float | None = None,
 ) -> CycleRecord:
-    """Find the slips of a trace and say what kind of motion it is.
+    """Find the slips in a trace and classify its motion.
 
-    A slip is a fall of the force between two rises, each greater than noise alone could make in the whole
+    A slip is a drop of the force between two rises, each larger than noise alone could cause in the whole
     trace.
 
     Parameters
     ----------
     time
-        s, shape (samples,); even or not, with gaps or not.
+        Times, s, shape (samples,); they may be uneven and have gaps.
     value
-        Force of the spring, or torque, in any unit; NaN where missing. With ``quantity="speed"`` the belt
-        speed.
+        Spring force or torque in any unit, shape (samples,), NaN where missing. With ``quantity="speed"``,
+        belt speed.
     drive_speed
-        Constant speed of the drive, m/s; gives the stiffness. A channel of it, of shape (samples,), counts by
-        its mean. A trace of speed without it takes its own mean.
+        Constant speed of the drive, m/s, from which the stiffness follows; or a channel of shape (samples,),
+        whose mean is used. Default for a trace of speed: its own mean.
     drive_speed_uncertainty
-        How far that may be off, as a share of it: half the width of its 95 % interval. `identify` carries it
-        into every interval. If it is not stated, 0.001, and for a channel what its mean is not known to.
+        Relative uncertainty of the drive speed: half the width of its 95 % interval. `identify` includes it
+        in every interval. Default: 0.001, and for a channel the uncertainty of its mean.
     least_drop
-        Count only falls and rises of at least this. Slips of real surfaces have all sizes, so a count means
-        little without it; by default it is what noise could make.
+        Count only drops and rises of at least this size. Real surfaces slip by all sizes, so a count means
+        little without it. Default: the size that noise could cause.
 
-    What kind of motion it is does not depend on that: it follows from all falls beyond the noise. Where those
-    are the jitter of a slower noise on greater falls that have a rhythm, from these.
+    The kind of motion does not depend on it: it follows from all drops that exceed the noise, or, if those
+    are slower noise on larger rhythmic drops, from the latter.
 
     Raises
     ------
     ParameterError, InsufficientDataError
-        If the trace cannot be read as one.
+        If the data are not a valid trace.
 
     Examples
     --------
@@ -256,7 +258,7 @@ def cycles(
     ('stick_slip', 37, 0.254)
     """
     if quantity not in QUANTITIES:
-        raise ParameterError(f"quantity '{quantity}' is not known: {', '.join(QUANTITIES)}")
+        raise ParameterError(f"unknown quantity '{quantity}'. Use {', '.join(QUANTITIES)}")
     speed, uncertainty = driven(drive_speed, drive_speed_uncertainty, np.shape(time))
     if least_drop is not None and not (np.isfinite(least_drop) and least_drop > 0):
         raise ParameterError(f"least_drop is {least_drop}: it must be greater than 0")
@@ -319,8 +321,8 @@ def _motion(samples: Samples) -> tuple[Found, SlipFigures, Motion, tuple[Warning
         if slower.period.size >= FEWEST_OF_RHYTHM - 1 and is_regular(slower.period):
             jitter = Warning(
                 "slower noise",
-                "{falls} falls are beyond the noise from sample to sample, without a rhythm; those of "
-                "{least:.3g} or more have one: the rest is taken for a slower noise",
+                "{falls} drops exceed the sample-to-sample noise but have no rhythm; those of at least "
+                "{least:.3g} do. The others are treated as slower noise",
                 falls=motion.falls,
                 least=greater.least,
             )

@@ -40,15 +40,15 @@ def _of_the_falls(
     if lasts < _FEW_SAMPLES:
         yield Warning(
             "falls of few samples",
-            "a fall lasts {samples:.1f} samples",
+            "a drop lasts only {samples:.1f} samples",
             severity="watch",
-            remedy="sample faster to see the slip",
+            remedy="sample faster to resolve the slip",
             samples=lasts,
         )
     if least_drop is not None and least > least_drop:
         yield Warning(
             "least drop within noise",
-            "least_drop {least_drop:g} is within the noise: {taken:.3g} was taken",
+            "least_drop {least_drop:g} is within the noise, so {taken:.3g} was used",
             severity="watch",
             least_drop=least_drop,
             taken=least,
@@ -57,8 +57,8 @@ def _of_the_falls(
     if least_drop is None and small > 0.05 * drop.size:
         yield Warning(
             "many small slips",
-            "{small} of {slips} slips fall by less than half the median: their number depends on the least "
-            "fall counted, {least:.3g} here (samples scatter by {scatter:.3g}); give least_drop",
+            "{small} of {slips} slips are smaller than half the median, so their number depends on the "
+            "smallest drop counted ({least:.3g} here; samples scatter by {scatter:.3g}). Set least_drop",
             severity="watch",
             small=small,
             slips=drop.size,
@@ -72,8 +72,7 @@ def _of_the_samples(samples: Samples) -> Iterator[Warning]:
     if samples.missing:
         yield Warning(
             "samples missing",
-            "{count} {count:sample is|samples are} missing; no cycle across a gap that hides part of it is "
-            "used",
+            "{count} {count:sample is|samples are} missing; cycles that a gap hides in part are not used",
             count=samples.missing,
         )
     if samples.spikes:
@@ -90,7 +89,7 @@ def _of_the_level(samples: Samples, figures: SlipFigures, drift: float) -> Itera
     if period.size and float(np.median(period)) - lasts < 0.5 * lasts:
         yield Warning(
             "sign may be turned",
-            "the force rises faster than it falls: is its sign turned?",
+            "the force rises faster than it falls. Is its sign flipped?",
             severity="watch",
         )
     swing = abs(drift) * samples.interval * samples.value.size

@@ -31,7 +31,7 @@ def driven(
         raise ParameterError(f"drive_speed is {speed}: it must be greater than 0")
     if not 0 < uncertainty <= _GREATEST_UNCERTAINTY:
         raise ParameterError(
-            f"drive_speed_uncertainty is {uncertainty:.4g}: it must be greater than 0, and at most "
+            f"drive_speed_uncertainty is {uncertainty:.4g}: it must be greater than 0 and at most "
             f"{_GREATEST_UNCERTAINTY} of the drive speed"
         )
     return speed, uncertainty
@@ -46,11 +46,11 @@ def _mean(
         return None if speed is None else float(speed), stated
     if speed.shape != shape or speed.size < _PARTS:
         raise ParameterError(
-            f"drive_speed has the shape {speed.shape} and time {shape}: give a number or equal lengths"
+            f"drive_speed has shape {speed.shape}, but time has {shape}. Give one number, or equal lengths"
         )
     held = speed[np.isfinite(speed)]
     if held.size < _PARTS:
-        raise ParameterError(f"drive_speed holds {held.size} numbers: give a number, or a channel of it")
+        raise ParameterError(f"drive_speed has {held.size} numbers. Give one number, or one per sample")
     means = np.array([np.mean(part) for part in np.array_split(held, _PARTS)])
     mean = float(np.mean(means))
     if stated is None and mean:

@@ -52,14 +52,14 @@ def _implausible(record: CycleRecord, best: DriveFit, intervals: Mapping[str, Es
     if ends:
         yield Warning(
             NO_FREE_PERIOD,
-            "no free period is given: the fit ended at the limit of plausible {parameters}",
+            "no free period is reported, because the fit ended at the plausible limit of {parameters}",
             severity="watch",
             parameters=" and ".join(ends),
         )
     elif free.low > LONGEST_OF_LAP * best.period:
         yield Warning(
             NO_FREE_PERIOD,
-            "no free period is given: {free:.3g} s is longer than the lap of {lap:.3g} s",
+            "no free period is reported, because {free:.3g} s is longer than the cycle of {lap:.3g} s",
             severity="watch",
             free=free.value,
             lap=best.period,
@@ -67,7 +67,7 @@ def _implausible(record: CycleRecord, best: DriveFit, intervals: Mapping[str, Es
     elif free.high < 2.0 * record.samples.interval:
         yield Warning(
             NO_FREE_PERIOD,
-            "no free period is given: {free:.3g} s is less than two samples",
+            "no free period is reported, because {free:.3g} s is shorter than two samples",
             severity="watch",
             free=free.value,
         )
@@ -78,9 +78,9 @@ def _poor(best: DriveFit) -> Iterator[Warning]:
     if best.misfit > POOR:
         yield Warning(
             "poor fit",
-            "the model misses the mean cycle by {misfit:.0%} of the drop",
+            "the model differs from the mean cycle by {misfit:.0%} of the drop",
             severity="watch",
-            remedy="take parameters as rough",
+            remedy="treat the parameters as rough estimates",
             misfit=best.misfit,
         )
 
@@ -90,7 +90,7 @@ def _undecided(near: list[DriveFit]) -> Iterator[Warning]:
     if len(near) > 1:
         yield Warning(
             "closure not decided",
-            "the closures {closures} fit alike: the record does not decide between them",
+            "the closures {closures} fit equally well, so this record cannot decide between them",
             severity="watch",
             closures=" and ".join(fit.closure for fit in near),
         )
@@ -124,13 +124,13 @@ def _other_stiffness(best: DriveFit, held: HeldSlope, fitted: float) -> Warning:
     return Warning(
         "slope contradicts stiffness",
         (
-            "held, the belt loads the spring by {slope:.5g} per s: over the drive speed of {drive_speed:.5g} "
-            "a stiffness of {by_slope:.5g}, but {stiffness:.5g} is "
+            "while the belt is held, the spring force rises by {slope:.5g} per s. At the drive speed "
+            "of {drive_speed:.5g} this means a stiffness of {by_slope:.5g}, but {stiffness:.5g} is "
         )
         + ("given" if "stiffness" in best.known else "fitted")
-        + "; they agree at a drive speed of {agreed:.5g}",
+        + "; they would agree at a drive speed of {agreed:.5g}",
         severity="watch",
-        remedy="check it, and what is given as known",
+        remedy="check the drive speed and the parameters given as known",
         slope=held.slope,
         drive_speed=best.drive_speed,
         by_slope=held.slope / best.drive_speed,
@@ -143,12 +143,14 @@ def _taken_for_creep(best: DriveFit, held: HeldSlope, fitted: float) -> Warning:
     return Warning(
         "difference taken for creep",
         (
-            "held, the belt loads the spring by {slope:.5g} per s: over the drive speed of {drive_speed:.5g} "
-            "a stiffness of {by_slope:.5g}, but {stiffness:.5g} is "
+            "while the belt is held, the spring force rises by {slope:.5g} per s. At the drive speed "
+            "of {drive_speed:.5g} this means a stiffness of {by_slope:.5g}, but {stiffness:.5g} is "
         )
         + ("given" if "stiffness" in best.known else "fitted")
-        + ": the fit takes the difference for creep of the held belt, {creep:.1%} of the drive speed; a "
-        "drive speed of {agreed:.5g} would do as well",
+        + (
+            ". The fit explains the difference by creep of the held belt, {creep:.1%} of the drive speed; "
+            "a drive speed of {agreed:.5g} would explain it too"
+        ),
         severity="watch",
         slope=held.slope,
         drive_speed=best.drive_speed,
@@ -167,7 +169,7 @@ def _lost(best: DriveFit, covariance: FloatArray, intervals: Mapping[str, Estima
     if lost:
         yield Warning(
             NOT_ESTIMABLE,
-            "{parameters}: differ too much between drives that fit alike",
+            "{parameters} cannot be estimated: drives that fit equally well differ too much in them",
             severity="watch",
             parameters=", ".join(name.replace("_", " ") for name in lost),
         )

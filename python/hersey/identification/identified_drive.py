@@ -10,7 +10,7 @@ import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.damping.estimate import Estimate, quantile
-from hersey.errors import InsufficientDataError, ParameterError
+from hersey.errors import InsufficientDataError, ParameterError, Setting
 from hersey.identification.cycle_record import CycleRecord
 from hersey.identification.drive_fit import EXPONENTS, NORMAL_REACH, DriveFit
 from hersey.identification.drive_warnings import warnings_of
@@ -52,13 +52,13 @@ class ClosureFit(Record):
 class IdentifiedDrive(Result):
     """A drive identified from a record.
 
-    ``estimates`` holds every parameter that the record determines, with its 95 % interval; ``values`` all
-    that make the best fit, estimable or not (those in ``known`` as given). ``derived`` are quantities that
-    need no single parameter; the drive speed is among them where what is known determines it better than
-    stated.
-    ``systematic`` is the half width, in the unit of each quantity, that the uncertainty of the stated drive
-    speed adds to its interval. ``closure`` is the best; ``decided`` whether the others are worse by more than
-    chance. ``warnings`` of the kind "not estimable" say what the record leaves open.
+    ``estimates`` holds every parameter that the record determines, with its 95 % interval; ``values`` all of
+    the best fit, estimable or not (those in ``known`` as given). ``derived`` are quantities that can be
+    determined without a single parameter; they include the drive speed if the known parameters determine it
+    better than stated. ``systematic`` is the half width, in the unit of each quantity, that the uncertainty
+    of the stated drive speed adds to its interval. ``closure`` is the best one; ``decided`` says whether the
+    others are worse by more than chance. Warnings of the kind "not estimable" name what the record cannot
+    determine.
     """
 
     also_stated = ("closure_decided", "best_fit")
@@ -71,12 +71,12 @@ class IdentifiedDrive(Result):
     known: Mapping[str, float]
     derived: Mapping[str, Estimate]
     systematic: Annotated[
-        Mapping[str, float], Means("half width that the uncertainty of the drive speed adds to an interval")
+        Mapping[str, float], Means("half width added to an interval by the uncertainty of the drive speed")
     ]
     closures: tuple[ClosureFit, ...]
     misfit: float
     drive_speed: Annotated[float, Means(unit="m/s")]
-    drive_speed_uncertainty: Annotated[float, Means("share, half of its 95 % interval", open=True)]
+    drive_speed_uncertainty: Annotated[float, Means("relative, half of the 95 % interval", open=True)]
     waveform: Waveform
     fitted: FloatArray
     warnings: tuple[Warning, ...]
@@ -103,7 +103,7 @@ class IdentifiedDrive(Result):
         return Drag(**{name: self.values[name] for name in names}, closure=self.closure)
 
     def to_frame(self) -> pl.DataFrame:
-        """Return what the record determines with its 95 % interval; the units hold for a trace in newtons."""
+        """Return the estimates with their 95 % intervals; the units apply to a trace in newtons."""
         import polars as pl
 
         rows = [
@@ -115,11 +115,11 @@ class IdentifiedDrive(Result):
         return pl.DataFrame(rows, schema=schema, orient="row")
 
     def headline(self) -> str:
-        """Return the closure and what can be estimated."""
+        """Return the closure and the parameters that can be estimated."""
         return f"closure {self.closure}, estimated: {', '.join(self.estimates) or 'nothing'}"
 
     def summary(self, unit: str = "") -> str:
-        """Return the result in words, a line each; units where that of the trace is N or N m."""
+        """Return the result as text; with units if the trace is in N or N m."""
         units = _UNITS.get(unit, {})
         decided = "" if self.decided else " (not decided)"
         ranked = ", ".join(f"{fit.closure} {fit.chi_square:.4g}" for fit in self.closures)
@@ -133,10 +133,10 @@ class IdentifiedDrive(Result):
                 lines.append(f"{name:18s} {entry}")
         lines += [f"{name:18s} {estimate}{units.get(name, '')}" for name, estimate in self.derived.items()]
         lines.append(
-            f"intervals hold for a drive speed of {self.drive_speed:.5g}{units.get('drive_speed', '')} to "
+            f"intervals assume a drive speed of {self.drive_speed:.5g}{units.get('drive_speed', '')} "
             f"within {100 * self.drive_speed_uncertainty:.2g} %"
         )
-        lines.append(f"mean cycle within {self.misfit:.2%} of the drop")
+        lines.append(f"the model matches the mean cycle within {self.misfit:.2%} of the drop")
         return "\n".join([*lines, *(f"- {each}" for each in self.warnings)])
 
 
@@ -162,21 +162,21 @@ def identify(
 ) -> IdentifiedDrive:
     """Identify the drive from the cycles of a trace of force at known drive speed.
 
-    Weighted least squares of the mean cycle and the period, with the exact motion of the model; errors from
-    the scatter of the laps (sandwich: the Jacobian turns each lap into a change of the parameters), widened
-    where the model does not run through the mean cycle.
+    Weighted least squares of the mean cycle and the period, with the exact motion of the model. Errors follow
+    from the scatter of the cycles (sandwich estimator) and are widened where the model does not match the
+    mean cycle.
 
     Parameters
     ----------
     known
-        Parameters that need no fit, such as ``{"mass": 0.03}``; names as in `OF_THE_BELT`.
+        Parameters that are known, e.g. ``{"mass": 0.03}``; names as in `OF_THE_BELT`.
     closures
-        Those to compare.
+        Closures to compare.
 
     Raises
     ------
     InsufficientDataError
-        If the belt does not stick and slip, or there are too few laps.
+        If the belt does not stick and slip, or there are too few cycles.
     ParameterError
         If the drive speed or a name is missing or unknown.
     """
@@ -223,7 +223,7 @@ def _fits(
     fits.sort(key=lambda fit: fit.chi_square)
     if fits[0].lap is None:
         raise InsufficientDataError(
-            "no drive of the model makes such a cycle: give known parameters, or check the units"
+            "no drive of the model makes such a cycle. Give known parameters, or check the units"
         )
     return fits
 
@@ -236,22 +236,27 @@ def _in_si(name: str, value: Any) -> Any:
 
 def _check(record: CycleRecord, known: Mapping[str, float], closures: tuple[str, ...]) -> None:
     if record.quantity != "force":
-        raise ParameterError("a trace of speed has no force: identify needs a trace of the spring force")
+        raise ParameterError(
+            "a trace of speed has no force. To identify a drive, give a trace of the spring force"
+        )
     if record.kind != "stick_slip":
         kind = record.kind.replace("_", " ")
-        raise InsufficientDataError(f"the record shows {kind}: a drive is identified from stick-slip")
+        raise InsufficientDataError(f"the record shows {kind}, but a drive is identified from stick-slip")
     if record.slips < FEWEST_LAPS <= record.falls:
-        raise InsufficientDataError(f"{record.headline()}: leave least_drop out to identify a drive")
+        raise InsufficientDataError(f"{record.headline()}. Do not set least_drop to identify a drive")
     if record.drive_speed is None:
-        raise ParameterError("the drive speed is needed to identify a drive: give drive_speed to cycles()")
+        needed = Setting("drive_speed").to()
+        raise ParameterError(f"the drive speed is needed to identify a drive. Give it with {needed}")
     for name, value in known.items():
         if name not in OF_THE_BELT:
-            raise ParameterError(f"known parameter '{name}': only {', '.join(OF_THE_BELT)} are known")
+            raise ParameterError(f"unknown parameter '{name}' in known. Use {', '.join(OF_THE_BELT)}")
         if not np.isfinite(value) or (name not in EXPONENTS and not value > 0):
             raise ParameterError(f"known {name} is {value}: it must be greater than 0")
     unknown = [closure for closure in closures if closure not in CLOSURES]
     if unknown or not closures:
-        raise ParameterError(f"closures {', '.join(unknown) or 'none'}: choose from {', '.join(CLOSURES)}")
+        raise ParameterError(
+            f"unknown closures: {', '.join(unknown) or 'none given'}. Use {', '.join(CLOSURES)}"
+        )
 
 
 def _intervals(

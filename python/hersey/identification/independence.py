@@ -56,7 +56,8 @@ def not_estimable(names: tuple[str, ...], covariance: FloatArray) -> list[Warnin
         else:
             warning = Warning(
                 NOT_ESTIMABLE,
-                "{parameters} only together: they can change at once and leave the record as it is",
+                "{parameters} can only be estimated together: they can change at once without changing "
+                "the record",
                 severity="watch",
                 parameters=_listed(involved),
             )
@@ -86,7 +87,7 @@ def _of_a_pair(
     if error < ESTIMABLE:
         return Warning(
             NOT_ESTIMABLE,
-            "{parameters} only as the product {product} (to {error:.1%})",
+            "{parameters} can only be estimated as the product {product} (to {error:.1%})",
             severity="watch",
             parameters=_listed(pair),
             product=" x ".join(_power(name, power) for name, power in powers.items()),
@@ -94,7 +95,7 @@ def _of_a_pair(
         )
     return Warning(
         NOT_ESTIMABLE,
-        "{parameters}: neither can be estimated, nor a product of them",
+        "{parameters} cannot be estimated, nor can their product",
         severity="watch",
         parameters=_listed(pair),
     )

@@ -69,7 +69,7 @@ def _kind(figures: SlipFigures, stuck: float, least: float) -> tuple[str, tuple[
     if figures.period.size < FEWEST_SLIPS - 1:
         words = Warning(
             "gaps part the falls",
-            "gaps part the falls: no two are known to follow each other",
+            "gaps separate the drops, so no two are known to follow each other",
             severity="watch",
         )
         return "steady_sliding", (words,) if figures.middle.size >= FEWEST_SLIPS else ()
@@ -79,11 +79,13 @@ def _kind(figures: SlipFigures, stuck: float, least: float) -> tuple[str, tuple[
     if stuck >= LEAST_STUCK:
         words = Warning(
             "small falls without rhythm",
-            "falls hardly beyond the noise come without a rhythm: that is no cycle",
+            "drops barely exceed the noise and have no rhythm, so there is no cycle",
         )
         return "steady_sliding", (words,)
     if not regular:
-        words = Warning("irregular force", "the force wanders irregularly without sticking: that is no cycle")
+        words = Warning(
+            "irregular force", "the force varies irregularly without sticking, so there is no cycle"
+        )
         return "steady_sliding", (words,)
     return "inertial", ()
 
@@ -106,22 +108,22 @@ def _implausible_free_period(samples: Samples, figures: SlipFigures) -> Iterator
     if steep < _RESOLVED * samples.interval:
         yield Warning(
             NO_FREE_PERIOD,
-            "no free period is given: a fall lasts {samples:.1f} samples, too few to time it",
+            "no free period is reported, because a drop lasts only {samples:.1f} samples",
             samples=steep / samples.interval,
         )
     elif free > LONGEST_OF_LAP * lap:
         yield Warning(
             NO_FREE_PERIOD,
-            "no free period is given: twice a fall is {free:.3g} s, longer than the lap of {lap:.3g} s: the "
-            "fall is no free one",
+            "no free period is reported: twice a drop is {free:.3g} s, longer than the cycle of "
+            "{lap:.3g} s, so the drop is not free",
             free=free,
             lap=lap,
         )
     elif free * FEWEST_SLIPS > lasts:
         yield Warning(
             NO_FREE_PERIOD,
-            "no free period is given: twice a fall is {free:.3g} s, which a trace of {lasts:.3g} s does not "
-            "hold {times} times",
+            "no free period is reported: twice a drop is {free:.3g} s, and a trace of {lasts:.3g} s is "
+            "shorter than {times} of these",
             free=free,
             lasts=lasts,
             times=FEWEST_SLIPS,

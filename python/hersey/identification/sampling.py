@@ -66,7 +66,7 @@ def even_samples(time: ArrayLike, value: ArrayLike, *, name: str = "force") -> S
     times, values = np.asarray(time, dtype=float), np.asarray(value, dtype=float)
     if times.ndim != 1 or times.shape != values.shape:
         raise ParameterError(
-            f"time has the shape {times.shape} and {name} {values.shape}: give equal lengths"
+            f"time has shape {times.shape}, but {name} has {values.shape}. Give equal lengths"
         )
     if not np.all(np.isfinite(times)):
         raise ParameterError(f"time of sample {int(np.argmin(np.isfinite(times)))} is not a number")
@@ -74,7 +74,7 @@ def even_samples(time: ArrayLike, value: ArrayLike, *, name: str = "force") -> S
     finite_times, finite_values = times[finite], values[finite]
     if finite_values.size < FEWEST:
         raise InsufficientDataError(
-            f"{finite_values.size} samples of {name}: at least {FEWEST} are needed to see a cycle"
+            f"{name} has {finite_values.size} samples; at least {FEWEST} are needed to find a cycle"
         )
     steps = np.diff(finite_times)
     if not np.all(steps > 0):
@@ -83,8 +83,8 @@ def even_samples(time: ArrayLike, value: ArrayLike, *, name: str = "force") -> S
     count = round(float(finite_times[-1] - finite_times[0]) / interval) + 1
     if count > _SPARSEST * finite_values.size:
         raise InsufficientDataError(
-            f"gaps are most of the trace: {finite_values.size} samples at {interval:g} s would take "
-            f"{interval * finite_values.size:g} s, and it lasts {finite_times[-1] - finite_times[0]:g} s"
+            f"most of the trace is missing: {finite_values.size} samples at {interval:g} s cover "
+            f"{interval * finite_values.size:g} s of {finite_times[-1] - finite_times[0]:g} s"
         )
     grid = finite_times[0] + interval * np.arange(count)
     if count == finite_values.size and np.all(np.abs(finite_times - grid) < 0.05 * interval):

@@ -59,7 +59,7 @@ def read_trace(
     runs = read_trace_runs(path, quantity=quantity, time=time, value=value, time_unit=time_unit, unit=unit)
     if len(runs) > 1:
         raise UnreadableLogError(
-            f"{Path(path).name} holds {len(runs)} runs, for its clock starts anew: read them with "
+            f"{Path(path).name} has {len(runs)} runs, because its time restarts. Read it with "
             "hersey.identification.trace_file.read_trace_runs"
         )
     return runs[0]
@@ -94,11 +94,11 @@ def read_trace_runs(
         Each names the file, and the column or line.
     """
     if quantity and quantity not in QUANTITIES:
-        raise ParameterError(f"quantity '{quantity}' is not known: {', '.join(QUANTITIES)}")
+        raise ParameterError(f"unknown quantity '{quantity}'. Use {', '.join(QUANTITIES)}")
     with open_columns(path) as opened:
         if opened.headless and not (time and value):
             raise UnreadableLogError(
-                f"{opened.headless}; name the columns by number, such as {Setting('value').to('#2')}"
+                f"{opened.headless}. Name the columns by number, e.g. {Setting('value').to('#2')}"
             )
         quantity = quantity or _quantity(opened, value)
         chosen = _chosen(opened, opened.columns, value, QUANTITIES[quantity][1], quantity)
@@ -130,7 +130,7 @@ def _runs(whole: TraceFile, file: str) -> tuple[TraceFile, ...]:
 
 def _one_of(number: int, runs: int) -> Warning:
     return Warning(
-        "one of several runs", "run {number} of {runs}: the clock starts anew", number=number, runs=runs
+        "one of several runs", "run {number} of {runs}, because the time restarts", number=number, runs=runs
     )
 
 
@@ -144,7 +144,8 @@ def _with_time(opened: OpenColumns, chosen: Column, time: str, unit: str) -> tup
     times, values = opened.numbers(column, chosen)
     if times.shape != values.shape:
         raise UnreadableLogError(
-            f"{opened.file}: {column} has {times.size} numbers, {chosen} {values.size}: they must agree"
+            f"{opened.file}: {column} has {times.size} numbers, but {chosen} has {values.size}. They "
+            "must have equal lengths"
         )
     return _si(opened.file, "time", times, unit or column.unit, column, Setting("time_unit")), values
 
@@ -162,7 +163,7 @@ def _kind(quantity: str, unit: str) -> str:
 
 def _si(file: str, kind: str, values: FloatArray, unit: str, column: Column, named: Setting) -> FloatArray:
     if not unit:
-        raise UnitError(f"{file}: {column} has no unit: give {named.to(KINDS[kind][1])}")
+        raise UnitError(f"{file}: {column} has no unit. Give {named.to(KINDS[kind][1])}")
     try:
         line = conversion(kind, unit)
     except UnitError as error:
@@ -181,11 +182,15 @@ def _chosen(
     known = _listed(opened)
     candidates = called(wanted, columns) if wanted else [c for c in columns if _plain(c.name) in names]
     if wanted and not candidates:
-        raise ChannelError(f"{opened.file}: there is no column '{wanted}': it has {known}")
+        raise ChannelError(f"{opened.file}: there is no column '{wanted}'. Columns: {known}")
     if len(candidates) != 1:
         flag = Setting("time" if role == "time" else "value").to()
-        what = f"{', '.join(map(str, candidates))} could be" if candidates else "no column is"
-        raise ChannelError(f"{opened.file}: {what} the {role}: name it with {flag}; it has {known}")
+        what = (
+            f"the {role} column could be {' or '.join(map(str, candidates))}"
+            if candidates
+            else f"no {role} column found"
+        )
+        raise ChannelError(f"{opened.file}: {what}. Name it with {flag}. Columns: {known}")
     return candidates[0]
 
 
@@ -202,7 +207,7 @@ def _quantity(opened: OpenColumns, value: str) -> str:
     usual = {name for quantity in known for name in QUANTITIES[quantity][1]}
     first = next((c for c in opened.columns if _plain(c.name) in usual), None)
     named = Setting("value").to(first.path if first and not value else "")
-    raise ChannelError(f"{opened.file} holds {what}: name the column with {named}; it has {_listed(opened)}")
+    raise ChannelError(f"{opened.file} has {what}. Name the column with {named}. Columns: {_listed(opened)}")
 
 
 def _listed(opened: OpenColumns) -> str:

@@ -64,7 +64,8 @@ def mean_waveform(record: CycleRecord) -> Waveform:
     inside = (middle - ahead > samples.start) & (middle + lap < end) & np.isfinite(following)
     if int(np.sum(inside)) < FEWEST_LAPS:
         raise InsufficientDataError(
-            f"{int(np.sum(inside))} whole laps: at least {FEWEST_LAPS} are needed to fit a drive"
+            f"the record has {int(np.sum(inside))} whole cycles; at least {FEWEST_LAPS} are needed to "
+            "fit a drive"
         )
     middle, following = middle[inside], following[inside]
     at = middle[:, None] + offset

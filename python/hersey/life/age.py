@@ -11,7 +11,7 @@ from hersey.units import conversion
 
 _AGE = re.compile(r"\s*([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?)\s*(.*?)\s*", re.DOTALL)
 _WORD = re.compile(r"[^\W\d_][\w-]{0,39}")
-_WAY_OUT = "write a number and what it counts, as '120000 pages', '310 h' or '2e6 cycles'"
+_WAY_OUT = "Write a number and what it counts, e.g. '120000 pages', '310 h' or '2e6 cycles'"
 
 
 @dataclass(frozen=True)
@@ -48,11 +48,13 @@ class Age:
         """
         match = _AGE.fullmatch(text[:200])
         if match is None:
-            raise ParameterError(f"age '{text[:40]}' is no number with a unit: {_WAY_OUT}")
+            raise ParameterError(f"age '{text[:40]}' is not a number with a unit. {_WAY_OUT}")
         if re.match(r"[.,' ]?[0-9]", match[2]):
-            raise ParameterError(f"age '{text[:40]}': write its number without marks between the digits")
+            raise ParameterError(
+                f"age '{text[:40]}' has separators between its digits. Write the number without them"
+            )
         if not (match[2] or unit):
-            raise UnitError(f"age '{text[:40]}' has no unit: {_WAY_OUT}")
+            raise UnitError(f"age '{text[:40]}' has no unit. {_WAY_OUT}")
         return cls(float(match[1]), match[2] or unit)
 
     def as_unit(self, unit: str) -> Age:
@@ -68,7 +70,7 @@ class Age:
             return Age(self.value if mine == other else self.value * mine / other, unit)
         if mine is other and _counted(self.unit) == _counted(unit):
             return Age(self.value, unit)
-        raise UnitError(f"an age in {self.unit} among ages in {unit}: give it in {unit}")
+        raise UnitError(f"an age is in {self.unit}, but the others are in {unit}. Give it in {unit}")
 
     def __str__(self) -> str:
         """Return number and unit."""
@@ -84,7 +86,7 @@ def refuse_no_unit(unit: str) -> None:
         If it is not one word.
     """
     if _WORD.fullmatch(unit) is None:
-        raise UnitError(f"unit '{unit[:40]}' of an age must be one word: {_WAY_OUT}")
+        raise UnitError(f"unit '{unit[:40]}' of an age must be one word. {_WAY_OUT}")
 
 
 def one_of(unit: str) -> str:

@@ -38,10 +38,12 @@ CLOCK = "motor torque"
 #: Temperatures (K) that are one, and how far beyond the dwells an operating point is drawn.
 _APART, _BESIDE = 5.0, 10.0
 #: What is to be known of all maps, and of that at the end.
-_WITHOUT_LAW = Warning("torque without a law", "torque between the dwells, without a law")
+_WITHOUT_LAW = Warning(
+    "torque without a law", "torque between the dwells is interpolated without a fitted law"
+)
 _EXTRAPOLATED = Warning(
     "torque extrapolated",
-    "torque extrapolated as it grew, at the middle of the interval of that age",
+    "torque is extrapolated along its growth, to the middle of the interval of that age",
     severity="watch",
     where="end",
 )
@@ -49,25 +51,32 @@ _EXTRAPOLATED = Warning(
 
 @dataclass(frozen=True, repr=False)
 class AgeingMaps(Result):
-    """The map of one specimen at some ages.
+    """Operating maps of one specimen at several ages.
 
-    ``when`` says in a word what each age is. ``temperature`` (K, shape (n,)) and ``speed`` (m/s at the belt,
-    shape (m,)) span the maps; ``torque`` (N m, shape (ages, n, m)) is that at the roll. Slower than
-    ``transition`` (m/s, shape (ages, n); 0 where torque falls nowhere) the belt cannot run smoothly, up to
-    ``upper`` the past decides. Beyond ``torque_limit`` (N m; None: not stated) the motor stops.
+    ``when`` describes each age in a word. ``temperature`` (K, shape (n,)) and ``speed`` (m/s at the belt,
+    shape (m,)) span the maps; ``torque`` (N m, shape (ages, n, m)) is that at the roll. Below ``transition``
+    (m/s, shape (ages, n); 0 where torque never falls with speed) the belt cannot run smoothly; between it and
+    ``upper`` the outcome depends on the start. Above ``torque_limit`` (N m; None if not stated) the motor
+    stops.
     """
 
     unit: str
     age_unit: str
     ages: FloatArray
-    when: Annotated[tuple[str, ...], Means("what each age is, in a word")]
+    when: Annotated[tuple[str, ...], Means("what each age is, in one word")]
     temperature: FloatArray
     speed: FloatArray
     torque: Annotated[FloatArray, Means("N m at the roll", shape="(ages, temperatures, speeds)", open=True)]
-    transition: Annotated[FloatArray, Means("; 0 where torque falls nowhere", shape="(ages, temperatures)")]
+    transition: Annotated[
+        FloatArray, Means("0 where torque never falls with speed", shape="(ages, temperatures)")
+    ]
     upper: Annotated[
         FloatArray,
-        Means("V*, below which the past decides; null beyond the search", shape="(n, m)", open=True),
+        Means(
+            "V*, below which the outcome depends on the start; null above the search range",
+            shape="(n, m)",
+            open=True,
+        ),
     ]
     torque_limit: float | None
     points: tuple[OperatingPoint, ...]
@@ -76,12 +85,12 @@ class AgeingMaps(Result):
 
     @property
     def names(self) -> list[str]:
-        """Return what each map is called, as "now, 170000 pages"."""
+        """Return the name of each map, e.g. "now, 170000 pages"."""
         ages = (str(Age(float(f"{age:.3g}"), self.age_unit)) for age in self.ages.tolist())
         return [f"{word}, {age}" for word, age in zip(self.when, ages, strict=True)]
 
     def state(self, index: int, point: OperatingPoint) -> str:
-        """Return what the belt does at an operating point in one of the maps, in a word or two."""
+        """Return the state of the belt at an operating point in one of the maps, in a word or two."""
         column = int(np.argmin(np.abs(self.temperature - point.temperature)))
         torque = float(
             np.exp(np.interp(np.log(point.speed), np.log(self.speed), np.log(self.torque[index, column])))
@@ -90,14 +99,14 @@ class AgeingMaps(Result):
             return "motor stops"
         if point.speed < self.transition[index, column]:
             return "stick-slip"
-        return "depends on the past" if point.speed < self.upper[index, column] else "smooth"
+        return "depends on start" if point.speed < self.upper[index, column] else "smooth"
 
     def headline(self) -> str:
         """Return the specimen and its ages."""
-        return f"maps of {self.unit}: {'; '.join(self.names)}"
+        return f"maps of {self.unit} at {'; '.join(self.names)}"
 
     def summary(self) -> str:
-        """Return what the belt does at each operating point at each age."""
+        """Return the state of the belt at each operating point and age as text."""
         lines = [self.headline()]
         for point in self.points:
             if self.temperature[0] <= point.temperature <= self.temperature[-1]:
@@ -164,7 +173,7 @@ def ageing_maps(campaign: Campaign, machine: Machine, found: TimeToFailure, *, u
         if runs.runs.unit[i] == end.unit
     ]
     if not own or any(not np.ptp(dwells.temperature) > _APART for _, dwells, _ in own):
-        raise InsufficientDataError(f"the runs of {end.unit} do not show torque against temperature")
+        raise InsufficientDataError(f"the runs of {end.unit} do not show how torque depends on temperature")
     kernel = shared_kernel([dwells for _, dwells, _ in runs.usable()])
     hot, speed = _grid(own[0][1], machine)
     rolls = speed / machine.roll_radius
@@ -212,8 +221,8 @@ def _chosen(found: TimeToFailure, unit: str) -> SpecimenEnd:
             if each.unit == unit:
                 return each
         near = meant(unit, [each.unit for each in found.units])
-        way = f"did you mean '{near}'?" if near else "'hersey campaign list' names them"
-        raise ParameterError(f"the campaign has no specimen '{unit}': {way}")
+        way = f"Did you mean '{near}'?" if near else "'hersey campaign list' shows them"
+        raise ParameterError(f"the campaign has no specimen '{unit}'. {way}")
     coming = [each for each in found.units if each.age.passed <= 0.5]
     return min(coming or found.units, key=lambda each: each.age.age.value)
 

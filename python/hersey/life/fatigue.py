@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 class RainflowCycles:
     """Cycles of a signal: arrays of shape (cycles,), ranges and means in its unit.
 
-    A count is 1 for a cycle that closes and 0.5 for one that does not.
+    A closed cycle has count 1, a half cycle 0.5.
     """
 
     ranges: FloatArray
@@ -35,7 +35,7 @@ class RainflowCycles:
 
     @property
     def amplitudes(self) -> FloatArray:
-        """Half the ranges: what an S-N curve asks for."""
+        """Half the ranges, as an S-N curve needs."""
         return self.ranges / 2
 
     def __repr__(self) -> str:
@@ -51,17 +51,17 @@ class SNCurve:
     Parameters
     ----------
     amplitude, cycles
-        A point of the curve, N m at the part; the knee, if there is a second slope.
+        A point of the curve (amplitude in N m at the part); with a second slope, the knee.
     slope
-        Slope k of the log-log line, positive. Alone it holds for every amplitude (Miner elementary).
+        Slope k of the log-log line, positive. On its own it applies to every amplitude (Miner elementary).
     second_slope
-        Slope below the knee, not less than ``slope``; ``"haibach"`` for 2 k - 1.
+        Slope below the knee, at least ``slope``; ``"haibach"`` means 2 k - 1.
     endurance
         Amplitude below which cycles do no damage, N m, at most ``amplitude`` (at ``amplitude`` itself: Miner
         original). None if there is none.
     ultimate
-        Torque at which the part breaks at once, N m. With it a mean torque m counts by Goodman's line: an
-        amplitude a about m harms as a / (1 - abs(m) / ultimate) about zero. None leaves means out.
+        Torque at which the part breaks at once, N m. If given, mean torque m counts by Goodman's line:
+        amplitude a about m damages like a / (1 - abs(m) / ultimate) about zero. If None, means are ignored.
 
     Raises
     ------
@@ -94,8 +94,8 @@ class SNCurve:
             object.__setattr__(self, "second_slope", self._told_second_slope())
         if self.endurance is not None and self.endurance > self.amplitude:
             raise ParameterError(
-                f"endurance is {self.endurance:g} N m, above the point of the curve at "
-                f"{self.amplitude:g} N m: state that point at the endurance limit or above it",
+                f"endurance is {self.endurance:g} N m, above the point of the S-N curve at "
+                f"{self.amplitude:g} N m. Give a point at or above the endurance limit",
                 quantity="endurance",
             )
         if self.ultimate is not None and self.ultimate <= self.amplitude:
@@ -108,14 +108,15 @@ class SNCurve:
     def _told_second_slope(self) -> float:
         if isinstance(self.second_slope, str) and self.second_slope != "haibach":
             raise ParameterError(
-                f"second_slope is '{self.second_slope}': give a number or 'haibach'", quantity="second_slope"
+                f"second_slope is '{self.second_slope}': it must be a number or 'haibach'",
+                quantity="second_slope",
             )
         second = 2 * self.slope - 1 if self.second_slope == "haibach" else self.second_slope
         _refuse_not_positive("second_slope", second)
         if second < self.slope:  # type: ignore[operator]
             raise ParameterError(
-                f"second_slope is {second:g}, less than the slope {self.slope:g}: below the knee a curve "
-                "is flatter, its slope greater",
+                f"second_slope is {second:g}: it must be at least the slope {self.slope:g}, because the "
+                "curve is flatter below the knee",
                 quantity="second_slope",
             )
         return float(second)  # type: ignore[arg-type]
@@ -135,8 +136,8 @@ class SNCurve:
             worst = float(np.max(a + m))
             if worst >= self.ultimate:
                 raise ParameterError(
-                    f"a peak of {worst:.6g} N m reaches the ultimate torque {self.ultimate:g} N m: the part "
-                    "breaks at once, and no S-N curve gives its life",
+                    f"a peak of {worst:.6g} N m reaches the ultimate torque {self.ultimate:g} N m, so "
+                    "the part breaks at once and has no fatigue life",
                     quantity="ultimate",
                     value=worst,
                     limit=self.ultimate,
@@ -152,21 +153,21 @@ class SNCurve:
 def rainflow_cycles(signal: ArrayLike, *, repeating: bool = False) -> RainflowCycles:
     """Return the cycles of a signal by rainflow counting (ASTM E1049-85, 5.4.4), in the order they are found.
 
-    The greatest range counted is that from the lowest valley to the highest peak. Every reversal counts,
-    that of noise too: a steep curve forgives it.
+    The largest range is that from the lowest valley to the highest peak. Every reversal counts, also those of
+    noise; with a steep curve these hardly matter.
 
     Parameters
     ----------
     signal
-        Numbers in any unit, shape (samples,), in the order of time.
+        Values in any unit, shape (samples,), in order of time.
     repeating
-        Whether the signal stands for one that goes on like this: it is counted from its highest peak round to
-        the same (5.4.5), and every cycle closes.
+        Whether the signal repeats: it is then counted from its highest peak to the same peak (5.4.5), and
+        every cycle closes.
 
     Raises
     ------
     ParameterError
-        If a sample is no finite number, with its place.
+        If a sample is not a finite number, with its index.
 
     Examples
     --------
@@ -178,10 +179,10 @@ def rainflow_cycles(signal: ArrayLike, *, repeating: bool = False) -> RainflowCy
 
     values = numbers_of("signal", signal)
     if values.ndim != 1:
-        raise ParameterError(f"signal has {values.ndim} dimensions: give one sample after the other")
+        raise ParameterError(f"signal has {values.ndim} dimensions: it must have one")
     if not np.all(np.isfinite(values)):
         place = int(np.argmin(np.isfinite(values)))
-        raise ParameterError(f"sample {place} of the signal is no finite number", index=place)
+        raise ParameterError(f"sample {place} of the signal is not a finite number", index=place)
     if repeating:
         highest = int(np.argmax(values))
         values = np.append(np.roll(values, -highest), values[highest])
@@ -196,12 +197,12 @@ def rainflow_cycles(signal: ArrayLike, *, repeating: bool = False) -> RainflowCy
 
 
 def miner_damage(cycles: RainflowCycles, curve: SNCurve, *, ratio: float = 1.0) -> float:
-    """Return Miner's sum of cycles of torque in N m: the part is taken to fail at 1.
+    """Return Miner's sum of torque cycles in N m; the part is assumed to fail at 1.
 
     Parameters
     ----------
     ratio
-        Torque at the part over the torque counted, as by the gearing between.
+        Torque at the part divided by the counted torque, e.g. the gear ratio.
 
     Raises
     ------
@@ -216,14 +217,14 @@ def miner_damage(cycles: RainflowCycles, curve: SNCurve, *, ratio: float = 1.0) 
 
 @takes_si(signal="torque", duration="time")
 def damage_rate(signal: ArrayLike, duration: float, curve: SNCurve, *, ratio: float = 1.0) -> float:
-    """Return Miner's sum per unit of time or age, for a torque that goes on as it was recorded.
+    """Return Miner's sum per unit of time or age, assuming that the recorded torque repeats.
 
     Parameters
     ----------
     signal
-        Torque, N m, shape (samples,): a span that stands for the use of the drive; it is taken to repeat.
+        Torque, N m, shape (samples,), over a representative span, which is assumed to repeat.
     duration
-        What the signal lasts: s, or any unit of age as a plain number, such as pages.
+        Duration of the signal: s, or a plain number in any unit of age, e.g. pages.
     ratio
         As for `miner_damage`.
 
@@ -236,7 +237,7 @@ def damage_rate(signal: ArrayLike, duration: float, curve: SNCurve, *, ratio: fl
     """
     _refuse_not_positive("duration", duration)
     if np.size(signal) < 2:
-        raise InsufficientDataError("a signal of fewer than two samples has no cycles: give a longer span")
+        raise InsufficientDataError("a signal of fewer than two samples has no cycles. Give a longer one")
     return miner_damage(rainflow_cycles(signal, repeating=True), curve, ratio=ratio) / duration
 
 
@@ -244,20 +245,20 @@ def damage_rate(signal: ArrayLike, duration: float, curve: SNCurve, *, ratio: fl
 def stick_slip_damage_rate(
     cycle: StickSlipCycle, train: Drivetrain, curve: SNCurve, *, roll_radius: float, ratio: float = 1.0
 ) -> float:
-    """Return Miner's sum per second of a belt that sticks and slips, without a signal.
+    """Return Miner's sum per second of stick-slip, without a recorded signal.
 
     The torque at the roll has the amplitude k (s_max - s_min) R / 2 about the mean k (s_max + s_min) R / 2,
-    once a lap. Of a motion that repeats after several laps the extremes of all are taken: a bound from above.
-    A motion without laps does no damage.
+    once per cycle. If the motion repeats only after several cycles, the extremes of all are used, which is an
+    upper bound. Motion without cycles does no damage.
 
     Parameters
     ----------
     cycle, train
-        The settled motion and the drive that makes it, in SI.
+        The settled motion and its drivetrain, in SI.
     roll_radius
         R, m.
     ratio
-        Torque at the part over that at the roll.
+        Torque at the part divided by that at the roll.
 
     Raises
     ------
@@ -276,16 +277,16 @@ def stick_slip_damage_rate(
 
 
 def life_of(rate: float, *, spent: float = 0.0, limit: float = 1.0) -> float:
-    """Return how long it takes to Miner's sum ``limit``, in the unit of the rate; infinite without damage.
+    """Return the time until Miner's sum reaches ``limit``, in the unit of the rate; infinite without damage.
 
     Parameters
     ----------
     rate
         Damage per s, per unit of age or per repeat, not negative.
     spent
-        Damage done before, not negative; nothing is left where it is beyond the limit.
+        Earlier damage, not negative; above the limit, no life is left.
     limit
-        Sum at which the part is taken to fail.
+        Sum at which the part is assumed to fail.
 
     Raises
     ------

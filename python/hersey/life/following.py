@@ -30,7 +30,7 @@ Step = Callable[[str], None]
 
 @dataclass(frozen=True, repr=False)
 class LifeTest(Result):
-    """A life test followed; what cannot be computed is None, and ``warnings`` say why."""
+    """Results of a life test; what cannot be computed is None, and ``warnings`` says why."""
 
     also_stated = ("file",)
     not_stated = ("name", "indicators")
@@ -46,11 +46,11 @@ class LifeTest(Result):
     seed: int
 
     def headline(self) -> str:
-        """Return what ends the specimens, and when."""
+        """Return how the specimens fail, and when."""
         return self.time_to_failure.headline()
 
     def summary(self) -> str:
-        """Return the answer as text: what ends the specimens, what moved, the film, what is not known."""
+        """Return failures, changes with age, the film and what is unknown as text."""
         parts = [self.time_to_failure.summary()]
         parts += [each.summary() for each in (self.drift, self.film, self.maps) if each is not None]
         parts += [f"- {each}" for each in self.warnings]
@@ -76,22 +76,22 @@ def follow(
     uses: bool = False,
     step: Step | None = None,
 ) -> LifeTest:
-    """Follow the specimens of a campaign to what ends them.
+    """Predict which specimens of a campaign fail first, how, and when.
 
     Parameters
     ----------
     campaign
-        Of one run or more; more ages and specimens show more.
+        Campaign of one run or more; more ages and specimens show more.
     machine
-        Its limits and operating points say what ends a specimen; contact and lubricant make the film.
+        Machine whose limits and operating points define failure; contact and lubricant define the film.
     seed
         Random seed.
     unit
-        Whose maps are drawn; the one that ends next if left out.
+        Specimen whose maps are drawn. Default: the one that fails next.
     uses
-        Whether the ages are computed for other limits, coldest starts and duties too.
+        Whether to compute the ages also for other limits, coldest starts and duties.
     step
-        Called with what is begun.
+        Called with the name of each step as it begins.
 
     Raises
     ------
@@ -118,15 +118,17 @@ def follow(
     film = tried("film through life", lambda: film_life(campaign, machine))
     if film is not None:
         indicators = film.with_starvation(indicators)
-    said("growth and what ends the specimens")
+    said("growth and time to failure")
     found = time_to_failure(indicators, seed=seed)
     drift = tried("drift", lambda: fit_drift(campaign.dwells()))
     maps = tried(
-        "maps at new, now and the end",
+        "maps when new, now and at the end",
         lambda: ageing_maps(campaign, machine, found, unit=unit),
     )
     others = (
-        tried("ages in other uses", lambda: other_uses(campaign, machine, indicators, seed=seed))
+        tried(
+            "ages in other operating conditions", lambda: other_uses(campaign, machine, indicators, seed=seed)
+        )
         if uses
         else None
     )

@@ -21,7 +21,7 @@ NOT_JUDGED = "mode not judged"
 
 @dataclass(frozen=True, repr=False)
 class Runs(Record):
-    """The runs of a campaign, by specimen and age: numbers in the file, names, and ages in ``age_unit``."""
+    """Runs of a campaign by specimen and age: run numbers, names, and ages in ``age_unit``."""
 
     run: tuple[int, ...]
     unit: tuple[str, ...]
@@ -37,7 +37,7 @@ class Runs(Record):
 
     @property
     def units(self) -> tuple[str, ...]:
-        """The specimens, each once, in the order of the runs."""
+        """Names of the specimens, each once, in the order of the runs."""
         return tuple(dict.fromkeys(self.unit))
 
 
@@ -63,12 +63,12 @@ class OwnAges:
 class Indicator:
     """One failure mode.
 
-    ``value`` is positive, NaN where a run does not show it, and grows toward ``limit``, both in ``si``; one
-    that ``accumulates`` is a rate per age, and the limit is that of its integral from age 0. ``error`` is its
-    relative standard error; ``limit_error`` that of the limit and of the sensor, common to all runs. ``kind``
-    is the failure in two or three words, ``name`` distinguishes it from others of its kind. A ``sign``
-    comes early, and a specimen that reaches its limit has not ended. Where ``own_ages`` are given they
-    replace those of a law of growth.
+    ``value`` is positive, NaN where a run does not show it, and grows toward ``limit``, both in ``si``. If it
+    ``accumulates``, it is a rate per age, and the limit applies to its integral from age 0. ``error`` is its
+    relative standard error; ``limit_error`` that of limit and sensor, common to all runs. ``kind`` is the
+    failure in two or three words; ``name`` distinguishes it from others of its kind. A ``sign`` is a
+    precursor: a specimen that reaches its limit has not failed. ``own_ages``, if given, replace the ages from
+    growth laws.
     """
 
     name: str
@@ -87,16 +87,16 @@ class Indicator:
         """Check the numbers."""
         known = np.isfinite(self.value)
         if not (np.isfinite(self.limit) and self.limit > 0.0):
-            raise ParameterError(f"the limit of {self.name} is {self.limit:g}: it must be positive")
+            raise ParameterError(f"the limit of {self.name} is {self.limit:g}: it must be greater than 0")
         if self.value.shape != self.error.shape or np.any(self.value[known] <= 0.0):
             raise ParameterError(f"{self.name} must be positive and have an error for each run")
         if np.any(~(self.error[known] >= 0.0)):
-            raise ParameterError(f"an error of {self.name} is negative or no number")
+            raise ParameterError(f"an error of {self.name} is negative or not a number")
 
 
 @dataclass(frozen=True, repr=False)
 class Indicators:
-    """Runs and the failure modes that they show; ``warnings``: which modes are not judged, and why."""
+    """Runs and the failure modes that they show; ``warnings`` says which modes are not judged, and why."""
 
     runs: Runs
     each: tuple[Indicator, ...]

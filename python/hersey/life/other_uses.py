@@ -45,7 +45,7 @@ class UseEnd(Record):
 
     name: str
     age: Interval
-    ways: Annotated[str, Means("which way comes first, in words; empty for a share of new units")]
+    ways: Annotated[str, Means("failure mode that comes first, in words; empty for a share of new specimens")]
 
 
 @dataclass(frozen=True)
@@ -56,16 +56,16 @@ class Use(Record):
     coldest: Annotated[float | None, Means("coldest start", "K")]
     duty: str
     stated: Annotated[
-        bool, Means("the use that the machine's file states")
+        bool, Means("whether this is the operating condition of the machine file")
     ]  #: the use that the machine's file states
     ends: Annotated[
-        tuple[UseEnd, ...], Means("units, then a tenth and half of new units; empty if not known")
+        tuple[UseEnd, ...], Means("specimens, then a tenth and half of new specimens; empty if unknown")
     ]  #: specimens, a tenth and half of new specimens; none where nothing can be followed
 
 
 @dataclass(frozen=True, repr=False)
 class OtherUses(Result):
-    """The first ends of specimens and population for every combination of limit, coldest start and duty."""
+    """First failures of specimens and population for each combination of limit, coldest start and duty."""
 
     age_unit: str
     torque_limits: Annotated[tuple[float, ...], Means(unit="N m")]
@@ -74,19 +74,22 @@ class OtherUses(Result):
     uses: tuple[Use, ...]
 
     def headline(self) -> str:
-        """Return how far the age of half the population moves."""
+        """Return the range of ages by which half of new specimens fail."""
         followed = [use for use in self.uses if use.ends]
         ages = [use.ends[-1].age.value for use in followed]
         unit = f" {self.age_unit}" if self.age_unit else ""
         low, high = (f"{float(f'{age:.3g}'):.10g}" for age in (min(ages), max(ages)))
-        return f"half of new specimens end between {low} and {high}{unit} in {len(followed)} uses"
+        return (
+            f"half of new specimens fail between {low} and {high}{unit}, depending on the operating "
+            f"conditions ({len(followed)} compared)"
+        )
 
     def summary(self) -> str:
-        """Return one line per use: when half of new specimens have ended."""
+        """Return one line per operating condition, with the age by which half of new specimens fail."""
         return "\n".join([self.headline(), *(f"  {_words(use)}" for use in self.uses)])
 
     def to_frame(self) -> pl.DataFrame:
-        """Return one row per use and specimen, the population last; infinite where it is never reached."""
+        """Return one row per condition and specimen, the population last; infinite if never reached."""
         import polars as pl
 
         rows = [(use, end) for use in self.uses for end in use.ends]
@@ -114,24 +117,24 @@ def other_uses(
     seed: int = 0,
     progress: Callable[[int, int], None] | None = None,
 ) -> OtherUses:
-    """Return the ages in other uses of the machine, each followed as the stated one is.
+    """Return the times to failure under other operating conditions of the machine.
 
     Parameters
     ----------
     campaign, machine
         As for `follow`.
     indicators
-        Of the use that the machine's file states; ways that depend on none of limit, cold and duty (the
-        film's) are taken from here.
+        Indicators under the stated conditions; modes that depend on none of limit, cold and duty (the film)
+        are taken from here.
     seed
-        Of the draws, that of `time_to_failure`: the stated use then has the same numbers.
+        Random seed, that of `time_to_failure`: the stated conditions then have the same numbers.
     progress
-        Called with uses done and uses in all.
+        Called with conditions done and their total.
 
     Raises
     ------
     ParameterError
-        If the machine states nothing that another use could change.
+        If the machine states nothing that other conditions could change.
     """
     limit = machine.limits.motor_torque
     cold = _coldest(campaign, machine)
@@ -140,7 +143,9 @@ def other_uses(
     points = tuple(point.name for point in machine.points) if _depends_on_duty(machine) else ()
     duties = (AS_STATED, *points)
     if not limits and not points:
-        raise ParameterError("no other use: state [limits] motor_torque to see the ages move with it")
+        raise ParameterError(
+            "there are no other operating conditions to compare. Set motor_torque in [limits]"
+        )
     ways = _Ways({each.name: i for i, each in enumerate(indicators.each)}, seed)
     uses: list[Use] = []
     total = max(len(limits), 1) * max(len(starts), 1) * len(duties)

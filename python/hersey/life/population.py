@@ -32,7 +32,7 @@ _STEPS, _SETTLED = 100, 1e-13
 
 @dataclass(frozen=True)
 class BLife(Record):
-    """The age by which a share of all specimens has failed, with its interval."""
+    """Age by which a share of all specimens has failed, with its interval."""
 
     share: float
     age: float
@@ -42,16 +42,16 @@ class BLife(Record):
 
     @property
     def name(self) -> str:
-        """As the field says it, such as B10."""
+        """Usual name, e.g. B10."""
         return f"B{100 * self.share:g}"
 
 
 @dataclass(frozen=True, repr=False)
 class Population(Result):
-    """What specimens that failed, and specimens that did not, say of all specimens like them.
+    """Failure law of a population, from specimens that failed and specimens that did not.
 
-    ``ages`` (ascending) are in ``unit``; ``failed`` marks the ages at failure. ``shape``, ``scale`` and
-    their intervals at ``level`` are None where too few specimens have failed: ``warnings`` say so.
+    ``ages`` (ascending) are in ``unit``; ``failed`` marks the ages at failure. ``shape``, ``scale`` and their
+    intervals at ``level`` are None if too few specimens have failed; ``warnings`` says so.
     """
 
     ages: FloatArray
@@ -66,7 +66,7 @@ class Population(Result):
     seed: int
 
     def b_life(self, share: float) -> BLife:
-        """Return the age by which a share of all specimens has failed: 0.10 for B10.
+        """Return the age by which a share of all specimens has failed (0.10 for B10).
 
         Raises
         ------
@@ -76,14 +76,14 @@ class Population(Result):
             If too few specimens have failed.
         """
         if not 0 < share < 1:
-            raise ParameterError(f"share is {share}: it must lie between 0 and 1", quantity="share")
+            raise ParameterError(f"share is {share}: it must be between 0 and 1", quantity="share")
         if self.shape is None or self.scale is None:
             raise InsufficientDataError(self.warnings[0].sentence)
         age, low, high = (float(each[0]) for each in self.lives([share]))
         return BLife(share, age, low, high, self.level)
 
     def lives(self, shares: ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return ages by which shares of all specimens have failed, and both ends of their intervals.
+        """Return the ages by which shares of all specimens have failed, and the bounds of their intervals.
 
         Raises
         ------
@@ -103,10 +103,10 @@ class Population(Result):
 
     @cached_property
     def median_ranks(self) -> tuple[FloatArray, FloatArray]:
-        """Ages at failure and the share failed at each: medians of their ranks, after Johnson.
+        """Ages at failure and the share failed at each: median ranks after Johnson.
 
-        A specimen that was taken off may have failed at any later rank: each failure behind it moves up by
-        its part of those. A specimen taken off at the age of a failure counts as having outlived it.
+        A suspended specimen may have failed at any later rank, so each later failure moves up by its share. A
+        specimen suspended at the age of a failure counts as having survived it.
         """
         total, rank, ranks = self.ages.size, 0.0, []
         for before in np.flatnonzero(self.failed).tolist():
@@ -120,22 +120,22 @@ class Population(Result):
         return _estimates_of_standard(_plan(self.failed), self.seed)
 
     def verdict(self) -> str:
-        """Return what the shape says, in a sentence; empty if there is none."""
+        """Return what the shape means in a sentence; empty if there is no shape."""
         if self.shape is None or self.shape_interval is None:
             return ""
         low, high = self.shape_interval
         if low > 1:
-            return "The rate of failures grows with age: specimens wear out."
+            return "The failure rate grows with age: specimens wear out."
         if high < 1:
-            return "The rate of failures falls with age: weak specimens fail early."
-        return "Whether the rate of failures grows or falls with age is unknown."
+            return "The failure rate falls with age: weak specimens fail early."
+        return "Whether the failure rate grows or falls with age is unknown."
 
     def headline(self) -> str:
-        """Return how many failed, and B10 and B50."""
+        """Return the number of failures, B10 and B50."""
         count = int(self.failed.sum())
         head = f"{self.ages.size} specimens, {count} failed"
         if self.shape is None:
-            return f"{head}: no law is known"
+            return f"{head}, no failure law is known"
         lives = (self.b_life(share) for share in (0.10, 0.50))
         return head + "".join(f", {each.name} {_written(each.age, 3)}{self._behind}" for each in lives)
 
@@ -160,11 +160,11 @@ class Population(Result):
                 )
                 if value is not None and interval is not None
             ]
-            lines += [f"Weibull law by maximum likelihood, intervals at {percent}.", self.verdict()]
+            lines += [f"Weibull law by maximum likelihood, with {percent} intervals.", self.verdict()]
         return "\n".join([*lines, *(each.sentence for each in self.warnings)])
 
     def to_dict(self) -> dict[str, Any]:
-        """Return every field, B10, B50 and the median ranks; None for what is not known."""
+        """Return every field, B10, B50 and the median ranks; None if unknown."""
         estimable = self.shape is not None
         return json_record(
             {
@@ -177,7 +177,7 @@ class Population(Result):
         )
 
     def to_frame(self) -> pl.DataFrame:
-        """Return shape, scale, B10 and B50 with their intervals, and how many specimens there are."""
+        """Return shape, scale, B10 and B50 with their intervals, and the number of specimens."""
         rows: list[tuple[str, float | None, str]] = [
             ("units", self.ages.size, ""),
             ("failed", int(self.failed.sum()), ""),
@@ -198,26 +198,25 @@ class Population(Result):
 def weibull(
     ages: ArrayLike, failed: ArrayLike, *, unit: str = "", level: float = 0.90, seed: int = 0
 ) -> Population:
-    """Return the Weibull law of ages at failure, where some specimens have not failed.
+    """Return the Weibull law of ages at failure; some specimens may not have failed.
 
     Parameters
     ----------
     ages
-        Age of each specimen at failure, or when it was last seen; one unit of age for all, shape
-        (specimens,).
+        Age of each specimen at failure, or when last seen, in one unit, shape (specimens,).
     failed
         Whether each has failed, shape (specimens,).
     unit
-        What ages count, such as "pages" or "h": for texts and axes.
+        Unit of the ages, e.g. "pages" or "h", for texts and axes.
     level
-        Of the intervals.
+        Level of the intervals, e.g. 0.9.
     seed
-        Of the draws behind the intervals.
+        Random seed of the intervals.
 
     Raises
     ------
     ParameterError
-        If an age is not greater than 0, with its place, or the arguments do not fit together.
+        If an age is not greater than 0 (with its index), or the shapes do not match.
 
     Examples
     --------
@@ -226,7 +225,7 @@ def weibull(
     (2.457, 340.5)
     """
     if not 0 < level < 1:
-        raise ParameterError(f"level is {level}: it must lie between 0 and 1", quantity="level")
+        raise ParameterError(f"level is {level}: it must be between 0 and 1", quantity="level")
     values, ends = _checked(ages, failed)
     # At one age failures come first: a specimen last seen there had outlived it.
     order = np.lexsort((~ends, values))
@@ -291,11 +290,11 @@ def _no_law(count: int, shown: str, age: float) -> Warning:
     """Why so many failures determine no law; an age as a number, and as it is shown."""
     return Warning(
         "no law of failures",
-        "no specimen has failed up to {shown}, so no law of failures is known"
+        "no specimen has failed up to {shown}, so the failure law is unknown"
         if count == 0
-        else "one specimen has failed, at {shown}: one failure shows no spread, so no law is known"
+        else "only one specimen has failed, at {shown}, so the failure law is unknown"
         if count == 1
-        else "all failed at {shown}: one age shows no spread, so no law is known",
+        else "all specimens failed at {shown}, which shows no spread, so the failure law is unknown",
         remedy="follow specimens until more have failed",
         severity="act",
         failures=count,

@@ -105,7 +105,10 @@ class Assembly:
         usable = np.logical_and.reduce([np.isfinite(values) for values in needed])
         if not usable.all():
             bad = rows[~usable]
-            left_out.add(bad.size, (f"{self._place(torque, int(row))}: no radius above zero" for row in bad))
+            left_out.add(
+                bad.size,
+                (f"{self._place(torque, int(row))}: the radius is not greater than zero" for row in bad),
+            )
             arrays = {role: values[usable] for role, values in arrays.items()}
             rows = rows[usable]
         warnings += computed(self.chosen, self.stated)
@@ -129,7 +132,8 @@ class Assembly:
             kept &= (torque.time >= part.time[0]) & (torque.time <= part.time[-1])
         if not kept.all() and kept.sum() < 2:
             raise UnreadableLogError(
-                f"{self.source.name}: {self._spans()}: they share fewer than two samples of the torque"
+                f"{self.source.name}: the channels share fewer than two torque samples in time "
+                f"({self._spans()})"
             )
         arrays = {"time": torque.time[kept]}
         for role, part in self.parts.items():
@@ -140,8 +144,8 @@ class Assembly:
             warnings.append(
                 Warning(
                     "samples outside another channel",
-                    "{samples} of {all} samples of the torque lie outside the time of another channel and "
-                    "were left out ({spans})",
+                    "{samples} of {all} torque samples were dropped because another channel has no "
+                    "values at their times ({spans})",
                     samples=int((~kept).sum()),
                     all=kept.size,
                     spans=self._spans(),
@@ -192,8 +196,8 @@ class Assembly:
         values = signal.load()
         if values.size != time.size:
             raise UnreadableLogError(
-                f"{self.source.name}: channel '{column.path}' has {values.size} values and its clock "
-                f"{time.size}: the file is damaged or cut off"
+                f"{self.source.name}: channel '{column.path}' has {values.size} values, but its clock "
+                f"has {time.size}. The file is damaged or cut off"
             )
         marked = None if signal.marked is None else signal.marked()
         return _Part(role, column, unit, in_si(values, unit), time, tick, np.arange(values.size), marked)
@@ -244,10 +248,12 @@ class Assembly:
         clock = find_channel("time", near, choice, file, dead) if near or choice.name else None
         if clock is None:
             raise ChannelError(
-                f"{file}: no time channel with {signal.rows} samples stands beside '{column}' among "
+                f"{file}: '{column}' has no time channel with {signal.rows} samples. Channels: "
                 f"{', '.join(repr(str(c)) for c in self.columns[:40])}",
-                remedy=f"name it with {Setting('time', 'channel').to()}, or give the time between rows: "
-                f"{EVERY.to('2 ms', python='0.002')}",
+                remedy=(
+                    f"name it with {Setting('time', 'channel').to()}, or give the time between rows with "
+                    f"{EVERY.to('2 ms', python='0.002')}"
+                ),
                 setting=Setting("time", "channel"),
             )
         chosen, unit = clock
@@ -297,7 +303,7 @@ class Assembly:
             if parts[0].time.size < 2:
                 name, count = parts[0].column.path, parts[0].time.size
                 raise UnreadableLogError(
-                    f"{self.source.name}: channel '{name}' has {count} samples with a number"
+                    f"{self.source.name}: channel '{name}' has only {count} samples with a number"
                 )
 
     def _set_apart(self, part: _Part, gone: BoolArray) -> None:
@@ -351,7 +357,7 @@ class Assembly:
         place = self._place(parts[0], int(parts[0].rows[row]))
         bad = next((part for part in parts if not np.isfinite(part.values[row])), None)
         name = bad.column.path if bad else self._clocks[parts[0].tick][2].name
-        return f"channel '{name}', {place}: no number stands where one is needed"
+        return f"channel '{name}', {place}: the number is missing"
 
     def _check_time(self, part: _Part) -> None:
         file, name = self.source.name, part.column.path
@@ -359,8 +365,8 @@ class Assembly:
         if (steps < 0).any():
             row = int(np.argmax(steps < 0))
             raise UnreadableLogError(
-                f"{file}, channel '{name}', sample {row + 2}: time runs backwards by {-steps[row]:.6g} s; "
-                "split the file there, or sort its rows"
+                f"{file}, channel '{name}', sample {row + 2}: time runs backwards by {-steps[row]:.6g} "
+                "s. Split the file there, or sort its rows"
             )
 
     def _spans(self) -> str:
@@ -373,9 +379,15 @@ def _aligned(part: _Part, torque: _Part) -> Warning:
     longest = float(np.max(np.diff(part.time)))
     return Warning(
         "clocks aligned",
-        "{role} '{channel}' has a clock of its own ({rate}, torque {torque_rate}): interpolated linearly "
-        "onto the torque's, over {longest:.3g} s at the most"
-        + ("; it was recorded faster, values between were passed over" if step < 0.75 * of_torque else ""),
+        (
+            "{role} '{channel}' has its own clock ({rate}, torque {torque_rate}) and was interpolated "
+            "linearly to the times of the torque (longest step {longest:.3g} s)"
+        )
+        + (
+            "; it was recorded faster than the torque, so values in between were not used"
+            if step < 0.75 * of_torque
+            else ""
+        ),
         role=part.role,
         channel=part.column.path,
         interval=step,

@@ -129,7 +129,7 @@ def find_channel(
         if len({c.path for c in candidates}) == 1:
             raise _repeated(role, candidates, file)
         raise ChannelError(
-            f"{file}: {role} could be {listed}",
+            f"{file}: the {role} column could be {listed}",
             columns=tuple(c.index for c in candidates),
             **_choose(role, candidates[0].path),
         )
@@ -139,7 +139,7 @@ def find_channel(
 def _choose(role: str, path: str) -> dict[str, Any]:
     """The remedy where several columns could play a role."""
     channel = Setting(role, "channel")
-    return {"remedy": f"choose with {channel.to(path)}", "setting": channel}
+    return {"remedy": f"choose one with {channel.to(path)}", "setting": channel}
 
 
 def _is_named(pattern: str, column: Column) -> bool:
@@ -191,17 +191,17 @@ def no_channel(role: str, columns: tuple[Column, ...], file: str) -> ChannelErro
     channel = Setting(role, "channel")
     way_out = f"name it with {channel.to()}"
     if role == "torque" and any(is_of_kind("force", c.unit) for c in columns):
-        way_out += f" (a friction force too, with the {Setting('radius').to()} at which it acts)"
+        way_out += f" (or a friction force, with {Setting('radius').to()} for the radius at which it acts)"
     elif role == "torque" and (current := next((c for c in columns if c.unit in _AMPERES), None)):
         way_out = (
-            f"if '{current.path}' is the motor's current, use {channel.to(current.path)} and the torque of "
-            f"1 {current.unit} as {Setting(role, 'unit').to(_AMPERES[current.unit])}"
+            f"if '{current.path}' is the motor current, use {channel.to(current.path)} and give the "
+            f"torque per {current.unit} as {Setting(role, 'unit').to(_AMPERES[current.unit])}"
         )
     elif role == "time":
-        way_out += f", or give the time between rows: {EVERY.to('2 ms', python='0.002')}"
+        way_out += f", or give the time between rows with {EVERY.to('2 ms', python='0.002')}"
     if role == "temperature":
         way_out += f", or use {ISOTHERMAL.to()} to exclude temperature"
-    said = f"{file}: no {role} column among {_listed(columns)}"
+    said = f"{file}: no {role} column found. Columns: {_listed(columns)}"
     return ChannelError(said, remedy=way_out, setting=channel)
 
 
@@ -215,7 +215,10 @@ def refuse_two_roles(role: str, column: Column, chosen: Mapping[str, tuple[Colum
     """
     for other, (taken, _) in chosen.items():
         if column == taken:
-            raise ChannelError(f"{file}: column '{column}' cannot be both {other} and {role}")
+            raise ChannelError(
+                f"{file}: column '{column}' cannot be both {other} and {role}. Name the {role} column with "
+                f"{Setting(role, 'channel').to()}"
+            )
 
 
 def called(name: str, columns: tuple[Column, ...]) -> list[Column]:
@@ -241,7 +244,7 @@ def _named(role: str, columns: tuple[Column, ...], name: str, file: str) -> Colu
         near = meant(name, [*(c.path for c in columns), *(str(c) for c in columns)])
         channel = Setting(role, "channel")
         raise ChannelError(
-            f"{file}: {role}: there is no column '{name}'; the file has {_listed(columns)}",
+            f"{file}: there is no column '{name}' ({role}). Columns: {_listed(columns)}",
             remedy=f"did you mean {channel.to(near)}?" if near else "",
             setting=channel,
         )
@@ -249,7 +252,7 @@ def _named(role: str, columns: tuple[Column, ...], name: str, file: str) -> Colu
         raise _repeated(role, same, file)
     if len(same) > 1:
         listed = _either([str(c) for c in same])
-        raise ChannelError(f"{file}: {role}: '{name}' could be {listed}", **_choose(role, same[0].path))
+        raise ChannelError(f"{file}: '{name}' ({role}) could be {listed}", **_choose(role, same[0].path))
     return same[0]
 
 
@@ -257,7 +260,7 @@ def _repeated(role: str, columns: list[Column], file: str) -> ChannelError:
     path = columns[0].path
     listed = _either([f"{path}#{i + 1}" for i in range(len(columns))])
     return ChannelError(
-        f"{file}: {len(columns)} columns are called '{path}', told apart as {listed}",
+        f"{file}: {len(columns)} columns are called '{path}'. Refer to them as {listed}",
         columns=tuple(c.index for c in columns),
         **_choose(role, f"{path}#1"),
     )
@@ -340,8 +343,10 @@ def _with_unit(
         raise UnitError(
             f"{file}: column '{column.path}' has no unit",
             columns=(column.index,),
-            remedy=f"write '{column.name} [{example}]' in the header, add a row of units, or use "
-            f"{Setting(role, 'unit').to(example)}",
+            remedy=(
+                f"write '{column.name} [{example}]' in the header, add a row of units, or use "
+                f"{Setting(role, 'unit').to(example)}"
+            ),
             setting=Setting(role, "unit"),
         )
     try:
@@ -362,7 +367,7 @@ def _swapped(role: str, column: Column, unit: str, columns: tuple[Column, ...]) 
     elsewhere = [r for r in ROLES if r != role and _could_be(r, column, surely=True)]
     if others and elsewhere and unit == column.unit:
         remedy = f"use {Setting(role, 'channel').to(others[0].path)}"
-        return f"; it is one of {elsewhere[0]}: are the columns swapped?", remedy
+        return f", but a unit of {elsewhere[0]}. Are the columns swapped?", remedy
     return "", ""
 
 
@@ -370,11 +375,11 @@ def _right_unit(role: str, unit: str) -> str:
     """What to do where a column has a unit that its role cannot have."""
     setting = Setting(role, "unit")
     if role == "torque" and unit.strip() in ("%", "percent"):
-        return f"use {setting.to('9.84 mN*m / 100')} with yours"
+        return f"use {setting.to('9.84 mN*m / 100')}, with your value of the torque at 100 %"
     if role == "speed" and unit.strip() in ("Hz", "1/s"):
-        return f"if it counts revolutions, use {setting.to('rev/s')}"
+        return f"if it means revolutions, use {setting.to('rev/s')}"
     if role == "torque" and unit in _AMPERES:
         example = setting.to(_AMPERES[unit])
-        return f"if it is the motor's current, use the torque of 1 {unit}, e.g. {example}"
+        return f"if it is the motor current, give the torque per {unit}, e.g. {example}"
     kind = ROLE_KINDS[role][0]
-    return f"use {setting.to(nearest_unit(kind, unit) or KINDS[kind][1])}"
+    return f"use {setting.to(nearest_unit(kind, unit) or KINDS[kind][1])}, or correct the header"

@@ -45,8 +45,7 @@ class OpenColumns:
             if complete and not np.isfinite(values).all():
                 row = int(np.argmin(np.isfinite(values)))
                 raise UnreadableLogError(
-                    f"{self.file}, channel '{column.path}', sample {row + 1}: "
-                    "no number stands where one is needed"
+                    f"{self.file}, channel '{column.path}', sample {row + 1}: the number is missing"
                 )
         return arrays
 

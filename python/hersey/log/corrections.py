@@ -56,7 +56,7 @@ def torque_from_current(log: TorqueLog | Corrected, *, motor_constant: float) ->
     typical = float(np.median(np.abs(np.concatenate([run.torque for run in done.log.runs]))))
     was_current = Warning(
         "torque from current",
-        "the torque channel was a current in A; the median torque is now {torque:.3g} N m",
+        "the torque channel was a motor current in A; after conversion the median torque is {torque:.3g} N m",
         torque=typical,
     )
     return _warned(done, was_current, effects=())
@@ -72,7 +72,7 @@ def sign(log: TorqueLog | Corrected, *, torque: int = 1, speed: int = 1) -> Corr
     """
     for name, value in (("torque", torque), ("speed", speed)):
         if value not in (1, -1):
-            raise ParameterError(f"sign of {name} is {value}: write 1 or -1")
+            raise ParameterError(f"sign of {name} is {value}: it must be 1 or -1")
 
     def turned(run: Run) -> Run:
         return replace(run, torque=run.torque * torque, speed=run.speed * speed)
@@ -114,15 +114,17 @@ def no_load(log: TorqueLog | Corrected, *, torque: float | TorqueLog | Corrected
     """
     if isinstance(torque, int | float):
         if not 0 <= torque < np.inf:
-            raise ParameterError(f"no-load torque is {torque:g} N m: it must be 0 or greater")
+            raise ParameterError(f"no-load torque is {torque:g} N m: it must not be negative")
         speeds, levels = np.zeros(1), np.array([float(torque)])
         source = ("torque", f"{torque:g} N m")
     else:
         speeds, levels, name = _no_load_curve(torque)
         source = (
             "torque",
-            f"{levels.min():.3g} to {levels.max():.3g} N m, dwells of {name} at {speeds[0]:.3g} to "
-            f"{speeds[-1]:.3g} rad/s",
+            (
+                f"{levels.min():.3g} to {levels.max():.3g} N m, from dwells of {name} at {speeds[0]:.3g} to "
+                f"{speeds[-1]:.3g} rad/s"
+            ),
         )
     beyond = 0
 
@@ -138,7 +140,8 @@ def no_load(log: TorqueLog | Corrected, *, torque: float | TorqueLog | Corrected
     done = _corrected(log, "no-load torque", freed, source)
     held = Warning(
         "speeds beyond the no-load log",
-        "{rows} {rows:row moves|rows move} slower or faster than its dwells: the nearest was used",
+        "{rows} {rows:row lies|rows lie} outside the speed range of the no-load log; the nearest "
+        "no-load torque was used",
         rows=beyond,
     )
     return _warned(done, held) if beyond else done
@@ -312,8 +315,8 @@ def _without_derivative(done: Corrected, rows: int) -> Corrected:
     """The same with a warning of the rows that have no derivative, if there are any."""
     alone = Warning(
         "rows alone between gaps",
-        "{rows} {rows:row stands|rows stand} alone between gaps, where no derivative can be had: left as "
-        "{rows:it was|they were}",
+        "{rows} {rows:row stands|rows stand} alone between gaps, so no derivative can be computed "
+        "there; {rows:it was|they were} not corrected",
         rows=rows,
     )
     return _warned(done, alone) if rows else done
@@ -358,7 +361,7 @@ def _no_load_curve(log: TorqueLog | Corrected) -> tuple[FloatArray, FloatArray, 
 
 def _temperature(run: Run) -> FloatArray:
     if run.temperature is None:
-        raise InsufficientDataError(f"{run.name} has no temperature to correct")
+        raise InsufficientDataError(f"{run.name} has no temperature channel to correct")
     return run.temperature
 
 

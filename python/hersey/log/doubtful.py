@@ -28,7 +28,7 @@ def doubtful_units(log: TorqueLog | MeansTable) -> list[Warning]:
         out.append(
             Warning(
                 "unit of time doubtful",
-                "rows come every {interval:.4g} s, as the clock is read",
+                "the clock gives one row every {interval:.4g} s, which is unusually slow",
                 severity="watch",
                 remedy="if it counts milliseconds, use {how:ms}",
                 interval=min(steps),
@@ -40,7 +40,7 @@ def doubtful_units(log: TorqueLog | MeansTable) -> list[Warning]:
         out.append(
             Warning(
                 "unit of temperature doubtful",
-                "temperature reaches {temperature:.0f degC}, more than a lubricant stands",
+                "temperature reaches {temperature:.0f degC}, more than a lubricant withstands",
                 severity="watch",
                 remedy="if the numbers are in K, use {how:K}",
                 temperature=hottest,
@@ -51,9 +51,9 @@ def doubtful_units(log: TorqueLog | MeansTable) -> list[Warning]:
         out.append(
             Warning(
                 "torque and speed exchanged",
-                "torque is great and steadier than the speed, which is next to nothing",
+                "torque is large and steadier than speed, and speed is almost zero",
                 severity="watch",
-                remedy="look whether the columns of torque and speed stand under each other's names",
+                remedy="check whether the torque and speed columns are swapped",
             )
         )
     return out

@@ -49,7 +49,9 @@ def beside(
         if choice.name and (channel := find_channel(role, left, choice, file)):
             others[role] = channel
         elif role != "run" and getattr(stated, role) is None:
-            why = _needing(role, chosen) or (choice.unit and f"the unit of the {role} is stated without it")
+            why = _needing(role, chosen) or (
+                choice.unit and f"a unit is given for the {role}, but no value or column"
+            )
             if why:
                 of = _in_need(role, chosen)
                 raise unstated(file, role, why, left, chosen[of][0] if of else None)
@@ -121,7 +123,7 @@ def computed(chosen: Chosen, stated: Stated) -> list[Warning]:
             Warning("speed computed", "speed is '{channel}' / radius ({radius_from})", channel=speed, **known)
         )
     if known["load_from"]:
-        out.append(Warning("load known", "the load is {load_from}", **known))
+        out.append(Warning("load known", "load is {load_from}", **known))
     return out
 
 
@@ -131,7 +133,7 @@ def _source(role: str, unit: str, chosen: Chosen, stated: Stated) -> dict[str, A
     if role in chosen:
         source = f"'{chosen[role][0].path}'"
     elif isinstance(value, tuple):
-        source = f"one of {len(value)} for each run"
+        source = f"{len(value)} values, one for each run"
     else:
         source = "" if value is None else f"{value:g} {unit}"
     one = value if role not in chosen and isinstance(value, int | float) else None
@@ -151,7 +153,9 @@ def of_each_run(runs: list[tuple[Run, LogFile]], stated: Stated) -> list[tuple[R
         if not isinstance(values, tuple):
             continue
         if len(values) != len(runs):
-            raise ParameterError(f"{role} has {len(values)} values for {len(runs)} runs: give one for each")
+            raise ParameterError(
+                f"{role} has {len(values)} values for {len(runs)} runs. Give one value for each run"
+            )
         runs = [(_scaled(run, log, role, value), log) for (run, log), value in zip(runs, values, strict=True)]
     return runs
 
@@ -184,7 +188,7 @@ def _needing(role: str, chosen: Chosen) -> str:
     column, unit = chosen[of]
     kind = role_conversion(of, unit.unit)[0]
     if role == "load":
-        return f"'{column}' is a {kind}, which is a force only with the normal load"
+        return f"'{column}' is a {kind}, which needs the normal load"
     what = "sliding speed" if kind == "belt speed" else kind
     example = {"torque": "a torque", "speed": "a speed of rotation"}[of]
-    return f"'{column}' is a {what}, which is {example} only with the radius"
+    return f"'{column}' is a {what}, which needs the radius to become {example}"

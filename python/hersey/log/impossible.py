@@ -69,11 +69,11 @@ class Reason(StrEnum):
 _WORDS = {
     Reason.CODE: "a code of the logger or sensor, far from all other readings",
     Reason.OUTLIER: "far beyond all other readings",
-    Reason.SIGN: "the opposite sign of steady readings before and after",
-    Reason.DROP_OUT: "a drop-out among steady readings",
-    Reason.JUMP: "a jump there and back that no temperature makes",
-    Reason.MARKED: "marked as invalid by the file itself",
-    Reason.CLOCK: "off the clock of the rows before and after",
+    Reason.SIGN: "opposite in sign to the steady readings around it",
+    Reason.DROP_OUT: "a dropout among steady readings",
+    Reason.JUMP: "a jump and return too fast for a temperature",
+    Reason.MARKED: "marked as invalid in the file",
+    Reason.CLOCK: "out of line with the times of the rows around it",
 }
 
 
@@ -91,13 +91,11 @@ class Impossible(Record):
     unit: str
     reason: Annotated[Reason, Means("range, code, outlier, sign, drop-out, jump, clock or marked")]
     rows: int
-    values: Annotated[
-        tuple[tuple[float, int], ...], Means("the most frequent ones, and how often they occur")
-    ]
-    low: Annotated[float | None, Means("null where the file itself marks them as invalid")]
+    values: Annotated[tuple[tuple[float, int], ...], Means("most frequent readings with their counts")]
+    low: Annotated[float | None, Means("null if the file itself marks them as invalid")]
     high: float | None
     where: Annotated[str, Means("the first of them, in words")]
-    limits: Annotated[str, Means("what is believed, in words; empty unless the reason is range")] = ""
+    limits: Annotated[str, Means("accepted range, in words; empty unless the reason is range")] = ""
 
     def __str__(self) -> str:
         """Return what was read, how often, where first, and why it is not believed."""
@@ -109,13 +107,13 @@ class Impossible(Record):
             read = ", ".join(f"{value:.10g}{unit} ({_times(count)})" for value, count in self.values)
         else:
             read = f"{self.low:.10g} to {self.high:.10g}{unit} ({_times(self.rows)})"
-        return f"{self.where}: {read} is no {self.role}, {why}"
+        return f"{self.where}: impossible {self.role} {read}, {why}"
 
     def warning(self) -> Warning:
         """Return it as what was done to a file."""
         return Warning(
             "impossible readings",
-            "{rows} {rows:row was|rows were} left out: {readings}",
+            "{rows} {rows:row was|rows were} excluded, {rows:at|the first at} {readings}",
             rows=self.rows,
             role=self.role,
             channel=self.channel,
@@ -211,7 +209,7 @@ def marked_rows(
         found.append(Impossible(role, column.path, unit, Reason.MARKED, rows, (), None, None, first))
         if rows > max(1.0, (MOST_ALLOWED if allowed else MOST) * mask.size):
             share = f"{rows / mask.size:.0%} of the channel ({rows} of {mask.size} samples)"
-            leave = f", or use {ISOTHERMAL.to()} to exclude temperature" if role == "temperature" else ""
+            leave = f", or exclude temperature with {ISOTHERMAL.to()}" if role == "temperature" else ""
             raise UnreadableLogError(
                 f"{file}, {found[-1]}; {share}", remedy=f"{_way_out(rows, mask.size)}{leave}"
             )
@@ -221,8 +219,8 @@ def marked_rows(
 
 def _way_out(bad: int, rows: int) -> str:
     """What to do about so many rows that cannot be used."""
-    drop = f", or use {DROP_MISSING.to()} to drop such rows" if bad <= MOST_ALLOWED * rows else ""
-    return f"name another column, or mend the file{drop}"
+    drop = f", or exclude such rows with {DROP_MISSING.to()}" if bad <= MOST_ALLOWED * rows else ""
+    return f"name another column, or correct the file{drop}"
 
 
 def _of_clock(time: FloatArray) -> dict[Reason, BoolArray]:
@@ -317,13 +315,11 @@ def _refuse_many(
 ) -> None:
     if bad <= max(1.0, (MOST_ALLOWED if allowed else MOST) * rows):
         return
-    share = (
-        f"{bad / rows:.0%} of {reading.role} '{reading.column.path}' cannot be right ({bad} of {rows} rows)"
-    )
+    share = f"{bad / rows:.0%} of {reading.role} '{reading.column.path}' is impossible ({bad} of {rows} rows)"
     meant = _meant_unit(reading) if kind == "temperature" else ""
-    unit = f"if its unit is another, use {Setting(reading.role, 'unit').to(meant)}"
+    unit = f"if the unit is wrong, use {Setting(reading.role, 'unit').to(meant)}"
     raise UnreadableLogError(
-        f"{file}, {found[0]}; {share}", remedy=f"{unit}; otherwise {_way_out(bad, rows)}"
+        f"{file}, {found[0]}; {share}", remedy=f"{unit}. Otherwise {_way_out(bad, rows)}"
     )
 
 

@@ -26,7 +26,7 @@ R = TypeVar("R")
 
 @dataclass(frozen=True, repr=False)
 class ManyLogs(Mapping[Path, R], Generic[R]):
-    """What came of many files, by path in their order; ``failures`` says by path why others gave nothing."""
+    """Results of many files, by path and in order; ``failures`` holds the error of each file that failed."""
 
     found: Mapping[Path, R]
     failures: Mapping[Path, HerseyError]
@@ -44,14 +44,14 @@ class ManyLogs(Mapping[Path, R], Generic[R]):
         return len(self.found)
 
     def summary(self) -> str:
-        """Return the count, and a line for each file that was left out."""
+        """Return the count, and a line for each file that was skipped."""
         total = len(self.found) + len(self.failures)
-        head = f"{len(self.found)} of {total} logs"
+        head = f"read {len(self.found)} of {total} logs"
         return "\n".join([head, *(f"- {failure_line(path, error)}" for path, error in self.failures.items())])
 
     def __repr__(self) -> str:
         """Return the counts on one line."""
-        return f"<ManyLogs: {len(self.found)} logs, {len(self.failures)} left out>"
+        return f"<ManyLogs: {len(self.found)} logs, {len(self.failures)} skipped>"
 
 
 def read_many(
@@ -64,36 +64,36 @@ def read_many(
     progress: Callable[[int, int], object] | None = None,
     **reading: Any,
 ) -> ManyLogs[Any]:
-    """Read each file as a log of its own, and keep what ``then`` makes of it.
+    """Read each file as a separate log and keep the result of ``then``.
 
-    The result is the same, bit for bit, whoever works and whichever file is read first.
+    The result is identical whatever workers are used and whichever file is read first.
 
     Parameters
     ----------
     paths
         Files and patterns (``logs/*.csv``), which are sorted.
     then
-        What is made of each log where it is read, so that memory holds no more logs than are read at once,
-        for example ``lambda log: log.steady(tare="standing").table``; without it the logs are kept. Steady
-        points hold their log, tables and fits do not.
+        Function of each log, called where it is read so that few logs are in memory at once, e.g. ``lambda
+        log: log.steady(tare="standing").table``. Default: the logs are kept. Steady points keep their log in
+        memory; tables and fits do not.
     client
-        A ``distributed.Client``, or the address of a scheduler: its workers read, a file a task, and must see
-        the files by the same paths.
+        A ``distributed.Client``, or the address of a scheduler. Its workers read one file per task and must
+        see the files at the same paths.
     threads
-        Threads that read without a client. Reading and reducing compute mostly in Python, of which one thread
-        runs at a time: workers are quicker.
+        Number of threads without a client. Most of the work runs in Python, one thread at a time, so workers
+        are faster.
     keep_going
-        Leave out files that cannot be read, and those of which ``then`` raises a `HerseyError`; they are told
-        in ``failures``. Otherwise the first in the order of the files is raised.
+        Whether to skip files that cannot be read, or for which ``then`` raises a `HerseyError`, and list them
+        in ``failures``. Otherwise the first error in file order is raised.
     progress
-        Called with files done and files in all.
+        Called with files done and total files.
     **reading
-        As `read` takes it, for every file alike.
+        Arguments of `read`, for every file.
 
     Raises
     ------
     HerseyError
-        If a pattern matches no file, a file is named twice, or as `read`.
+        If a pattern matches no file, a file is given twice, or as `read`.
 
     Examples
     --------
@@ -104,7 +104,7 @@ def read_many(
     """
     files = files_of(paths)
     if not files:
-        raise ParameterError("no log file was named")
+        raise ParameterError("no log file is given")
     task = partial(_one, then, reading)
     results = each_of(task, files, client=client, threads=threads, progress=progress)
     return collected(files, results, keep_going)

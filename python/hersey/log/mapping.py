@@ -1,4 +1,4 @@
-"""`hersey.toml`: which channel plays which role, proposed once, kept beside the data, reused.
+"""`hersey.toml`: which channel has which role. It is proposed once, kept with the data and reused.
 
 A table for each role (``time``, ``torque``, ``speed``, ``temperature``) names the channel and its unit, and
 holds what must be corrected: sign, tare, gears, motor constant, offsets. Every value with a dimension is
@@ -118,7 +118,9 @@ class LogMapping(_Roles):
         """
         for role, value in signs.items():
             if value not in (1, -1):
-                raise ParameterError(f"the sign of {role} is {value}: use {turned(role)}, or leave it out")
+                raise ParameterError(
+                    f"the sign of {role} is {value}: it must be 1 or -1. To flip it, use {turned(role)}"
+                )
         torque, speed = (signs.get(role, 1) for role in ("torque", "speed"))
         return replace(
             self,
@@ -164,7 +166,7 @@ class LogMapping(_Roles):
 
 
 def read_mapping(path: str | Path) -> LogMapping:
-    """Read a mapping; every table and key is checked, every value with a dimension needs its unit.
+    """Read a mapping. Tables and keys are checked; every value with a dimension needs its unit.
 
     Raises
     ------
@@ -174,8 +176,8 @@ def read_mapping(path: str | Path) -> LogMapping:
     path = Path(path)
     if "drivetrain" in read_toml(path):
         raise ParameterError(
-            f"{path.name} is a machine's file, with [drivetrain], and no mapping of a log: "
-            f"give it as {Setting('machine').to(printable(str(path)))}"
+            f"{path.name} is a machine file ([drivetrain]), not a mapping. Give it as "
+            f"{Setting('machine').to(printable(str(path)))}"
         )
     mapping = LogMapping(**vars(read_tables(path, _Roles)), source=path)
     for role in ROLE_KINDS:
@@ -191,12 +193,12 @@ def _check_unit(role: str, unit: str, motor_constant: float | None) -> None:
         try:
             role_conversion(role, unit)
         except UnitError as error:
-            hint = "; a motor's current needs motor_constant" if role == "torque" else ""
-            raise UnitError(f"{error}{hint}") from None
+            remedy = "if it is a motor current, set motor_constant" if role == "torque" else ""
+            raise UnitError(str(error), remedy=remedy) from None
 
 
 def find_mapping(path: str | Path) -> Path | None:
-    """Return the mapping of a log: ``bench.hersey.toml`` beside it, or `FILE_NAME` in its directory."""
+    """Return the mapping of a log: ``bench.hersey.toml`` next to it, or `FILE_NAME` in its folder."""
     log = Path(path)
     beside = (log.parent / f"{log.stem}{_SUFFIX}", log.parent / FILE_NAME)
     # a name that the system finds too long is no file
@@ -218,19 +220,19 @@ def read_with_mapping(
     load: float | Sequence[float] | None = None,
     progress: Progress | None = None,
 ) -> Corrected:
-    """Read a log, or several, as `hersey.read` does, each with its mapping, and correct it.
+    """Read one log or several with `hersey.read`, using their mapping, and apply its corrections.
 
     Parameters
     ----------
     mapping
-        A mapping or its file for all of them; if none is given, what `find_mapping` finds beside them.
+        A mapping or its file, for all logs. Default: the one that `find_mapping` finds in their folder.
     channels, units
-        By role; they outrank the mapping's. A role whose channel or unit is given so is not corrected for
-        a motor constant.
+        By role; they override the mapping. A role whose channel or unit is given here is not corrected for a
+        motor constant.
     signs
-        -1 by role, ``torque`` or ``speed``, turns the sign once more than the mapping does.
+        -1 by role, ``torque`` or ``speed``, flips the sign in addition to the mapping.
     isothermal, drop_missing, every, radius, load, progress
-        As for `hersey.read`; they outrank the mapping's.
+        As for `hersey.read`; they override the mapping.
 
     Raises
     ------
@@ -263,13 +265,13 @@ def read_with_mapping(
     except (ChannelError, UnitError) as error:
         if chosen.source is None:
             raise
-        raise type(error)(f"{error} (channels and units are those of {chosen.source.name})") from None
+        raise type(error)(f"{error} (channels and units come from {chosen.source.name})") from None
     logged = tuple(_as_written(file, chosen) for file in log.files)
     return Corrected(replace(done.log, files=logged, sensors=chosen.sensors), done.corrections)
 
 
 def mapping_of(files: Sequence[str | Path], stated: str | Path | None = None) -> LogMapping:
-    """Return the stated mapping, or the one that `find_mapping` finds beside all files, or an empty one.
+    """Return the given mapping, or the one that `find_mapping` finds for all files, or an empty one.
 
     Raises
     ------
@@ -281,7 +283,7 @@ def mapping_of(files: Sequence[str | Path], stated: str | Path | None = None) ->
     beside = {find_mapping(file) for file in files}
     if len(beside) > 1:
         names = ", ".join(sorted(f"'{path.name}'" if path else "none" for path in beside))
-        raise ParameterError(f"the logs have different mappings ({names}): name one with {MAPPING.to()}")
+        raise ParameterError(f"the logs have different mappings ({names}). Choose one with {MAPPING.to()}")
     only = next(iter(beside), None)
     return LogMapping() if only is None else read_mapping(only)
 
@@ -326,7 +328,7 @@ def _as_written(file: LogFile, mapping: LogMapping) -> LogFile:
     if mapping.source is not None:
         used = Warning(
             "mapping used",
-            "channels, units and corrections are those of {mapping}",
+            "channels, units and corrections come from {mapping}",
             mapping=mapping.source.name,
         )
         warnings = (*warnings, used)
@@ -345,5 +347,5 @@ def _ampere(unit: str) -> float:
         return float(registry.Quantity(1.0, unit or "A").to("A").magnitude)
     except Exception:  # pint raises many kinds
         raise UnitError(
-            f"'{unit}' is no unit of a current, which motor_constant needs: write A or mA"
+            f"'{unit}' is not a unit of current, which motor_constant needs. Write A or mA"
         ) from None

@@ -65,8 +65,8 @@ def as_long_as_torque(cells: CellTable, choices: dict[str, ChannelChoice]) -> Ce
         named = called(choice.name, cells.columns) if choice.name else []
         if named and all(size[column] != rows for column in named):
             raise UnreadableLogError(
-                f"{cells.name}: column '{named[0]}' ({role}) has {size[named[0]]} rows and column "
-                f"'{torque[0]}' (torque) {rows}: name columns of one table"
+                f"{cells.name}: column '{named[0]}' ({role}) has {size[named[0]]} rows, but column "
+                f"'{torque[0]}' (torque) has {rows}. Name columns of the same table"
             )
     kept = [i for i, column in enumerate(cells.columns) if size[column] == rows]
     return replace(

@@ -183,10 +183,12 @@ def _for_each(name: str, given: float | Sequence[float] | None, tables: int) -> 
         return [None] * tables
     values = [float(v) for v in np.ravel(given)] * (1 if np.ndim(given) else tables)
     if len(values) != tables:
-        raise ParameterError(f"{name} has {len(values)} values for {tables} tables: give one for each")
+        raise ParameterError(
+            f"{name} has {len(values)} values for {tables} tables. Give one value for each table"
+        )
     for value in values:
         if not 0 < value < LARGEST:
-            raise ParameterError(f"{name} is {value:g} in SI: it must be greater than 0")
+            raise ParameterError(f"{name} is {value:g} (SI): it must be greater than 0")
     return list(values)
 
 
@@ -245,7 +247,7 @@ def _read(
     known = _with_labels(cells, values, max((row.run for row in before), default=-1) + 1)
     rows = [_row({name: each[i] for name, each in known.items()}) for i in np.flatnonzero(~gone)]
     if not rows:
-        raise InsufficientDataError(f"{cells.name}: no row holds both a speed and a torque")
+        raise InsufficientDataError(f"{cells.name}: no row has both speed and torque")
     left_out = [
         _bad(cells, int(i), next(name for name in bad if bad[name][i]), roles) for i in np.flatnonzero(gone)
     ]
@@ -308,7 +310,7 @@ def _rows_left_out(named: list[str]) -> list[Warning]:
     return [
         Warning(
             "rows of means left out",
-            "left out for a cell that is no number: {first}"
+            "{rows} {rows:row was|rows were} skipped because a cell is not a number: {first}"
             + (" and {others} more" if len(named) > _NAMED else ""),
             rows=len(named),
             first=", ".join(named[:_NAMED]),
@@ -321,6 +323,6 @@ def refuse_corrections(stated: bool, name: str) -> None:
     """Refuse corrections of a mapping: they are made on a trace."""
     if stated:
         raise ParameterError(
-            f"{name} states corrections (signs, tare, gears, lag): they are made on a trace, and a table of "
-            "means has none; correct the table, and name its columns of torque, speed and temperature"
+            f"{name} contains corrections (signs, tare, gears, lag), which cannot be applied to a table "
+            "of means. Correct the values in the table, and name only its columns in the mapping"
         )

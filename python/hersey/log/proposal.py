@@ -37,7 +37,7 @@ def propose_mapping(
     """
     path = Path(path)
     columns = tuple(Column(index, name, unit) for index, (name, unit) in enumerate(list_channels(path)))
-    lines = [f"# Channels of {printable(path.name)}, proposed by hersey inspect: look at it and mend it."]
+    lines = [f"# Channels of {printable(path.name)}, proposed by hersey inspect. Check and correct them."]
     for role in ("torque", "speed", "temperature", "time"):
         choice = ChannelChoice((channels or {}).get(role, ""), (units or {}).get(role, ""))
         lines += [*_proposed(role, columns, choice, path), ""]
@@ -46,33 +46,36 @@ def propose_mapping(
 
 _EXAMPLES: dict[str, tuple[str, ...]] = {
     "torque": (
-        "# sign = -1                     # turns it",
-        '# tare = "4 mN*m"               # what the sensor shows without load',
-        '# no_load = "4 mN*m"            # torque of the drive without the film, or a log of it: "free.csv"',
-        "# gear_ratio = 12.5             # turns of the shaft of the sensor for each turn of the roll",
-        "# efficiency = 0.9              # of those gears",
-        '# inertia = "2e-4 kg*m^2"       # seen at the roll, between sensor and film: matters in ramps',
-        '# motor_constant = "35 mN*m/A"  # if the channel is the motor\'s current',
-        '# gain_error = "1 %"            # of the sensor, at 95 %',
+        "# sign = -1                     # flips the sign",
+        '# tare = "4 mN*m"               # sensor reading without load',
+        '# no_load = "4 mN*m"            # torque without the lubricated contact, or a log of it: "free.csv"',
+        "# gear_ratio = 12.5             # turns of the sensor shaft per turn of the roll",
+        "# efficiency = 0.9              # of the gears",
+        (
+            '# inertia = "2e-4 kg*m^2"       # between sensor and contact, referred to the roll; matters '
+            "in ramps"
+        ),
+        '# motor_constant = "35 mN*m/A"  # if the channel is the motor current',
+        '# gain_error = "1 %"            # sensor error, at 95 %',
         '# zero_error = "2 mN*m"',
     ),
     "speed": (
         "# sign = -1",
-        "# gear_ratio = 12.5             # turns of its shaft for each turn of the roll",
-        '# gain_error = "0.1 %"          # of the sensor, at 95 %',
+        "# gear_ratio = 12.5             # turns of the sensor shaft per turn of the roll",
+        '# gain_error = "0.1 %"          # sensor error, at 95 %',
     ),
     "temperature": (
-        '# offset = "-1.5 K"             # film minus reading',
-        '# time_constant = "4 s"         # lag of the sensor',
-        '# zero_error = "2 K"            # by how much the film may differ from the reading, at 95 %',
-        '# film_heating = "3 K"          # by how much friction may heat it at the greatest power',
+        '# offset = "-1.5 K"             # film temperature minus reading',
+        '# time_constant = "4 s"         # sensor lag',
+        '# zero_error = "2 K"            # largest difference between film and reading, at 95 %',
+        '# film_heating = "3 K"          # largest frictional heating of the film',
     ),
     "time": (),
 }
 #: What a friction force needs beside it: meaning and an amount of each role.
 _BESIDE = {
-    "radius": ("at which the friction force acts", "25 mm"),
-    "load": ("normal load: a friction coefficient needs it", "50 N"),
+    "radius": ("radius at which the friction force acts", "25 mm"),
+    "load": ("normal load, needed with a friction coefficient", "50 N"),
 }
 
 
@@ -80,11 +83,11 @@ def _proposed(role: str, columns: tuple[Column, ...], choice: ChannelChoice, pat
     channel: tuple[Column, Conversion] | None = None
     try:
         channel = find_channel(role, columns, choice, path.name, lambda column: _says_nothing(path, column))
-        said = "no channel of the log is called so or has such a unit"
+        said = "no channel of the log has such a name or unit"
     except HerseyError as error:
         said = str(error).removeprefix(f"{path.name}: ")
     if channel is not None and not choice.name and _says_nothing(path, channel[0], zero=True):
-        said = f"'{channel[0]}' is zero throughout, or empty: it is dead"
+        said = f"'{channel[0]}' is zero throughout or empty"
         channel = None
     if channel is None:
         return [f"# [{role}]", f"# {printable(said)}", '# channel = ""', '# unit = ""']
@@ -104,7 +107,7 @@ def _beside(columns: tuple[Column, ...], *, needed: bool) -> list[str]:
             continue
         lines += ["", f"# [{role}]".ljust(32) + f"# {meaning}", f'# value = "{amount_of}"']
         if named:
-            said = f"column {printable(str(named[0]))} may be it: in the place of a value,"
+            said = f"column {printable(str(named[0]))} may hold it. To use it, replace value by"
             lines += [
                 f"# # {said}",
                 f"# channel = {quoted(named[0].path)}",

@@ -43,5 +43,5 @@ class Amount(Quantity):
             return float(registry.Quantity(float(match[1]), unit).to(self.unit).magnitude)
         except Exception:  # pint raises many kinds, from its tokenizer too
             raise UnitError(
-                f"is '{text}': write a number and a unit of {self.kind}, such as \"{self.example}\""
+                f"is '{text}', not a {self.kind}. Write a number and a unit, e.g. \"{self.example}\""
             ) from None

@@ -35,40 +35,39 @@ def read(
     load: float | Sequence[float] | None = None,
     progress: Progress | None = None,
 ) -> TorqueLog:
-    """Read one log, or several of one machine, each a run of its own.
+    """Read one log, or several of the same machine, each as a separate run.
 
     Parameters
     ----------
     paths
-        File or files (text, Excel, LVM, TDMS, MDF, MATLAB, HDF5, NumPy, Parquet), or polars or pandas frames
-        in memory.
+        File or files (text, Excel, LVM, TDMS, MDF, MATLAB, HDF5, NumPy, Parquet), or polars or pandas frames.
     channels
         Column name by role (``time``, ``torque``, ``speed``, ``temperature``; ``load``, ``radius``, and
-        ``run``, the number of a run), where names and units in the file do not settle it; ``name#2`` is the
-        second column of a name, ``group/name`` one of a part of the file, ``#2`` the second column of a table
-        without a header. Torque may be a friction force or a coefficient, speed one of sliding.
+        ``run``, the run number), if names and units in the file are not sufficient. ``name#2`` is the second
+        column with that name, ``group/name`` a column in a part of the file, ``#2`` the second column of a
+        table without header. Torque may be a friction force or coefficient; speed may be a sliding speed.
     units
-        Unit by role, where the file has none or a wrong one; may carry a factor or sign.
+        Unit by role, if it is missing or wrong in the file; it may include a factor or sign.
     isothermal
-        Leave temperature out.
+        Whether to ignore temperature.
     drop_missing
-        Leave out rows in which a number is missing, and count them, also where they are many; few are left
-        out, with a warning, in any case. So are readings that cannot be right, up to a fifth of a channel,
-        and with this up to a half.
+        Whether to exclude and count rows with a missing number even if there are many. A few such rows are
+        always excluded, with a warning. So are impossible readings: up to a fifth of a channel, or up to a
+        half with this option.
     every
-        Time between rows, s, where the file has no clock.
+        Time between rows, s, if the file has no time column.
     radius
-        Radius at which a friction force acts and a sliding speed is measured, m, where no column holds it;
-        one for all runs, or one for each.
+        Radius at which a friction force acts and a sliding speed is measured, m, if there is no column for
+        it; one value, or one per run.
     load
-        Normal load, N, where no column holds it; one for all runs, or one for each.
+        Normal load, N, if there is no column for it; one value, or one per run.
     progress
-        Called with bytes done and bytes in all.
+        Called with bytes done and total bytes.
 
     Raises
     ------
     HerseyError
-        One of its kinds, naming file, line and column.
+        With file, line and column in the message.
 
     Examples
     --------
@@ -79,11 +78,11 @@ def read(
     """
     files = _listed(paths)
     if not files:
-        raise ParameterError("no log file was named")
+        raise ParameterError("no log file is given")
     known = (*ROLES, *OTHER_ROLES)
     for role in [*(channels or {}), *(units or {})]:
         if role not in known:
-            raise ParameterError(f"'{role}' is no role of a channel: they are {', '.join(known)}")
+            raise ParameterError(f"unknown role '{role}' of a channel. The roles are {', '.join(known)}")
     choices = {r: ChannelChoice((channels or {}).get(r, ""), (units or {}).get(r, "")) for r in known}
     stated = _stated(every=every, radius=radius, load=load)
     wanted = Wanted(choices, stated, isothermal, drop_missing)
@@ -92,7 +91,7 @@ def read(
         read_here = _runs(file, wanted, "frame" if len(files) == 1 else f"frame {number}", progress)
         if any(read_here[0][1].sha256 == other.sha256 for _, other in done):
             name = read_here[0][1].name
-            raise ParameterError(f"{name} holds the same bytes as a file before it: name each file once")
+            raise ParameterError(f"{name} has the same content as an earlier file. Give each file once")
         done += read_here
     done = of_each_run(done, stated)
     return TorqueLog(tuple(run for run, _ in done), tuple(log for _, log in done))
@@ -115,7 +114,7 @@ def _stated(*, every: Any, radius: Any, load: Any) -> Stated:
     for name, value in given.items():
         for one in np.atleast_1d(value) if value is not None else ():
             if not 0 < one < LARGEST:
-                raise ParameterError(f"{name} is {one:g} in SI: it must be greater than 0")
+                raise ParameterError(f"{name} is {one:g} (SI): it must be greater than 0")
         if np.ndim(value):
             given[name] = tuple(map(float, value))
     return Stated(**given)
@@ -154,6 +153,6 @@ def _listed(paths: Any) -> list[Any]:
         return [paths]
     if not isinstance(paths, Iterable):
         raise ParameterError(
-            f"a {type(paths).__name__} is no log: name a file, or give a polars or pandas frame"
+            f"a {type(paths).__name__} is not a log. Give a file name, or a polars or pandas frame"
         )
     return list(paths)

@@ -123,7 +123,7 @@ def nothing_to_read(recording: Recording) -> ChannelError:
     if recording.nothing:
         return ChannelError(f"{file}: {recording.nothing}")
     others = ", ".join(recording.others[:40])[:1000] or "nothing"
-    return ChannelError(f"{file} holds no channel of numbers, only {others}")
+    return ChannelError(f"{file} has no channel of numbers, only {others}")
 
 
 def library_warning(library: str, message: str) -> Warning:
@@ -148,7 +148,9 @@ def library(module: str, reads: str) -> Any:
     try:
         return importlib.import_module(module)
     except ImportError:
-        raise UnreadableLogError(f"reading {reads} needs {module}: pip install 'hersey[formats]'") from None
+        raise UnreadableLogError(
+            f"reading {reads} needs {module}. Run pip install 'hersey[formats]'"
+        ) from None
 
 
 @contextlib.contextmanager

@@ -24,13 +24,16 @@ class _NoLoad(Quantity):
             return super().checked(given, info)
         named = info.context.path.parent / given
         if not os.path.isfile(named):  # noqa: PTH113 - a name too long for the system is none
-            raise ParameterError(f"is '{given}': write a torque such as \"4 mN*m\", or a log that is there")
+            raise ParameterError(
+                f"is '{given}', which is neither a torque nor an existing file. "
+                'Write e.g. "4 mN*m", or the name of a log'
+            )
         return named
 
 
 def _sign(given: object) -> object:
     if isinstance(given, bool) or given not in (1, -1):
-        raise ParameterError(f"is {given!r}: write 1 or -1")
+        raise ParameterError(f"is {given!r}: it must be 1 or -1")
     return given
 
 

@@ -52,8 +52,8 @@ class LeftOut:
         most = 2 * self.rows > rows
         if not self.rows or (allowed and not most) or self.rows <= max(1.0, FEW * rows):
             return
-        how_many = f" (the first of {self.rows} such rows of {rows})" if self.rows > 1 else ""
-        way_out = "too few rows are left: name another column, or mend the file" if most else _way_out()
+        how_many = f" (the first of {self.rows} such rows, of {rows})" if self.rows > 1 else ""
+        way_out = "too few rows remain. Name another column, or correct the file" if most else _way_out()
         raise UnreadableLogError(
             f"{file}, {self.words[0]}{how_many}",
             remedy=way_out,
@@ -67,7 +67,7 @@ class LeftOut:
         return [
             Warning(
                 "rows left out",
-                "{rows} {rows:row was|rows were} left out: {faults}"
+                "{rows} {rows:row was|rows were} excluded: {faults}"
                 + ("; and {others} more" if self.rows > len(self.words) else ""),
                 rows=self.rows,
                 faults="; ".join(self.words),
@@ -77,7 +77,7 @@ class LeftOut:
 
 
 def _way_out() -> str:
-    return f"correct the file, or use {DROP_MISSING.to()} to drop such rows (they will be counted)"
+    return f"correct the file, or exclude such rows with {DROP_MISSING.to()} (they will be counted)"
 
 
 def runs_of(
@@ -126,13 +126,15 @@ def runs_of(
         else:
             raise UnreadableLogError(
                 f"{file}, {place(row)}: time runs backwards by {time[last] - time[row]:.6g} s",
-                remedy="split the file there, sort its rows, or name the column that numbers its runs with "
-                f"{Setting('run', 'channel').to()}",
+                remedy=(
+                    "split the file there, sort its rows, or name the column with the run number with "
+                    f"{Setting('run', 'channel').to()}"
+                ),
                 setting=Setting("time", "channel"),
             )
         if len(starts) > _MOST_RUNS:
             raise UnreadableLogError(
-                f"{file}: its clock starts anew over {_MOST_RUNS} times: it is no clock",
+                f"{file}: the time column restarts more than {_MOST_RUNS} times, so it is not a clock",
                 setting=Setting("time", "channel"),
             )
     return [_rows(kept, start, end) for start, end in itertools.pairwise([*starts, kept.size])]
@@ -168,7 +170,9 @@ def runs_with_records(
     parts = runs_of(time, arrays.pop("run", None), file.name, place, left_out)
     left_out.refuse_many(file.name, rows, allowed=drop_missing)
     if time.size < 2:
-        raise UnreadableLogError(f"{file.name} has {time.size} row(s) with a number in every column needed")
+        raise UnreadableLogError(
+            f"{file.name} has only {time.size} row(s) with a number in every required column"
+        )
     runs = [{role: values[part] for role, values in arrays.items()} for part in parts]
     runs = [_bridged(run, slow, _among(place, part)) for run, part in zip(runs, parts, strict=True)]
     for channel in slow:
@@ -183,7 +187,7 @@ def runs_with_records(
         )
     for i in set(range(len(runs))) - set(long):
         if count := runs[i]["time"].size:  # what is lost to a slow channel, that counts
-            left_out.add(count, [f"{begins[i]}: {count} row(s) of one time between two runs"] * count)
+            left_out.add(count, [f"{begins[i]}: {count} row(s) with the same time, between two runs"] * count)
     lost = file.missing_rows + left_out.rows + sum(channel.lost for channel in slow)
     warnings = [*file.warnings, *warnings, *left_out.warnings()]
     first = replace(file, missing_rows=lost, warnings=tuple(warnings))

@@ -78,8 +78,8 @@ class SlowChannel:
         out = [
             Warning(
                 "slow channel interpolated",
-                "{role} '{channel}' has 1 value in {rows_per_value:.3g} rows, every {interval:.3g} s: "
-                "interpolated linearly between its values",
+                "{role} '{channel}' has 1 value per {rows_per_value:.3g} rows (every {interval:.3g} s) "
+                "and was interpolated linearly",
                 role=self.role,
                 channel=self.name,
                 rows_per_value=self.rows_per_value,
@@ -90,8 +90,8 @@ class SlowChannel:
             out.append(
                 Warning(
                     "rows outside a slow channel",
-                    "{rows} {rows:row|rows} before the first or behind the last value of {role} '{channel}' "
-                    "{rows:was|were} left out",
+                    "{rows} {rows:row|rows} before the first or after the last value of {role} "
+                    "'{channel}' {rows:was|were} excluded",
                     rows=self.outside,
                     role=self.role,
                     channel=self.name,
@@ -101,8 +101,8 @@ class SlowChannel:
             out.append(
                 Warning(
                     "gaps of a slow channel",
-                    "{rows} {rows:row was|rows were} left out in gaps of {role} '{channel}' longer than "
-                    "{longest:.3g} s, the first from {first} on",
+                    "{rows} {rows:row was|rows were} excluded in gaps of {role} '{channel}' longer "
+                    "than {longest:.3g} s, the first at {first}",
                     rows=self.in_gaps,
                     role=self.role,
                     channel=self.name,

@@ -49,10 +49,10 @@ def unstated(
     """Return the error for a radius or a load that the column ``of`` needs and nobody stated."""
     named = proposed(role, columns)
     word = _ROLES[role][0]
-    maybe = "".join(f"; column '{column}' may be the {word}: {by_name(role, column)}" for column in named[:3])
-    other = maybe or f", or name its column: {by_name(role, Column(0, 'its name', '1'))}"
+    maybe = "".join(f". Column '{column}' may be the {word}: {by_name(role, column)}" for column in named[:3])
+    other = maybe or f", or name its column with {by_name(role, Column(0, 'its name', '1'))}"
     return UnstatedRoleError(
-        f"{file}: {why}: state it, e.g. {by_amount(role)}{other}",
+        f"{file}: {why}. Give it, e.g. {by_amount(role)}{other}",
         role=role,
         proposed=tuple(column.path for column in named),
         columns=() if of is None else (of.index,),
@@ -64,7 +64,7 @@ def proposals(role: str, columns: tuple[Column, ...]) -> list[Warning]:
     return [
         Warning(
             "column may play a role",
-            "column '{column}' may be the {meaning} and is not used",
+            "column '{column}' may be the {meaning}, but is not used",
             remedy="if it is, {how}" if way_in() == "page" else "if it is, use {how}",
             column=str(column),
             role=role,

@@ -50,11 +50,11 @@ class LogFile(Record):
     missing_rows: int  #: left out: a number is missing, or cannot be right
     channels: tuple[Channel, ...]
     comments: Annotated[tuple[str, ...], Means("comment lines above the header")]
-    cut_off: Annotated[bool, Means("the file ends before its time")] = False
+    cut_off: Annotated[bool, Means("whether the file ends before its time")] = False
     warnings: Annotated[
-        tuple[Warning, ...], Means("what was done to read it: clocks aligned, time stamps, lines left out")
+        tuple[Warning, ...], Means("how the file was read: clocks aligned, time stamps, lines skipped")
     ] = ()
-    impossible: Annotated[tuple[Impossible, ...], Means("readings that cannot be right")] = ()
+    impossible: Annotated[tuple[Impossible, ...], Means("impossible readings")] = ()
 
     @property
     def synthetic(self) -> bool:
@@ -115,7 +115,7 @@ class Effect(Record):
             if self.share is None or self.role == "temperature"
             else f", {100.0 * self.share:.2g} % of its median"
         )
-        return f"{self.role} by {self.largest:.3g} {unit} at most, {self.typical:.3g} {unit} rms{share}"
+        return f"{self.role} by at most {self.largest:.3g} {unit}, {self.typical:.3g} {unit} rms{share}"
 
 
 @dataclass(frozen=True)
@@ -137,7 +137,7 @@ class Correction(Record):
 
 @dataclass(frozen=True, repr=False)
 class TorqueLog(Result):
-    """One or more runs on the same machine; `hersey.read` makes it."""
+    """One or more runs on the same machine, as returned by `hersey.read`."""
 
     also_stated = ("rows",)
     not_stated = ("sensors",)
@@ -154,12 +154,12 @@ class TorqueLog(Result):
 
     @property
     def title(self) -> str:
-        """Name of the first file, and how many more there are."""
+        """Name of the first file, and the number of others."""
         return title_of(self.files)
 
     @property
     def has_temperature(self) -> bool:
-        """Whether every run carries a temperature."""
+        """Whether every run has a temperature."""
         return all(run.temperature is not None for run in self.runs)
 
     def summary(self) -> str:
@@ -170,7 +170,7 @@ class TorqueLog(Result):
         return "\n".join([*lines, *(f"corrected: {correction}" for correction in self.corrections)])
 
     def to_frame(self) -> pl.DataFrame:
-        """Return every row: index of the run, time, torque, speed and, where recorded, temperature."""
+        """Return every row: index of the run, time, torque, speed and, if recorded, temperature."""
         import polars as pl
 
         return pl.concat([_run_frame(index, run) for index, run in enumerate(self.runs)], how="diagonal")

@@ -29,11 +29,11 @@ class Wanted:
         """Refuse what contradicts itself."""
         if self.stated.every is not None and self.choices["time"] != ChannelChoice():
             raise ParameterError(
-                f"{EVERY.to()} is the time between rows: name no column of the time beside it"
+                f"{EVERY.to()} sets the time between rows. Do not name a time column as well"
             )
         if self.isothermal and self.choices["temperature"] != ChannelChoice():
             said = f"{ISOTHERMAL.to()} excludes temperature"
-            raise ChannelError(said, remedy="name no column of the temperature beside it")
+            raise ChannelError(said, remedy="do not name a temperature column")
 
     @property
     def roles(self) -> tuple[str, ...]:

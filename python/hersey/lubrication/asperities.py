@@ -17,17 +17,17 @@ from hersey.units import celsius, fields_in_si, takes_si
 
 @dataclass(frozen=True)
 class Asperities(Record):
-    """The summits of two hard faces as Greenwood and Tripp (1970) have them.
+    """Asperities of two hard surfaces, after Greenwood and Tripp (1970).
 
     Parameters
     ----------
     modulus
-        Contact modulus E* of the two faces that touch, Pa: 1/E* = (1-nu1^2)/E1 + (1-nu2^2)/E2. That of the
-        faces of belt and heater, not of the rubber behind them.
+        Contact modulus E* of the two surfaces that touch, Pa: 1/E* = (1-nu1^2)/E1 + (1-nu2^2)/E2. Use the
+        surfaces of belt and heater, not the rubber behind them.
     sigma_beta_density
-        Roughness times radius times number of the summits per area.
+        Roughness x summit radius x number of summits per area.
     sigma_over_beta
-        Roughness over radius of the summits.
+        Roughness divided by summit radius.
 
     Raises
     ------
@@ -48,17 +48,17 @@ class Asperities(Record):
 
     @property
     def pressure(self) -> float:
-        """Mean pressure of the asperities over F(lambda), Pa."""
+        """Mean pressure of the asperities divided by F(lambda), Pa."""
         slope: float = self.sigma_beta_density**2 * self.sigma_over_beta**0.5
         return _core.GREENWOOD_TRIPP * slope * self.modulus
 
 
 @dataclass(frozen=True)
 class BoundaryFriction(Record):
-    """Friction where asperities carry all: coefficient + slope (T - temperature).
+    """Friction if asperities carry the whole load: coefficient + slope (T - temperature).
 
     ``coefficient`` has no unit, ``slope`` is in 1/K, ``temperature`` (K) is that of the coefficient, needed
-    where the slope is not 0.
+    if the slope is not 0.
     """
 
     coefficient: float
@@ -71,7 +71,7 @@ class BoundaryFriction(Record):
         if not 0 < self.coefficient < np.inf:
             raise ParameterError(f"boundary friction is {self.coefficient:g}: it must be greater than 0")
         if self.slope and self.temperature is None:
-            raise ParameterError("boundary friction has a slope: give the temperature of its coefficient")
+            raise ParameterError("boundary friction has a slope. Give the temperature of its coefficient")
 
     @takes_si(temperature="temperature")
     def at(self, temperature: ArrayLike) -> FloatArray:
@@ -88,7 +88,7 @@ class BoundaryFriction(Record):
         if not np.all(coefficient > 0):
             worst = float(kelvin.ravel()[np.argmin(coefficient)])
             raise ParameterError(
-                f"boundary friction is {np.min(coefficient):.3g} at {celsius(worst):.1f} degC: its slope of "
-                f"{self.slope:g} per K does not hold so far"
+                f"boundary friction would be {np.min(coefficient):.3g} at {celsius(worst):.1f} degC: "
+                f"its slope of {self.slope:g} per K does not hold that far"
             )
         return coefficient

@@ -41,15 +41,19 @@ class Nip(Record):
     also_stated = ("layer_factor",)
 
     width: Annotated[float, Means(unit="m")]
-    pressure_mean: Annotated[float, Means("load over width and length", "Pa")]
+    pressure_mean: Annotated[float, Means("load / (width x length)", "Pa")]
     pressure_max: Annotated[float, Means("at the centre", "Pa")]
-    edge: Annotated[float, Means("slope of pressure there over that of a half-space contact as wide")]
+    edge: Annotated[
+        float, Means("slope of pressure there, relative to that of a half-space contact of the same width")
+    ]
     curvature: Annotated[
         float, Means("c in the pressure K sqrt(x) (1 + c x/a) at the edge; -1/4 on a half-space")
     ]
-    width_over_hertz: Annotated[float, Means("width over that of the half-space contact of the same load")]
+    width_over_hertz: Annotated[
+        float, Means("width relative to that of the half-space contact under the same load")
+    ]
     paper_width: Annotated[float, Means("Eq. 8 of the paper", "m")]
-    paper_in_range: Annotated[bool, Means("whether Eq. 8 holds here")]
+    paper_in_range: Annotated[bool, Means("whether Eq. 8 applies here")]
     strain: Annotated[float, Means("a^2/(2 R h), a nominal strain of the rubber")]
 
     @property
@@ -76,19 +80,18 @@ class Contact(Record):
     length, load
         Length of the nip along the roll, m, and the whole load, N.
     heater_radius
-        Of the heater, m; infinite for a flat one, negative for one hollowed to the roll.
+        Radius of the heater, m; infinite if flat, negative if concave.
     roughness
-        Of the sliding pair together, rms: sqrt(Rq1^2 + Rq2^2), m.
+        Composite rms roughness of both surfaces, sqrt(Rq1^2 + Rq2^2), m.
     nip_uncertainty
-        Share by which the width of the nip may be off, as 0.1.
+        Relative uncertainty of the nip width, e.g. 0.1.
     supply
-        Thickness of the lubricant's layer on the inlet side, m; a flooded inlet if not given.
+        Thickness of the lubricant layer on the inlet side, m. Default: flooded inlet.
     heat_flow
-        Heat that flows from the heater through the film to the roll, W, over the whole nip. If given, the
-        film has a temperature of its own (`hersey.lubrication.film_temperature`).
+        Heat flow from the heater through the film to the roll over the whole nip, W. If given, the film
+        temperature is computed (`hersey.lubrication.film_temperature`).
     sensor_side
-        Which wall of the film the recorded temperature is that of: ``heater`` or ``roll``. Needed with
-        ``heat_flow``.
+        Wall of the film whose temperature is recorded: ``heater`` or ``roll``. Needed with ``heat_flow``.
 
     Raises
     ------
@@ -107,9 +110,9 @@ class Contact(Record):
     heater_radius: Annotated[float, Means(unit="m", open=True)] = math.inf
     roughness: Annotated[float | None, Means("rms", "m")] = None
     nip_uncertainty: float | None = None
-    supply: Annotated[float | None, Means("layer on the inlet side", "m")] = None
+    supply: Annotated[float | None, Means("oil layer on the inlet side", "m")] = None
     heat_flow: Annotated[float | None, Means("through the film", "W")] = None
-    sensor_side: Annotated[str | None, Means("wall of the film that the sensor reads")] = None
+    sensor_side: Annotated[str | None, Means("wall of the film whose temperature the sensor reads")] = None
 
     def __post_init__(self) -> None:
         """Bring the values to SI if they come with units, and check them."""
@@ -120,12 +123,12 @@ class Contact(Record):
             if value is not None and not 0 < value < math.inf:
                 raise ParameterError(f"{name} is {value:g}: it must be greater than 0")
         if self.heat_flow is not None and not 0 <= self.heat_flow < math.inf:
-            raise ParameterError(f"heat_flow is {self.heat_flow:g}: it must be 0 or more")
+            raise ParameterError(f"heat_flow is {self.heat_flow:g}: it must not be negative")
         if (self.heat_flow is None) != (self.sensor_side is None):
             missing = "heat_flow" if self.heat_flow is None else "sensor_side"
-            raise ParameterError(f"{missing} is not given: heat_flow and sensor_side belong together")
+            raise ParameterError(f"{missing} is missing. Give heat_flow and sensor_side together")
         if self.sensor_side not in (None, *SIDES):
-            raise ParameterError(f"sensor_side is '{self.sensor_side}': {' or '.join(SIDES)} is known")
+            raise ParameterError(f"sensor_side is '{self.sensor_side}': it must be {' or '.join(SIDES)}")
         if self.rubber_thickness >= self.roll_radius:
             raise ParameterError(
                 f"rubber_thickness is {self.rubber_thickness:g} m: it must be less than roll_radius, "
@@ -155,7 +158,7 @@ class Contact(Record):
 
     @cached_property
     def nip(self) -> Nip:
-        """The width of the nip and the pressure in it, whose solution takes a millisecond."""
+        """Width of the nip and the pressure in it (solved in about a millisecond)."""
         load = self.load_per_length
         rubber = (self.rubber_thickness, self.modulus, self.poisson_ratio)
         nip = pointwise(_core.layer, load, self.reduced_radius, *rubber)
@@ -187,9 +190,9 @@ def nip_width(contact: Contact, *, load: ArrayLike | None = None, rule: str = "l
     Parameters
     ----------
     contact
-        The rubber, the radii and the length.
+        Contact with rubber, radii and length.
     load
-        N; that of the contact if not given.
+        Load, N. Default: that of the contact.
     rule
         ``layer``: a rigid cylinder on a bonded elastic layer, solved numerically; ``hertz``: a half-space
         of the rubber; ``paper``: Eq. 8, a regression.

@@ -38,25 +38,23 @@ def film_thickness(
     supply: float | None = None,
     starvation_sharpness: float = 3.0,
 ) -> Film:
-    """Return the film of a nip by all laws at operating points, and the law that holds.
+    """Return the film of a nip at operating points by all laws, and the law that applies.
 
     Parameters
     ----------
     contact, lubricant
-        The nip and what is in it. A lubricant without a pressure-viscosity coefficient counts as one that
-        pressure does not thicken.
+        Nip and lubricant. Without a pressure-viscosity coefficient, pressure does not thicken the lubricant.
     speed, temperature
         Of the roll (rad/s) and of the film (K), broadcast together.
     supply
-        Thickness of the layer on the inlet side, m; that of the contact if not given, a flooded inlet if it
-        has none.
+        Thickness of the layer on the inlet side, m. Default: that of the contact, or a flooded inlet.
     starvation_sharpness
-        Rounds the corner between flooded and starved, 2 to 5.
+        Sharpness of the change from flooded to starved, 2 to 5.
 
     Raises
     ------
     ParameterError
-        If a speed is zero or a value impossible.
+        If a speed is zero or a value is impossible.
 
     Examples
     --------
@@ -222,23 +220,23 @@ def drag_torque(
     law: str = "governing",
     supply: float | None = None,
 ) -> FloatArray:
-    """Return the torque (N m) that the film takes: shear (eta U/h_c) nip L R, Eq. 7, and rolling.
+    """Return the torque of the film, N m: shear (eta U/h_c) nip L R (Eq. 7), and rolling.
 
-    A soft film's inlet, and the gradient of pressure in it, add up to half of the shear: see `Film.shear` and
-    `Film.rolling`, and docs/theory/film.md for their range.
+    In a soft film, inlet and pressure gradient add up to half of the shear; see `Film.shear`, `Film.rolling`
+    and docs/theory/film.md.
 
     Parameters
     ----------
     contact, lubricant, speed, temperature, supply
         As in `film_thickness`.
     law
-        ``governing``: the film of the regime that holds, on the nip of a bonded layer, with all corrections;
-        the name of a regime: its film on that nip, shear alone; ``paper``: Eq. 9.
+        ``governing``: film of the valid regime, on the nip of a bonded layer, with all corrections; the name
+        of a regime: its film on that nip, shear only; ``paper``: Eq. 9.
 
     Raises
     ------
     ParameterError
-        If the law is not known, or the paper's asked for without a pressure-viscosity coefficient.
+        If the law is not known, or ``paper`` is used without a pressure-viscosity coefficient.
 
     Examples
     --------
@@ -283,6 +281,6 @@ def shear_heating(lubricant: Lubricant, *, sliding_speed: ArrayLike, temperature
         If the conductivity of the lubricant is not known.
     """
     if lubricant.conductivity is None:
-        raise ParameterError(f"the thermal conductivity of {lubricant.name} is not known: state it")
+        raise ParameterError(f"the thermal conductivity of {lubricant.name} is missing. Give it")
     viscosity = lubricant.viscosity(temperature)
     return pointwise(_core.shear_heating, viscosity, sliding_speed, lubricant.conductivity).greatest

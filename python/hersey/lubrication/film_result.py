@@ -75,15 +75,15 @@ class Correction(Record):
 
 @dataclass(frozen=True, repr=False)
 class Film(Result):
-    """The film at operating points; arrays of one shape.
+    """Film at operating points; all arrays have the same shape.
 
     ``speed`` (rad/s), ``temperature`` (K), ``viscosity`` (Pa s, unsheared), ``g_v`` and ``g_e`` (the axes of
     the regime chart), ``regime`` (index into `REGIMES`), ``minimum`` and ``central`` (m) by the governing
-    law, flooded, isothermal and Newtonian, before ``corrections``; ``minima`` and ``centres`` hold them by
-    each law (Eq. 5 under ``paper``, where alpha is known). ``inlet_short`` says whether the soft law of a
-    layer holds. ``shear_factor`` (1) and ``rolling_force`` (N/m, flooded) are what inlet and pressure make
-    of a soft film's drag, 1 and 0 in other regimes. ``contact`` and ``lubricant`` are those it was computed
-    for.
+    law, flooded, isothermal and Newtonian, before ``corrections``; ``minima`` and ``centres`` hold them for
+    each law (Eq. 5 under ``paper``, if alpha is known). ``inlet_short`` says whether the soft law of a layer
+    applies. ``shear_factor`` (1) and ``rolling_force`` (N/m, flooded) are the effects of inlet and pressure
+    on the drag of a soft film; they are 1 and 0 in other regimes. ``contact`` and ``lubricant`` are the
+    inputs.
     """
 
     speed: FloatArray
@@ -107,14 +107,14 @@ class Film(Result):
 
     @property
     def factor(self) -> FloatArray:
-        """Product of the corrections, those outside the validity of their rules too."""
+        """Product of all corrections, including those outside their valid range."""
         product = np.ones_like(self.central)
         for correction in self.corrections.values():
             product = product * correction.factor
         return product
 
     def lambda_ratio(self, roughness: float) -> FloatArray:
-        """Corrected minimum film over composite rms roughness (m)."""
+        """Corrected minimum film divided by composite rms roughness."""
         return np.asarray(self.minimum * self.factor / roughness)
 
     def regime_names(self) -> list[str]:
@@ -123,7 +123,7 @@ class Film(Result):
 
     @property
     def shear(self) -> FloatArray:
-        """Torque on the roll by sliding, N m: eta U/h_c over the nip, times ``shear_factor``."""
+        """Torque on the roll due to sliding, N m: eta U/h_c over the nip, times ``shear_factor``."""
         thickness = self.central * self.factor
         rate = 2.0 * self.entrainment_speed / thickness
         viscosity = self.lubricant.viscosity(self.temperature, rate)
@@ -131,10 +131,10 @@ class Film(Result):
 
     @property
     def rolling(self) -> FloatArray:
-        """Torque on the roll by the gradient of pressure in the film, N m.
+        """Torque on the roll due to the pressure gradient in the film, N m.
 
-        It goes as viscosity^0.8 where the film goes as viscosity^0.6, so what thins the film by a thinner
-        lubricant takes the power 4/3 of its factor; as h^3 where the film is starved.
+        It varies as viscosity^0.8 and the film as viscosity^0.6, so a factor on the film from a thinner
+        lubricant counts with power 4/3 here. In a starved film it varies as h^3.
         """
         contact, force = self.contact, self.rolling_force
         for name, correction in self.corrections.items():
@@ -143,7 +143,7 @@ class Film(Result):
 
     @property
     def torque(self) -> FloatArray:
-        """Torque on the roll that the film takes, N m, ``shear`` and ``rolling``: see `drag_torque`."""
+        """Torque of the film on the roll, N m: ``shear`` plus ``rolling``; see `drag_torque`."""
         return np.asarray(self.shear + self.rolling)
 
     def summary(self, names: Sequence[str] = ()) -> str:
@@ -151,7 +151,7 @@ class Film(Result):
         return "\n".join([*_nip_lines(self), "", *_point_lines(self, names), "", *_law_lines(self)])
 
     def headline(self) -> str:
-        """Return how many points, in which regime, and the range of the film."""
+        """Return number of points, regimes and range of the film."""
         film = 1e6 * np.ravel(self.minimum * self.factor)
         regimes = " and ".join(dict.fromkeys(self.regime_names()))
         return f"{film.size} points, {regimes}, minimum film {film.min():.3g} to {film.max():.3g} um"
@@ -170,7 +170,7 @@ class Film(Result):
         )
 
     def states(self) -> dict[str, Any]:
-        """Return the states alone, in SI; arrays of shape (points,)."""
+        """Return only the states, in SI; arrays of shape (points,)."""
         others = ("contact", "lubricant", "nip", "corrections", "regime", "minima", "centres")
         hidden = {*others, "shear_factor", "rolling_force"}
         arrays = {name: np.ravel(values) for name, values in vars(self).items() if name not in hidden}
@@ -225,8 +225,10 @@ def _nip_lines(film: Film) -> list[str]:
     return [
         f"nip       {1e3 * nip.width:.3g} mm wide (by rule, mm: {rules}); "
         f"pressure {1e-6 * nip.pressure_mean:.3g} MPa mean, {1e-6 * nip.pressure_max:.3g} MPa at the centre",
-        f"moduli    E' = {1e-6 * contact.effective_modulus:.4g} MPa = 2 E/(1 - nu^2), E* = E'/2; "
-        f"the layer's soft film is {nip.layer_factor:.3g} of a half-space's",
+        (
+            f"moduli    E' = {1e-6 * contact.effective_modulus:.4g} MPa = 2 E/(1 - nu^2), E* = E'/2; the "
+            f"soft film of the layer is {nip.layer_factor:.3g} times that of a half-space"
+        ),
         f"lubricant {lubricant.name}, {lubricant.model}",
     ]
 
@@ -249,7 +251,7 @@ def _point_lines(film: Film, names: Sequence[str]) -> list[str]:
 
 
 def _law_lines(film: Film) -> list[str]:
-    lines = ["minimum film by every law, um"]
+    lines = ["minimum film by each law, um"]
     for law in CONSTANTS:
         if law.law in film.minima:
             values = " ".join(f"{1e6 * h:9.3g}" for h in np.ravel(film.minima[law.law]))
@@ -257,6 +259,6 @@ def _law_lines(film: Film) -> list[str]:
     lines.append(f"  all with {CONSTANTS[0].convention}")
     for name, correction in film.corrections.items():
         values = " ".join(f"{value:9.4g}" for value in np.ravel(correction.factor))
-        where = "" if np.all(correction.valid) else "  (outside the validity of its rule)"
+        where = "" if np.all(correction.valid) else "  (outside the valid range of its rule)"
         lines.append(f"  factor, {name:14s} {values}{where}")
     return lines

@@ -69,8 +69,8 @@ def film_temperature(
         return np.array(read)
     if lubricant.conductivity is None:
         raise ParameterError(
-            f"heat_flow needs the thermal conductivity of {lubricant.name}: state 'conductivity' in "
-            "[lubricant], such as '0.1 W/m/K'"
+            f"heat_flow needs the thermal conductivity of {lubricant.name}. Give 'conductivity' in "
+            "[lubricant], e.g. '0.1 W/m/K'"
         )
     flux = contact.heat_flow / (contact.nip.width * contact.length)
     side = -0.5 if contact.sensor_side == "heater" else 0.5
@@ -88,6 +88,6 @@ def film_temperature(
     worst = int(np.argmax(np.abs(step)))
     w, reading = float(np.ravel(speeds)[worst]), celsius(float(np.ravel(read)[worst]))
     raise ParameterError(
-        f"heat_flow is {contact.heat_flow:g} W: at {w:.3g} rad/s and {reading:.4g} degC the film finds no "
-        "temperature near the one read; state the heat that flows there, and check conductivity and viscosity"
+        f"heat_flow is {contact.heat_flow:g} W: at {w:.3g} rad/s and {reading:.4g} degC no film "
+        "temperature near the reading fits. Check heat_flow, conductivity and viscosity"
     )

@@ -23,8 +23,8 @@ MODELS = {name: form.points for name, form in _core.VISCOSITY_LAWS.items()}
 class ShearThinning:
     """Carreau's law: eta/eta_0 = limit + (1 - limit) [1 + (relaxation_time rate)^2]^((exponent - 1)/2).
 
-    ``relaxation_time`` in s; ``exponent`` is 1 for a Newtonian lubricant; ``limit`` is the share of
-    viscosity left at the highest rates.
+    ``relaxation_time`` in s; ``exponent`` is 1 for a Newtonian lubricant; ``limit`` is the fraction of
+    viscosity that remains at the highest rates.
     """
 
     relaxation_time: float
@@ -37,13 +37,13 @@ class ShearThinning:
         self.share(1.0)
 
     def share(self, rate: ArrayLike) -> FloatArray:
-        """Return the share of viscosity left at shear rates (1/s)."""
+        """Return the fraction of viscosity that remains at shear rates (1/s)."""
         return pointwise(_core.carreau, rate, self.relaxation_time, self.exponent, self.limit)
 
 
 @dataclass(frozen=True)
 class Lubricant(Record):
-    """A lubricant through the points of its data sheet.
+    """A lubricant with viscosity fitted to points of its data sheet.
 
     Parameters
     ----------
@@ -53,23 +53,23 @@ class Lubricant(Record):
     points
         (temperature in K, dynamic viscosity in Pa s), in ascending temperature.
     density
-        kg/m^3; needed by ``walther`` alone, whose law is one of kinematic viscosity.
+        Density, kg/m^3; needed only by ``walther``, a law of kinematic viscosity.
     pressure_viscosity
-        (temperature in K, alpha in 1/Pa): one for all temperatures, or several, joined by straight lines and
-        held beyond the ends. Empty if not known.
+        (temperature in K, alpha in 1/Pa): one for all temperatures, or several, interpolated linearly and
+        constant outside. Empty if unknown.
     thinning
-        Shear thinning; none for a Newtonian lubricant.
+        Shear thinning; None for a Newtonian lubricant.
     conductivity
         Thermal conductivity, W/(m K), for heating by shear.
     uncertainty
-        Share by which viscosity may be off: 0.2 says that it lies within a factor 1.2, at 95 %.
+        Relative uncertainty of viscosity: 0.2 means within a factor of 1.2, at 95 %.
     source
-        Where the numbers come from.
+        Source of the numbers.
 
     Raises
     ------
     ParameterError
-        If the points do not fit the law, or a value is impossible.
+        If the number of points does not match the law, or a value is impossible.
     """
 
     also_stated = ("coefficients",)
@@ -92,22 +92,23 @@ class Lubricant(Record):
         for name, kind in (("points", "viscosity"), ("pressure_viscosity", "pressure-viscosity coefficient")):
             object.__setattr__(self, name, _pairs_in_si(name, kind, getattr(self, name)))
         if self.model not in MODELS:
-            raise ParameterError(f"viscosity model '{self.model}' is not known: {', '.join(MODELS)} are")
+            raise ParameterError(f"unknown viscosity model '{self.model}'. Use {', '.join(MODELS)}")
         if len(self.points) != MODELS[self.model]:
             raise ParameterError(
-                f"viscosity model '{self.model}' takes {MODELS[self.model]} points, not {len(self.points)}"
+                f"viscosity model '{self.model}' needs {MODELS[self.model]} points, but "
+                f"{len(self.points)} are given"
             )
         if _core.VISCOSITY_LAWS[self.model].kinematic and self.density is None:
-            raise ParameterError(
-                f"viscosity model '{self.model}' is one of kinematic viscosity: give the density"
-            )
+            raise ParameterError(f"viscosity model '{self.model}' uses kinematic viscosity. Give the density")
         for value in (self.density, self.conductivity, self.uncertainty):
             if value is not None and not value > 0:
-                raise ParameterError(f"density, conductivity and uncertainty must be above 0, not {value:g}")
+                raise ParameterError(
+                    f"density, conductivity and uncertainty must be greater than 0; one is {value:g}"
+                )
         temperatures = [t for t, _ in self.pressure_viscosity]
         if temperatures != sorted(set(temperatures)) or any(a < 0 for _, a in self.pressure_viscosity):
             raise ParameterError(
-                "pressure-viscosity coefficients must not be negative, and ascend in temperature"
+                "pressure-viscosity coefficients must not be negative, and their temperatures must ascend"
             )
         object.__setattr__(self, "_law", self._through_points())
 
@@ -119,7 +120,7 @@ class Lubricant(Record):
 
     @property
     def law(self) -> _core.ViscosityLaw:
-        """The law of viscosity at rest, as the core holds it."""
+        """Law of viscosity at zero shear rate, as the core uses it."""
         return self._law
 
     @takes_si(temperature="temperature")
@@ -135,7 +136,7 @@ class Lubricant(Record):
 
     @takes_si(temperature="temperature")
     def activation_energy(self, temperature: ArrayLike) -> FloatArray:
-        """Return the local activation energy of viscosity, J/mol: R T^2 times its fall in logarithm."""
+        """Return the local activation energy of viscosity, J/mol: -R T^2 d ln eta/dT."""
         kelvin = np.asarray(temperature, dtype=float)
         return np.asarray(-_core.GAS_CONSTANT * kelvin * self.temperature_exponent(kelvin))
 
@@ -149,13 +150,13 @@ class Lubricant(Record):
             If it is not known.
         """
         if not self.pressure_viscosity:
-            raise ParameterError(f"the pressure-viscosity coefficient of {self.name} is not known: state it")
+            raise ParameterError(f"the pressure-viscosity coefficient of {self.name} is missing. Give it")
         known = np.array(self.pressure_viscosity)
         return np.asarray(np.interp(np.asarray(temperature, dtype=float), known[:, 0], known[:, 1]))
 
     @property
     def temperature_range(self) -> tuple[float, float]:
-        """Temperatures (K) between which viscosity is interpolated."""
+        """Range of temperatures (K) within which viscosity is interpolated."""
         return self.points[0][0], self.points[-1][0]
 
     def coefficients(self) -> dict[str, float]:

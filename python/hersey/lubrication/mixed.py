@@ -63,7 +63,7 @@ class MixedTransition(Record):
 
 @dataclass(frozen=True)
 class MixedContact(Record):
-    """A contact whose load film and asperities share; made by `mixed_contact`.
+    """A contact in which film and asperities share the load; made by `mixed_contact`.
 
     ``regime`` is the law of the film. K of a soft film is the slope of pressure at the edge of the nip, l the
     length of the inlet there; other films have edge 0 and go as their share of the load to
@@ -81,11 +81,13 @@ class MixedContact(Record):
     reference: Annotated[float, Means("eta U at which the film alone is as thick as the roughness, Pa m")]
     film_exponent: float
     load_exponent: float
-    edge: Annotated[float, Means("mean pressure over K sqrt(l) of a soft nip at the reference; 0: none")]
+    edge: Annotated[
+        float, Means("mean pressure over K sqrt(l) of a soft nip at the reference; 0 if not soft")
+    ]
     roundness: Annotated[float, Means("K^2 a/(2 p_max^2) of the dry pressure of a soft nip")]
     stiffness: float
-    shear: Annotated[float, Means("of a film of lambda = 1 over the nip", "N")]
-    rolling: Annotated[float, Means("what inlet and pressure add, at the reference", "N")]
+    shear: Annotated[float, Means("for a film of lambda = 1 over the nip", "N")]
+    rolling: Annotated[float, Means("contribution of inlet and pressure, at the reference", "N")]
     rolling_exponent: float
 
     def numbers(self, temperature: FloatArray) -> list[Any]:
@@ -96,13 +98,13 @@ class MixedContact(Record):
 
     @property
     def stated(self) -> Mapping[str, float]:
-        """What a log can correct: ``viscosity`` (a factor), ``roughness`` (m), ``boundary`` friction."""
+        """Values that a log can correct: ``viscosity`` (a factor), ``roughness`` (m), ``boundary``."""
         roughness = self.contact.roughness or 0.0
         return {"viscosity": 1.0, "roughness": roughness, "boundary": self.friction.coefficient}
 
     @property
     def lever(self) -> float:
-        """Radius of the roll, at which the force acts, m."""
+        """Roll radius, at which the force acts, m."""
         return self.contact.roll_radius
 
     def product(self, speed: FloatArray, temperature: FloatArray) -> FloatArray:
@@ -116,7 +118,7 @@ class MixedContact(Record):
 
     @takes_si(speed="speed", temperature="temperature")
     def at(self, *, speed: ArrayLike, temperature: ArrayLike) -> MixedFilm:
-        """Return who carries what at speeds of the roll (rad/s; 0: asperities alone) and temperatures (K).
+        """Return film and asperity load at roll speeds (rad/s; 0: asperities only) and temperatures (K).
 
         Raises
         ------
@@ -142,7 +144,7 @@ class MixedContact(Record):
         )
 
     def beyond_checked_range(self, share: FloatArray, product: FloatArray) -> NDArray[np.bool_]:
-        """Return where the law was not checked, at shares of the asperities and products eta U (Pa m)."""
+        """Return whether shares of the asperities and products eta U (Pa m) are outside the checked range."""
         return beyond_checked_range(self.contact, share, product, self.stiffness if self.edge else None)
 
     def _by_roughness(self, shift: Mapping[str, FloatArray]) -> FloatArray:
@@ -173,7 +175,7 @@ class MixedContact(Record):
 
 @dataclass(frozen=True, repr=False)
 class MixedFilm(Result):
-    """Film and asperities at operating points; arrays of one shape."""
+    """Film and asperities at operating points; all arrays have the same shape."""
 
     also_stated = ("torque", "beyond_checked_range")
     not_stated = ("mixed",)
@@ -183,9 +185,9 @@ class MixedFilm(Result):
     viscosity: Annotated[FloatArray, Means(unit="Pa s")]
     lambda_ratio: FloatArray
     minimum_ratio: Annotated[
-        FloatArray, Means("least film over roughness; null where no law of it is known", open=True)
+        FloatArray, Means("minimum film divided by roughness; null where its law is unknown", open=True)
     ]
-    share: Annotated[FloatArray, Means("of the load that asperities carry")]
+    share: Annotated[FloatArray, Means("of the load carried by asperities")]
     boundary_torque: Annotated[FloatArray, Means(unit="N m")]
     shear_torque: Annotated[FloatArray, Means(unit="N m")]
     rolling_torque: Annotated[FloatArray, Means(unit="N m")]
@@ -198,17 +200,17 @@ class MixedFilm(Result):
 
     @property
     def beyond_checked_range(self) -> NDArray[np.bool_]:
-        """Where the law was not checked against the full numerical solution of a contact."""
+        """Points outside the range checked against the full numerical solution of a contact."""
         mixed = self.mixed
         return mixed.beyond_checked_range(self.share, mixed.product(self.speed, self.temperature))
 
     @cached_property
     def transition(self) -> MixedTransition:
-        """The transition at the temperature of each point."""
+        """Transition at the temperature of each point."""
         return self.mixed.transition(self.temperature)
 
     def headline(self) -> str:
-        """Return how many points, and the range of film and share."""
+        """Return number of points, and range of lambda and of the asperity load."""
         film, share = np.ravel(self.lambda_ratio), 100.0 * np.ravel(self.share)
         return (
             f"{film.size} points, lambda {film.min():.3g} to {film.max():.3g}, "
@@ -218,13 +220,15 @@ class MixedFilm(Result):
     def summary(self, names: Sequence[str] = ()) -> str:
         """Return the points and the transition as text; ``names`` of the points, numbered if not given."""
         mixed, asperities = self.mixed, self.mixed.asperities
-        under = f", as its load to -{mixed.load_exponent:g}"
+        under = f", varying as (its load)^-{mixed.load_exponent:g}"
         if mixed.edge:
-            under = " if alone, made where the dry pressure exceeds that of the asperities"
+            under = " if alone, formed where the dry pressure exceeds that of the asperities"
         lines = [
             self.headline(),
-            f"  film as that of {mixed.regime}: as speed to {mixed.film_exponent:g}{under}; "
-            f"lambda = 1 at eta U = {mixed.reference:.3g} Pa m if alone",
+            (
+                f"  film: {mixed.regime}, varying as speed^{mixed.film_exponent:g}{under}; alone, lambda = "
+                f"1 at eta U = {mixed.reference:.3g} Pa m"
+            ),
             f"  asperities: sigma beta D = {asperities.sigma_beta_density:g}, sigma/beta = "
             f"{asperities.sigma_over_beta:g}, E* = {1e-9 * asperities.modulus:.3g} GPa",
             f"  {'point':16s} {'degC':>6s} {'rad/s':>9s} {'lambda':>7s} {'share %':>8s} {'torque N m':>11s} "
@@ -242,7 +246,7 @@ class MixedFilm(Result):
             )
         if beyond := int(np.count_nonzero(self.beyond_checked_range)):
             where = f"{beyond} of {self.share.size} points"
-            lines.append(f"  {where} are beyond the range in which the law was checked")
+            lines.append(f"  {where} are outside the range in which the law was checked")
         return "\n".join(lines)
 
     def to_dict(self) -> dict[str, Any]:
@@ -304,8 +308,9 @@ def _check_carry(asperities: Asperities, pressure: float) -> None:
     most = asperities.pressure * float(_core.asperity_integral(np.zeros(())))
     if most <= pressure:
         raise ParameterError(
-            f"the asperities carry at most {1e-6 * most:.3g} MPa before the mean planes meet, and the nip "
-            f"presses with {1e-6 * pressure:.3g} MPa: state stiffer or denser summits, or a softer nip"
+            f"the asperities carry at most {1e-6 * most:.3g} MPa before the mean planes meet, but the "
+            f"nip pressure is {1e-6 * pressure:.3g} MPa. Give stiffer or denser asperities, or a softer "
+            "nip"
         )
 
 
@@ -320,18 +325,19 @@ def mixed_contact(
     temperature: float,
     regime: str = "governing",
 ) -> MixedContact:
-    """Return the law by which film and asperities share the load of a nip.
+    """Return a contact in which film and asperities share the load.
 
     Parameters
     ----------
     contact, lubricant
-        The nip, with its roughness, and what is in it.
+        Nip with its roughness, and lubricant.
     asperities, friction
-        Of the two faces that slide; a number for a friction that is the same at every temperature.
+        Of the two sliding surfaces; a number if friction does not depend on temperature.
     speed, temperature
-        A point (rad/s, K) whose film the law goes through; with the soft film, the law is the same from any.
+        Reference point (rad/s, K) through which the film law passes; for a soft film any point gives the same
+        law.
     regime
-        Law of the film: ``governing``, that which holds at the point, or the name of one.
+        Film law: ``governing`` (the one that applies at the point), or the name of one.
 
     Raises
     ------
@@ -351,7 +357,9 @@ def mixed_contact(
     least drag at 1.87 rad/s, at 20 K more at 3.42 rad/s
     """
     if contact.roughness is None:
-        raise ParameterError("the contact has no roughness: state that of both faces together, rms")
+        raise ParameterError(
+            "the contact has no roughness. Give the composite rms roughness of both surfaces"
+        )
     if regime not in ("governing", *REGIMES):
         raise ParameterError(f"regime '{regime}' is not known: governing, {', '.join(REGIMES)}")
     film = film_thickness(contact, lubricant, speed=speed, temperature=temperature)
@@ -384,7 +392,7 @@ def mixed_contact(
 
 @takes_si(speed="speed", temperature="temperature")
 def mixed_torque(mixed: MixedContact, *, speed: ArrayLike, temperature: ArrayLike) -> FloatArray:
-    """Return the torque (N m) on the roll at speeds (rad/s) and temperatures (K), film and asperities.
+    """Return the torque of film and asperities on the roll (N m) at speeds (rad/s) and temperatures (K).
 
     Examples
     --------

@@ -13,28 +13,28 @@ from hersey.units import fields_in_si, takes_si
 
 @dataclass(frozen=True)
 class MixedDrag(BesideShape):
-    """Drag force against belt speed and temperature of a `MixedContact`; it falls and rises by itself.
+    """Drag force of a `MixedContact` against belt speed and temperature.
 
-    The law is smooth; its transition is the speed of least drag. With temperature its speeds, the stick
-    speed among them, vary as the inverse of the viscosity, and boundary friction as the contact states it.
+    The law is smooth; its transition is the speed of least drag. All its speeds, including the stick speed,
+    vary with temperature as 1/viscosity; boundary friction varies as in the contact.
 
     Parameters
     ----------
     contact
-        What shares the load, and how.
+        The mixed contact.
     temperature
-        K, at which the stick speed and what is below are stated.
+        Temperature of the stick speed and of the parameters below, K.
     stick_speed
-        m/s, below which the ``closure`` holds, as of `Drag`.
+        Speed below which the ``closure`` applies, m/s, as for `Drag`.
     static_force
-        N, that breaks a belt at rest away; if not given e times the drag at the stick speed (Eq. 29).
+        Break-away force, N. Default: e times the drag at the stick speed (Eq. 29).
     rest_force, rest_damping, rest_temperature_slope
-        The no-load torque, N, N s/m and 1/K, as of `Drag`.
+        No-load torque, N, N s/m and 1/K, as for `Drag`.
 
     Raises
     ------
     ParameterError
-        If drag nowhere falls, or the stick speed is not below the speed of least drag.
+        If drag never falls with speed, or the stick speed is not below the speed of least drag.
     """
 
     contact: MixedContact
@@ -50,7 +50,7 @@ class MixedDrag(BesideShape):
 
     @property
     def varies_with_temperature(self) -> bool:
-        """It does: viscosity falls."""
+        """Always true, because viscosity depends on temperature."""
         return True
 
     @takes_si(temperature="temperature")

@@ -97,35 +97,33 @@ class LineExponents:
 class LineContactSolution:
     """Pressure, film and friction of a line contact, SI.
 
-    The broken film beyond ``outlet``, where pressure is zero, is not counted in the tractions, which are
-    along the motion: ``-couette - poiseuille`` and ``couette - poiseuille``.
+    The tractions, along the motion, are ``-couette - poiseuille`` and ``couette - poiseuille``. They exclude
+    the ruptured film beyond ``outlet``, where pressure is zero.
     """
 
-    x: Annotated[FloatArray, Means("places of the nodes from the axis of the roll, downstream positive", "m")]
+    x: Annotated[FloatArray, Means("positions of the nodes from the roll axis, positive downstream", "m")]
     pressure: Annotated[FloatArray, Means("at the nodes", "Pa")]
     film_thickness: Annotated[FloatArray, Means("at the nodes", "m")]
     central_thickness: Annotated[float, Means("film under the axis of the roll", "m")]
-    minimum_thickness: Annotated[float, Means("least film", "m")]
-    couette: Annotated[float, Means("shear by sliding", "N/m")]
+    minimum_thickness: Annotated[float, Means("minimum film", "m")]
+    couette: Annotated[float, Means("shear due to sliding", "N/m")]
     poiseuille: Annotated[float, Means("half the integral of film thickness times pressure gradient", "N/m")]
     roll_traction: Annotated[float, Means("shear force on the roll per length", "N/m")]
-    base_traction: Annotated[float, Means("shear force on what it runs against per length", "N/m")]
+    base_traction: Annotated[float, Means("shear force on the opposite surface per length", "N/m")]
     greatest_pressure: Annotated[float, Means(unit="Pa")]
-    outlet: Annotated[float, Means("where the film breaks", "m")]
+    outlet: Annotated[float, Means("where the film ends", "m")]
     #: for a layer minus the approach of roll and base; for a half space it belongs to ``length``
     offset: Annotated[float, Means("film less parabola and deflection", "m")]
     length: Annotated[float, Means("unit of the logarithm in the deflection of a half space", "m")]
-    load_residual: Annotated[float, Means("relative error of the load balance that remains")]
-    flow_residual: Annotated[float, Means("relative error of the flow that remains")]
-    grid_error: Annotated[float, Means("relative error of the least film, estimated from two grids")]
-    by_speed: Annotated[LineExponents, Means("of speed, both surfaces alike")]
+    load_residual: Annotated[float, Means("remaining relative error of the load balance")]
+    flow_residual: Annotated[float, Means("remaining relative error of the flow")]
+    grid_error: Annotated[float, Means("relative error of the minimum film, estimated from two grids")]
+    by_speed: Annotated[LineExponents, Means("exponent of speed, both surfaces scaled together")]
     by_load: Annotated[LineExponents, Means("of load")]
     friction: Annotated[float, Means("magnitude of roll_traction over the load")]
-    iterations: Annotated[int, Means("Newton steps in all")]
-    stations: Annotated[int, Means("solutions on the way from a rigid roll")]
-    warnings: Annotated[
-        tuple[Warning, ...], Means("what the model does not hold for, or could be resolved better")
-    ]
+    iterations: Annotated[int, Means("total number of Newton steps")]
+    stations: Annotated[int, Means("intermediate solutions, starting from a rigid roll")]
+    warnings: Annotated[tuple[Warning, ...], Means("where the model does not apply, or needs a finer grid")]
 
 
 @takes_si(
@@ -158,15 +156,15 @@ def solve_line_contact(
     entrainment_speed
         Mean u of the surface speeds, m/s.
     viscosity
-        Of a Newtonian lubricant, Pa s; or a `ThickeningFluid`, which pressure changes.
+        Viscosity of a Newtonian lubricant, Pa s; or a `ThickeningFluid`.
     effective_modulus
-        E' = 2/[(1-nu1^2)/E1 + (1-nu2^2)/E2], Pa; of a soft layer alone 2E/(1-nu^2).
+        E' = 2/[(1-nu1^2)/E1 + (1-nu2^2)/E2], Pa; for a soft layer on its own 2E/(1-nu^2).
     layer
         An elastic layer bonded to a rigid base. Default: a half space.
     sliding_speed
-        Speed of the roll less that of what it runs against, m/s. Default: 2u, the other surface at rest.
+        Speed of the roll minus that of the other surface, m/s. Default: 2u, the other surface at rest.
     nodes
-        50 to 4001. The error of the film falls with their square.
+        Number of nodes, 50 to 4001. The error of the film falls with its square.
 
     Raises
     ------
@@ -252,8 +250,8 @@ def _of_the_shape(
     if indented > _INDENTATION:
         yield Warning(
             "layer indented deeply",
-            "the layer is indented by {share:.0%} of its thickness: linear elasticity, meant for up to "
-            "{most:.0%}, is a sketch there",
+            "the layer is indented by {share:.0%} of its thickness. Linear elasticity holds up to "
+            "{most:.0%}, so the result is only a rough estimate",
             severity="watch",
             share=indented,
             most=_INDENTATION,
@@ -261,7 +259,8 @@ def _of_the_shape(
     if solution.outlet > _HALF_WIDTH * radius:
         yield Warning(
             "contact too wide for a parabola",
-            "the contact reaches {share:.0%} of the radius from the axis: the roll is no parabola",
+            "the contact extends to {share:.0%} of the radius from the axis, where a roll is no longer "
+            "a parabola",
             severity="watch",
             share=solution.outlet / radius,
         )
@@ -272,15 +271,15 @@ def _of_the_numbers(solution: _core.LineContact, *, barus: bool) -> Iterator[War
     if solution.grid_error > _GRID_ERROR:
         yield Warning(
             "coarse grid",
-            "the least film is good to {error:.1%} on this grid",
+            "the minimum film has an error of {error:.1%} on this grid",
             severity="watch",
-            remedy="take more nodes",
+            remedy="use more nodes",
             error=solution.grid_error,
         )
     if barus and solution.greatest_pressure > _BARUS:
         yield Warning(
             "pressure beyond Barus' law",
-            "Barus' law overstates viscosity at {pressure:.2g GPa}",
+            "Barus' law overestimates viscosity at {pressure:.2g GPa}",
             severity="watch",
             remedy="use roelands",
             pressure=solution.greatest_pressure,

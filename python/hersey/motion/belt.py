@@ -20,13 +20,13 @@ T = TypeVar("T")
 class Drivetrain(Record):
     """Spring (gear train, roll core and rubber) of ``stiffness`` and moving ``mass``.
 
-    ``grip`` is the force up to which the roll grips the belt, its friction times the load; beyond, it
-    slips. If it is not given the roll never slips, as Eq. 11 assumes.
+    ``grip`` is the largest force before the roll slips on the belt: friction times load. Default: the roll
+    never slips, as Eq. 11 assumes.
     """
 
     stiffness: Annotated[float, Means(unit="N/m")]
     mass: Annotated[float, Means(unit="kg")]
-    grip: Annotated[float | None, Means("force up to which the roll grips the belt", "N")] = None
+    grip: Annotated[float | None, Means("largest force before the roll slips on the belt", "N")] = None
 
     def __post_init__(self) -> None:
         """Bring the values to SI if they come with units."""
@@ -105,8 +105,8 @@ def belt_of(train: Train, drag: BeltDrag, temperature: T) -> tuple[Drivetrain, A
         return plain, drag, temperature
     if machine is None:
         raise ParameterError(
-            "a fitted surface needs the machine, whose file states roll radius and stick speed: give "
-            "read_machine(...) in place of its train, or surface.drag(...) in place of the surface"
+            "a fitted surface needs roll radius and stick speed of the machine. Give read_machine(...) "
+            "instead of its train, or surface.drag(...) instead of the surface"
         )
     if machine.belt["stick_speed_rule"] == "fixed" and isinstance(temperature, int | float):
         return plain, drag.drag(**machine.belt, temperature=temperature), None

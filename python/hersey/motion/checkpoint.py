@@ -57,14 +57,14 @@ _ABOUT = {
     "frequency": ("Hz", "slips per time"),
     "slip_duration": ("s", "time of a cycle in which the belt slips"),
     "stick_duration": ("s", "time of a cycle in which it sticks"),
-    "speed_min": ("m/s", "least belt speed of a cycle"),
-    "speed_max": ("m/s", "greatest belt speed of a cycle"),
-    "stretch_min": ("m", "least stretch of the spring"),
-    "stretch_max": ("m", "greatest stretch of the spring"),
+    "speed_min": ("m/s", "lowest belt speed of a cycle"),
+    "speed_max": ("m/s", "highest belt speed of a cycle"),
+    "stretch_min": ("m", "smallest stretch of the spring"),
+    "stretch_max": ("m", "largest stretch of the spring"),
     "grip_slip_duration": ("s", "time of a cycle in which the roll slips on the belt"),
-    "drag_work": ("J", "work of the drag in a cycle"),
-    "stuck_fraction": ("1", "part of a cycle in which the belt sticks"),
-    "laps": ("1", "laps followed"),
+    "drag_work": ("J", "work done by the drag in a cycle"),
+    "stuck_fraction": ("1", "fraction of a cycle in which the belt sticks"),
+    "laps": ("1", "cycles simulated"),
 }
 
 
@@ -188,8 +188,8 @@ def _counted(folder: Folder) -> tuple[Tally, NDArray[np.bool_], list[int]]:
             tally.add(note)
         except (AttributeError, KeyError, TypeError, ValueError):
             raise OutputError(
-                f"{folder.path}: the record of chunk {number} is damaged: remove its "
-                f"files, and it is computed again"
+                f"{folder.path}: the record of chunk {number} is damaged. Delete its files to compute "
+                "it again"
             ) from None
         lacking[number] = False
     return tally, lacking, damaged
@@ -212,7 +212,7 @@ def _done_again(path: Path, damaged: list[int]) -> list[Warning]:
 
 
 def _left(ended: int, count: int) -> str:
-    return f"{ended} of {count} chunks are kept: the same command goes on"
+    return f"{ended} of {count} chunks are finished. Repeat the command to continue"
 
 
 def gathered(
@@ -254,10 +254,10 @@ def _connected(client: Client | LocalWorkers | str | None) -> Iterator[Client | 
 
 def _cut(sets: Sets, chunk: int) -> Cut:
     if not isinstance(chunk, (int, np.integer)) or isinstance(chunk, bool):
-        raise ParameterError(f"chunk is {chunk!r}: it is a whole number of sets")
+        raise ParameterError(f"chunk is {chunk!r}: it must be a whole number of sets")
     cut = Cut.into(sets.shape, int(chunk))
     if chunk > MOST_SETS:
-        raise ParameterError(f"chunk is {chunk}: {MOST_SETS:.0e} sets are the most that one call takes")
+        raise ParameterError(f"chunk is {chunk}: one call takes at most {MOST_SETS:.0e} sets")
     return cut
 
 
@@ -285,7 +285,7 @@ def _layout(sets: Sets, rules: Rules, units: str, cut: Cut) -> Layout:
             "kind",
             "uint8",
             {
-                "long_name": "what the motion settles to",
+                "long_name": "kind of the final motion",
                 "flag_values": list(range(len(_core.KINDS))),
                 "flag_meanings": " ".join(_core.KINDS),
             },

@@ -53,8 +53,8 @@ class AnyDrag:
     def law_at(self, temperature: float | None) -> _core.Law:
         """Return the law at one temperature, K; none for a law that does not vary."""
         if self.varies_with_temperature != (temperature is not None):
-            reason = "the drag varies with temperature: give temperature"
-            other = "temperature is given, but the drag does not vary with it"
+            reason = "the drag depends on temperature. Give temperature"
+            other = "temperature is given, but the drag does not depend on it"
             raise ParameterError(reason if self.varies_with_temperature else other)
         return self.law() if temperature is None else self.law().at(temperature - self.temperature_zero)
 
@@ -94,7 +94,7 @@ class BesideShape(AnyDrag, Record):
     closure: str = "retained"
     bristle_stiffness: Annotated[float | None, Means(unit="N/m")] = None
     bristle_damping: Annotated[float | None, Means(unit="N s/m")] = None
-    static_force: Annotated[float | None, Means("what the contact bears at rest", "N")] = None
+    static_force: Annotated[float | None, Means("drag of the contact at rest", "N")] = None
     rest_force: Annotated[float, Means("of the no-load torque", "N")] = 0.0
     rest_damping: Annotated[float, Means("of the no-load torque", "N s/m")] = 0.0
 
@@ -192,23 +192,21 @@ _TEMPERATURES = dict.fromkeys(("reference_temperature", "temperature_zero"), "te
 class Drag(PowersOfTemperature):
     """Drag force against belt speed (Eqs. 17-30), and temperature if a ``reference_temperature`` is given.
 
-    ``F = F_t (v/v_t)^(1+n)`` with n the damping exponent of the branch: ``ehl_exponent`` above the
-    transition speed v_t, ``mixed_exponent`` below; below ``stick_speed`` the ``closure`` holds:
-    ``retained`` (the paper's rule, Eqs. 24-27: a belt that sticks keeps its small speed), ``stiction``
-    (stops dead), ``stribeck`` (smooth) or ``lugre`` (bristles, of ``bristle_stiffness`` and
-    ``bristle_damping``).
+    ``F = F_t (v/v_t)^(1+n)`` with n the damping exponent of the branch: ``ehl_exponent`` above the transition
+    speed v_t, ``mixed_exponent`` below; below ``stick_speed`` the ``closure`` holds: ``retained`` (the
+    paper's rule, Eqs. 24-27: a belt that sticks keeps its small speed), ``stiction`` (stops abruptly),
+    ``stribeck`` (smooth) or ``lugre`` (bristles, with ``bristle_stiffness`` and ``bristle_damping``).
 
     With temperature it varies as `PowersOfTemperature`.
 
-    ``static_force`` is the drag that a belt at rest can bear; if not given it is such that drag falls by a
-    factor e up to the stick speed, continuously (Eqs. 28-30). The no-load torque, what moves with the
-    belt besides the lubricated contact, adds ``rest_force + rest_damping v``, which changes by
-    ``rest_temperature_slope`` (relative, per K) with temperature; with ``lugre`` ``rest_damping`` is the
-    viscous part beside the bristles.
+    ``static_force`` is the break-away force. By default drag falls continuously by a factor e up to the stick
+    speed (Eqs. 28-30). The no-load torque adds ``rest_force + rest_damping v``, which changes by
+    ``rest_temperature_slope`` (relative, per K) with temperature; with ``lugre``, ``rest_damping`` is the
+    viscous part in addition to the bristles.
 
     While a belt stands its static force may grow, by ``static_growth`` (relative) per e-fold of the time
     beyond ``static_growth_time`` (s): A (1 + growth ln(1 + t/time)), after Rabinowicz (1951) and Dieterich
-    (1972). Only with ``stiction`` does it stand.
+    (1972). A belt stands only with ``stiction``.
 
     Raises
     ------
@@ -222,7 +220,7 @@ class Drag(PowersOfTemperature):
     mixed_exponent: float
     stick_speed: Annotated[float, Means(unit="m/s")]
     _: KW_ONLY
-    static_growth: Annotated[float, Means("of the static force, for each e-fold of time")] = 0.0
+    static_growth: Annotated[float, Means("of the static force per e-fold of time")] = 0.0
     static_growth_time: Annotated[float | None, Means(unit="s")] = None
 
     def __post_init__(self) -> None:
@@ -270,7 +268,7 @@ class Drag(PowersOfTemperature):
             If the static force grows at rest, which sets of many have not.
         """
         if self.static_growth:
-            raise ParameterError("static_growth is of one belt: a sweep of many has no such parameter")
+            raise ParameterError("static_growth applies to one belt and cannot be swept")
         if self.static_force is None and not self.rest_force and not self.rest_damping:
             return None
         values = [getattr(self, name) for name in BESIDE]
@@ -279,10 +277,10 @@ class Drag(PowersOfTemperature):
 
 @dataclass(frozen=True)
 class DragTable(PowersOfTemperature):
-    """Drag through measured points: straight lines between them in logarithmic scales, monotone therefore.
+    """Drag through measured points, joined by straight lines in logarithmic scales.
 
-    Beyond the points the outer lines go on; the transition is the point of least force. With temperature all
-    points vary as `PowersOfTemperature`.
+    The outer lines continue beyond the points; the transition is the point of least force. With temperature,
+    all points vary as `PowersOfTemperature`.
 
     Raises
     ------

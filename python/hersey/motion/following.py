@@ -263,8 +263,10 @@ def hashes_differ(hashes: Iterable[tuple[str, str]], own: str) -> list[Warning]:
             "workers with other last bits",
             "worker {worker}"
             + (" and {more} more" if len(others) > 1 else "")
-            + " computes other last bits than this machine (another processor or C library): chunks are as "
-            "exact as any, but not the same to the bit wherever they are made",
+            + (
+                " gives slightly different last bits than this machine (another processor or C library). "
+                "The results are equally accurate, but not identical"
+            ),
             worker=others[0],
             more=len(others) - 1,
         )

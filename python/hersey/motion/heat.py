@@ -32,7 +32,7 @@ _Arguments = tuple[
 
 @dataclass(frozen=True)
 class HeatBalance:
-    """Two bodies that exchange heat: what the film is part of (heater, belt and film), and the roll.
+    """Two bodies that exchange heat: one with the film (heater, belt and film), and the roll.
 
     With temperatures T_f and T_r::
 
@@ -40,8 +40,8 @@ class HeatBalance:
         roll_capacity T_r' = exchange (T_f - T_r) - roll_load - roll_loss (T_r - surroundings)
 
     q is the power of friction in the contact (drag without the no-load torque, times belt speed); the drag
-    law follows T_f. The heater gives ``heater_power``, or, with a ``setpoint``, ``heater_gain`` times what is
-    missing to it, from nothing to ``heater_power``.
+    law follows T_f. The heater gives ``heater_power``, or, with a ``setpoint``, ``heater_gain`` times the
+    deviation from it, between 0 and ``heater_power``.
 
     Parameters
     ----------
@@ -56,13 +56,13 @@ class HeatBalance:
     film_loss, roll_loss
         To the surroundings, W/K.
     heater_power
-        W: given, also against time; with a setpoint the most there is.
+        Heater power, W, constant or against time; with a setpoint, the maximum power.
     setpoint
-        Temperature that the heater holds the film's body at, K.
+        Temperature to which the heater controls the body of the film, K.
     heater_gain
-        W/K; if not given, full power until a tenth of a kelvin is missing.
+        Controller gain, W/K. Default: full power until 0.1 K below the setpoint.
     film_load, roll_load
-        What paper takes from each, W, also against time.
+        Heat taken by the paper from each body, W, constant or against time.
 
     Raises
     ------
@@ -88,9 +88,9 @@ class HeatBalance:
         """Bring the values to SI if they come with units, and check them."""
         fields_in_si(self, _KINDS)
         if self.setpoint is not None and isinstance(self.heater_power, Schedule):
-            raise ParameterError("heater_power varies with time: a heater with a setpoint has one most power")
+            raise ParameterError("heater_power must be constant with a setpoint: it is the maximum power")
         if self.heater_gain is not None and self.setpoint is None:
-            raise ParameterError("heater_gain is of a heater with a setpoint: give setpoint too")
+            raise ParameterError("heater_gain needs a setpoint. Give one")
 
     def arguments(self, temperature_zero: float) -> _Arguments:
         """Return the balance as the core takes it, for a law whose scale begins at some K."""

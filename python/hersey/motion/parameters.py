@@ -37,9 +37,7 @@ OF_THE_BELT = PARAMETERS[:-1]
 def whole(name: str, value: float, least: int = 1) -> int:
     """Return a number of steps, samples or threads as the core takes it; refuse fewer than ``least``."""
     if not value >= least:
-        raise ParameterError(
-            f"{name} is {value}: at least {least} {'is' if least == 1 else 'are'} needed", quantity=name
-        )
+        raise ParameterError(f"{name} is {value}: it must be at least {least}", quantity=name)
     return int(min(value, _MANY))
 
 
@@ -51,4 +49,6 @@ def refuse_too_many(given: Iterable[FloatArray], *, zip: bool) -> None:  # noqa:
     except ValueError:
         return  # arrays that do not fit together are refused by their shapes
     if sets > MOST_SETS:
-        raise ParameterError(f"{sets:.3g} parameter sets are more than {MOST_SETS:.0e}: sweep them in parts")
+        raise ParameterError(
+            f"{sets:.3g} parameter sets are more than the limit of {MOST_SETS:.0e}. Sweep them in parts"
+        )

@@ -114,20 +114,20 @@ class _Values(Quantity):
     def _between(self, table: dict[str, Any], info: ValidationInfo[Any]) -> FloatArray:
         keys = ("from", "to", "count", "spacing")
         if unknown := sorted(set(table) - set(keys)):
-            raise ParameterError(f"has no key '{unknown[0]}': {', '.join(keys)} are known")
+            raise ParameterError(f"has an unknown key '{unknown[0]}'. Known keys: {', '.join(keys)}")
         if lacking := [key for key in keys[:3] if key not in table]:
-            raise ParameterError(f"lacks '{lacking[0]}'")
+            raise ParameterError(f"needs the key '{lacking[0]}'")
         ends = []
         for key in keys[:2]:
             with naming(f".{key}"):
                 ends.append(super().checked(table[key], info))
         count, spacing = table["count"], table.get("spacing", "linear")
         if not isinstance(count, int) or isinstance(count, bool) or not 1 <= count <= MOST_SETS:
-            raise ParameterError(f".count is {count}: write a whole number from 1 to {MOST_SETS:.0e}")
+            raise ParameterError(f".count is {count}: it must be a whole number from 1 to {MOST_SETS:.0e}")
         if spacing not in ("linear", "log"):
-            raise ParameterError(f".spacing is {spacing!r}: write linear or log")
+            raise ParameterError(f".spacing is {spacing!r}: it must be linear or log")
         if spacing == "log" and not ends[0] * ends[1] > 0:
-            raise ParameterError("needs two values of one sign, and none zero, for log spacing")
+            raise ParameterError("needs two values of the same sign, neither of them zero, for log spacing")
         spaced = np.geomspace if spacing == "log" else np.linspace
         return np.asarray(spaced(ends[0], ends[1], count), dtype=float)
 
@@ -224,15 +224,17 @@ def read_scenario(
     plain = _is_plain(read_toml(path).get("options"))
     if stated is not None and plain:
         raise ParameterError(
-            f"{path.name}: {stated_in} is in SI: write values with their units, and leave out "
-            f'units = "consistent"'
+            f"{path.name}: {stated_in} is in SI. Write values with their units, and delete units = "
+            '"consistent"'
         )
     tables = read_tables(path, _ScenarioFile, plain=plain)
     options = dict(vars(tables.options))
     options |= {name: value for name, value in (stated or {}).items() if name in _BESIDE}
     scenario = Scenario(parameters=_filled(path, tables.parameters, stated, stated_in), **options)
     if scenario.sets > most:
-        raise ParameterError(f"{path.name}: {scenario.sets:.3g} parameter sets are more than {most:.0e}")
+        raise ParameterError(
+            f"{path.name}: {scenario.sets:.3g} parameter sets are more than the limit of {most:.0e}"
+        )
     return scenario
 
 
@@ -246,8 +248,8 @@ def _filled(
         if values is None and name in (stated or {}):
             values = np.array([(stated or {})[name]])
         if values is None:
-            also = f", and {stated_in} does not state it: add {name} = {_LINES[name]}" if stated_in else ""
-            raise ParameterError(f"{path.name}: [parameters] lacks '{name}'{also}")
+            also = f", and {stated_in} does not have it. Add {name} = {_LINES[name]}" if stated_in else ""
+            raise ParameterError(f"{path.name}: [parameters] has no '{name}'{also}")
         parameters[name] = values
     return parameters
 

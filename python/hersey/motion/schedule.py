@@ -21,8 +21,8 @@ ScheduleArguments = tuple[list[float], list[float], list[list[float]] | None]
 class Schedule:
     """A quantity at ``times``, joined by straight lines, or smoothly without overshoot if ``smooth``.
 
-    Before the first time and after the last the value stays as it is there. Two equal times in a row make a
-    jump (with straight lines only).
+    The value is constant before the first and after the last time. Two equal times in a row make a jump (with
+    straight lines only).
 
     Raises
     ------
@@ -46,22 +46,22 @@ class Schedule:
         if times.ndim != 1 or times.shape != values.shape:
             raise ParameterError(f"schedule: {times.size} times, but {values.size} values")
         if times.size == 0:
-            raise ParameterError("schedule: it is empty")
+            raise ParameterError("schedule: there are no points")
         if not (np.isfinite(times).all() and np.isfinite(values).all()):
             raise ParameterError("schedule: a number is not finite")
         steps = np.diff(times)
         backwards = np.flatnonzero(steps <= 0 if self.smooth else steps < 0)
         if backwards.size:
             i = int(backwards[0]) + 1
-            raise ParameterError(f"schedule: time runs backwards: {times[i]} comes after {times[i - 1]}")
+            raise ParameterError(f"schedule: times must ascend, but {times[i]} follows {times[i - 1]}")
         if self.smooth and times.size < 2:
-            raise ParameterError("schedule: a smooth one needs two points")
+            raise ParameterError("schedule: a smooth schedule needs two points")
         object.__setattr__(self, "times", times)
         object.__setattr__(self, "values", values)
 
     @classmethod
     def of(cls, given: float | Schedule) -> Schedule:
-        """Return ``given``, or the schedule that stays at it."""
+        """Return ``given`` as a schedule; a number becomes a constant one."""
         return given if isinstance(given, Schedule) else cls([0.0], [float(given)])
 
     def shifted(self, by: float) -> Schedule:

@@ -59,7 +59,7 @@ class Numerics(TypedDict, total=False):
 
 #: What is said of a kind in which the roll slips.
 _MEANT = {
-    "stalled": ": the roll slips on the belt and does not move it",
+    "stalled": ": the roll slips on the belt and cannot move it",
     "grip_slip": ": the roll slips on the belt, which slides more slowly",
 }
 
@@ -68,32 +68,32 @@ _MEANT = {
 class StickSlipCycle(Result):
     """What the motion settles to.
 
-    ``kind`` is one of `stick_slip`'s. Frequency is in laps per unit of time, 0 in motion without laps;
-    ``drag_work`` is the work against drag per lap and ``grip_slip_duration`` the time per lap during which
-    the roll slips, likewise. Bristles remember, so with them the motion may repeat
-    itself after ``laps_per_period`` laps; then frequency, durations and work are those of the mean lap, and
-    extremes those of all. With a smooth closure, which never holds the belt, the belt counts as stuck while
-    it creeps below the stick speed.
+    ``kind`` is one of `stick_slip`'s. Frequency is in cycles per unit of time, 0 without cycles;
+    ``drag_work`` is the work against drag per cycle, ``grip_slip_duration`` the time per cycle during which
+    the roll slips. With bristles, which have memory, the motion may repeat only after ``laps_per_period``
+    cycles; then frequency, durations and work are means over these cycles, and extremes those of all. With a
+    smooth closure, which never holds the belt, the belt counts as stuck while it creeps below the stick
+    speed.
     """
 
     also_stated = ("stuck_fraction",)
 
     kind: str
-    frequency: Annotated[float, Means("laps per unit of time", "Hz")]
+    frequency: Annotated[float, Means("cycles per unit of time", "Hz")]
     slip_duration: Annotated[float, Means(unit="s")]
     stick_duration: Annotated[float, Means(unit="s")]
     speed_min: Annotated[float, Means(unit="m/s")]
     speed_max: Annotated[float, Means(unit="m/s")]
     stretch_min: Annotated[float, Means(unit="m")]
     stretch_max: Annotated[float, Means(unit="m")]
-    grip_slip_duration: Annotated[float, Means("a lap", "s")]
-    drag_work: Annotated[float, Means("a lap", "J")]
+    grip_slip_duration: Annotated[float, Means("per cycle", "s")]
+    drag_work: Annotated[float, Means("per cycle", "J")]
     laps_per_period: int
     laps: int
 
     @property
     def stuck_fraction(self) -> float:
-        """Share of a lap during which the belt sticks."""
+        """Share of a cycle during which the belt sticks."""
         return self.stick_duration * self.frequency
 
     def summary(self) -> str:
@@ -105,8 +105,11 @@ class StickSlipCycle(Result):
                 f"  stuck fraction  {self.stuck_fraction:.6f}",
                 f"  belt speed      {self.speed_min:.6f} to {self.speed_max:.6f}",
                 f"  stretch         {self.stretch_min:.6f} to {self.stretch_max:.6f}",
-                f"  drag work       {self.drag_work:.6f} a lap",
-                *([f"  roll slips      {self.grip_slip_duration:.6f} a lap"] * (self.grip_slip_duration > 0)),
+                f"  drag work       {self.drag_work:.6f} per cycle",
+                *(
+                    [f"  roll slips      {self.grip_slip_duration:.6f} per cycle"]
+                    * (self.grip_slip_duration > 0)
+                ),
             ]
         )
 
@@ -131,22 +134,23 @@ def simulate(
     start: str | tuple[float, float] = "rest",
     **numerics: Unpack[Numerics],
 ) -> Trajectory:
-    """Return the motion over ``duration``, its events located to rounding.
+    """Return the motion over ``duration``, with events located to rounding.
 
     Parameters
     ----------
     drive_speed
         Speed at the far end of the spring (Eqs. 12-16).
     drive_torque
-        Instead of it: force on the mass, or torque on the rotor, which a spring holds to the ground (Eq. 11);
-        only here the stiffness may be zero.
+        Alternative to ``drive_speed``: force on the mass, or torque on the rotor, which a spring holds to the
+        ground (Eq. 11). Only here may the stiffness be zero.
     temperature
-        K; needed if the drag varies with it. Or what makes it: then it is a state, warmed by friction too.
+        Temperature, K; needed if the drag depends on it. Or a `HeatBalance`: then temperature is a state, and
+        friction heats it too.
     duration
         s.
     start
-        ``rest`` (belt at rest, spring slack), ``steady`` (sliding with the drive as it is at time 0), or a
-        pair of belt speed and stretch.
+        ``rest`` (belt at rest, spring slack), ``steady`` (sliding at the drive speed at time 0), or a pair of
+        belt speed and stretch.
     **numerics
         Any of ``samples``, ``tolerance``, ``check`` and ``most_steps``; see `Numerics`.
 
@@ -155,7 +159,7 @@ def simulate(
     ParameterError
         If a value is out of range, with its name.
     UnfinishedError
-        If the work does not suffice, or the motion cannot be continued.
+        If the allowed work is exceeded, or the motion cannot be continued.
 
     Examples
     --------
@@ -221,12 +225,12 @@ def _trajectory(run: Callable[[str], _core.Trajectory], stiffness: float, *, che
 def check_inputs(drag: AnyDrag, drive_speed: Any, drive_torque: Any, temperature: Any) -> None:
     """Refuse inputs of a motion that do not go together, or that its drag does not know."""
     if (drive_speed is None) == (drive_torque is None):
-        raise ParameterError("give either drive_speed or drive_torque")
+        raise ParameterError("give either drive_speed or drive_torque, not both")
     if drag.varies_with_temperature and temperature is None:
-        raise ParameterError("the drag varies with temperature: give temperature")
+        raise ParameterError("the drag depends on temperature. Give temperature")
     if temperature is not None and not drag.varies_with_temperature:
         what = "heat" if isinstance(temperature, HeatBalance) else "temperature"
-        raise ParameterError(f"{what} is given, but the drag does not vary with temperature")
+        raise ParameterError(f"{what} is given, but the drag does not depend on temperature")
 
 
 def _self_check(run: Callable[[], _core.Trajectory], first: _core.Trajectory) -> SelfCheck:
@@ -262,22 +266,22 @@ def stick_slip(
     tolerance: float = TOLERANCE,
     most_steps: float = MOST_STEPS,
 ) -> StickSlipCycle:
-    """Return what the motion settles to at constant drive speed, coming from ``start``.
+    """Return the final motion at constant drive speed, starting from ``start``.
 
-    Between the transition speed and the fold both sliding and stick-slip exist, and the start decides.
-    ``steady`` starts sliding with the drive but for a nudge of 0.1 % in speed, since an unstable balance is
-    nothing that a belt can keep; a pair is the belt speed and the stretch to start from. ``most_steps`` is
-    the work that the motion may take, as for `simulate`.
+    Between the transition speed and the fold, both sliding and stick-slip are possible, and the start
+    decides. ``steady`` starts at the drive speed minus a disturbance of 0.1 %, because no real belt can stay
+    in an unstable balance; a pair is the initial belt speed and stretch. ``most_steps`` limits the work, as
+    for `simulate`.
 
-    The kinds of motion, each that which goes on for good:
+    The kinds of final motion:
 
     ``steady_sliding``
-        The belt is as fast as the drive; the roll grips it.
+        The belt moves at the drive speed; the roll grips it.
     ``oscillation``
-        It swings without sticking; the roll may slip on it for a part of the lap.
+        The belt oscillates without sticking; the roll may slip on it for part of the cycle.
     ``stick_slip``
-        It sticks and slips in turn: it is held, or with a smooth closure creeps below the stick speed. The
-        roll may slip on it for a part of the lap (``grip_slip_duration``).
+        The belt alternately sticks and slips. It is held, or with a smooth closure creeps below the stick
+        speed. The roll may slip on it for part of the cycle (``grip_slip_duration``).
     ``stalled``
         The roll slips on a belt that never starts: it is held, or with a smooth closure creeps below the
         stick speed.
@@ -285,20 +289,20 @@ def stick_slip(
         The roll slips on a belt that slides steadily, slower than the roll but no slower than the stick
         speed, where drag equals the grip.
     ``unsettled``
-        None of these was reached within the laps allowed, or the time.
+        None of these was reached within the cycles or the time allowed.
 
     Parameters
     ----------
     train, drag
         A drivetrain and its drag; or a machine (`hersey.read_machine`) and the surface fitted to its log,
-        which take radius, stick speed and grip from the machine's file.
+        which take radius, stick speed and grip from the machine file.
 
     Raises
     ------
     ParameterError
         If a value is out of range, with its name.
     UnfinishedError
-        If the work does not suffice, or the motion cannot be continued.
+        If the allowed work is exceeded, or the motion cannot be continued.
 
     Examples
     --------
@@ -342,7 +346,7 @@ def start_state(
     if start == "rest":
         return 0.0, 0.0
     if start != "steady":
-        raise ParameterError(f"start '{start}' is not known: rest, steady, or (belt speed, stretch)")
+        raise ParameterError(f"start is '{start}': it must be rest, steady, or (belt speed, stretch)")
     if is_torque:
         raise ParameterError("start 'steady' needs a drive_speed")
     now = law if temperature is None else law.at(temperature.first)

@@ -52,18 +52,18 @@ class _Given(NamedTuple):
 
 
 class Stepper:
-    """A motion that goes on from call to call, and whose drive and temperature may change between them.
+    """A motion that is continued from call to call, with drive and temperature that may change in between.
 
-    Where and how often one stops changes no bit of it; only another drive or temperature does, from then on.
-    At a jump of either the belt keeps its speed and the spring its stretch, and the mode is what the law then
-    says. A stepper can be pickled; one thread at a time may use it.
+    Where and how often it stops does not change the motion; only a change of drive or temperature does. At a
+    jump of either, belt speed and spring stretch stay, and the mode follows from the law. A stepper can be
+    pickled; only one thread at a time may use it.
 
     Parameters
     ----------
     drive_speed, drive_torque, temperature, start, tolerance
-        As of `simulate`, at time 0; drive and temperature as numbers, which stay until others are given.
+        As for `simulate`, at time 0; drive and temperature as numbers, which hold until others are set.
     most_steps
-        Work that each call may take, as of `simulate`.
+        Limit of work per call, as for `simulate`.
 
     Raises
     ------
@@ -125,7 +125,7 @@ class Stepper:
 
     @property
     def state(self) -> StepperState:
-        """Where the motion stands."""
+        """Current state of the motion."""
         return self._state(None)
 
     def _state(self, event: Event | None) -> StepperState:
@@ -135,16 +135,17 @@ class Stepper:
 
     @takes_si(until="time")
     def advance(self, until: float) -> StepperState:
-        """Go on to ``until``, s, or to the first change of mode before or at it, and return the state there.
+        """Continue to ``until`` (s), or to the first change of mode before it, and return the state.
 
-        The state is just after the change, ``state.event``; the next call goes on from there.
+        The state is just after the change, ``state.event``; the next call continues from there.
 
         Raises
         ------
         ParameterError
-            If ``until`` lies behind, or there is no law of drag at the temperature reached.
+            If ``until`` is in the past, or there is no drag law at the temperature reached.
         UnfinishedError
-            If the work does not suffice, or the motion cannot be continued; it then stands where it has come.
+            If the allowed work is exceeded, or the motion cannot be continued; the state is then the last one
+            reached.
         """
         return self._state(_event(self._core.advance(_number("until", until), self._steps)))
 
@@ -157,33 +158,33 @@ class Stepper:
         drive_rate: float = 0.0,
         temperature_rate: float = 0.0,
     ) -> Event | None:
-        """Set drive and temperature from now on; return the change of mode that this makes at once, if any.
+        """Set drive and temperature from now on, and return the immediate change of mode, if any.
 
-        What is not given goes on as it is; what is given as it already is changes nothing.
+        Inputs that are not given continue unchanged; giving the current value changes nothing.
 
         Parameters
         ----------
         drive
-            Speed, m/s, or force or torque, N or N m: what the stepper began with.
+            Speed, m/s, or force or torque, N or N m, as at creation.
         temperature
             K.
         drive_rate, temperature_rate
-            How they grow from now on, per s.
+            Rates of change from now on, per s.
 
         Raises
         ------
         ParameterError
-            If a number is not finite or out of range; nothing has changed then.
+            If a number is not finite or out of range; nothing is changed then.
         """
         given = self._given
         if temperature is not None and given.temperature is None:
-            raise ParameterError("temperature is given, but the drag does not vary with temperature")
+            raise ParameterError("temperature is given, but the drag does not depend on it")
         for name, rate, value in (
             ("drive_rate", drive_rate, drive),
             ("temperature_rate", temperature_rate, temperature),
         ):
             if value is None and rate != 0.0:
-                raise ParameterError(f"{name} is given, but not what it starts from")
+                raise ParameterError(f"{name} is given, but has no initial value")
         warm = None if temperature is None else _number("temperature", temperature)
         event = self._core.set_inputs(
             None if drive is None else _course("drive", drive, drive_rate),
@@ -194,18 +195,18 @@ class Stepper:
         return _event(event)
 
     def save(self) -> tuple[float, ...]:
-        """Return all that changes as finite numbers, from which `restore` goes on to the last bit."""
+        """Return the complete state as finite numbers, from which `restore` continues exactly."""
         return tuple(self._core.numbers())
 
     def restore(self, saved: Sequence[float]) -> None:
-        """Go on from what `save` returned, of this stepper or of another of the same drivetrain and drag.
+        """Continue from the result of `save`, of this stepper or another with the same drivetrain and drag.
 
         Drive and temperature are part of what was saved.
 
         Raises
         ------
         ParameterError
-            If the numbers are none that the motion can have; nothing has changed then.
+            If the numbers are not a possible state; nothing is changed then.
         """
         self._core.restore([_number("numbers of a moment", number) for number in saved])
 
@@ -224,7 +225,7 @@ def _number(name: str, given: Any) -> float:
     try:
         return float(given)
     except (TypeError, ValueError):
-        raise ParameterError(f"{name} is {given!r}: a number is needed", quantity=name) from None
+        raise ParameterError(f"{name} is {given!r}: it must be a number", quantity=name) from None
 
 
 def _course(name: str, value: float, rate: float) -> list[float]:

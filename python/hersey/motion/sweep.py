@@ -42,25 +42,25 @@ def sweep(
     out: str | Path | SweepFolder | None = None,
     **varied: ArrayLike,
 ) -> xr.Dataset:
-    """Return what each combination of parameters settles to, as `stick_slip` does for one.
+    """Return the final motion of each combination of parameters, as `stick_slip` does for one.
 
-    Each parameter is a number or an array; those not given are those of ``train`` and ``drag``. Arrays of
-    one dimension span one axis each, named by the parameter. With ``zip`` arrays go together by NumPy's
-    rules, along an axis ``set`` (or ``dim_0``, ``dim_1`` ... if they have several dimensions).
+    Each parameter is a number or an array; the others are those of ``train`` and ``drag``. Each
+    one-dimensional array spans an axis named after the parameter. With ``zip``, arrays are broadcast together
+    by NumPy's rules, along an axis ``set`` (or ``dim_0``, ``dim_1`` ... if they have several dimensions).
 
     Parameters
     ----------
     start
-        ``rest``, or ``steady``: sliding with the drive but for a nudge of 0.1 % in speed.
+        ``rest``, or ``steady``: sliding at the drive speed minus a disturbance of 0.1 %.
     duration
-        If given, each belt is followed for this time and its last whole lap is reported; otherwise until its
-        orbit has closed, which is exact and much quicker.
+        If given, each motion is simulated for this time and its last whole cycle is reported. Default: until
+        its orbit has closed, which is exact and much faster.
     work
-        How exactly, and by how many threads or workers; a relative tolerance of 1e-9 if it states none.
+        Tolerance (default 1e-9), threads and workers.
     out
-        A folder that ends in .zarr or .parquet, in which each chunk of sets is kept as it ends; then a sweep
-        has no limit of sets. What is there of the same sweep is not done again, unless a `SweepFolder` says
-        so. Units stand there as SI.
+        Folder that ends in .zarr or .parquet, in which each finished chunk of sets is stored; the number of
+        sets is then unlimited. Finished parts of the same sweep are not computed again, unless a
+        `SweepFolder` says so. Units in it are SI.
     **varied
         ``drive_speed`` (m/s), which is needed, and any of ``stiffness`` (N/m), ``mass`` (kg),
         ``transition_force`` (N), ``transition_speed`` (m/s), ``ehl_exponent``, ``mixed_exponent`` and
@@ -71,10 +71,9 @@ def sweep(
     xarray.Dataset
         ``kind`` (text), ``frequency``, ``stuck_fraction``, ``speed_max`` and so on, ``laps``. A motion that
         cannot be continued has the kind ``failed`` and no numbers; the attribute ``failures`` says why. With
-        ``out`` a .zarr is opened, and numbers are read from it when they are asked for: there ``kind`` is a
-        number whose words the attribute ``flag_meanings`` lists. Of a .parquet there are coordinates
-        and attributes alone. The attributes ``kinds``, ``stick_slip`` and ``failures`` count the outcomes,
-        ``warnings`` are in words.
+        ``out``, a .zarr is opened and numbers are read on demand; there ``kind`` is a number, and the
+        attribute ``flag_meanings`` lists the words. For a .parquet there are only coordinates and attributes.
+        The attributes ``kinds``, ``stick_slip`` and ``failures`` count the outcomes; ``warnings`` is text.
 
     Raises
     ------
@@ -82,7 +81,7 @@ def sweep(
         If a value is out of range, with the parameter's name, or there is no parameter of a name; if no
         scheduler answers, or a worker has another hersey.
     OutputError
-        If ``out`` is of another sweep, at work elsewhere, or cannot be written.
+        If ``out`` belongs to another sweep, is in use, or cannot be written.
     UnfinishedError
         If scheduler or workers are lost.
     MissingFileError
@@ -119,7 +118,7 @@ def sweep(
         columns, failures, warnings = gathered(sets, rules, work)
         return _labelled(sets, rules, columns, failures, warnings)
     if work.chunk is not None:
-        raise ParameterError("chunk is given, but neither out nor client: nothing is cut into chunks")
+        raise ParameterError("chunk is given without out or client, so there is nothing to cut into chunks")
     motions = rules.follow(sets, work.threads, work.progress)
     failures = [f"set {failure.index}: {failure.error}" for failure in motions.failures]
     return _labelled(sets, rules, values_of(motions), failures, [])
@@ -148,7 +147,7 @@ def planned(
     if not isinstance(drag, Drag) or drag.varies_with_temperature:
         raise ParameterError("a sweep needs a Drag at one temperature")
     if start not in ("rest", "steady"):
-        raise ParameterError(f"start '{start}' is not known: rest or steady")
+        raise ParameterError(f"start is '{start}': it must be rest or steady")
     drag.beside(1)  # refuses what a sweep has no parameter for
     parameters: dict[str, Any] = {**vars(train), **vars(drag)}
     asked = {name: values for name, values in varied.items() if values is not None}

@@ -47,7 +47,7 @@ class Energy(Record):
     dissipated: float
     slipped: float
     stored: float
-    owed: Annotated[float, Means("given by a contact that holds a belt, and not got back")]
+    owed: Annotated[float, Means("released by a contact that holds the belt, and not recovered")]
     residual: float
 
 
@@ -71,18 +71,18 @@ class SelfCheck(Record):
             return "\n".join(str(each) for each in self.warnings)
         return (
             f"{self.integrator} differs by {self.speed_difference:.1e} in speed and "
-            f"{self.stretch_difference:.1e} in stretch; "
-            f"{'the same' if self.same_events else 'OTHER'} events"
+            f"{self.stretch_difference:.1e} in stretch, with "
+            f"{'the same' if self.same_events else 'DIFFERENT'} events"
         )
 
 
 @dataclass(frozen=True, repr=False)
 class Trajectory(Result):
-    """Motion at equally spaced times: arrays of shape (samples,), every change of mode, and the energies.
+    """Motion at equally spaced times: arrays of shape (samples,), all changes of mode, and energies.
 
     ``stretch`` is drive position minus belt position; with a torque drive, the position of the mass (zero
-    without a spring). ``spring_force`` is stiffness times stretch; ``slipping`` tells where the roll slips
-    on the belt. ``film_temperature`` and ``roll_temperature`` (K) are there if they are states.
+    without a spring). ``spring_force`` is stiffness times stretch; ``slipping`` is true where the roll slips
+    on the belt. ``film_temperature`` and ``roll_temperature`` (K) are given if they are states.
     """
 
     also_stated = ("mode",)
@@ -98,17 +98,17 @@ class Trajectory(Result):
     energy: Energy
     steps: int
     check: SelfCheck | None = None
-    film_temperature: Annotated[FloatArray | None, Means("if it is a state", "K")] = None
-    roll_temperature: Annotated[FloatArray | None, Means("if it is a state", "K")] = None
+    film_temperature: Annotated[FloatArray | None, Means("if it is computed", "K")] = None
+    roll_temperature: Annotated[FloatArray | None, Means("if it is computed", "K")] = None
 
     @cached_property
     def mode(self) -> NDArray[np.str_]:
-        """The mode at each sample: ``ehl``, ``mixed``, ``microslip`` or ``stuck``."""
+        """Mode at each sample: ``ehl``, ``mixed``, ``microslip`` or ``stuck``."""
         return np.array(_core.MODES)[self.mode_index]
 
     @property
     def roll_slips(self) -> list[tuple[float, float]]:
-        """When the roll begins and ends to slip on the belt; the last may end with the motion."""
+        """Start and end times of roll slip on the belt; the last may end with the motion."""
         begins = [float(self.time[0])] if self.slipping[0] else []
         begins += [event.time for event in self.events if event.guard == "grip_lost"]
         ends = [event.time for event in self.events if event.guard == "grip_regained"]
@@ -116,27 +116,29 @@ class Trajectory(Result):
         return [(begin, end) for begin, end in spans if end > begin]
 
     def slipping_in_words(self) -> str:
-        """Return when the roll slips, and how long; empty if it never does."""
+        """Return when and how long the roll slips as text; empty if it never does."""
         if not (spans := self.roll_slips):
             return ""
         total, begin = sum(end - begin for begin, end in spans), spans[0][0]
         if len(spans) == 1:
-            return f"the roll slips on the belt from {begin:.6g} on, for {total:.6g}"
-        return f"the roll slips on the belt {len(spans)} times, first at {begin:.6g}, for {total:.6g} in all"
+            return f"the roll slips on the belt for {total:.6g}, starting at {begin:.6g}"
+        return f"the roll slips on the belt {len(spans)} times for {total:.6g} in total, first at {begin:.6g}"
 
     def summary(self) -> str:
         """Return ranges, energies and check as text, in the units of the arguments."""
-        owed = [f"  {self.energy.owed:.3g} J given by the contact did not come back"]
+        owed = [f"  {self.energy.owed:.3g} J released by the contact were not recovered"]
         lines = [
-            f"{self.time.size} samples from {self.time[0]:.6g} to {self.time[-1]:.6g}, {len(self.events)} "
-            f"changes of mode; SI or the units given",
+            (
+                f"{self.time.size} samples from {self.time[0]:.6g} to {self.time[-1]:.6g}, "
+                f"{len(self.events)} changes of mode; in SI or the units given"
+            ),
             f"  belt speed      {self.belt_speed.min():.6f} to {self.belt_speed.max():.6f}",
             f"  stretch         {self.stretch.min():.6f} to {self.stretch.max():.6f}",
             f"  spring force    {self.spring_force.min():.6f} to {self.spring_force.max():.6f}",
             *self._heating(),
             *(owed if self.energy.owed else []),
             *([f"  {self.slipping_in_words()}"] if self.roll_slips else []),
-            f"energy balance: {self.energy.residual:.1e} of the energy turned over is missing",
+            f"energy balance: {self.energy.residual:.1e} of the converted energy is missing",
         ]
         return "\n".join([*lines, *([] if self.check is None else [str(self.check)])])
 
@@ -152,7 +154,7 @@ class Trajectory(Result):
         ]
 
     def to_frame(self) -> pl.DataFrame:
-        """Return one row per sample; the units named are SI, and stand for those given."""
+        """Return one row per sample; the SI units in the names stand for the units given."""
         import polars as pl
 
         return pl.DataFrame(

@@ -16,24 +16,23 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Work:
-    """How a sweep is worked out.
+    """How a sweep is computed.
 
     Parameters
     ----------
     tolerance
-        Relative tolerance of the steps; by default that of the function.
+        Relative tolerance of the steps. Default: that of the function.
     most_steps
-        Work that each belt may take, as for `hersey.simulate`; one that does not suffice is among the
-        failures.
+        Limit of work per motion, as for `hersey.simulate`; a motion that exceeds it is among the failures.
     threads
-        Threads to use. The result is the same, bit for bit, for any number.
+        Number of threads. The result is identical for any number.
     client
-        A ``distributed.Client``, or the address of a scheduler: its workers do the work, in chunks. The
-        result is the same, bit for bit, on processors and systems of one kind.
+        A ``distributed.Client``, or the address of a scheduler, whose workers compute the chunks. The result
+        is identical on processors and systems of the same kind.
     chunk
-        Sets of a chunk, where a sweep is cut into some; by default as many as take a second or two.
+        Sets per chunk. Default: as many as take a second or two.
     progress
-        Called with (done, all) some twenty times a second; what it raises ends the sweep.
+        Called with (done, total) about twenty times a second; an exception ends the sweep.
 
     Examples
     --------
@@ -49,7 +48,7 @@ class Work:
     progress: Callable[[int, int], object] | None = None
 
     def within(self, usual: float) -> float:
-        """Return the tolerance, ``usual`` where none is stated."""
+        """Return the tolerance, or ``usual`` if none is set."""
         return usual if self.tolerance is None else float(self.tolerance)
 
 

@@ -128,7 +128,7 @@ class Child:
             self._write(process, payload)
             first, second = _LENGTHS.unpack(self._read(process, _LENGTHS.size))
             if first > _LONGEST_HEAD or second > most:
-                raise LostError("its reply makes no sense")
+                raise LostError("its reply is invalid")
             answer, content = json.loads(self._read(process, first)), self._read(process, second)
         if "failed" in answer:
             raise FailedError(answer["message"], answer["failed"])
@@ -166,7 +166,7 @@ class Child:
         """
         with self._lock, self._whole():
             if self._process is None:
-                raise EOFError("the process ended before it was limited")
+                raise EOFError("the process ended before its limits were set")
             limit_other(self._process.pid, memory, seconds)
             self._spent = processor_time(self._process.pid) + seconds + _GRACE
 
@@ -253,7 +253,7 @@ class Child:
             ready = poll.poll(_LOOK_UP)
             now = time.monotonic()
             if now > self._late:  # also one that answers a byte at a time
-                raise EOFError("the process does not answer")
+                raise EOFError("the process does not respond")
             if now > self._looked + _LOOK_UP / 1000:
                 self._looked = now
                 self._refuse_overtime()

@@ -22,8 +22,8 @@ def refuse_after_fork() -> None:
     """
     if _lost_threads:
         raise ForkedError(
-            "this process was forked from one in which polars had run, and polars cannot go on in it: start "
-            "processes by multiprocessing.get_context('spawn'), or fork before the first log is read"
+            "this process was forked after polars had run, and polars cannot run in it. Start "
+            "processes with multiprocessing.get_context('spawn'), or fork before the first log is read"
         )
 
 

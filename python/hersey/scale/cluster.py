@@ -36,7 +36,7 @@ def needs_dask() -> None:
     try:
         import distributed  # noqa: F401 - whether it is there
     except ImportError:
-        raise MissingFileError(f"workers need Dask, which is not installed: {_WAY_OUT}") from None
+        raise MissingFileError(f"workers need Dask, which is not installed. Run {_WAY_OUT}") from None
 
 
 @contextmanager
@@ -55,14 +55,16 @@ def connected(client: Client | LocalWorkers | str) -> Iterator[tuple[Client | Lo
     if not isinstance(client, str):
         if not hasattr(client, "submit") or not hasattr(client, "scheduler_info"):
             raise ParameterError(
-                f"client is a {type(client).__name__}: give a distributed.Client or an address"
+                f"client is a {type(client).__name__}. Give a distributed.Client or an address"
             )
         yield client, _address(client)
         return
     from distributed import Client
 
     if not re.fullmatch(r"(tcp|tls|ws|wss|ucx)://.+:\d+", client):
-        raise ParameterError(f"'{client}' is no address of a scheduler: give one as tcp://host:8786")
+        raise ParameterError(
+            f"'{client}' is not the address of a scheduler. Give one such as tcp://host:8786"
+        )
     quiet()
     try:
         with warnings.catch_warnings():  # of other versions: that of hersey counts, and is asked
@@ -72,8 +74,8 @@ def connected(client: Client | LocalWorkers | str) -> Iterator[tuple[Client | Lo
             made: Client = Client(client, timeout=_ANSWER, set_as_default=False)
     except Exception:  # what answers there may be anything
         raise ParameterError(
-            f"no scheduler of Dask answers at {client}: start one with 'dask scheduler', and give the "
-            f"address that it prints, as tcp://host:8786"
+            f"no Dask scheduler answers at {client}. Start one with 'dask scheduler' and give the "
+            "address that it prints, e.g. tcp://host:8786"
         ) from None
     try:
         yield made, client
@@ -127,16 +129,17 @@ def refuse_others(client: Client | LocalWorkers) -> None:
         client.wait_for_workers(1, timeout=_FIRST)
     except NoneCameError:
         raise ParameterError(
-            f"{_address(client)} has no worker: start some with 'dask worker {_address(client)}'"
+            f"{_address(client)} has no worker. Start some with 'dask worker {_address(client)}'"
         ) from None
     versions = client.run(version, on_error="return")
     for worker, found in versions.items():
         if isinstance(found, BaseException):
-            said = "no hersey" if isinstance(found, ImportError) else f"no hersey that works ({found})"
-            raise ParameterError(f"worker {worker} has {said}: install hersey {_core.VERSION} there, as here")
+            said = "no hersey" if isinstance(found, ImportError) else f"a hersey that does not work ({found})"
+            raise ParameterError(f"worker {worker} has {said}. Install hersey {_core.VERSION} there")
         if found != _core.VERSION:
             raise ParameterError(
-                f"worker {worker} has hersey {found}, not {_core.VERSION}: install the same there"
+                f"worker {worker} has hersey {found}, but this machine has {_core.VERSION}. Install the "
+                "same version there"
             )
 
 

@@ -30,7 +30,7 @@ class Cut:
         """
         every = prod(shape)
         if not 1 <= sets <= every:
-            raise ParameterError(f"chunk is {sets}: of {every} sets a chunk takes 1 to {every}")
+            raise ParameterError(f"chunk is {sets}: it must be from 1 to {every} sets")
         chunk, whole = [1] * len(shape), 1
         for axis in reversed(range(len(shape))):
             most = max(sets // whole, 1)
@@ -42,8 +42,8 @@ class Cut:
         cut = cls(shape, tuple(chunk))
         if cut.count > MOST_CHUNKS:
             raise ParameterError(
-                f"chunk is {sets}: that makes {cut.count} chunks of {every} sets, and {MOST_CHUNKS} are "
-                f"the most: take {ceil(2 * every / MOST_CHUNKS)}"
+                f"chunk is {sets}, which makes {cut.count} chunks of {every} sets; at most "
+                f"{MOST_CHUNKS} are allowed. Use {ceil(2 * every / MOST_CHUNKS)}"
             )
         return cut
 

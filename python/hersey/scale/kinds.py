@@ -26,4 +26,4 @@ def kind_of(path: Path) -> Kind:
         from hersey.scale.parquet_folder import ParquetKind
 
         return ParquetKind()
-    raise OutputError(f"{path}: name a folder that ends in .zarr or .parquet")
+    raise OutputError(f"{path}: the name of the folder must end in .zarr or .parquet")

@@ -56,7 +56,7 @@ class LocalWorkers:
             except LostError as error:
                 if error.code is None and not self._closed:
                     raise UnfinishedError(
-                        f"a worker process cannot be started ({error}): use fewer"
+                        f"a worker process cannot be started ({error}). Use fewer workers"
                     ) from None
                 continue
             except FailedError as error:
@@ -68,8 +68,8 @@ class LocalWorkers:
                 raise raised
             return result
         raise UnfinishedError(
-            f"{_WORKERS_PER_ITEM} worker processes ended at the same item, one after the other: it may need "
-            f"more memory than there is; try fewer workers"
+            f"{_WORKERS_PER_ITEM} worker processes in a row ended at the same item. It may need more "
+            "memory than there is. Try fewer workers"
         )
 
     def close(self) -> None:

@@ -96,7 +96,7 @@ class ParquetFolder:
         import polars as pl
 
         if not (self.path / ParquetKind.manifest).exists():
-            raise OutputError(f"{self.path} is not seen here, or is gone")
+            raise OutputError(f"{self.path} is not visible here, or was deleted")
         own: dict[str, Any] = {
             name: np.array(words)[values[name]] if words else values[name] for name, words in self.columns
         }

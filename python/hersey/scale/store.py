@@ -121,16 +121,16 @@ def sha256_of(scenario: Scenario) -> str:
 
 @dataclass(frozen=True)
 class SweepFolder:
-    """A folder in which a sweep is kept, and what becomes of one that is there.
+    """Folder of a sweep, and how to treat an existing one.
 
     Parameters
     ----------
     path
-        It ends in .zarr or .parquet.
+        Folder whose name ends in .zarr or .parquet.
     resume
-        Whether what is there of the same sweep counts, and is not done again.
+        Whether finished parts of the same sweep are used and not computed again.
     overwrite
-        Whether a sweep that does not count is replaced; else it is refused.
+        Whether another sweep there is replaced; otherwise it is an error.
     """
 
     path: str | Path
@@ -139,12 +139,12 @@ class SweepFolder:
 
     @classmethod
     def of(cls, given: str | Path | SweepFolder) -> SweepFolder:
-        """Return the folder as given, or that of a path."""
+        """Return the folder as given, or one for a path."""
         return given if isinstance(given, SweepFolder) else cls(given)
 
     @property
     def absolute(self) -> Path:
-        """The path from the root on."""
+        """Absolute path."""
         return Path(self.path).absolute()
 
 
@@ -186,8 +186,8 @@ def opened(
             with _locked(path / kind.lock, path):
                 if asked is not None and asked != cut:
                     raise OutputError(
-                        f"{path} is cut into chunks of {prod(cut.chunk)} sets, and {prod(asked.chunk)} are "
-                        f"asked for: leave the chunk out to go on, or start anew with {_anew()}"
+                        f"{path} has chunks of {prod(cut.chunk)} sets, not {prod(asked.chunk)}. Omit "
+                        f"the chunk to continue, or start again with {_anew()}"
                     )
                 mended = () if begun is None else kind.mend(path, whole, manifest)
                 yield replace(kind.open(path, cut, whole.variables), mended=mended)  # type: ignore[type-var]
@@ -202,8 +202,8 @@ def _refuse_older(path: Path, kind: Kind, manifest: Scenario) -> None:
     found = manifest.get("format")
     if type(found) is int and 0 < found < kind.format:
         raise OutputError(
-            f"{path} was begun by an older hersey, without checksums that tell damaged chunks: xarray still "
-            f"reads it, but it cannot go on: name another folder, or start anew with {_anew()}"
+            f"{path} was written by an older version of hersey without checksums, so it cannot be "
+            f"continued (xarray can read it). Name another folder, or start again with {_anew()}"
         )
 
 
@@ -236,8 +236,8 @@ def _anew() -> str:
 
 def _damaged(path: Path) -> OutputError:
     return OutputError(
-        f"{path}: what it says of itself is damaged, or of another hersey: name another folder, or start "
-        f"anew with {_anew()}"
+        f"{path}: its metadata are damaged, or from another version of hersey. Name another folder, or "
+        f"start again with {_anew()}"
     )
 
 
@@ -251,23 +251,23 @@ def _taken(kind: Kind, out: SweepFolder, scenario: Scenario) -> Iterator[Scenari
     """Yield the manifest of what was begun and shall go on, or None; what shall go is gone then."""
     path = out.absolute
     if not path.parent.is_dir():
-        raise OutputError(f"{path}: there is no directory {path.parent}")
+        raise OutputError(f"{path}: folder {path.parent} does not exist")
     if not path.exists() or (path.is_dir() and not any(path.iterdir())):
         yield None
         return
     if not path.is_dir():
-        raise OutputError(f"{path} is a file, and chunks are kept in a folder: name another")
+        raise OutputError(f"{path} is a file, but chunks need a folder. Name another one")
     manifest = kind.read_manifest(path)
     if manifest is None:
-        raise OutputError(f"{path} is there, and no sweep of hersey made it: name another")
+        raise OutputError(f"{path} exists and was not made by a hersey sweep. Name another folder")
     if out.resume:
         refuse_another(path, manifest, scenario)
         yield manifest
         return
     if not out.overwrite:
         raise OutputError(
-            f"{path} exists: use {OVERWRITE.to()} to replace it, or leave out "
-            f"{_NO_RESUME.to(python='False')} to go on with it"
+            f"{path} exists: use {OVERWRITE.to()} to replace it, or omit "
+            f"{_NO_RESUME.to(python='False')} to continue it"
         )
     with _locked(path / kind.lock, path):
         gone = unfinished(path)
@@ -302,7 +302,7 @@ def _locked(lock: Path, path: Path) -> Iterator[None]:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
             raise OutputError(
-                f"{path}: another process is at work on it: wait for it, or name another"
+                f"{path} is in use by another process. Wait until it has finished, or name another folder"
             ) from None
         except OSError:  # a file system without locks: two at work write the same bytes
             pass
@@ -325,7 +325,7 @@ def refuse_another(path: Path, manifest: Scenario, scenario: Scenario) -> None:
     except (AttributeError, KeyError, TypeError, ValueError):
         raise _damaged(path) from None
     raise OutputError(
-        f"{path} is of another scenario: {differs}; name another folder, or start anew with {_anew()}"
+        f"{path} belongs to another scenario: {differs}. Name another folder, or start again with {_anew()}"
     )
 
 
@@ -334,19 +334,19 @@ def difference(there: Scenario, here: Scenario) -> str:
     mine, theirs = here.get("parameters", {}), there.get("parameters", {})
     for name in [key for key in (*here, *there) if key != "parameters"]:
         if there.get(name) != here.get(name):
-            return f"{name.replace('_', ' ')} is {there.get(name)} there and {here.get(name)} here"
+            return f"{name.replace('_', ' ')} is {there.get(name)} there, but {here.get(name)} here"
     for name in (*mine, *theirs):
         one, other = theirs.get(name), mine.get(name)
         if one == other:
             continue
         if one is None or other is None:
-            return f"{name} is varied {'here' if one is None else 'there'} alone"
+            return f"{name} is varied only {'here' if one is None else 'there'}"
         if one["values"] != other["values"]:
-            return f"{name} has {_values(one)} there and {_values(other)} here"
+            return f"{name} has {_values(one)} there, but {_values(other)} here"
         if (one["first"], one["last"]) != (other["first"], other["last"]):
-            return f"{name} is {_range(one)} there and {_range(other)} here"
+            return f"{name} is {_range(one)} there, but {_range(other)} here"
         return f"{name} has other values there"
-    return "the order of the parameters"
+    return "the parameters have another order"
 
 
 def _values(parameter: Mapping[str, Any]) -> str:
@@ -393,6 +393,6 @@ def refuse_unseen(path: Path, kind: Kind, sha256: str) -> None:
         import socket
 
         raise OutputError(
-            f"{path} is not seen on {socket.gethostname()}: workers write there, so name a folder that all "
-            f"see"
+            f"{path} is not visible on {socket.gethostname()}, where workers write. Name a folder that "
+            "all machines share"
         )

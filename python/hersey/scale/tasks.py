@@ -69,7 +69,7 @@ def done(
         If the scheduler or all workers are lost, or an item ends one worker after the other.
     """
     if isinstance(threads, bool) or not isinstance(threads, int) or threads < 1:
-        raise ParameterError(f"threads is {threads}: a whole number, at least 1, is needed")
+        raise ParameterError(f"threads is {threads}: it must be a whole number, at least 1")
     total, finished = sum(map(size, items)), 0
     if isinstance(client, LocalWorkers):
         found = _by_threads(partial(client.do, task), items, client.count)
@@ -183,7 +183,7 @@ class _Window:
                 unseen = 0 if threads_of(self.client) else unseen + 1
                 if unseen * _PATIENCE > WITHOUT_WORKERS:
                     raise UnfinishedError(
-                        f"no worker of {self.name} is left: start some, and give the same command again"
+                        f"{self.name} has no workers left. Start some, and repeat the command"
                     ) from None
 
     def _result(self, future: Future[Any], index: int, asked: int) -> list[Any]:
@@ -199,13 +199,13 @@ class _Window:
             if (error.name or "").partition(".")[0] != "hersey":
                 raise
             raise ParameterError(
-                f"a worker of {self.name} that joined has no hersey: install hersey {_core.VERSION} there"
+                f"a new worker of {self.name} has no hersey. Install hersey {_core.VERSION} there"
             ) from None
         except KilledWorker:
             if asked >= _ASKED:
                 raise UnfinishedError(
-                    f"item {index} has ended {4 * asked} workers of {self.name}, one after the other: does "
-                    f"it ask for more memory than they have?",
+                    f"item {index} ended {4 * asked} workers of {self.name} in a row. Does it need more "
+                    "memory than they have?",
                     index=index,
                 ) from None
             self._begin(index, asked + 1)
@@ -213,7 +213,8 @@ class _Window:
 
     def _lost(self) -> UnfinishedError:
         return UnfinishedError(
-            f"the scheduler {self.name} is lost: see whether it runs, and give the same command again"
+            f"the connection to scheduler {self.name} is lost. Check that it is running, and repeat the "
+            "command"
         )
 
 
@@ -237,6 +238,7 @@ def _checked(version: str, task: Callable[[Item], R], item: Item) -> R:
     """Do a task where the version is that of whoever asks: a worker may have joined later."""
     if version != _core.VERSION:
         raise ParameterError(
-            f"a worker that joined has hersey {_core.VERSION}, not {version}: install the same there"
+            f"a new worker has hersey {_core.VERSION}, but {version} is needed. Install the same "
+            "version there"
         )
     return task(item)

@@ -34,7 +34,7 @@ _NAME: Literal["lz4"] = "lz4"
 _LEVEL = 1
 #: What is said of `status`, as the CF conventions have it.
 _STATUS: dict[str, Any] = {
-    "long_name": "chunks in C order: which are finished",
+    "long_name": "which chunks are finished, in C order",
     "flag_values": [0, 1],
     "flag_meanings": "missing finished",
 }
@@ -56,7 +56,7 @@ class ZarrKind:
             import zarr  # noqa: F401 - whether it is there
         except ImportError:
             raise MissingFileError(
-                "a .zarr needs Zarr, which is not installed: pip install 'hersey[scale]', or name a .parquet"
+                ".zarr needs Zarr, which is not installed. Run pip install 'hersey[scale]', or use .parquet"
             ) from None
 
     def create(self, path: Path, layout: Layout, manifest: Scenario) -> None:
@@ -130,7 +130,7 @@ class ZarrKind:
                     mended.append(
                         Warning(
                             "file written again",
-                            "{file} was damaged or missing, and is written again",
+                            "{file} was damaged or missing and was written again",
                             where=path.name,
                             file=str(name),
                         )
@@ -178,8 +178,8 @@ class ZarrFolder:
         except (OSError, ValueError, TypeError, KeyError, RecursionError):
             pass
         raise OutputError(
-            f"{self.path}: chunk {number} of '{name}' is damaged or missing: repeat the sweep into the "
-            f"same folder, which computes damaged chunks again"
+            f"{self.path}: chunk {number} of '{name}' is damaged or missing. Repeat the sweep into the "
+            "same folder to compute it again"
         )
 
     def _record(self, number: int) -> dict[str, Any]:
@@ -201,7 +201,7 @@ class ZarrFolder:
     def write(self, number: int, values: Columns, beside: Columns, note: Note) -> None:  # noqa: ARG002 - axes are there
         """Keep a chunk."""
         if not (self.path / ZarrKind.manifest).exists():
-            raise OutputError(f"{self.path} is not seen here, or is gone")
+            raise OutputError(f"{self.path} is not visible here, or was deleted")
         shape, files = self.cut.shape_of(number), {}
         for name, dtype, fill in self.arrays:
             content = _encoded(np.asarray(values[name]).reshape(shape), self.cut.chunk, dtype, fill)

@@ -20,7 +20,7 @@ class CheckedStore(WrapperStore[LocalStore]):
         super().__init__(store)
         manifest = ZarrKind().read_manifest(Path(store.root))
         if manifest is None:
-            raise OutputError(f"{store.root} is no sweep of hersey: name the folder in which one was kept")
+            raise OutputError(f"{store.root} is not a hersey sweep. Name the folder of one")
         variables = tuple((str(name), str(dtype), 0.0) for name, dtype, _ in manifest["variables"])
         cut = Cut(tuple(manifest["shape"]), tuple(manifest["chunk"]))
         self._folder = ZarrFolder(Path(store.root), cut, variables)

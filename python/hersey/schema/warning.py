@@ -99,10 +99,12 @@ class Warning(Record):
     also_stated = ("title", "text")
     not_stated = ("words", "remedy", "heading")
 
-    kind: Annotated[str, Means("what it is, the same whatever the words")]
+    kind: Annotated[str, Means("identifies what the warning is about; independent of the wording")]
     severity: Annotated[Severity, Means("good, note, watch or act")]
-    where: Annotated[str, Means("file, channel, specimen or section that it concerns, or empty")]
-    values: Annotated[Mapping[str, Value], Means("its numbers in SI (or in the value ``unit``), and names")]
+    where: Annotated[str, Means("file, channel, specimen or section concerned, or empty")]
+    values: Annotated[
+        Mapping[str, Value], Means("numbers in SI (or in ``unit``, if that is among the values) and names")
+    ]
     words: str
     remedy: str
     heading: str
@@ -156,14 +158,19 @@ class Warning(Record):
         return Warning(self.kind, words or self.words, **(own | dict(self.values) | changed))
 
     @property
-    def title(self) -> Annotated[str, Means("it in a few words, or empty")]:
+    def title(self) -> Annotated[str, Means("short title, or empty")]:
         """It in a few words, or empty."""
         return self._shown(self.heading)
 
     @property
     def text(self) -> Annotated[str, Means("what is wrong, and what to do")]:
         """What is wrong and what to do, in the words of the way in."""
-        return self._shown(f"{self.words}: {self.remedy}" if self.remedy else self.words)
+        text = self._shown(self.words)
+        if not self.remedy:
+            return text
+        remedy = self._shown(self.remedy)
+        stop = "" if text[-1:] in (".", "?") else "."
+        return f"{text}{stop} {remedy[:1].upper()}{remedy[1:]}"
 
     @property
     def sentence(self) -> str:

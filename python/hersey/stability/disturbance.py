@@ -32,9 +32,9 @@ _WATCHED = 10
 class SafeStep(Record):
     """A change of drive speed from steady sliding.
 
-    ``sticks`` tells whether the belt sticks after a sudden step, ``slowest`` its least speed then.
-    ``ramp_time`` is the shortest ramp from which on every longer one keeps the belt from sticking: 0 if a
-    sudden step does, infinite if none does.
+    ``sticks`` says whether the belt sticks after a sudden step, ``slowest`` is its lowest speed then.
+    ``ramp_time`` (s) is the shortest ramp for which it and every longer ramp avoid sticking: 0 if a sudden
+    step does, infinite if none does.
     """
 
     from_speed: float
@@ -46,16 +46,17 @@ class SafeStep(Record):
 
 @dataclass(frozen=True)
 class Disturbance(Record):
-    """What throws a belt that slides at ``drive_speed`` into stick-slip.
+    """Disturbances that turn steady sliding at ``drive_speed`` into stick-slip.
 
-    ``kick`` and ``step`` are the greatest that it bears: infinite where none is too large (a kick: down to a
-    dead stop), and 0 where steady sliding itself does not last.
+    ``kick`` and ``step`` (m/s) are the largest that sliding survives: infinite if none is too large (a kick:
+    down to a full stop), and 0 if steady sliding itself is unstable.
     """
 
     drive_speed: float
-    kick: Annotated[float, Means("sudden loss of belt speed", "m/s", open=True)]
+    kick: Annotated[float, Means("largest sudden loss of belt speed that sliding survives", "m/s", open=True)]
     step: Annotated[
-        float, Means("sudden fall of the drive from so much faster to this speed", "m/s", open=True)
+        float,
+        Means("largest sudden step of the drive down to this speed that sliding survives", "m/s", open=True),
     ]
 
 
@@ -63,15 +64,15 @@ class Disturbance(Record):
 def safe_step(
     train: Drivetrain, drag: AnyDrag, *, from_speed: float, to_speed: float, temperature: float | None = None
 ) -> SafeStep:
-    """Return whether a sudden change of drive speed makes a sliding belt stick, and the ramp that does not.
+    """Return whether a sudden change of drive speed makes a sliding belt stick, and the shortest safe ramp.
 
-    Ramps are looked at 20 to the period of the free oscillation, up to 8 periods; the shortest safe one is
-    then halved down. ``temperature`` in K, if the drag varies with it.
+    Ramps are tested at 20 durations per period of the free oscillation, up to 8 periods; the shortest safe
+    one is then refined by bisection. ``temperature`` (K) is needed if the drag depends on it.
 
     Raises
     ------
     ParameterError
-        If a speed is not positive, or steady sliding at ``from_speed`` does not last.
+        If a speed is not positive, or steady sliding at ``from_speed`` is unstable.
 
     Examples
     --------
@@ -87,8 +88,8 @@ def safe_step(
     band = hysteresis(train, drag, temperature=temperature, sensitivity=False)
     if from_speed < band.transition:
         raise ParameterError(
-            f"from_speed is {from_speed}: below the transition speed {band.transition:.6g} "
-            "steady sliding does not last"
+            f"from_speed is {from_speed}: below the transition speed {band.transition:.6g} steady "
+            "sliding is unstable"
         )
     sticks, slowest = _sticks(train, drag, from_speed, to_speed, 0.0, temperature)
     if to_speed < band.lower:
@@ -114,7 +115,7 @@ def safe_step(
 def disturbance(
     train: Drivetrain, drag: AnyDrag, *, drive_speed: float, temperature: float | None = None
 ) -> Disturbance:
-    """Return how large a kick or step a belt bears that slides at ``drive_speed``.
+    """Return the largest kick and step that sliding at ``drive_speed`` survives.
 
     Raises
     ------

@@ -36,23 +36,23 @@ _SHARED = ("lower", "transition", "upper", "stalls", "lower_accuracy", "upper_ac
 
 @dataclass(frozen=True, repr=False)
 class HysteresisBand(Result):
-    """Drive speeds that divide the behaviour, and how far to trust them.
+    """Drive speeds that separate sliding and stick-slip, with their accuracy.
 
-    ``lower_accuracy`` and ``upper_accuracy`` are relative. ``method`` is ``half laps`` (slip laps forward
-    and back in time that meet) or ``simulation`` (from rest, halving the interval). With ``deeper`` the
-    stick-slip that lasts longest is released higher than at the stick speed (docs/theory/hysteresis.md).
-    ``sensitivity`` holds the relative change of ``upper`` per relative change of each parameter, and
-    ``lower_sensitivity`` the same of ``lower``; both are empty if not asked for. ``interval`` and
-    ``lower_interval`` enclose 95 % of the folds of the samples given, ``share_bistable`` is the share of them
-    that have a band. ``upper`` is infinite beyond 10,000 transition speeds.
+    ``lower_accuracy`` and ``upper_accuracy`` are relative. ``method`` is ``half laps`` (slip motions forward
+    and backward in time that meet) or ``simulation`` (from rest, by bisection). If ``deeper``, the stick-slip
+    that survives to the highest speed is released above the stick speed (docs/theory/hysteresis.md). ``sensitivity``
+    holds the relative change of ``upper`` per relative change of each parameter, and ``lower_sensitivity``
+    the same for ``lower``; both are empty if not requested. ``interval`` and ``lower_interval`` enclose 95 %
+    of the folds of the samples given, ``share_bistable`` is the share of them that have a band. ``upper`` is
+    infinite beyond 10,000 transition speeds.
     """
 
     also_stated = ("bistable", "verdict")
 
     lower: Annotated[float, OPEN]
     transition: float
-    upper: Annotated[float, Means("zero, as lower, where no belt sticks and slips in turn", open=True)]
-    stalls: Annotated[bool, Means("the roll's grip does not start a belt at rest")]
+    upper: Annotated[float, Means("0, as is lower, where no stick-slip cycle exists", open=True)]
+    stalls: Annotated[bool, Means("whether the grip of the roll cannot start a belt at rest")]
     closure: str
     method: Annotated[str, Means("half laps, or simulation")]
     lower_accuracy: Annotated[float, Means("relative", open=True)]
@@ -61,7 +61,7 @@ class HysteresisBand(Result):
     speed_max: float | None
     laps: int
     sensitivity: Annotated[
-        Mapping[str, float], Means("relative change of upper per that of each", open=True)
+        Mapping[str, float], Means("relative change of upper per relative change of each", open=True)
     ] = field(default_factory=dict)
     lower_sensitivity: Annotated[Mapping[str, float], OPEN] = field(default_factory=dict)
     interval: Annotated[tuple[float, float] | None, Means("of upper, 95 %", open=True)] = None
@@ -80,9 +80,7 @@ class HysteresisBand(Result):
     def verdict(self) -> str:
         """Return what the band means, in a sentence or two."""
         stalled = (
-            "A belt at rest is not started: it stalls at any drive speed, the roll slipping on it. "
-            if self.stalls
-            else ""
+            "The roll cannot start a belt at rest: it slips on it at any drive speed. " if self.stalls else ""
         )
         return stalled + self._in_motion()
 
@@ -90,20 +88,21 @@ class HysteresisBand(Result):
         """What the band means for a belt that is not stalled."""
         if self.upper == 0:
             return (
-                "No stick-slip: one that sticks stalls too. One that slides goes on sliding from the "
-                f"transition speed {self.transition:.6g} up, as far as the grip bears the drag."
+                "No stick-slip: a belt that sticks also stalls. From the transition speed "
+                f"{self.transition:.6g} up, a belt that slides keeps sliding while the grip exceeds the "
+                "drag."
             )
         if not self.bistable:
             return (
-                f"No band: stick-slip ends at {self.upper:.6g}, not above the transition speed "
-                f"{self.transition:.6g}, so the past does not matter."
+                f"No band: stick-slip ends at {self.upper:.6g}, which is not above the transition speed "
+                f"{self.transition:.6g}, so the start does not matter."
             )
-        certain = f"Stick-slip is certain below {self.lower:.6g}. From {self.transition:.6g} "
+        certain = f"Below {self.lower:.6g}, stick-slip is certain. From {self.transition:.6g} "
         if np.isinf(self.upper):
-            return certain + "up the belt slides if it comes from above, and not if it comes from rest."
+            return certain + "up, the belt slides if slowed from above, but not if started from rest."
         return (
-            f"{certain}to {self.upper:.6g} the belt slides if it comes from above "
-            "and sticks if it comes from below. Above, it slides."
+            f"{certain}to {self.upper:.6g}, the belt slides if slowed from above and sticks if started "
+            "from below. Above, it slides."
         )
 
     def headline(self) -> str:
@@ -113,7 +112,7 @@ class HysteresisBand(Result):
     def summary(self, values: Mapping[str, float] | None = None) -> str:
         """Return the edges and the verdict as text, in the units of the arguments.
 
-        ``values``, of the parameters by name, adds the table of sensitivities.
+        ``values`` of the parameters by name adds a table of sensitivities.
         """
         lines = [
             f"lower edge        {self.lower:.9g}  (to {self.lower_accuracy:.0e})",
@@ -121,9 +120,7 @@ class HysteresisBand(Result):
             f"upper fold V*     {self.upper:.9g}  (to {self.upper_accuracy:.0e}, by {self.method})",
         ]
         if self.deeper:
-            lines.append(
-                "at the upper fold a deeper stick-slip ends, released higher than at the stick speed"
-            )
+            lines.append("at the upper fold, a deeper stick-slip cycle ends, released above the stick speed")
         if self.sensitivity and values is not None:
             lines += self._sensitivity_lines(values)
         return "\n".join([*lines, self.verdict()])
@@ -141,7 +138,7 @@ class HysteresisBand(Result):
         return [head, *rows]
 
     def to_frame(self) -> pl.DataFrame:
-        """Return the edges and their accuracies; the units named are SI, and stand for those given."""
+        """Return the edges and their accuracies; the SI units in the names stand for the units given."""
         edges = ("lower", "transition", "upper")
         intervals = {"upper": self.interval, "lower": self.lower_interval}
         ends = [
@@ -163,11 +160,11 @@ class HysteresisBand(Result):
 
 @dataclass(frozen=True)
 class CyclesWithoutSticking:
-    """Swings around steady sliding that never stick: arrays of the same shape, speeds in the units given.
+    """Oscillations around steady sliding that never stick; arrays of one shape, speeds in the units given.
 
-    A lap goes between ``slowest`` and ``fastest`` at ``drive_speed``. Where ``stable`` is false the cycle is
-    the edge between steady sliding and stick-slip: from inside the belt ends sliding, from outside sticking.
-    Numbers are nan where there is no cycle.
+    The belt speed varies between ``slowest`` and ``fastest`` at ``drive_speed``. An unstable cycle is the
+    boundary between steady sliding and stick-slip: from inside it the belt ends sliding, from outside
+    sticking. Values are NaN where there is no cycle.
     """
 
     slowest: FloatArray
@@ -187,38 +184,37 @@ def hysteresis(
     tolerance: float = TOLERANCE,
     most_steps: float = MOST_STEPS,
 ) -> HysteresisBand:
-    """Return the band of drive speeds where the past decides whether the belt sticks.
+    """Return the band of drive speeds in which sticking depends on the start.
 
-    Where the roll's grip bears less than the spring would pull the roll slips for a part of each lap, and
-    stick-slip dies out at a slower drive: ``upper`` is that of the slipping roll, above which no swing lasts
-    on which it slips, be it without sticking. ``stalls`` says whether the roll starts the belt at all.
+    If the spring force would exceed the roll's grip, the roll slips for part of each cycle and stick-slip
+    dies out at a lower drive speed. ``upper`` is then the speed above which no oscillation with roll slip
+    survives, even without sticking. ``stalls`` says whether the roll cannot start the belt at all.
 
     Parameters
     ----------
     train, drag
         A drivetrain and its drag; or a machine (`hersey.read_machine`) and the surface fitted to its log,
-        which take radius, stick speed and grip from the machine's file.
+        which take radius, stick speed and grip from the machine file.
     temperature
-        K; needed if the drag varies with it: the band is that at this temperature.
+        Temperature of the band, K; needed if the drag depends on it.
     samples
         Draws of uncertain parameters (any of ``stiffness``, ``mass``, ``transition_force``,
-        ``transition_speed``, ``ehl_exponent``, ``mixed_exponent``, ``stick_speed``), arrays of equal length
-        that go together, for example from `DampingSurface.drag_samples`; SI, or with units. They give the
-        intervals.
+        ``transition_speed``, ``ehl_exponent``, ``mixed_exponent``, ``stick_speed``), arrays of equal length,
+        e.g. from `DampingSurface.drag_samples`, in SI or with units. The intervals follow from them.
     sensitivity
-        Whether to compute the change of the band with each parameter. Default: where that takes
-        milliseconds, that is for a `Drag` with ``retained`` or ``stiction``.
+        Whether to compute the change of the band with each parameter. Default: only if that takes
+        milliseconds, i.e. for a `Drag` with ``retained`` or ``stiction``.
     most_steps
-        Work that each motion may take, as for `simulate`, where edges are found by simulation; all together
-        may take as much, with a smooth closure six times that.
+        Limit of work per motion, as for `simulate`, if edges are found by simulation. All together may use as
+        much, or six times as much with a smooth closure.
 
     Raises
     ------
     ParameterError
         If a value is out of range, with its name; also ``mixed_exponent`` if it is not less than
-        ``ehl_exponent``, as then nothing divides the behaviour.
+        ``ehl_exponent``, because then there is no transition.
     UnfinishedError
-        If the work does not suffice, or a motion cannot be continued.
+        If the allowed work is exceeded, or a motion cannot be continued.
 
     Examples
     --------
@@ -270,18 +266,18 @@ def cycles_without_sticking(
     temperature: float | None = None,
     tolerance: float = TOLERANCE,
 ) -> CyclesWithoutSticking:
-    """Return the cycle of each slowest belt speed, and the drive speed that it asks for.
+    """Return the cycle for each lowest belt speed, and the drive speed at which it occurs.
 
-    At the stick speed that drive speed is the fold V* of laps released there (``retained``); from there it
-    falls to the lower edge of the band and rises again to the transition speed, where the swing has shrunk
-    to nothing. Such a swing knows no closure but ``lugre``, whose bristles remember, and no grip: the roll is
-    taken to grip throughout.
+    At the stick speed, that drive speed is the fold V* of cycles released there (``retained``). From there it
+    falls to the lower edge of the band and rises again to the transition speed, where the oscillation
+    vanishes. Such an oscillation does not depend on the closure (except ``lugre``, whose bristles have
+    memory), and the roll is assumed not to slip.
 
     Parameters
     ----------
     slowest
-        Least belt speeds of the laps, from the stick speed to below the transition speed, in the units of
-        the drag. Default: 201 between those two, evenly spaced in logarithms, the last 0.1 % below the
+        Lowest belt speeds of the cycles, from the stick speed to below the transition speed, in the units of
+        the drag. Default: 201 values between these, evenly spaced in logarithms, the last 0.1 % below the
         transition.
     temperature
         K; needed if the drag varies with it.
@@ -299,16 +295,18 @@ def cycles_without_sticking(
     ([2.173493, 1.008534, 0.988886], [False, False, True])
     """
     if not isinstance(drag, Drag) or drag.closure == "lugre":
-        raise ParameterError("cycles without sticking need a Drag, and one without bristles")
+        raise ParameterError("cycles without sticking need a Drag, and its closure must not be 'lugre'")
     law = drag.at(temperature)
     low, high = law.stick_speed, law.transition_speed
     speeds = np.geomspace(low, 0.999 * high, 201) if slowest is None else numbers_of("slowest", slowest)
     if not bool(np.all((speeds >= low) & (speeds < high))):
-        raise ParameterError(f"slowest is to lie from the stick speed {low:g} to below {high:g}")
+        raise ParameterError(f"slowest must be from the stick speed {low:g} to below {high:g}")
     flat = np.ascontiguousarray(speeds.ravel())
     swings = _core.swings(train._arguments, law.law(), flat, float(tolerance))
     if swings is None:
-        raise ParameterError("drag that does not fall below the transition and rise above has no cycles")
+        raise ParameterError(
+            "there are no cycles: the drag must fall below the transition speed and rise above it"
+        )
     return CyclesWithoutSticking(
         slowest=speeds,
         fastest=swings.fastest.reshape(speeds.shape),
@@ -322,7 +320,7 @@ def _sensitivities(
 ) -> tuple[dict[str, float], dict[str, float]]:
     """Relative change of the edges per relative change of each parameter, by central differences."""
     if drag is None:
-        raise ParameterError("sensitivity needs a Drag: a table has no parameters to vary")
+        raise ParameterError("sensitivity needs a Drag, because a table has no parameters")
     parameters = {**vars(train), **vars(drag)}
     base = np.array([float(parameters[name]) for name in OF_THE_BELT])
     factors = np.vstack([1 + _STEP * np.eye(len(OF_THE_BELT)), 1 - _STEP * np.eye(len(OF_THE_BELT))])
@@ -342,10 +340,10 @@ def _sampled(
     train: Drivetrain, drag: Drag | None, samples: Mapping[str, ArrayLike], tolerance: float, most_steps: int
 ) -> _core.Bands:
     if drag is None:
-        raise ParameterError("samples need a Drag: a table has no parameters to draw")
+        raise ParameterError("samples need a Drag, because a table has no parameters")
     unknown = sorted(set(samples) - set(OF_THE_BELT))
     if unknown:
-        raise ParameterError(f"samples: {unknown[0]} is not known: {', '.join(OF_THE_BELT)}")
+        raise ParameterError(f"samples: unknown parameter {unknown[0]}. Known: {', '.join(OF_THE_BELT)}")
     parameters = {**vars(train), **vars(drag)}
     given = {name: numbers_of(name, samples.get(name, parameters[name])) for name in OF_THE_BELT}
     _, columns = together(given)

@@ -71,14 +71,14 @@ def hysteresis_sweep(
     Parameters
     ----------
     temperature
-        K; needed if the drag varies with it, in place of the transition force and of all speeds.
+        Temperature, K; needed if the drag depends on it, instead of the transition force and all speeds.
     zip
         As in `sweep`.
     lower
-        Whether the lower edge is found, too; without it (not a number there) it takes a tenth of the time.
+        Whether to compute the lower edge too. Without it (NaN) the sweep takes a tenth of the time.
     work
-        As in `sweep`, with a tolerance of 1e-11 if it states none; ``most_steps`` is that of `hysteresis`. On
-        one machine threads do as much as workers.
+        As in `sweep`, with a default tolerance of 1e-11; ``most_steps`` is that of `hysteresis`. On one
+        machine, threads are as fast as workers.
     **varied
         Any of ``stiffness`` (N/m), ``mass`` (kg), ``transition_force`` (N), ``transition_speed`` (m/s),
         ``ehl_exponent``, ``mixed_exponent`` and ``stick_speed`` (m/s): numbers or arrays; those not given
@@ -175,7 +175,7 @@ def _check(drag: Drag, varied: Mapping[str, ArrayLike | None], temperature: Arra
         drag.law_at(None if temperature is None else 300.0)
     clash = [name for name in _MOVED if temperature is not None and varied.get(name) is not None]
     if clash:
-        raise ParameterError(f"{clash[0]} follows from the temperature: give one of them")
+        raise ParameterError(f"{clash[0]} follows from the temperature. Give only one of them")
 
 
 def _at_temperatures(drag: Drag, temperatures: FloatArray) -> dict[str, FloatArray]:

@@ -60,35 +60,36 @@ def warm_up(
     margin: float = 0.1,
     longest: float = 1800.0,
 ) -> WarmUp:
-    """Return the quickest course of drive speed whose steady drag, the rest included, keeps below a limit.
+    """Return the fastest profile of drive speed that keeps drag, including no-load torque, below a limit.
 
-    The drive stands while the speed allowed lies below the speeds at which a belt that comes from rest
-    sticks (V* of `hysteresis`, or the transition speed where V* is above the target), and once it runs it
-    stops only below the transition speed.
+    The drive stands while the allowed speed is so low that a belt started from rest would stick (below V* of
+    `hysteresis`, or below the transition speed if V* is above the target). Once it runs, it stops only below
+    the transition speed.
 
     Parameters
     ----------
     drag
-        A law that varies with temperature.
+        Drag law that depends on temperature.
     heat
-        With the temperatures of the cold start.
+        Heat balance with the temperatures of the cold start.
     target_speed
         m/s.
     force_limit
-        N: the least of grip, motor torque over roll radius, and what the spring may bear.
+        Force limit, N: the smallest of grip, motor torque over roll radius, and the force that the spring
+        withstands.
     acceleration
-        Of the drive, m/s^2, up and down.
+        Acceleration of the drive, m/s^2, up and down.
     margin
-        Share of the limit that is kept to spare: the limit is of drag, the motion needs some force, too.
+        Share of the limit kept in reserve, because the motion itself also needs force.
     longest
-        Time looked at, s, where the target is not reached before.
+        Time simulated if the target is not reached earlier, s.
 
     Raises
     ------
     ParameterError
-        If a value is out of range, with its name, or the drag does not vary with temperature.
+        If a value is out of range, with its name, or the drag does not depend on temperature.
     UnfinishedError
-        If speed and temperature do not come to agree, or a motion cannot be finished.
+        If speed and temperature do not converge, or a motion cannot be finished.
 
     Examples
     --------
@@ -136,7 +137,7 @@ def _check(margin: float, **positive: float) -> None:
         if not 0 < value < math.inf:
             raise ParameterError(f"{name} is {value:g}: it must be greater than 0, and finite")
     if not 0 <= margin < 1:
-        raise ParameterError(f"margin is {margin:g}: it is a share of the limit, from 0 to below 1")
+        raise ParameterError(f"margin is {margin:g}: it must be a share of the limit, from 0 to below 1")
 
 
 def _estimated_end(rule: _Rule, resting: Trajectory, ramps: float) -> float:
@@ -170,8 +171,8 @@ def _agreed(
         if off < _ALIKE:
             return speed, run, rounds
     raise UnfinishedError(
-        f"speed and temperature do not agree after {rounds} rounds: they differ by {off:.2g} K. "
-        "Give a smaller target, or a larger heat capacity",
+        f"speed and temperature do not agree after {rounds} iterations; they differ by {off:.2g} K. "
+        "Give a lower target, or a larger heat capacity",
         quantity="temperature",
         value=off,
         unit="K",
@@ -326,8 +327,8 @@ def _warnings(warm: WarmUp, rule: _Rule, resting: Trajectory) -> Iterator[Warnin
     if warm.peak_force > warm.force_limit:
         yield Warning(
             "peak force above the limit",
-            "the spring takes up to {peak_force:.4g} N where the belt breaks away or speeds up, more than "
-            "the limit of {force_limit:.4g} N, which is kept in steady sliding",
+            "the spring force reaches {peak_force:.4g} N while the belt breaks away or accelerates, "
+            "above the limit of {force_limit:.4g} N; steady sliding stays below the limit",
             severity="watch",
             peak_force=warm.peak_force,
             force_limit=warm.force_limit,
@@ -335,10 +336,14 @@ def _warnings(warm: WarmUp, rule: _Rule, resting: Trajectory) -> Iterator[Warnin
     if math.isfinite(warm.full_speed) and warm.slides_from > warm.full_speed:
         yield Warning(
             "slides late",
-            "the belt slides for good only "
-            + ("from {slides_from:.4g} s on" if math.isfinite(warm.slides_from) else "beyond the end"),
+            "the belt slides steadily only "
+            + (
+                "from {slides_from:.4g} s on"
+                if math.isfinite(warm.slides_from)
+                else "after the time simulated"
+            ),
             severity="watch",
-            remedy="seek a start for it with plan_profile, over the temperature profile of this warm-up",
+            remedy="plan a start with plan_profile, using the temperature profile of this warm-up",
             slides_from=warm.slides_from,
         )
     film = _film(resting)
@@ -346,8 +351,8 @@ def _warnings(warm: WarmUp, rule: _Rule, resting: Trajectory) -> Iterator[Warnin
     if unstable.any():
         yield Warning(
             "unstable once warmer",
-            "the film goes on warming: from {temperature:.4g degC} on the transition speed is above the "
-            "target, and sliding at it is unstable",
+            "the film keeps warming. From {temperature:.4g degC} on, the transition speed is above the "
+            "target, so sliding is unstable",
             severity="watch",
             temperature=float(film[unstable][0]),
         )

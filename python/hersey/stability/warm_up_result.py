@@ -26,9 +26,9 @@ _ROWS = 12
 
 @dataclass(frozen=True, repr=False)
 class WarmUp(Result):
-    """A course of drive speed from a cold start, and the temperatures that go with it.
+    """A profile of drive speed from a cold start, with its temperatures.
 
-    SI; arrays have shape (points,). ``force_limit`` is kept with a ``margin`` to spare.
+    SI; arrays have shape (points,). ``force_limit`` is kept with a reserve of ``margin``.
     """
 
     also_stated = ("verdict", "beside")
@@ -36,20 +36,26 @@ class WarmUp(Result):
 
     target_speed: float
     force_limit: float
-    margin: Annotated[float, Means("share of the limit kept to spare")]
+    margin: Annotated[float, Means("share of the limit kept in reserve")]
     acceleration: Annotated[float, Means(unit="m/s^2")]
     time: FloatArray
-    drive_speed: Annotated[FloatArray, Means("straight lines between", shape="(n,)")]
+    drive_speed: Annotated[FloatArray, Means("joined by straight lines", shape="(n,)")]
     film_temperature: FloatArray
     roll_temperature: FloatArray
-    drag: Annotated[FloatArray, Means("of sliding steadily; null at standstill", shape="(n,)", open=True)]
-    start: Annotated[float, Means("of the drive; null if it cannot start", open=True)]
-    full_speed: Annotated[float, Means("from when on; null if not within the time looked at", open=True)]
-    slides_from: Annotated[float, Means("from when on the belt slides for good; null if never", open=True)]
-    peak_force: Annotated[float, Means("of the spring, in the motion")]
-    drag_at_once: Annotated[float, Means("greatest, at full speed from the start on")]
-    within_at_once: Annotated[float, Means("when that keeps the limit; null if not in time", open=True)]
-    full_speed_standing: Annotated[float, Means("by standing until warm; null if not in time", open=True)]
+    drag: Annotated[FloatArray, Means("in steady sliding; null at standstill", shape="(n,)", open=True)]
+    start: Annotated[float, Means("when the drive starts; null if it cannot", open=True)]
+    full_speed: Annotated[
+        float, Means("when it is reached; null if not within the time simulated", open=True)
+    ]
+    slides_from: Annotated[float, Means("when steady sliding begins; null if never", open=True)]
+    peak_force: Annotated[float, Means("largest, of the spring")]
+    drag_at_once: Annotated[float, Means("largest, if run at full speed from the start")]
+    within_at_once: Annotated[
+        float, Means("when that stays within the limit; null if not in time", open=True)
+    ]
+    full_speed_standing: Annotated[
+        float, Means("when reached by standing until warm; null if not in time", open=True)
+    ]
     rounds: int
     warnings: tuple[Warning, ...]
     response: Trajectory
@@ -71,27 +77,27 @@ class WarmUp(Result):
         return Schedule(self.time[kept], self.film_temperature[kept])
 
     def verdict(self) -> str:
-        """Return the course in a sentence or two."""
+        """Return the profile in a sentence or two."""
         end = _temperature_words(self, -1)
         target = _speed(self.target_speed)
         if not math.isfinite(self.start):
             return (
-                f"The drive cannot start within {self.time[-1]:.4g} s: at the {end} reached by then no speed "
-                f"up to {target} slides with less than {self.kept_below:.4g} N."
+                f"The drive cannot start within {self.time[-1]:.4g} s: even at {end}, reached by then, "
+                f"drag is below {self.kept_below:.4g} N at no speed up to {target}."
             )
-        first = "Start at once" if self.start == 0 else f"Stand for {self.start:.4g} s, then start"
+        first = "Start at once" if self.start == 0 else f"Wait {self.start:.4g} s, then start"
         if not math.isfinite(self.full_speed):
             last = _speed(float(self.drive_speed[-1]))
-            return f"{first}; {target} is not reached within {self.time[-1]:.4g} s: {last} at {end}."
+            return f"{first}; {target} is not reached within {self.time[-1]:.4g} s, only {last} at {end}."
         at = int(np.searchsorted(self.time, self.full_speed))
-        sliding = "" if math.isfinite(self.slides_from) else " The belt sticks at it."
-        how = "" if self.full_speed - self.start <= self._least_ramp else ", slow until warm"
+        sliding = "" if math.isfinite(self.slides_from) else " The belt sticks there."
+        how = "" if self.full_speed - self.start <= self._least_ramp else ", slowly until warm"
         when = f"full speed {target} after {self.full_speed:.4g} s, at {_temperature_words(self, at)}"
         return f"{first}{how}: {when}.{sliding}"
 
     @property
     def kept_below(self) -> float:
-        """The limit less the margin, N."""
+        """Limit minus margin, N."""
         return self.force_limit * (1.0 - self.margin)
 
     @property
@@ -100,19 +106,23 @@ class WarmUp(Result):
         return self.target_speed / self.acceleration + 2.0 * float(self.time[1])
 
     def beside(self) -> list[str]:
-        """Return what the two other ways would do, a sentence each."""
+        """Return the results of the two alternatives, a sentence each."""
         times = self.drag_at_once / self.force_limit
         if not math.isfinite(self.within_at_once):
-            until = f"not below it within {self.time[-1]:.4g} s"
+            until = f"not below the limit within {self.time[-1]:.4g} s"
         else:
-            until = f"below it from {self.within_at_once:.4g} s on" if self.within_at_once > 0 else "below it"
+            until = (
+                f"below the limit after {self.within_at_once:.4g} s"
+                if self.within_at_once > 0
+                else "below the limit"
+            )
         at_once = f"Full speed at once: {self.drag_at_once:.4g} N, {times:.3g} times the limit, {until}."
         if not math.isfinite(self.full_speed_standing):
-            return [at_once, f"Standing until warm: no full speed within {self.time[-1]:.4g} s."]
-        return [at_once, f"Standing until warm: full speed after {self.full_speed_standing:.4g} s."]
+            return [at_once, f"Waiting until warm: full speed is not reached within {self.time[-1]:.4g} s."]
+        return [at_once, f"Waiting until warm: full speed after {self.full_speed_standing:.4g} s."]
 
     def table(self) -> str:
-        """Return the course as CSV, which `hersey plan --temperature-profile` reads, too."""
+        """Return the profile as CSV, which `hersey plan --temperature-profile` can read."""
         lines = ["time [s],drive speed [m/s],temperature [degC],roll [degC]"]
         columns = (
             self.time,
@@ -124,7 +134,7 @@ class WarmUp(Result):
         return "\n".join(lines) + "\n"
 
     def summary(self) -> str:
-        """Return the course, what it keeps, the other ways and warnings as text."""
+        """Return the profile, its limits, alternatives and warnings as text."""
         limit = f"{self.force_limit:.4g} N less {100 * self.margin:.3g} %"
         lines = [self.verdict(), f"Drag stays below {self.kept_below:.4g} N ({limit}).", *self.beside(), ""]
         if not math.isfinite(self.start):
@@ -144,7 +154,7 @@ class WarmUp(Result):
         return f"{target}, {self.full_speed:.4g} s" if self.found else f"{target}: not reached"
 
     def to_frame(self) -> pl.DataFrame:
-        """Return the course, a row per point."""
+        """Return the profile, one row per point."""
         import polars as pl
 
         return pl.DataFrame(

@@ -180,7 +180,9 @@ class Ageing:
         """Check the values."""
         for name, value in self.numbers().items():
             if not 0 <= value < np.inf or (name == "supply" and value == 0):
-                raise ParameterError(f"{name} is {value:g}: it must not be negative, and a supply not be 0")
+                raise ParameterError(
+                    f"{name} is {value:g}: it must not be negative, and a supply must not be 0"
+                )
         for name, deviation in self.spread.items():
             if name not in _RATES:
                 raise ParameterError(f"spread of '{name}' is not known: {', '.join(_RATES)}")
@@ -230,8 +232,8 @@ class Unit:
     def _new(self) -> MixedContact:
         if (mixed := self.machine.mixed) is None:
             raise ParameterError(
-                "a unit that ages needs a machine whose film and asperities share the load: state "
-                "[contact], [lubricant], [asperities] and [boundary]"
+                "an ageing specimen needs a machine with mixed contact. Add [contact], [lubricant], "
+                "[asperities] and [boundary]"
             )
         return mixed
 
@@ -310,7 +312,7 @@ def population(
         If there is not at least one unit.
     """
     if units < 1:
-        raise ParameterError(f"units is {units}: there must be at least one")
+        raise ParameterError(f"units is {units}: it must be at least 1")
     mean = ageing or Ageing()
     return tuple(
         Unit(f"U{number}", machine, rest, mean.drawn(np.random.default_rng([seed, number])))

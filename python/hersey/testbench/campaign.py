@@ -60,11 +60,11 @@ class Corners:
         limit = machine.limits.motor_torque
         if limit is None:
             raise ParameterError(
-                'a unit ends at the torque of its motor: state [limits] motor_torque = "1 N*m"'
+                'a specimen fails at the motor torque. Add motor_torque = "1 N*m" to [limits]'
             )
         if not machine.points:
             raise ParameterError(
-                "a unit ends at the points where it is used: state [[points]] with speed and temperature"
+                "a specimen fails at its operating points. Add [[points]] with speed and temperature"
             )
         by_speed = sorted(machine.points, key=lambda point: point.speed)
         slow, full = (
@@ -108,11 +108,13 @@ class VirtualCampaign:
         """Check the ages, and that the machine says where a unit ends."""
         for age in self.ages:
             if not (0 <= age <= LATEST and float(age).is_integer()):
-                raise ParameterError(f"age is {age:g} pages: ages are whole, from 0 to {LATEST:.0f} pages")
+                raise ParameterError(
+                    f"age is {age:g} pages: it must be a whole number from 0 to {LATEST:.0f} pages"
+                )
         if not self.ages or list(self.ages) != sorted(set(self.ages)):
-            raise ParameterError("ages do not ascend: give each once, the youngest first")
+            raise ParameterError("ages must ascend, each given once")
         if not self.units:
-            raise ParameterError("a campaign needs at least one unit")
+            raise ParameterError("a campaign needs at least one specimen")
         Corners.of(self.units[0].machine, self.stand)
 
     def files(self, progress: Callable[[int, int], None] | None = None) -> dict[str, str]:
@@ -232,8 +234,8 @@ def ages_of(text: str) -> tuple[float, ...]:
         unit = (part[2] or last) if part else ""
         if part is None or unit not in _PAGES:
             raise ParameterError(
-                f"'{printable(typed.strip())}' is no number of pages: write '0, 50, 100 kpages' "
-                f"({', '.join(_PAGES)})"
+                f"'{printable(typed.strip())}' is not a number of pages. Write e.g. '0, 50, 100 kpages' "
+                f"(units: {', '.join(_PAGES)})"
             )
         ages.append(round(float(part[1]) * _PAGES[unit], 6))
     return tuple(ages)

@@ -40,7 +40,7 @@ class Added(Record):
     def summary(self) -> str:
         """Return it in a line, and a line for each warning."""
         name = Path(self.path).name
-        head = f"{name}: {self.outcome}: run {self.run}, {self.unit} at {self.age}, {self.dwells} dwells"
+        head = f"{name}: {self.outcome} as run {self.run}, {self.unit} at {self.age}, {self.dwells} dwells"
         return "\n".join([head, *(f"- {each}" for each in self.warnings)])
 
     def to_frame(self) -> pl.DataFrame:
@@ -93,7 +93,7 @@ def add_entry(
     if entry.no_fit:
         warnings.append(
             Warning(
-                "added without a fit", "kept without a fit: {reason}", severity="watch", reason=entry.no_fit
+                "added without a fit", "added without a fit: {reason}", severity="watch", reason=entry.no_fit
             )
         )
     there = database.execute(
@@ -118,9 +118,9 @@ def _there_otherwise(entry: Entry, run: int, place: list[Any], unit: str, age: A
     """The error of a log whose content is there as another run, or was read in another way."""
     was = f"{place[0]} at {Age(place[1], age.unit)}"
     what = (
-        f"is there already as run {run}, read in another way: use {FORCE.to()} to keep this reading"
+        f"is already run {run}, but was read with other settings. Use {FORCE.to()} to keep the new reading"
         if place == [unit, age.value]
-        else f"has the same content as run {run} of {was}: use {FORCE.to()} for {unit} at {age}"
+        else f"has the same content as run {run} ({was}). Use {FORCE.to()} to move it to {unit} at {age}"
     )
     return ParameterError(f"{Path(entry.path).name} {what}")
 
@@ -128,7 +128,7 @@ def _there_otherwise(entry: Entry, run: int, place: list[Any], unit: str, age: A
 def _moved(unit: str, age: float, age_unit: str) -> Warning:
     return Warning(
         "moved",
-        "it was {unit} at {age:.10g} {age_unit}",
+        "it was {unit} at {age:.10g} {age_unit} before",
         unit=unit,
         age=age,
         age_unit=age_unit,
@@ -143,10 +143,10 @@ def _same_path(
     for run, of, at in database.execute("SELECT id, unit, age FROM runs WHERE path = ?", (path,)).fetchall():
         same = (of, at) == (unit, age.value)
         if not force:
-            way = "replace it" if same else "add it beside that one, whose log is gone"
-            was = f"run {run} of {of} at {Age(at, age.unit)}"
+            way = "replace it" if same else "add it and keep that run, whose log is gone"
+            was = f"run {run} ({of} at {Age(at, age.unit)})"
             raise ParameterError(
-                f"{Path(entry.path).name} has changed since it was added as {was}: use {FORCE.to()} to {way}"
+                f"{Path(entry.path).name} has changed since it was added as {was}. Use {FORCE.to()} to {way}"
             )
         if same:
             replaced = True
@@ -159,7 +159,8 @@ def _same_path(
 def _overwritten(run: int, unit: str, age: float, age_unit: str) -> Warning:
     return Warning(
         "log overwritten",
-        "the log of run {run} ({unit} at {age:.10g} {age_unit}) was overwritten; its dwells stay",
+        "the log of run {run} ({unit} at {age:.10g} {age_unit}) was overwritten; its dwells stay in "
+        "the campaign",
         severity="watch",
         run=run,
         unit=unit,
@@ -192,14 +193,16 @@ def _unit(database: sqlite3.Connection, unit: str, force: bool) -> str:
     unit = " ".join(unit.split())
     if not unit or len(unit) > _LONGEST_UNIT or printable(unit) != unit:
         raise ParameterError(
-            f"specimen '{unit[:_LONGEST_UNIT]}' is no name: give 1 to {_LONGEST_UNIT} characters, such as F12"
+            f"specimen name '{unit[:_LONGEST_UNIT]}' is not valid. Give 1 to {_LONGEST_UNIT} "
+            "characters, e.g. F12"
         )
     known = [row[0] for row in database.execute("SELECT DISTINCT unit FROM runs")]
     alike = [other for other in known if _folded(other) == _folded(unit)]
     if unit in known or not alike or force:
         return unit
     raise ParameterError(
-        f"specimen '{unit}' is called '{alike[0]}' so far: write it so, or use {FORCE.to()} if it is another"
+        f"specimen '{unit}' differs only slightly from the existing '{alike[0]}'. Use that name, or "
+        f"{FORCE.to()} if it is another specimen"
     )
 
 

@@ -40,7 +40,7 @@ class CampaignCheck(Record):
     def summary(self) -> str:
         """Return a line for the whole, and one for each warning."""
         count = len(self.warnings)
-        whole = "all as it should be" if self.ok else f"{count} warning{'s' if count > 1 else ''}"
+        whole = "no problems found" if self.ok else f"{count} warning{'s' if count > 1 else ''}"
         return "\n".join([f"{self.runs} runs: {whole}", *(f"- {each}" for each in self.warnings)])
 
     def to_frame(self) -> pl.DataFrame:
@@ -65,7 +65,7 @@ def check(
         Warning(
             "damaged",
             "the file is damaged: {fault}",
-            remedy="take it from a backup",
+            remedy="restore it from a backup",
             severity="act",
             fault=str(row[0]),
         )
@@ -98,7 +98,7 @@ def _age_backwards(other: int, age: Age, of_run: dict[str, Any]) -> Warning:
     """A log that was written before that of another run of the specimen, which was younger."""
     return Warning(
         "age backwards",
-        "the log was written before that of run {other} at {other_age:.10g} {age_unit}: are the ages right?",
+        "the log was written before that of run {other} at {other_age:.10g} {age_unit}. Are the ages right?",
         severity="act",
         other=other,
         other_age=age.value,
@@ -118,7 +118,7 @@ def _of_log(path: Path, sha256: str, of_run: dict[str, Any]) -> list[Warning]:
             Warning(
                 "log missing",
                 "the log is no longer at {path}",
-                remedy="put it back; its dwells stay",
+                remedy="put it back; its dwells stay in the campaign",
                 severity="act",
                 path=str(path),
                 **of_run,
@@ -130,7 +130,7 @@ def _of_log(path: Path, sha256: str, of_run: dict[str, Any]) -> list[Warning]:
         Warning(
             "log changed",
             "the log has changed since it was added",
-            remedy="add it again with {how}, or put it back",
+            remedy="add it again with {how}, or restore the old log",
             severity="act",
             how=FORCE,
             **of_run,

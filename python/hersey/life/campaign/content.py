@@ -103,11 +103,11 @@ def refuse_other_tables(database: sqlite3.Connection, path: Path, schema: str) -
     for kind, name, table, sql in database.execute("SELECT type, name, tbl_name, sql FROM sqlite_master"):
         shown = f"{kind} '{str(name)[:_SHOWN]}'"
         if (kind, name) not in known:
-            raise _foreign(path, f"it has the {shown}, which no campaign has")
+            raise _foreign(path, f"it contains {shown}, which does not belong there")
         if known[kind, name] != (table, _one_line(sql)):
-            raise _foreign(path, f"its {shown} is not as hersey makes it")
+            raise _foreign(path, f"its {shown} is not the one that hersey creates")
         if (kind, name) in found:
-            raise _foreign(path, f"it has the {shown} twice")
+            raise _foreign(path, f"it contains {shown} twice")
         found.add((kind, name))
     for kind, name in known:
         if (kind, name) not in found:
@@ -141,11 +141,11 @@ def refuse_damage(database: sqlite3.Connection, path: Path) -> None:
     pages, size = (int(database.execute(f"PRAGMA {n}").fetchone()[0]) for n in ("page_count", "page_size"))
     log = path.with_name(f"{path.name}-wal")
     if path.stat().st_size < pages * size and not (log.exists() and log.stat().st_size):
-        raise damaged(path, f"it is shorter than the {pages * size} bytes that it should have")
+        raise damaged(path, f"it is shorter than its {pages * size} bytes")
     for check in ("quick_check(1)", "integrity_check(runs)"):
         said = database.execute(f"PRAGMA {check}").fetchone()
         if said is None or said[0] != "ok":
-            raise damaged(path, "no answer of its check" if said is None else str(said[0])[:200])
+            raise damaged(path, "SQLite's check gave no answer" if said is None else str(said[0])[:200])
     refuse_unsound_runs(database, path)
 
 
@@ -162,18 +162,20 @@ def refuse_unsound_runs(database: sqlite3.Connection, path: Path) -> None:
         raise _too_many(path, int(dwells), "dwells", MOST_DWELLS)
     for run, no_fit in database.execute("SELECT id, no_fit FROM runs WHERE (fit IS NULL) != (no_fit != '')"):
         raise damaged(
-            path, f"run {run} has {'a fit and a reason for none' if no_fit else 'neither fit nor reason'}"
+            path,
+            f"run {run} has "
+            f"{'both a fit and a reason for having none' if no_fit else 'neither a fit nor a reason'}",
         )
     for name, count in database.execute("SELECT name, seq FROM sqlite_sequence"):
         if name != "runs" or not isinstance(count, int) or not last <= count <= int(_LAST):
-            raise damaged(path, "'sqlite_sequence' does not hold the number of the last run")
+            raise damaged(path, "'sqlite_sequence' does not contain the number of the last run")
     _refuse_unknown_age_unit(database, path, runs)
 
 
 def _refuse_unknown_age_unit(database: sqlite3.Connection, path: Path, runs: int) -> None:
     rows = database.execute("SELECT name, value FROM campaign LIMIT 2").fetchall()
     if len(rows) > 1 or (rows and rows[0][0] != "age unit") or (runs and not rows):
-        raise damaged(path, "table 'campaign' does not hold 'age unit' alone")
+        raise damaged(path, "table 'campaign' must contain 'age unit' and nothing else")
     try:
         for _, unit in rows:
             refuse_no_unit(unit if isinstance(unit, str) else "")
@@ -191,12 +193,10 @@ def refuse_unsound_dwells(database: sqlite3.Connection, path: Path, run: int | N
     of_dwells = "" if run is None else f"WHERE run_id = {int(run)}"
     for number, count in database.execute(f"SELECT run_id, count(*) FROM dwells {of_dwells} GROUP BY run_id"):
         if counts.pop(number, None) != count:
-            raise damaged(
-                path, f"run {number} has {count} dwells, which is not how many it says or no run at all"
-            )
+            raise damaged(path, f"run {number} has {count} dwells, which is not the number stated")
     for number, count in counts.items():
         if count:
-            raise damaged(path, f"run {number} says {count} dwells and has none")
+            raise damaged(path, f"run {number} should have {count} dwells and has none")
 
 
 def _wrong(
@@ -214,18 +214,18 @@ def _wrong(
 def damaged(path: Path, what: str) -> ParameterError:
     """Return the error of a file that is damaged."""
     return ParameterError(
-        f"{path.name} is damaged ({what}): take it from a backup, or add the logs to a new one"
+        f"{path.name} is damaged ({what}). Restore it from a backup, or add the logs to a new campaign"
     )
 
 
 def _foreign(path: Path, what: str) -> HerseyError:
     return ParameterError(
-        f"{path.name} is not as 'hersey campaign add' made it: {what}: take it from a backup, or add the "
-        "logs to a new one"
+        f"{path.name} was not made by 'hersey campaign add' ({what}). Restore it from a backup, or add "
+        "the logs to a new campaign"
     )
 
 
 def _too_many(path: Path, count: int, what: str, most: int) -> HerseyError:
     return ParameterError(
-        f"{path.name} has {count} {what}, and {most} are the most: split the logs over several campaigns"
+        f"{path.name} has {count} {what}; at most {most} are allowed. Split the logs over several campaigns"
     )

@@ -84,7 +84,9 @@ def entry_of(
     path = Path(path)
     if len(points.log.files) != 1:
         names = ", ".join(file.name for file in points.log.files)
-        raise ParameterError(f"a run of a campaign is one log, and these are several: {names}: add each")
+        raise ParameterError(
+            f"a run of a campaign is one log, but these are several: {names}. Add them one by one"
+        )
     no_fit = ""
     if fit is None:
         try:
@@ -119,7 +121,7 @@ def points_of(reduction: str, dwells: Iterable[tuple[Any, ...]]) -> SteadyPoints
     refuse_others(about, _LOG | _MEANS if means else _LOG, "log.")
     for name in ("tare_errors", "rest_errors"):
         if held[name].ndim != 2 or len(held[name]) not in (0, len(table)):
-            raise ParameterError(f"'{name}' does not have a row for each dwell")
+            raise ParameterError(f"'{name}' does not have one row per dwell")
     _refuse_unsound(held["rest"], about["sensors"])
     log = (_KeptMeans if means else _KeptLog)(**about)
     return SteadyPoints(pl.DataFrame(table, schema=schema, orient="row"), log=log, **held)

@@ -33,10 +33,10 @@ _LISTED = "id, unit, age, path, sha256, dwells, exponent, transition_speed, no_f
 
 
 class Campaign:
-    """Runs of many specimens at many ages: their steady points, fits and where they came from, in one file.
+    """Runs of specimens at several ages, with their steady points, fits and origin, in one file.
 
-    Each change is one transaction, which holds whole or not at all whatever happens; several programs may
-    write in turn. Logs stay where they are. `create` and `open` make one; it is a context manager.
+    Each change is one transaction: it is complete or has no effect. Several programs can write in turn. Logs
+    stay where they are. Get one with `create` or `open`; it is a context manager.
     """
 
     def __init__(self, path: Path, database: sqlite3.Connection) -> None:
@@ -46,37 +46,37 @@ class Campaign:
 
     @classmethod
     def create(cls, path: str | Path, *, wait: float = PATIENCE) -> Campaign:
-        """Open a campaign for writing, and make it if there is none.
+        """Open a campaign for writing; create it if it does not exist.
 
         Parameters
         ----------
         path
-            Its file; the name of a new one ends in ``.hersey``.
+            File of the campaign; the name of a new one must end in ``.hersey``.
         wait
-            For how long to wait for other writers, s.
+            Time to wait for other writers, s.
 
         Raises
         ------
         HerseyError
-            If it is no campaign, of a newer version, or cannot be written.
+            If it is not a campaign, has a newer version, or cannot be written.
         """
         return cls(Path(path), open_store(Path(path), create=True, wait=wait))
 
     @staticmethod
     def refuse_unless_writable(path: str | Path) -> None:
-        """Refuse what is no campaign, or where none can be made, before long work; errors as `create`."""
+        """Raise the errors of `create` before long work, without creating a file."""
         refuse_no_place(Path(path), create=True)
         if Path(path).exists():
             Campaign.create(path).close()
 
     @classmethod
     def open(cls, path: str | Path, *, write: bool = True, wait: float = PATIENCE) -> Campaign:
-        """Open a campaign that is there, for reading alone where ``write`` is false.
+        """Open an existing campaign, for reading only if ``write`` is false.
 
         Raises
         ------
         HerseyError
-            If there is none, or as `create`.
+            If it does not exist, or as `create`.
         """
         return cls(Path(path), open_store(Path(path), write=write, wait=wait))
 
@@ -116,33 +116,33 @@ class Campaign:
         settings: dict[str, Any] | None = None,
         force: bool = False,
     ) -> Added:
-        """Add the steady points of a log as a run of a specimen at an age: in one transaction.
+        """Add the steady points of a log as a run of a specimen at an age, in one transaction.
 
-        The same log at the same specimen and age is one run, however often it is added.
+        Adding the same log at the same specimen and age again changes nothing.
 
         Parameters
         ----------
         points
-            Of one log; all that they hold is kept.
+            Steady points of one log; all their data are kept.
         log
-            Its file, which stays where it is.
+            File of the log, which stays where it is.
         unit
             The specimen's name.
         age
-            As ``"120000 pages"``; 0 if new. Times are converted, other words must be one.
+            Age, e.g. ``"120000 pages"``; 0 if new. Times are converted; any other unit must be one word.
         fit
-            The damping surface; fitted here if left out.
+            Damping surface. Default: fitted here.
         settings
-            How the log was read, as JSON can hold it.
+            How the log was read, JSON-serializable.
         force
-            Replace a run whose log has changed, or that was under another specimen or age.
+            Whether to replace a run whose log has changed, or that has another specimen or age.
 
         Raises
         ------
         ParameterError
-            If the log has changed, is there under another specimen or age, or was read in another way.
+            If the log has changed, exists with another specimen or age, or was read with other settings.
         UnitError
-            If the age has no unit, or another than those of the campaign.
+            If the age has no unit, or a unit other than that of the campaign.
         OutputError
             If the file cannot be written.
         """
@@ -153,7 +153,7 @@ class Campaign:
         return self.add_entries([(entry, unit, parsed)], force=force)[0]
 
     def add_entries(self, entries: Iterable[tuple[Entry, str, Age]], *, force: bool = False) -> list[Added]:
-        """Add several runs, with specimen and age, in one transaction: all or none; errors as `add`."""
+        """Add several runs with specimen and age in one transaction (all or none); errors as `add`."""
         with transaction(self._database, self.path):
             added = [add_entry(self._database, self._home, *each, force=force) for each in entries]
             refuse_unsound_runs(self._database, self.path)  # what is added can be read again
@@ -162,12 +162,12 @@ class Campaign:
             return added
 
     def there(self, sha256: str, unit: str, age: Age, settings: str) -> Added | None:
-        """Return the run of a log with this hash if adding it so would change nothing, or None."""
+        """Return the existing run of a log with this hash if adding it would change nothing, else None."""
         with sqlite_errors(self.path):
             return is_there(self._database, sha256, unit, age, settings)
 
     def runs(self, unit: str = "") -> pl.DataFrame:
-        """Return a row per run, of one specimen or of all, by specimen and age.
+        """Return one row per run, of one specimen or all, sorted by specimen and age.
 
         Columns ``run`` (its number), ``unit``, ``age`` (in `age_unit`), ``log``, ``sha256``, ``dwells``,
         ``exponent`` (c of the damping surface), ``transition_speed`` (rad/s; null where none is seen),
@@ -194,11 +194,11 @@ class Campaign:
     def _no_unit(self, unit: str) -> ParameterError:
         known = [row[0] for row in self._database.execute("SELECT DISTINCT unit FROM runs ORDER BY unit")]
         near = meant(unit, known)
-        way = f"did you mean '{near}'?" if near else "'hersey campaign list' names them"
-        return ParameterError(f"{self.path.name} has no specimen '{unit}': {way}")
+        way = f"Did you mean '{near}'?" if near else "'hersey campaign list' shows them"
+        return ParameterError(f"{self.path.name} has no specimen '{unit}'. {way}")
 
     def points(self, run: int) -> SteadyPoints:
-        """Return the steady points of a run, whole as they were added; the log's rows are not kept.
+        """Return the steady points of a run as they were added; rows of the log are not kept.
 
         Raises
         ------
@@ -218,9 +218,9 @@ class Campaign:
             return points_of(reduction, dwells)
 
     def drives(self) -> dict[int, tuple[NoLoadTorque | None, Sensors]]:
-        """Return what was taken off the torque of each run as no-load torque, and its sensors, by run.
+        """Return the no-load torque subtracted from each run, and its sensors, by run.
 
-        Runs of the same rest share one object.
+        Runs with the same no-load torque share one object.
         """
         from hersey.life.campaign.conversion import drive_of
 
@@ -242,7 +242,7 @@ class Campaign:
             raise damaged(self.path, f"'{column}' of run {run}: {error}") from None
 
     def fit(self, run: int) -> dict[str, Any] | None:
-        """Return the fit of a run, as `DampingSurface.to_dict` gave it when it was added; None if none fits.
+        """Return the fit of a run as `DampingSurface.to_dict` gave it; None if there is no fit.
 
         Raises
         ------
@@ -273,14 +273,14 @@ class Campaign:
         with sqlite_errors(self.path):
             row = self._database.execute(f"SELECT {column} FROM runs WHERE id = ?", (run,)).fetchone()
         if row is None:
-            raise ParameterError(f"{self.path.name} has no run {run}: 'hersey campaign list' names them")
+            raise ParameterError(f"{self.path.name} has no run {run}. 'hersey campaign list' shows them")
         return row[0]
 
     def dwells(self) -> pl.DataFrame:
-        """Return a row per dwell of every run: ``run_id``, ``unit``, ``age``, ``log``, and all in SI.
+        """Return one row per dwell of every run: ``run_id``, ``unit``, ``age``, ``log`` and values in SI.
 
-        The age is in `age_unit`; its column, and those of the dwells, carry their units. ``rest`` is what was
-        taken off the torque as that of the no-load torque, 0 if nothing was.
+        The age is in `age_unit`; its column, and those of the dwells, carry their units. ``rest`` is the
+        no-load torque that was subtracted, or 0.
         """
         import polars as pl
 
@@ -310,7 +310,7 @@ class Campaign:
         return joined.rename({**new, "age": f"age ({self.age_unit or 'unit'})"})
 
     def measured(self) -> tuple[IntArray, FloatArray]:
-        """Return the numbers of every dwell, for computing: the fewest columns that a torque needs.
+        """Return the numbers of every dwell for computations on torque.
 
         Number of the run, shape (dwells,), those of one run one after the other; speed (rad/s), temperature
         (K), torque and its error (N m), shape (dwells, 4), NaN where nothing was recorded.
@@ -329,29 +329,30 @@ class Campaign:
         return numbers[:, 0].astype(np.intp), numbers[:, 1:]
 
     def export(self, suffix: str) -> bytes:
-        """Return `dwells` as a file of the kind that ``.parquet`` or ``.csv`` names.
+        """Return `dwells` as the bytes of a ``.parquet`` or ``.csv`` file.
 
         Raises
         ------
         OutputError
-            If it is another kind.
+            If it is another format.
         """
         from hersey.files.tables import TABLES, table
 
         if suffix not in TABLES:
-            raise OutputError(f"a campaign is exported as .parquet or .csv, not as '{suffix}'")
+            raise OutputError(f"a campaign cannot be exported as '{suffix}'. Use .parquet or .csv")
         return table(self.dwells(), suffix)
 
     def check(self, progress: Callable[[int, int], None] | None = None) -> CampaignCheck:
-        """Check the file, that each log is there and unchanged, the order of the ages, and the fits."""
+        """Check the file, that each log exists and is unchanged, the order of the ages, and the fits."""
         with sqlite_errors(self.path):
             refuse_unsound_dwells(self._database, self.path)
             return check(self._database, self._home, progress)
 
     def summary(self) -> str:
-        """Return a line for the whole, and one for each specimen."""
+        """Return an overview and one line per specimen."""
         runs = self.runs()
-        lines = [f"{self.path.name}: {runs.height} runs of {runs['unit'].n_unique()} units"]
+        units = runs["unit"].n_unique()
+        lines = [f"{self.path.name}: {runs.height} runs of {units} specimen{'s' * (units != 1)}"]
         for (unit,), of in runs.group_by("unit", maintain_order=True):
             first, last = Age(of["age"][0], self.age_unit), Age(of["age"][-1], self.age_unit)
             failed = int((of["no_fit"] != "").sum())
@@ -361,7 +362,7 @@ class Campaign:
         return "\n".join(lines)
 
     def to_dict(self, unit: str = "") -> dict[str, Any]:
-        """Return file, unit of the ages, and the runs of a specimen or of all, as JSON can hold them."""
+        """Return file, unit of the ages, and the runs of one specimen or all as JSON."""
         return {"file": str(self.path), "age_unit": self.age_unit, "runs": self.runs(unit).to_dicts()}
 
     def to_frame(self) -> pl.DataFrame:

@@ -102,7 +102,7 @@ def _refuse_super_journal(path: Path) -> None:
         return
     if end == _SUPER_JOURNAL:
         raise ParameterError(
-            f"{journal.name} names another file, as no journal of a campaign does: remove {journal.name}"
+            f"{journal.name} refers to another file, which a campaign never does. Delete {journal.name}"
         )
 
 

@@ -39,13 +39,13 @@ def warning_of(kept: dict[str, Any]) -> Warning:
         Naming the first key that is missing, unknown or of another kind.
     """
     for name in kept.keys() ^ _KEPT.keys():
-        raise ParameterError(f"'Warning.{name[:40]}' {'is missing' if name in _KEPT else 'is not known'}")
+        raise ParameterError(f"'Warning.{name[:40]}' {'is missing' if name in _KEPT else 'is unknown'}")
     values = kept["values"]
     sound = {name: type(kept[name]) is kind for name, kind in _KEPT.items()}
     sound["severity"] &= kept["severity"] in get_args(Severity)
     sound["values"] &= sound["values"] and all(map(_is_value, values))
     for name in (name for name, holds in sound.items() if not holds):
-        raise ParameterError(f"'Warning.{name}' holds another kind of value than it should")
+        raise ParameterError(f"'Warning.{name}' has a value of the wrong type")
     return Warning.said(**(kept | {"values": dict(values)}))
 
 
@@ -57,7 +57,7 @@ def with_warnings(found: dict[str, Any], kinds: Mapping[str, Any]) -> dict[str, 
     held = found[old]
     notes = tuple(filter(None, [held])) if old == "note" and isinstance(held, str) else held
     if not (isinstance(notes, tuple) and all(isinstance(each, str) for each in notes)):
-        raise ParameterError(f"'{old}' holds another kind of value than it should")
+        raise ParameterError(f"'{old}' has a value of the wrong type")
     warnings = tuple(Warning(SENTENCE, "{text}", text=each) for each in notes)
     return {name: value for name, value in found.items() if name != old} | {"warnings": warnings}
 

@@ -72,7 +72,7 @@ def read_json(text: str) -> dict[str, Any]:
     except (ValueError, RecursionError) as error:
         raise ParameterError(f"not valid JSON ({error})") from None
     if not isinstance(found, dict):
-        raise ParameterError("no JSON object")
+        raise ParameterError("not a JSON object")
     return found
 
 
@@ -86,7 +86,7 @@ def restored(value: Any, kinds: Mapping[str, Any]) -> dict[str, Any]:
     """
     found = _restored(value)
     if not isinstance(found, dict):
-        raise ParameterError("no JSON object")
+        raise ParameterError("not a JSON object")
     found = with_warnings(found, kinds)
     refuse_others(found, kinds)
     return found
@@ -109,7 +109,7 @@ def _restored(value: Any) -> Any:
         return warning_of(inside)
     record = _RECORDS.get(name) if isinstance(name, str) else None
     if record is None:
-        raise ParameterError("'kind' names no record that is known")
+        raise ParameterError("'kind' is not a known record")
     inside = with_warnings(inside, _kinds_of(record))
     defaults = {f.name for f in fields(record) if f.name not in inside and _has_default(f)}
     kinds = {name: kind for name, kind in _kinds_of(record).items() if name not in defaults}
@@ -138,7 +138,7 @@ def _array(value: dict[str, Any]) -> FloatArray:
             raise ValueError
         return found.reshape(shape)
     except (KeyError, TypeError, ValueError, OverflowError):
-        raise ParameterError("an 'array' does not hold the finite numbers of its 'shape'") from None
+        raise ParameterError("an 'array' does not contain finite numbers of the stated 'shape'") from None
 
 
 def refuse_others(
@@ -152,11 +152,11 @@ def refuse_others(
         Naming the first.
     """
     for name in found.keys() ^ kinds.keys():
-        what = "is missing" if name in kinds else "is not known"
+        what = "is missing" if name in kinds else "is unknown"
         raise ParameterError(f"'{place}{name[:40]}' {what}")
     for name, kind in kinds.items():
         if not _is(found[name], kind, finite=name not in unbounded):
-            raise ParameterError(f"'{place}{name}' holds another kind of value than it should")
+            raise ParameterError(f"'{place}{name}' has a value of the wrong type")
 
 
 def _is(value: Any, kind: Any, *, finite: bool) -> bool:

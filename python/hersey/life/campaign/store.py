@@ -101,18 +101,17 @@ def refuse_no_place(path: Path, create: bool) -> None:
     """
     if path.exists():
         if not path.is_file():
-            raise ParameterError(f"{path} is no file: name the campaign's file, as life{SUFFIX}")
+            raise ParameterError(f"{path} is not a file. Name a campaign file, e.g. life{SUFFIX}")
         return
     if not create:
-        raise MissingFileError(
-            f"{path}: there is no such campaign: hersey campaign add {path.name} LOG makes one"
-        )
+        raise MissingFileError(f"{path} does not exist. Create it with: hersey campaign add {path.name} LOG")
     if path.suffix != SUFFIX:
         raise ParameterError(
-            f"{path}: the name of a new campaign ends in {SUFFIX}, and comes before the logs"
+            f"{path} is not a campaign name. Give the campaign first, with a name that ends in "
+            f"{SUFFIX}, then the logs"
         )
     if not path.parent.is_dir():
-        raise OutputError(f"{path}: there is no directory {path.parent}")
+        raise OutputError(f"{path}: folder {path.parent} does not exist")
 
 
 def _connected(path: Path, *, create: bool, write: bool, wait: float) -> GuardedConnection:
@@ -175,8 +174,8 @@ def _brought_up_to_date(database: GuardedConnection, path: Path, write: bool) ->
     version = _header(database, "user_version")
     if version > VERSION:
         raise ParameterError(
-            f"{path.name} is a campaign of a newer hersey (version {version} of the file, this one knows "
-            f"{VERSION}): use that hersey, or update this one"
+            f"{path.name} was written by a newer version of hersey (file version {version}, this one "
+            f"reads up to {VERSION}). Update hersey"
         )
     if version in SCHEMAS:
         refuse_other_tables(database, path, SCHEMAS[version])
@@ -185,22 +184,22 @@ def _brought_up_to_date(database: GuardedConnection, path: Path, write: bool) ->
         return
     if not write:
         raise ParameterError(
-            f"{path.name} is a campaign of an older hersey (version {version} of the file): the next 'hersey "
-            f"campaign add {path.name} LOG' brings it up to date"
+            f"{path.name} was written by an older version of hersey (file version {version}). Run "
+            f"'hersey campaign add {path.name} LOG' to update it"
         )
     with transaction(database, path):
         for old in range(_header(database, "user_version"), VERSION):
             if old not in MIGRATIONS or old not in SCHEMAS:
                 raise ParameterError(
-                    f"{path.name} is a campaign of version {old}, which this hersey cannot bring up to "
-                    "date: add the logs to a new one"
+                    f"{path.name} has file version {old}, which this version of hersey cannot update. "
+                    "Add the logs to a new campaign"
                 )
             MIGRATIONS[old](database)
             database.execute(f"PRAGMA user_version = {old + 1}")
 
 
 def _no_campaign(path: Path) -> HerseyError:
-    return ParameterError(f"{path.name} is no campaign: name the file that 'hersey campaign add' made")
+    return ParameterError(f"{path.name} is not a campaign file. Name a file made by 'hersey campaign add'")
 
 
 @contextmanager
@@ -232,24 +231,24 @@ def _said(path: Path, error: sqlite3.Error) -> HerseyError:
         return _no_campaign(path)
     if code in (sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED):
         return OutputError(
-            f"{path.name} is held by another program that writes to it: wait until it is done, then repeat"
+            f"{path.name} is in use by another program. Wait until it has finished, then try again"
         )
     if code == sqlite3.SQLITE_FULL:
         return OutputError(
-            f"{path.name}: the disk is full: make room, then repeat; what was added before stays"
+            f"{path.name}: the disk is full. Free some space and try again; earlier runs are kept"
         )
     if code == sqlite3.SQLITE_IOERR:
         return OutputError(
-            f"{path.name} cannot be written or read ({error}): see that the disk has room and is sound, then "
-            "repeat; what was added before stays"
+            f"{path.name} cannot be written or read ({error}). Check the disk and its free space, then "
+            "try again; earlier runs are kept"
         )
     if code in (sqlite3.SQLITE_READONLY, sqlite3.SQLITE_CANTOPEN, sqlite3.SQLITE_PERM):
         return OutputError(
-            f"{path.name} cannot be opened for this ({error}): see who may write it and its "
-            "folder, or copy it"
+            f"{path.name} cannot be opened ({error}). Check the permissions of the file and its folder, "
+            "or copy it"
         )
     if code == sqlite3.SQLITE_TOOBIG:
         return damaged(path, f"a run in it is longer than {LONGEST} bytes")
     if code == sqlite3.SQLITE_INTERRUPT:
-        return damaged(path, "reading it takes more work than a file of its size needs")
+        return damaged(path, "reading it takes more work than its size explains")
     return damaged(path, str(error)[:200])

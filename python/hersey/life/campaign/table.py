@@ -47,10 +47,10 @@ def read_runs(path: str | Path) -> list[RunToAdd]:
     names = [match[1].casefold() if match else "" for match in headings]
     for name in _NEEDED:
         if names.count(name) != 1:
-            what = "no column" if name not in names else "more than one column"
+            what = "there is no column" if name not in names else "there is more than one column"
             raise ChannelError(
-                f"{path.name}: {what} '{name}': its first line must name log, unit and age, as "
-                "'log,unit,age [pages]'"
+                f"{path.name}: {what} '{name}'. The first line must name log, unit (the specimen) and "
+                "age, e.g. 'log,unit,age [pages]'"
             )
     at = {name: names.index(name) for name in _NEEDED}
     heading = headings[at["age"]]
@@ -62,14 +62,14 @@ def read_runs(path: str | Path) -> list[RunToAdd]:
         cells = {name: text_of(row[i].strip()) if i < len(row) else "" for name, i in at.items()}
         for name, cell in cells.items():
             if not cell:
-                raise UnreadableLogError(f"{path.name}, line {number}: column '{name}' is empty: fill it in")
+                raise UnreadableLogError(f"{path.name}, line {number}: column '{name}' is empty. Fill it in")
         try:
             age = Age.parse(cells["age"], in_head)
         except HerseyError as error:
             raise error.within(f"{path.name}, line {number}, column 'age'") from None
         found.append(RunToAdd(path.absolute().parent / cells["log"], cells["unit"], age))
     if not found:
-        raise UnreadableLogError(f"{path.name} names no run: write a line for each below the headings")
+        raise UnreadableLogError(f"{path.name} lists no runs. Write one line per run below the header")
     return found
 
 
@@ -92,7 +92,9 @@ def rows_of(logs: Sequence[Path], rows: Sequence[RunToAdd], table: str) -> list[
         if row is not None:
             return RunToAdd(log, row.unit, row.age)
         if not alike:
-            return ParameterError(f"{table} has no row for it: add one, or leave the log out")
-        return ParameterError(f"{table} has several runs of this name: write the paths of the logs there")
+            return ParameterError(f"{table} has no row for it. Add one, or do not give this log")
+        return ParameterError(
+            f"{table} has several runs with this file name. Write the paths of the logs there"
+        )
 
     return [of(log) for log in logs]

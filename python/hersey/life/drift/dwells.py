@@ -44,7 +44,7 @@ def dwells_of(table: pl.DataFrame, age_name: str) -> tuple[Dwells, tuple[str, ..
     missing = [name for name in needed if name not in table.columns] + ["age (...)"] * (not age_name)
     if missing:
         raise ParameterError(
-            f"the table of dwells has no column {', '.join(map(repr, missing))}: take Campaign.dwells()"
+            f"the table of dwells has no column {', '.join(map(repr, missing))}. Use Campaign.dwells()"
         )
     table = table.sort("unit", age_name, "run_id", maintain_order=True)
     columns = _columns(table, age_name)
@@ -57,7 +57,7 @@ def dwells_of(table: pl.DataFrame, age_name: str) -> tuple[Dwells, tuple[str, ..
     place = np.array([places[name] for name in names])
     if most_ages(place, age) < 2:
         raise InsufficientDataError(
-            "no specimen was seen at two ages, so nothing shows what moved: add runs at another age"
+            "no specimen was measured at two ages, so no change can be seen. Add runs at another age"
         )
     oldest = float(age.max())
     speed, torque, error, kelvin = (rows.filled(columns[name]) for name in _NUMBERS)
@@ -69,18 +69,18 @@ def _columns(table: pl.DataFrame, age_name: str) -> dict[str, FloatArray]:
     found = {name: table[name].cast(float).fill_null(np.nan).to_numpy() for name in (age_name, *_NUMBERS)}
     for name, column in found.items():
         for i in np.flatnonzero(~np.isfinite(column) & ~(np.isnan(column) & (name in _MAY_LACK))):
-            raise ParameterError(f"{name} of dwell {i + 1} (run {table['run_id'][int(i)]}) is no number")
+            raise ParameterError(f"{name} of dwell {i + 1} (run {table['run_id'][int(i)]}) is not a number")
     speed = found["speed (rad/s)"]
     for i in np.flatnonzero(speed == 0.0):
-        raise ParameterError(f"speed of dwell {i + 1} (run {table['run_id'][int(i)]}) is 0: leave it out")
+        raise ParameterError(f"speed of dwell {i + 1} (run {table['run_id'][int(i)]}) is 0. Remove the dwell")
     unknown = np.isnan(found["temperature (K)"])
     if unknown.any() and not unknown.all():
         run = table["run_id"][int(np.flatnonzero(unknown)[0])]
         raise ParameterError(
-            f"run {run} has dwells without a temperature, others have one: leave out the one or the other"
+            f"run {run} has dwells without a temperature, but other dwells have one. Use only one kind"
         )
     if not table.height:
-        raise InsufficientDataError("there is no dwell: add runs to the campaign")
+        raise InsufficientDataError("there are no dwells. Add runs to the campaign")
     torque, error = (found[name] for name in ("torque (N m)", "torque error (N m)"))
     signless = {"speed (rad/s)": np.abs(speed), "torque (N m)": torque * np.sign(speed)}
     return {**found, **signless, "torque error (N m)": np.nan_to_num(error)}
@@ -88,10 +88,10 @@ def _columns(table: pl.DataFrame, age_name: str) -> dict[str, FloatArray]:
 
 def _refuse_too_little(speed: FloatArray, rows: PaddedRows) -> None:
     way_out = (
-        "nothing distinguishes level, exponent and film: record dwells at several speeds, or follow the "
-        "torque itself with hersey.fit_growth"
+        "level, exponent and film cannot be distinguished. Record dwells at several speeds, or follow "
+        "the torque itself with hersey.fit_growth"
     )
     if speed.max() < _APART * speed.min():
-        raise InsufficientDataError(f"all dwells have one speed, so {way_out}")
+        raise InsufficientDataError(f"all dwells have the same speed, so {way_out}")
     if np.median(rows.given.sum(axis=1)) < _FEWEST:
         raise InsufficientDataError(f"most runs have fewer than {_FEWEST} dwells, so {way_out}")

@@ -40,14 +40,14 @@ class Quantity(Record):
     si: str
     relative: Annotated[
         bool,
-        Means("whether the change is that of the ratio to the value when new, less 1, or the difference"),
+        Means("whether the change is relative to the value when new, or a difference"),
     ]
     where: str
     new: Annotated[float, OPEN]
     change: Interval
     units: tuple[Interval, ...]
-    curves: Annotated[FloatArray, Means("of each unit at the ages", shape="(units, ages)", open=True)]
-    band: Annotated[FloatArray, Means("low, middle and high of all units", shape="(3, ages)", open=True)]
+    curves: Annotated[FloatArray, Means("of each specimen, at each age", shape="(units, ages)", open=True)]
+    band: Annotated[FloatArray, Means("low, middle and high for all specimens", shape="(3, ages)", open=True)]
 
     @property
     def moved(self) -> bool:
@@ -64,7 +64,7 @@ class Quantity(Record):
     def __str__(self) -> str:
         """Return name, place and change with its interval."""
         if not np.isfinite(self.change.value):
-            return f"{self.name} ({self.where}): not seen"
+            return f"{self.name} ({self.where}): not determined"
         ends = f"[{self.shown(self.change.low, sign=True)}, {self.shown(self.change.high, sign=True)}]"
         return f"{self.name} ({self.where}): {self.shown(self.change.value, sign=True)} {ends}"
 
@@ -121,7 +121,11 @@ def _kinds(scales: Scales, shared: FloatArray) -> list[_Kind]:
     centre = f"{rpm(middle):.3g} rpm" + ("" if half is None else f", {celsius(half):.0f} degC")
     found = [
         _Kind(
-            "level", "N m", True, f"torque without the rest at {centre}", lambda own: drag(own, middle, 0.0)
+            "level",
+            "N m",
+            True,
+            f"torque minus no-load torque at {centre}",
+            lambda own: drag(own, middle, 0.0),
         ),
         _Kind(
             "exponent, cold and fast" if scales.thermal else "exponent, fast",

@@ -42,11 +42,14 @@ THICKER, STARVED, TOUCHING, LOADED, OTHER, LAWFUL = (
 #: Words for each that grows and that falls.
 WORDS = {
     THICKER: ("a thicker lubricant", "a thinner lubricant"),
-    STARVED: ("a thinner, starved film", "a film fed better"),
-    TOUCHING: ("contact that grows", "contact that recedes"),
+    STARVED: ("a thinner, starved film", "a better-fed film"),
+    TOUCHING: ("more asperity contact", "less asperity contact"),
     LOADED: ("more load or grip", "less load or grip"),
-    OTHER: ("the no-load torque taking more", "the no-load torque taking less"),
-    LAWFUL: ("a viscosity that depends more on temperature", "a viscosity that depends less on temperature"),
+    OTHER: ("a higher no-load torque", "a lower no-load torque"),
+    LAWFUL: (
+        "a stronger temperature dependence of viscosity",
+        "a weaker temperature dependence of viscosity",
+    ),
 }
 #: Gain in minus twice the log-likelihood that one more ageing must bring, and an ageing that runs backwards;
 #: a load that changes by itself is rarer, so that it must bring as much as two.

@@ -32,10 +32,10 @@ _FEW = 3
 
 @dataclass(frozen=True, repr=False)
 class Drift(Result):
-    """What moved with age, and what it points to.
+    """What changed with age, and the possible causes.
 
-    ``reading`` is that of the specimens together, ``readings`` that of each; `Reading.sets` holds more than
-    one where the data cannot distinguish them.
+    ``reading`` is the interpretation for all specimens together, ``readings`` that for each. `Reading.sets`
+    holds several if the data cannot distinguish them.
     """
 
     also_stated = ("headline",)
@@ -44,7 +44,7 @@ class Drift(Result):
     units: tuple[str, ...]
     age_unit: str
     oldest: float
-    last_age: Annotated[tuple[float, ...], Means("of each unit")]  #: of each specimen
+    last_age: Annotated[tuple[float, ...], Means("of each specimen")]  #: of each specimen
     runs: int
     dwells: int
     quantities: tuple[Quantity, ...]
@@ -52,7 +52,7 @@ class Drift(Result):
     readings: tuple[Reading, ...]
     ages: FloatArray
     scatter: Annotated[
-        float, Means("of dwells beyond their stated errors, relative")
+        float, Means("scatter of the dwells beyond their stated errors, relative")
     ]  #: of dwells beyond their stated errors, relative
     warnings: tuple[Warning, ...]
     fitted: Fitted = field(repr=False)
@@ -66,21 +66,19 @@ class Drift(Result):
         return f"{len(self.units)} specimens up to {self._age(self.oldest)}: {_pointed(self.reading)}"
 
     def summary(self) -> str:
-        """Return what moved, and the readings, as text."""
+        """Return what changed and the possible causes as text."""
         lines = [
             self.headline(),
-            f"{self.runs} runs, {self.dwells} dwells; changes up to then, with 90 % intervals:",
+            f"{self.runs} runs, {self.dwells} dwells. Changes up to that age, with 90 % intervals:",
             *(f"  {each}" for each in self.quantities),
             *(_evidence(each) for each in self.reading.sure),
         ]
         if len(self.reading.sets) > 1:
-            lines.append("These readings cannot be distinguished:")
+            lines.append("These causes cannot be distinguished:")
             lines += [f"  {_listed(each) or 'nothing moved'}" for each in self.reading.sets]
         lines += self._of_specimens()
         if any(self.reading.sets):
-            lines.append(
-                "A reading says what would do this, and is no proof: something else may do the same."
-            )
+            lines.append("These are possible causes, not proof. Something else may have the same effect.")
         return "\n".join([*lines, *(f"- {each.sentence}" for each in self.warnings)])
 
     def _of_specimens(self) -> list[str]:
@@ -94,13 +92,13 @@ class Drift(Result):
         for words, units in sorted(units_by_words.items(), key=lambda each: -len(each[1])):
             named = ", ".join(units[:_NAMED]) + f" and {len(units) - _NAMED} more" * (len(units) > _NAMED)
             lines.append(f"  {named}: {words}")
-        return ["Unit by specimen:", *lines]
+        return ["By specimen:", *lines]
 
     def _age(self, age: float) -> str:
         return f"{age:.6g} {self.age_unit}".strip()
 
     def to_dict(self) -> dict[str, Any]:
-        """Return what moved and what it points to, in SI."""
+        """Return what changed and the possible causes, in SI."""
         readings = zip(self.units, self.readings, strict=True)
         return super().to_dict() | {"readings": [{"unit": unit} | each.to_dict() for unit, each in readings]}
 
@@ -121,13 +119,15 @@ class Drift(Result):
 _NAMED = 12
 #: What each ageing would do, shown beside its reading.
 _WOULD = {
-    "lubricant": "a viscosity that grows shifts torque to lower speeds, that of least torque with it",
-    "film": "a layer of oil that shrinks brings the damping exponent toward 0 where it is cold and fast, and "
-    "leaves the slow and hot alone",
-    "contact": "faces that wear move torque where it is hot and slow, and the speed of least torque with it",
-    "load or grip": "a load moves torque at all speeds and temperatures alike",
-    "no-load torque": "bearings and gears move torque by as much at all temperatures",
-    "temperature law": "another lubricant, or a sensor of temperature that drifts, does so",
+    "lubricant": "rising viscosity shifts the torque curve and its minimum to lower speeds",
+    "film": (
+        "a shrinking oil layer brings the damping exponent toward 0 when cold and fast, and changes "
+        "nothing when slow and hot"
+    ),
+    "contact": "wear changes the torque when hot and slow, and the speed of least torque",
+    "load or grip": "load changes the torque in the same way at all speeds and temperatures",
+    "no-load torque": "bearings and gears change the torque by the same amount at all temperatures",
+    "temperature law": "another lubricant, or drift of the temperature sensor, has this effect",
 }
 
 
@@ -139,14 +139,14 @@ def _listed(changes: tuple[Change, ...]) -> str:
 def _pointed(reading: Reading) -> str:
     """What a reading points to, in a clause."""
     if not any(reading.sets):
-        return "nothing moved with age beyond the errors"
+        return "nothing changed with age by more than the errors"
     if len(reading.sets) == 1:
         return f"the drift points to {_listed(reading.sure)}"
     if () in reading.sets:
-        return "whether anything moved with age is unknown"
+        return "whether anything changed with age cannot be determined"
     if reading.sure:
-        return f"the drift points to {_listed(reading.sure)}; what else moved cannot be determined"
-    return "something moved with age; what it is cannot be determined"
+        return f"the drift points to {_listed(reading.sure)}; other changes cannot be determined"
+    return "something changed with age, but what it is cannot be determined"
 
 
 def _of_one(reading: Reading) -> str:
@@ -154,8 +154,8 @@ def _of_one(reading: Reading) -> str:
     perhaps = {each.words: None for every in reading.sets for each in every}
     for each in reading.sure:
         perhaps.pop(each.words, None)
-    words = _listed(reading.sure) or "nothing for sure" * bool(perhaps) or "nothing"
-    return words + f"; perhaps {', '.join(perhaps)}" * bool(perhaps)
+    words = _listed(reading.sure) or "nothing certain" * bool(perhaps) or "nothing"
+    return words + f"; possibly {', '.join(perhaps)}" * bool(perhaps)
 
 
 def _evidence(change: Change) -> str:
@@ -163,25 +163,25 @@ def _evidence(change: Change) -> str:
         "" if change.temperature is None else f", {celsius(change.temperature):.0f} degC"
     )
     mean, low, high = (f"{1e3 * each:+.3g}" for each in (change.torque, change.low, change.high))
-    return f"Points to {change.words}: {mean} mN m [{low}, {high}] {where}; {_WOULD[change.name]}."
+    return f"This points to {change.words}: {mean} mN m [{low}, {high}] {where}; {_WOULD[change.name]}."
 
 
 @one_thread()
 def fit_drift(runs: Campaign | pl.DataFrame) -> Drift:
-    """Fit all runs of all specimens together and return what moved with age.
+    """Fit all runs of all specimens together and return what changed with age.
 
     Parameters
     ----------
     runs
-        A campaign, or a table as `Campaign.dwells` returns it: a row per dwell with ``run_id``, ``unit``,
-        ``age (...)``, ``speed (rad/s)``, ``torque (N m)``, ``torque error (N m)`` and ``temperature (K)``.
+        A campaign, or a table as from `Campaign.dwells`: one row per dwell with ``run_id``, ``unit``, ``age
+        (...)``, ``speed (rad/s)``, ``torque (N m)``, ``torque error (N m)`` and ``temperature (K)``.
 
     Raises
     ------
     ParameterError
-        If a column is missing, or a number is not one.
+        If a column is missing, or a value is not a number.
     InsufficientDataError
-        If no specimen was seen at two ages.
+        If no specimen was measured at two ages.
     """
     table = runs.dwells() if isinstance(runs, Campaign) else runs
     age_name = next((name for name in table.columns if name.startswith("age (")), "")
@@ -221,8 +221,9 @@ def _warnings(found: Fitted, dwells: Dwells, units: tuple[str, ...]) -> tuple[Wa
         warnings.append(
             Warning(
                 "no temperatures",
-                "temperature does not vary enough: only the shape over speed distinguishes level, viscosity "
-                "and no-load torque, and contact that recedes may be a lubricant that thickens",
+                "temperature varies too little. Level, viscosity and no-load torque are distinguished "
+                "only by the shape over speed, and less asperity contact may really be a thicker "
+                "lubricant",
                 remedy="record dwells at several temperatures",
                 severity="act",
             )
@@ -235,7 +236,7 @@ def _warnings(found: Fitted, dwells: Dwells, units: tuple[str, ...]) -> tuple[Wa
         warnings.append(
             Warning(
                 "seen at one age",
-                "seen at one age only, so that what is said of them depends on the others: {specimens}",
+                "seen at one age only, so their results depend on the other specimens: {specimens}",
                 severity="watch",
                 specimens=", ".join(alone[:_NAMED]) + " and more" * (len(alone) > _NAMED),
             )
@@ -243,7 +244,7 @@ def _warnings(found: Fitted, dwells: Dwells, units: tuple[str, ...]) -> tuple[Wa
     if not found.settled:
         warnings.append(
             Warning(
-                "fit not converged", "the fit did not converge: take the numbers with care", severity="act"
+                "fit not converged", "the fit did not converge, so its numbers are uncertain", severity="act"
             )
         )
     return tuple(warnings)
@@ -252,9 +253,9 @@ def _warnings(found: Fitted, dwells: Dwells, units: tuple[str, ...]) -> tuple[Wa
 def _few_specimens(count: int) -> Warning:
     return Warning(
         "few specimens",
-        "one specimen does not show how specimens differ: the intervals are those of this specimen"
+        "one specimen does not show how specimens differ. The intervals are those of this specimen"
         if count == 1
-        else "{specimens} specimens show little of how specimens differ: the intervals over all are wide",
+        else "{specimens} specimens show little of how specimens differ. The intervals over all are wide",
         severity="watch",
         specimens=count,
     )

@@ -51,7 +51,7 @@ def filled_dwells(campaign: Campaign, runs: Runs) -> tuple[FilledDwells, IntArra
     known = np.isfinite(columns).all(axis=1) & (columns[:, 0] > 0.0) & (columns[:, 2] > 0.0)
     if not known.any():
         raise InsufficientDataError(
-            "no dwell of the campaign has a temperature and a torque: the film needs both, so record them"
+            "no dwell of the campaign has both temperature and torque, which the film needs. Record both"
         )
     place = {run: i for i, run in enumerate(runs.run)}
     of = np.array([place[run] for run in table["run_id"].to_list()])[known]

@@ -123,7 +123,7 @@ class FilmOfRuns:
             warnings=(
                 Warning(
                     "starvation defined",
-                    "the film starves where the layer of oil is thinner than a flooded film at {point} "
+                    "the film is starved where the oil layer is thinner than a flooded film at {point} "
                     "({speed:.4g rpm}, {temperature:.4g degC})",
                     point=self.points[0].name,
                     speed=self.points[0].speed,
@@ -144,22 +144,21 @@ def film_of_runs(campaign: Campaign, machine: Machine, cold: float | None) -> Fi
     """
     runs = Runs.of(campaign)
     if not runs.run:
-        raise InsufficientDataError(f"{campaign.path.name} holds no run: add logs first")
+        raise InsufficientDataError(f"{campaign.path.name} has no runs. Add logs first")
     dwells, places = filled_dwells(campaign, runs)
     usable = _shows_film(dwells)
     if not usable.any():
         raise InsufficientDataError(
-            f"no run has {_FEWEST} dwells over {_TEMPERATURE_RANGE:g} K or more: one temperature cannot "
-            "distinguish a thin layer of oil from a thick oil, so record cold and hot ones"
+            f"no run has {_FEWEST} dwells over {_TEMPERATURE_RANGE:g} K or more. At one temperature, a "
+            "thin oil layer looks like a thick oil. Record cold and hot dwells"
         )
     dwells, places = dwells.rows(np.flatnonzero(usable)), places[usable]
     points = _points(machine, dwells, [runs.unit[i] for i in places], cold)
     found = layers(dwells, machine, speed=points[1].speed, kelvin=points[1].temperature)
     if (scatter := float(np.median(found.scatter))) > _BAD:
         raise InsufficientDataError(
-            f"the dwells of most runs scatter about the law of the film by more than {_BAD:g} times their "
-            f"errors ({scatter:.3g} in the middle): nip, lubricant or load are not those of the machine's "
-            "file"
+            f"dwells of most runs scatter about the fit of the film by more than {_BAD:g} times their "
+            f"errors (median {scatter:.3g}). Nip, lubricant or load differ from the machine file"
         )
     films = tuple(
         flooded(*film_of(machine), np.array([point.speed]), np.array([point.temperature])) for point in points
@@ -168,7 +167,8 @@ def film_of_runs(campaign: Campaign, machine: Machine, cold: float | None) -> Fi
     if not usable.all():
         few = Warning(
             "runs without a film",
-            "{count} of {runs} runs have too few dwells or one temperature: they show no film",
+            "{count} of {runs} runs have too few dwells or only one temperature, so their film cannot "
+            "be determined",
             severity="watch",
             count=int(np.count_nonzero(~usable)),
             runs=usable.size,
@@ -207,7 +207,8 @@ def _warnings(runs: Runs, places: IntArray, found: Layers) -> tuple[Warning, ...
         warnings.append(
             Warning(
                 "runs without starvation",
-                "{count} of {runs} runs show no starvation: of their layer only a lower bound is known",
+                "{count} of {runs} runs show no starvation, so only a lower bound of their oil layer "
+                "is known",
                 count=unseen,
                 runs=len(places),
             )
@@ -220,8 +221,8 @@ def _warnings(runs: Runs, places: IntArray, found: Layers) -> tuple[Warning, ...
         warnings.append(
             Warning(
                 "dwells scatter",
-                "dwells of {which} scatter about the law by more than {factor:g} times their errors: nip, "
-                "lubricant or load are not those of the machine's file",
+                "dwells of {which} scatter about the fit by more than {factor:g} times their errors. "
+                "Nip, lubricant or load differ from the machine file",
                 severity="act",
                 which=", ".join(bad[:_NAMED]) + more,
                 factor=_BAD,

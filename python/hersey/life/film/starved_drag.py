@@ -205,6 +205,6 @@ def film_of(machine: Machine) -> tuple[Contact, Lubricant]:
     """
     if machine.contact is None or machine.lubricant is None:
         raise ParameterError(
-            "the film needs the nip and what is in it: state [contact] and [lubricant] in the machine's file"
+            "the film needs nip and lubricant. Add [contact] and [lubricant] to the machine file"
         )
     return machine.contact, machine.lubricant

@@ -99,7 +99,7 @@ class LayersOfSpecimens:
         self, own: OwnAges, state: FilmPoint, age_unit: str, warnings: tuple[Warning, ...]
     ) -> AgesAtLimit:
         """Return the ages at which the specimens starve at a point, of their draws."""
-        quantity = f"the flooded film over the layer at {state.name}"
+        quantity = f"ratio of flooded film to oil layer at {state.name}"
         return ages_at_limit(quantity, age_unit, 1.0, self.names, own, self.last, warnings)
 
     def with_all(self, own: OwnAges, names: tuple[str, ...]) -> OwnAges:

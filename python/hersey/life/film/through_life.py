@@ -40,7 +40,7 @@ _CURVES = np.linspace(0.0, 2.5, 51)
 
 @dataclass(frozen=True, repr=False)
 class FilmLife(Result):
-    """The film through life.
+    """The film of each run and specimen through life.
 
     ``points`` are the fastest operating point and the cold corner. Of each run, (points, runs): ``film`` over
     that of a flooded inlet at the same viscosity and speed, and its ``thickness`` (m); and the ``layer`` of
@@ -56,17 +56,20 @@ class FilmLife(Result):
     runs: Runs
     points: Annotated[tuple[FilmPoint, ...], Means("fastest operating point, cold corner")]
     film: Annotated[
-        tuple[Estimates, ...], Means("over that of a flooded inlet, at each point, shape (runs,)")
+        tuple[Estimates, ...], Means("ratio to the film of a flooded inlet, at each point, shape (runs,)")
     ]
     thickness: Annotated[tuple[Estimates, ...], Means("of the film at each point, shape (runs,)", "m")]
     layer: Annotated[Estimates, Means("of oil on the inlet side, shape (runs,)", "m")]
-    viscosity: Annotated[Estimates, Means("over that of the lubricant, shape (runs,)")]
-    systematic: Annotated[float, Means("factor by which all layers may be off together")]
+    viscosity: Annotated[Estimates, Means("ratio to that of new lubricant, shape (runs,)")]
+    systematic: Annotated[float, Means("factor by which all layers may be wrong together")]
     scatter: Annotated[
-        FloatArray, Means("of the dwells about the law, over their errors", shape="(runs,)", open=True)
+        FloatArray,
+        Means("scatter of the dwells about the fit, in units of their errors", shape="(runs,)", open=True),
     ]  #: of the dwells of each run about the law, over their errors
     ages: FloatArray
-    curves: Annotated[tuple[Estimates, ...], Means("film over flooded at each point, shape (units, ages)")]
+    curves: Annotated[
+        tuple[Estimates, ...], Means("ratio of film to flooded film at each point, shape (units, ages)")
+    ]
     layers: Annotated[Estimates, Means("shape (units, ages)", "m")]
     needs: Annotated[tuple[FloatArray, ...], Means("flooded film at each point", "m", shape="(units, ages)")]
     starves: tuple[AgesAtLimit, ...]
@@ -79,24 +82,24 @@ class FilmLife(Result):
     _starvation: Indicator = field(repr=False)
 
     def starved(self, point: int = 0) -> BoolArray:
-        """Return which runs are starved at a point, their whole interval below the limit."""
+        """Return which runs are starved at a point, with their whole interval below the limit."""
         return np.asarray(self.film[point].high < STARVED)
 
     def headline(self) -> str:
-        """Return how many specimens starve at the fastest operating point, and when the next ones do."""
+        """Return how many specimens starve at the fastest operating point, and when half of new ones do."""
         last = _last_runs(self.runs)
         starved = [self.runs.unit[i] for i in last if self.starved()[i]]
         text = f"{len(starved)} of {len(last)} specimens starve of oil at {self.points[0].name}"
         b50 = self.starves[0].b50.age
-        return f"{text}; half of new specimens at {b50} {self.runs.age_unit}"
+        return f"{text}; half of new specimens starve by {b50} {self.runs.age_unit}"
 
     def summary(self) -> str:
         """Return film, layer and ages of each specimen as text."""
         unit = self.runs.age_unit
         lines = [self.headline()]
         lines += [
-            "film over that of a flooded inlet, same viscosity and speed, when last seen; starved below "
-            f"{STARVED:.2f}"
+            "ratio of film to that of a flooded inlet at the same viscosity and speed, when last seen "
+            f"(starved below {STARVED:.2f})"
         ]
         for i in _last_runs(self.runs):
             films = ", ".join(
@@ -107,18 +110,20 @@ class FilmLife(Result):
             lines.append(f"  {name} at {age:.6g}: {films}; layer {_shown(self.layer, i, 1e6)} um")
         lines += [f"  {point}" for point in self.points]
         for point, ages in zip(self.points, self.starves, strict=True):
-            lines.append(f"age ({unit}) at which the layer is thinner than the flooded film, {point.name}")
+            lines.append(
+                f"age ({unit}) at which the layer becomes thinner than the flooded film, {point.name}"
+            )
             if all(each.age.value == 0.0 for each in ages.units):
-                lines.append("  all specimens: from the new specimen on")
+                lines.append("  all specimens: starved from new")
             else:
                 lines += [f"  {each}" for each in (*ages.units, ages.b10, ages.b50)]
         lines.append(
-            f"oil of the layer, mm^3, on a track of {1e3 * self.track:.4g} mm: new, when last seen, and what "
-            f"the film then needs at {self.points[0].name}"
+            f"oil in the layer, mm^3, on a track of {1e3 * self.track:.4g} mm: when new, when last "
+            f"seen, and needed for a flooded film at {self.points[0].name}"
         )
         lines += [f"  {_volumes(each)}" for each in self.oil]
         lines.append(
-            f"law dh/dt = -K h^3/2 - e h, viscosity exp(g t); median specimen, per {unit}: "
+            f"fitted law dh/dt = -K h^3/2 - e h with viscosity exp(g t), median specimen, per {unit}: "
             + ", ".join(f"{name} {each}" for name, each in self.law.items())
         )
         return "\n".join([*lines, *(f"- {each}" for each in self.warnings)])
@@ -129,14 +134,14 @@ class FilmLife(Result):
         Raises
         ------
         ParameterError
-            If they are of other runs.
+            If they come from other runs.
         """
         if indicators.runs.run != self.runs.run:
-            raise ParameterError("the indicators are of other runs than the film")
+            raise ParameterError("the indicators and the film come from different runs")
         return replace(indicators, each=(*indicators.each, self._starvation))
 
     def to_frame(self) -> pl.DataFrame:
-        """Return one row per run; infinite where an end is not known."""
+        """Return one row per run; infinite where a bound is unknown."""
         import polars as pl
 
         columns: dict[str, Any] = {
@@ -172,7 +177,7 @@ def film_life(
     evaporation: float | None = None,
     seed: int = 0,
 ) -> FilmLife:
-    """Return the film of the specimens of a campaign through their life.
+    """Return the film of the specimens of a campaign over their life.
 
     Each run is fitted by the torque of film, asperities and no-load torque, with viscosity, layer of oil,
     rest, roughness and boundary friction free (`layer`); layer and viscosity of all runs then follow the law
@@ -181,21 +186,20 @@ def film_life(
     Parameters
     ----------
     campaign
-        Dwells at several speeds and temperatures tell most: cold and fast ones see the layer, hot ones the
-        level.
+        Campaign. Dwells at several speeds and temperatures are most informative: cold, fast ones show the
+        layer, hot ones the level.
     machine
-        Contact and lubricant; asperities and boundary friction if stated; operating points.
+        Machine with contact, lubricant and operating points, and asperities and boundary friction if known.
     cold
-        Temperature of the cold corner, K; else that of ``[life]``, or the coldest that all specimens
-        recorded.
+        Temperature of the cold corner, K. Default: that of ``[life]``, or the lowest recorded by all
+        specimens.
     track
-        Length of the track that carries the layer, m, by which it becomes an amount; the roll's circumference
-        if left out.
+        Length of the track that carries the layer, m, to compute the amount of oil. Default: the
+        circumference of the roll.
     side_flow, evaporation
-        K in 1/(m^2 age) and e in 1/age, in the campaign's unit of age, where they are known; fitted if left
-        out.
+        K in 1/(m^2 age) and e in 1/age, in the campaign's unit of age. Default: fitted.
     seed
-        Of the draws behind the law.
+        Random seed.
 
     Raises
     ------
@@ -212,7 +216,8 @@ def film_life(
     place = np.array([names.index(name) for name in of_run])
     if most_ages(place, age) < 2:
         raise InsufficientDataError(
-            "no specimen was seen at two ages, so nothing shows how its oil thins: add runs at another age"
+            "no specimen was measured at two ages, so how its oil layer thins is unknown. Add runs at "
+            "another age"
         )
     drawn = fit_depletion(read.layers, place, age, side_flow=side_flow, evaporation=evaporation, seed=seed)
     last = np.array([age[place == k].max() for k in range(len(names))])
@@ -267,7 +272,8 @@ def _of_the_law(age: FloatArray, place: IntArray, machine: Machine) -> list[Warn
         warnings.append(
             Warning(
                 "two ages at most",
-                "no specimen was seen at three ages: side flow and evaporation cannot be distinguished",
+                "no specimen was measured at three ages, so side flow and evaporation cannot be "
+                "distinguished",
                 severity="watch",
             )
         )
@@ -275,16 +281,16 @@ def _of_the_law(age: FloatArray, place: IntArray, machine: Machine) -> list[Warn
         warnings.append(
             Warning(
                 "no asperities",
-                "the machine's file states no asperities: dwells with a film below four times the roughness "
-                "are excluded",
+                "the machine file has no asperities, so dwells with a film below four times the "
+                "roughness are excluded",
                 severity="watch",
             )
         )
     warnings.append(
         Warning(
             "nip taken as constant",
-            "thicker oil moves torque at all dwells, a thin layer at cold and fast ones: a nip that widens "
-            "with age would be read as thicker oil",
+            "the nip is assumed constant. Thicker oil raises torque at all dwells, a thin layer only "
+            "changes cold and fast ones; a nip that widens with age would look like thicker oil",
         )
     )
     return warnings

@@ -62,10 +62,10 @@ class GrowthCurves:
 
 @dataclass(frozen=True, repr=False)
 class Growth(Result):
-    """The growth of an indicator over specimens.
+    """Growth of an indicator over specimens.
 
-    ``weights`` are those of the laws, and sum to 1; ``parameters`` those of each law: the median new specimen
-    (``level``), growth of the median specimen per age (``rate``; the whole of it for a saturating law), the
+    ``weights`` are those of the growth laws and sum to 1. ``parameters`` holds for each law: the value of the
+    median new specimen (``level``), its growth per age (``rate``; the total growth for a saturating law), the
     spreads between specimens and the scatter of runs (standard deviations of the logarithm), and the shape.
     """
 
@@ -75,13 +75,13 @@ class Growth(Result):
     quantity: str
     age_unit: str
     units: tuple[str, ...]
-    runs: Annotated[tuple[int, ...], Means("of each unit")]  #: of each specimen
-    last_age: Annotated[tuple[float, ...], Means("of each unit")]
-    weights: Annotated[dict[str, float], Means("of the laws, sum 1")]
+    runs: Annotated[tuple[int, ...], Means("of each specimen")]  #: of each specimen
+    last_age: Annotated[tuple[float, ...], Means("of each specimen")]
+    weights: Annotated[dict[str, float], Means("of the growth laws, sum 1")]
     parameters: Annotated[dict[str, dict[str, Interval]], Means("of each law")]
     effective: (
         Annotated[
-            float, Means("how many independent draws the posterior is worth")
+            float, Means("number of independent draws that the posterior is worth")
         ]  #: how many independent draws the posterior is worth, of the least sampled law that counts
     )
     warnings: tuple[Warning, ...]
@@ -93,7 +93,7 @@ class Growth(Result):
 
     @property
     def law(self) -> str | None:
-        """The law that the data name, or None where several remain."""
+        """The growth law that the data select, or None if several fit."""
         name = max(self.weights, key=lambda each: self.weights[each])
         return name if self.weights[name] >= NAMED else None
 
@@ -104,7 +104,8 @@ class Growth(Result):
         lines = [
             self.headline(),
             f"{len(self.units)} specimens, {sum(self.runs)} runs, up to {max(self.last_age):.6g}{unit}",
-            "weights of the laws: " + ", ".join(f"{name} {self.weights[name]:.2f}" for name in heaviest),
+            "weights of the growth laws: "
+            + ", ".join(f"{name} {self.weights[name]:.2f}" for name in heaviest),
         ]
         for name in heaviest:
             if self.weights[name] >= 0.1:
@@ -113,14 +114,14 @@ class Growth(Result):
         return "\n".join([*lines, *(f"- {each}" for each in self.warnings)])
 
     def headline(self) -> str:
-        """Return the law that the data name."""
+        """Return the growth law that the data select."""
         if self.law == "constant":
             return f"{self.quantity} does not grow"
         if self.law:
             formula = next(law.formula for law in LAWS if law.name == self.law)
             return f"growth of {self.quantity}: {self.law}, {formula}"
         near = [name for name, weight in self.weights.items() if weight >= 0.05]
-        return f"growth of {self.quantity}: several laws remain ({', '.join(near)})"
+        return f"growth of {self.quantity}: several growth laws fit ({', '.join(near)})"
 
     def to_frame(self) -> pl.DataFrame:
         """Return the parameters of each law with its weight."""
@@ -140,16 +141,16 @@ class Growth(Result):
         Parameters
         ----------
         age
-            One age or more, in the unit of the data.
+            One or more ages, in the unit of the data.
 
         Raises
         ------
         ParameterError
-            If an age is negative or no number.
+            If an age is negative or not a number.
         """
         ages = np.atleast_1d(numbers_of("age", age)).ravel()
         if not (np.isfinite(ages) & (ages >= 0.0)).all():
-            raise ParameterError("an age is negative or no number: ages are counted from the new specimen")
+            raise ParameterError("an age is negative or not a number. Ages count from new")
         factors, last = self._beyond(BEYOND)[0], np.array(self.last_age)
         begin, drawn = 0, []
         for units in self._of_specimens:
@@ -161,19 +162,20 @@ class Growth(Result):
         return GrowthCurves(self.units, ages, median, low, high)
 
     def reaches(self, limit: float, *, limit_error: float = 0.0, accumulates: bool = False) -> AgesAtLimit:
-        """Return the ages at which each specimen, and a tenth and half of new specimens, reach a limit.
+        """Return the ages at which each specimen, and 10 % and 50 % of new specimens, reach a limit.
 
-        A specimen that has passed the limit already follows from the same draws; one that begins above it
+        A specimen that has already passed the limit is treated with the same draws; one that starts above it
         has age 0.
 
         Parameters
         ----------
         limit
-            In the unit of the values, positive; of an indicator that accumulates, times the unit of age.
+            Limit in the unit of the values, positive; for an indicator that accumulates, times the unit of
+            age.
         limit_error
-            Relative standard error of the limit and of the sensor, common to all runs.
+            Relative standard error of limit and sensor, common to all runs.
         accumulates
-            Whether the limit is that of the integral of the values from age 0.
+            Whether the limit applies to the integral of the values from age 0.
 
         Raises
         ------
@@ -197,11 +199,10 @@ class Growth(Result):
     ) -> tuple[FloatArray, FloatArray]:
         """Return equally probable ages at a limit, of the specimens and of new ones: (draws, specimens) each.
 
-        A row holds all specimens under one draw of what they share and of the limit. Arguments are those of
-        `reaches`.
+        Each row is one draw of the shared parameters and of the limit. Arguments as for `reaches`.
         """
         if not (math.isfinite(limit) and limit > 0.0):
-            raise ParameterError(f"a limit of {limit} cannot be reached: it must be positive", value=limit)
+            raise ParameterError(f"a limit is {limit}: it must be greater than 0", value=limit)
         if not (math.isfinite(limit_error) and limit_error >= 0.0):
             raise ParameterError(f"the error of the limit is {limit_error}: it must not be negative")
         level = math.log(limit) - self._scale[1] - (math.log(self._scale[0]) if accumulates else 0.0)
@@ -249,7 +250,7 @@ class Growth(Result):
         ]
 
     def residuals(self) -> FloatArray:
-        """Return what the growth leaves of the logarithms of the runs, in the order given."""
+        """Return the residuals of the logarithms of the runs, in the order given."""
         every = sum(len(units.scatter) for units in self._of_specimens)
         step = max(1, every // _OF_MIDDLE)
         total, number = np.zeros(self._points.value.shape), 0
@@ -281,32 +282,31 @@ def fit_growth(
     Priors, all weak: ln(r T) of the median specimen N(-0.5, 2^2), T being the greatest age (ln s of a
     saturating law); standard deviations between specimens half-normal of scale 1 (ln of level and rate);
     scatter of runs half-normal of scale 0.1; ln(tau/T) N(0.3, 1); c N(0.5, 1); logit q N(-1, 1.5^2); logit p
-    N(1, 1). That it grows is as probable beforehand as that it does not; the laws of growth share that
-    equally.
+    N(1, 1). Growth and no growth are equally probable a priori; the growth laws share their half equally.
 
     Parameters
     ----------
     unit
         Name of the specimen of each run.
     age
-        Age of each run since the specimen was new, in any one unit; shape (runs,).
+        Age of each run since the specimen was new, in one unit, shape (runs,).
     value
-        The indicator, positive, in any one unit; shape (runs,).
+        Indicator, positive, in one unit, shape (runs,).
     error
-        Relative standard error of each value, of the fit of that run; one number or shape (runs,).
+        Relative standard error of each value from the fit of its run; one number or shape (runs,).
     quantity, age_unit
-        How to call the indicator and the unit of age.
+        Names of the indicator and of the unit of age.
     laws
-        Names of those to choose from; all of `laws.LAWS` by default.
+        Names of the growth laws to compare. Default: all of `laws.LAWS`.
     seed
-        Of the draws: the same data and seed give the same result.
+        Random seed; the same data and seed give the same result.
 
     Raises
     ------
     ParameterError
-        If a value is not positive, an age negative, an error negative, or any of them no number.
+        If a value is not positive, an age or error negative, or any of them not a number.
     InsufficientDataError
-        If no specimen was seen at two ages.
+        If no specimen was measured at two ages.
 
     Examples
     --------
@@ -357,9 +357,9 @@ def _chosen(laws: Sequence[str] | None) -> list[Law]:
         return list(LAWS)
     for name in laws:
         if name not in known:
-            raise ParameterError(f"no law of growth is called {name!r}; there are {', '.join(known)}")
+            raise ParameterError(f"unknown growth law {name!r}. Known laws: {', '.join(known)}")
     if not laws:
-        raise ParameterError(f"name one law of growth or more: {', '.join(known)}")
+        raise ParameterError(f"no growth law is given. Known laws: {', '.join(known)}")
     return [known[name] for name in dict.fromkeys(laws)]
 
 

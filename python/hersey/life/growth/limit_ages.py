@@ -59,7 +59,7 @@ class AgeAtLimit(Record):
         float, Means("share of draws that never reach it")
     ]  #: share of draws that never reach it
     last: Annotated[
-        float, Means("age last seen; null for the population", open=True)
+        float, Means("age when last seen; null for the population", open=True)
     ]  #: greatest age of its data; NaN for the population
     passed: Annotated[
         float, Means("share of draws that have reached it by then")
@@ -72,13 +72,13 @@ class AgeAtLimit(Record):
     @property
     def outcome(self) -> str:
         """Whether it has passed already, or may never come, in words that follow the age."""
-        words = f", passed already (last seen at {self.last:.10g})" if self.passed > 0.5 else ""
-        return words + (f", never in {self.never:.0%} of the draws" if self.never > _SAID else "")
+        words = f", already passed (last seen at {self.last:.10g})" if self.passed > 0.5 else ""
+        return words + (f", never in {self.never:.0%} of draws" if self.never > _SAID else "")
 
 
 @dataclass(frozen=True, repr=False)
 class AgesAtLimit(Result):
-    """The ages at which specimens and population reach a limit."""
+    """Ages at which specimens and population reach a limit."""
 
     quantity: str
     age_unit: str
@@ -87,7 +87,7 @@ class AgesAtLimit(Result):
     b10: AgeAtLimit  #: a tenth of new specimens has reached it
     b50: AgeAtLimit
     warnings: tuple[Warning, ...]
-    accumulates: Annotated[bool, Means("the limit is that of the integral over age")] = (
+    accumulates: Annotated[bool, Means("whether the limit applies to the integral over age")] = (
         False  #: the limit is that of the integral over age
     )
 
@@ -99,12 +99,12 @@ class AgesAtLimit(Result):
         return "\n".join([*lines, *(f"- {each}" for each in self.warnings)])
 
     def headline(self) -> str:
-        """Return the age of half the population."""
+        """Return the age at which half of the population reaches the limit."""
         age = f"{self.b50.age} {self.age_unit}"
         return f"half of new specimens reach {self.quantity} = {self.limit:.4g} at {age}"
 
     def to_frame(self) -> pl.DataFrame:
-        """Return one row per specimen, then the population; infinite where it is never reached."""
+        """Return one row per specimen, then the population; infinite if never reached."""
         import polars as pl
 
         rows = [*self.units, self.b10, self.b50]

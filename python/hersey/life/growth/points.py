@@ -53,11 +53,13 @@ def checked_runs(
         columns[2] = np.full(len(names), float(columns[2]))
     for name, column in zip(("age", "value", "error"), columns, strict=True):
         if column.shape != (len(names),):
-            raise ParameterError(f"{len(names)} specimens are named, but {name} has the shape {column.shape}")
+            raise ParameterError(f"{len(names)} specimens are named, but {name} has shape {column.shape}")
     rules = (("age", "negative"), ("value", "not positive"), ("error", "negative"))
     for (name, fault), column in zip(rules, columns, strict=True):
         for i in np.flatnonzero(~np.isfinite(column)):
-            raise ParameterError(f"{name} of run {i + 1} (specimen {names[i]!r}) is no number", index=int(i))
+            raise ParameterError(
+                f"{name} of run {i + 1} (specimen {names[i]!r}) is not a number", index=int(i)
+            )
         bad = column <= 0.0 if name == "value" else column < 0.0
         for i in np.flatnonzero(bad):
             raise ParameterError(
@@ -68,10 +70,10 @@ def checked_runs(
                 index=int(i),
             )
     if "" in names:
-        raise ParameterError(f"run {names.index('') + 1} names no specimen", index=names.index(""))
+        raise ParameterError(f"run {names.index('') + 1} has no specimen name", index=names.index(""))
     if most_ages(np.unique(names, return_inverse=True)[1], columns[0]) < 2:
         raise InsufficientDataError(
-            "no specimen was seen at two ages, so nothing shows its growth: add runs at another age"
+            "no specimen was measured at two ages, so its growth is unknown. Add runs at another age"
         )
     return names, columns
 
@@ -114,10 +116,12 @@ def warnings_of(points: Points) -> tuple[Warning, ...]:
         warnings.append(
             Warning(
                 "few specimens",
-                "one specimen does not show how specimens differ: B10 and B50 depend on the prior"
+                "one specimen does not show how specimens differ, so B10 and B50 depend on the prior"
                 if specimens == 1
-                else "{specimens} specimens show little of how specimens differ: B10 and B50 depend partly "
-                "on the prior of the spread",
+                else (
+                    "{specimens} specimens show little of how specimens differ, so B10 and B50 depend "
+                    "partly on the prior"
+                ),
                 severity="watch",
                 specimens=specimens,
             )
@@ -127,8 +131,8 @@ def warnings_of(points: Points) -> tuple[Warning, ...]:
         warnings.append(
             Warning(
                 "growth of one age",
-                "{count} of the specimens {count:was|were} seen at one age only: their growth is that of the "
-                "others",
+                "{count} {count:specimen was|specimens were} seen at one age only; their growth is "
+                "assumed to be that of the others",
                 severity="watch",
                 count=once,
             )
@@ -137,8 +141,8 @@ def warnings_of(points: Points) -> tuple[Warning, ...]:
         warnings.append(
             Warning(
                 "values fall",
-                "values fall with age, which no law of growth does",
-                remedy="give the reciprocal of what falls",
+                "values fall with age, but every growth law rises",
+                remedy="give the reciprocal of the falling quantity",
                 severity="act",
             )
         )

@@ -67,13 +67,15 @@ def blocks_of_record(age: ArrayLike, value: ArrayLike) -> Blocks:
         raise ParameterError(f"age {ages.shape} and value {values.shape} must be lists of equal length")
     for name, column in (("age", ages), ("value", values)):
         for i in np.flatnonzero(~np.isfinite(column)):
-            raise ParameterError(f"{name} of sample {i + 1} is no number: leave it out", index=int(i))
+            raise ParameterError(f"{name} of sample {i + 1} is not a number. Remove it", index=int(i))
     for i in np.flatnonzero(np.diff(ages) < 0.0):
-        raise ParameterError(f"age of sample {i + 2} is below that before: sort the record", index=int(i) + 1)
+        raise ParameterError(
+            f"age of sample {i + 2} is below that of the sample before. Sort the record", index=int(i) + 1
+        )
     if ages.size < _LEAST * _COUNTS[-1]:
         raise InsufficientDataError(
-            f"{ages.size} samples are too few for {_COUNTS[-1]} blocks of {_LEAST}: record more, or "
-            "take them as runs with errors of their own"
+            f"{ages.size} samples are too few for {_COUNTS[-1]} blocks of {_LEAST}. Record more, or "
+            "give them as runs with their own errors"
         )
     fine = [count for count in _COUNTS if ages.size >= _LEAST * count]
     for count in fine:
@@ -88,7 +90,8 @@ def _cut(age: FloatArray, value: FloatArray, count: int) -> Blocks:
     means = np.array([mean_and_error(value[part])[:2] for part in parts])
     if means[:, 0].min() <= 0.0:
         raise InsufficientDataError(
-            "the mean of a block is not positive: leave out where the drive stood or the zero was taken"
+            "the mean of a block is not positive. Remove stretches where the drive stood or the zero "
+            "was recorded"
         )
     bends = np.diff(means[:, 0], 2)
     power = float(bends @ bends)

@@ -71,8 +71,8 @@ class AtStates:
             warnings.append(
                 Warning(
                     "extrapolated",
-                    "extrapolated in {count} of {runs} runs, whose dwells do not enclose it (not recorded "
-                    "there, or stalled): {which}",
+                    "extrapolated in {count} of {runs} runs, whose dwells do not enclose this state "
+                    "(not recorded there, or stalled): {which}",
                     severity="watch",
                     count=len(beyond),
                     runs=known.size,
@@ -85,7 +85,8 @@ class AtStates:
             warnings.append(
                 Warning(
                     "runs without a value",
-                    "unknown in {count} of {runs} runs, of other temperatures or lost in noise: {which}",
+                    "unknown in {count} of {runs} runs, which have other temperatures or too much "
+                    "noise: {which}",
                     severity="watch",
                     count=len(silent),
                     runs=known.size,
@@ -99,7 +100,7 @@ class AtStates:
         parts = [f"{factor:.3g} times the speed"] if abs(factor - 1.0) > 0.02 else []
         if abs(kelvin) > 1.0:
             parts.append(f"{abs(kelvin):.3g} K {'warmer' if kelvin > 0 else 'colder'}")
-        return f"{' and '.join(parts) or 'just beside'} than the nearest dwell".replace(
+        return f"{' and '.join(parts) or 'just outside'} than the nearest dwell".replace(
             "speed than", "speed of"
         )
 

@@ -70,7 +70,7 @@ def gear_fatigue(
         return [], [
             Warning(
                 NOT_JUDGED,
-                "add [gear] with torque, cycles and slope of its S-N curve",
+                "add [gear] with torque, cycles and slope of its S-N curve to the machine file",
                 severity="act",
                 where="gear fatigue",
                 table="gear",
@@ -125,7 +125,7 @@ class _GearLoad:
         self.warnings.append(
             Warning(
                 "starts counted",
-                "{starts:.3g} starts per {age_unit}, without breakaway and acceleration",
+                "{starts:.3g} starts per {age_unit}, without break-away and acceleration",
                 starts=per_age,
                 age_unit=one_of(self.age_unit),
             )
@@ -149,7 +149,8 @@ class _GearLoad:
         self.warnings.append(
             Warning(
                 "duty scaled",
-                "the duty recorded grows as the torque at the points, from that of the youngest runs",
+                "the recorded duty is scaled with the torque at the operating points, starting from "
+                "the youngest runs",
             )
         )
         return True
@@ -169,7 +170,8 @@ class _GearLoad:
             self.warnings.append(
                 Warning(
                     "stick-slip not counted",
-                    'stick-slip at the points is not in it: [life] lacks travel = "300 mm"',
+                    'stick-slip at the operating points is not included. Add travel = "300 mm" to '
+                    "[life] to include it",
                     severity="act",
                 )
             )
@@ -184,7 +186,8 @@ class _GearLoad:
             self.warnings.append(
                 Warning(
                     "stick-slip counted",
-                    "stick-slip at {point} in {count} {count:run|runs}, where torque falls with speed",
+                    "stick-slip at {point} is included in {count} {count:run|runs}, where torque falls "
+                    "with speed",
                     point=point.name,
                     count=len(places),
                 )
@@ -213,8 +216,8 @@ class _GearLoad:
             warnings.append(
                 Warning(
                     "runs without a rate",
-                    "unknown in {count} {count:run|runs}: no damage, a peak that breaks the part, or no "
-                    "torque there",
+                    "unknown in {count} {count:run|runs}: no damage, a peak that breaks the part, or "
+                    "no torque there",
                     severity="watch",
                     count=silent,
                 )

@@ -57,8 +57,8 @@ def load_cases(machine: Machine, runs: CampaignRuns) -> tuple[State, State] | No
     if slowest is None or fastest is None:
         return None
     coldest, hottest = runs.shared("temperature", least=True), runs.shared("temperature", least=False)
-    cold_from = hot_from = "that all specimens recorded" if coldest is not None else ""
-    slow_from = fast_from = "slowest and fastest that all specimens recorded"
+    cold_from = hot_from = "recorded by all specimens" if coldest is not None else ""
+    slow_from = fast_from = "slowest and fastest recorded by all specimens"
     if machine.life.coldest is not None and coldest is not None:
         coldest, cold_from = machine.life.coldest, "[life] coldest"
     if machine.limits.speed is not None:

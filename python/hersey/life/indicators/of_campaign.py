@@ -37,22 +37,22 @@ _Found = tuple[list[Indicator], list[Warning]]
 
 @one_thread()
 def indicators_of(campaign: Campaign, machine: Machine, *, signs: bool = True) -> Indicators:
-    """Return what the runs of a campaign say of each failure mode whose limit the machine states.
+    """Return the indicators of all failure modes whose limits the machine states.
 
-    Without ``signs`` V*, a precursor that takes longest, is left out.
+    If ``signs`` is false, V* (a precursor, and the slowest to compute) is omitted.
 
     Raises
     ------
     InsufficientDataError
-        If the campaign has no run, or none with dwells enough.
+        If the campaign has no run with enough dwells.
     ParameterError, UnitError
-        If [gear] states no curve, or an age in another unit than the campaign's.
+        If [gear] has no S-N curve, or an age in a unit other than the campaign's.
     """
     runs = read_runs_of(campaign, machine.rest)
     ends = load_cases(machine, runs)
     if ends is None:
         raise InsufficientDataError(
-            f"{campaign.path.name} has no run with dwells: add logs with 'hersey campaign add'"
+            f"{campaign.path.name} has no run with dwells. Add logs with 'hersey campaign add'"
         )
     hottest = ends[_SLOW].temperature
     still = State(
@@ -149,8 +149,8 @@ class _Asked:
             warnings.append(
                 Warning(
                     "no-load torque unknown",
-                    "all torque counts as the belt's, and the roll carries less",
-                    remedy="add [rest]",
+                    "all torque is counted as the belt's, although the roll carries less",
+                    remedy="add [rest] to the machine file",
                     severity="watch",
                 )
             )
@@ -173,7 +173,7 @@ class _Asked:
         if static is None:
             return np.e * drag, Warning(
                 "break-away by rule",
-                "a belt at rest withstands e times its drag at the stick speed (Eq. 29)",
+                "break-away force is assumed to be e times the drag at the stick speed (Eq. 29)",
                 severity="watch",
             )
         age = estimates.runs.runs.age
@@ -184,7 +184,8 @@ class _Asked:
             static * self.machine.roll_radius * drag / new,
             Warning(
                 "break-away as stated",
-                "static friction as stated for the youngest runs, grown as the drag at the stick speed",
+                "static friction is as stated for the youngest runs and grows with the drag at the "
+                "stick speed",
             ),
         )
 
@@ -226,23 +227,32 @@ class _Asked:
         warnings = []
         if alike:
             warnings.append(
-                Warning("equal shares", "all points count alike", remedy="state a share in [[points]]")
+                Warning(
+                    "equal shares", "all operating points have equal weight", remedy="set share in [[points]]"
+                )
             )
         return Indicator(name, kind, si, limit, total**power, error, self.gain, warnings=tuple(warnings))
 
 
 def _lacks(mode: str, table: str, keys: str) -> Warning:
     """A failure mode that is not judged, and which keys of a table of the machine's file would do it."""
-    return Warning(NOT_JUDGED, "add [{table}] {keys}", severity="act", where=mode, table=table, keys=keys)
+    return Warning(
+        NOT_JUDGED,
+        "add {keys} to [{table}] of the machine file",
+        severity="act",
+        where=mode,
+        table=table,
+        keys=keys,
+    )
 
 
 def _lacks_points(mode: str, *, share: bool = False) -> Warning:
     """A failure mode that is not judged without operating points."""
     return Warning(
         NOT_JUDGED,
-        "add [[points]] with speed and temperature, and share"
+        "add [[points]] with speed, temperature and share to the machine file"
         if share
-        else "add [[points]] with speed and temperature",
+        else "add [[points]] with speed and temperature to the machine file",
         severity="act",
         where=mode,
         table="points",

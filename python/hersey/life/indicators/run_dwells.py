@@ -101,7 +101,7 @@ def _not_used(unused: list[tuple[int, int]], few: list[int]) -> tuple[Warning, .
         warnings.append(
             Warning(
                 "standing dwells excluded",
-                "dwells that do not turn are excluded: {which}",
+                "dwells at standstill are excluded: {which}",
                 which=which,
                 count=total,
             )
@@ -111,8 +111,8 @@ def _not_used(unused: list[tuple[int, int]], few: list[int]) -> tuple[Warning, .
         warnings.append(
             Warning(
                 "runs of few dwells",
-                "{count} {count:run has|runs have} fewer than {fewest} dwells and {count:is|are} not used "
-                "here: {which}",
+                "{count} {count:run has|runs have} fewer than {fewest} dwells and {count:is|are} not "
+                "used here: {which}",
                 severity="watch",
                 count=len(few),
                 fewest=FEWEST,

@@ -125,7 +125,8 @@ def _folds_of_runs(speed: FloatArray, drawn: int) -> Warning:
     """Of how many runs V* is known; its error is that of ``drawn`` runs."""
     return Warning(
         "V* of some runs",
-        "V* of {count} of {runs} runs, of {most} at the most; its error is the median of {drawn} runs",
+        "V* is known for {count} of {runs} runs, computed for at most {most}; its error is the median "
+        "of {drawn} runs",
         count=int(np.isfinite(speed).sum()),
         runs=speed.size,
         most=MOST_FOLDS,
@@ -252,7 +253,8 @@ def _warnings(estimates: AtStates, curves: Curves) -> tuple[Warning, ...]:
         warnings.append(
             Warning(
                 "no-load torque unknown",
-                "least of all torque together: the no-load torque is not known (add [rest])",
+                "this is the minimum of the total torque, because the no-load torque is unknown. Add "
+                "[rest] to the machine file",
                 severity="watch",
             )
         )
@@ -263,11 +265,11 @@ def _unknown_in(kind: str, count: int, runs: int) -> Warning:
     """Why so many runs do not show the transition."""
     return Warning(
         kind,
-        "unknown in {count} of {runs} runs: torque is least slower than they recorded"
+        "unknown in {count} of {runs} runs: the minimum of torque is below the recorded speeds"
         if kind == "slower than recorded"
-        else "unknown in {count} of {runs} runs: torque falls as far as they recorded"
+        else "unknown in {count} of {runs} runs: torque still falls at the fastest recorded speed"
         if kind == "faster than recorded"
-        else "unknown in {count} of {runs} runs, of other temperatures",
+        else "unknown in {count} of {runs} runs, which have other temperatures",
         severity="watch",
         count=count,
         runs=runs,

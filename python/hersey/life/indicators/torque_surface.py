@@ -208,7 +208,7 @@ class TorqueSurface:
         """Solve for the deviations at the dwells."""
         if dwells.speed.size < FEWEST:
             raise InsufficientDataError(
-                f"{dwells.speed.size} dwells: torque between them asks for {FEWEST} at the least"
+                f"only {dwells.speed.size} dwells: interpolating torque needs at least {FEWEST}"
             )
         self.dwells, self.kernel = dwells, kernel
         self._layout = _Layout(dwells)
@@ -253,7 +253,9 @@ class TorqueSurface:
             If the run does not cover this temperature.
         """
         if not self.covers(temperature):
-            raise ParameterError(f"the run is of other temperatures, and does not cover {temperature:.6g} K")
+            raise ParameterError(
+                f"the run was recorded at other temperatures and does not cover {temperature:.6g} K"
+            )
         speed = np.asarray(speed, float)
         mean, across, basis = self._predicted(speed, np.full_like(speed, temperature))
         steps = np.log(speed)[:, None] - np.log(speed)
@@ -311,7 +313,7 @@ def shared_kernel(runs: Sequence[RunDwells]) -> Kernel:
     """
     enough = [run for run in runs if run.speed.size >= FEWEST]
     if not enough:
-        raise InsufficientDataError(f"no run has {FEWEST} dwells: torque between them cannot be estimated")
+        raise InsufficientDataError(f"no run has {FEWEST} dwells, so torque between them cannot be estimated")
     layouts = [_Layout(_thinned(enough[i])) for i in _evenly(len(enough), _RUNS)]
     numbers = _START
     for tolerance in (1e-4, 1e-7):  # that about which logarithms are taken depends on the kernel, a little

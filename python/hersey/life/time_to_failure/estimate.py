@@ -60,7 +60,7 @@ class ShareEnded(Record):
 
 @dataclass(frozen=True, repr=False)
 class TimeToFailure(Result):
-    """What ends each specimen and the population, and when; ages in ``age_unit``."""
+    """Failure modes and times to failure of specimens and population; ages in ``age_unit``."""
 
     also_stated = ("population", "advice")
 
@@ -68,31 +68,31 @@ class TimeToFailure(Result):
     modes: tuple[Mode, ...]
     units: tuple[SpecimenEnd, ...]
     b10: Annotated[
-        AgeAtLimit, Means("a tenth of new units has ended, by whichever way")
+        AgeAtLimit, Means("age by which a tenth of new specimens has failed, by any mode")
     ]  #: a tenth of new specimens has ended, by whichever way
     b50: AgeAtLimit
     shares: Annotated[
-        dict[str, Interval], Means("of new units that each way ends")
+        dict[str, Interval], Means("share of new specimens that fail by each mode")
     ]  #: of new specimens that each way ends
     curve: ShareEnded
-    next_runs: Annotated[tuple[NextRun, ...], Means("what narrows most first")]  #: what narrows most first
+    next_runs: Annotated[tuple[NextRun, ...], Means("largest narrowing first")]  #: what narrows most first
     together: Annotated[
-        tuple[str, ...], Means("ways whose runs scatter together")
+        tuple[str, ...], Means("failure modes whose runs scatter together")
     ]  #: ways whose runs scatter together
     warnings: Annotated[
         tuple[Warning, ...],
-        Means("failure modes not judged, what is not known, then those of the modes that may come first"),
+        Means("failure modes not judged, what is unknown, then warnings of the modes that may come first"),
     ]  #: failure modes not judged, what is not known, then those of the modes that may come first
     seed: int = 0
 
     @property
     def ending(self) -> tuple[Mode, ...]:
-        """The ways that end a specimen: all but the precursors."""
+        """Failure modes that end a specimen: all but the precursors."""
         return tuple(mode for mode in self.modes if not mode.sign)
 
     @cached_property
     def population(self) -> Population:
-        """The specimens that have ended by now at their ages as estimated, the others as not failed."""
+        """Population with failed specimens at their estimated ages; the others have not failed."""
         seen = [each for each in self.units if each.age.last > 0.0]
         failed = np.array([each.age.passed > 0.5 for each in seen])
         last = np.array([each.age.last for each in seen])
@@ -102,38 +102,45 @@ class TimeToFailure(Result):
         )
 
     def summary(self) -> str:
-        """Return specimens, population, what is not known and what to measure next as text."""
+        """Return specimens, population, what is unknown and what to measure next as text."""
         unit = f" {self.age_unit}" if self.age_unit else ""
-        lines = [self.headline(), f"age of the first end{unit and f' ({unit.strip()})'}, 90 % intervals"]
+        lines = [self.headline(), f"age of first failure{unit and f' ({unit.strip()})'}, with 90 % intervals"]
         lines += [f"  {each}" for each in self.units[:_SHOWN]]
         if len(self.units) > _SHOWN:
             lines.append(f"  and {len(self.units) - _SHOWN} more specimens")
         lines += [f"  {self.b10}", f"  {self.b50}"]
         ordered = sorted(self.shares.items(), key=lambda item: -item[1].value)
         shares = ", ".join(f"{name} {each.value:.0%}" for name, each in ordered if each.value >= 0.005)
-        lines += [f"share of new specimens that each ends: {shares}", "each way by itself"]
+        lines += [
+            f"share of new specimens that fail by each mode: {shares}",
+            "age at which half of new specimens reach each limit, if it were the only one",
+        ]
         soon = FAR * max(each.age.last for each in self.units)
         far = [mode.name for mode in self.modes if mode.ages.b50.age.low > soon]
         for mode in self.modes:
-            sign = " (a precursor: it ends no specimen)" if mode.sign else ""
+            sign = " (a precursor, not a failure)" if mode.sign else ""
             if mode.name not in far:
                 lines.append(f"  {mode.name}{sign}: {mode.ages.b50}")
         if far:
             lines.append(
-                f"  half of new specimens later than {FAR:g} times the age followed: {'; '.join(far)}"
+                f"  half of new specimens reach these later than {FAR:g} times the age followed: "
+                f"{'; '.join(far)}"
             )
-        lines += [f"not judged: {each}" if each.kind == NOT_JUDGED else f"- {each}" for each in self.warnings]
+        lines += [
+            f"{each.where} is not judged: {each.text}" if each.kind == NOT_JUDGED else f"- {each}"
+            for each in self.warnings
+        ]
         return "\n".join([*lines, *(f"next: {each}" for each in self.advice)])
 
     def headline(self) -> str:
-        """Return when half of new specimens have ended, and by what."""
+        """Return the age by which half of new specimens fail, and the main failure mode."""
         unit = f" {self.age_unit}" if self.age_unit else ""
         if len(self.units) < FEW:
             first = min(self.units, key=lambda each: each.age.age.value)
             by = " or ".join(first.named) or "no known failure mode"
-            return f"{first.unit} ends at {first.age.age}{unit} by {by}"
+            return f"{first.unit} fails at {first.age.age}{unit} by {by}"
         likely = max(self.shares, key=lambda name: self.shares[name].value)
-        return f"half of new specimens have ended at {self.b50.age}{unit}, most by {likely}"
+        return f"half of new specimens fail by {self.b50.age}{unit}, mostly by {likely}"
 
     @property
     def advice(self) -> tuple[str, ...]:
@@ -141,7 +148,7 @@ class TimeToFailure(Result):
         return tuple(each.words(self.age_unit) for each in self.next_runs[:_ADVISED])
 
     def to_frame(self) -> pl.DataFrame:
-        """Return one row per specimen and way, and the first of all; infinite where it is never reached."""
+        """Return one row per specimen and failure mode, and the first of all; infinite if never reached."""
         import polars as pl
 
         rows: list[tuple[AgeAtLimit, str, float]] = []
@@ -171,21 +178,21 @@ class TimeToFailure(Result):
 def time_to_failure(
     indicators: Indicators, *, seed: int = 0, progress: Callable[[int, int], None] | None = None
 ) -> TimeToFailure:
-    """Return what ends each specimen, and when, from the indicators of the runs.
+    """Return how and when each specimen fails, from the indicators of the runs.
 
     The growth of each indicator is fitted over all specimens (`fit_growth`), and its draws give the ages at
-    its limit. Failure modes are independent, given their growth, save where the runs of two scatter together:
-    there the draws of a specimen move together by the correlation of the runs, and new specimens by that of
-    the ages of specimens.
+    its limit. Failure modes are independent, given their growth, unless the runs of two modes are correlated:
+    then the draws of a specimen have the correlation of the runs, and new specimens that of the ages of
+    specimens.
 
     Parameters
     ----------
     indicators
-        Of `Indicators`; those that cannot be fitted are among the warnings with the reason.
+        Indicators of the runs; those that cannot be fitted appear in the warnings with the reason.
     seed
         Of the draws: the same data and seed give the same result.
     progress
-        Called with indicators done and indicators in all.
+        Called with indicators done and their total.
 
     Raises
     ------
@@ -204,8 +211,8 @@ def time_to_failure(
             progress(i + 1, len(indicators.each))
     ending = [each for each in fitted if not each.mode.sign]
     if not ending:
-        why = "; ".join(map(str, warnings)) or "no indicator was given"
-        raise InsufficientDataError(f"nothing that ends a specimen can be followed: {why}")
+        why = "; ".join(map(str, warnings)) or "no indicator is given"
+        raise InsufficientDataError(f"no failure mode can be judged: {why}")
     random = np.random.default_rng([seed, 2])
     of_runs = correlations([each.residuals for each in ending])
     names, last = indicators.runs.units, last_ages(indicators)

@@ -27,12 +27,12 @@ class SpecimenEnd(Record):
     also_stated = ("named",)
 
     unit: str
-    age: Annotated[AgeAtLimit, Means("of the first of all ways")]  #: of the first of all ways
+    age: Annotated[AgeAtLimit, Means("age of the first failure by any mode")]  #: of the first of all ways
     first: Annotated[
-        dict[str, float], Means("probability of each way to be the first")
+        dict[str, float], Means("probability of each mode to come first")
     ]  #: probability of each way to be the first; the rest is that none comes
     near: Annotated[
-        tuple[str, ...], Means("ways whose own age is up to 25 % later than the first")
+        tuple[str, ...], Means("modes whose own age is at most 25 % later than the first")
     ]  #: ways whose own age, the middle one, is up to 25 % later than the first
 
     @property

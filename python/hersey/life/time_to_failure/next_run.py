@@ -32,10 +32,10 @@ class NextRun(Record):
     also_stated = ("narrowing",)
 
     unit: Annotated[
-        str | None, Means("null: one more unit, followed to its end")
+        str | None, Means("null: one more specimen, followed to its end")
     ]  #: None: one more specimen, followed to its end
     age: float  #: of the run; of a new specimen, about where it ends
-    before: Annotated[float, Means("width of the interval of the end of the unit, or of B10, in age")]
+    before: Annotated[float, Means("width of the interval of this specimen's end, or of B10, in age")]
     after: float
 
     @property
@@ -46,12 +46,18 @@ class NextRun(Record):
     def words(self, age_unit: str) -> str:
         """Return the advice as a sentence."""
         what = (
-            f"measure {self.unit} again at {rounded(self.age)} {age_unit}: the interval of its end"
+            (
+                f"measure {self.unit} again at {rounded(self.age)} {age_unit}; this narrows the interval of "
+                "its end"
+            )
             if self.unit is not None
-            else f"follow one more specimen to its end (about {rounded(self.age)} {age_unit}): that of B10"
+            else (
+                f"follow one more specimen to its end (about {rounded(self.age)} {age_unit}); this narrows "
+                "the interval of B10"
+            )
         )
         widths = f"{rounded(self.before)} to about {rounded(self.after)} {age_unit}"
-        return f"{what} narrows from {widths} in width".replace(" :", ":")
+        return f"{what} from {widths}".replace(" ;", ";").strip()
 
 
 def rounded(age: float, digits: int = 2) -> str:

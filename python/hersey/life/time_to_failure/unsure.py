@@ -25,8 +25,7 @@ def unsure(
     if unnamed:
         yield Warning(
             "law of growth unknown",
-            "which law of growth holds is unknown for {modes}: ages later than the last runs are taken over "
-            "all laws that remain",
+            "the growth law is unknown for {modes}. Ages beyond the last runs average over all laws that fit",
             severity="watch",
             modes=listed(unnamed),
         )
@@ -36,7 +35,7 @@ def unsure(
     if together:
         yield Warning(
             "modes scatter together",
-            "runs scatter together, so draws move together: {modes}",
+            "runs of these modes scatter together and are treated as correlated: {modes}",
             modes=", ".join(together),
         )
 
@@ -44,10 +43,12 @@ def unsure(
 def _few_specimens(count: int) -> Warning:
     return Warning(
         "few specimens",
-        "one specimen does not show how specimens differ: B10, B50 and the shares depend on the prior"
+        "one specimen does not show how specimens differ, so B10, B50 and the shares depend on the prior"
         if count == 1
-        else "{specimens} specimens show little of how specimens differ: B10, B50 and the shares depend "
-        "partly on the prior of the spread",
+        else (
+            "{specimens} specimens show little of how specimens differ, so B10, B50 and the shares depend "
+            "partly on the prior"
+        ),
         severity="watch",
         specimens=count,
     )
@@ -59,7 +60,7 @@ def _of_specimens(units: Sequence[SpecimenEnd]) -> Iterator[Warning]:
     if passed:
         yield Warning(
             "limit reached",
-            "{specimens} reached a limit already, at the age given, before last seen",
+            "{specimens} reached a limit before they were last seen, at the age given",
             severity="act",
             specimens=listed(passed),
         )
@@ -67,7 +68,7 @@ def _of_specimens(units: Sequence[SpecimenEnd]) -> Iterator[Warning]:
     if near:
         yield Warning(
             "first mode unknown",
-            "which failure mode comes first is unknown for {specimens}: all that remain are named",
+            "the first failure mode is uncertain for {specimens}; all possible ones are named",
             severity="watch",
             specimens=listed(near),
         )
@@ -75,7 +76,7 @@ def _of_specimens(units: Sequence[SpecimenEnd]) -> Iterator[Warning]:
     if wide:
         yield Warning(
             "age uncertain",
-            "the end of {specimens} is not known within a factor of {factor:g}",
+            "the end of {specimens} is uncertain by more than a factor of {factor:g}",
             severity="watch",
             specimens=listed(wide),
             factor=_WIDE,
@@ -84,8 +85,8 @@ def _of_specimens(units: Sequence[SpecimenEnd]) -> Iterator[Warning]:
     if far:
         yield Warning(
             "end far off",
-            "the end of {specimens} lies beyond {factor:g} times the age followed: read it as not soon, no "
-            "more",
+            "the end of {specimens} is beyond {factor:g} times the age followed. It is not soon; the "
+            "number itself means little",
             severity="watch",
             specimens=listed(far),
             factor=FAR,

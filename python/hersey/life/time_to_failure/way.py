@@ -25,7 +25,9 @@ class Mode(Record):
     kind: str
     si: str
     limit: float
-    sign: Annotated[bool, Means("a precursor, which ends no unit")]  #: a precursor, which ends no specimen
+    sign: Annotated[
+        bool, Means("whether it is a precursor, which does not end a specimen")
+    ]  #: a precursor, which ends no specimen
     growth: Growth
     ages: AgesAtLimit
     warnings: tuple[Warning, ...]
@@ -98,7 +100,7 @@ def fitted_way(indicators: Indicators, each: Indicator, seed: int, known: Growth
 def _without_a_value(specimens: Sequence[str]) -> Warning:
     return Warning(
         "specimens without a value",
-        "no run of {specimens} shows it: taken as any new specimen",
+        "no run of {specimens} shows it. Such specimens are treated like any new one",
         severity="watch",
         specimens=listed(specimens),
     )

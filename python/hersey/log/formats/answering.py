@@ -47,7 +47,7 @@ class _Open:
         self.recording = recording = self.context.__enter__()
         channels = max(len(recording.signals), len(recording.cells))
         if channels > _MOST_SIGNALS:
-            raise UnreadableLogError(f"holds {channels} channels: {_MOST_SIGNALS} at the most")
+            raise UnreadableLogError(f"holds {channels} channels; at most {_MOST_SIGNALS} are read")
         return self.state() | {
             "format": recording.format,
             "others": recording.others,

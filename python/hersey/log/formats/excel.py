@@ -99,7 +99,7 @@ def _rows(recording: Recording, group: str, cells: pl.DataFrame, layout: Layout)
         recording.warnings.append(
             Warning(
                 "lines below the table",
-                "{lines} {lines:row|rows} below the table {lines:was|were} left out: '{first}'",
+                "{lines} {lines:row|rows} below the table {lines:was|were} skipped: '{first}'",
                 where=_sheet(group),
                 lines=summary,
                 first=last[-summary][:60],
@@ -145,15 +145,14 @@ def _numbers(
     text = cells.fill_null("")
     values, odd = numbers_in(text, written)
     for row in odd.arg_true() if style is None else ():
-        place = f"{sheet}, " if sheet else ""
-        where = f"{recording.source.name}, {place}row {layout.first_line + row}"
+        where = ", ".join(filter(None, (recording.source.name, sheet, f"row {layout.first_line + row}")))
         refuse_another_header(where, column, text[row][:LONGEST_CELL], layout.columns)
     for row in odd.arg_true()[:1]:
         recording.warnings.append(
             Warning(
                 "cell that is no number",
-                "row {row}, column '{column}': '{cell}' is no {expected}"
-                + (", and {others} more in this column" if odd.sum() > 1 else ""),
+                "row {row}, column '{column}': '{cell}' is not a {expected}"
+                + (", nor are {others} more {others:cell|cells} in this column" if odd.sum() > 1 else ""),
                 where=sheet,
                 row=layout.first_line + row,
                 column=column.name,

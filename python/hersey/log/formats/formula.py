@@ -46,7 +46,7 @@ def evaluate(formula: str, values: Mapping[str, object]) -> FloatArray:
         If it is anything else; it is then not evaluated at all.
     """
     if len(formula) > LONGEST:
-        raise UnreadableLogError(f"has a formula of {len(formula)} characters: {LONGEST} are read")
+        raise UnreadableLogError(f"has a formula of {len(formula)} characters; at most {LONGEST} are read")
     numbers = {name: np.asarray(value, dtype=float) for name, value in values.items()}
     stack: list[FloatArray] = []
     with np.errstate(all="ignore"):  # what is no number is a missing value
@@ -95,8 +95,9 @@ class _Formula:
 
     def _refused(self) -> UnreadableLogError:
         return UnreadableLogError(
-            f"has the formula {self.text[:80]!r}, which cannot be evaluated: numbers, X, + - * / ^, brackets "
-            f"and {', '.join(sorted(_FUNCTIONS))} are; write the converted channel"
+            f"has the formula {self.text[:80]!r}, which cannot be evaluated. Only numbers, X, + - * / "
+            f"^, brackets and {', '.join(sorted(_FUNCTIONS))} are supported. Export the converted "
+            "channel instead"
         )
 
     def _taken(self, *signs: str) -> str:

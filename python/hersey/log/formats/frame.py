@@ -33,7 +33,7 @@ def frame_recording(frame: Any, name: str = "frame") -> Recording:
     attributes = getattr(frame, "attrs", None)
     units = attributes.get("units", {}) if isinstance(attributes, dict) else {}
     if not isinstance(units, dict):
-        raise ParameterError("frame.attrs['units'] is no dictionary of units by column")
+        raise ParameterError("frame.attrs['units'] is not a dictionary. Write one such as {'Tq': 'N*m'}")
     digest, size = hashlib.sha256(), 0
     signals, others = [], []
     for column, series in columns:
@@ -58,7 +58,7 @@ def column_signal(
     def numbers() -> FloatArray:
         series = load()
         if len(series) != rows:
-            raise UnreadableLogError(f"column '{name}' has {len(series)} of {rows} values")
+            raise UnreadableLogError(f"column '{name}' has {len(series)} values instead of {rows}")
         if kind.is_temporal():
             if kind == pl.Duration or kind == pl.Time:
                 return floats(series.to_physical().cast(pl.Float64).fill_null(np.nan)) * _tick(kind)

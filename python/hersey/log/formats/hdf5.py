@@ -20,7 +20,7 @@ _PACKED = ("scale_factor", "add_offset")
 _MISSING = ("_FillValue", "missing_value")
 #: MATLAB keeps the contents of cells and objects here.
 _HIDDEN = ("#refs#", "#subsystem#")
-_WAY_OUT = "copy what it refers to into the file itself, such as by h5repack or by h5py"
+_WAY_OUT = "Copy the referenced data into the file itself, e.g. with h5repack or h5py"
 
 
 def is_hdf5(start: bytes) -> bool:
@@ -52,11 +52,11 @@ def open_hdf5(opened: BinaryIO, _name: str) -> Iterator[Recording]:
 
         def follow(name: str, link: Any) -> None:
             if isinstance(link, h5py.ExternalLink):  # not raised here: h5py lets no exception through
-                outside.append(f"'{name}' stands in another file, '{link.filename}'")
+                outside.append(f"'{name}' refers to another file, '{link.filename}'")
 
         file.visititems_links(follow)
         if outside:
-            raise UnreadableLogError(f"{outside[0]}: {_WAY_OUT}")
+            raise UnreadableLogError(f"{outside[0]}. {_WAY_OUT}")
         comments = tuple(f"{key}: {_text(value)}"[:200] for key, value in file.attrs.items())[:5]
         yield Recording("HDF5", tuple(signals), tuple(others), comments)
 
@@ -76,13 +76,13 @@ def _data_set(path: str, item: Any) -> Iterator[Signal]:
 def _check_kind(h5py: Any, path: str, item: Any) -> None:
     """Numbers of a kind that no machine has come from a damaged description: they would be read wrongly."""
     if item.dtype.kind in "iuf" and not item.id.get_type().equal(h5py.h5t.py_create(item.dtype)):
-        raise UnreadableLogError(f"data set '{path}' holds numbers of an unusual kind: the file is damaged")
+        raise UnreadableLogError(f"data set '{path}' has numbers of an unusual type. The file is damaged")
 
 
 def _check_place(path: str, item: Any) -> None:
     """Numbers in another file are not those that were hashed, nor those that a user means to give."""
     if item.external or item.is_virtual:
-        raise UnreadableLogError(f"data set '{path}' keeps its numbers in another place: {_WAY_OUT}")
+        raise UnreadableLogError(f"data set '{path}' stores its numbers in another place. {_WAY_OUT}")
 
 
 def _numbers(path: str, item: Any) -> Callable[[], Any]:
@@ -107,7 +107,7 @@ def _number(path: str, item: Any, key: str, none: float) -> float:
     value = np.asarray(item.attrs[key])
     if value.size != 1 or value.dtype.kind not in "iuf" or not np.isfinite(value).all():
         if key in _PACKED:
-            raise UnreadableLogError(f"data set '{path}': its attribute {key} is no number")
+            raise UnreadableLogError(f"data set '{path}': attribute {key} is not a number")
         return np.nan
     return float(value.reshape(-1)[0])
 

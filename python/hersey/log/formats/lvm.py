@@ -73,7 +73,7 @@ def open_lvm(file: BinaryIO, name: str) -> Iterator[Recording]:
     if lines[-1].strip():
         recording.cut_off = True
         recording.warnings.append(
-            Warning("last line cut off", "line {line} has no end: it was left out", line=len(lines))
+            Warning("last line cut off", "line {line} is incomplete and was skipped", line=len(lines))
         )
     general, segments = _segments(lines[:-1], separator, name)
     style = _style(general, segments)
@@ -81,7 +81,8 @@ def open_lvm(file: BinaryIO, name: str) -> Iterator[Recording]:
     _refuse_size(name, segments, len(data))
     if any(other != names[0] for other in names):
         raise UnreadableLogError(
-            f"line {segments[-1].line}: a segment has other channels: split the file there"
+            f"line {segments[-1].line}: this segment has other channels than those before it. Split the "
+            "file there"
         )
     for number, segment in enumerate(segments, start=1):
         promised = segment.number("Samples", 0, style)
@@ -89,7 +90,7 @@ def open_lvm(file: BinaryIO, name: str) -> Iterator[Recording]:
             recording.warnings.append(
                 Warning(
                     "segment short",
-                    "segment {segment} of {segments} holds {samples} of {promised:.0f} samples",
+                    "segment {segment} of {segments} has {samples} samples instead of {promised:.0f}",
                     severity="watch",
                     segment=number,
                     segments=len(segments),
@@ -117,7 +118,7 @@ def _separator(lines: list[str], file: str) -> str:
         match = re.match(r"Separator\W(Tab|Comma)", line)
         if match:
             return "\t" if match[1] == "Tab" else ","
-    raise UnreadableLogError(f"{file}: its header names no separator (Tab or Comma)")
+    raise UnreadableLogError(f"{file}: the header does not state the separator (Tab or Comma)")
 
 
 def _segments(lines: list[str], separator: str, file: str) -> tuple[dict[str, list[str]], list[_Segment]]:
@@ -125,7 +126,7 @@ def _segments(lines: list[str], separator: str, file: str) -> tuple[dict[str, li
     cells = [[cell.strip() for cell in line.split(separator)] for line in lines]
     ends = [i for i, row in enumerate(cells) if row[0] == _END]
     if not ends:
-        raise UnreadableLogError(f"{file}: no line '{_END}': the header is cut off")
+        raise UnreadableLogError(f"{file}: line '{_END}' is missing, so the header is incomplete")
     general = {row[0]: row[1:] for row in cells[: ends[0]] if row[0]}
     segments: list[_Segment] = []
     header: dict[str, list[str]] = {}
@@ -148,7 +149,7 @@ def _segments(lines: list[str], separator: str, file: str) -> tuple[dict[str, li
             header[row[0]] = row[1:]
     segments = [segment for segment in segments if segment.rows]
     if not segments:
-        raise UnreadableLogError(f"{file} has a header but no rows of numbers below it")
+        raise UnreadableLogError(f"{file} has a header but no rows of numbers")
     return general, segments
 
 
@@ -233,7 +234,8 @@ class _Table:
         _, zero, step = self._step(segment, channel)
         if not isinstance(step, float) or step <= 0:
             raise UnreadableLogError(
-                f"{self.file}: channel '{self.names[channel]}' has neither a column {_X} nor Delta_X"
+                f"{self.file}: channel '{self.names[channel]}' has neither an {_X} column nor Delta_X, "
+                "so its times are unknown"
             )
         return np.asarray((zero if isinstance(zero, float) else 0.0) + step * np.arange(count), dtype=float)
 
@@ -250,7 +252,7 @@ class _Table:
             if part.size and part[0] <= last:
                 raise UnreadableLogError(
                     f"{self.file}, line {segment.line}: segment {number} starts at {part[0]:.6g} s, "
-                    f"before the one above it ends at {last:.6g} s: split the file there"
+                    f"before the previous one ends ({last:.6g} s). Split the file there"
                 )
             last = float(part[-1]) if part.size else last
             parts.append(part)

@@ -47,8 +47,8 @@ def open_matlab(file: BinaryIO, name: str) -> Iterator[Recording]:
             _walk(variable, value, "", signals, others, 0)
     objects = [o for o in others if "object" in o]
     nothing = (
-        f"{', '.join(objects)}: tables and timetables can be opened by MATLAB alone; save them as "
-        "s = table2struct(T, 'ToScalar', true)"
+        f"{', '.join(objects)}: only MATLAB can open tables and timetables. In MATLAB, run s = "
+        "table2struct(T, 'ToScalar', true) and save s"
     )
     yield Recording(
         "MATLAB",
@@ -62,7 +62,7 @@ def open_matlab(file: BinaryIO, name: str) -> Iterator[Recording]:
 def _walk(name: str, value: Any, group: str, signals: list[Signal], others: list[str], depth: int) -> None:
     place = f"'{group}/{name}'" if group else f"'{name}'"
     if not isinstance(value, np.ndarray) or type(value).__name__ == "MatlabOpaque":
-        others.append(f"{place} (object of MATLAB)")
+        others.append(f"{place} (MATLAB object)")
     elif value.dtype.names and value.size == 1 and depth < _DEPTH:
         _walk_struct(name, value.reshape(-1)[0], group, signals, others, depth)
     elif value.dtype.kind in "iufb":
@@ -90,7 +90,7 @@ def _walk_struct(
     path = f"{group}/{name}" if group else name
     if data is not None and unit is not None:
         if unit.size != 1:
-            raise UnreadableLogError(f"the unit of '{path}' is no word")
+            raise UnreadableLogError(f"the unit of '{path}' is not text")
         signals.extend(array_signals(name, data.shape, data.view, str(unit.reshape(-1)[0]), group))
         return
     for field, value in fields.items():

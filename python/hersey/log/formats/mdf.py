@@ -67,9 +67,9 @@ def open_mdf(file: BinaryIO, _name: str) -> Iterator[Recording]:
         recording.signals = tuple(_signal(mdf, recording, heard, channel, several) for channel in channels)
         if frames:
             recording.nothing = (
-                f"it holds bus frames ({', '.join(sorted(frames))}) and no physical signals: decode it with "
-                "the database of the bus (DBC, ARXML), such as by asammdf's extract_bus_logging, and read "
-                "the file that this writes"
+                f"the file holds raw bus frames ({', '.join(sorted(frames))}), not physical signals. "
+                "Decode it with the bus database (DBC, ARXML), e.g. with extract_bus_logging of "
+                "asammdf, and read the result"
             )
         yield recording
 
@@ -87,9 +87,7 @@ def _asammdf() -> Any:
 
     for blocks in (v2_v3_blocks, v4_blocks):
         if blocks.evaluate is not _evaluated or blocks.lambdify is not None:
-            raise UnreadableLogError(
-                "cannot be read: this version of asammdf evaluates formulas in another way"
-            )
+            raise UnreadableLogError("cannot be read: this version of asammdf evaluates formulas differently")
     return asammdf
 
 
@@ -128,7 +126,7 @@ def _read_as_power(channel: str, formula: str) -> Warning:
 
 
 def _values_missing(channel: str, count: int, rows: int) -> Warning:
-    words = "'{channel}' has {count} of {rows} values: the rest is missing"
+    words = "'{channel}' has {count} values instead of {rows}; the rest are missing"
     return Warning("values missing", words, severity="watch", channel=channel, count=count, rows=rows)
 
 
@@ -153,7 +151,7 @@ def _signal(
         count = times.size
         if values.size != count or count > rows:
             raise UnreadableLogError(
-                f"channel '{full_name}' has {values.size} values at {count} times, not {rows}"
+                f"channel '{full_name}' has {values.size} values and {count} times instead of {rows}"
             )
         if count < rows and not recording.cut_off:
             recording.cut_off = True
@@ -187,17 +185,17 @@ def _values(mdf: Any, group: int, index: int) -> tuple[FloatArray, FloatArray, F
     master = mdf.masters_db.get(group)
     channels = mdf.groups[group].channels
     if master is None or getattr(channels[master], "sync_type", 1) not in _TIME:
-        raise UnreadableLogError("was recorded against no clock")
+        raise UnreadableLogError("has no clock")
     conversion = channels[master].conversion
     if mdf.version < "4" and conversion is not None and conversion.conversion_type not in _OF_OLD_CLOCKS:
-        formula = f": it has the formula {conversion.formula[:80]!r}" if conversion.formula else ""
-        raise UnreadableLogError(f"has a clock whose conversion cannot be applied{formula}")
+        formula = f" (formula {conversion.formula[:80]!r})" if conversion.formula else ""
+        raise UnreadableLogError(f"has a clock with a conversion that cannot be applied{formula}")
     # otherwise asammdf drops samples that are invalid from this channel alone
     signal = mdf.get(group=group, index=index, ignore_invalidation_bits=True)
     values = signal.samples
     if values.ndim != 1 or values.dtype.kind not in "iufb":
         what = "arrays" if values.ndim != 1 or values.dtype.names else "text"
-        raise UnreadableLogError(f"holds {what}, not numbers")
+        raise UnreadableLogError(f"holds {what} instead of numbers")
     values, times = values.astype(float), floats(signal.timestamps)
     marked = np.full(values.size, SOUND)
     marked[_invalid(channels[index], signal)] = INVALID

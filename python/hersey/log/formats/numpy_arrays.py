@@ -15,7 +15,7 @@ from hersey.log.recording import Recording, Signal
 
 #: Kinds of numbers; what else an array may hold is told, not read.
 _NUMBERS = "iufbmM"
-_KINDS = {"O": "objects, which only Python's pickle could load", "U": "text", "S": "text", "c": "complex"}
+_KINDS = {"O": "Python objects, which only pickle could load", "U": "text", "S": "text", "c": "complex"}
 
 
 @contextmanager
@@ -31,7 +31,7 @@ def open_numpy_arrays(file: BinaryIO, _name: str) -> Iterator[Recording]:
         with zipfile.ZipFile(file) as archive:
             for member in archive.namelist():
                 if not member.endswith(".npy"):
-                    others.append(f"'{member}' (no array)")
+                    others.append(f"'{member}' (not an array)")
                     continue
                 with archive.open(member) as content:
                     _add(member.removesuffix(".npy"), content, signals, others)

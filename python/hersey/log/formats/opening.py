@@ -67,15 +67,15 @@ _ENVIRONMENT = {
 
 @contextmanager
 def memory_limit(limit: str) -> Iterator[None]:
-    """Let each file that is read inside take so much memory, such as ``"8 GB"``, instead of 2 GB.
+    """Set the memory limit per file, e.g. ``"8 GB"``, inside the context. The default is 2 GB.
 
-    A small file can hold a great many numbers. Text takes no more than its size, and has no limit. The limit
-    holds for all threads.
+    A small compressed file can contain very many numbers. Text files have no limit. The limit applies to all
+    threads.
 
     Raises
     ------
     ParameterError
-        If it is no such size.
+        If it is not a valid size.
 
     Examples
     --------
@@ -86,7 +86,7 @@ def memory_limit(limit: str) -> Iterator[None]:
     match = re.fullmatch(r"\s*([0-9]{1,6}(?:\.[0-9]{1,6})?)\s*([MGT])B\s*", limit)
     size = float(match[1]) * {"M": 1e6, "G": 1e9, "T": 1e12}[match[2]] if match else 0.0
     if size < _LEAST:
-        raise ParameterError(f"the limit of memory is {limit!r}: write a size of 300 MB or more, as '8 GB'")
+        raise ParameterError(f"the memory limit is {limit!r}: it must be at least 300 MB, e.g. '8 GB'")
     global _memory
     before, _memory = _memory, size
     try:
@@ -235,7 +235,9 @@ class _Reader:
             raise self._too_large()
         about, content = self._asked({"do": what, "index": index}, most=8 * rows)
         if len(content) % 8:
-            raise UnreadableLogError(f"{self.file.path.name} cannot be read: its numbers came in part")
+            raise UnreadableLogError(
+                f"{self.file.path.name} cannot be read: only part of its numbers arrived"
+            )
         recording.warnings[:] = map(_warning, about["warnings"])
         recording.cut_off = about["cut_off"]
         return np.frombuffer(content, dtype=float)
@@ -249,7 +251,7 @@ class _Reader:
         self.left -= len(content)
         cells = content.decode(errors="replace").split("\0") if rows else []
         if len(cells) != rows:
-            raise UnreadableLogError(f"{self.file.path.name} cannot be read: its cells came in part")
+            raise UnreadableLogError(f"{self.file.path.name} cannot be read: only part of its cells arrived")
         return [_plain(cell, LONGEST_CELL) for cell in cells]
 
     def _asked(
@@ -276,8 +278,8 @@ class _Reader:
             return self._not_started(message)
         reason = _plain(message).partition("\n")[0][:160] or kind
         return UnreadableLogError(
-            f"{self.file.path.name} cannot be read as {called(self.kind)}: it is damaged, cut off or of "
-            f"another kind ({reason})"
+            f"{self.file.path.name} cannot be read as {called(self.kind)}. It is damaged, cut off or in "
+            f"another format ({reason})"
         )
 
     def _loss(self, error: LostError) -> UnreadableLogError:
@@ -286,24 +288,24 @@ class _Reader:
             return self._not_started(str(error))
         if error.code == -getattr(signal, "SIGXCPU", 0):
             return UnreadableLogError(
-                f"{name} takes more processor time than a sound file of its size: it is damaged, or made to; "
-                f"a higher {_allowed()} gives it more time, too"
+                f"{name} takes more processor time than a sound file of its size. It may be damaged or "
+                f"malicious. If you trust it, a higher {_allowed()} also allows more time"
             )
         return UnreadableLogError(
-            f"{name} is damaged, or takes more than {self.limit / 1e9:g} GB of memory ({_allowed()}): the "
-            "library that reads it broke down"
+            f"{name} is damaged, or needs more than {self.limit / 1e9:g} GB of memory ({_allowed()}): "
+            "the library that reads it crashed"
         )
 
     def _not_started(self, reason: str) -> UnreadableLogError:
         return UnreadableLogError(
-            f"{self.file.path.name} cannot be read: the process that reads such files does not run "
+            f"{self.file.path.name} cannot be read: the process that reads such files cannot be started "
             f"({_plain(reason)[:160]})"
         )
 
     def _too_large(self) -> UnreadableLogError:
         return UnreadableLogError(
-            f"{self.file.path.name} takes more than {self.limit / 1e9:g} GB of memory: if it may, raise the "
-            f"limit with {_allowed('8 GB')}"
+            f"{self.file.path.name} needs more than {self.limit / 1e9:g} GB of memory. If you trust it, "
+            f"raise the limit with {_allowed('8 GB')}"
         )
 
 

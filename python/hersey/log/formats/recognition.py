@@ -96,7 +96,7 @@ def _of_archive(path: Path, start: bytes, kind: str | None) -> str:
     member = _MEMBERS.fullmatch(start[_NAME : _NAME + length])
     kind = (member and member.lastgroup) or kind
     if kind not in ("excel", "numpy_arrays"):
-        raise UnreadableLogError(f"{path.name} is an archive: unpack it, and name the log in it")
+        raise UnreadableLogError(f"{path.name} is an archive. Unpack it, and give the log inside")
     return kind
 
 

@@ -48,7 +48,7 @@ def open_tdms(opened: BinaryIO, _name: str) -> Iterator[Recording]:
             recording.warnings.append(
                 Warning(
                     "start times missing",
-                    "some channels say when they started and some do not: all start at 0 s",
+                    "only some channels have a start time, so all of them start at 0 s",
                     severity="watch",
                 )
             )
@@ -57,7 +57,7 @@ def open_tdms(opened: BinaryIO, _name: str) -> Iterator[Recording]:
             recording.warnings.append(
                 Warning(
                     "last segment incomplete",
-                    "the last segment of the file is incomplete: what is there was read",
+                    "the last segment of the file is incomplete; only the data present were read",
                 )
             )
         recording.warnings += [library_warning("nptdms", words) for words in dict.fromkeys(heard)]
@@ -83,11 +83,14 @@ def _signal(file: Any, channel: Any, first: Any, several: bool) -> Signal:
         unknown = _scales(channel.properties) or _scales(file[channel.group_name].properties)
         if unknown := unknown or _scales(file.properties):
             raise UnreadableLogError(
-                f"channel '{channel.name}' is scaled by {unknown}, which cannot be applied: write scaled data"
+                f"channel '{channel.name}' has a scaling of type {unknown}, which cannot be applied. "
+                "Export scaled data"
             )
         values = channel[:]
         if len(values) != len(channel):
-            raise UnreadableLogError(f"channel '{channel.name}' has {len(values)} of {len(channel)} values")
+            raise UnreadableLogError(
+                f"channel '{channel.name}' has {len(values)} values instead of {len(channel)}"
+            )
         return floats(values)
 
     if not _has_clock(channel):
@@ -97,7 +100,7 @@ def _signal(file: Any, channel: Any, first: Any, several: bool) -> Signal:
     def clock() -> FloatArray:
         if not (np.isfinite(offset) and 0 < step < np.inf):
             raise UnreadableLogError(
-                f"channel '{channel.name}': wf_increment is {step:g} s, which is no interval of a clock"
+                f"channel '{channel.name}': wf_increment is {step:g} s: it must be greater than 0"
             )
         return np.asarray(offset + step * np.arange(len(channel)), dtype=float)
 

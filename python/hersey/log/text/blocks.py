@@ -79,8 +79,8 @@ def _is_comment(row: bytes, number: int, layout: Layout, name: str) -> bool:
     if is_missing(cells[0]):
         return False
     raise UnreadableLogError(
-        f"{name}, line {number} starts with '{layout.comment}' like a comment but has as many cells as a "
-        "row: mend or remove it"
+        f"{name}, line {number} starts with the comment sign '{layout.comment}' but has as many cells "
+        "as a row. Correct or delete it"
     )
 
 
@@ -99,7 +99,9 @@ def _whole_lines(
         text = rest + (decoder.decode(chunk, final=not more).encode() if decoder else chunk)
         last = text.rfind(b"\n") + 1 if more else len(text)
         if more and not last and len(text) > LONGEST_LINE:
-            raise UnreadableLogError(f"{name}: a line has over {LONGEST_LINE} bytes: no log has such")
+            raise UnreadableLogError(
+                f"{name}: a line is longer than {LONGEST_LINE} bytes, so it is not a log"
+            )
         block, rest = text[:last], text[last:]
         if skip:
             above = _end_of_lines(block, skip)

@@ -89,7 +89,7 @@ class CellReader:
         for row, cells in enumerate(block.cells(self.layout.between)):
             if any(cells[width:]):
                 raise UnreadableLogError(
-                    f"{self.name}, line {block.lines[row]}: {len(cells)} cells where the header has {width}"
+                    f"{self.name}, line {block.lines[row]}: {len(cells)} cells, but the header has {width}"
                 )
             table.append(cells + [""] * (width - len(cells)))
         return [

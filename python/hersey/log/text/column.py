@@ -69,7 +69,7 @@ def refuse_columns(place: str, count: int) -> None:
     """
     if count > MOST_COLUMNS:
         raise UnreadableLogError(
-            f"{place} has {count} columns: {MOST_COLUMNS} at the most are read, export those that matter"
+            f"{place} has {count} columns; at most {MOST_COLUMNS} are read. Export only those you need"
         )
 
 
@@ -83,8 +83,8 @@ def refuse_long_name(place: str, column: int, name: str) -> None:
     """
     if len(name) > LONGEST_NAME:
         raise UnreadableLogError(
-            f"{place}: the name of column {column} has {len(name)} characters: "
-            f"{LONGEST_NAME} at the most are read"
+            f"{place}: the name of column {column} has {len(name)} characters; at most {LONGEST_NAME} "
+            "are read"
         )
 
 
@@ -98,5 +98,6 @@ def refuse_ragged(place: str, rows: int, columns: int, size: int) -> None:
     """
     if rows * columns > 8 * size + 1_000_000:
         raise UnreadableLogError(
-            f"{place}: most of its {rows} rows lack cells, {columns} are named: remove columns that are empty"
+            f"{place}: most of the {rows} rows have fewer cells than the {columns} columns. Delete "
+            "empty columns"
         )

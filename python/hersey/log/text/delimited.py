@@ -165,11 +165,11 @@ def _by_number(layout: Layout, lacking: list[str], used: Sequence[str]) -> str:
     """Why columns must be named, and the options that name those that are not, as an example."""
     if len(layout.columns) < len(used):
         needed = f"{', '.join(used[:-1])} and {used[-1]}"
-        return f"{layout.headless}, and there are {len(layout.columns)} columns, where a log has {needed}"
+        return f"{layout.headless}, and there are only {len(layout.columns)} columns. A log needs {needed}"
     named = " ".join(Setting(role, "channel").to(f"#{used.index(role) + 1}") for role in lacking)
     return (
-        f"{layout.headless}; put a line with name and unit of each column there, such as 'Torque [N*m]' "
-        f"(and without '{layout.comment}' before it), or name the columns by number, such as {named}"
+        f"{layout.headless}. Add a line there with the name and unit of each column, e.g. 'Torque "
+        f"[N*m]' (without '{layout.comment}' before it), or name the columns by number, e.g. {named}"
     )
 
 
@@ -237,7 +237,7 @@ class _Table:
         gone = ~np.logical_and.reduce([np.isfinite(column) for column in values])
         if gone.any() and not self.drop_missing:
             row = int(np.argmax(gone))
-            raise UnreadableLogError(f"{self.name}, {self._fault(block, values, row)}; mend the file")
+            raise UnreadableLogError(f"{self.name}, {self._fault(block, values, row)}. Correct the file")
         for part, column in zip(parts, values, strict=True):
             part.append(np.where(np.isfinite(column), column, np.nan))
 
@@ -321,9 +321,7 @@ class _Table:
             in_column = f"{place}, column '{column.name}': "
             if not np.isfinite(numbers[row]):
                 if is_missing(cell):
-                    what = f"'{cell[:40]}' stands" if cell else "nothing stands"
-                    return f"{in_column}{what} where a number is needed"
+                    what = f"'{cell[:40]}'" if cell else "an empty cell"
+                    return f"{in_column}{what} instead of a number"
                 return f"{in_column}'{cell[:40]}' is not a {self.reader.what(column)}"
-        return (
-            f"{place}: torque and speed cannot be had from what stands there: a radius that is not positive?"
-        )
+        return f"{place}: torque and speed need a radius greater than zero"

@@ -51,18 +51,18 @@ def end_of_table(file: BinaryIO, size: int, layout: Layout) -> TableEnd:
     cut_off, short = _is_cut_off(lines, layout)
     if short:
         left_out = 1
-        words = "the last line, '{line}', was cut off: it was left out"
+        words = "the last line, '{line}', was cut off and was skipped"
         warnings.append(Warning("last line cut off", words, line=_shown(lines[-1])))
         lines[-1] = ""
     elif lines[-1].strip():
-        words = "the last line, '{line}', has no end: its last number may lack digits"
+        words = "the last line, '{line}', has no line end, so its last number may be incomplete"
         line = _shown(lines[-1])
         warnings.append(Warning("last line has no end", words, severity="watch", line=line))
     summary = summary_lines(lines, layout)
     if summary:
         left_out = summary
         below = [line for line in lines[-summary:] if line.strip()]
-        words = "{lines} {lines:line|lines} below the table {lines:was|were} left out: '{first}'"
+        words = "{lines} {lines:line|lines} below the table {lines:was|were} skipped: '{first}'"
         warnings.append(Warning("lines below the table", words, lines=len(below), first=_shown(below[0])))
     length = sum(map(len, stored[-left_out:])) if left_out else 0
     return TableEnd(size - length, cut_off, tuple(warnings))

@@ -41,8 +41,8 @@ def columns_of(table: NumberRows, numbered: list[Numbered], file: str) -> tuple[
         plain, own = name_and_unit(name) or (name, "")
         if own and unit and of_one_kind(own, unit) and not same_unit(own, unit):
             raise UnreadableLogError(
-                f"{file}, line {line}, column {index + 1}: the header says '{name}' and the row of units "
-                f"{unit}: mend the one that is wrong"
+                f"{file}, line {line}, column {index + 1}: the header says '{name}', but the row of "
+                f"units says {unit}. Correct one of them"
             )
         columns.append(Column(index, name if unit else plain or f"#{index + 1}", unit or own))
     return tuple(columns), ""
@@ -62,7 +62,7 @@ def _headless(table: NumberRows, numbered: list[Numbered], file: str) -> str:
     cells = re.split(r"[;,|\s]+", above)
     if table.first and not all(looks_numeric(cell) or is_missing(cell) for cell in cells):
         return ""
-    return f"{file}, line {numbered[table.first][0]}: no header stands above the numbers"
+    return f"{file}, line {numbered[table.first][0]}: there is no header above the numbers"
 
 
 def _require_width(
@@ -73,7 +73,7 @@ def _require_width(
     beyond = any(any(row[len(header) :]) for row in rows if len(row) == table.width)
     if beyond or any(header[table.width :]):
         raise UnreadableLogError(
-            f"{file}, line {line}: the header has {len(header)} cells where the rows have {table.width}: "
+            f"{file}, line {line}: the header has {len(header)} cells, but the rows have {table.width}. "
             f"{_too_many(table, rows, len(header))}"
         )
 
@@ -83,15 +83,15 @@ def _too_many(table: NumberRows, rows: list[list[str]], named: int) -> str:
     cells = [row for row in rows if len(row) == table.width]
     whole_numbers = cells and all(re.fullmatch(r"[-+]?\d+", cell.strip()) for row in cells for cell in row)
     if table.width < named:
-        return "leave out the names that have no column"
+        return "Delete the names that have no column"
     if table.separator != "," or table.width > 2 * named:
-        return "give every column a name"
+        return "Give every column a name"
     if table.width == 2 * named and whole_numbers:
         return (
-            "its numbers have decimal commas, and commas part its columns too: export it with ';' between "
-            "the columns, or with decimal points"
+            "The numbers have decimal commas, and commas also separate the columns. Export with ';' "
+            "between the columns, or with decimal points"
         )
-    return "give every column a name, or export it with ';' between the columns if a comma marks thousands"
+    return "Give every column a name. If a comma separates thousands, export with ';' between the columns"
 
 
 def _is_units_row(row: list[str]) -> bool:

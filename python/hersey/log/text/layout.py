@@ -97,19 +97,23 @@ def _lines(start: bytes, encoding: str, name: str) -> list[str]:
     """The lines of the text that are whole."""
     text = start.decode(encoding, errors="replace")
     if "\r" in text and "\n" not in text:
-        raise UnreadableLogError(f"{name}: its lines end with CR alone: save it with ordinary line ends")
+        raise UnreadableLogError(
+            f"{name}: lines end with CR only. Save the file with ordinary line ends (LF or CR LF)"
+        )
     lines = [line.rstrip("\r") for line in text.split("\n")]
     if len(start) >= SNIFFED:
         lines = lines[:-1]
         if not any(line.strip() for line in lines):
-            raise UnreadableLogError(f"{name} holds no table: its first line has over {SNIFFED} characters")
+            raise UnreadableLogError(
+                f"{name} is not a table: its first line has more than {SNIFFED} characters"
+            )
     return lines
 
 
 def _table(numbered: list[Numbered], separators: str, name: str) -> NumberRows:
     """The longest rows of numbers that a separator makes."""
     if not numbered:
-        raise UnreadableLogError(f"{name} is empty: a header and rows of numbers are needed")
+        raise UnreadableLogError(f"{name} is empty. A log needs a header and rows of numbers")
     table = max((number_rows(numbered, each) for each in separators), key=lambda t: t.score)
     if separators == SEPARATORS:
         blanks = number_rows(numbered, BLANKS)
@@ -118,9 +122,9 @@ def _table(numbered: list[Numbered], separators: str, name: str) -> NumberRows:
     refuse_columns(name, table.width)
     if table.score == 0:
         raise UnreadableLogError(
-            f"{name} has a header but no rows of numbers below it"
+            f"{name} has a header but no rows of numbers"
             if any(len(split(numbered[-1][1], each)) > 1 for each in SEPARATORS)
-            else f"{name} holds no table of numbers with at least two columns{_of_another_kind(name)}"
+            else f"{name} has no table of numbers with at least two columns{_of_another_kind(name)}"
         )
     return table
 
@@ -140,7 +144,7 @@ def encoding_of(start: bytes, name: str) -> str:
         if max(odd, even) > 0.4 * len(start) and not min(odd, even):  # every other byte of plain text
             return "utf-16-le" if odd else "utf-16-be"
         raise UnreadableLogError(
-            f"{name} is a binary file of a kind that is not known: export the channels as text"
+            f"{name} is a binary file of an unknown format. Export the channels as text (CSV)"
         )
     try:
         codecs.getincrementaldecoder("utf-8")().decode(start)
@@ -185,5 +189,5 @@ def _of_another_kind(name: str) -> str:
     """What a file is that was given in the place of a log, by the ending of its name; or nothing."""
     if name.endswith(".toml"):
         machine, mapping = Setting("machine").to(), MAPPING.to()
-        return f": a machine's file is given as {machine}, a mapping of the channels as {mapping}"
-    return f": a fit that was saved is given as {Setting('fit').to()}" if name.endswith(".json") else ""
+        return f". Give a machine file with {machine}, or a mapping of channels with {mapping}"
+    return f". Give a saved fit with {Setting('fit').to()}" if name.endswith(".json") else ""

@@ -22,8 +22,8 @@ def refuse_another_header(place: str, column: Column, cell: str, columns: tuple[
         other = unit
     elif any(_is(name, each) for each in columns):
         raise UnreadableLogError(
-            f"{place}, column '{column.name}': the header stands here again, and this column is '{name}': "
-            "cut the file above this row into two files, and give both"
+            f"{place}, column '{column.name}': the header is repeated here, and this column is now "
+            f"called '{name}'. Split the file above this row, and give both parts"
         )
     else:
         other = cell.strip("[]() ")
@@ -31,8 +31,8 @@ def refuse_another_header(place: str, column: Column, cell: str, columns: tuple[
             return
     if other and not same_unit(column.unit, other):
         raise UnreadableLogError(
-            f"{place}, column '{column.name}': the unit is {other} from here on, and above it is "
-            f"{column.unit or 'not given'}: cut the file above this header into two files, and give both"
+            f"{place}, column '{column.name}': from here on the unit is {other}; above it is "
+            f"{column.unit or 'not given'}. Split the file above this header, and give both parts"
         )
 
 

@@ -128,8 +128,8 @@ class Stamps:
         since = first.strftime("%H:%M:%S" if self.style.is_time_of_day else "%Y-%m-%d %H:%M:%S")
         return Warning(
             "time stamps read",
-            "'{column}' holds {style}: read in s since {since}"
-            + (", past midnight {midnights} {midnights:time|times}" if self.midnights else ""),
+            "'{column}' contains {style} and was read as seconds since {since}"
+            + (", with {midnights} {midnights:change|changes} of day" if self.midnights else ""),
             column=column,
             style=self.style.name,
             since=since,
@@ -179,7 +179,7 @@ def counted_since(name: str, numbers: FloatArray) -> tuple[str, str]:
         if scale <= low and high < 2.5 * scale:
             return unit, f"{unit} since 1970"
     if _DAYS_NAME.fullmatch(name) and low > 3e4 and high < 7e4:
-        return "d", "days of Excel"
+        return "d", "Excel days"
     return "", ""
 
 

@@ -41,11 +41,13 @@ def _of_the_stick_speed(map_: OperatingMap) -> Warning:
             if hot is None
             else " at all temperatures here"
             if fixed
-            else " at {temperature:.0f degC} here (with the transition speed it moves from "
-            "{coldest:.3g mm/s} to {hottest:.3g mm/s})"
+            else (
+                " at {temperature:.0f degC} here (it moves with the transition speed, from {coldest:.3g "
+                "mm/s} to {hottest:.3g mm/s})"
+            )
         )
-        + ", which nobody measures; its interval counts {counted}"
-        + ("" if "stick_speed" in map_.uncertain else ": state how far stick_speed is known"),
+        + ", which the dwells do not show. The interval of V* includes the uncertainty of {counted}"
+        + ("" if "stick_speed" in map_.uncertain else ". State the uncertainty of stick_speed"),
         stick_speed=map_.drag.stick_speed,
         temperature=hot,
         coldest=laws[0].stick_speed,
@@ -58,7 +60,7 @@ def _of_the_temperature(map_: OperatingMap) -> Iterator[Warning]:
     if map_.temperature is None:
         yield Warning(
             "isothermal fit",
-            "the fit is isothermal: the map holds at the temperature of the log, for the points too",
+            "the fit is isothermal, so the map and its points hold at the temperature of the log",
         )
 
 
@@ -67,8 +69,8 @@ def _of_the_stall(map_: OperatingMap) -> Iterator[Warning]:
     if map_.torque_limit is None:
         yield Warning(
             "no torque limit",
-            "no stall is shown",
-            remedy="state motor_torque, or roll_friction and nip_load, among the limits",
+            "the map shows no stall, because no torque limit is stated",
+            remedy="add motor_torque, or roll_friction and nip_load, to [limits]",
         )
         return
     least, most = float(map_.holding.min()), float(map_.holding.max())
@@ -98,7 +100,11 @@ def _unstarted(kind: str, map_: OperatingMap, columns: BoolArray, *, surely: boo
     everywhere = columns.all()
     return Warning(
         kind,
-        ("the drive does not start a belt at rest" if surely else "the drive may not start a belt at rest")
+        (
+            "the drive cannot start a belt at rest"
+            if surely
+            else "the drive may be unable to start a belt at rest"
+        )
         + (
             " at any temperature"
             if everywhere and surely
@@ -135,8 +141,8 @@ def _of_a_point(map_: OperatingMap, point: PlacedPoint) -> Iterator[Warning]:
         if low <= point.speed <= high:
             yield Warning(
                 "verdict not certain",
-                "within the 95 % interval of {edge} ({low:.3g mm/s} to {high:.3g mm/s}), so the verdict is "
-                "not certain",
+                "the verdict is uncertain, because the point lies within the 95 % interval of {edge} "
+                "({low:.3g mm/s} to {high:.3g mm/s})",
                 severity="watch",
                 where=point.name,
                 edge=name,
@@ -147,7 +153,7 @@ def _of_a_point(map_: OperatingMap, point: PlacedPoint) -> Iterator[Warning]:
     if point.at.extrapolated:
         yield Warning(
             "point extrapolated",
-            "extrapolated, no dwell lies that far out",
+            "extrapolated, because no dwell is near this point",
             severity="watch",
             where=point.name,
         )
@@ -158,7 +164,7 @@ def _of_the_speed_limit(map_: OperatingMap, points: Sequence[PlacedPoint]) -> It
         if map_.speed_limit is not None and point.speed > map_.speed_limit:
             yield Warning(
                 "faster than the drive",
-                "faster than the drive, {limit:.3g mm/s}",
+                "faster than the drive can run ({limit:.3g mm/s})",
                 severity="watch",
                 where=point.name,
                 limit=map_.speed_limit,

@@ -40,34 +40,34 @@ def operating_map(
     threads: int = 1,
     client: Client | str | None = None,
 ) -> OperatingMap:
-    """Return what the belt does at each temperature and drive speed.
+    """Return the map of smooth running and stick-slip over temperature and drive speed.
 
     Parameters
     ----------
     surface
         The fitted surface; it must have a transition.
     machine
-        From its file (`hersey.read_machine`), or made by hand. Its stick speed is that at the fit's reference
-        temperature if it states no other, and moves as the transition speed does. ``motor_torque`` among its
-        limits, or ``roll_friction`` with ``nip_load``, gives the stall. Its operating points are judged. Of
-        its uncertainty that of ``stiffness``, ``mass`` and ``stick_speed`` counts for the interval of V*; the
-        fit knows other parameters better.
+        Machine from its file (`hersey.read_machine`), or made in Python. Its stick speed applies at the fit's
+        reference temperature unless it states another, and moves with the transition speed. ``motor_torque``,
+        or ``roll_friction`` with ``nip_load``, among its limits gives the stall. Its operating points are
+        judged. The uncertainty of ``stiffness``, ``mass`` and ``stick_speed`` is included in the interval of
+        V*; the fit determines other parameters better.
     temperatures
-        K, ascending; by default the measured range and the points, and a little beyond.
+        Temperatures, K, ascending. Default: slightly more than the measured range and the points.
     speeds
-        m/s, ascending; by default all that the bands, the dwells and the points need.
+        Speeds, m/s, ascending. Default: the range of the bands, the dwells and the points.
     seed
-        Of the draws for the intervals.
+        Random seed of the intervals.
     draws, threads
-        For the interval of V*, which takes most of the time.
+        Number of draws and threads for the interval of V*, which takes most of the time.
     client
-        A ``distributed.Client``, or the address of a scheduler: its workers find the interval of V*, a
-        temperature each. On one machine threads are quicker; more machines pay from some 10,000 draws on.
+        A ``distributed.Client``, or the address of a scheduler, whose workers compute the interval of V*, one
+        temperature each. On one machine threads are faster; several machines help from about 10,000 draws.
 
     Raises
     ------
     InsufficientDataError
-        If the data show no falling branch: then there is no stick-slip to map.
+        If torque does not fall with speed anywhere in the data, so there is no stick-slip to map.
     ParameterError
         If a value is out of range, with its name.
 
@@ -103,15 +103,16 @@ def _check(surface: DampingSurface, machine: Machine, draws: int) -> None:
         refuse_unfitted(surface, "hersey.operating_map(hersey.fit({points}), machine)", "a fitted surface")
     if not isinstance(machine, Machine):
         raise ParameterError(
-            "a map needs the machine, which states roll radius and stick speed: give read_machine(...) or "
-            "Machine(...) in place of its train"
+            "an operating map needs roll radius and stick speed. Give read_machine(...) or "
+            "Machine(...) instead of a train"
         )
     if draws < 1:
-        raise ParameterError(f"draws is {draws}: at least 1 is needed")
+        raise ParameterError(f"draws is {draws}: it must be at least 1")
     if surface.transition is None:
         raise InsufficientDataError(
-            f"no operating map: the data show no falling branch ({surface.rejected_transition}); "
-            "record slower dwells, until torque rises as the drive slows"
+            "no operating map: torque does not fall with speed anywhere in the data "
+            f"({surface.rejected_transition}). Record slower dwells, until torque rises as the drive "
+            "slows"
         )
 
 

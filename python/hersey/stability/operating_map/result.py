@@ -28,18 +28,17 @@ _ROWS = 5
 
 @dataclass(frozen=True, repr=False)
 class OperatingMap(Result):
-    """Speeds (m/s) that divide the behaviour at each temperature (K), shape (n,).
+    """Speeds (m/s) that separate sliding and stick-slip at each temperature (K), shape (n,).
 
     ``temperature`` is None for an isothermal fit, whose map has one column. ``upper`` is infinite beyond
-    10,000 transition speeds; its interval counts the fit and the parameters in ``uncertain``, as does that of
-    ``holding``. Drag exceeds ``torque_limit`` (set by ``limited_by``) from ``stall_above`` up (infinite if
+    10,000 transition speeds; its interval includes the fit and the parameters in ``uncertain``, as does that
+    of ``holding``. Drag exceeds ``torque_limit`` (set by ``limited_by``) from ``stall_above`` up (infinite if
     never) and, on the falling branch, up to ``stall_below`` (0 if never). The measured ranges bound the
-    dwells. Where ``holding``, the no-load torque counted, exceeds ``torque_limit``, the drive does not
-    start the belt. The bands are those of the roll with its grip (``train``), on which the belt slips
-    where a lap asks for more; ``lower`` is zero where no belt sticks and slips in turn, as one that sticks is
-    held for good. ``stick_speed_rule`` says how the stick speed depends on temperature. Where edges are
-    ``given``, transition and V* are those of a posterior of drives, and are interpolated between
-    temperatures; ``drag`` is that of its typical draw.
+    dwells. If ``holding``, including the no-load torque, exceeds ``torque_limit``, the drive cannot start the
+    belt. The bands include the grip of the roll (``train``); ``lower`` is zero where there is no stick-slip
+    because a belt that sticks is never released. ``stick_speed_rule`` says how the stick speed depends on
+    temperature. If edges are ``given``, transition and V* come from a posterior of drives and are
+    interpolated between temperatures; ``drag`` is that of its typical draw.
     """
 
     also_stated = ("given",)
@@ -54,7 +53,7 @@ class OperatingMap(Result):
     stall_below: Annotated[FloatArray, OPEN]
     stall_above: Annotated[FloatArray, OPEN]
     torque: Annotated[FloatArray, Means("of steady sliding", "N m", shape="(n, m)")]
-    holding: Annotated[FloatArray, Means("what a belt at rest bears", "N m")]
+    holding: Annotated[FloatArray, Means("torque to start a belt at rest", "N m")]
     holding_interval: Annotated[FloatArray, Means("95 %", "N m", shape="(2, n)", open=True)]
     torque_limit: Annotated[float | None, Means(unit="N m")]
     limited_by: str
@@ -71,7 +70,7 @@ class OperatingMap(Result):
 
     @property
     def given(self) -> bool:
-        """Whether the edges are those of a posterior of drives."""
+        """Whether the edges come from a posterior of drives."""
         return isinstance(self.drag, DragTable)
 
     @property
@@ -95,7 +94,7 @@ class OperatingMap(Result):
 
     @property
     def doubtful(self) -> NDArray[np.bool_]:
-        """Whether it starts some of the belts drawn and others not."""
+        """Whether it starts some draws of the belt and not others, at each temperature."""
         low, high = self.holding_interval
         return np.asarray(self._may_start(low, self.holding, high))
 
@@ -118,7 +117,7 @@ class OperatingMap(Result):
         Raises
         ------
         ParameterError
-            If the speed or the temperature is not one that the law allows.
+            If the law does not apply at the speed or temperature.
         """
         return self.look_up(temperature, speed)[0]
 
@@ -135,8 +134,8 @@ class OperatingMap(Result):
     def contour(self, torque: float) -> tuple[FloatArray, FloatArray]:
         """Return the speeds (m/s) of a torque (N m) at each temperature: falling branch, rising branch.
 
-        0 on the falling branch where torque stays below it down to the stick speed; both the transition
-        speed where torque is never so small.
+        0 on the falling branch if torque stays below it down to the stick speed; both equal the transition
+        speed if torque is always larger.
         """
         return contour(self._laws(self.temperature), torque / self.roll_radius)
 
@@ -176,15 +175,15 @@ class OperatingMap(Result):
     def look_up(self, temperature: ArrayLike | None, speed: ArrayLike) -> list[MapState]:
         """Return the states of arrays, broadcast together and flattened, as `state_at` does for one."""
         if (temperature is None) == self.drag.varies_with_temperature:
-            reason = "the map is one of temperatures: give one, in K"
-            other = "temperature is given, but the fit is isothermal"
+            reason = "the map depends on temperature. Give one, in K"
+            other = "the fit is isothermal. Do not give a temperature"
             raise ParameterError(reason if self.drag.varies_with_temperature else other)
         speeds = numbers_of("speed", speed)
         kelvin = numbers_of("temperature", 0.0 if temperature is None else temperature)
         try:
             speeds, kelvin = (a.ravel() for a in np.broadcast_arrays(speeds, kelvin))
         except ValueError:
-            raise ParameterError("speed and temperature do not fit together") from None
+            raise ParameterError("the shapes of speed and temperature do not match") from None
         if not np.all((speeds > 0) & np.isfinite(speeds)):
             raise ParameterError(f"speed is {float(speeds.min()):g}: it must be greater than 0")
         levels, place = np.unique(kelvin, return_inverse=True)
@@ -207,7 +206,7 @@ class OperatingMap(Result):
 
     @property
     def beyond(self) -> str:
-        """The state beyond ``torque_limit``: the roll slips, or the motor gives up."""
+        """State beyond ``torque_limit``: the roll slips, or the motor stops."""
         return "motor" if self.limited_by == "motor torque" else "stall"
 
     def _laws(self, kelvin: FloatArray | None) -> Sequence[PowerDrag]:
@@ -264,7 +263,7 @@ def _summary(map_: OperatingMap) -> str:
         stall = "never" if np.isinf(map_.stall_above[i]) else _mm(map_.stall_above[i])
         sure = stall if starts[i] else "not started"
         stall = f"{stall}, may not start" if doubtful[i] else sure
-        cells = (where, _mm(map_.lower[i]), *speeds, stall if map_.torque_limit else "not known")
+        cells = (where, _mm(map_.lower[i]), *speeds, stall if map_.torque_limit else "unknown")
         lines.append("".join(f"{text:<26s}" for text in cells).rstrip())
     for point in map_.points:
         where = f"{_mm(point.speed)} mm/s" + (

@@ -12,27 +12,27 @@ from hersey.result import OPEN, Means, Record
 #: on. ``stall``: the roll slips on the belt; ``motor``: the motor gives up.
 STATES = ("creep", "stick_slip", "swing", "bistable", "smooth", "stall", "motor")
 _VERDICTS = {
-    "creep": "Slower than the stick speed, where nothing is measured: the belt creeps along or sticks.",
+    "creep": "Below the stick speed, where nothing was measured: the belt creeps or sticks.",
     "stick_slip": "Stick-slip is certain.",
-    "swing": "The belt swings; it sticks once it has stuck.",
-    "bistable": "Smooth only if it comes from above; from rest it sticks and slips.",
+    "swing": "The belt oscillates; once it has stuck, it keeps sticking.",
+    "bistable": "Smooth only if slowed from above; sticks if started from rest.",
     "smooth": "Smooth.",
-    "stall": "The drag is more than the roll grips: it slips on the belt.",
-    "motor": "The drag is more than the motor can bear.",
+    "stall": "Drag exceeds the grip of the roll, which slips on the belt.",
+    "motor": "Drag exceeds what the motor can give.",
 }
 #: The same on a roll that may slip on the belt.
 _SLIPPING = (
-    "Smooth only if it comes from above; from rest it goes on sticking, or swings while the roll slips."
+    "Smooth only if slowed from above; from rest it keeps sticking, or oscillates while the roll slips."
 )
 #: The same of a belt at rest, which the drive does not start.
 _NOT_STARTED = {
-    "stall": "The roll slips on a belt at rest and does not start it",
-    "motor": "The motor does not start a belt at rest",
+    "stall": "The roll slips on a belt at rest and cannot start it",
+    "motor": "The motor cannot start a belt at rest",
 }
 
 
 #: Where the belts drawn do not agree.
-_MAY_NOT_START = "The drive may not start a belt at rest. If it does:"
+_MAY_NOT_START = "The drive may be unable to start a belt at rest. If it starts:"
 
 
 @dataclass(frozen=True)
@@ -45,17 +45,17 @@ class MapState(Record):
     """
 
     state: str
-    moving: Annotated[str, Means("state of a belt that moves already")]
+    moving: Annotated[str, Means("state of a belt that already moves")]
     torque: float
-    holding: Annotated[float, Means("what a belt at rest bears before it starts")]
+    holding: Annotated[float, Means("torque to start a belt at rest")]
     starts: Annotated[bool, Means("whether the drive starts a belt at rest")]
-    doubtful: Annotated[bool, Means("whether the 95 % interval of holding says otherwise")]
+    doubtful: Annotated[bool, Means("whether the 95 % interval of holding allows the opposite")]
     lower: Annotated[float, OPEN]
     transition: float
     upper: Annotated[float, OPEN]
     stick_speed: Annotated[float, Means("at this temperature")]
     extrapolated: bool
-    slipping: Annotated[bool, Means("the roll may slip for a part of the laps")] = False
+    slipping: Annotated[bool, Means("whether the roll may slip for part of each cycle")] = False
 
     def verdict(self) -> str:
         """Return what the state means, in one sentence."""
@@ -65,18 +65,18 @@ class MapState(Record):
         if self.starts:
             return moving
         slides = self.moving in ("bistable", "smooth")
-        return _NOT_STARTED[self.state] + ("; one that slides already goes on sliding." if slides else ".")
+        return _NOT_STARTED[self.state] + ("; a belt that slides already keeps sliding." if slides else ".")
 
 
 #: Verdicts of a posterior of drives, in words.
 _OF_DRAWS = {
     "smooth": "Smooth from any start.",
-    "depends": "Smooth once it slides; from rest it may stick.",
+    "depends": "Smooth once it slides; may stick from rest.",
     "sticks": "Sticks from any start.",
-    "not started": "The drive does not start it.",
-    "stalls": "It stalls: sliding takes more than the drive gives.",
-    "too fast": "Faster than the drive.",
-    "unknown": "Not sure.",
+    "not started": "The drive cannot start it.",
+    "stalls": "Stalls: sliding needs more than the drive gives.",
+    "too fast": "Faster than the drive can run.",
+    "unknown": "Uncertain.",
 }
 
 
@@ -91,7 +91,7 @@ class PlacedPoint(Record):
     speed: float
     temperature: float
     at: MapState
-    judged: Annotated[str, Means("verdict of the posterior that the edges are from")] = ""
+    judged: Annotated[str, Means("verdict from the posterior of the edges")] = ""
 
     def verdict(self) -> str:
         """Return what happens there, in one sentence."""

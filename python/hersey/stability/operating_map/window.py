@@ -32,12 +32,12 @@ def shown_temperatures(
     """Return temperatures (K) as given, or those measured and a little beyond; None for an isothermal law."""
     if surface.temperature_range is None or not drag.varies_with_temperature:
         if given is not None:
-            raise ParameterError("temperatures are given, but the fit is isothermal: leave them out")
+            raise ParameterError("the fit is isothermal. Do not give temperatures")
         return None
     if given is not None:
         kelvin = np.atleast_1d(numbers_of("temperatures", given))
         if kelvin.ndim > 1 or kelvin.size < 2 or not np.all(np.diff(kelvin) > 0):
-            raise ParameterError("temperatures must ascend, two or more of them")
+            raise ParameterError("temperatures must be at least two, in ascending order")
         check_temperatures(kelvin, drag)
         return kelvin
     check_temperatures(np.array([p.temperature for p in points]), drag)
@@ -60,7 +60,7 @@ def shown_speeds(
     if given is not None:
         speeds = np.atleast_1d(numbers_of("speeds", given))
         if speeds.ndim > 1 or speeds.size < 2 or not (speeds[0] > 0 and np.all(np.diff(speeds) > 0)):
-            raise ParameterError("speeds must ascend from above 0, two or more of them")
+            raise ParameterError("speeds must be at least two, above 0 and in ascending order")
         return speeds
     wanted = [point.speed for point in points]
     low = max(float(edges["lower"].min()), measured[0] / _REACH)

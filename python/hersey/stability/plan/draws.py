@@ -85,8 +85,8 @@ def drawn(
         made += count
         if len(machines) < _POSSIBLE * made:
             raise ParameterError(
-                "the range of stick_speed reaches so far beyond the transition speed that hardly a draw is "
-                "possible: state less"
+                "the range of stick_speed extends so far above the transition speed that almost no "
+                "draw is possible. Give a smaller range"
             )
     return machines[:count], 1.0 - len(machines) / made
 
@@ -103,14 +103,14 @@ def _rows(
     for name in [*uncertainty, *samples]:
         if name not in (*OF_THE_BELT, *BESIDE) or name not in nominal:
             known = ", ".join(key for key in (*OF_THE_BELT, *BESIDE) if key in nominal)
-            raise ParameterError(f"uncertainty: '{name}' is no parameter of this drive: {known}")
+            raise ParameterError(f"uncertainty: unknown parameter '{name}'. Known: {known}")
     for name in sorted(set(uncertainty) - set(samples)):
         columns[name] = uncertainty[name].draw(rng, float(nominal[name]), count)
     if samples:
         rows = {name: np.asarray(values, dtype=float).ravel() for name, values in samples.items()}
         sizes = {values.size for values in rows.values()}
         if len(sizes) != 1 or 0 in sizes:
-            raise ParameterError("samples: the arrays differ in length, or are empty")
+            raise ParameterError("samples: the arrays must have equal lengths and must not be empty")
         picked = rng.integers(0, sizes.pop(), count)
         columns |= {name: values[picked] for name, values in rows.items()}
     return [{name: float(values[i]) for name, values in columns.items()} for i in range(count)]

@@ -28,13 +28,13 @@ _NAMES = {
     "acceleration": ("acceleration", "m/s^2"),
     "spring_force": ("spring force", "N"),
     "motor_torque": ("motor torque", "N m"),
-    "grip": ("roll's grip", "N"),
+    "grip": ("roll grip", "N"),
     "target_speed": ("target speed", "m/s"),
 }
 #: What is said of a draw that needs more than a limit of force.
 _BROKEN = {
     "spring_force": "the spring force exceeds its limit",
-    "motor_torque": "the motor's torque does not suffice",
+    "motor_torque": "the motor torque is not sufficient",
     "grip": "the roll slips on the belt",
 }
 
@@ -72,7 +72,7 @@ class Reach:
         given = {"spring_force": limits.spring_force, "grip": limits.grip if grip is None else grip}
         if limits.motor_torque is not None:
             if roll_radius is None or not (math.isfinite(roll_radius) and roll_radius > 0):
-                raise ParameterError("a limit of motor_torque needs the roll_radius, greater than 0")
+                raise ParameterError("the motor_torque limit needs a roll_radius greater than 0")
             factors["motor_torque"] = roll_radius
             given["motor_torque"] = limits.motor_torque / roll_radius
         forces = {name: value for name, value in given.items() if value is not None}
@@ -108,10 +108,10 @@ def obstacles(
     lowest = _lowest_target(trials, target)
     if lowest >= target:
         fixed = search.thermal.schedule is None
-        where = "" if fixed else " at the temperature in which the temperature profile ends"
+        where = "" if fixed else " at the final temperature of the profile"
         text = (
-            f"the target speed {speed_text(target)} is not above the transition speed {speed_text(lowest)}"
-            f"{where}, where steady sliding is unstable: a target above it would do"
+            f"the target speed {speed_text(target)} is not above the transition speed "
+            f"{speed_text(lowest)}{where}, so steady sliding is unstable there; choose a higher target"
         )
         return (Obstacle("target_speed", target, _up(lowest * 1.01), text),)
     if not searched and _least_force(trials, target) <= reach.force:
@@ -171,7 +171,7 @@ def _not_started(name: str, limit: float, starting: float, reach: Reach) -> Obst
     """The obstacle of a force that does not start the belt, where no force would leave a profile."""
     (label, unit), factor = _NAMES[name], reach.factors[name]
     enough, given = (_written(value * factor, unit) for value in (_up(starting), limit))
-    text = f"the {label} of {given} does not start this belt, which bears {enough} at rest"
+    text = f"the {label} of {given} cannot start this belt, which needs {enough} to break away"
     return Obstacle(name, limit * factor, None, text)
 
 
@@ -204,9 +204,9 @@ def _obstacle(name: str, given: float, needed: float, *, held: bool = False) -> 
     label, unit = _NAMES[name]
     enough = _up(needed)
     would_do, limit = (_written(value, unit) for value in (enough, given))
-    text = f"the {label} is limited to {limit}: {would_do} would do"
+    text = f"the {label} is limited to {limit}, but {would_do} would be enough"
     if held and name != "spring_force":
-        text = f"the {label} of {limit} does not start this belt: {would_do} are needed"
+        text = f"the {label} of {limit} cannot start this belt; {would_do} is needed"
     return Obstacle(name, given, enough, text)
 
 
@@ -225,11 +225,11 @@ def _together(search: Search, limits: Limits) -> Obstacle:
     stated = {**vars(limits), "grip": limits.grip}
     given = [_NAMES[name][0] for name, value in stated.items() if value is not None and name in _NAMES]
     if given:
-        text = f"no limit alone forbids it: relax several of {', '.join(given)} together"
+        text = f"no single limit prevents it; relax several of {', '.join(given)} together"
         return Obstacle("several", math.nan, None, text)
     text = (
-        f"none up to {search.room.speed:.4g} m/s works on enough of the belts drawn: "
-        "know the parameters better, or ask for less confidence"
+        f"no profile up to {search.room.speed:.4g} m/s works for enough draws; determine the parameters "
+        "better, or accept a lower confidence"
     )
     return Obstacle("uncertainty", math.nan, None, text)
 

@@ -21,8 +21,8 @@ from hersey.units import takes_si
 #: What no share of draws counts: how a belt comes to rest.
 _GRADUAL_STOP = Warning(
     "gradual stop assumed",
-    "this assumes a belt that comes to rest gradually (retained): one that stops abruptly (stiction) may "
-    "keep sticking",
+    "this assumes that the belt comes to rest gradually (retained); if it stops abruptly (stiction), "
+    "it may keep sticking",
     severity="watch",
 )
 #: Draws of the fit from which those of the plan are taken.
@@ -111,10 +111,10 @@ def check_temperature(surface: DampingSurface, kelvin: float | None, *, varies: 
     """Refuse a temperature (K) that the fit needs and lacks, or does not have."""
     if surface.b is not None and kelvin is None and not varies:
         raise ParameterError(
-            f"the drag varies with temperature: give {_temperature('150 degC')} or {_HEAT.to()}"
+            f"the drag depends on temperature. Give {_temperature('150 degC')} or {_HEAT.to()}"
         )
     if surface.b is None and (kelvin is not None or varies):
-        raise ParameterError(f"the log is isothermal: leave out {_temperature()} and {_HEAT.to()}")
+        raise ParameterError(f"the log is isothermal. Do not give {_temperature()} or {_HEAT.to()}")
 
 
 def _temperature(at: str = "") -> str:

@@ -58,7 +58,7 @@ def plan_profile(
     seed: int = 1,
     progress: Progress | None = None,
 ) -> Plan:
-    """Return the quickest profile of drive speed from rest after which the belt slides at the target.
+    """Return the fastest profile of drive speed from rest that ends in steady sliding at the target.
 
     Parameters
     ----------
@@ -67,26 +67,26 @@ def plan_profile(
         Its ``limits`` hold over the whole profile and after it: ``speed`` and ``acceleration`` of the drive,
         and the spring force of the simulated motion against ``spring_force``, ``motor_torque`` over
         ``roll_radius`` (the inertia of the drive itself is not in the model) and the roll's grip,
-        ``roll_friction * nip_load``. No plan lets the roll slip on the belt. Its ``uncertainty`` says how far
-        parameters are known; without it the plan is that of the nominal ones. A drivetrain alone has neither
-        limits, but for its grip, nor uncertainty.
+        ``roll_friction * nip_load``. No plan lets the roll slip on the belt. Its ``uncertainty`` is that of
+        the parameters; without it the plan uses nominal values. A drivetrain has no uncertainty, and no
+        limits except its grip.
     target_speed
-        m/s, as all speeds here.
+        Target speed, m/s.
     temperature
-        K, or its profile from the moment at which the drive could start; needed if the drag varies
-        with it. Or what makes the temperature from that moment on, friction under the plan too: plan and
-        temperature are found in rounds, and the proof has the temperature as a state of every motion.
+        Temperature, K, or its profile from the moment at which the drive could start; needed if the drag
+        depends on it. Or a `HeatBalance`: plan and temperature are then found by iteration, and the
+        verification computes the temperature of every motion.
     samples
-        Draws that go together, arrays of equal length by parameter (`DampingSurface.drag_samples`), for a
-        drag that varies with temperature at its reference temperature. They come before the uncertainty of
-        the machine. Or instead of it whole machines drawn at random, at least 40: the search tries every
-        other one, and the rest prove what it finds.
+        Draws as arrays of equal length by parameter (`DampingSurface.drag_samples`), at the reference
+        temperature if the drag depends on temperature. They override the uncertainty of the machine. Or at
+        least 40 whole machines drawn at random: the search uses every other one, and the rest verify the
+        result.
     confidence
-        Share of the belts that must be smooth and keep the limits, 0.5 to 0.999.
+        Required share of draws that are smooth and keep the limits, 0.5 to 0.999.
     seed
-        Of all random draws, at least 0.
+        Random seed, at least 0.
     progress
-        Called with (done, all) of a stage; what it raises ends the plan.
+        Called with (done, total) of a stage; an exception ends the planning.
 
     Raises
     ------
@@ -118,7 +118,7 @@ def plan_profile(
         machines = [MachineSample(replace(each, grip=None), of) for each, of in samples]
         unknown = Unknown(train, drag, {}, {}, seed, machines)
     else:
-        raise ParameterError(f"samples: give at least {LEAST_GIVEN} machines")
+        raise ParameterError(f"samples has too few machines. Give at least {LEAST_GIVEN}")
     asked = _Asked(unknown, gripping, target_speed, limits, reach, confidence, progress)
     if not isinstance(temperature, HeatBalance):
         return asked.on(TemperatureProfile(temperature))[0]
@@ -132,7 +132,7 @@ def plan_profile(
         before, course = course, course_of(gripping, drag, heat, plan.schedule)
         if (off := apart(before, course)) < ALIKE:
             return asked.proven(plan, shape, TemperatureProfile(course, heat))
-    text = f"plan and temperature do not agree after {ROUNDS} rounds: they differ by {off:.2g} K"
+    text = f"plan and temperature do not agree after {ROUNDS} iterations; they differ by {off:.2g} K"
     return asked.without(plan, Obstacle("temperature", off, None, text), course)
 
 
@@ -203,8 +203,8 @@ class _Asked:
     def _unproven(self, facts: Mapping[str, Any], tried: int, share: float) -> Plan:
         """The plan without the profile that the search found and fresh draws refuse."""
         text = (
-            f"the profile found works on {100 * share:.4g} % of fresh draws, and "
-            f"{100 * self.confidence:.4g} % are asked for: ask for less confidence"
+            f"the best profile works for {100 * share:.4g} % of new draws, but "
+            f"{100 * self.confidence:.4g} % are required; accept a lower confidence"
         )
         obstacle = Obstacle("confidence", self.confidence, share, text)
         return Plan(**facts, **NOTHING, warnings=(), obstacles=(obstacle,), tried=tried)
@@ -217,8 +217,9 @@ class _Asked:
         )
         if not proof.accepted:
             text = (
-                f"the plan holds over the temperature that it makes at the nominal parameters, but on "
-                f"{100 * proof.share:.4g} % of draws only where each makes its own: ask for less confidence"
+                "the plan works at the temperature that follows from the nominal parameters, but only "
+                f"for {100 * proof.share:.4g} % of draws at their own temperatures; accept a lower "
+                "confidence"
             )
             return self.without(plan, Obstacle("temperature", proof.share, None, text), thermal.schedule)
         facts = {name: getattr(plan, name) for name in _FACTS} | {"course": thermal.schedule}
@@ -284,13 +285,14 @@ def _warnings(reach: Reach, impossible: float) -> Iterator[Warning]:
     if "grip" not in reach.forces:
         yield Warning(
             "grip not in the plan",
-            "the roll's grip is not stated (roll_friction and nip_load): it is taken to hold throughout",
+            "the grip of the roll is not stated (roll_friction and nip_load), so the roll is assumed "
+            "not to slip",
         )
     if impossible > 0:
         yield Warning(
             "impossible draws",
-            "{share:.2g %} of what is stated is no belt, because its stick speed is not below the transition "
-            "speed: left out",
+            "{share:.2g %} of the stated range was excluded, because its stick speed is not below the "
+            "transition speed",
             share=impossible,
         )
 
@@ -299,13 +301,13 @@ def _check(drag: AnyDrag, target_speed: float, limits: Limits, confidence: float
     closure = getattr(drag, "closure", "retained")
     if closure not in _CLOSURES:
         raise ParameterError(
-            f"closure '{closure}' has no stuck phase to plan with: use {' or '.join(_CLOSURES)}"
+            f"closure '{closure}' has no stuck phase, which planning needs. Use {' or '.join(_CLOSURES)}"
         )
     for name, value in {"target_speed": target_speed, **vars(limits)}.items():
         if value is not None and not (math.isfinite(value) and value > 0):
             raise ParameterError(f"{name} is {value}: it must be greater than 0")
     if not CONFIDENCES[0] <= confidence <= CONFIDENCES[1]:
         low, high = CONFIDENCES
-        raise ParameterError(f"confidence is {confidence}: {low} to {high} is possible")
+        raise ParameterError(f"confidence is {confidence}: it must be from {low} to {high}")
     if seed < 0:
         raise ParameterError(f"seed is {seed}: it must not be negative")

@@ -53,19 +53,19 @@ class LimitUse(Record):
 
 @dataclass(frozen=True, repr=False)
 class Plan(Result):
-    """A profile of drive speed, or the obstacles that forbid one.
+    """A profile of drive speed, or the reasons why there is none.
 
-    ``kind`` is ``direct`` (straight up), ``overshoot`` (above the target and down) or ``impossible``; then
-    ``schedule`` is None and ``obstacles`` says why. ``duration`` (s) is the time from which the drive is at
-    the target and the belt slides for good; ``wait`` (s) the time at rest before it starts, to warm up.
-    ``share`` of ``draws`` fresh draws are smooth from there on and keep all limits, ``failures`` counts what
-    went wrong with the others; ``share_low`` is the bound that the true share exceeds with 95 %.
-    ``peak_force`` (N) is the spring force that a share ``confidence`` of them keeps below. ``response`` is
-    the motion at the nominal parameters, its time counted from the end of the wait. ``fold_speed``,
-    ``transition_speed`` and ``stick_speed`` (m/s) are nominal, at ``temperature`` (K), that of the end. Peak
-    speeds up to ``greatest_speed`` were sought, ``tried`` profiles tried. ``warnings`` names
-    what was not stated, or is not in the model. ``course`` is the film's temperature (K) against time that a
-    plan made with heat makes, from the moment at which the drive could start.
+    ``kind`` is ``direct`` (straight to the target), ``overshoot`` (above the target and down) or
+    ``impossible``; then ``schedule`` is None and ``obstacles`` says why. ``duration`` (s) is the time after
+    which the drive is at the target and the belt slides steadily; ``wait`` (s) is the time at rest before the
+    start, to warm up. ``share`` of ``draws`` new draws are smooth after that and keep all limits;
+    ``failures`` counts the problems of the others; ``share_low`` is the lower 95 % bound of the true share. A
+    share ``confidence`` of them stays below the spring force ``peak_force`` (N). ``response`` is the motion
+    at the nominal parameters, its time counted from the end of the wait. ``fold_speed``, ``transition_speed``
+    and ``stick_speed`` (m/s) are nominal, at ``temperature`` (K), that of the end. Peak speeds up to
+    ``greatest_speed`` were considered, and ``tried`` profiles tested. ``warnings`` names what was not stated,
+    or is not in the model. ``course`` is the film temperature (K) against time, for a plan with heating, from
+    the moment at which the drive could start.
     """
 
     also_stated = ("verdict", "rows")
@@ -82,8 +82,8 @@ class Plan(Result):
     peak_speed: Annotated[float, OPEN]
     hold: Annotated[float, OPEN]
     fall: Annotated[float, OPEN]
-    share: Annotated[float, Means("of fresh draws that are smooth")]
-    share_low: Annotated[float, Means("exceeded by the true share with 95 %")]
+    share: Annotated[float, Means("of new draws that are smooth")]
+    share_low: Annotated[float, Means("lower 95 % bound of the true share")]
     draws: int
     failures: Mapping[str, int]
     uses: tuple[LimitUse, ...]
@@ -114,42 +114,47 @@ class Plan(Result):
     def verdict(self) -> str:
         """Return the decision in a sentence or two."""
         if not self.found:
-            return "No profile ends smooth: " + "; ".join(o.text for o in self.obstacles) + "."
+            return "No profile ends in steady sliding: " + "; ".join(o.text for o in self.obstacles) + "."
         up = f"in {self.rise:.4g} s" if self.rise > 0 else "at once"
         if self.kind == "direct":
-            way = f"Come straight up to {speed_text(self.target_speed)} {up}"
+            way = f"Accelerate directly to {speed_text(self.target_speed)} {up}"
         else:
             down = f"in {self.fall:.4g} s" if self.fall > 0 else "at once"
-            held = f"hold {self.hold:.4g} s, " if self.hold > 0 else ""
-            way = f"Go up to {speed_text(self.peak_speed)} {up}, {held}"
-            way += f"come down to {speed_text(self.target_speed)} {down}"
+            held = f"hold for {self.hold:.4g} s, " if self.hold > 0 else ""
+            way = f"Accelerate to {speed_text(self.peak_speed)} {up}, {held}"
+            way += f"slow down to {speed_text(self.target_speed)} {down}"
         start = f"Wait {self.wait:.5g} s. " if self.wait > 0 else ""
-        return f"{start}{way}. From {self.duration:.5g} s on the drive is there and the belt slides for good."
+        return (
+            f"{start}{way}. After {self.duration:.5g} s the drive runs at the target and the belt slides "
+            "steadily."
+        )
 
     def proof(self) -> str:
-        """Return how far the plan is verified, in a sentence."""
+        """Return how the plan was verified, in a sentence."""
         if self.draws == 1:
-            return "Verified at the nominal parameters only, which are taken as known to 0.1 %."
+            return "Checked at the nominal parameters only, which are assumed known within 0.1 %."
         return (
-            f"Smooth and within the limits in {100 * self.share:.1f} % of {self.draws} fresh draws "
-            f"(more than {math.floor(1000 * self.share_low) / 10:.1f} % at the 95 % level; "
-            f"asked for {100 * self.confidence:g} %)."
+            f"Smooth and within the limits for {100 * self.share:.1f} % of {self.draws} new draws (95 % "
+            f"lower bound {math.floor(1000 * self.share_low) / 10:.1f} %; {100 * self.confidence:g} % "
+            "required)."
         )
 
     def temperature_words(self) -> str:
-        """Return how warm the film is as the plan goes on, in a sentence; nothing where it is given."""
+        """Return the film temperature during the plan, in a sentence; empty if it was given."""
         if self.course is None:
             return ""
         at = [f"{celsius(self.course.at(time)):.4g} degC" for time in (0.0, self.wait, self.duration)]
-        return f"film: {at[0]} at first, {at[1]} as the drive starts, {at[2]} when the belt slides for good"
+        return (
+            f"film: {at[0]} initially, {at[1]} when the drive starts, {at[2]} when the belt slides steadily"
+        )
 
     def table(self) -> str:
-        """Return the profile as CSV for a motor controller: straight lines between the rows."""
+        """Return the profile as CSV for a motor controller, with straight lines between the rows."""
         lines = ["time [s],drive speed [m/s]"]
         return "\n".join([*lines, *(f"{t:.12g},{v:.12g}" for t, v in self.rows())]) + "\n"
 
     def summary(self) -> str:
-        """Return verdict, proof, profile and what it takes of the limits as text."""
+        """Return verdict, proof, profile and use of the limits as text."""
         lines = [self.verdict()]
         if self.found:
             lines += [self.proof(), "", f"  {'time (s)':>12s}  {'drive speed (mm/s)':>18s}"]
@@ -165,7 +170,7 @@ class Plan(Result):
         return "\n".join([*lines, f"seed {self.seed}"])
 
     def headline(self) -> str:
-        """Return the kind, the target and how long it takes."""
+        """Return kind, target and duration."""
         target = f"{self.kind}, target {speed_text(self.target_speed)}"
         return f"{target}, {self.duration:.4g} s" if self.found else target
 
