@@ -29,7 +29,7 @@ def drift_chart(drift: Drift) -> Chart:
     panels = [_panel(drift, each, chosen.tolist()) for each in drift.quantities]
     rows = [alt.hconcat(*panels[i : i + _COLUMNS], spacing=_GAP) for i in range(0, len(panels), _COLUMNS)]
     some = "" if len(chosen) == count else f" ({len(chosen)} of {count})"
-    words = f"thin: units{some}; thick, with 90 % band: all units"
+    words = f"thin: specimens{some}; thick, with 90 % band: all specimens"
     title = alt.Title("Drift", subtitle=[drift.headline(), words])
     return alt.vconcat(*rows, spacing=14, title=title)
 

@@ -55,7 +55,7 @@ def _place(shares: ArrayLike) -> FloatArray:
 
 def _heading(population: Population) -> list[str]:
     law = "" if population.shape is None else f"; line and {100 * population.level:g} % band: Weibull law"
-    words = f"points: failures at median ranks{law}; ticks: units that have not failed"
+    words = f"points: failures at median ranks{law}; ticks: specimens that have not failed"
     return [population.headline(), words, *(each.sentence for each in population.warnings)]
 
 

@@ -17,13 +17,13 @@ from hersey.units import celsius
 
 #: Name, text in the legend, text on the map, and colour of each region, lightness falling.
 REGIONS = (
-    ("smooth", "smooth (EHL)", "smooth", "#eef5fb"),
-    ("bistable", "bistable: smooth only from above", "smooth only from above", "#f5cf7f"),
-    ("swing", "small swing without sticking", "small swing", "#e08f2d"),
-    ("stick_slip", "stick-slip", "stick-slip", "#cc6a3d"),
-    ("creep", "slower than the stick speed", "creeps or sticks", "#a8503a"),
+    ("smooth", "smooth", "smooth", "#eef5fb"),
+    ("bistable", "depends on start", "depends on start", "#f5cf7f"),
+    ("swing", "depends on start: oscillates from above", "oscillates", "#e08f2d"),
+    ("stick_slip", "sticks", "sticks", "#cc6a3d"),
+    ("creep", "sticks: slower than the stick speed", "below stick speed", "#a8503a"),
     ("stall", "stall: the roll slips", "stall", "#44444e"),
-    ("motor", "more than the motor bears", "motor stops", "#44444e"),
+    ("motor", "stall: above the motor limit", "motor stalls", "#44444e"),
 )
 #: Lower and upper edge (m/s) of a part of a region at each column of the chart.
 Edges = tuple[FloatArray, FloatArray]

@@ -38,7 +38,7 @@ const LOOKS = {
     gridColor: RULE, gridWidth: 0.8, domainColor: EDGE, tickColor: EDGE, tickSize: 4, labelPadding: 4 },
   axisX: { grid: false, labelFlush: false, labelOverlap: "greedy", labelSeparation: 8 },
   axisY: { labelOverlap: "greedy", labelSeparation: 4 },
-  legend: { labelFontSize: 12, titleFontSize: 12, labelColor: SECONDARY, titleColor: SECONDARY, titleFontWeight: "normal" },
+  legend: { offset: 6, labelFontSize: 12, titleFontSize: 12, labelColor: SECONDARY, titleColor: SECONDARY, titleFontWeight: "normal" },
   header: { labelColor: SECONDARY, titleColor: SECONDARY },
   title: { color: SECONDARY, subtitleColor: SECONDARY },
   text: { color: "light-dark(#15202b, #e7ecf0)", fontSize: 12 },
@@ -63,6 +63,11 @@ function numbersOf(part) {
   return out;
 }
 
+// The title of a chart, or of the first of its panels that has one.
+function titleOf({ title = {}, ...part }) {
+  const own = lines(typeof title === "string" ? title : title.text).join(" ");
+  return own || (part.vconcat ?? part.hconcat ?? []).map(titleOf).find(Boolean) || "";
+}
 const drawnViews = [];
 async function embedded(place, specification) {
   const simple = !["vconcat", "hconcat", "concat", "facet", "repeat"].some((kind) => kind in specification);
@@ -89,29 +94,34 @@ async function pictureOf(specification, name, kind) {
   anchor.click();
 }
 
-// A chart under its title, and what it says to who cannot see it. `heading` and `note` stand in the place of the
-// chart's own; `behind` is false where a table of the same numbers stands beside.
-async function chart(parent, name, { heading = null, note = null, says = "", behind = true, height = null } = {}) {
+// A chart under its title, with a label for screen readers. `heading` and `note` replace the chart's own, which are
+// then in the fold with the data; `behind` is false where a table of the same numbers stands beside the chart.
+async function chart(parent, name, { heading = null, level = "h3", note = null, says = "", behind = true, height = null } = {}) {
   const specification = charts[name];
   if (!specification) return null;
   const title = typeof specification.title === "string" ? { text: specification.title } : specification.title ?? {};
   const figure = add(parent, "figure", "", "fig");
   figure.id = `chart-${name}`;
   const words = heading ?? lines(title.text).join(" ");
-  if (words) add(figure, "h3", words);
+  if (words) add(figure, level, words);
   const place = add(figure, "div", "", "chart");
   const notes = note === null ? lines(title.subtitle) : lines(note);
   const view = await embedded(place, height === null ? specification : { ...specification, height });
   const drawing = place.querySelector("svg");
+  const label = words || titleOf(specification) || name.replaceAll("_", " ");
+  figure.setAttribute("role", "group");
+  figure.setAttribute("aria-label", label);
   for (const inner of drawing.querySelectorAll("[role], [aria-roledescription], [aria-label]")) {
-    for (const name of ["role", "aria-roledescription", "aria-label", "aria-hidden"]) inner.removeAttribute(name);
+    for (const name of ["role", "aria-roledescription", "aria-label"]) inner.removeAttribute(name);
   }
+  for (const inner of drawing.children) inner.setAttribute("aria-hidden", "true");
   drawing.setAttribute("role", "img");
-  drawing.setAttribute("aria-label", [words, says, ...notes].filter(Boolean).join(". "));
-  toggles(figure, specification, view);
+  drawing.setAttribute("aria-label", [label, says, ...notes].filter(Boolean).join(". "));
   for (const text of notes) add(figure, "p", sentence(text), "note");
   if (behind) {
-    fold(figure, "Numbers and files", (all) => {
+    fold(figure, "Data", (all) => {
+      toggles(all, specification, view);
+      if (note !== null) for (const text of lines(title.subtitle)) add(all, "p", sentence(text), "note");
       numbersOf(specification).forEach(({ heads, rows, numeric }, i) => table(all, heads, rows, numeric, { name: `${name}${i ? `-${i + 1}` : ""}`, label: words }));
       const foot = add(all, "div", "", "foot");
       for (const kind of ["svg", "png"]) button(foot, `Save ${kind.toUpperCase()}`, () => pictureOf(specification, name, kind));
@@ -119,7 +129,7 @@ async function chart(parent, name, { heading = null, note = null, says = "", beh
   }
   return figure;
 }
-// A key whose entries show and hide their series.
+// Buttons that show and hide the series of a chart.
 function toggles(figure, specification, view) {
   const series = specification.usermeta?.series ?? [];
   if (series.length < 2) return;

@@ -1,5 +1,5 @@
-// What all pages are drawn with: the data inside them, pieces of text, tables, folds, signals, axes. All text
-// enters through textContent: nothing in a log can run.
+// What all pages share: their data, text, tables, folds, signals and axes. All text enters through textContent, so
+// nothing in a log can run.
 
 const data = JSON.parse(document.getElementById("document").textContent);
 const charts = JSON.parse(document.getElementById("charts").textContent);
@@ -12,7 +12,7 @@ function digits(value, count = 3) {
   const text = size !== 0 && (size >= 1e6 || size < 1e-4) ? value.toExponential(count - 1) : String(Number(value.toPrecision(count)));
   return text.replaceAll("-", "−");
 }
-// A text of ours as it is set: true minus, degree sign, squares.
+// A text of the package as it is printed: true minus, degree sign, squares.
 function pretty(text) {
   return text.replaceAll(" degC", " °C").replace(/(\d) (?=%|°C)/g, "$1\u00a0").replaceAll("+/-", "±").replace(/(^|[\s[(,±])-(?=\d)/g, "$1−").replace(/(?<=[a-z])\^2\b/g, "²")
     .replace(/\b(mN|N) m\b/g, "$1·m").replace(/(\d)e-0*(\d+)\b/g, (_, first, power) => `${first}·10⁻${[...power].map((each) => "⁰¹²³⁴⁵⁶⁷⁸⁹"[each]).join("")}`);
@@ -24,7 +24,7 @@ function sentence(text) {
   return `${set.slice(0, 1).toUpperCase()}${set.slice(1)}`;
 }
 
-// What a result is warned of; what it concerns keeps its name as it is written.
+// A warning as a sentence; the name of what it concerns is kept as it is.
 function warned(each) {
   const said = [each.title, each.text].filter(Boolean).join(": ");
   return each.where ? `${each.where}: ${stopped(said)}` : sentence(said);
@@ -92,7 +92,7 @@ async function copy(text, from) {
     await navigator.clipboard.writeText(text);
     from.textContent = "Copied";
   } catch {
-    from.textContent = "Not allowed: mark it and copy";
+    from.textContent = "Blocked: select and copy";
   }
   setTimeout(() => { from.textContent = label; }, 2000);
 }

@@ -30,7 +30,7 @@ function mapNames({ map, frame, picture, edges, beyond, slowest, fastest, across
 
   function nameLimit() {
     if (map.speed_limit === null || !(map.speed_limit > slowest && map.speed_limit < fastest)) return;
-    const text = `greatest drive speed ${digits(1e3 * map.speed_limit)}`, width = shape.width(text, 11.5);
+    const text = `drive limit ${digits(1e3 * map.speed_limit)}`, width = shape.width(text, 11.5);
     const y = up(map.speed_limit);
     for (const offset of [-5, 13]) {
       for (const share of [0.5, 0.3, 0.7, 0.2, 0.8]) {
@@ -69,7 +69,7 @@ function mapNames({ map, frame, picture, edges, beyond, slowest, fastest, across
     taken.push([left - 1, top, left + 1, bottom], [right - 1, top, right + 1, bottom], [left, top - 1, right, top + 1], [left, bottom - 1, right, bottom + 1]);
     const nameless = [];
     for (const [name, bands] of Object.entries(zones)) {
-      const word = name === "stall" ? beyond : name, size = 14, width = shape.width(word, size, 700) + 6;
+      const word = name === "stall" ? beyond : name === "depends" ? "depends on start" : name, size = 14, width = shape.width(word, size, 700) + 6;
       let best = null, thick = 0;
       for (const band of bands.flatMap(runs)) {
         thick = Math.max(thick, ...band.map(([, low, high]) => low - high));

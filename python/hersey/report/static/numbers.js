@@ -2,7 +2,7 @@
 
 function numbers(place) {
   const ROWS = 300;
-  const box = fold(place, "Numbers of this motion");
+  const box = fold(place, "Data of this motion");
   box.className = "numbers behind";
   let last = null, soon = 0;
   function speedAt(profile, time) {

@@ -15,9 +15,9 @@ function timeline(parent, says) {
   const last = Math.max(...rows.map((row) => row.time.at(-1)));
   const figure = add(parent, "figure", "", "fig");
   figure.id = "timeline";
-  add(figure, "h3", "The log, one time axis");
+  add(figure, "h3", "The log");
   const place = add(figure, "div", "", "chart");
-  add(figure, "p", `Strip: bar used, thin line settling or changing, red stick-slip.${starts.length > 1 ? " Files one after another." : ""} Pointing at one row reads all; arrow keys move the cursor.`, "note");
+  add(figure, "p", `Top row: green is used, red is stick-slip.${starts.length > 1 ? " Files follow one another." : ""} Point or use arrow keys to read values.`, "note");
   const read = add(figure, "p", "", "sr-only");
   read.setAttribute("aria-live", "polite");
 
@@ -28,7 +28,7 @@ function timeline(parent, says) {
     const rowHeight = onPaper ? ROW_ON_PAPER : ROW;
     const right = width - 6;
     const x = (time) => left + ((time - first) / (last - first || 1)) * (right - left);
-    const root = svg("svg", { width, role: "img", "aria-label": says });
+    const root = svg("svg", { width, role: "img", "aria-label": `The log: speed, torque and temperature against time. ${says}` });
     strip(root, x, left, right);
     const scales = rows.map((row, i) => {
       const floor = top + i * (rowHeight + BETWEEN) + rowHeight;
@@ -85,12 +85,13 @@ function timeline(parent, says) {
       at = Math.min(last, Math.max(first, (at ?? (first + last) / 2) + by * (event.shiftKey ? 0.05 : 0.005) * (last - first)));
       move();
     };
+    for (const inner of root.children) inner.setAttribute("aria-hidden", "true");
     place.replaceChildren(root);
     move();
   };
   place.tabIndex = 0;
   place.setAttribute("role", "group");
-  place.setAttribute("aria-label", "The log; arrow keys move the cursor");
+  place.setAttribute("aria-label", "The log: arrow keys move the cursor");
   atWidth(place, draw);
   return figure;
 }
