@@ -113,7 +113,7 @@ def test_a_cancelled_run_is_not_done_and_leaves_nothing(
     ("error", "reason"),
     [
         (Refused("too few dwells", HerseyError("too few dwells").to_dict()), "too few dwells"),
-        (EndedError("x"), "is there memory left?"),
+        (EndedError("x"), "Is there enough memory?"),
     ],
 )
 def test_a_run_that_fails_says_why_and_is_not_done(

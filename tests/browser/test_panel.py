@@ -302,7 +302,7 @@ def test_a_profile_is_followed_and_edited(page: Page, tmp_path: Path) -> None:
     page.fill("[aria-label='Row 2, time in s']", "7")
     page.press("[aria-label='Row 2, time in s']", "Enter")
     assert page.get_attribute("[aria-label='Row 2, time in s']", "aria-invalid") == "true"
-    assert "Times must ascend" in (page.text_content("#panel .refused") or "")
+    assert "Times must rise" in (page.text_content("#panel .refused") or "")
     handle = page.locator("#panel .handle").nth(1)
     handle.focus()
     handle.press("Shift+ArrowUp")

@@ -42,6 +42,7 @@ class Dropped:
     name: str
     path: Path
     size: int = 0
+    total: int = 0  #: bytes that will come, 0 where the page does not say
     received: int = 0
     state: str = "arriving"
     fault: str = ""
@@ -260,11 +261,11 @@ class Analysis:
         """Show the machine as a form or as TOML; return why it stays what it is, or nothing."""
         if mode == "toml" and self.mode == "form":
             if faults := answer_faults(self.answers, self.points):
-                return f"first put right: {', '.join(fault.link for fault in faults)}"
+                return f"fix first: {', '.join(fault.link for fault in faults)}"
             self.text = form_text(self.answers, self.points, self.machine_others)
         if mode == "form" and self.mode == "toml" and self.text.strip():
             if any(fault.at == "toml" for fault in self.faults):
-                return "first put the text right"
+                return "fix the TOML first"
             import tomllib
 
             document = tomllib.loads(self.text)
@@ -273,7 +274,7 @@ class Analysis:
                 answer_faults(answers, points)
                 or tomllib.loads(form_text(answers, points, others)) != document
             ):
-                return "the form cannot hold all that the text says: keep the text"
+                return "the form has no fields for part of this TOML: edit it as TOML"
             self.answers, self.points, self.machine_others = answers, points, others
         elif mode == "form" and self.mode == "toml":
             self.answers, self.points, self.machine_others = {}, [], {}

@@ -1,4 +1,4 @@
-"""What is wrong with the answers about the machine, in the reader's words, at the field that is guilty."""
+"""Problems with the answers about the machine, in the words of the reader, each at its field."""
 
 from __future__ import annotations
 
@@ -47,13 +47,15 @@ def answer_faults(answers: Mapping[str, str], points: Sequence[Mapping[str, str]
                 faults += _of_answer(at, f"points.{field}", text)
             elif field != "name":
                 faults.append(
-                    Fault(at, "This is needed.", "Or remove the point.", f"{field} of point {number + 1}")
+                    Fault(
+                        at, "This value is missing.", "Or remove the point.", f"{field} of point {number + 1}"
+                    )
                 )
     for question in lacking({**answers, **({"drivetrain.points": "1"} if points else {})}):
-        text = f"Such as {question.example}; or leave all of the machine blank."
+        text = f"For example {question.example}. Or leave the whole machine blank."
         if question.section not in ("drivetrain", "limits"):
-            text = f"Such as {question.example}; the others of its group say nothing without it."
-        faults.append(Fault(f"field:{question.key}", "This is needed.", text, label(question.key)))
+            text = f"For example {question.example}. The other values of its group need it."
+        faults.append(Fault(f"field:{question.key}", "This value is missing.", text, label(question.key)))
     return faults
 
 
@@ -68,9 +70,15 @@ def doubtful(answers: Mapping[str, str]) -> list[Fault]:
         except HerseyError:
             continue
         if doubt:
-            title = f"{value} is far from what such a drive has."
+            title = f"{value} is unusual for such a drive."
             faults.append(
-                Fault(f"field:{key}", title, f"Such as {question.example}.", label(key), keep=f"Keep {value}")
+                Fault(
+                    f"field:{key}",
+                    title,
+                    f"For example {question.example}.",
+                    label(key),
+                    keep=f"Keep {value}",
+                )
             )
     return faults
 

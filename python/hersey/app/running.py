@@ -8,6 +8,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
+from hersey.app.kept import summary_of
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.recipe import Recipe
 from hersey.document.assembly import document_of
@@ -59,7 +60,9 @@ def run(request: Mapping[str, Any], step: Step) -> dict[str, Any]:
         write_atomically(report.with_suffix(".toml"), document.recipe.toml, overwrite=True)
     write_atomically(report, render(document), overwrite=True)
     decision = found.decision
-    return {"signal": decision.signal, "words": decision.instruction, "warnings": len(found.warnings)}
+    part = None if document.map is None else document.map.to_dict()
+    summary = summary_of(decision.model_dump(mode="json", include={"signal", "instruction", "points"}), part)
+    return {**summary, "warnings": len(found.warnings)}
 
 
 def _shared(step: Step, points: int) -> Callable[[str], None]:

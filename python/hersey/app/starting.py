@@ -97,7 +97,7 @@ def _socket(port: int) -> socket.socket:
         listening.close()
         reason = getattr(error, "strerror", None) or "there is no such port"
         raise OutputError(
-            f"{Setting('port').to(str(port))}: {reason}: leave it out for one that is free"
+            f"{Setting('port').to(str(port))}: {reason}: omit it to use any free port"
         ) from None
     listening.listen(64)
     return listening

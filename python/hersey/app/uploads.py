@@ -69,15 +69,13 @@ async def receive(
             async for chunk in chunks:
                 size += len(chunk)
                 if size > most:
-                    raise TooMuchError(f"it is longer than the {megabytes(most)} that can be taken here")
+                    raise TooMuchError(f"the file is larger than the {megabytes(most)} that the app takes")
                 file.write(chunk)
                 received(size)
     except OSError as error:
         path.unlink(missing_ok=True)
         free = megabytes(shutil.disk_usage(path.parent).free)
-        raise TooMuchError(
-            f"it cannot be kept on this disk, which has {free} left: {error.strerror}"
-        ) from None
+        raise TooMuchError(f"the file cannot be stored: {error.strerror} ({free} free on the disk)") from None
     except BaseException:
         path.unlink(missing_ok=True)
         raise

@@ -31,7 +31,7 @@ def main() -> None:
     except HerseyError as error:
         tell(refused=str(error), problem=error.to_dict())
     except MemoryError:
-        full = HerseyError("it does not fit into the memory of this computer: thin the log, or cut it")
+        full = HerseyError("the log does not fit into the memory of this computer: thin it or cut it")
         tell(refused=str(full), problem=full.to_dict())
 
 
