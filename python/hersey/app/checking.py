@@ -13,7 +13,6 @@ from hersey.log.channels import ROLES
 
 def check(one: Analysis) -> None:
     """Look for problems again; it may take a moment where the machine file names a log."""
-    one.revision += 1
     faults = [
         _of_file(file, "", file.fault, file.fault.split(":")[0][:60])
         for file in one.files.values()
@@ -21,6 +20,7 @@ def check(one: Analysis) -> None:
     ]
     faults += [*_channel_faults(one, one.logs), *_machine_faults(one)]
     one.faults = [fault for fault in faults if not (fault.keep and fault.key in one.kept)]
+    one.revision += 1  # last: a page that asks meanwhile asks again
 
 
 def _of_file(file: Dropped, title: str, text: str, short: str) -> Fault:

@@ -34,10 +34,13 @@ export function showAnalyses(place, analyses, current, act) {
   }));
 }
 
-/** Reports that were kept before this start. */
+/** Reports that were kept before this start, the newest in sight. */
+const IN_SIGHT = 4;
 export function showEarlier(place, reports) {
   if (place.childElementCount || !reports.length) return;
-  place.append(make("h3", { text: "Earlier reports" }), make("ul", { class: "list" }, ...reports.map((one) => make("li", {}, make("b", { text: one.name }), ...finished(one)))));
+  const list = (those) => make("ul", { class: "list" }, ...those.map((one) => make("li", {}, make("b", { text: one.name }), ...finished(one))));
+  place.append(make("h3", { text: "Earlier reports" }), list(reports.slice(0, IN_SIGHT)));
+  if (reports.length > IN_SIGHT) place.append(make("details", {}, make("summary", { text: `${reports.length - IN_SIGHT} more` }), list(reports.slice(IN_SIGHT))));
 }
 
 /** A finished analysis: its decision, a small map, the report. */

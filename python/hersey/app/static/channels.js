@@ -154,6 +154,6 @@ function corrections(view, questions, act) {
     make("p", {}, check("ignore temperature", view.options.isothermal, (on) => ({ isothermal: on }))),
     make("div", { class: "pair" }, ...questions.corrections.map(line)));
   const tare = make("p", { class: "tare" }, check("Subtract the torque at standstill (tare)", view.options.tare === "standing", (on) => ({ tare: on ? "standing" : "none" })),
-    make("span", { class: "note", text: " · No-load log: drop it and name it in the machine TOML ([rest], log)" }));
+    make("span", { class: "note", text: " · No-load log: drop it and name it in the machine TOML, [rest] log" }));
   return make("div", {}, tare, details);
 }
