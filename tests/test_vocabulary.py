@@ -12,8 +12,6 @@ LEFT = {
     ("docs", "taken off"): 14,
     ("docs", "is told"): 2,
     ("docs", "not told"): 2,
-    ("page", "taken off"): 3,
-    ("page", "not told"): 3,
     ("cli", "taken off"): 1,
 }
 

@@ -14,8 +14,11 @@ from typing import Any, Literal
 import pytest
 from playwright.sync_api import Browser, Page
 
+from hersey.decision.edges import Edge
 from hersey.document.analysis import Analysis
 from hersey.document.assembly import load
+from hersey.report.page import render
+from hersey.study.first_screen.result import MeasurementPart
 from tests.browser.accessibility import open_all, violations_by_width
 from tests.browser.conftest import SCREENS
 from tests.browser.opening import Opened
@@ -282,12 +285,13 @@ def test_it_is_accessible(
     page.close()
 
 
-#: Words that the page of the example may show as it opens, and with each section laid out; folds are closed.
-WORDS, WORDS_OF_SECTIONS = 700, 1100
+#: Words that the page of the example may show as it opens, and outside its charts with each section laid out;
+#: folds are closed.
+WORDS, WORDS_OUTSIDE_CHARTS = 700, 720
 
 
 def test_the_page_of_the_example_is_short(browser: Browser, report: Report) -> None:
-    """As a reader sees it: axis numbers, buttons and tables count too."""
+    """As a reader sees it: numbers, buttons and tables count too, and as it opens those of axes."""
     opened = Opened(browser, report("demo")[0], size=DESK)
     page = opened.page
     page.wait_for_timeout(700)  # the panel has answered
@@ -295,8 +299,38 @@ def test_the_page_of_the_example_is_short(browser: Browser, report: Report) -> N
     assert 300 < page.evaluate(words) <= WORDS
     # a section out of view is not laid out, and its text is not among that of the page
     page.add_style_tag(content="#report section { content-visibility: visible !important; }")
-    assert WORDS < page.evaluate(words) <= WORDS_OF_SECTIONS
+    whole = page.evaluate(words)
+    page.evaluate("document.querySelectorAll('svg').forEach((each) => each.remove())")
+    assert 400 < page.evaluate(words) <= WORDS_OUTSIDE_CHARTS < whole
     page.close()
+
+
+def test_the_next_measurement_has_its_reason_one_click_away(
+    browser: Browser, report: Report, tmp_path: Path
+) -> None:
+    document = report("demo")[1]
+    assert document.decision is not None
+    text = "Measure next: start once from rest at 110 mm/s. V* would then be known within 5 %"
+    measurement = MeasurementPart(kind="starts", text=text, temperature=453.15, speeds=[0.11], left=0.5)
+    known = {
+        "measurement": measurement,
+        "fold": Edge(0.1, 0.05, 0.2),
+        "closures": {"retained": 0.7, "stiction": 0.29, "stribeck": 0.01},
+    }
+    decision = document.decision.model_copy(update=known)
+    path = tmp_path / "page.html"
+    path.write_text(render(document.model_copy(update={"decision": decision})), encoding="utf-8")
+    opened = Opened(browser, path, size=DESK)
+    line = opened.page.locator("#decision .next")
+    assert f"{text}." in line.inner_text().replace("\u00a0", " ")
+    line.locator("summary").click()
+    why = line.locator("details p").inner_text().replace("\u00a0", " ")
+    assert "between 50 and 200 mm/s (95 %)" in why
+    assert "from 4 to 2." in why  # half of it in logarithms
+    assert "comes to rest gradually (70 %) or stops abruptly (29 %)" in why
+    line.locator("details a").click()
+    assert opened.page.evaluate("location.hash") == "#band"
+    opened.page.close()
 
 
 def test_a_chart_has_a_label_and_hides_its_drawing(each: tuple[Opened, Analysis]) -> None:

@@ -168,7 +168,9 @@ def test_the_verdict_is_that_of_the_core(
     if cycle.kind == "stick_slip":
         assert f"{cycle.frequency:.3g} Hz, stuck {100 * cycle.stuck_fraction:.2g} %" in verdict(page)
     if state.state == "bistable":
-        page.wait_for_function("() => document.querySelector('.verdict-line').textContent.includes('survives')")
+        page.wait_for_function(
+            "() => document.querySelector('.verdict-line').textContent.includes('survives')"
+        )
         bears = disturbance(native.train, native.drag, drive_speed=speed, temperature=kelvin).kick
         assert (
             "survives any speed loss" in verdict(page)

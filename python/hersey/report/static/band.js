@@ -25,7 +25,7 @@ async function bandSection(parent) {
   const moves = Object.entries(data.band?.sensitivity ?? {}).filter(([, value]) => value !== null && Math.abs(value) >= 0.005);
   const table_too = data.map && charts.stick_speed;
   if (table_too || moves.length) {
-    const more = fold(part, table_too ? `V* by temperature${moves.length ? ", and its sensitivity" : ""}` : "Sensitivity of V*");
+    const more = fold(part, table_too ? `V* by temperature${moves.length ? " and sensitivity" : ""}` : "Sensitivity of V*");
     if (table_too) bandTable(more);
     if (moves.length) add(more, "p", `V* changes by this much when a parameter rises by 1 %: ${moves.map(([name, value]) => `${name.replaceAll("_", " ")} ${digits(value, 2)} %`).join(", ")}.`, "note");
   }

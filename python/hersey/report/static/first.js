@@ -104,12 +104,8 @@ function points(row, all) {
     word.append(signal(point.signal), SIGNALS[point.signal]);
     add(line, "td", point.name, point.name.length < 16 ? "n short" : "n");
     add(line, "td", `${perSecond(point.speed)} mm/s${levels.size > 1 ? `, ${degrees(point.temperature)}` : ""}`, "v");
-    const words = add(line, "td", pretty(point.words), "w");
-    if (point.plan) {
-      words.append(" (");
-      link(words, "profile", "plan");
-      words.append(")");
-    }
+    const words = add(line, "td", point.plan ? "" : pretty(point.words), "w");
+    if (point.plan) link(words, pretty(point.words), "plan");
     const press = button(add(line, "td", "", "b"), "Show", () => controller?.show(i));
     press.setAttribute("aria-label", `Show ${point.name}`);
     press.dataset.show = i;

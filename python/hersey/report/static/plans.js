@@ -4,7 +4,7 @@ const failuresOf = (plan) => Object.entries(plan.failures).filter(([, count]) =>
 function planFinding(point) {
   const { plan } = point;
   const name = capital(point.name);
-  const sure = plan.share ? ` The belt then slides with ${digits(100 * plan.share, 2)} % probability.` : "";
+  const sure = plan.share ? ` The belt then slides with ${plan.share > 0.99 ? "over 99" : digits(100 * plan.share, 2)} % probability.` : "";
   if (plan.kind === "overshoot") return `${name}: ramp to ${perSecond(plan.peak_speed)} mm/s, hold ${digits(plan.hold, 2)} s, slow to ${perSecond(plan.target_speed)} mm/s.${sure}`;
   if (plan.kind === "direct") return `${name}: ramp to ${perSecond(plan.target_speed)} mm/s in ${digits(plan.rise, 2)} s.${sure}`;
   return `${name}: no profile within the limits reaches smooth running at ${perSecond(plan.target_speed)} mm/s.`;

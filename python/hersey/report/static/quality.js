@@ -22,7 +22,7 @@ function dataSection(parent) {
     table(each, ["File", "From, s", "To, s", "Rows", "Reason"], q.rejected.map((r) => [
       data.files[r.run].name, r.start.toFixed(2), r.end.toFixed(2), String(r.rows), pretty(r.reason)]), [1, 2, 3], { name: "not-used", label: "Excluded stretches" });
   }
-  const input = fold(part, `Channels, units and comments (${plural(data.files.length, "file")})`);
+  const input = fold(part, data.files.length === 1 ? "Channels and units" : `Channels and units (${data.files.length} files)`);
   table(input, ["File", "Rows", "Duration", "Every, ms", "Gaps", "Channels"], data.files.map((f) => [
     f.name, counted(f.rows), f.duration ? seconds(f.duration) : "–", f.sampling_interval ? digits(f.sampling_interval * 1e3) : "–", String(f.gaps),
     f.channels.map((c) => `${c.role}: ${c.name || "(no name)"} [${c.unit}]`).join(", ")]), [1, 2, 3, 4], { label: "Files" });

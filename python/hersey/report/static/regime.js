@@ -24,23 +24,23 @@ async function regimeSection(parent) {
   const more = add(part, "div", "", "columns");
   await chart(more, "transition");
   await chart(more, "torque_budget");
-  if (data.torque_budget) {
-    const said = fold(part, "Torque budget in numbers");
-    said.id = "torque_budget";
-    said.className = "behind";
-    for (const text of data.torque_budget.text) add(said, "p", pretty(text), "note");
-  }
-  const all = fold(part, "Full verdict and all regimes tested");
+  const all = fold(part, "Full verdict, all regimes tested");
   const verdict = add(all, "div");
   verdict.id = "verdict";
   data.verdict.forEach((text) => add(verdict, "p", pretty(text), "text"));
   hypotheses(all);
   if (data.film) explanations(all);
+  if (data.torque_budget) {
+    const said = add(all, "div");
+    said.id = "torque_budget";
+    add(said, "h3", "Torque budget in numbers");
+    for (const text of data.torque_budget.text) add(said, "p", pretty(text), "text");
+  }
 }
 const filmNote = () => data.film?.dwells.length && data.film.points.length ? "Diamonds: operating points; dots: dwells." : "";
 // What the contact data say: warnings in sight, the rest in a fold.
 function ofTheContact(parent) {
-  warnings(parent, data.film.warnings, { heading: "Where the film differs from the log", folded: "Film at the dwells and points" });
+  warnings(parent, data.film.warnings, { heading: "Where the film differs from the log", folded: "Film in detail" });
 }
 function hypotheses(parent) {
   const element = table(parent, ["Regime", "Exponent", "p-value", "Result", "Meaning"], data.regime.hypotheses.map((h) => {
