@@ -588,10 +588,9 @@ def test_both_axes_of_speed_say_the_same(few: OperatingMap) -> None:
         ]
         assert axis["values"] == pytest.approx(decades)
     assert spec["title"]["subtitle"] == [
-        "solid: transition speed, shaded its 95 % interval; dashed: V*, dotted its 95 % interval (fit, "
-        "stiffness, "
-        "stick speed)",
-        "thin: drag torque; frame: range of the dwells; hatched: extrapolated; stall beyond 4.5 N·m "
+        "solid: transition, shaded: its 95 % interval; dashed: V*, dotted: its 95 % interval (from fit, "
+        "stiffness, stick speed)",
+        "thin: drag torque; frame: measured range; hatched: extrapolated; stall beyond 4.5 N·m "
         "(motor torque)",
     ]
 

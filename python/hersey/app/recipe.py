@@ -38,8 +38,8 @@ def options_of_recipe(path: Path, *, mapped: bool) -> dict[str, Any] | None:
     stated = Recipe.from_file(path).stated()
     if others := sorted(stated.keys() - {"logs", "mapping", *_OPTIONS}):
         raise HerseyError(
-            f"the app has no control for {', '.join(others)} of this recipe: run hersey report --recipe in "
-            "a terminal"
+            f"the app has no control for {', '.join(others)} of this recipe: run hersey report with it in a "
+            "terminal"
         )
     if "mapping" in stated and not mapped:
         raise HerseyError(
