@@ -335,7 +335,7 @@ def test_a_wrong_number_is_refused_in_its_field(page: Page) -> None:
     page.fill("#try-stiffness", "stiff")
     page.press("#try-stiffness", "Enter")
     assert page.get_attribute("#try-stiffness", "aria-invalid") == "true"
-    assert page.text_content("#panel .refused") == "Stiffness: a number from 1.1 to 110 N/mm"
+    assert page.text_content("#panel .refused") == "Stiffness: type a number from 1.1 to 110 N/mm"
     assert verdict(page) == before
     enter(page, "stiffness", "12")
     assert page.get_attribute("#try-stiffness", "aria-invalid") == "false"

@@ -50,7 +50,7 @@ _RIMS: dict[str, Row] = {"regimes": {}, "points": RIM}
 _TIPS = [
     alt.Tooltip("name:N", title="point"),
     alt.Tooltip("regime:N", title="regime"),
-    alt.Tooltip("h:Q", title="minimum film (um)", format=".3~g"),
+    alt.Tooltip("h:Q", title="minimum film (µm)", format=".3~g"),
 ]
 #: The chart shows at least this.
 _LEAST = {"g_v": (-2.0, 4.0), "g_e": (-1.0, 3.0)}

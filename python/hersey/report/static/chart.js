@@ -1,7 +1,7 @@
-// Charts of the package, drawn by Vega at the width of their place: title and notes as text of the page, colours
-// of the page, the numbers and the files behind each.
+// Charts of the package, drawn by Vega at the width of their place, with title and notes as text of the page, the
+// colours of the page, and the data and files of each in a fold.
 
-// Colours on dark ground of those that charts are given.
+// The colours of charts, and what they become on a dark ground.
 const ON_DARK = {
   "#15202b": "#e7ecf0", "#4b5965": "#a9b5c0", "#c9d1d6": "#33404b", "#73808c": "#8593a0", "#0a5c8f": "#74bdea",
   "#17694a": "#74d0a4", "#845400": "#f0be61", "#a5301a": "#ff9a80", "#ffffff": "#11171d", "#f3f6f7": "#19212a",
@@ -12,7 +12,7 @@ const ON_DARK = {
 const NAMED = { white: "#ffffff", black: "#15202b" };
 const COLOURED = /colou?r$|^fill$|^stroke$|^range$|^value$/i;
 
-// Another colour on dark ground: dark ones lifted half way to white, pale ones sunk.
+// Any other colour on a dark ground: dark ones are lightened half way to white, pale ones darkened.
 function onDark(hex) {
   if (ON_DARK[hex]) return ON_DARK[hex];
   const parts = [1, 3, 5].map((i) => Number.parseInt(hex.slice(i, i + 2), 16));
@@ -43,7 +43,7 @@ const LOOKS = {
   title: { color: SECONDARY, subtitleColor: SECONDARY },
   text: { color: "light-dark(#15202b, #e7ecf0)", fontSize: 12 },
 };
-// Titles of vertical axes lie above them.
+// Titles of vertical axes are above them.
 const ABOVE = {
   axisLeft: { titleAngle: 0, titleAnchor: "end", titleAlign: "left", titleBaseline: "bottom", titleX: -38, titleY: -8, minExtent: 38 },
   axisRight: { titleAngle: 0, titleAnchor: "end", titleAlign: "right", titleBaseline: "bottom", titleX: 38, titleY: -8 },
@@ -121,7 +121,7 @@ async function chart(parent, name, { heading = null, level = "h3", note = null, 
   if (behind) {
     fold(figure, "Data", (all) => {
       toggles(all, specification, view);
-      if (note !== null) for (const text of lines(title.subtitle)) add(all, "p", sentence(text), "note");
+      if (note !== null) for (const text of lines(title.subtitle)) if (!notes.includes(text)) add(all, "p", sentence(text), "note");
       numbersOf(specification).forEach(({ heads, rows, numeric }, i) => table(all, heads, rows, numeric, { name: `${name}${i ? `-${i + 1}` : ""}`, label: words }));
       const foot = add(all, "div", "", "foot");
       for (const kind of ["svg", "png"]) button(foot, `Save ${kind.toUpperCase()}`, () => pictureOf(specification, name, kind));
@@ -150,7 +150,7 @@ function toggles(figure, specification, view) {
     press.prepend(mark);
   }
 }
-// Charts take the width of paper and are lower there; then they are as before.
+// On paper, charts take its width and are lower.
 const LOWER = 0.64;
 addEventListener("beforeprint", () => drawnViews.forEach(({ view, place, height }) => view.width(paperWidth(place)).height(Math.max(110, LOWER * height)).run()));
 addEventListener("afterprint", () => drawnViews.forEach(({ view, place, height }) => view.width(place.clientWidth).height(height).run()));

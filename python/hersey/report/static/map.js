@@ -88,7 +88,7 @@ function operatingMap(place, map, move = null) {
       + (band ? `, and runs smoothly from any start above ${told("upper")} mm/s` : ", and runs smoothly above");
   }
 
-  // Areas: the speeds between two edges, and below and above what the drive bears.
+  // Areas: the speeds between two edges, and those below and above the limits of the drive.
   function parts() {
     const lowest = columns.map(() => slowest), highest = columns.map(() => fastest);
     const floor = below.map((v, i) => (edges.starts[i] ? kept(changed ? 0 : v) : fastest)), roof = above.map(kept);
@@ -116,7 +116,7 @@ function operatingMap(place, map, move = null) {
     }
     return zones;
   }
-  // Stretches of columns that have edges: at some temperatures a law has none.
+  // Runs of columns with edges; at some temperatures a law has none.
   function runs(band) {
     const out = [[]];
     for (const each of band) {
@@ -138,7 +138,7 @@ function operatingMap(place, map, move = null) {
     svg("path", { d, fill: `url(#${named})`, "fill-rule": "evenodd" }, inside);
   }
 
-  // Lines of one torque where the belt slides steadily, read off the torques of the map.
+  // Lines of constant torque in steady sliding, from the torques of the map.
   function drawTorques(inside) {
     const rising = map.torque.map((row, i) => row.filter((_, j) => map.speed[j] >= (map.transition[i] ?? Infinity)));
     const all = rising.flat();

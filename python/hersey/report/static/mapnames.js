@@ -1,8 +1,8 @@
-// Names in the map, each where it covers no other: points, limit, torques, and the word of each zone where it has
-// the most room.
+// Names in the map, placed so that none covers another: points, limit, torques, and the word of each zone where it
+// has the most room.
 
 function mapNames({ map, frame, picture, edges, beyond, slowest, fastest, across, up, speedAt, columnAt, place_of, valueAt, runs }) {
-  // Boxes that hold something.
+  // Boxes that are occupied.
   const taken = [];
   const free = (box) => taken.every((b) => box[2] < b[0] || box[0] > b[2] || box[3] < b[1] || box[1] > b[3]);
   const within = (box) => box[0] >= frame.left + 2 && box[2] <= frame.right - 2 && box[1] >= frame.top + 2 && box[3] <= frame.bottom - 2;
@@ -62,7 +62,7 @@ function mapNames({ map, frame, picture, edges, beyond, slowest, fastest, across
     return speed < valueAt(edges.upper, at) ? "depends" : "smooth";
   }
 
-  // The word of each zone where it has the most room, upright or along the zone; else it stands in the key.
+  // Place the word of each zone where it has the most room, upright or along the zone; else it goes into the key.
   function nameZones(zones, box) {
     // A word on the edge of what was measured would be crossed out.
     const [left, top, right, bottom] = box;

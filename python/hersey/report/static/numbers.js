@@ -1,4 +1,4 @@
-// The numbers behind the motion that is drawn: a table that sorts and is saved, made anew while it is open.
+// The data of the motion that is drawn: a table that sorts and can be saved, rebuilt while it is open.
 
 function numbers(place) {
   const ROWS = 300;

@@ -126,7 +126,7 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
     said.textContent = text;
   }
 
-  // Ends of what is stated of each parameter, spread about the value set.
+  // The stated range of each parameter, about the value set and widened by the spread.
   function rangesOf(now) {
     const stated = analysis.uncertainty ?? {}, ranges = {};
     for (const [name, own] of [["stiffness", base.stiffness], ["mass", base.mass], ["stick_speed", base.stick_speed]]) {
@@ -181,12 +181,12 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
       failed(reason(error));
     }
   }
-  // A refusal of the core in the words and at the temperature of the panel's own controls.
+  // A refusal of the core, in the words and at the temperature of the panel's controls.
   function reason({ message, quantity, value, limit: most }) {
     if (quantity !== "stick_speed" || !(most > 0)) return message;
     return `the stick speed must be less than the transition speed, ${speedText(setting.stick_speed * most / value)} here`;
   }
-  // Whether the motion could be had within a frame; what takes longer is left to the worker.
+  // Whether the motion could be computed within a frame; anything slower goes to the worker.
   function answered(task) {
     const next = { train: task.train, unstable: null };
     try {

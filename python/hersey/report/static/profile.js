@@ -50,7 +50,7 @@ function profile(place, chart, { change, leave, written, refused }) {
     draws.setAttribute("aria-pressed", String(on));
     handles();
   }
-  // Handles in the chart; while one draws by hand, a sheet over it instead.
+  // Handles in the chart; while drawing by hand, a sheet over it instead.
   function handles() {
     const active = document.activeElement?.dataset?.row;
     chart.over.replaceChildren();

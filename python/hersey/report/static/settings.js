@@ -1,12 +1,11 @@
-// A setting: what is tried, in SI. How it follows from the report, stands in an address, and is typed as a command
-// or written as TOML.
+// A setting to try, in SI: taken from the report, kept in an address, written as a command or as TOML.
 
 function settings(analysis) {
   const { map } = analysis;
   const CLOSURES = ["retained", "stiction", "stribeck", "lugre"];
   const NUMBERS = ["speed", "temperature", "stiffness", "mass", "stick_speed", "bristle_stiffness", "bristle_damping", "spread"];
   const anchor = map.points[0] ?? null;
-  // The stick speed is that at one temperature, where the report states it; elsewhere it follows the map's rule.
+  // The stick speed is set at the temperature at which the report states it; elsewhere it follows the map's rule.
   const stick = anchor ? { speed: anchor.at.stick_speed, temperature: anchor.temperature }
     : { speed: map.drag.stick_speed, temperature: map.drag.reference_temperature };
   const middle = (ends) => Math.sqrt(ends[0] * ends[1]);
@@ -36,7 +35,7 @@ function settings(analysis) {
     if (setting.profile) words.push(`profile=${setting.profile.map((row) => row.join(":")).join(",")}`);
     return `#setting?${[...words, `closure=${setting.closure}`].join("&")}`;
   }
-  // The setting of an address, or null if it holds none; what it does not say is as in the report.
+  // The setting of an address, or null if it holds none; values that it omits are those of the report.
   function read(address, base) {
     if (!address.startsWith("#setting?")) return null;
     const words = new URLSearchParams(address.slice("#setting?".length)), setting = { ...base, profile: null };
@@ -58,7 +57,7 @@ function settings(analysis) {
     return sound && given.at(-1)[1] > 0 ? given : null;
   }
 
-  // Six digits: more are not known, and differ in nothing that is shown.
+  // Six digits: more are neither known nor shown.
   const neat = (value) => Number(value.toPrecision(6));
   const beside = (law) => map.train.grip !== null || law.rest_force !== 0 || law.rest_damping !== 0;
   function command(setting, law, duration) {

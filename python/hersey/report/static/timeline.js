@@ -1,4 +1,4 @@
-// The log in one figure: what was used, then speed, torque and temperature on one axis of time with one cursor.
+// The log in one figure: the dwells used, then speed, torque and temperature on one axis of time with one cursor.
 
 const ROW = 82;
 const ROW_ON_PAPER = 56;
@@ -95,7 +95,7 @@ function timeline(parent, says) {
   atWidth(place, draw);
   return figure;
 }
-// Draws what we draw ourselves anew where its place gets another width, and for paper.
+// Redraw our own drawings where their place gets another width, and for paper.
 function atWidth(place, draw) {
   let known = 0;
   const again = (width) => {
@@ -114,7 +114,7 @@ function nearest(times, at) {
   }
   return at - times[low] < times[high] - at ? low : high;
 }
-// What is read at the cursor, on whichever side there is room.
+// The values at the cursor, on the side where there is room.
 function tag(parent, x, y, text, right) {
   const width = 7.2 * text.length + 8;
   const from = x + width + 4 > right ? x - width - 4 : x + 4;

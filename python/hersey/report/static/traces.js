@@ -1,5 +1,5 @@
-// Belt speed against time and the phase plane, on one scale of speed. The first slip does not set that scale: it is
-// cut, and its peak written.
+// Belt speed against time and the phase plane, on one scale of speed. The first slip does not set the scale: it is cut
+// off and its peak is written.
 
 function traces(place) {
   const HEIGHT = 190, TOP = 14, BOTTOM = 34, LEFT = 34;
@@ -29,7 +29,7 @@ function traces(place) {
   let scales = null, last = null, printing = false, seen = null;
   const peakOf = (values, from = 0) => { let most = 0; for (let i = from; i < values.length; i += 1) most = Math.max(most, values[i]); return most; };
 
-  // From which sample on the first slip is over, the belt slower than the drive again.
+  // The first sample after the first slip, when the belt is slower than the drive again.
   function afterFirst({ belt_speed: v }, speed) {
     let i = 0;
     while (i < v.length && v[i] <= speed) i += 1;

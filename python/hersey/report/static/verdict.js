@@ -28,7 +28,7 @@ function verdicts({ map, points, limit, motor, questions }) {
     return { signal, words };
   }
   const speedText = (v) => `${digits(1e3 * v)} mm/s`;
-  // Whether a motion slides in the end: what swings by less than a thousandth of its speed does, too.
+  // Whether a motion ends in sliding; an oscillation below a thousandth of its speed counts as sliding.
   const slides = (motion, { speed }) => motion?.kind === "steady_sliding"
     || (motion?.kind === "oscillation" && motion.speed_max - motion.speed_min < 1e-3 * speed);
   function zoneNow({ setting, answer, found }) {
@@ -70,7 +70,7 @@ function verdicts({ map, points, limit, motor, questions }) {
   }
   const [perNewtonMetre, torqueName] = torqueUnit();
   const torqueText = (value) => `${digits(perNewtonMetre * value)} ${torqueName}`;
-  // When the belt stays within 2 % of the drive, counted from its first slip.
+  // The time from the first slip until the belt stays within 2 % of the drive.
   function settles({ time, belt_speed: v }, setting) {
     let off = v.length - 1, slip = 0;
     while (off >= 0 && Math.abs(v[off] / setting.speed - 1) <= 0.02) off -= 1;
