@@ -24,7 +24,7 @@ UNITS = {
     "load": ("N", "kN", "kgf", "lbf"),
     "radius": ("mm", "m", "in"),
 }
-#: No belt is colder, K; so large a share of the rows may be left out without a question.
+#: No belt is colder than this, K; up to this share of the rows may be skipped without asking.
 _TOO_COLD, _FEW = 220.0, 0.02
 _NUMBERS = {2: "Two", 3: "Three", 4: "Four"}
 _SETPOINT = re.compile(r"\b(set|cmd|command|target|demand|reference|soll|nominal)", re.IGNORECASE)
@@ -59,14 +59,14 @@ class Fault:
 
     @property
     def key(self) -> str:
-        """Return what tells it from others."""
+        """Return what distinguishes it from others."""
         return f"{self.at} {self.title}"
 
 
 def channel_faults(
     look: Mapping[str, Any], choices: Mapping[str, Mapping[str, str]], options: Mapping[str, Any]
 ) -> list[Fault]:
-    """Return what is wrong with the channels of a log, in the order of the roles.
+    """Return the problems with the channels of a log, in the order of the roles.
 
     Parameters
     ----------
@@ -102,7 +102,7 @@ def _as_proposed(look: Mapping[str, Any], choices: Mapping[str, Mapping[str, str
 def of_problem(
     problem: Mapping[str, Any], look: Mapping[str, Any], choices: Mapping[str, Mapping[str, str]]
 ) -> Fault:
-    """Return the fault of what a reader refused (`HerseyError.to_dict`), at the channel that it is about."""
+    """Return what a reader refused (`HerseyError.to_dict`) as a fault of the channel that it is about."""
     said = problem["reason"].removeprefix(f"{look['name']}: ").removeprefix(f"{look['name']}, ")
     role = problem["setting"] if problem["setting"] in ROLES else ""
     name = next((name for name, choice in choices.items() if role and choice["role"] == role), "")
@@ -209,7 +209,7 @@ def _use(name: str, roles: Mapping[str, str]) -> tuple[str, Mapping[str, Any]]:
 
 
 def _read_as(channel: Mapping[str, Any], unit: str, title: str, text: str, keep: str = "") -> Fault:
-    """A fault of the unit of a channel that reading it in another mends."""
+    """A fault of the unit of a channel, fixed by reading it in another unit."""
     name = channel["name"]
     button, mend = f"Read as {sign(unit)}", {"units": {name: unit}}
     return Fault(f"unit:{name}", title, text, f"unit of {name}", button, mend, keep)

@@ -12,11 +12,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-#: Reports that the page lists, the newest; bytes of one at the most.
+#: Number of reports listed, the newest first; largest size of one, bytes.
 _LISTED, _LARGEST = 20, 20_000_000
 #: The analysis document inside a report.
 _DOCUMENT = re.compile(r'<script type="application/json" id="document">(.*?)</script>', re.DOTALL)
-#: Columns of a small map, and characters of a sentence, at the most.
+#: Most columns of a small map, and most characters of a sentence.
 _COLUMNS, _LONGEST = 24, 400
 _EDGES = ("lower", "transition", "upper")
 

@@ -1,4 +1,4 @@
-"""A recipe that was dropped: the options that it states, where the page can hold all of it.
+"""A recipe that was dropped: its options, if the page has a control for each.
 
 No file that it names is looked for: the logs of an analysis are those that were dropped.
 """

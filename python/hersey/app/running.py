@@ -1,4 +1,4 @@
-"""From files and choices to a report: what `hersey report` does, with a word on each step."""
+"""From files and choices to a report, as `hersey report` does it, with progress."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def run(request: Mapping[str, Any], step: Step) -> dict[str, Any]:
 
 
 def _shared(step: Step, points: int) -> Callable[[str], None]:
-    """A word on each step of the analysis, with the share of the whole at which it begins."""
+    """Report each step of the analysis, with the share of the whole at which it begins."""
     planned = 0
 
     def said(words: str) -> None:

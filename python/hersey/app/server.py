@@ -1,4 +1,4 @@
-"""What the page may ask, and the answers."""
+"""The requests of the page, and the answers."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ _STATIC = {
 
 
 class BadRequestError(Exception):
-    """A body that is no JSON object; the message says why."""
+    """A request body that is not a JSON object; the message says why."""
 
 
 def application(session: Session, *, token: str, port: int, door: Door | None = None) -> Starlette:
@@ -86,7 +86,7 @@ def application(session: Session, *, token: str, port: int, door: Door | None = 
 
 
 def new_token() -> str:
-    """Return a token that nobody guesses."""
+    """Return a random token that cannot be guessed."""
     return secrets.token_urlsafe(32)
 
 

@@ -1,4 +1,4 @@
-"""The analyses of one start: what the page changes, and the processes that read and compute for it.
+"""The analyses of one start: changes by the page, and the processes that read and compute.
 
 An analysis has a folder with a random name. It holds the machine's file and the mapping, with links to the
 logs that these name, a folder ``results``, and a folder for each dropped file. In the last the file lies
@@ -27,7 +27,7 @@ from hersey.app.workers import EndedError, Refused, ask
 from hersey.errors import ExistingFileError, HerseyError, OutputError
 from hersey.files.writing import write_atomically
 
-#: Analyses that run beside each other.
+#: Analyses that run at the same time.
 _AT_ONCE = max(1, (os.cpu_count() or 1) // 2)
 
 
@@ -36,11 +36,11 @@ _RESULTS, _DROPPED = "results", "dropped"
 
 
 class UnknownError(Exception):
-    """There is nothing of that number."""
+    """Nothing has this number."""
 
 
 class NotNowError(Exception):
-    """What was asked cannot be done as things are; the message is for the user."""
+    """The request cannot be fulfilled now; the message is for the user."""
 
 
 class Session:
@@ -199,13 +199,13 @@ class Session:
             await self._check(one)
 
     async def keep(self, one: Analysis, key: str) -> None:
-        """Keep what is only doubtful."""
+        """Keep a value that is only doubtful."""
         async with one.lock:
             one.kept.add(key)
             await self._check(one)
 
     async def mend(self, one: Analysis, key: str) -> None:
-        """Change what the button of a fault says."""
+        """Apply the fix of a fault's button."""
         async with one.lock:
             self._refuse_while_busy(one)
             fault = next((fault for fault in one.faults if fault.key == key), None)
@@ -229,7 +229,7 @@ class Session:
         return refused
 
     async def remove_file(self, one: Analysis, file: str) -> None:
-        """Leave a file out."""
+        """Remove a file."""
         async with one.lock:
             self._refuse_while_busy(one)
             if file not in one.files:
@@ -324,7 +324,7 @@ class Session:
         raise OutputError(f"{self.reports.name} holds a thousand reports of this name. Move some away")
 
     def cancel(self, one: Analysis) -> None:
-        """End a run; nothing of it stays."""
+        """Cancel a run; nothing of it is kept."""
         self._end(one.id)
         if one.busy:
             one.state, one.step = "editing", ""

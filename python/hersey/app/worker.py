@@ -36,13 +36,13 @@ def main() -> None:
 
 
 def tell(**words: Any) -> None:
-    """Say something to the process that waits."""
+    """Send a message to the process that waits."""
     sys.stdout.write(json.dumps(words) + "\n")
     sys.stdout.flush()
 
 
 def step(name: str, share: float | None = None) -> None:
-    """Say which step is done, and the share of the whole where it is known."""
+    """Report a step, and the share of the whole if it is known."""
     tell(step=name, share=share)
 
 

@@ -1,4 +1,4 @@
-"""The operating map of a unit when new, now and at the end, side by side."""
+"""The operating map of a specimen when new, now and at its failure, side by side."""
 
 from __future__ import annotations
 

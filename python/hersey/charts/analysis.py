@@ -137,7 +137,7 @@ def surface(document: Analysis) -> Chart:
 
 
 def _cells(document: Analysis) -> list[Row]:
-    """Cells of the surface in units of people; without temperature they are as high as the chart."""
+    """Cells of the surface in the units of readers; without temperature they are as high as the chart."""
     scale, _ = _torque_unit(document)
     return [
         {
@@ -188,7 +188,7 @@ def regime(document: Analysis) -> Chart:
 
 
 def film(document: Analysis) -> Chart | None:
-    """Which law of film thickness holds in the user's nip."""
+    """The film regime of the contact."""
     part = document.film
     return None if part is None else regime_chart(part.points, part.dwells, part.layer_factor)
 

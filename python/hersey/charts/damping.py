@@ -39,7 +39,7 @@ from hersey.damping.no_load_torque import NoLoadTorque
 from hersey.damping.surface import DampingSurface
 from hersey.units import celsius, rpm
 
-#: Speeds at which a law is drawn, temperatures at which a surface is, and candidates that are listed.
+#: Speeds at which a law is drawn, temperatures at which a surface is drawn, and models that are listed.
 _SPEEDS, _TEMPERATURES, _LISTED = 60, 4, 10
 #: Speeds (rad/s) of a no-load torque that is stated.
 _STATED = (0.1, 30.0)
@@ -89,7 +89,7 @@ def surface_chart(surface: DampingSurface) -> Chart:
 
 
 def rest_chart(rest: NoLoadTorque) -> Chart:
-    """Return what the drive takes without the film: torque against speed at temperatures, with its limits."""
+    """Return the no-load torque: torque against speed at temperatures, with its limits."""
     speed = np.geomspace(*(rest.speed_range or _STATED), _SPEEDS)
     hot: list[float | None] = [rest.reference_temperature]
     if rest.temperature_range is not None and rest.reference_temperature is not None:
@@ -106,7 +106,7 @@ def rest_chart(rest: NoLoadTorque) -> Chart:
 
 
 def models_chart(comparison: ModelComparison) -> Chart:
-    """Return the dwells with the law that was chosen, over the candidates by how much worse they are."""
+    """Return the dwells with the chosen model, above the other models by how much worse they are."""
     return stacked(_chosen(comparison), _ranking(comparison), spacing=20)
 
 
@@ -240,7 +240,7 @@ def _gain(design: TestDesign) -> Chart:
 
 
 def _dwells(speed: FloatArray, torque: FloatArray, share: FloatArray, kelvin: FloatArray | None) -> list[Row]:
-    """One row per dwell in units of people, with two of its relative standard errors."""
+    """One row per dwell in the units of readers, with two relative standard errors."""
     group: list[float | None] = [None] * speed.size
     if kelvin is not None:
         for members in groups_of_temperature(kelvin):
@@ -257,7 +257,7 @@ def _dwells(speed: FloatArray, torque: FloatArray, share: FloatArray, kelvin: Fl
 
 
 def _tips(unit: str, *, hot: bool) -> list[alt.Tooltip]:
-    """What a dwell says of itself."""
+    """The tooltip of a dwell."""
     degrees = [tip("temperature", "temperature (°C)")] if hot else []
     return [tip("speed", "speed (rpm)"), tip("y", f"torque ({unit})"), *degrees]
 

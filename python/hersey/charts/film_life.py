@@ -1,4 +1,4 @@
-"""The film through life: film over flooded, and the layer of oil against what the film needs."""
+"""The film over life: relative to a flooded film, and the oil layer against the layer it needs."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ _MICRO = 1e-6
 
 
 def film_life_chart(film: FilmLife) -> Chart:
-    """Return the film over a flooded one of all units over the layers of those that starve first."""
+    """Return the film relative to a flooded one, above the layers of the specimens that starve first."""
     ages = film.ages <= _BEYOND * float(film.runs.age.max())
     if ages.sum() < 2:
         ages[:] = True

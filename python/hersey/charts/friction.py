@@ -50,7 +50,7 @@ class _Model:
 
     @property
     def shear(self) -> FloatArray:
-        """What the film takes, over the load."""
+        """The friction of the film, over the load."""
         whole, boundary = self.film.torque, self.film.boundary_torque
         return np.asarray(self.friction * (1.0 - boundary / whole))
 
@@ -172,7 +172,7 @@ def _curves(model: _Model, x: alt.X, y: alt.Y) -> list[alt.Chart]:
 
 
 def _film(measured: MeasuredFilm, x: alt.X, y: alt.Y) -> alt.Chart:
-    """The film of the governing law, brought to the data."""
+    """The film of the governing law, scaled to the data."""
     order = np.argsort(measured.hersey_number)
     scale = measured.friction / measured.torque * measured.predicted_torque * measured.calibration.value
     rows = rows_of(hersey=1e6 * measured.hersey_number[order], friction=scale[order])

@@ -1,4 +1,4 @@
-"""Growth of an indicator with age: runs, median and band of each unit, and the ages at a limit."""
+"""Growth of an indicator with age: runs, median and band of each specimen, and the ages at a limit."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class _Axes(NamedTuple):
 
 
 def growth_chart(growth: Growth, *, ages: AgesAtLimit | None = None, si: str = "") -> Chart:
-    """Return the growth of each unit, one panel for each; with ``ages`` also where it reaches the limit.
+    """Return the growth of each specimen, one panel each; with ``ages`` also where it reaches the limit.
 
     Of many units the first are shown. ``si`` is the unit of the values.
     """
@@ -138,7 +138,7 @@ def _heading(growth: Growth, ages: AgesAtLimit | None) -> list[str]:
 
 
 def ages_chart(ages: AgesAtLimit) -> Chart:
-    """Return the age at a limit of each unit, and of a tenth and half of new units, with 90 % intervals."""
+    """Return the age of each specimen at a limit, B10 and B50, with 90 % intervals."""
     shown = [*ages.units[: 2 * _SHOWN], ages.b10, ages.b50]
     last = max(each.last for each in ages.units)
     end = axis_end(last, [each.age.value for each in shown])

@@ -1,4 +1,4 @@
-"""Failure modes against age: what ends each unit, and the share of units that has ended."""
+"""Failure modes against age for each specimen, and the share of specimens that has failed."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _SHOWN, _STEP, _GAP, _SHARES = 24, 9, 14, 200
 
 
 def time_to_failure_chart(found: TimeToFailure) -> Chart:
-    """Return what ends each unit, a row each, above the share of new units that has ended.
+    """Return the failure modes of each specimen, a row each, above the share of new ones that has failed.
 
     A mark with its 90 % interval for each way, that which is most probably first filled; of many units those
     that end first are shown.
@@ -103,7 +103,7 @@ def _row(ways: int) -> int:
 
 
 def _share(found: TimeToFailure, scale: alt.Scale) -> Chart:
-    """Share ended of new units as foretold, and the units that have ended at their median ranks."""
+    """Predicted share failed of new specimens, and the failures at their median ranks."""
     curve, unit = found.curve, found.age_unit
     rows = rows_of(age=curve.age, median=100 * curve.median, low=100 * curve.low, high=100 * curve.high)
     shares = alt.Scale(domain=[0, 100])

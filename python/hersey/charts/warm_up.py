@@ -1,4 +1,4 @@
-"""A warm-up as a chart: drive speed, drag beside what full speed at once would take, and temperatures."""
+"""A warm-up as a chart: drive speed, drag, the drag of full speed at once, and temperatures."""
 
 from __future__ import annotations
 

@@ -35,7 +35,7 @@ _THIN = 4.0
 
 
 def bands_of(result: OperatingMap, frame: Frame) -> Bands:
-    """Return the parts of each region; what is beyond the drive has two, or all where it does not start."""
+    """Return the parts of each region; the one beyond the drive has two, or all where it does not start."""
     names = ("stall_below", "lower", "transition", "upper", "stall_above")
     below, lower, bend, upper, above = (
         frame.clipped(side_to_side(result, getattr(result, n))) for n in names
@@ -139,7 +139,7 @@ def measured_range(result: OperatingMap, frame: Frame) -> list[alt.Chart]:
 
 
 def name_regions(bands: Bands, frame: Frame, labels: Labels, measured: Box) -> None:
-    """Name each region where it is roomiest, if possible where dwells were measured."""
+    """Name each region where it has the most room, if possible where dwells were measured."""
     across = np.array([frame.across(x) for x in frame.x.tolist()])
     for name, _, text, _ in REGIONS:
         parts = [(across, _heights(low, frame), _heights(high, frame)) for low, high in bands[name]]
