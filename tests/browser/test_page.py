@@ -174,6 +174,17 @@ def test_plans_and_steps_are_those_of_the_document(demo: Opened, report: Report)
     assert sticks
 
 
+def test_a_profile_is_drawn_until_its_oscillation_has_died_out(report: Report) -> None:
+    decision = report("demo")[1].decision
+    assert decision is not None
+    moving = [(point, point.motion) for point in decision.points if point.motion]
+    assert moving
+    for point, motion in moving:
+        off = [abs(v / point.speed - 1) for v in motion.belt_speed]
+        assert max(off[: len(off) // 4]) > 0.2
+        assert max(off[-10:]) < 0.035
+
+
 def test_marks_and_words_lie_inside_their_charts(each: tuple[Opened, Analysis]) -> None:
     """No mark or word of a chart is cut off by its frame."""
     cut = each[0].page.evaluate(
