@@ -310,7 +310,7 @@ def test_a_profile_is_followed_and_edited(page: Page, tmp_path: Path) -> None:
     handle.press("Shift+ArrowUp")
     rested(page)
     assert page.locator("#panel .handle").count() >= 3
-    page.click("text=Without a profile")
+    page.click("text=Remove profile")
     rested(page)
     assert page.locator("#profile").is_hidden()
 

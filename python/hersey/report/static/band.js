@@ -2,17 +2,17 @@
 
 async function bandSection(parent) {
   const all = data.decision?.points ?? [];
-  const bears = all.filter((p) => p.disturbance);
+  const withstand = all.filter((p) => p.disturbance);
   const steps = all.flatMap((p) => p.steps.map((step) => ({ ...step, to: p })));
-  if (!data.map && !data.band && !bears.length && !steps.length) return;
-  const part = section(parent, "band", "Safe speeds and steps", bandFinding(bears, steps));
+  if (!data.map && !data.band && !withstand.length && !steps.length) return;
+  const part = section(parent, "band", "Safe speeds and steps", bandFinding(withstand, steps));
   const columns = add(part, "div", "", "columns");
-  await chart(columns, "stick_speed", { says: bandFinding(bears, steps) });
+  await chart(columns, "stick_speed", { says: bandFinding(withstand, steps) });
   if (data.map && !charts.stick_speed) bandTable(columns);
   const right = add(columns, "div");
-  if (bears.length) {
+  if (withstand.length) {
     add(right, "h3", "Disturbances that sliding survives");
-    table(right, ["Point", "Speed loss, mm/s", "Step down, mm/s"], bears.map((p) => [
+    table(right, ["Point", "Speed loss, mm/s", "Step down, mm/s"], withstand.map((p) => [
       p.name, p.disturbance.kick === null ? "any" : perSecond(p.disturbance.kick), p.disturbance.step === null ? "any" : perSecond(p.disturbance.step)]), [1, 2], { label: "Disturbances that sliding survives" });
   }
   if (steps.length) {
@@ -32,9 +32,9 @@ async function bandSection(parent) {
   if (data.map) warnings(part, data.map.warnings, { heading: "Warnings about the map", folded: "Notes on the map" });
 }
 const rampOf = (step) => step.ramp_time >= 1 ? `${digits(step.ramp_time, 2)} s` : `${digits(step.ramp_time * 1e3, 2)} ms`;
-function bandFinding(bears, steps) {
+function bandFinding(withstand, steps) {
   const parts = [];
-  const weak = bears.filter((p) => p.disturbance.kick !== null || p.disturbance.step !== null).sort((a, b) => (a.disturbance.kick ?? 9) - (b.disturbance.kick ?? 9))[0];
+  const weak = withstand.filter((p) => p.disturbance.kick !== null || p.disturbance.step !== null).sort((a, b) => (a.disturbance.kick ?? 9) - (b.disturbance.kick ?? 9))[0];
   if (weak) {
     parts.push(`At ${perSecond(weak.speed)} mm/s, sliding survives a sudden speed change of ${perSecond(Math.min(weak.disturbance.kick ?? Infinity, weak.disturbance.step ?? Infinity))} mm/s`);
   }
