@@ -76,25 +76,25 @@ MISTAKES: dict[str, tuple[bytes, str, str, str]] = {
     "kelvin called Celsius": (
         log(change=lambda t, q, n, c: (t, q, n, float(c) + 273)),
         "unit:Temperature",
-        "423 °C is hotter than any belt here. Read as K it is 100 to 150 °C.",
+        "423 °C is hotter than any belt. Read as K it is 100 to 150 °C.",
         "Read as K",
     ),
     "Celsius called kelvin": (
         log("Time [s],Torque [N*m],Speed [rpm],Temperature [K]"),
         "unit:Temperature",
-        "colder than any belt here",
+        "colder than any belt",
         "Read as °C",
     ),
     "another unit for torque": (
         log("Time [s],Torque [rpm],Speed [rpm],Temperature [degC]"),
         "unit:Torque",
-        "rpm is no unit of torque",
+        "rpm is not a unit of torque",
         "Read as N·m",
     ),
     "no temperature": (
         log("Time [s],Torque [N*m],Speed [rpm]", lambda t, q, n, _: (t, q, n)),
         "lacking:temperature",
-        "No channel is the temperature.",
+        "No temperature channel.",
         "Run without temperature",
     ),
     "two torques": (
@@ -103,13 +103,13 @@ MISTAKES: dict[str, tuple[bytes, str, str, str]] = {
             lambda t, q, n, c: (t, q, n, c, 1.5 * float(q)),
         ),
         "role:Torque A",
-        "Two channels claim torque.",
+        "Two channels could be the torque.",
         "Keep this one",
     ),
     "no speed": (
         log("Time [s],Torque [N*m],Foo,Temperature [degC]"),
         "lacking:speed",
-        "No channel is the speed. Choose one",
+        "No speed channel. Choose one",
         "",
     ),
     "a speed of another name": (
@@ -118,7 +118,7 @@ MISTAKES: dict[str, tuple[bytes, str, str, str]] = {
             lambda t, q, n, c: (t, q, n, c, float(n) / 60),
         ),
         "unit:n",
-        "Hz is no unit of speed",
+        "Hz is not a unit of speed",
         "Read as rev/s",
     ),
     "a dead speed": (
@@ -127,14 +127,14 @@ MISTAKES: dict[str, tuple[bytes, str, str, str]] = {
             lambda t, q, n, c: (t, q, 0, c, float(n) / 9),
         ),
         "role:Speed",
-        "It holds 0 rpm throughout. A dead channel",
+        "It is 0 rpm throughout. The channel is dead",
         "Use “Shaft”",
     ),
     "rows without a number": (
         log(change=lambda t, q, n, c: (t, "" if float(t) % 1 < 0.25 else q, n, c)),
         "role:Torque",
-        "rows lack a number",
-        "Leave these rows out",
+        "rows have no value",
+        "Skip these rows",
     ),
     "a clock in milliseconds called seconds": (
         log(change=lambda t, q, n, c: (1000 * float(t), q, n, c)),
@@ -241,7 +241,7 @@ MACHINES: dict[str, tuple[dict[str, Any], str, str]] = {
     "a value that is missing": (
         {"answers": {"drivetrain.mass": ""}},
         "field:drivetrain.mass",
-        "This is needed. Such as 11 kg",
+        "This value is missing. For example 11 kg",
     ),
     "a value of another kind": (
         {"answers": {"drivetrain.mass": "11 N"}},
@@ -254,11 +254,11 @@ MACHINES: dict[str, tuple[dict[str, Any], str, str]] = {
         "field:drivetrain.roll_radius",
         "greater than 0",
     ),
-    "a point without a speed": ({"add": True}, "field:points.0.speed", "This is needed."),
+    "a point without a speed": ({"add": True}, "field:points.0.speed", "This value is missing."),
     "half a nip": (
         {"answers": {"contact.length": "220"}},
         "field:contact.rubber_thickness",
-        "say nothing without it",
+        "other values of its group need it",
     ),
     "TOML that breaks off": ({"text": "[drivetrain]\nmass = \n"}, "toml", "line 2"),
     "TOML without a unit": (
@@ -293,7 +293,7 @@ def test_a_value_that_no_machine_has_can_be_kept(field: str, text: str, tmp_path
     check(one)
     fault = only(one)
     assert fault.at == f"field:drivetrain.{field}"
-    assert "far from what such a drive has" in fault.title
+    assert "unusual for such a drive" in fault.title
     assert fault.keep.startswith("Keep ")
     one.kept.add(fault.key)
     check(one)
@@ -425,7 +425,7 @@ def test_a_mapping_of_another_log_says_so_at_the_channels(tmp_path: Path) -> Non
     toml(one, MAPPING)
     said = {fault.at: fault for fault in one.faults}
     assert set(said) == {"lacking:torque", "lacking:speed", "lacking:load"}
-    assert "calls the torque “Moment”, and this log has no such channel" in said["lacking:torque"].title
+    assert "names the torque channel “Moment”, which this log does not have" in said["lacking:torque"].title
     assert not line_of(one)["ready"]
     one.choose(said["lacking:torque"].mend)
     one.choose(said["lacking:speed"].mend)
@@ -487,10 +487,10 @@ def test_a_recipe_that_is_dropped_sets_the_options(tmp_path: Path) -> None:
     [
         (
             'min_dwell = "3 s"\n[signs]\ntorque = -1\n',
-            "cannot set min_dwell, signs, which this recipe states",
+            "no control for min_dwell, signs of this recipe",
         ),
-        ('no_load = "/etc/passwd"\n', "cannot set no_load, which this recipe states"),
-        ('load = "50 N"\ntare = "none"\n', "cannot set load, which this recipe states"),
+        ('no_load = "/etc/passwd"\n', "no control for no_load of this recipe"),
+        ('load = "50 N"\ntare = "none"\n', "no control for load of this recipe"),
         ('tare = "halting"\n', "tare is 'halting': write none or standing"),
         ("tare = 3\n", "tare is 3"),
         ('logs = ["a.csv"]\ntara = "none"\n', "Did you mean [tare]"),

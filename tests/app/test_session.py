@@ -14,7 +14,7 @@ from hersey.app import session as module
 from hersey.app.analysis import Analysis
 from hersey.app.looking import look
 from hersey.app.session import NotNowError, Session
-from hersey.app.view import line_of
+from hersey.app.view import line_of, view_of
 from hersey.app.workers import EndedError, Refused
 from hersey.errors import HerseyError
 from tests.app.asking import run
@@ -113,7 +113,7 @@ def test_a_cancelled_run_is_not_done_and_leaves_nothing(
     ("error", "reason"),
     [
         (Refused("too few dwells", HerseyError("too few dwells").to_dict()), "too few dwells"),
-        (EndedError("x"), "is there memory left?"),
+        (EndedError("x"), "Is there enough memory?"),
     ],
 )
 def test_a_run_that_fails_says_why_and_is_not_done(
@@ -168,5 +168,24 @@ def test_the_folder_of_an_analysis_is_private(tmp_path: Path, monkeypatch: pytes
         _, one = await ready(tmp_path, drawn, monkeypatch)
         (file,) = one.files.values()
         assert {oct(path.stat().st_mode & 0o777) for path in (one.folder, file.path.parent)} == {"0o700"}
+
+    run(course())
+
+
+def test_how_much_of_a_file_has_come_is_seen(tmp_path: Path) -> None:
+    async def course() -> None:
+        (tmp_path / "private").mkdir()
+        session = Session(tmp_path / "private", tmp_path / "reports")
+        (one,) = session.analyses.values()
+        seen: list[dict[str, Any]] = []
+
+        async def chunks() -> Any:
+            for _ in range(4):
+                yield b"x" * 250
+                seen.append(view_of(one)["files"][0])
+
+        await session.drop(one, "notes.toml", 1000, chunks())
+        assert [file["state"] for file in seen] == ["arriving"] * 4
+        assert [file["received"] / file["total"] for file in seen] == [0.25, 0.5, 0.75, 1.0]
 
     run(course())

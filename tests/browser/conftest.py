@@ -5,6 +5,7 @@ from __future__ import annotations
 import shutil
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import pytest
 from playwright.sync_api import Browser, sync_playwright
@@ -16,6 +17,7 @@ from hersey.machine.machine import read_machine
 from hersey.report.page import render
 from hersey.study import study
 from tests.conftest import ROOT, shared
+from tests.document.test_against import dwells, written
 
 ARGUMENTS = ["--no-sandbox", "--disable-gpu", "--disable-background-networking", "--disable-component-update"]
 #: Pictures of the pages, to be looked at: an artefact of the run.
@@ -57,14 +59,21 @@ def _plain() -> Analysis:
     return document_of(study(log.steady()), command="hersey report examples/bench.csv --isothermal")
 
 
+def _against() -> Analysis:
+    """Two logs compared, without a machine."""
+    with TemporaryDirectory() as folder:
+        now, earlier = (dwells(written(Path(folder), name)) for name in ("new.csv", "more.csv"))
+        return document_of(study(now, against=earlier))
+
+
 @pytest.fixture(scope="package")
 def report(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], tuple[Path, Analysis]]:
-    """Return the page of ``demo``, ``screw`` or ``plain``, and its document, each made once."""
+    """Return the page of ``demo``, ``screw``, ``plain`` or ``against``, and its document, each made once."""
     kept: dict[str, tuple[Path, Analysis]] = {}
 
     def made(name: str) -> tuple[Path, Analysis]:
         if name not in kept:
-            document = {"demo": _demo, "screw": _screw, "plain": _plain}[name]()
+            document = {"demo": _demo, "screw": _screw, "plain": _plain, "against": _against}[name]()
             path = tmp_path_factory.mktemp("report") / f"{name}.html"
             path.write_text(render(document), encoding="utf-8")
             kept[name] = path, document

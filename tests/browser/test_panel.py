@@ -29,9 +29,9 @@ from tests.cli.command import run
 
 #: What the verdict says of each state of the map.
 WORDS = {
-    "stick_slip": "Act: sticks and slips from any start",
-    "swing": "Watch: swings from above",
-    "bistable": "Watch: sticks from rest, slides from above",
+    "stick_slip": "Act: sticks from any start",
+    "swing": "Watch: depends on start: oscillates from above",
+    "bistable": "Watch: depends on start: sticks from rest, slides from above",
     "smooth": "Good: smooth from any start",
 }
 
@@ -168,12 +168,14 @@ def test_the_verdict_is_that_of_the_core(
     if cycle.kind == "stick_slip":
         assert f"{cycle.frequency:.3g} Hz, stuck {100 * cycle.stuck_fraction:.2g} %" in verdict(page)
     if state.state == "bistable":
-        page.wait_for_function("() => document.querySelector('.verdict-line').textContent.includes('kick')")
+        page.wait_for_function(
+            "() => document.querySelector('.verdict-line').textContent.includes('survives')"
+        )
         bears = disturbance(native.train, native.drag, drive_speed=speed, temperature=kelvin).kick
         assert (
-            "bears any kick" in verdict(page)
+            "survives any speed loss" in verdict(page)
             if np.isinf(bears)
-            else f"bears a kick of {1e3 * bears:.2g}" in verdict(page)
+            else f"survives a loss of {1e3 * bears:.2g} mm/s" in verdict(page)
         )
 
 
@@ -187,7 +189,7 @@ def test_arrows_move_the_ring(page: Page) -> None:
     assert float(page.input_value("#try-speed")) == pytest.approx(1.02 * before, rel=1e-3)
     kelvin = page.input_value("#try-temperature")
     text = ring.get_attribute("aria-valuetext") or ""
-    assert re.fullmatch(rf"[\d.]+ mm/s at {kelvin} °C, (sticks|depends|smooth|stall)", text)
+    assert re.fullmatch(rf"[\d.]+ mm/s at {kelvin} °C, (sticks|depends on start|smooth|stall)", text)
     assert page.evaluate("document.activeElement.classList.contains('ring')")
 
 
@@ -221,7 +223,7 @@ def test_a_stiffer_drive_moves_the_edges_of_the_map(page: Page, native: Operatin
     page.wait_for_function(
         "(old) => document.querySelector('#map [role=img] .fold')?.getAttribute('d') !== old", arg=before
     )
-    assert "in the report" in (page.text_content("#map .key") or "")
+    assert "as reported" in (page.text_content("#map .key") or "")
     enter(page, "speed", "20")
     cycle = cycle_of(native, 0.02, float(page.input_value("#try-temperature")) + 273.15, stiffness=33e3)
     assert cycle.kind == "stick_slip"
@@ -284,7 +286,7 @@ def test_a_profile_is_followed_and_edited(page: Page, tmp_path: Path) -> None:
     page.fill("[aria-label='Row 3, speed in mm/s']", "20")
     page.press("[aria-label='Row 3, speed in mm/s']", "Enter")
     rested(page)
-    assert "under this profile" in verdict(page) or "of this profile" in verdict(page)
+    assert "with this profile" in verdict(page) or "of this profile" in verdict(page)
     assert page.input_value("#try-speed") == "20"
     for name, file in (("TOML", "setting.toml"), ("Drag", "drag.csv")):
         (tmp_path / file).write_text(written(page, name), encoding="utf-8")
@@ -296,19 +298,19 @@ def test_a_profile_is_followed_and_edited(page: Page, tmp_path: Path) -> None:
     done = run(*words[1:], "--csv", "motion.csv", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     peak = pl.read_csv(tmp_path / "motion.csv")["belt_speed"].max()
-    told = re.search(r"belt peaks at ([\d.]+) mm/s", verdict(page))
+    told = re.search(r"belt peak ([\d.]+) mm/s", verdict(page))
     assert told is not None
     assert 1e3 * float(peak) == pytest.approx(float(told[1]), rel=0.01)  # type: ignore[arg-type]
     page.fill("[aria-label='Row 2, time in s']", "7")
     page.press("[aria-label='Row 2, time in s']", "Enter")
     assert page.get_attribute("[aria-label='Row 2, time in s']", "aria-invalid") == "true"
-    assert "Times must ascend" in (page.text_content("#panel .refused") or "")
+    assert "Times must rise" in (page.text_content("#panel .refused") or "")
     handle = page.locator("#panel .handle").nth(1)
     handle.focus()
     handle.press("Shift+ArrowUp")
     rested(page)
     assert page.locator("#panel .handle").count() >= 3
-    page.click("text=Without a profile")
+    page.click("text=Remove profile")
     rested(page)
     assert page.locator("#profile").is_hidden()
 
@@ -333,7 +335,7 @@ def test_a_wrong_number_is_refused_in_its_field(page: Page) -> None:
     page.fill("#try-stiffness", "stiff")
     page.press("#try-stiffness", "Enter")
     assert page.get_attribute("#try-stiffness", "aria-invalid") == "true"
-    assert page.text_content("#panel .refused") == "Stiffness: a number from 1.1 to 110 N/mm"
+    assert page.text_content("#panel .refused") == "Stiffness: type a number from 1.1 to 110 N/mm"
     assert verdict(page) == before
     enter(page, "stiffness", "12")
     assert page.get_attribute("#try-stiffness", "aria-invalid") == "false"
@@ -479,7 +481,7 @@ def test_without_webassembly_the_page_stays_whole(browser: Browser, report: Path
     page.goto(report.as_uri())
     page.wait_for_selector("body[data-ready]")
     assert page.get_attribute("body", "data-ready") == "true"
-    assert "runs no WebAssembly" in (page.text_content("#panel") or "")
+    assert "has no WebAssembly" in (page.text_content("#panel") or "")
     assert page.locator("#panel input").count() == 0
     assert page.locator("#map .point").count() == len(part.points)
     assert page.locator("#map .zone").count() >= 2

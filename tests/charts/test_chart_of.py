@@ -361,7 +361,7 @@ def test_steady_sliding_has_no_lap() -> None:
     settled = hersey.stick_slip(*belt(), drive_speed=20.0)
     assert settled.frequency == 0
     text = json.dumps(chart_of(settled).to_dict(validate=True))
-    assert "Time in one lap" not in text
+    assert "Time in one cycle" not in text
     assert "steady sliding" in text
 
 
@@ -369,8 +369,8 @@ def test_a_band_and_its_three_speeds() -> None:
     band = result_of("HysteresisBand")
     spans = next(iter(layers("HysteresisBand")))
     states = {row["state"]: (row["from"], row["to"]) for row in spans}
-    assert states["bistable: smooth only from above"] == (band.transition, band.upper)
-    assert states["stick-slip"][1] == band.lower
+    assert states["depends on start"] == (band.transition, band.upper)
+    assert states["sticks"][1] == band.lower
     assert column("HysteresisBand", "from", "text")[-1] == band.upper
 
 
@@ -381,7 +381,7 @@ def test_cycles_and_the_drive_behind_them() -> None:
         for row in layer:
             rows[row["line"]].append(row["force"])
     assert rows["fitted motion"] == pytest.approx(drive.fitted)
-    assert rows["mean of the laps"] == pytest.approx(drive.waveform.force)
+    assert rows["mean cycle"] == pytest.approx(drive.waveform.force)
     assert column("CycleRecord", "drop") == pytest.approx(record().drop)
 
 

@@ -72,6 +72,6 @@ def test_the_page_holds_the_answer() -> None:
     page = render_life(answer(), runs, "hersey life <life.hersey>")
     assert page.startswith("<!doctype html>")
     assert "\\u003clife.hersey\\u003e" in page
-    assert '"What ends each unit, and when"' in page
+    assert '"Time to failure"' in page
     for name in ("ends", "growth_1", "maps", "film", "drift", "population"):
         assert f'"{name}"' in page

@@ -477,7 +477,7 @@ def test_regions_lie_between_the_edges(few: OperatingMap) -> None:
             )
             same([row["x"] for row in found[part]], KELVIN - 273.15)
     assert {"stick_slip 0", "bistable 0", "smooth 0"} <= set(found)
-    assert {row["region"] for row in found["bistable 0"]} == {"bistable: smooth only from above"}
+    assert {row["region"] for row in found["bistable 0"]} == {"depends on start"}
     stall = operating_map_of_stall(few)
     parts: dict[str, list[dict[str, Any]]] = {}
     for row in rows(layers(stall)[0]):
@@ -590,10 +590,9 @@ def test_both_axes_of_speed_say_the_same(few: OperatingMap) -> None:
         ]
         assert axis["values"] == pytest.approx(decades)
     assert spec["title"]["subtitle"] == [
-        "solid: transition speed, shaded its 95 % interval; dashed: V*, dotted its 95 % interval (fit, "
-        "stiffness, "
-        "stick speed)",
-        "thin: drag torque; frame: range of the dwells; hatched: extrapolated; stall beyond 4.5 N·m "
+        "solid: transition, shaded: its 95 % interval; dashed: V*, dotted: its 95 % interval (from fit, "
+        "stiffness, stick speed)",
+        "thin: drag torque; frame: measured range; hatched: extrapolated; stall beyond 4.5 N·m "
         "(motor torque)",
     ]
 
@@ -607,13 +606,13 @@ def test_labels_stand_at_what_they_name(few: OperatingMap) -> None:
     }
     for text, state in (
         ("smooth", "smooth"),
-        ("stick-slip", "stick_slip"),
-        ("smooth only from above", "bistable"),
+        ("sticks", "stick_slip"),
+        ("depends on start", "bistable"),
     ):
         if text in texts:
             assert few.state_at(*texts[text]).state == state
-    assert {"smooth", "stick-slip"} <= set(texts)
-    assert texts["greatest drive speed"][1] == pytest.approx(0.4, rel=0.2)
+    assert {"smooth", "sticks"} <= set(texts)
+    assert texts["drive limit"][1] == pytest.approx(0.4, rel=0.2)
     for point in few.points:
         assert texts[point.name][1] == pytest.approx(point.speed, rel=0.5)
 

@@ -445,13 +445,13 @@ def test_the_picture_names_everything(drawn: OperatingMap) -> None:
         assert text in shown
     for text in (
         "smooth",
-        "stick-slip",
-        "more than the motor bears",
-        "bistable: smooth only from above",
+        "sticks",
+        "stall: above the motor limit",
+        "depends on start",
         "1 N·m",
     ):
         assert text in shown
-    for text in ("full speed", "thick paper", "cold <b>start</b>", "greatest drive speed"):
+    for text in ("full speed", "thick paper", "cold <b>start</b>", "drive limit"):
         assert text in shown
     assert any("stall beyond 4.5 N·m (motor torque)" in text for text in shown)
     assert "NaN" not in svg

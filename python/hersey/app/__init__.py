@@ -18,6 +18,7 @@ workers   processes that read and compute, ended by whoever waits for them
 worker    what runs in such a process
 looking   what the page shows of a file
 running   from files and choices to a report
+kept      reports of earlier starts, and the summary of a report
 static    the page
 ========  =====================================================================
 

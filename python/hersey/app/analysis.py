@@ -1,4 +1,4 @@
-"""One analysis: its files, what was chosen, and how far it is."""
+"""One analysis: its files, its choices and its progress."""
 
 from __future__ import annotations
 
@@ -22,16 +22,16 @@ from hersey.log.text.column import Column
 from hersey.machine.questions import BY_KEY, MAPPING
 from hersey.machine.writing import answers_of
 
-#: Operating points of a machine at the most.
+#: Most operating points of a machine.
 _MOST_POINTS = 50
-#: ``against`` is the file that the other of two logs is compared with, or empty: runs of one machine.
+#: ``against`` is the file that the other of two logs is compared with; empty if both are runs of one machine.
 _OPTIONS: dict[str, Any] = {"isothermal": False, "drop_missing": False, "tare": "none", "against": ""}
-#: What is asked between sensor and roll, beside channels and units.
+#: Corrections between sensor and roll, besides channels and units.
 CORRECTIONS = tuple(q.key for q in MAPPING if not q.first)
 
 
 def number() -> str:
-    """Return a name that nobody guesses."""
+    """Return a random name that cannot be guessed."""
     return secrets.token_urlsafe(12)
 
 
@@ -42,6 +42,7 @@ class Dropped:
     name: str
     path: Path
     size: int = 0
+    total: int = 0  #: bytes that will come, 0 where the page does not say
     received: int = 0
     state: str = "arriving"
     fault: str = ""
@@ -96,18 +97,18 @@ class Analysis:
 
     @property
     def name(self) -> str:
-        """Return what the list calls it."""
+        """Return its name in the list."""
         return ", ".join(f.name for f in self.files.values() if f.state != "mapping") or "new analysis"
 
     @property
     def logs(self) -> list[Dropped]:
-        """Return the files that can be read, but for those that the machine's file names."""
+        """Return the files that can be read, without those that the machine file names."""
         beside = self.beside
         return [f for f in self.files.values() if f.state == "ready" and f.name not in beside]
 
     @property
     def earlier(self) -> Dropped | None:
-        """Return the log that the other one of two is compared with, if so chosen."""
+        """Return the log that the other of two is compared with, if one was chosen."""
         logs = self.logs
         return next((f for f in logs if len(logs) == 2 and f.id == self.options["against"]), None)
 
@@ -118,7 +119,7 @@ class Analysis:
 
     @property
     def beside(self) -> set[str]:
-        """Return the names of logs that the machine's file or the mapping names."""
+        """Return the names of logs in the machine file or the mapping."""
         return named_logs(self.machine_file(), self.mapping_others)
 
     @property
@@ -127,7 +128,7 @@ class Analysis:
         return self.state in ("preparing", "running")
 
     def machine_file(self) -> str:
-        """Return the machine's file as it stands; empty where the form cannot be written."""
+        """Return the current machine file; empty where the form cannot be written."""
         if self.mode == "toml":
             return self.text
         try:
@@ -148,11 +149,11 @@ class Analysis:
         return out | {key: text for key, text in self.corrections.items() if text.strip()}
 
     def mapping_file(self) -> str:
-        """Return ``hersey.toml`` as it stands."""
+        """Return the current ``hersey.toml``."""
         return mapping_of_form(self.mapping_answers(), self.mapping_tables())
 
     def mapping_tables(self) -> dict[str, Any]:
-        """Return what no question asks: channels of other roles, and what a dropped mapping said."""
+        """Return what has no question: channels of other roles, and the rest of a dropped mapping."""
         out = {section: dict(table) for section, table in self.mapping_others.items()}
         for name, choice in self.choices.items():
             if choice["role"] in OTHER_ROLES:
@@ -257,14 +258,14 @@ class Analysis:
         self.mode = "form"
 
     def turn(self, mode: str) -> str:
-        """Show the machine as a form or as TOML; return why it stays what it is, or nothing."""
+        """Show the machine as a form or as TOML; return why that is not possible, or nothing."""
         if mode == "toml" and self.mode == "form":
             if faults := answer_faults(self.answers, self.points):
-                return f"first put right: {', '.join(fault.link for fault in faults)}"
+                return f"fix first: {', '.join(fault.link for fault in faults)}"
             self.text = form_text(self.answers, self.points, self.machine_others)
         if mode == "form" and self.mode == "toml" and self.text.strip():
             if any(fault.at == "toml" for fault in self.faults):
-                return "first put the text right"
+                return "fix the TOML first"
             import tomllib
 
             document = tomllib.loads(self.text)
@@ -273,7 +274,7 @@ class Analysis:
                 answer_faults(answers, points)
                 or tomllib.loads(form_text(answers, points, others)) != document
             ):
-                return "the form cannot hold all that the text says: keep the text"
+                return "the form has no fields for part of this TOML: edit it as TOML"
             self.answers, self.points, self.machine_others = answers, points, others
         elif mode == "form" and self.mode == "toml":
             self.answers, self.points, self.machine_others = {}, [], {}
@@ -328,7 +329,7 @@ class Analysis:
             self._as_mapped(log)
 
     def remove(self, file: str) -> None:
-        """Leave a file out."""
+        """Remove a file."""
         gone = self.files.pop(file)
         gone.path.unlink(missing_ok=True)
         if gone.state == "mapping":
@@ -341,7 +342,7 @@ class Analysis:
 
     @property
     def waiting(self) -> bool:
-        """Whether a file is still on its way."""
+        """Whether a file is still being copied or read."""
         return any(file.state in ("arriving", "looking") for file in self.files.values())
 
 

@@ -1,4 +1,4 @@
-"""What is wrong with the choices of a log's channels: where it stands, in words, and what mends it."""
+"""Problems with the choices of a log's channels: where, in words, and what fixes each."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ UNITS = {
     "load": ("N", "kN", "kgf", "lbf"),
     "radius": ("mm", "m", "in"),
 }
-#: No belt is colder, K; so large a share of the rows may be left out without a question.
+#: No belt is colder than this, K; up to this share of the rows may be skipped without asking.
 _TOO_COLD, _FEW = 220.0, 0.02
 _NUMBERS = {2: "Two", 3: "Three", 4: "Four"}
 _SETPOINT = re.compile(r"\b(set|cmd|command|target|demand|reference|soll|nominal)", re.IGNORECASE)
@@ -32,15 +32,15 @@ _SETPOINT = re.compile(r"\b(set|cmd|command|target|demand|reference|soll|nominal
 
 @dataclass(frozen=True)
 class Fault:
-    """Something that stands before a run.
+    """A problem that must be fixed before a run.
 
     Attributes
     ----------
     at
-        The control that is at fault: ``role:NAME`` and ``unit:NAME`` of a channel, ``lacking:ROLE``,
+        The control with the problem: ``role:NAME`` and ``unit:NAME`` of a channel, ``lacking:ROLE``,
         ``file:NUMBER``, ``field:KEY``, ``toml``.
     title, text
-        What is wrong, and what is known of it.
+        What is wrong, and what is known about it.
     link
         What the line beside Run calls it.
     button, mend
@@ -59,14 +59,14 @@ class Fault:
 
     @property
     def key(self) -> str:
-        """Return what tells it from others."""
+        """Return what distinguishes it from others."""
         return f"{self.at} {self.title}"
 
 
 def channel_faults(
     look: Mapping[str, Any], choices: Mapping[str, Mapping[str, str]], options: Mapping[str, Any]
 ) -> list[Fault]:
-    """Return what is wrong with the channels of a log, in the order of the roles.
+    """Return the problems with the channels of a log, in the order of the roles.
 
     Parameters
     ----------
@@ -102,14 +102,14 @@ def _as_proposed(look: Mapping[str, Any], choices: Mapping[str, Mapping[str, str
 def of_problem(
     problem: Mapping[str, Any], look: Mapping[str, Any], choices: Mapping[str, Mapping[str, str]]
 ) -> Fault:
-    """Return the fault of what a reader refused (`HerseyError.to_dict`), at the channel that it is about."""
+    """Return what a reader refused (`HerseyError.to_dict`) as a fault of the channel that it is about."""
     said = problem["reason"].removeprefix(f"{look['name']}: ").removeprefix(f"{look['name']}, ")
     role = problem["setting"] if problem["setting"] in ROLES else ""
     name = next((name for name, choice in choices.items() if role and choice["role"] == role), "")
     kind = "unit" if problem["of"] == "unit" else "role"
     at = f"{kind}:{name}" if name else "file:"
     rows = role == "time" and problem["error"] == UnreadableLogError.__name__
-    title = "Time is out of order." if rows else "It cannot be read so."
+    title = "Time is out of order." if rows else "This cannot be read."
     return Fault(at, title, said[:1].upper() + said[1:], f"{role or 'the log'}: {title.lower().rstrip('.')}")
 
 
@@ -124,8 +124,8 @@ def _claimed(role: str, names: list[str], channels: Mapping[str, Any]) -> Fault:
     text = "The other is " if len(others) == 1 else "The others are "
     text += " and ".join(f"“{name}”" for name in others[:3]) + "."
     if set_value:
-        text = f"“{set_value}” looks like a set value."
-    title = f"{_NUMBERS.get(len(names), str(len(names)))} channels claim {role}."
+        text = f"“{set_value}” looks like a setpoint."
+    title = f"{_NUMBERS.get(len(names), str(len(names)))} channels could be the {role}."
     mend = {"roles": dict.fromkeys(others, "")}
     return Fault(f"role:{best}", title, text, f"choose the {role} channel", "Keep this one", mend)
 
@@ -138,7 +138,7 @@ def _lacking(
     if role == "temperature" and options["isothermal"]:
         return []
     link = f"choose the {role} channel"
-    title = f"No channel is the {role}."
+    title = f"No {role} channel."
     at = f"lacking:{role}"
     free = [
         channel["name"]
@@ -147,14 +147,14 @@ def _lacking(
     ]
     units = {channel["name"]: channel["unit"] for channel in look["channels"]}
     if fitting := next((name for name in free if units[name] and _fits(role, units[name])), ""):
-        text, button = f"“{fitting}” has a unit of it.", f"Use “{fitting}”"
+        text, button = f"“{fitting}” has a unit of {role}.", f"Use “{fitting}”"
         return [Fault(at, title, text, link, button, {"roles": {fitting: role}})]
     if role == "temperature":
-        text = "Choose one below, or leave it out: the law then holds at the one temperature of the log."
+        text = "Choose one below, or run without: the result then holds only at the temperature of the log."
         return [Fault(at, title, text, link, "Run without temperature", {"options": {"isothermal": True}})]
     text = "Choose one in the column Role."
     if role == "time":
-        text = "Choose one in the column Role, or say the time between rows below the table."
+        text = "Choose one in the column Role, or type the time between rows below the table."
     return [Fault(at, title, text, link)]
 
 
@@ -174,10 +174,10 @@ def _of_one(
     slow = role == "temperature" and is_slow(channel["rows"], channel["rows"] - channel["missing"])
     many = channel["missing"] > max(1, _FEW * channel["rows"]) and not slow
     if not faults and many and not options["drop_missing"]:
-        title = f"{channel['missing']} rows lack a number."
+        title = f"{channel['missing']} rows have no value."
         text = f"That is {100 * channel['missing'] / channel['rows']:.2g} % of all."
         mend = {"options": {"drop_missing": True}}
-        link, button = f"rows without {role}", "Leave these rows out"
+        link, button = f"rows without {role}", "Skip these rows"
         faults.append(Fault(f"role:{name}", title, text, link, button, mend))
     if not faults and role == "time":
         faults += _rare(channel, unit, look)
@@ -198,8 +198,8 @@ def _dead(
     ]
     other = next((c["name"] for c in free if c["unit"] and _fits(role, c["unit"])), "")
     value = "" if channel["low"] is None else f" {channel['low']:.6g} {unit}".rstrip()
-    title = f"It holds{value} throughout." if value else "It holds no number."
-    text, link = "A dead channel: choose another.", f"choose a {role} that lives"
+    title = f"It is{value} throughout." if value else "It has no values."
+    text, link = "The channel is dead. Choose another.", f"choose another {role} channel"
     return Fault(f"role:{name}", title, text, link, *_use(other, {name: "", other: role}))
 
 
@@ -209,7 +209,7 @@ def _use(name: str, roles: Mapping[str, str]) -> tuple[str, Mapping[str, Any]]:
 
 
 def _read_as(channel: Mapping[str, Any], unit: str, title: str, text: str, keep: str = "") -> Fault:
-    """A fault of the unit of a channel that reading it in another mends."""
+    """A fault of the unit of a channel, fixed by reading it in another unit."""
     name = channel["name"]
     button, mend = f"Read as {sign(unit)}", {"units": {name: unit}}
     return Fault(f"unit:{name}", title, text, f"unit of {name}", button, mend, keep)
@@ -218,20 +218,20 @@ def _read_as(channel: Mapping[str, Any], unit: str, title: str, text: str, keep:
 def _unit_faults(role: str, channel: Mapping[str, Any], unit: str, options: Mapping[str, Any]) -> list[Fault]:
     if not unit:
         usual = _usual(role, channel)
-        text = "A number without a unit could be any."
+        text = "Choose its unit."
         if role == "temperature" and channel["most"] is not None:
             ends = _celsius(channel, usual)
             text = f"Read as {sign(usual)} it is {ends[0]:.0f} to {ends[1]:.0f} °C."
         return [_read_as(channel, usual, "It has no unit in the file.", text)]
     if role == "torque" and unit in ("A", "mA"):
-        text = f"“{channel['name']}” is a current: the constant of the motor makes a torque of it."
-        at, said = "field:torque.motor_constant", "A motor's current needs its motor constant."
+        text = f"“{channel['name']}” is a current; torque is current times motor constant."
+        at, said = "field:torque.motor_constant", "A motor current needs the motor constant."
         return [] if options["motor_constant"].strip() else [Fault(at, said, text, "motor constant")]
     try:
         _, line = role_conversion(role, unit)
     except UnitError as error:
         near = _nearest(role, unit, channel)
-        return [_read_as(channel, near, f"{sign(unit)} is no unit of {role}.", str(error))]
+        return [_read_as(channel, near, f"{sign(unit)} is not a unit of {role}.", str(error))]
     if role != "temperature" or channel["most"] is None:
         return []
     return _doubtful_heat(channel, unit, line.scale, line.offset)
@@ -253,7 +253,7 @@ def _lacking_radius(
         return []
     listed = tuple(Column(i, c["name"], c["written"]) for i, c in enumerate(look["channels"]))
     named = next((column.name for column in proposed("radius", listed)), "")
-    title, text = "A friction force needs its radius.", "is a force: torque is force times radius."
+    title, text = "A friction force needs its radius.", "is a force; torque is force times radius."
     link = "radius of the friction force"
     text = f"“{channel['name']}” {text}"
     return [Fault("field:radius.value", title, text, link, *_use(named, {named: "radius"}))]
@@ -264,7 +264,7 @@ def _doubtful_heat(channel: Mapping[str, Any], unit: str, scale: float, offset: 
     if median > _TOO_COLD and most < ZERO_CELSIUS + TOO_HOT:
         return []
     end, what = ("most", "hotter") if most >= ZERO_CELSIUS + TOO_HOT else ("median", "colder")
-    title = f"{channel[end]:.4g} {sign(unit)} is {what} than any belt here."
+    title = f"{channel[end]:.4g} {sign(unit)} is {what} than any belt."
     for other in ("K", "degC", "degF"):
         low, high = _celsius(channel, other)
         if other != unit and low > _TOO_COLD - ZERO_CELSIUS and high < TOO_HOT:
@@ -285,7 +285,7 @@ def _rare(channel: Mapping[str, Any], unit: str, look: Mapping[str, Any]) -> lis
     if clock is None or unit != channel["unit"] or unit != "s" or (clock["interval"] or 0.0) < RARE:
         return []
     title = f"Rows come every {clock['interval']:.4g} s."
-    return [_read_as(channel, "ms", title, "Logs of a drive have them far more often.", "Keep s")]
+    return [_read_as(channel, "ms", title, "Drive logs are sampled far more often.", "Keep s")]
 
 
 def _fits(role: str, unit: str) -> bool:

@@ -1,4 +1,4 @@
-"""What stands before a run of an analysis: files, channels, mapping and machine that cannot be used so."""
+"""What must be fixed before a run: files, channels, mapping and machine that cannot be used as they are."""
 
 from __future__ import annotations
 
@@ -12,8 +12,7 @@ from hersey.log.channels import ROLES
 
 
 def check(one: Analysis) -> None:
-    """Look again for what stands before a run; it may take a moment where the machine names a log."""
-    one.revision += 1
+    """Look for problems again; it may take a moment where the machine file names a log."""
     faults = [
         _of_file(file, "", file.fault, file.fault.split(":")[0][:60])
         for file in one.files.values()
@@ -21,6 +20,7 @@ def check(one: Analysis) -> None:
     ]
     faults += [*_channel_faults(one, one.logs), *_machine_faults(one)]
     one.faults = [fault for fault in faults if not (fault.keep and fault.key in one.kept)]
+    one.revision += 1  # last: a page that asks meanwhile asks again
 
 
 def _of_file(file: Dropped, title: str, text: str, short: str) -> Fault:
@@ -36,7 +36,7 @@ def _channel_faults(one: Analysis, logs: list[Dropped]) -> list[Fault]:
     used = {name for name, choice in one.choices.items() if choice["role"] in ROLES}
     for other in logs[1:]:
         if absent := sorted((used & logs[0].names) - other.names):
-            text = f"It has no channel “{absent[0]}”: logs of one analysis are alike."
+            text = f"It has no channel “{absent[0]}”. All logs of one analysis need the same channels."
             faults.append(_of_file(other, "", text, "other channels"))
     for role, stated in one.mapped.items():
         if not logs[0].channel(stated) and (role != "temperature" or not one.options["isothermal"]):
@@ -59,7 +59,7 @@ def _machine_faults(one: Analysis) -> list[Fault]:
 def _not_there(role: str, stated: str, choices: Mapping[str, Mapping[str, str]]) -> Fault:
     """The fault of a channel that the mapping names and the log does not have."""
     now = next((name for name, choice in choices.items() if choice["role"] == role), "")
-    title = f"The mapping calls the {role} “{stated}”, and this log has no such channel."
+    title = f"The mapping names the {role} channel “{stated}”, which this log does not have."
     link = f"choose the {role} channel"
     text = "Choose one in the column Role."
     if not now:

@@ -1,4 +1,4 @@
-"""Where connections come in: nobody who only holds one open keeps the owner of the app out.
+"""Limits on connections: nobody can block the owner of the app by holding connections open.
 
 All clients have the address of this computer, so only the token tells the owner from a stranger. At most
 `MOST` connections that have not shown it are kept: one more ends the oldest. The owner's page is
@@ -13,7 +13,7 @@ from typing import Any
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
-#: Connections at the most that have not shown the token.
+#: Most connections that have not shown the token.
 MOST = 64
 #: Time that the head of a request may take, s.
 HEAD = 10.0

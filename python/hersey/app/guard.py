@@ -1,4 +1,4 @@
-"""Who may ask: a page of this server, on this computer, that knows the token of this start.
+"""Access control: only a page of this server, on this computer, with the token of this start.
 
 Names that another site makes lead here are refused by the Host, requests that another site sends by the
 Origin and for lack of the token, which stands in no address that is sent: only in the fragment.
@@ -33,7 +33,7 @@ _ALWAYS = {
 
 
 class Guard:
-    """Refuses, before anything else is looked at, what does not come from the page of this start."""
+    """Refuses, before anything else, requests that do not come from the page of this start."""
 
     def __init__(self, app: ASGIApp, *, token: str, port: int, door: Door | None = None) -> None:
         """Take the token, the port that is listened on, and where connections come in."""

@@ -61,7 +61,7 @@ def look(path: Path) -> dict[str, Any]:
 
 
 def _units(log: RawLog) -> dict[str, str]:
-    """The unit in which each role would be read, which a name may hold."""
+    """The unit in which each role would be read; a channel name may contain it."""
     columns = tuple(channel.column for channel in log.channels)
     values = {channel.column: channel.values for channel in log.channels}
     units = {}
@@ -150,7 +150,7 @@ def _finite(value: float) -> float | None:
 
 
 def _problem(path: Path) -> dict[str, Any]:
-    """Why the file cannot be read as a log of torque as it is, as data, or nothing."""
+    """Why the file cannot be read as a log of torque, as data; empty if it can."""
     try:
         read_with_mapping([path], mapping=LogMapping())
     except HerseyError as error:

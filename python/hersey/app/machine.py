@@ -1,4 +1,4 @@
-"""What is wrong with the answers about the machine, in the reader's words, at the field that is guilty."""
+"""Problems with the answers about the machine, in the words of the reader, each at its field."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from hersey.units import parse
 
 #: Names of the files in the folder of an analysis, as commands call them.
 MACHINE_FILE, MAPPING_FILE = "machine.toml", "hersey.toml"
-#: Between which values (SI) the drives lie that anybody has: beyond them a unit is wrong.
+#: Usual ranges (SI) of a drive; beyond them a unit is probably wrong.
 _USUAL = {
     "drivetrain.stiffness": ("stiffness", 1.0, 1e8),
     "drivetrain.mass": ("mass", 1e-3, 1e4),
@@ -34,7 +34,7 @@ POINT_FIELDS = tuple(q.field for q in POINT)
 
 
 def answer_faults(answers: Mapping[str, str], points: Sequence[Mapping[str, str]]) -> list[Fault]:
-    """Return what is wrong with single answers, and those that the others make needed."""
+    """Return problems with single answers, and answers that others make necessary."""
     faults = []
     for key, text in answers.items():
         if text.strip():
@@ -47,18 +47,20 @@ def answer_faults(answers: Mapping[str, str], points: Sequence[Mapping[str, str]
                 faults += _of_answer(at, f"points.{field}", text)
             elif field != "name":
                 faults.append(
-                    Fault(at, "This is needed.", "Or remove the point.", f"{field} of point {number + 1}")
+                    Fault(
+                        at, "This value is missing.", "Or remove the point.", f"{field} of point {number + 1}"
+                    )
                 )
     for question in lacking({**answers, **({"drivetrain.points": "1"} if points else {})}):
-        text = f"Such as {question.example}; or leave all of the machine blank."
+        text = f"For example {question.example}. Or leave the whole machine blank."
         if question.section not in ("drivetrain", "limits"):
-            text = f"Such as {question.example}; the others of its group say nothing without it."
-        faults.append(Fault(f"field:{question.key}", "This is needed.", text, label(question.key)))
+            text = f"For example {question.example}. The other values of its group need it."
+        faults.append(Fault(f"field:{question.key}", "This value is missing.", text, label(question.key)))
     return faults
 
 
 def doubtful(answers: Mapping[str, str]) -> list[Fault]:
-    """Return answers that no such machine has, which can be kept; of those that cannot be read, none."""
+    """Return unusual answers, which can be kept; unreadable ones are not among them."""
     faults = []
     for key, (kind, low, high) in _USUAL.items():
         question, text = BY_KEY[key], answers.get(key, "").strip()
@@ -68,9 +70,15 @@ def doubtful(answers: Mapping[str, str]) -> list[Fault]:
         except HerseyError:
             continue
         if doubt:
-            title = f"{value} is far from what such a drive has."
+            title = f"{value} is unusual for such a drive."
             faults.append(
-                Fault(f"field:{key}", title, f"Such as {question.example}.", label(key), keep=f"Keep {value}")
+                Fault(
+                    f"field:{key}",
+                    title,
+                    f"For example {question.example}.",
+                    label(key),
+                    keep=f"Keep {value}",
+                )
             )
     return faults
 
@@ -85,14 +93,14 @@ def _of_answer(at: str, key: str, text: str) -> list[Fault]:
 
 
 def label(key: str) -> str:
-    """Return what a field is called on the page."""
+    """Return the name of a field on the page."""
     return key.split(".")[-1].replace("_", " ")
 
 
 def form_text(
     answers: Mapping[str, str], points: Sequence[Mapping[str, Any]], others: Mapping[str, Any]
 ) -> str:
-    """Return the machine's file that the form makes, units as they stand beside the fields; empty if blank.
+    """Return the machine file of the form, with the units beside the fields; empty if the form is blank.
 
     ``others`` and what a point holds beside its answers are what a TOML said that the form has no field for.
 
@@ -114,7 +122,7 @@ def form_text(
 
 
 def kept_beside(points: Sequence[Mapping[str, Any]], others: Mapping[str, Any]) -> list[str]:
-    """Return what the form carries without a field for it, a table with the number of its values."""
+    """Return what the form keeps without a field for it, each table with the number of its values."""
     tables = [
         f"[{name}] {len(table)} value{'s' * (len(table) != 1)}" if isinstance(table, dict) else name
         for name, table in others.items()
@@ -124,7 +132,7 @@ def kept_beside(points: Sequence[Mapping[str, Any]], others: Mapping[str, Any]) 
 
 
 def file_faults(text: str, folder: Path, dropped: Mapping[str, Path]) -> list[Fault]:
-    """Write the machine's file and return what `hersey.read_machine` says of it.
+    """Write the machine file and return the problems that `hersey.read_machine` reports.
 
     ``dropped`` are the files that it may name, by name: it reaches no other.
     """
@@ -144,13 +152,13 @@ def file_faults(text: str, folder: Path, dropped: Mapping[str, Path]) -> list[Fa
 
 
 def _place_named(text: str, folder: Path, dropped: Mapping[str, Path]) -> None:
-    """Lay the logs that the file names beside it; refuse all that was not dropped."""
+    """Link the logs that the file names beside it; refuse any that was not dropped."""
     for section, named in _named(_document(text)).items():
         _lay(named, folder, dropped, f"[{section}] names the log")
 
 
 def _document(text: str) -> dict[str, Any]:
-    """A file that was read; nothing where it is none, of which whoever reads it says where."""
+    """The content of a file; empty if it is not TOML, which its reader reports."""
     try:
         return tomllib.loads(text)
     except (tomllib.TOMLDecodeError, RecursionError, ValueError):
@@ -158,7 +166,7 @@ def _document(text: str) -> dict[str, Any]:
 
 
 def _named(document: Mapping[str, Any]) -> dict[str, str]:
-    """The logs that a machine's file or a mapping names, by the table."""
+    """The logs that a machine file or a mapping names, by table."""
     out = {}
     for section, key in (("rest", "log"), ("gear", "duty"), ("torque", "no_load")):
         table = document.get(section)
@@ -182,7 +190,7 @@ def _lay(named: str, folder: Path, dropped: Mapping[str, Path], what: str) -> No
 
 
 def named_logs(text: str, others: Mapping[str, Any]) -> set[str]:
-    """Return the names of the logs that a machine's file or a mapping names: they are no logs of the run."""
+    """Return the logs that a machine file or a mapping names; they are not logs of the run."""
     return {*_named(_document(text)).values(), *_named(others).values()}
 
 

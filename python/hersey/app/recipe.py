@@ -1,4 +1,4 @@
-"""A recipe that was dropped: the options that it states, where the page can hold all of it.
+"""A recipe that was dropped: its options, if the page has a control for each.
 
 No file that it names is looked for: the logs of an analysis are those that were dropped.
 """
@@ -38,8 +38,8 @@ def options_of_recipe(path: Path, *, mapped: bool) -> dict[str, Any] | None:
     stated = Recipe.from_file(path).stated()
     if others := sorted(stated.keys() - {"logs", "mapping", *_OPTIONS}):
         raise HerseyError(
-            f"the app cannot set {', '.join(others)}, which this recipe states: use the recipe with hersey "
-            "report in a terminal"
+            f"the app has no control for {', '.join(others)} of this recipe: run hersey report with it in a "
+            "terminal"
         )
     if "mapping" in stated and not mapped:
         raise HerseyError(

@@ -1,4 +1,4 @@
-"""From files and choices to a report: what `hersey report` does, with a word on each step."""
+"""From files and choices to a report, as `hersey report` does it, with progress."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
+from hersey.app.kept import summary_of
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.recipe import Recipe
 from hersey.document.assembly import document_of
@@ -59,11 +60,13 @@ def run(request: Mapping[str, Any], step: Step) -> dict[str, Any]:
         write_atomically(report.with_suffix(".toml"), document.recipe.toml, overwrite=True)
     write_atomically(report, render(document), overwrite=True)
     decision = found.decision
-    return {"signal": decision.signal, "words": decision.instruction, "warnings": len(found.warnings)}
+    part = None if document.map is None else document.map.to_dict()
+    summary = summary_of(decision.model_dump(mode="json", include={"signal", "instruction", "points"}), part)
+    return {**summary, "warnings": len(found.warnings)}
 
 
 def _shared(step: Step, points: int) -> Callable[[str], None]:
-    """A word on each step of the analysis, with the share of the whole at which it begins."""
+    """Report each step of the analysis, with the share of the whole at which it begins."""
     planned = 0
 
     def said(words: str) -> None:

@@ -1,4 +1,4 @@
-"""What the page may ask, and the answers."""
+"""The requests of the page, and the answers."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ _STATIC = {
 
 
 class BadRequestError(Exception):
-    """A body that is no JSON object; the message says why."""
+    """A request body that is not a JSON object; the message says why."""
 
 
 def application(session: Session, *, token: str, port: int, door: Door | None = None) -> Starlette:
@@ -86,7 +86,7 @@ def application(session: Session, *, token: str, port: int, door: Door | None = 
 
 
 def new_token() -> str:
-    """Return a token that nobody guesses."""
+    """Return a random token that cannot be guessed."""
     return secrets.token_urlsafe(32)
 
 
@@ -116,13 +116,13 @@ def _safe(handler: Handler) -> Handler:
 
 #: What refuses a request, the first that an error is one of: its status, and the words if not its own.
 _REFUSALS: tuple[tuple[type[Exception] | tuple[type[Exception], ...], int, str], ...] = (
-    (UnknownError, 404, "that is no longer here"),
+    (UnknownError, 404, "this is no longer open in the app"),
     (TooMuchError, 413, ""),
     (NotNowError, 409, ""),
     (ClientDisconnect, 400, "the page went away"),
     (BadRequestError, 400, ""),
     (SlowError, 408, ""),
-    ((ValueError, TypeError, KeyError), 400, "that cannot be chosen"),
+    ((ValueError, TypeError, KeyError), 400, "this cannot be chosen"),
     (HerseyError, 409, ""),
 )
 
@@ -141,7 +141,7 @@ class _Routes:
         async for chunk in request.stream():
             body += chunk
             if len(body) > self._session.bounds.request:
-                raise TooMuchError("that is too long")
+                raise TooMuchError("the request is too long")
         try:
             given = json.loads(body or b"{}")
             if not isinstance(given, dict):
@@ -164,7 +164,9 @@ class _Routes:
         )
 
     async def state(self, _request: Request) -> Response:
-        return JSONResponse({"analyses": [line_of(one) for one in self._session.analyses.values()]})
+        earlier = [each.line() for each in await self._session.earlier()]
+        lines = [line_of(one) for one in self._session.analyses.values()]
+        return JSONResponse({"analyses": lines, "earlier": earlier})
 
     async def new(self, _request: Request) -> Response:
         return JSONResponse(view_of(self._session.new()))
@@ -227,7 +229,7 @@ class _Routes:
         path = self._session.shown.get(self._one(request).report)
         recipe = None if path is None else path.with_suffix(".toml")
         if recipe is None or not recipe.is_file():
-            return PlainTextResponse("This recipe is no longer here.", status_code=404)
+            return PlainTextResponse("This recipe is no longer available.", status_code=404)
         return PlainTextResponse(recipe.read_text(encoding="utf-8"))
 
     async def report_file(self, request: Request) -> Response:
@@ -239,7 +241,7 @@ class _Routes:
     def _report(self, number: str) -> Response:
         path = self._session.shown.get(number)
         if path is None or not path.is_file():
-            return PlainTextResponse("This report is no longer here.", status_code=404)
+            return PlainTextResponse("This report is no longer available.", status_code=404)
         return FileResponse(path, media_type="text/html", headers={"content-security-policy": SANDBOX})
 
 

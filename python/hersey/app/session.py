@@ -1,4 +1,4 @@
-"""The analyses of one start: what the page changes, and the processes that read and compute for it.
+"""The analyses of one start: changes by the page, and the processes that read and compute.
 
 An analysis has a folder with a random name. It holds the machine's file and the mapping, with links to the
 logs that these name, a folder ``results``, and a folder for each dropped file. In the last the file lies
@@ -20,13 +20,14 @@ from hersey.app.analysis import Analysis, Dropped, number
 from hersey.app.channels import of_problem
 from hersey.app.checking import check
 from hersey.app.course import Courses
+from hersey.app.kept import Kept, kept_reports
 from hersey.app.machine import MACHINE_FILE, MAPPING_FILE
 from hersey.app.uploads import Bounds, TooMuchError, clean_name, megabytes, receive
 from hersey.app.workers import EndedError, Refused, ask
 from hersey.errors import ExistingFileError, HerseyError, OutputError
 from hersey.files.writing import write_atomically
 
-#: Analyses that run beside each other.
+#: Analyses that run at the same time.
 _AT_ONCE = max(1, (os.cpu_count() or 1) // 2)
 
 
@@ -35,11 +36,11 @@ _RESULTS, _DROPPED = "results", "dropped"
 
 
 class UnknownError(Exception):
-    """There is nothing of that number."""
+    """Nothing has this number."""
 
 
 class NotNowError(Exception):
-    """What was asked cannot be done as things are; the message is for the user."""
+    """The request cannot be fulfilled now; the message is for the user."""
 
 
 class Session:
@@ -60,6 +61,7 @@ class Session:
         self.folder, self.reports, self.bounds = folder, reports, bounds or Bounds()
         self.analyses: dict[str, Analysis] = {}
         self.shown: dict[str, Path] = {}  #: reports by the number in their address
+        self._earlier: list[Kept] | None = None
         self._courses = Courses()
         self._tasks: dict[str, asyncio.Task[None]] = {}
         self._running = asyncio.Semaphore(_AT_ONCE)
@@ -75,13 +77,23 @@ class Session:
             If there are too many.
         """
         if len(self.analyses) >= self.bounds.analyses:
-            raise NotNowError(f"{self.bounds.analyses} analyses are open: remove one first")
+            raise NotNowError(f"{self.bounds.analyses} analyses are open. Remove one first")
         one = Analysis(Path())
         one.folder = self.folder / one.id
         one.folder.mkdir(mode=0o700)
         (one.folder / _RESULTS).mkdir(mode=0o700)
         self.analyses[one.id] = one
         return one
+
+    async def earlier(self) -> list[Kept]:
+        """Return the reports that earlier starts have kept, looked for once."""
+        if self._earlier is None:
+            own = {each.saved for each in self.analyses.values()}
+            found = await asyncio.to_thread(kept_reports, self.reports)
+            if self._earlier is None:  # nobody was quicker
+                self._earlier = [each for each in found if each.saved not in own]
+                self.shown |= {each.report: each.path for each in self._earlier}
+        return self._earlier
 
     def get(self, one: str) -> Analysis:
         """Return an analysis.
@@ -115,7 +127,7 @@ class Session:
         self._refuse_while_busy(one)
         files = [file for each in self.analyses.values() for file in each.files.values()]
         if len(files) >= self.bounds.files:
-            raise NotNowError(f"{len(files)} files are here already: remove some first")
+            raise NotNowError(f"{len(files)} files have been added. Remove some first")
         most = min(
             self.bounds.file, self.bounds.all_files - sum(file.size or file.received for file in files)
         )
@@ -147,8 +159,8 @@ class Session:
     async def _take_toml(self, one: Analysis, file: Dropped) -> None:
         async with one.lock:
             wrong = (
-                "this is no machine file (table [drivetrain]), no mapping (tables such as [torque]) and no "
-                "recipe (keys such as logs and tare)"
+                "not a machine file (table [drivetrain]), a mapping (tables such as [torque]) or a recipe "
+                "(keys such as logs and tare)"
             )
             try:
                 taken = one.take_file(file)
@@ -166,7 +178,7 @@ class Session:
                 )
             async with one.lock:
                 if any(_same(other.look, look) for other in one.files.values()):
-                    file.state, file.fault = "fault", "the same log is here already"
+                    file.state, file.fault = "fault", "this log was already added"
                 else:
                     file.look, file.state = look, "ready"
                     one.propose(file)
@@ -175,7 +187,7 @@ class Session:
             file.state, file.fault = "fault", f"not a log: {said}"
         except EndedError:
             file.state = "fault"
-            file.fault = "not a log that can be read here: what read it ended (is it damaged, or too large?)"
+            file.fault = "not a log: reading it failed. Is the file damaged or too large?"
         async with one.lock:
             await self._check(one)
 
@@ -187,13 +199,13 @@ class Session:
             await self._check(one)
 
     async def keep(self, one: Analysis, key: str) -> None:
-        """Keep what is only doubtful."""
+        """Keep a value that is only doubtful."""
         async with one.lock:
             one.kept.add(key)
             await self._check(one)
 
     async def mend(self, one: Analysis, key: str) -> None:
-        """Change what the button of a fault says."""
+        """Apply the fix of a fault's button."""
         async with one.lock:
             self._refuse_while_busy(one)
             fault = next((fault for fault in one.faults if fault.key == key), None)
@@ -217,7 +229,7 @@ class Session:
         return refused
 
     async def remove_file(self, one: Analysis, file: str) -> None:
-        """Leave a file out."""
+        """Remove a file."""
         async with one.lock:
             self._refuse_while_busy(one)
             if file not in one.files:
@@ -238,10 +250,10 @@ class Session:
             self._refuse_while_busy(one)
             await self._check(one)
             if not one.logs or one.waiting:
-                raise NotNowError("drop a log first" if not one.files else "a file is still on its way")
+                raise NotNowError("drop a log first" if not one.files else "a file is still being read")
             if one.faults:
-                raise NotNowError("first: " + ", ".join(fault.link for fault in one.faults))
-            one.state, one.step, one.share, one.reason = "preparing", "waiting for its turn", None, ""
+                raise NotNowError("fix first: " + ", ".join(fault.link for fault in one.faults))
+            one.state, one.step, one.share, one.reason = "preparing", "queued", None, ""
             one.result, one.finished = {}, ""
             one.revision += 1
             self._start(one.id, self._run(one))
@@ -263,7 +275,7 @@ class Session:
         except OutputError as error:
             one.state, one.reason = "stopped", str(error)
         except EndedError:
-            one.state, one.reason = "stopped", "the calculation ended by itself: is there memory left?"
+            one.state, one.reason = "stopped", "the calculation stopped unexpectedly. Is there enough memory?"
         except asyncio.CancelledError:
             one.state, one.step = "editing", ""
             raise
@@ -309,10 +321,10 @@ class Session:
             with suppress(ExistingFileError):  # somebody was quicker
                 write_atomically(path, text, overwrite=False)
                 return f"{self.reports.name}/{path.name}"
-        raise OutputError(f"{self.reports.name} holds a thousand reports of that name: move some away")
+        raise OutputError(f"{self.reports.name} holds a thousand reports of this name. Move some away")
 
     def cancel(self, one: Analysis) -> None:
-        """End a run; nothing of it stays."""
+        """Cancel a run; nothing of it is kept."""
         self._end(one.id)
         if one.busy:
             one.state, one.step = "editing", ""
@@ -332,7 +344,7 @@ class Session:
 
     def _refuse_while_busy(self, one: Analysis) -> None:
         if one.busy:
-            raise NotNowError("it is running: cancel it first")
+            raise NotNowError("the analysis is running: cancel it first")
 
     def _start(self, name: str, work: Coroutine[Any, Any, None]) -> None:
         task = asyncio.create_task(work)
@@ -348,9 +360,11 @@ async def _received(file: Dropped, length: int | None, most: int, chunks: AsyncI
     """Write a file as it comes."""
     if length is not None and length > most:
         raise TooMuchError(
-            f"it has {megabytes(length)}, and {megabytes(max(most, 0))} can be taken here: "
-            "thin it, or use hersey report in a terminal"
+            f"the file has {megabytes(length)}, more than the {megabytes(max(most, 0))} that the app takes: "
+            "thin it, or run hersey report in a terminal"
         )
+
+    file.total = length or 0
 
     def received(size: int) -> None:
         file.received = size

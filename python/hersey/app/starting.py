@@ -1,4 +1,4 @@
-"""A start of the app: a free port on the loopback address, a token, a private folder; until Ctrl-C."""
+"""Start the app: a free port on the loopback address, a token and a private folder, until Ctrl-C."""
 
 from __future__ import annotations
 
@@ -97,7 +97,7 @@ def _socket(port: int) -> socket.socket:
         listening.close()
         reason = getattr(error, "strerror", None) or "there is no such port"
         raise OutputError(
-            f"{Setting('port').to(str(port))}: {reason}: leave it out for one that is free"
+            f"{Setting('port').to(str(port))}: {reason}: omit it to use any free port"
         ) from None
     listening.listen(64)
     return listening
@@ -133,7 +133,7 @@ def _hold(lock: Path) -> int | None:
 
 
 def _sweep() -> None:
-    """Remove what starts that were killed have left."""
+    """Remove the folders of starts that were killed."""
     if not hasattr(os, "getuid"):
         return
     for folder in Path(tempfile.gettempdir()).glob(f"{_PREFIX}*"):

@@ -1,4 +1,4 @@
-"""Dropped files, to disk as they come, within bounds; their names are shown and serve no path."""
+"""Dropped files, written to disk as they arrive, within bounds; their names are never used as paths."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _NO_NAME = re.compile(r'[\\/:*?"<>|\x00-\x1f]')
 
 @dataclass(frozen=True)
 class Bounds:
-    """What one start takes in all: bytes of a file and of all files, files, analyses, bytes of a request."""
+    """Limits of one start: bytes of a file and of all files, files, analyses, bytes of a request."""
 
     file: int = 2_000_000_000
     all_files: int = 8_000_000_000
@@ -49,7 +49,7 @@ def clean_name(name: str) -> str:
 
 
 def megabytes(size: int) -> str:
-    """Return a number of bytes for people."""
+    """Return a number of bytes as readers write it."""
     return f"{size / 1e9:.3g} GB" if size >= 1e9 else f"{size / 1e6:.3g} MB"
 
 
@@ -69,15 +69,13 @@ async def receive(
             async for chunk in chunks:
                 size += len(chunk)
                 if size > most:
-                    raise TooMuchError(f"it is longer than the {megabytes(most)} that can be taken here")
+                    raise TooMuchError(f"the file is larger than the {megabytes(most)} that the app takes")
                 file.write(chunk)
                 received(size)
     except OSError as error:
         path.unlink(missing_ok=True)
         free = megabytes(shutil.disk_usage(path.parent).free)
-        raise TooMuchError(
-            f"it cannot be kept on this disk, which has {free} left: {error.strerror}"
-        ) from None
+        raise TooMuchError(f"the file cannot be stored: {error.strerror} ({free} free on the disk)") from None
     except BaseException:
         path.unlink(missing_ok=True)
         raise

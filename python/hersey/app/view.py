@@ -25,6 +25,7 @@ def line_of(one: Analysis) -> dict[str, Any]:
         "left": left if left is not None and left > 1.0 else None,
         "signal": one.result.get("signal", ""),
         "words": one.result.get("words", ""),
+        "map": one.result.get("map"),
         "faults": len(one.faults),
         "ready": bool(one.logs) and not one.faults and not one.waiting,
     }
@@ -78,7 +79,7 @@ def _channels(one: Analysis, look: Mapping[str, Any]) -> list[dict[str, Any]]:
 def _file_view(file: Dropped) -> dict[str, Any]:
     look = file.look
     clock: dict[str, Any] = next(iter(look.get("clocks", [])), {})
-    plain = ("id", "name", "size", "received", "state", "fault")
+    plain = ("id", "name", "size", "total", "received", "state", "fault")
     return {name: getattr(file, name) for name in plain} | {
         "rows": look.get("rows"),
         **{name: clock.get(name) for name in ("duration", "gaps", "lost")},

@@ -31,18 +31,18 @@ def main() -> None:
     except HerseyError as error:
         tell(refused=str(error), problem=error.to_dict())
     except MemoryError:
-        full = HerseyError("it does not fit into the memory of this computer: thin the log, or cut it")
+        full = HerseyError("the log does not fit into the memory of this computer: thin it or cut it")
         tell(refused=str(full), problem=full.to_dict())
 
 
 def tell(**words: Any) -> None:
-    """Say something to the process that waits."""
+    """Send a message to the process that waits."""
     sys.stdout.write(json.dumps(words) + "\n")
     sys.stdout.flush()
 
 
 def step(name: str, share: float | None = None) -> None:
-    """Say which step is done, and the share of the whole where it is known."""
+    """Report a step, and the share of the whole if it is known."""
     tell(step=name, share=share)
 
 

@@ -18,11 +18,11 @@ _LONGEST = 1 << 20
 
 
 class EndedError(Exception):
-    """A process ended without a result: killed for memory, or by a fault of a library."""
+    """A process ended without a result: killed for lack of memory, or crashed."""
 
 
 class Refused(Exception):  # noqa: N818 - no fault of the program: what was asked cannot be done
-    """What was asked cannot be done, in words for the user; ``problem`` is the error as data."""
+    """The request cannot be fulfilled, in words for the user; ``problem`` is the error as data."""
 
     def __init__(self, words: str, problem: Mapping[str, Any]) -> None:
         """Take the words, and what `HerseyError.to_dict` gives."""

@@ -120,7 +120,7 @@ def _limits(curves: list[Row], x: alt.X, color: alt.Color) -> list[alt.Chart]:
 
 
 def _ends(curves: list[Row], domain: tuple[float, float], color: alt.Color) -> list[alt.Chart]:
-    """The temperature at the end of each line, none nearer to the next than can be read."""
+    """The temperature at the end of each line, far enough apart to be read."""
     ends = {row["level"]: row for row in curves}
     if len(ends) < 2:
         return []

@@ -1,4 +1,4 @@
-"""The operating map of a unit when new, now and at the end, side by side."""
+"""The operating map of a specimen when new, now and at its failure, side by side."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def ageing_maps_chart(result: AgeingMaps) -> Chart:
     width = _ALL / len(result.when)
     panels = [_panel(result, index, width) for index in range(len(result.when))]
     title = alt.Title(
-        f"Operating map of {result.unit} through its life",
+        f"Operating map of {result.unit} over its life",
         subtitle=["solid: transition; dashed: V*; points: operating points", *map(str, result.warnings)],
     )
     chart: Chart = alt.hconcat(*panels, title=title, spacing=14)

@@ -22,6 +22,7 @@ from hersey.charts.regime import exponent_chart, exponent_row
 from hersey.charts.render import write_pictures
 from hersey.charts.stick_speed import stick_speed_chart
 from hersey.charts.style import (
+    APPROACHES,
     HEIGHT,
     INK,
     ROLL_SPEED,
@@ -88,18 +89,15 @@ def charts(document: Analysis, *, but: tuple[str, ...] = ()) -> dict[str, Chart]
 def torque(document: Analysis) -> Chart:
     """Torque against speed per temperature, with the drag curves (the paper's Fig. 2)."""
     _, unit = _torque_unit(document)
-    subtitle = "filled: reached from below, open: from above, bars: two standard errors; lines: drag curves"
-    subtitle += "" if document.fit.rest is None else "; the no-load torque is taken off"
-    title = alt.Title("Drag torque against speed", subtitle=subtitle)
+    heading = "Drag torque" if document.fit.rest is None else "Drag torque, no-load torque subtracted"
+    title = alt.Title(heading, subtitle=f"{APPROACHES}; lines: fitted drag curves")
     return _against_speed(document, "torque", f"Torque ({unit})", turns=True).properties(title=title)
 
 
 def damping(document: Analysis) -> Chart:
     """Damping against speed per temperature (Figs. 3 and 7)."""
     scale, unit = _torque_unit(document)
-    title = alt.Title(
-        "Damping against speed", subtitle="dashed: slope -1, where torque does not depend on speed"
-    )
+    title = alt.Title("Damping against speed", subtitle="dashed: slope -1, constant torque")
     under = [_slope_of_minus_one(document, scale)]
     name = f"Damping ({unit}·s/rad)"
     return _against_speed(document, "damping", name, under=under).properties(title=title)
@@ -139,7 +137,7 @@ def surface(document: Analysis) -> Chart:
 
 
 def _cells(document: Analysis) -> list[Row]:
-    """Cells of the surface in units of people; without temperature they are as high as the chart."""
+    """Cells of the surface in the units of readers; without temperature they are as high as the chart."""
     scale, _ = _torque_unit(document)
     return [
         {
@@ -166,7 +164,7 @@ def residuals(document: Analysis) -> Chart:
         shape=categories(alt.Shape, "approach", shapes, alt.Legend(title="approached")),
         tooltip=_point_tips(document),
     ).add_params(zoom())
-    subtitle = "up and down triangles apart mean hysteresis; a bend means a wrong law"
+    subtitle = "a gap between the two kinds of triangles: hysteresis; a bend: wrong model"
     title = alt.Title("Residuals", subtitle=subtitle)
     return alt.layer(zero, dots, title=title, width=WIDTH, height=220)
 
@@ -190,7 +188,7 @@ def regime(document: Analysis) -> Chart:
 
 
 def film(document: Analysis) -> Chart | None:
-    """Which law of film thickness holds in the user's nip."""
+    """The film regime of the contact."""
     part = document.film
     return None if part is None else regime_chart(part.points, part.dwells, part.layer_factor)
 
@@ -229,7 +227,7 @@ def simulation_force(document: Analysis) -> Chart | None:
 def timeline_speed(document: Analysis) -> Chart | None:
     """Speed over the log, dwells shaded; None for a table of means."""
     chart = _timeline(document, document.timeline.speed, "Speed (rpm)", rpm)
-    return None if chart is None else chart.properties(title="The log: dwells used are shaded")
+    return None if chart is None else chart.properties(title="The log (shaded: dwells used)")
 
 
 def timeline_torque(document: Analysis) -> Chart | None:
@@ -368,5 +366,5 @@ def _timeline(
         return None
     rows = rows_of(time=series.time, value=[in_unit(v) for v in series.value])
     dwells = [(starts[p.run] + p.start, starts[p.run] + p.end) for p in document.points]
-    several = ", files one after another" if len(document.files) > 1 else ""
+    several = "; files follow one another" if len(document.files) > 1 else ""
     return log_panel(rows, name, time_axis(title=f"Time (s){several}"), dwells=dwells)

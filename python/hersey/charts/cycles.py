@@ -53,7 +53,7 @@ def _heading(record: CycleRecord, drive: IdentifiedDrive | None) -> list[str]:
     if not record.slips:
         return [words]
     period = Scatter.of(record.period)
-    slips = f"{words}: {record.slips} slips, period {period.median:.4g} s; dots: where the slip is half done"
+    slips = f"{words}: {record.slips} slips, period {period.median:.4g} s; dots: middle of each slip"
     return [slips] if drive is None else [slips, f"fitted motion: {_identified(drive)}"]
 
 
@@ -93,12 +93,12 @@ def _slips(record: CycleRecord, label: str) -> alt.Chart:
 def _cycle(drive: IdentifiedDrive, label: str) -> Chart:
     wave = drive.waveform
     time, size = 1e3 * wave.offset, wave.offset.size
-    rows = rows_of(time=time, force=wave.force, line=["mean of the laps"] * size)
+    rows = rows_of(time=time, force=wave.force, line=["mean cycle"] * size)
     fitted = rows_of(time=time, force=drive.fitted, line=["fitted motion"] * size, index=range(size))
     legend = alt.Legend(title=None, orient="bottom-right", fillColor="white", padding=4)
     x = alt.X("time:Q", title="Time from the middle of the slip (ms)", scale=alt.Scale(nice=False))
     y = alt.Y("force:Q", title=label, scale=alt.Scale(zero=False))
-    color = categories(alt.Color, "line", {"mean of the laps": ORANGE, "fitted motion": BLUE}, legend)
+    color = categories(alt.Color, "line", {"mean cycle": ORANGE, "fitted motion": BLUE}, legend)
     dots = plot(rows).mark_point(filled=True, size=24).encode(x=x, y=y, color=color)
     line = plot(fitted).mark_line(strokeWidth=1.5).encode(x=x, y=y, color=color, order="index:Q")
     return alt.layer(line, dots).properties(width=WIDTH, height=220)

@@ -11,6 +11,7 @@ import numpy as np
 from hersey.arrays import FloatArray
 from hersey.charts.against_speed import against_speed, curve_rows
 from hersey.charts.style import (
+    APPROACHES,
     BLUE,
     HEIGHT,
     INK,
@@ -38,7 +39,7 @@ from hersey.damping.no_load_torque import NoLoadTorque
 from hersey.damping.surface import DampingSurface
 from hersey.units import celsius, rpm
 
-#: Speeds at which a law is drawn, temperatures at which a surface is, and candidates that are listed.
+#: Speeds at which a law is drawn, temperatures at which a surface is drawn, and models that are listed.
 _SPEEDS, _TEMPERATURES, _LISTED = 60, 4, 10
 #: Speeds (rad/s) of a no-load torque that is stated.
 _STATED = (0.1, 30.0)
@@ -55,9 +56,7 @@ def steady_chart(points: SteadyPoints) -> Chart:
     rows = _dwells(np.abs(points.column("speed")), factor * torque, shares, kelvin)
     for row, approach in zip(rows, points.table["approach"], strict=True):
         row["approach"] = approach
-    subtitle = (
-        f"{len(points)} dwells; filled: reached from below, open: from above, bars: two standard errors"
-    )
+    subtitle = f"{len(points)} dwells; {APPROACHES}"
     title = alt.Title("Steady points", subtitle=subtitle)
     tips = [*_tips(unit, hot=kelvin is not None), alt.Tooltip("approach:N", title="approached")]
     return against_speed(rows, [], f"Torque ({unit})", tips=tips).properties(title=title)
@@ -82,7 +81,7 @@ def surface_chart(surface: DampingSurface) -> Chart:
             for at, t in ((surface.transition_speed(t), t) for t in hot)
             if low < at < high
         ]
-    subtitle = "lines: the law; shaded: its 95 % limits" + ("; ticks: transition speed" if turns else "")
+    subtitle = "lines: fitted law; shaded: 95 % limits" + ("; ticks: transition speed" if turns else "")
     rows = _band_rows(speed, bands, hot, factor)
     return against_speed([], rows, f"Torque ({unit})", turns=turns).properties(
         title=alt.Title("Fitted drag torque", subtitle=subtitle)
@@ -90,7 +89,7 @@ def surface_chart(surface: DampingSurface) -> Chart:
 
 
 def rest_chart(rest: NoLoadTorque) -> Chart:
-    """Return what the drive takes without the film: torque against speed at temperatures, with its limits."""
+    """Return the no-load torque: torque against speed at temperatures, with its limits."""
     speed = np.geomspace(*(rest.speed_range or _STATED), _SPEEDS)
     hot: list[float | None] = [rest.reference_temperature]
     if rest.temperature_range is not None and rest.reference_temperature is not None:
@@ -102,12 +101,12 @@ def rest_chart(rest: NoLoadTorque) -> Chart:
         reach = 2.0 * factor * np.linalg.norm(rest.errors(speed, t), axis=1)
         low = np.maximum(torque - reach, 1e-2 * torque)  # a logarithm has no place for nothing
         rows += curve_rows(speed, torque, t, (low, torque + reach))
-    title = alt.Title("No-load torque", subtitle="lines: the law; shaded: two standard errors")
+    title = alt.Title("No-load torque", subtitle="lines: fitted law; shaded: two standard errors")
     return against_speed([], rows, f"Torque ({unit})").properties(title=title)
 
 
 def models_chart(comparison: ModelComparison) -> Chart:
-    """Return the dwells with the law that was chosen, over the candidates by how much worse they are."""
+    """Return the dwells with the chosen model, above the other models by how much worse they are."""
     return stacked(_chosen(comparison), _ranking(comparison), spacing=20)
 
 
@@ -121,7 +120,7 @@ def _chosen(comparison: ModelComparison) -> Chart:
     hot: list[float | None] = [None] if kelvin is None else list(data.temperatures)
     curves = _band_rows(speed, [comparison.predict(speed=speed, temperature=t) for t in hot], hot, factor)
     name = comparison.chosen.candidate.name
-    title = alt.Title("The law chosen", subtitle=f"{name}; shaded: 95 % limits of the law")
+    title = alt.Title("Chosen model", subtitle=f"{name}; shaded: 95 % limits")
     tips = _tips(unit, hot=kelvin is not None)
     return against_speed(dwells, curves, f"Torque ({unit})", tips=tips).properties(title=title)
 
@@ -140,15 +139,15 @@ def _ranking(comparison: ModelComparison) -> Chart:
     y = alt.Y("name:N", title=None, sort=[r["name"] for r in rows], axis=alt.Axis(labelLimit=220))
     x = alt.X(
         "worse:Q",
-        title="AICc above the least (no unit; 10 is decisive)",
+        title="AICc above the lowest (no unit; 10 is decisive)",
         scale=alt.Scale(type="symlog", domainMin=0.0),
         axis=alt.Axis(values=[0, 1, 3, 10, 30, 100, 300, 1000, 3000, 10000]),
     )
     bars = plot(rows).mark_bar(color="#9fb4d6").encode(x=x, y=y, tooltip=[tip("weight", "Akaike weight")])
     text = plot(rows).mark_text(align="left", dx=4, color=INK).encode(x=x, y=y, text=alt.Text("text:N"))
     more = len(comparison.candidates) - len(listed)
-    subtitle = "all on the same dwells" + (f"; {more} more are worse" if more else "")
-    title = alt.Title("Candidate laws", subtitle=subtitle)
+    subtitle = "all fitted to the same dwells" + (f"; {more} worse models are not shown" if more else "")
+    title = alt.Title("Model comparison", subtitle=subtitle)
     return alt.layer(bars, text, title=title, width=WIDTH, height=22 * len(rows))
 
 
@@ -179,16 +178,17 @@ def logs_chart(comparison: LogComparison) -> Chart:
         bars.encode(x=x, y=alt.Y("low:Q"), y2=alt.Y2("high:Q"), color=color),
         dots.encode(x=x, y=y, color=color, shape=shape, tooltip=tips),
     ]
-    beside = ", temperatures beside each other" if len(hot) > 1 else ""
-    subtitle = [f"A: {a}, B: {b}; bars: simultaneous 95 % limits{beside}", comparison.verdict]
-    title = alt.Title("Two logs compared", subtitle=subtitle)
+    subtitle = [f"A: {a}; B: {b}; bars: simultaneous 95 % limits", comparison.verdict]
+    title = alt.Title("Comparison of two logs", subtitle=subtitle)
     return alt.layer(*layers, title=title, width=WIDTH, height=HEIGHT)
 
 
 def design_chart(design: TestDesign) -> Chart:
     """Return the dwells to record next in their order, and what is known after each."""
-    wanted = f"to know the {design.quantity} best" if design.quantity else "to know all parameters best"
-    subtitle = f"{wanted}; numbers: their order; law: {design.law}"
+    wanted = (
+        f"to determine the {design.quantity} best" if design.quantity else "to determine all parameters best"
+    )
+    subtitle = f"{wanted}; numbers: order of recording; law: {design.law}"
     title = alt.Title("Dwells to record next", subtitle=subtitle)
     return stacked(_where(design), _gain(design), title=title, spacing=18)
 
@@ -226,7 +226,7 @@ def _gain(design: TestDesign) -> Chart:
     factor, unit = (rpm(1.0), "rpm") if design.unit == "rad/s" else (1.0, design.unit or "no unit")
     if now is None:
         values = [1.0, *(point.volume for point in design.points)]
-        name = "Region of all parameters over today's (no unit)"
+        name = "Confidence region of all parameters over today's (no unit)"
     else:
         values = [factor * now, *(factor * point.error for point in design.points if point.error is not None)]
         name = f"Standard error ({unit})"
@@ -240,7 +240,7 @@ def _gain(design: TestDesign) -> Chart:
 
 
 def _dwells(speed: FloatArray, torque: FloatArray, share: FloatArray, kelvin: FloatArray | None) -> list[Row]:
-    """One row per dwell in units of people, with two of its relative standard errors."""
+    """One row per dwell in the units of readers, with two relative standard errors."""
     group: list[float | None] = [None] * speed.size
     if kelvin is not None:
         for members in groups_of_temperature(kelvin):
@@ -257,7 +257,7 @@ def _dwells(speed: FloatArray, torque: FloatArray, share: FloatArray, kelvin: Fl
 
 
 def _tips(unit: str, *, hot: bool) -> list[alt.Tooltip]:
-    """What a dwell says of itself."""
+    """The tooltip of a dwell."""
     degrees = [tip("temperature", "temperature (°C)")] if hot else []
     return [tip("speed", "speed (rpm)"), tip("y", f"torque ({unit})"), *degrees]
 

@@ -1,4 +1,4 @@
-"""What moved with age: a panel per quantity, units as thin lines, all of them as a line with its band."""
+"""Drift with age: one panel per quantity, specimens as thin lines, all of them as a line with its band."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from hersey.charts.style import BLUE, INK, WIDTH, Chart, plot, rows_of, tip
 from hersey.life.drift.quantities import Quantity
 from hersey.life.drift.result import Drift
 
-#: Units drawn at the most; of more, so many at even places in their order.
+#: Most specimens drawn; of more, this many at even steps.
 _DRAWN = 60
 _COLUMNS, _GAP, _AXIS, _HEIGHT = 2, 18, 52, 170
 #: How a quantity is shown: factor from its SI unit, and unit.
@@ -23,13 +23,13 @@ _SHOWN = {
 
 
 def drift_chart(drift: Drift) -> Chart:
-    """Return each quantity against age; a unit ends where it was last seen."""
+    """Return each quantity against age; a specimen ends at its last observation."""
     count = len(drift.units)
     chosen = np.unique(np.linspace(0, count - 1, min(count, _DRAWN)).round().astype(int))
     panels = [_panel(drift, each, chosen.tolist()) for each in drift.quantities]
     rows = [alt.hconcat(*panels[i : i + _COLUMNS], spacing=_GAP) for i in range(0, len(panels), _COLUMNS)]
     some = "" if len(chosen) == count else f" ({len(chosen)} of {count})"
-    words = f"thin: units{some}; thick, with 90 % band: all units"
+    words = f"thin: specimens{some}; thick, with 90 % band: all specimens"
     title = alt.Title("Drift", subtitle=[drift.headline(), words])
     return alt.vconcat(*rows, spacing=14, title=title)
 

@@ -50,7 +50,7 @@ _RIMS: dict[str, Row] = {"regimes": {}, "points": RIM}
 _TIPS = [
     alt.Tooltip("name:N", title="point"),
     alt.Tooltip("regime:N", title="regime"),
-    alt.Tooltip("h:Q", title="least film (um)", format=".3~g"),
+    alt.Tooltip("h:Q", title="minimum film (µm)", format=".3~g"),
 ]
 #: The chart shows at least this.
 _LEAST = {"g_v": (-2.0, 4.0), "g_e": (-1.0, 3.0)}
@@ -110,14 +110,14 @@ def regime_chart(points: list[FilmPoint], dwells: list[FilmPoint], layer_factor:
         marks.encode(x=x, y=y, tooltip=_TIPS),
         *_texts(named if len(named) <= _NAMED else [], unnamed, spans, regime, x, y),
     ]
-    hidden = "" if known else " No point is shown: alpha is not known, g_V = 0."
+    hidden = "" if known else " No points: alpha is unknown, so g_V = 0."
     subtitle = [
-        "Ground: the law that holds. g_V = G W^1.5/U^0.5, g_E = W/U^0.5, with U = eta u/(E'R) of the mean "
-        "speed u, W = w/(E'R), G = alpha E'." + hidden
+        "Shaded: the regime whose film formula applies. g_V = G W^1.5/U^0.5, g_E = W/U^0.5; "
+        "U = eta u/(E'R) with the mean speed u, W = w/(E'R), G = alpha E'." + hidden
     ]
     if dwells and points:
-        subtitle.append("Diamonds: points of the machine. Dots: dwells of the log.")
-    title = alt.Title("Regimes of the film", subtitle=subtitle)
+        subtitle.append("Diamonds: operating points; dots: dwells.")
+    title = alt.Title("Film regimes", subtitle=subtitle)
     return alt.layer(*layers, width=WIDTH, height=_TALL, title=title)
 
 

@@ -1,4 +1,4 @@
-"""The film through life: film over flooded, and the layer of oil against what the film needs."""
+"""The film over life: relative to a flooded film, and the oil layer against the layer it needs."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ _MICRO = 1e-6
 
 
 def film_life_chart(film: FilmLife) -> Chart:
-    """Return the film over a flooded one of all units over the layers of those that starve first."""
+    """Return the film relative to a flooded one, above the layers of the specimens that starve first."""
     ages = film.ages <= _BEYOND * float(film.runs.age.max())
     if ages.sum() < 2:
         ages[:] = True
@@ -70,12 +70,12 @@ def _over_flooded(film: FilmLife, ages: BoolArray, names: list[str]) -> Chart:
         )
     ]
     x = _age(film, ages, ticks=8)
-    y = alt.Y("value:Q", title="Film over flooded (1)", scale=alt.Scale(domain=[0.0, 1.05], nice=False))
-    low = alt.Y("low:Q", title="Film over flooded (1)")
+    y = alt.Y("value:Q", title="Film over flooded film (1)", scale=alt.Scale(domain=[0.0, 1.05], nice=False))
+    low = alt.Y("low:Q", title="Film over flooded film (1)")
     legend = alt.Legend(title=None, orient="bottom-left", columns=4, symbolOpacity=1)
     looks = dict(zip(names, ramp(len(names)), strict=True))
     colour = categories(alt.Color, "unit", looks, legend if len(names) <= _NAMED else None)
-    tips = [alt.Tooltip("unit:N"), tip("age", "age"), tip("value", "film over flooded")]
+    tips = [alt.Tooltip("unit:N"), tip("age", "age"), tip("value", "film over flooded film")]
     band, line = plot(rows).mark_area(opacity=0.08, clip=True), plot(rows).mark_line(strokeWidth=2, clip=True)
     runs = plot(_runs(film, read, most=1.0))
     bars, points = runs.mark_rule(strokeWidth=1, clip=True), runs.mark_point(filled=True, **_POINT, size=40)
@@ -86,8 +86,8 @@ def _over_flooded(film: FilmLife, ages: BoolArray, names: list[str]) -> Chart:
         points.encode(x=x, y=y, color=colour, tooltip=tips),
         *level(STARVED, "starved below"),
     ]
-    name = f"Film at {film.points[0]}, over that of a flooded inlet at the same viscosity"
-    words = "points: single runs; lines and bands: law over all units; 90 % intervals"
+    name = f"Film at {film.points[0]}, relative to a flooded inlet at the same viscosity"
+    words = "points: runs; lines and bands: law over all specimens; 90 % intervals"
     title = alt.Title(name, subtitle=[film.headline(), words])
     return alt.layer(*layers, title=title, width=WIDTH, height=_HEIGHT)
 
@@ -109,12 +109,12 @@ def _layers(film: FilmLife, ages: BoolArray, names: list[str], chosen: list[int]
     most = _ROOM * float(np.max(film.layers.value[chosen][:, ages])) / _MICRO
     each = [_layer(film, ages, names[k], k, most, first=i % _ACROSS == 0) for i, k in enumerate(chosen)]
     lines = [alt.hconcat(*each[i : i + _ACROSS], spacing=14) for i in range(0, len(each), _ACROSS)]
-    more = f"; the {len(chosen)} units that starve first" if len(chosen) < len(names) else ""
+    more = f"; the {len(chosen)} specimens that starve first" if len(chosen) < len(names) else ""
     subtitle = (
-        f"blue: layer; orange: flooded film at {film.points[0].name}, thicker as the oil thickens; "
-        "where they meet the film starves"
+        f"blue: oil layer; orange: flooded film at {film.points[0].name}, which grows as the oil thickens; "
+        "the film starves where they meet"
     )
-    title = alt.Title(f"Layer of oil against what the film needs{more}", subtitle=subtitle)
+    title = alt.Title(f"Oil layer and the layer that a flooded film needs{more}", subtitle=subtitle)
     return alt.vconcat(*lines, spacing=10, title=title)
 
 

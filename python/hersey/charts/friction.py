@@ -50,7 +50,7 @@ class _Model:
 
     @property
     def shear(self) -> FloatArray:
-        """What the film takes, over the load."""
+        """The friction of the film, over the load."""
         whole, boundary = self.film.torque, self.film.boundary_torque
         return np.asarray(self.friction * (1.0 - boundary / whole))
 
@@ -172,7 +172,7 @@ def _curves(model: _Model, x: alt.X, y: alt.Y) -> list[alt.Chart]:
 
 
 def _film(measured: MeasuredFilm, x: alt.X, y: alt.Y) -> alt.Chart:
-    """The film of the governing law, brought to the data."""
+    """The film of the governing law, scaled to the data."""
     order = np.argsort(measured.hersey_number)
     scale = measured.friction / measured.torque * measured.predicted_torque * measured.calibration.value
     rows = rows_of(hersey=1e6 * measured.hersey_number[order], friction=scale[order])
@@ -221,14 +221,10 @@ def _legend(measured: MeasuredFilm | None, model: _Model | None) -> list[str]:
     if model is not None:
         mixed = model.film.mixed
         return [
-            "solid: film and asperities share the load; dashed: what the film takes of it; grey: share of "
-            "the load on the asperities",
+            "solid: film and asperities; dashed: film alone; grey: share of the load carried by asperities",
             f"model: boundary friction {mixed.friction.coefficient:g}, roughness "
             f"{1e6 * (mixed.contact.roughness or 0.0):g} µm, E* {1e-9 * mixed.asperities.modulus:g} GPa; "
             f"film: lambda > {FILM_LAMBDA:g}; boundary: asperities carry over {BOUNDARY_SHARE:.0%}",
         ]
     assert measured is not None
-    return [
-        f"dashed: film of the governing law times {measured.calibration.value:.3g}, the one factor that "
-        "brings it to the data"
-    ]
+    return [f"dashed: predicted film friction times {measured.calibration.value:.3g}, which fits the data"]

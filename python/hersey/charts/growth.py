@@ -1,4 +1,4 @@
-"""Growth of an indicator with age: runs, median and band of each unit, and the ages at a limit."""
+"""Growth of an indicator with age: runs, median and band of each specimen, and the ages at a limit."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class _Axes(NamedTuple):
 
 
 def growth_chart(growth: Growth, *, ages: AgesAtLimit | None = None, si: str = "") -> Chart:
-    """Return the growth of each unit, one panel for each; with ``ages`` also where it reaches the limit.
+    """Return the growth of each specimen, one panel each; with ``ages`` also where it reaches the limit.
 
     Of many units the first are shown. ``si`` is the unit of the values.
     """
@@ -128,18 +128,17 @@ def _age(reached: AgeAtLimit, height: float, axes: _Axes, title: str | None) -> 
 
 
 def _heading(growth: Growth, ages: AgesAtLimit | None) -> list[str]:
-    words = ["points: runs; lines and bands: each unit without the scatter of runs, 90 %"]
+    words = ["points: runs; lines and bands: each specimen, 90 %"]
     if ages:
-        summed = "at which its sum over age reaches the limit"
-        where = summed if ages.accumulates else "at the dashed limit"
-        words.append(f"diamonds: the age {where}, with its 90 % interval")
+        reached = "where the sum over age reaches the limit" if ages.accumulates else "at the dashed limit"
+        words.append(f"diamonds: age {reached}, with 90 % interval")
     if len(growth.units) > _SHOWN:
-        words.append(f"{_SHOWN} of {len(growth.units)} units are shown")
+        words.append(f"{_SHOWN} of {len(growth.units)} specimens are shown")
     return [growth.headline(), *words]
 
 
 def ages_chart(ages: AgesAtLimit) -> Chart:
-    """Return the age at a limit of each unit, and of a tenth and half of new units, with 90 % intervals."""
+    """Return the age of each specimen at a limit, B10 and B50, with 90 % intervals."""
     shown = [*ages.units[: 2 * _SHOWN], ages.b10, ages.b50]
     last = max(each.last for each in ages.units)
     end = axis_end(last, [each.age.value for each in shown])
@@ -159,9 +158,9 @@ def ages_chart(ages: AgesAtLimit) -> Chart:
     spans = base.mark_rule(color=BLUE, strokeWidth=2)
     points = base.mark_point(color=BLUE, filled=True, opacity=1, size=70, clip=True)
     ticks = base.mark_tick(color=INK, thickness=2, size=14)
-    words = "points: medians with 90 % intervals; upright ticks: age last seen"
+    words = "points: medians with 90 % intervals; vertical ticks: last observation"
     if len(ages.units) > 2 * _SHOWN:
-        words += f"; {2 * _SHOWN} of {len(ages.units)} units are shown"
+        words += f"; {2 * _SHOWN} of {len(ages.units)} specimens are shown"
     title = alt.Title(f"Age at which {ages.quantity} reaches {ages.limit:.4g}", subtitle=words)
     return alt.layer(
         spans.encode(x=age_axis("low", ages.age_unit, scale), x2="high:Q"),

@@ -55,7 +55,7 @@ def _states(band: HysteresisBand, low: float, high: float, x: alt.X) -> alt.Char
 def _edges(band: HysteresisBand, x: alt.X, high: float) -> list[alt.Chart]:
     """The three speeds with their numbers, each on a line of its own, and their intervals."""
     named = (
-        ("stick-slip certain below", band.lower, band.lower_interval),
+        ("sticks below", band.lower, band.lower_interval),
         ("transition speed", band.transition, None),
         ("V*", band.upper, band.interval),
     )

@@ -54,7 +54,7 @@ def findings_chart(inspection: Inspection) -> Chart:
     panels = [_findings(report) for report in inspection.files if report.channels]
     if not panels:
         raise InsufficientDataError("there is no channel to draw")
-    title = alt.Title("What the channels hold", subtitle=_subtitle(inspection))
+    title = alt.Title("Channels: range and faults", subtitle=_subtitle(inspection))
     return alt.vconcat(*panels, spacing=18, title=title)
 
 
@@ -83,19 +83,19 @@ def _findings(report: FileReport) -> Chart:
     order = alt.Scale(domain=list(dict.fromkeys(names)))
     y = alt.Y("channel:N", title=None, scale=order, axis=alt.Axis(labelLimit=220))
     kinds = sorted({fault["kind"] for fault in faults})
-    legend = alt.Legend(title="fault begins", orient="bottom") if kinds else None
+    legend = alt.Legend(title="start of a fault", orient="bottom") if kinds else None
     shape = alt.Shape("kind:N", scale=alt.Scale(domain=kinds), legend=legend)
     bar = plot(lines).mark_rule(strokeWidth=3, color=BLUE, opacity=0.55)
     text = plot(lines).mark_text(align="left", dx=8, fontSize=11, color=INK)
     dots = plot(faults).mark_point(filled=True, color=ORANGE, size=90, opacity=1)
-    tips = [alt.Tooltip("kind:N", title="fault"), alt.Tooltip("rows:Q", title="rows concerned")]
+    tips = [alt.Tooltip("kind:N", title="fault"), alt.Tooltip("rows:Q", title="rows affected")]
     layers = [
         bar.encode(x=x, x2=alt.X2("end:Q"), y=y),
         text.encode(x=alt.value(WIDTH), y=y, text=alt.Text("text:N")),
         dots.encode(x=x, y=y, shape=shape, tooltip=tips),
     ]
     clean = "" if faults else ", no fault found"
-    words = f"{report.rows} rows{clean}; right: least to greatest"
+    words = f"{report.rows} rows{clean}; right: minimum to maximum"
     heading = alt.Title(report.name, subtitle=words, fontSize=12)
     return alt.layer(*layers, title=heading, width=WIDTH, height=26 * len(names))
 
@@ -145,5 +145,5 @@ def _panel(channel: ChannelReport, values: FloatArray, time: FloatArray | None, 
         layers.append(points.encode(x="x:Q", y="y:Q", tooltip=[alt.Tooltip("kind:N")]))
     look: Row = {"anchor": "start", "fontSize": 11, "subtitleFontSize": 10}
     said = "; ".join(map(str, channel.warnings))
-    heading = alt.Title(name + role, subtitle=said[:110] or "nothing found", **look)
+    heading = alt.Title(name + role, subtitle=said[:110] or "no fault found", **look)
     return alt.LayerChart(layer=layers, width=WIDTH, height=_HEIGHT, title=heading)

@@ -1,4 +1,4 @@
-"""Where texts stand in a chart, in pixels from the lower left: each where it covers no other."""
+"""Places of texts in a chart, in pixels from the lower left, so that none covers another."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ class Labels:
         style: str,
         preferred: Box = (0.0, 0.0, 0.0, 0.0),
     ) -> None:
-        """Name a region where it is roomiest, with more liking for a place in the ``preferred`` box.
+        """Name a region where it has the most room, preferably in the ``preferred`` box.
 
         Each of its ``parts`` lies between two lines: where they are measured across, the lower, the upper.
         """

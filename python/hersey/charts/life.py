@@ -34,7 +34,7 @@ def life_charts(answer: LifeTest) -> dict[str, Chart]:
 
 
 def life_chart(answer: LifeTest) -> Chart:
-    """Return the chart of what ends each unit."""
+    """Return the chart of the time to failure of each specimen."""
     return chart_of(answer.time_to_failure)
 
 

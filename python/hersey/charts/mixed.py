@@ -35,7 +35,7 @@ def mixed_chart(film: MixedFilm) -> Chart:
         if at > 0
     ]
     tips = [tip("speed", "rpm"), tip("y", unit), tip("ratio", "lambda"), tip("share", "share, %")]
-    subtitle = "lines: torque; dashed: what the film adds" + ("; ticks: transition speed" if corners else "")
+    subtitle = "lines: torque; dashed: film alone" + ("; ticks: transition speed" if corners else "")
     return against_speed(
         [row for row in _rows(film, factor) if row["speed"] > 0],
         whole,

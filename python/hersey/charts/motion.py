@@ -52,7 +52,7 @@ def cycle_chart(cycle: StickSlipCycle, *, units: tuple[str, str, str] = SI) -> C
         _swing(cycle.stretch_min, cycle.stretch_max, f"Spring stretch ({length})"),
     ]
     panels = [_lap(cycle, time), *swings] if cycle.frequency > 0 else swings
-    title = alt.Title("What the motion settles to", subtitle=_in_words(cycle, time))
+    title = alt.Title("Final motion", subtitle=_in_words(cycle, time))
     return stacked(*panels, title=title, spacing=14)
 
 
@@ -93,7 +93,7 @@ def _in_words(cycle: StickSlipCycle, time: str) -> str:
     unit = "Hz" if time == "s" else f"1/{time}"
     words = f"{kind} at {cycle.frequency:.4g} {unit}, stuck {cycle.stuck_fraction:.1%} of the time"
     slips = cycle.grip_slip_duration * cycle.frequency
-    return words + (f"; the roll slips {slips:.1%} of it" if slips else "")
+    return words + (f"; the roll slips {slips:.1%} of the time" if slips else "")
 
 
 def _lap(cycle: StickSlipCycle, time: str) -> Chart:
@@ -106,7 +106,9 @@ def _lap(cycle: StickSlipCycle, time: str) -> Chart:
         for (a, b), name in zip(pairwise(ends), names, strict=True)
         if b > a
     ]
-    x = alt.X("from:Q", title=f"Time in one lap ({time})", scale=alt.Scale(domain=[0.0, period], nice=False))
+    x = alt.X(
+        "from:Q", title=f"Time in one cycle ({time})", scale=alt.Scale(domain=[0.0, period], nice=False)
+    )
     legend = alt.Legend(title=None, orient="top", labelLimit=300)
     color = categories(alt.Color, "part", dict(zip(names, (BLUE, "#f2c14e"), strict=True)), legend)
     strip = plot(rows).mark_rect()

@@ -14,7 +14,7 @@ from hersey.units import celsius
 def other_uses_chart(uses: OtherUses) -> Chart:
     """Return the age of half of new units with its 90 % interval against the limit of the torque.
 
-    A line for each coldest start, of the duty that the machine's file states; without a limit of the torque
+    A line for each coldest start, of the duty that the machine file states; without a limit of the torque
     the duties stand side by side.
     """
     unit = f" ({uses.age_unit})" if uses.age_unit else ""
@@ -38,8 +38,8 @@ def other_uses_chart(uses: OtherUses) -> Chart:
     ]
     if limits:
         layers.insert(0, base.mark_line(strokeWidth=1.4).encode(y=age, **look))
-    subtitle = f"{uses.headline()}; marks: half of new units, 90 % intervals"
-    title = alt.Title("Ages in other uses", subtitle=subtitle)
+    subtitle = f"{uses.headline()}; marks: median for new specimens, 90 % intervals"
+    title = alt.Title("Time to failure at other operating conditions", subtitle=subtitle)
     return alt.layer(*layers, title=title, width=WIDTH, height=HEIGHT)
 
 
@@ -47,7 +47,7 @@ def _across(*, limits: bool) -> alt.X:
     if not limits:
         return alt.X("x:N", title="Duty (share of the running time)", sort=None)
     scale = alt.Scale(zero=False, padding=14)
-    return alt.X("x:Q", title="Limit of the motor's torque at the roll (N·m)", scale=scale)
+    return alt.X("x:Q", title="Motor torque limit at the roll (N·m)", scale=scale)
 
 
 def _rows(uses: OtherUses) -> list[Row]:

@@ -34,7 +34,7 @@ from hersey.units import celsius
 
 #: Height of the panel of speeds.
 _HEIGHT = 260
-_KEY = "V*: above it stick-slip dies out by itself. Transition: below it steady sliding is unstable."
+_KEY = "Above V* stick-slip dies out. Below the transition, steady sliding is unstable."
 #: Share of the time shown that lies before the drive starts, if it waits.
 _BEFORE = 0.06
 #: The fold is drawn up to this many greatest speeds.
@@ -44,7 +44,7 @@ _LOOKS = {
     "drive": (INK, [7, 3]),
     "belt": (BLUE, [1, 0]),
     "belt, nominal parameters": (BLUE, [1, 0]),
-    "belt, straight to speed": (EDGE, [1, 0]),
+    "belt without the profile": (EDGE, [1, 0]),
 }
 #: What limits the force on the spring.
 _LIMITS = {"spring_force": "limit", "motor_torque": "motor limit", "grip": "grip of the roll"}
@@ -75,7 +75,7 @@ def plan_chart(plan: Plan, *, temperature: Schedule | None = None) -> Chart:
         *([] if temperature is None else [_temperature(plan, temperature)]),
     ]
     sentences = [part.rstrip(".") + "." for part in plan.verdict().split(". ")]
-    title = alt.Title("Drive profile", subtitle=[*sentences, plan.proof(), _KEY])
+    title = alt.Title("Start-up profile", subtitle=[*sentences, plan.proof(), _KEY])
     return alt.vconcat(*panels, spacing=14, title=title)
 
 
@@ -89,12 +89,12 @@ def profile_chart(plan: Plan, motion: StartPart | None) -> Chart:
     last = max(1.6 * end, rows[-1].time) if motion is None else max(motion.time)
     lines: dict[str, Line] = {"drive": _drive(plan, (0.0, last))}
     if motion is not None and motion.straight:
-        lines["belt, straight to speed"] = _rounded(motion.time, motion.straight)
+        lines["belt without the profile"] = _rounded(motion.time, motion.straight)
     if motion is not None:
         lines["belt"] = _rounded(motion.time, motion.belt_speed)
     domain = (0.0, 2.2 * max(_greatest(plan), *(v for v, _ in _marks(plan))))
     chart = _speeds(plan, lines, time_axis((0.0, last), tickCount=6), domain)
-    return chart.properties(title="Drive profile")
+    return chart.properties(title="Start-up profile")
 
 
 def _rounded(time: Sequence[float], speed: Sequence[float]) -> Line:
@@ -200,7 +200,7 @@ def _temperature(plan: Plan, course: Schedule) -> Chart:
     last = max(float(times[-1]), plan.duration)
     at = np.unique(np.concatenate([np.linspace(0.0, last, 200), times[times >= 0], [plan.duration]])).tolist()
     rows = rows_of(time=at, value=[celsius(course.at(t)) for t in at])
-    x = time_axis(title="Time (s), the whole course")
+    x = time_axis(title="Time (s), whole course")
     late = plan.wait > 0.8 * last
     start = moment(plan.wait, "drive starts", x, left=late, color=ORANGE, down=100, strokeDash=[7, 3])
     return alt.layer(over_time(rows, TEMPERATURE, x, zero=False), *start, width=WIDTH, height=120)

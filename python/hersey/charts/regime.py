@@ -86,9 +86,9 @@ def exponent_chart(
     order = [where for _, where in places]
     nip: list[Row] = []
     if solved is not None:
-        text = f"{solved:.2f}, film solved".replace("-", "\u2212")
-        nip = [{"where": "this nip", "value": solved, "text": text}]
-        order.append("this nip")
+        text = f"{solved:.2f} computed".replace("-", "\u2212")
+        nip = [{"where": "contact", "value": solved, "text": text}]
+        order.append("contact")
     scale = alt.Scale(domain=[low, high], nice=False)
     x = alt.X("value:Q", title="Exponent of damping in speed (no unit)", scale=scale, axis=_AXIS)
     y = alt.Y("where:N", title=None, sort=order, axis=alt.Axis(grid=False))
@@ -111,9 +111,9 @@ def _words(row: Row) -> str:
 
 def _subtitle(rows: list[Row]) -> str:
     seen = {r["branch"] for r in rows}
-    shapes = {"rising torque": "round: rising branch", "falling torque": "square: falling branch"}
+    shapes = {"rising torque": "circles: rising torque", "falling torque": "squares: falling torque"}
     said = [words for branch, words in shapes.items() if branch in seen]
-    return "; ".join([*said, "dashed and grey: what each regime predicts"]).capitalize() + "."
+    return "; ".join([*said, "grey: predicted by each regime"]).capitalize() + "."
 
 
 def _regimes(

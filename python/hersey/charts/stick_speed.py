@@ -1,4 +1,4 @@
-"""V* against the stick speed, which nobody measures."""
+"""V* against the stick speed, which no log measures."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def stick_speed_chart(document: Analysis) -> Chart:
     edge = [top if v is None else v for v in upper]
     base = plot(rows_of(stick=stick, transition=transition, upper=upper, edge=edge))
     sides = logarithmic_axis((min(stick), max(stick)))
-    x = alt.X("stick:Q", title="Stick speed (mm/s), never measured", **sides)
+    x = alt.X("stick:Q", title="Stick speed (mm/s), assumed", **sides)
     y_scale = alt.Scale(domain=[0, top], nice=False)
     turns, folds, ends = (
         alt.Y(f"{name}:Q", title="Drive speed (mm/s)", scale=y_scale)
@@ -50,7 +50,7 @@ def stick_speed_chart(document: Analysis) -> Chart:
     at = "" if sweep.temperature is None else f" at {celsius(sweep.temperature):.0f} °C"
     title = alt.Title(
         f"V* against the stick speed{at}",
-        subtitle="solid: transition; dashed: V*, above which the past does not matter",
+        subtitle="solid: transition; dashed: V*",
     )
     return alt.layer(*layers, title=title, width=WIDTH, height=_HEIGHT)
 
@@ -63,7 +63,7 @@ def _words(
     far = stick[0] * (stick[-1] / stick[0]) ** 0.72
     named: list[Row] = [
         {"x": far, "y": 0.5 * (top + upper[-1]), "text": "smooth"},
-        {"x": at, "y": 0.5 * (upper[0] + transition[0]), "text": "depends"},
+        {"x": at, "y": 0.5 * (upper[0] + transition[0]), "text": "depends on start"},
         {"x": at, "y": 0.5 * transition[0], "text": "sticks"},
     ]
     text = plot(named).mark_text(align="left", fontWeight="bold", fontSize=13, color=INK)
@@ -85,12 +85,12 @@ def _points(document: Analysis, top: float, scale: alt.Scale) -> list[alt.Chart]
 
 
 def _stated(sweep: StickSpeeds, x: alt.X, y: alt.Y) -> list[alt.Chart]:
-    """V* at the stick speed of the machine's file."""
+    """V* at the stick speed of the machine file."""
     known = [(v, u) for v, u in zip(sweep.stick_speed, sweep.upper, strict=True) if math.isfinite(u)]
     if len(known) < 2 or not known[0][0] <= sweep.stated <= known[-1][0]:
         return []
     upper = 1e3 * float(np.interp(sweep.stated, [v for v, _ in known], [u for _, u in known]))
-    row = plot([{"stick": 1e3 * sweep.stated, "upper": upper, "text": f"as stated: {upper:.3g}"}])
+    row = plot([{"stick": 1e3 * sweep.stated, "upper": upper, "text": f"machine file: {upper:.3g}"}])
     look: Row = {"align": "left", "dx": 9, "dy": -9, "fontSize": 12, "fontWeight": "bold"}
     mark = row.mark_point(**DIAMOND).encode(x=x, y=y)
     return [mark, *rimmed(row.encode(x=x, y=y, text="text:N"), **look)]

@@ -1,4 +1,4 @@
-"""What all charts share: sizes, colours, and the smallest pieces."""
+"""Sizes, colours and small pieces that all charts share."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from hersey.units import celsius
 WIDTH, HEIGHT = 680, 340
 #: Ink for words and rules, the first and the second colour of lines (static/tokens.css of the pages).
 INK, BLUE, ORANGE = "#15202b", "#0a5c8f", "#b8500c"
-#: Words beside a chart, what is hardly more than the ground, and what does not hold.
+#: Secondary text, faint shade, edges, red and green.
 SECONDARY, SHADE, EDGE, RED, GREEN = "#4b5965", "#eaeef1", "#73808c", "#a5301a", "#17694a"
 #: Anchors of the colours of temperatures, cold to hot.
 _RAMP = ((0x2B, 0x4F, 0x9E), (0x7A, 0x3F, 0x9D), (0xB3, 0x2C, 0x66), (0xB8, 0x50, 0x0C))
@@ -36,6 +36,8 @@ DIAMOND: Row = {
     "opacity": 1,
 }
 ROLL_SPEED, TEMPERATURE = "Roll speed (rpm)", "Temperature (°C)"
+#: How dwells are drawn.
+APPROACHES = "filled: reached from a lower speed; open: from a higher one; bars: two standard errors"
 Chart = alt.LayerChart | alt.FacetChart | alt.VConcatChart | alt.HConcatChart
 
 

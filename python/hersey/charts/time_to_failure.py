@@ -1,4 +1,4 @@
-"""Failure modes against age: what ends each unit, and the share of units that has ended."""
+"""Failure modes against age for each specimen, and the share of specimens that has failed."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _SHOWN, _STEP, _GAP, _SHARES = 24, 9, 14, 200
 
 
 def time_to_failure_chart(found: TimeToFailure) -> Chart:
-    """Return what ends each unit, a row each, above the share of new units that has ended.
+    """Return the failure modes of each specimen, a row each, above the share of new ones that has failed.
 
     A mark with its 90 % interval for each way, that which is most probably first filled; of many units those
     that end first are shown.
@@ -39,13 +39,13 @@ def time_to_failure_chart(found: TimeToFailure) -> Chart:
 def _heading(found: TimeToFailure, end: float) -> list[str]:
     words = [
         found.headline(),
-        "marks: medians with 90 % intervals, filled: most probably the first; upright ticks: age last seen",
+        "marks: medians with 90 % intervals; filled: probably first; vertical ticks: last observation",
     ]
     far = [mode.name for mode in found.modes if all(each.age.low >= end for each in mode.ages.units)]
     if far:
-        words.append(f"beyond the axis in all units: {'; '.join(far)}")
+        words.append(f"beyond the axis for all specimens: {'; '.join(far)}")
     if len(found.units) > _SHOWN:
-        words.append(f"{_SHOWN} of {len(found.units)} units are shown, those that end first")
+        words.append(f"{_SHOWN} of {len(found.units)} specimens are shown, those that fail first")
     return words
 
 
@@ -103,16 +103,16 @@ def _row(ways: int) -> int:
 
 
 def _share(found: TimeToFailure, scale: alt.Scale) -> Chart:
-    """Share ended of new units as foretold, and the units that have ended at their median ranks."""
+    """Predicted share failed of new specimens, and the failures at their median ranks."""
     curve, unit = found.curve, found.age_unit
     rows = rows_of(age=curve.age, median=100 * curve.median, low=100 * curve.low, high=100 * curve.high)
     shares = alt.Scale(domain=[0, 100])
-    y = alt.Y("median:Q", title="Share ended (%)", scale=shares)
+    y = alt.Y("median:Q", title="Share failed (%)", scale=shares)
     x = age_axis("age", unit, scale)
-    tips = [tip("age", "age"), tip("median", "share ended (%)"), tip("low", "from"), tip("high", "to")]
+    tips = [tip("age", "age"), tip("median", "share failed (%)"), tip("low", "from"), tip("high", "to")]
     band = plot(rows).mark_area(color=BLUE, opacity=0.18, clip=True)
     layers: list[alt.Chart] = [
-        band.encode(x=x, y=alt.Y("low:Q", title="Share ended (%)", scale=shares), y2="high:Q"),
+        band.encode(x=x, y=alt.Y("low:Q", title="Share failed (%)", scale=shares), y2="high:Q"),
         plot(rows).mark_line(color=BLUE, strokeWidth=2, clip=True).encode(x=x, y=y, tooltip=tips),
     ]
     population = found.population
@@ -120,14 +120,14 @@ def _share(found: TimeToFailure, scale: alt.Scale) -> Chart:
     if len(ages):
         points = plot(rows_of(age=ages, share=100 * ranks))
         dots = points.mark_point(color=INK, filled=True, opacity=1, size=50)
-        at = alt.Y("share:Q", title="Share ended (%)", scale=shares)
+        at = alt.Y("share:Q", title="Share failed (%)", scale=shares)
         layers.append(dots.encode(x=x, y=at, tooltip=[tip("age", "age"), tip("share", "median rank (%)")]))
     others = population.ages[~population.failed]
     if others.size:
         layers.append(not_failed(others, x, _SHARES))
     words = (
-        "line and band: new units as foretold, 90 %; points: units that have ended, at median ranks; "
-        "ticks: the others"
+        "line and band: prediction for new specimens, 90 %; points: failures at median ranks; "
+        "ticks: still running"
     )
-    title = alt.Title("New units", subtitle=words, fontSize=13)
+    title = alt.Title("New specimens", subtitle=words, fontSize=13)
     return alt.layer(*layers, width=WIDTH, height=_SHARES, title=title)

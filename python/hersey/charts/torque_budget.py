@@ -1,4 +1,4 @@
-"""What carries the torque of the drive, stacked against speed, with the dwells on it."""
+"""The torque budget of the drive: its parts stacked against speed, with the dwells."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ from hersey.units import celsius, rpm
 _PARTS = (
     ("rest", "no-load torque", "#c9d1d6"),
     ("contact", "contact", "#b8500c"),
-    ("shear", "film, sheared", "#0a5c8f"),
-    ("inlet", "film, inlet", "#74a9cf"),
+    ("shear", "film shear", "#0a5c8f"),
+    ("inlet", "film inlet", "#74a9cf"),
 )
 
 
@@ -53,8 +53,7 @@ def torque_budget_chart(part: TorqueBudgetPart) -> Chart:
     dots = plot(dwells).mark_point(filled=True, **look)
     dots = dots.encode(x=x, y="whole:Q", tooltip=[at, tip("whole", f"torque ({unit})")])
     title = alt.Title(
-        f"What carries the torque at {celsius(part.temperature):.0f} °C",
-        subtitle="areas: by the machine's file, the film sheared over the nip, its inlet with the pressure; "
-        "circles: dwells of the log, no-load torque included",
+        f"Torque budget at {celsius(part.temperature):.0f} °C",
+        subtitle="areas: contact model on the no-load torque; circles: measured",
     )
     return alt.layer(areas, dots, title=title, width=WIDTH, height=HEIGHT)

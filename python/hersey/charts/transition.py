@@ -1,4 +1,4 @@
-"""Transition speed against temperature: the line of the contact, and what the log shows."""
+"""Transition speed against temperature: the contact model, and the log."""
 
 from __future__ import annotations
 
@@ -39,7 +39,6 @@ def transition_chart(transition: ContactTransition) -> Chart:
         plot(bars).mark_rule(color=BLUE, strokeWidth=1.5).encode(x=x, y=y, y2="top:Q"),
         plot(dots).mark_point(filled=True, color=BLUE, size=55, opacity=1).encode(x=x, y=y, tooltip=tips),
     ]
-    subtitle = "line: film and asperities of the contact as stated"
-    subtitle += "; dots: the fitted surface, with 95 %" if dots else ""
+    subtitle = "line: contact model" + ("; dots: fitted to the log, with 95 % intervals" if dots else "")
     title = alt.Title("Transition speed", subtitle=subtitle)
     return alt.layer(*layers, title=title, width=WIDTH, height=240)

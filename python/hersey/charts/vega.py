@@ -1,4 +1,4 @@
-"""What Vega does for us, in a process of its own: draw a chart, bundle the runtime of the pages.
+"""Vega in a process of its own: draw a chart, bundle the runtime of the pages.
 
 Vega runs in V8, which ends its process where memory runs out and hears no Ctrl-C while it draws: there it
 brings down no command, and is stopped at once.
@@ -65,7 +65,7 @@ def _asked(request: Row, content: bytes) -> tuple[Row, bytes]:
 
 
 def _why(error: LostError) -> str:
-    """What ended the renderer, as far as its exit tells."""
+    """Why the renderer ended, from its exit code."""
     if error.code is None:
         return f"the renderer does not run: {error}"
     limit = _memory_limit()

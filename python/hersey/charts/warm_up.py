@@ -1,4 +1,4 @@
-"""A warm-up as a chart: drive speed, drag beside what full speed at once would take, and temperatures."""
+"""A warm-up as a chart: drive speed, drag, the drag of full speed at once, and temperatures."""
 
 from __future__ import annotations
 
@@ -27,7 +27,10 @@ def _speed(warm: WarmUp, x: alt.X) -> Chart:
     scale, unit = (1e3, "mm/s") if warm.target_speed < 1.0 else (1.0, "m/s")
     rows = rows_of(time=warm.time, value=warm.drive_speed * scale)
     layers = [over_time(rows, f"Drive speed ({unit})", x, width=2)]
-    both = ((warm.full_speed, "full speed", BLUE), (warm.full_speed_standing, "standing until warm", ORANGE))
+    both = (
+        (warm.full_speed, "full speed", BLUE),
+        (warm.full_speed_standing, "warm-up at standstill", ORANGE),
+    )
     for number, (time, name, color) in enumerate(both):
         if math.isfinite(time):
             left = number == 0 or time > 0.7 * float(warm.time[-1])

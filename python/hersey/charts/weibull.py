@@ -17,7 +17,7 @@ _POINTS, _BEYOND = 81, 1.25
 
 
 def weibull_chart(population: Population) -> Chart:
-    """Return the Weibull plot: failures at their median ranks, the law with its band, and the other units.
+    """Return the Weibull plot: failures at median ranks, the law with its band, and the other specimens.
 
     A unit that has not failed is a tick on the axis of ages.
     """
@@ -55,12 +55,12 @@ def _place(shares: ArrayLike) -> FloatArray:
 
 def _heading(population: Population) -> list[str]:
     law = "" if population.shape is None else f"; line and {100 * population.level:g} % band: Weibull law"
-    words = f"points: failures at median ranks{law}; ticks: units that have not failed"
+    words = f"points: failures at median ranks{law}; ticks: specimens that have not failed"
     return [population.headline(), words, *(each.sentence for each in population.warnings)]
 
 
 def _domain(population: Population) -> list[float]:
-    """All units, and the law from 1 % to 99 % as far as it stays within a hundredfold of them."""
+    """All specimens, and the law from 1 % to 99 % within a hundredfold of them."""
     low, high = float(population.ages.min()), float(population.ages.max())
     if population.shape is not None:
         first, last = (float(each) for each in population.lives([_SHARES[0], _SHARES[-1]])[0])
@@ -97,7 +97,7 @@ def _failures(population: Population, x: alt.X, y: alt.Y) -> alt.Chart:
 
 
 def not_failed(ages: FloatArray, x: alt.X, height: float) -> alt.Chart:
-    """Return the units that have not failed, as ticks on the axis of ages of a chart so many pixels high."""
+    """Return the specimens that have not failed, as ticks on the axis of ages of a chart of this height."""
     ticks: alt.Chart = plot(rows_of(age=ages)).mark_rule(color=INK, strokeWidth=2)
     ends = {"y": alt.value(height - 14), "y2": alt.value(height)}
     return ticks.encode(x=x, tooltip=[tip("age", "age")], **ends)

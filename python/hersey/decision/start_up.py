@@ -44,6 +44,9 @@ _LATE = 2.0
 _LEVEL, _ACCURACY = 0.95, 1e-3
 #: Samples of the response that is shown.
 _SAMPLES = 2001
+#: Laps after the last ramp that a response shows at least and at most, and the share of the target speed
+#: within which its oscillation has died out.
+_LAPS, _DIED_OUT = (12.0, 60.0), 0.03
 
 
 @dataclass(frozen=True)
@@ -176,7 +179,7 @@ def _plan(
     fresh: Drives | None = None,
     below_transition: float = 0.0,
 ) -> Plan:
-    found, kelvin, target = asked.found, asked.kelvin, asked.target
+    target = asked.target
     facts = {**asked.facts(), "tried": tried, "warnings": ()}
     if shape is None or fresh is None:
         return Plan(**facts, **NOTHING, obstacles=(_obstacle(asked, below_transition),))
@@ -202,7 +205,7 @@ def _plan(
         uses=_uses(asked, shape, peak_force),
         obstacles=(),
         peak_force=peak_force,
-        response=response(found, kelvin, shape.schedule(), shape.end + 12.0 * asked.lap),
+        response=_until_died_out(asked, shape),
     )
 
 
@@ -240,6 +243,15 @@ def _uses(asked: _Asked, shape: Shape, peak_force: float) -> tuple[LimitUse, ...
         "grip": (limits.grip, peak_force),
     }
     return tuple(LimitUse(name, limit, used) for name, (limit, used) in stated.items() if limit is not None)
+
+
+def _until_died_out(asked: _Asked, shape: Shape) -> Trajectory:
+    """Return the motion under a profile until its oscillation has died out."""
+    least, most = (shape.end + laps * asked.lap for laps in _LAPS)
+    whole = response(asked.found, asked.kelvin, shape.schedule(), most)
+    oscillates = np.flatnonzero(np.abs(whole.belt_speed / asked.target - 1.0) > _DIED_OUT)
+    last = float(whole.time[oscillates[-1]]) + asked.lap if oscillates.size else least
+    return response(asked.found, asked.kelvin, shape.schedule(), min(max(last, least), most))
 
 
 def response(

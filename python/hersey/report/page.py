@@ -46,7 +46,7 @@ _LIVE = (
 )
 _SECTIONS = ("section.js", "torque.js", "regime.js", "quality.js", "band.js", "plans.js")
 _REPORT = ("panel.css", "timeline.js", *_LIVE, "first.js", *_SECTIONS, "page.js")
-#: Charts that the page has otherwise: the log on one axis, motion by the core itself.
+#: Charts that the page draws itself: the log on one axis, and motion.
 _OTHERWISE = ("timeline_", "simulation_")
 #: Terms whose meaning a label shows where the pointer rests on it.
 _TERMS = ("V*", "transition", "stick speed", "closure", "dwell")

@@ -1,6 +1,6 @@
-// The app's page: asks the server on this computer, shows what it says, and sends what is chosen.
+// The app's page: asks the server on this computer, shows its answers, and sends what is chosen.
 
-import { left, showAnalyses } from "./analyses.js";
+import { left, showAnalyses, showEarlier } from "./analyses.js";
 import { button, find, link, make, renew, signal, size } from "./building.js";
 import { showChannels, showFiles } from "./channels.js";
 import { showMachine } from "./machine.js";
@@ -8,7 +8,7 @@ import { showMachine } from "./machine.js";
 const at = (id) => document.getElementById(id);
 const SOON = 400;
 let refused = false; // what is said was refused while something ran: it no longer holds when nothing does
-let token = "", questions = null, analyses = [], current = "", view = null, timer = 0;
+let token = "", questions = null, analyses = [], earlier = [], current = "", view = null, timer = 0;
 
 /** Ask the server; what it refuses is said above the page. */
 async function ask(method, path, body, headers = {}) {
@@ -16,7 +16,7 @@ async function ask(method, path, body, headers = {}) {
   try {
     answer = await fetch(`api/${path}`, { method, body, headers: { "X-Hersey-Token": token, ...headers } });
   } catch {
-    say("hersey app does not answer: it has ended. Start it again and open the address that it prints.");
+    say("hersey app does not answer: it has ended. Start it again and open the address it prints.");
     return null;
   }
   const said = await answer.json();
@@ -39,15 +39,18 @@ async function refresh() {
   const state = await ask("GET", "state");
   if (!state || pending) return;
   analyses = state.analyses;
+  earlier = state.earlier;
   if (!analyses.some((one) => one.id === current)) current = analyses.at(-1)?.id ?? "";
   const line = analyses.find((one) => one.id === current);
-  if (line && (view?.id !== current || view.revision !== line.revision)) await look();
+  if (line && (view?.id !== current || view.revision !== line.revision || arriving())) await look();
   else if (line) Object.assign(view, { state: line.state, step: line.step, share: line.share, spent: line.spent, left: line.left });
   show();
   if (refused && !busy()) say("");
   const more = busy() || view?.files.some((file) => file.state === "arriving" || file.state === "looking");
   if (more) timer = setTimeout(refresh, SOON);
 }
+
+const arriving = () => view?.files.some((file) => file.state === "arriving");
 
 async function look() {
   const seen = await ask("GET", `analyses/${current}`);
@@ -88,14 +91,14 @@ async function send(files) {
   await queue; // a new analysis may just be made
   const one = current;
   const sent = dropped.map((file) => ask("POST", `analyses/${one}/files`, file, { "X-Name": encodeURIComponent(file.name), "Content-Type": "application/octet-stream" }));
-  setTimeout(refresh, SOON / 2);
+  setTimeout(refresh, SOON / 8); // the file is in the list while it is still on its way
   await Promise.all(sent);
   await refresh();
 }
 
 async function save(path, name, kind) {
   const answer = await fetch(`api/${here()}/${path}`, { headers: { "X-Hersey-Token": token } });
-  if (!answer.ok) return say((await answer.json().catch(() => ({ error: "that is no longer here" }))).error);
+  if (!answer.ok) return say((await answer.json().catch(() => ({ error: "This file is no longer here." }))).error);
   const url = URL.createObjectURL(new Blob([await answer.blob()], { type: kind }));
   make("a", { href: url, download: name }).click();
   setTimeout(() => URL.revokeObjectURL(url), 10_000);
@@ -106,6 +109,7 @@ function show() {
   if (!view || !questions) return;
   at("what").textContent = view.files.length ? view.name : "New analysis";
   showAnalyses(at("analyses"), analyses, current, act);
+  showEarlier(at("earlier"), earlier);
   showFiles(at("files"), view, act);
   showChannels(at("channels"), view, questions, act);
   showMachine(at("machine"), view, questions, act);
@@ -113,12 +117,23 @@ function show() {
   document.body.dataset.ready = "true";
 }
 
-/** Run, what stands before it, and what can be saved. */
+/** Start a run; that it starts is shown at once, before the server has answered. */
+function start() {
+  say("");
+  const shown = { state: "preparing", step: "starting", share: null, spent: null, left: null };
+  Object.assign(view, shown);
+  Object.assign(analyses.find((one) => one.id === current) ?? {}, shown);
+  const asked = change(() => post(`${here()}/run`));
+  show();
+  return asked;
+}
+
+/** Run, what must be fixed before it, and what can be saved. */
 function showBar() {
   const busy = view.state === "running" || view.state === "preparing";
   const stem = (view.log?.name ?? "log").replace(/\.[^.]*$/, "");
   const run = make("button", { class: "run", id: "run", type: "button", text: view.report ? "Run again" : "Run", "data-control": "run", "aria-disabled": String(!view.ready || busy), "aria-describedby": "why",
-    onclick: async () => { if (view.ready && !busy) { say(""); await change(() => post(`${here()}/run`)); } } });
+    onclick: () => { if (view.ready && !busy) start(); } });
   renew(at("bar"), run, make("span", { class: "why", id: "why", "aria-live": "polite" }, ...why(busy)),
     make("span", { class: "right" },
       view.report ? make("a", { class: "button", href: `report/${view.report}`, target: "_blank", rel: "noopener", text: "Open report" }) : null,
@@ -132,16 +147,16 @@ function why(busy) {
   if (busy) return [make("b", { text: view.state === "running" ? "Running: " : "Preparing: " }), [view.step, left(view)].filter(Boolean).join(", ") + " ", button("Cancel", () => act.cancel(current), { "data-control": "cancel" })];
   if (view.all_faults.length) {
     const stopped = view.state === "stopped" ? [make("b", { class: "act", text: `Stopped: ${view.reason} ` })] : [];
-    return [...stopped, make("b", { class: "act" }, signal("act"), "Before a run: "), ...view.all_faults.flatMap((fault, number) => [number ? ", " : "", link(fault.link, () => lead(fault.at))])];
+    return [...stopped, make("b", { class: "act" }, signal("act"), "Fix first: "), ...view.all_faults.flatMap((fault, number) => [number ? ", " : "", link(fault.link, () => lead(fault.at))])];
   }
   if (view.state === "stopped") return [make("b", { class: "act" }, signal("act"), "Stopped: "), view.reason];
-  if (!view.log) return [make("span", { class: "note", text: view.files.length ? "a file is on its way" : "Drop a log first." })];
+  if (!view.log) return [make("span", { class: "note", text: view.files.length ? "A file is being read." : "Drop a log first." })];
   const points = view.machine.points.length;
-  const parts = view.machine.blank ? "fit and regime; the map needs the machine" : `fit, map, band${points ? `, plans for ${points} point${points > 1 ? "s" : ""}` : ""}`;
+  const parts = view.machine.blank ? "damping and regime (for the operating map, fill in the machine)" : `damping, regime, operating map${points ? `, profiles for ${points} point${points > 1 ? "s" : ""}` : ""}`;
   return [make("b", { class: "good" }, signal("good"), "Ready: "), parts];
 }
 
-/** Bring the guilty control into view. */
+/** Bring the control with the problem into view. */
 function lead(place) {
   const file = place.startsWith("file:") ? at(`file-${place.slice(5)}`)?.querySelector("button") : null;
   const control = file ?? find(place) ?? (place.startsWith("lacking:") ? document.querySelector("#channels select") : at("toml")) ?? at("machine").querySelector("input");
@@ -187,11 +202,11 @@ function key() {
 token = key();
 theme(matchMedia("(prefers-color-scheme: dark)").matches);
 listen();
-if (!token) say("Open the address that hersey app printed, with all that stands behind its #.");
+if (!token) say("Open the address that hersey app printed, with everything after its #.");
 else {
   questions = await ask("GET", "questions");
   if (questions) {
-    at("formats").textContent = `CSV, TDMS, MF4, HDF5, LVM, Excel, MATLAB; up to ${size(questions.most)}. They stay where they are: a copy on this computer is read.`;
+    at("formats").textContent = `CSV, TDMS, MF4, HDF5, LVM, Excel, MATLAB; up to ${size(questions.most)}. Your files are not changed.`;
     await refresh();
   }
 }

@@ -1,16 +1,16 @@
-// The machine: a form with a sketch of what each number is, or its file as text.
+// The machine: a form with a sketch of each quantity, or the machine file as text.
 
 import { button, draw, link, make, renew, sign, typed } from "./building.js";
 
 const open = new Set();
-const GROUPS = { limits: "Limits", contact: "Nip", lubricant: "Lubricant", rest: "No-load torque", drivetrain: "Stick speed" };
+const GROUPS = { limits: "Limits", contact: "Contact", lubricant: "Lubricant", rest: "No-load torque", drivetrain: "Stick speed" };
 
 export function showMachine(place, view, questions, act) {
   const machine = view.machine;
   const press = (mode, text) => make("button", { type: "button", "aria-pressed": String(machine.mode === mode), "data-control": `mode:${mode}`, text, onclick: () => act.turn(mode) });
   renew(place,
     make("div", { class: "head" },
-      make("h2", {}, make("span", { class: "number", text: "3" }), " Machine ", make("span", { class: "note", text: "may stay empty" })),
+      make("h2", {}, make("span", { class: "number", text: "3" }), " Machine ", make("span", { class: "note", text: "optional" })),
       make("span", { class: "segments", role: "group", "aria-label": "Machine as" }, press("form", "Form"), press("toml", "TOML"))),
     view.refused ? make("p", { class: "alone", role: "status", text: view.refused }) : null,
     make("div", { class: "machine" }, ...(machine.mode === "form" ? form(view, questions, act) : text(view, act))));
@@ -21,7 +21,7 @@ const told = (faults) => faults.map((fault) => `${fault.title} ${fault.text}`).j
 
 function text(view, act) {
   const faults = of(view, "toml");
-  return [make("label", { class: "hint", for: "toml", text: "The machine's file: every value with its unit. A file can be dropped here too." }),
+  return [make("label", { class: "hint", for: "toml", text: "Machine file: every value with its unit. Or drop a file here." }),
     make("textarea", { id: "toml", class: faults.length ? "wrong" : null, spellcheck: "false", "data-control": "toml", value: view.machine.text, "aria-describedby": "toml-hint", "aria-invalid": faults.length ? "true" : null,
       ...typed((field) => act.machine({ text: field.value })) }),
     make("div", { class: "line" }, make("p", { class: `hint${faults.length ? " act" : ""}`, id: "toml-hint", text: told(faults) }))];
@@ -33,7 +33,7 @@ function form(view, questions, act) {
   const meant = (letter) => drawing.querySelectorAll("[data-letter]").forEach((part) => part.classList.toggle("meant", part.dataset.letter === letter));
   const line = (q) => {
     const faults = of(view, `field:${q.key}`);
-    const hint = told(faults) || (q.key === "drivetrain.stick_speed" ? "Nobody measures it: a range is an answer." : "");
+    const hint = told(faults) || (q.key === "drivetrain.stick_speed" ? "If not measured, type a range, e.g. 1 to 4." : "");
     const id = `m-${q.key}`;
     return make("div", { class: "line" },
       make("label", { for: id, title: q.words }, ...(q.letter ? [make("i", { text: q.letter }), " "] : []), q.field.replace(/_/g, " ")),
@@ -45,10 +45,10 @@ function form(view, questions, act) {
   const others = questions.machine.filter((q) => !q.first);
   const sections = [...new Set(others.map((q) => q.section))];
   const guilty = others.some((q) => of(view, `field:${q.key}`).length);
-  const summary = make("summary", { text: "Limits, nip, lubricant, no-load torque", "data-control": "more" });
+  const summary = make("summary", { text: "Limits, contact, lubricant, no-load torque", "data-control": "more" });
   const more = make("details", { open: open.has("more") || guilty, ontoggle: () => (more.open ? open.add("more") : open.delete("more")) }, summary,
     ...sections.flatMap((section) => [make("h3", { text: GROUPS[section] }), ...others.filter((q) => q.section === section).map(line)]));
-  const kept = machine.kept.length ? make("p", { class: "note", "data-kept": "", text: `Kept from the TOML as it is: ${machine.kept.join(", ")}. The form has no fields for it: change it in the TOML.` }) : null;
+  const kept = machine.kept.length ? make("p", { class: "note", "data-kept": "", text: `Kept from the TOML: ${machine.kept.join(", ")}. The form has no fields for these; edit them in the TOML.` }) : null;
   const place = make("div", {}, drawing, ...questions.machine.filter((q) => q.first).map(line), points(), more, kept,
     ...of(view, "toml").map((fault) => make("div", { class: "alone", text: `${fault.title} ${fault.text}` })));
   return [place];
@@ -64,7 +64,7 @@ function form(view, questions, act) {
       button("×", () => act.machine({ remove: number }), { "aria-label": `Remove point ${number + 1}` })));
     const faults = view.all_faults.filter((fault) => fault.at.startsWith("field:points."));
     return make("div", { class: "points", role: "group", "aria-label": "Operating points" },
-      make("div", { class: "line" }, make("span", { text: "Points" }), make("span", { class: "note", text: rows.length ? "" : "speeds at which it runs" }),
+      make("div", { class: "line" }, make("span", { text: "Points" }), make("span", { class: "note", text: rows.length ? "" : "speeds to judge" }),
         button("Add", () => act.machine({ add: true }), { "data-control": "points" })),
       rows.length ? make("div", { class: "point headings", "aria-hidden": "true" }, make("span", { text: "name" }), make("span", { text: "mm/s" }), make("span", { text: "°C" })) : null,
       ...rows, faults.length ? make("p", { class: "hint act", text: told(faults) }) : null);

@@ -75,12 +75,12 @@ def _title(result: OperatingMap) -> str:
 
 def _subtitle(result: OperatingMap) -> list[str]:
     counted = ", ".join(["fit", *(name.replace("_", " ") for name in result.uncertain)])
-    first = "solid: transition speed, shaded its 95 % interval"
+    first = "solid: transition, shaded: its 95 % interval"
     if np.any(result.upper > VISIBLE * result.transition):
-        first += f"; dashed: V*, dotted its 95 % interval ({counted})"
+        first += f"; dashed: V*, dotted: its 95 % interval (from {counted})"
     elif np.any(result.upper_interval[1] > VISIBLE * result.transition_interval[1]):
-        first += f"; dotted: 95 % interval of V* ({counted})"
-    second = "thin: drag torque; frame: range of the dwells; hatched: extrapolated"
+        first += f"; dotted: 95 % interval of V* (from {counted})"
+    second = "thin: drag torque; frame: measured range; hatched: extrapolated"
     if result.torque_limit is not None:
         second += f"; stall beyond {result.torque_limit:.3g} N·m ({result.limited_by})"
     return [first, second]

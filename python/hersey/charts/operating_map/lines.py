@@ -88,5 +88,5 @@ def speed_limit(result: OperatingMap, frame: Frame, labels: Labels) -> list[alt.
     limit = np.full(result.transition.size, result.speed_limit)
     looks = (([1.0, 0.0], 3.0, "white"), ([10.0, 3.0, 2.0, 3.0], 1.3, INK))
     lines = [_line(result, frame, limit, *look) for look in looks]
-    labels.along("greatest drive speed", frame.line(side_to_side(result, limit)), "lines")
+    labels.along("drive limit", frame.line(side_to_side(result, limit)), "lines")
     return [line for line in lines if line is not None]

@@ -1,4 +1,4 @@
-"""The machine's points on an operating map, and what the pointer shows."""
+"""The operating points on an operating map, and its tooltips."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def _tips(result: OperatingMap) -> list[alt.Tooltip]:
 
 
 def pointer(result: OperatingMap, frame: Frame) -> alt.Chart:
-    """Return unseen cells that say what the belt does under the pointer."""
+    """Return invisible cells with the state of the belt as their tooltip."""
     columns, speeds = np.linspace(frame.x[0], frame.x[-1], 25), np.geomspace(frame.low, frame.high, 31)
     columns = columns if result.temperature is not None else frame.x
     middles = 0.5 * (columns[1:] + columns[:-1])

@@ -17,13 +17,13 @@ from hersey.units import celsius
 
 #: Name, text in the legend, text on the map, and colour of each region, lightness falling.
 REGIONS = (
-    ("smooth", "smooth (EHL)", "smooth", "#eef5fb"),
-    ("bistable", "bistable: smooth only from above", "smooth only from above", "#f5cf7f"),
-    ("swing", "small swing without sticking", "small swing", "#e08f2d"),
-    ("stick_slip", "stick-slip", "stick-slip", "#cc6a3d"),
-    ("creep", "slower than the stick speed", "creeps or sticks", "#a8503a"),
+    ("smooth", "smooth", "smooth", "#eef5fb"),
+    ("bistable", "depends on start", "depends on start", "#f5cf7f"),
+    ("swing", "depends on start: oscillates from above", "oscillates", "#e08f2d"),
+    ("stick_slip", "sticks", "sticks", "#cc6a3d"),
+    ("creep", "sticks: slower than the stick speed", "below stick speed", "#a8503a"),
     ("stall", "stall: the roll slips", "stall", "#44444e"),
-    ("motor", "more than the motor bears", "motor stops", "#44444e"),
+    ("motor", "stall: above the motor limit", "motor stalls", "#44444e"),
 )
 #: Lower and upper edge (m/s) of a part of a region at each column of the chart.
 Edges = tuple[FloatArray, FloatArray]
@@ -35,7 +35,7 @@ _THIN = 4.0
 
 
 def bands_of(result: OperatingMap, frame: Frame) -> Bands:
-    """Return the parts of each region; what is beyond the drive has two, or all where it does not start."""
+    """Return the parts of each region; the one beyond the drive has two, or all where it does not start."""
     names = ("stall_below", "lower", "transition", "upper", "stall_above")
     below, lower, bend, upper, above = (
         frame.clipped(side_to_side(result, getattr(result, n))) for n in names
@@ -139,7 +139,7 @@ def measured_range(result: OperatingMap, frame: Frame) -> list[alt.Chart]:
 
 
 def name_regions(bands: Bands, frame: Frame, labels: Labels, measured: Box) -> None:
-    """Name each region where it is roomiest, if possible where dwells were measured."""
+    """Name each region where it has the most room, if possible where dwells were measured."""
     across = np.array([frame.across(x) for x in frame.x.tolist()])
     for name, _, text, _ in REGIONS:
         parts = [(across, _heights(low, frame), _heights(high, frame)) for low, high in bands[name]]

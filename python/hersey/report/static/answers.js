@@ -1,8 +1,8 @@
-// What the panel asks of the core about one setting: in the page, or in a worker made of the same text. Every
-// number is the core's; here stands only what is asked, and in which order. All SI.
+// The questions of the panel to the core about one setting, in the page or in a worker made of the same text. The
+// core computes every number; this file only decides which questions are asked, and in which order. All SI.
 
 function answers(core) {
-  // Lengths of a trace, in s: on a ladder, so that the axis rests while a slider moves.
+  // Lengths of a trace, in s. They are few, so that the axis stays the same while a slider moves.
   const LENGTHS = [0.1, 0.2, 0.5, 1, 2, 3, 5, 8, 12, 20, 30, 50, 80, 120, 200, 300, 500, 800, 1200];
   const SAMPLES = 1200, STEADY_SAMPLES = 200, LAP_SAMPLES = 240, DECAY = 8, HALVINGS = 12, WORK = 1_000_000;
   const lawOf = (job) => core.drag(job.drag, job.temperature, { rule: job.rule });
@@ -18,7 +18,7 @@ function answers(core) {
 
   const swings = ({ belt_speed: v }, speed) => v.subarray(Math.floor(0.85 * v.length)).some((each) => Math.abs(each / speed - 1) > 0.05);
 
-  // The motion of a setting, the quick first: each step adds to the answer.
+  // The motion of a setting, the quick parts first; each step adds to the answer.
   function* setting(job) {
     const { train, speed, profile } = job, work = job.work ? { most_steps: job.work } : {}, law = lawOf(job), force = forceAt(law, speed);
     const cycle = core.cycle({ train, law, drive_speed: speed, start: "rest", ...work });
@@ -51,8 +51,8 @@ function answers(core) {
     }
   }
 
-  // The lap that parts what slides from what sticks, and the greatest sudden loss of belt speed that a belt bears
-  // which slides steadily; null where there is none.
+  // The unstable cycle between sliding and sticking, and the greatest sudden loss of belt speed that steady sliding
+  // survives; null where there is none.
   function unstable(job) {
     try {
       return core.unstable({ train: job.train, law: lawOf(job), drive_speed: job.speed, most_steps: WORK });
@@ -76,7 +76,7 @@ function answers(core) {
     return low;
   }
 
-  // The band; null where a smooth closure asks for more work than a reader waits for.
+  // The band; null where a smooth closure needs more work than a reader waits for.
   function band(job) {
     try {
       return core.band({ train: job.train, law: lawOf(job), lower: !job.slow, ...(job.slow ? { most_steps: WORK } : {}) });
@@ -86,12 +86,12 @@ function answers(core) {
     }
   }
 
-  // Edges of the whole map, and what a belt at rest bears at each of its temperatures.
+  // Edges of the whole map, and the starting force at each of its temperatures.
   function* edges({ train, drag, temperatures, rule }) {
     yield core.edges({ train, drag, temperatures, rule, lower: true });
   }
 
-  // V* at both ends of what is stated of each parameter, the others as set.
+  // V* at both ends of the stated range of each parameter, the others as set.
   function spread(job) {
     return job.ranges.map(([name, ends]) => ends.map((value) => {
       const train = name in job.train ? { ...job.train, [name]: value } : job.train;
@@ -101,7 +101,7 @@ function answers(core) {
     }));
   }
 
-  // Which zone a setting lies in, by the names of the map's states, as the map itself tells it.
+  // The zone of a setting, by the names of the map's states.
   function zone({ speed, limit, motor }, law, force, found) {
     const starts = law.holding_force <= limit, lower = Math.min(found.lower ?? found.transition, found.transition);
     const held = lower === 0 && speed < found.transition, beyond = motor ? "motor" : "stall";
@@ -110,7 +110,7 @@ function answers(core) {
     return { state: starts ? moving : beyond, moving, starts };
   }
 
-  // What a worker does, by name: every part of an answer as soon as there is one.
+  // Tasks of a worker by name; each yields the parts of an answer as soon as they are known.
   const tasks = {
     *after(job) {
       if (job.whole) yield* setting(job);

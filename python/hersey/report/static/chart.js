@@ -1,7 +1,7 @@
-// Charts of the package, drawn by Vega at the width of their place: title and notes as text of the page, colours
-// of the page, the numbers and the files behind each.
+// Charts of the package, drawn by Vega at the width of their place, with title and notes as text of the page, the
+// colours of the page, and the data and files of each in a fold.
 
-// Colours on dark ground of those that charts are given.
+// The colours of charts, and what they become on a dark ground.
 const ON_DARK = {
   "#15202b": "#e7ecf0", "#4b5965": "#a9b5c0", "#c9d1d6": "#33404b", "#73808c": "#8593a0", "#0a5c8f": "#74bdea",
   "#17694a": "#74d0a4", "#845400": "#f0be61", "#a5301a": "#ff9a80", "#ffffff": "#11171d", "#f3f6f7": "#19212a",
@@ -12,7 +12,7 @@ const ON_DARK = {
 const NAMED = { white: "#ffffff", black: "#15202b" };
 const COLOURED = /colou?r$|^fill$|^stroke$|^range$|^value$/i;
 
-// Another colour on dark ground: dark ones lifted half way to white, pale ones sunk.
+// Any other colour on a dark ground: dark ones are lightened half way to white, pale ones darkened.
 function onDark(hex) {
   if (ON_DARK[hex]) return ON_DARK[hex];
   const parts = [1, 3, 5].map((i) => Number.parseInt(hex.slice(i, i + 2), 16));
@@ -38,12 +38,12 @@ const LOOKS = {
     gridColor: RULE, gridWidth: 0.8, domainColor: EDGE, tickColor: EDGE, tickSize: 4, labelPadding: 4 },
   axisX: { grid: false, labelFlush: false, labelOverlap: "greedy", labelSeparation: 8 },
   axisY: { labelOverlap: "greedy", labelSeparation: 4 },
-  legend: { labelFontSize: 12, titleFontSize: 12, labelColor: SECONDARY, titleColor: SECONDARY, titleFontWeight: "normal" },
+  legend: { offset: 6, labelFontSize: 12, titleFontSize: 12, labelColor: SECONDARY, titleColor: SECONDARY, titleFontWeight: "normal" },
   header: { labelColor: SECONDARY, titleColor: SECONDARY },
   title: { color: SECONDARY, subtitleColor: SECONDARY },
   text: { color: "light-dark(#15202b, #e7ecf0)", fontSize: 12 },
 };
-// Titles of vertical axes lie above them.
+// Titles of vertical axes are above them.
 const ABOVE = {
   axisLeft: { titleAngle: 0, titleAnchor: "end", titleAlign: "left", titleBaseline: "bottom", titleX: -38, titleY: -8, minExtent: 38 },
   axisRight: { titleAngle: 0, titleAnchor: "end", titleAlign: "right", titleBaseline: "bottom", titleX: 38, titleY: -8 },
@@ -63,6 +63,11 @@ function numbersOf(part) {
   return out;
 }
 
+// The title of a chart, or of the first of its panels that has one.
+function titleOf({ title = {}, ...part }) {
+  const own = lines(typeof title === "string" ? title : title.text).join(" ");
+  return own || (part.vconcat ?? part.hconcat ?? []).map(titleOf).find(Boolean) || "";
+}
 const drawnViews = [];
 async function embedded(place, specification) {
   const simple = !["vconcat", "hconcat", "concat", "facet", "repeat"].some((kind) => kind in specification);
@@ -89,29 +94,34 @@ async function pictureOf(specification, name, kind) {
   anchor.click();
 }
 
-// A chart under its title, and what it says to who cannot see it. `heading` and `note` stand in the place of the
-// chart's own; `behind` is false where a table of the same numbers stands beside.
-async function chart(parent, name, { heading = null, note = null, says = "", behind = true, height = null } = {}) {
+// A chart under its title, with a label for screen readers. `heading` and `note` replace the chart's own, which are
+// then in the fold with the data; `behind` is false where a table of the same numbers stands beside the chart.
+async function chart(parent, name, { heading = null, level = "h3", note = null, says = "", behind = true, height = null } = {}) {
   const specification = charts[name];
   if (!specification) return null;
   const title = typeof specification.title === "string" ? { text: specification.title } : specification.title ?? {};
   const figure = add(parent, "figure", "", "fig");
   figure.id = `chart-${name}`;
   const words = heading ?? lines(title.text).join(" ");
-  if (words) add(figure, "h3", words);
+  if (words) add(figure, level, words);
   const place = add(figure, "div", "", "chart");
   const notes = note === null ? lines(title.subtitle) : lines(note);
   const view = await embedded(place, height === null ? specification : { ...specification, height });
   const drawing = place.querySelector("svg");
+  const label = words || titleOf(specification) || name.replaceAll("_", " ");
+  figure.setAttribute("role", "group");
+  figure.setAttribute("aria-label", label);
   for (const inner of drawing.querySelectorAll("[role], [aria-roledescription], [aria-label]")) {
-    for (const name of ["role", "aria-roledescription", "aria-label", "aria-hidden"]) inner.removeAttribute(name);
+    for (const name of ["role", "aria-roledescription", "aria-label"]) inner.removeAttribute(name);
   }
+  for (const inner of drawing.children) inner.setAttribute("aria-hidden", "true");
   drawing.setAttribute("role", "img");
-  drawing.setAttribute("aria-label", [words, says, ...notes].filter(Boolean).join(". "));
-  toggles(figure, specification, view);
+  drawing.setAttribute("aria-label", [label, says, ...notes].filter(Boolean).join(". "));
   for (const text of notes) add(figure, "p", sentence(text), "note");
   if (behind) {
-    fold(figure, "Numbers and files", (all) => {
+    fold(figure, "Data", (all) => {
+      toggles(all, specification, view);
+      if (note !== null) for (const text of lines(title.subtitle)) if (!notes.includes(text)) add(all, "p", sentence(text), "note");
       numbersOf(specification).forEach(({ heads, rows, numeric }, i) => table(all, heads, rows, numeric, { name: `${name}${i ? `-${i + 1}` : ""}`, label: words }));
       const foot = add(all, "div", "", "foot");
       for (const kind of ["svg", "png"]) button(foot, `Save ${kind.toUpperCase()}`, () => pictureOf(specification, name, kind));
@@ -119,7 +129,7 @@ async function chart(parent, name, { heading = null, note = null, says = "", beh
   }
   return figure;
 }
-// A key whose entries show and hide their series.
+// Buttons that show and hide the series of a chart.
 function toggles(figure, specification, view) {
   const series = specification.usermeta?.series ?? [];
   if (series.length < 2) return;
@@ -140,7 +150,7 @@ function toggles(figure, specification, view) {
     press.prepend(mark);
   }
 }
-// Charts take the width of paper and are lower there; then they are as before.
+// On paper, charts take its width and are lower.
 const LOWER = 0.64;
 addEventListener("beforeprint", () => drawnViews.forEach(({ view, place, height }) => view.width(paperWidth(place)).height(Math.max(110, LOWER * height)).run()));
 addEventListener("afterprint", () => drawnViews.forEach(({ view, place, height }) => view.width(place.clientWidth).height(height).run()));

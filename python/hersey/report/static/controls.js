@@ -1,5 +1,4 @@
-// A slider with its number field and unit. What differs from the report carries a mark, in words for a reader of
-// the screen too.
+// A slider with its number field and unit. A value that differs from the report is marked, for screen readers too.
 
 function control(place, { name, label, unit, low, high, logarithmic = true, count = 3, step = null, spoken = label, term = "", change, refused }) {
   const STEPS = 1000;
@@ -26,7 +25,7 @@ function control(place, { name, label, unit, low, high, logarithmic = true, coun
     const fits = field.value.trim() !== "" && Number.isFinite(typed) && typed >= low * (1 - 1e-9) && typed <= high * (1 + 1e-9);
     field.setAttribute("aria-invalid", String(!fits));
     if (fits) { change(typed); return; }
-    refused(`${spoken}: a number from ${digits(low)} to ${digits(high)} ${unit}`);
+    refused(`${spoken}: type a number from ${digits(low)} to ${digits(high)} ${unit}`);
   });
   return {
     row, field, slider,

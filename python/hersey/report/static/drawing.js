@@ -1,18 +1,18 @@
-// What all pages are drawn with: the data inside them, pieces of text, tables, folds, signals, axes. All text
-// enters through textContent: nothing in a log can run.
+// What all pages share: their data, text, tables, folds, signals and axes. All text enters through textContent, so
+// nothing in a log can run.
 
 const data = JSON.parse(document.getElementById("document").textContent);
 const charts = JSON.parse(document.getElementById("charts").textContent);
 const report = document.getElementById("report");
 
-// A number for people: so many digits, a true minus.
+// A number for readers, with so many digits and a true minus.
 function digits(value, count = 3) {
   if (value === null || value === undefined) return "–";
   const size = Math.abs(value);
   const text = size !== 0 && (size >= 1e6 || size < 1e-4) ? value.toExponential(count - 1) : String(Number(value.toPrecision(count)));
   return text.replaceAll("-", "−");
 }
-// A text of ours as it is set: true minus, degree sign, squares.
+// A text of the package as it is printed: true minus, degree sign, squares.
 function pretty(text) {
   return text.replaceAll(" degC", " °C").replace(/(\d) (?=%|°C)/g, "$1\u00a0").replaceAll("+/-", "±").replace(/(^|[\s[(,±])-(?=\d)/g, "$1−").replace(/(?<=[a-z])\^2\b/g, "²")
     .replace(/\b(mN|N) m\b/g, "$1·m").replace(/(\d)e-0*(\d+)\b/g, (_, first, power) => `${first}·10⁻${[...power].map((each) => "⁰¹²³⁴⁵⁶⁷⁸⁹"[each]).join("")}`);
@@ -24,7 +24,7 @@ function sentence(text) {
   return `${set.slice(0, 1).toUpperCase()}${set.slice(1)}`;
 }
 
-// What a result is warned of; what it concerns keeps its name as it is written.
+// A warning as a sentence; the name of what it concerns is kept as it is.
 function warned(each) {
   const said = [each.title, each.text].filter(Boolean).join(": ");
   return each.where ? `${each.where}: ${stopped(said)}` : sentence(said);
@@ -58,7 +58,7 @@ function link(parent, text, id) {
 
 const SIGNALS = { good: "Good", note: "Note", watch: "Watch", act: "Act" };
 const SHAPES = { good: "M6.5 0a6 6 0 1 1 0 12a6 6 0 1 1 0-12Z", note: "M1 5h11v2h-11Z", watch: "M6.5 0 13 12H0Z", act: "M.5 0h12v12h-12Z" };
-// A signal's shape; the word stands beside it.
+// A signal's shape; its word is beside it.
 function signal(kind) {
   const icon = svg("svg", { class: `i ${kind}`, viewBox: "0 0 13 12", "aria-hidden": "true" });
   svg("path", { d: SHAPES[kind], fill: "currentColor" }, icon);
@@ -92,7 +92,7 @@ async function copy(text, from) {
     await navigator.clipboard.writeText(text);
     from.textContent = "Copied";
   } catch {
-    from.textContent = "Not allowed: mark it and copy";
+    from.textContent = "Blocked: select and copy";
   }
   setTimeout(() => { from.textContent = label; }, 2000);
 }
@@ -100,7 +100,7 @@ async function copy(text, from) {
 // Rows of a fold that are printed.
 const PRINTED = 3;
 const number = (text) => Number.parseFloat(String(text).replaceAll("−", "-").replaceAll(" ", "").replace(/^[^\d.-]+/, ""));
-// An apostrophe before what a spreadsheet would run as a formula, as hersey/files/tables.py puts it.
+// An apostrophe before a cell that a spreadsheet would run as a formula, as in hersey/files/tables.py.
 const FORMULA = /(^|[;\t\r\n])(?=["'\s]*[=+\-@\t\r\n\uff1d\uff0b\uff0d\uff20])/g;
 const PLAIN_NUMBER = /^[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i;
 function csv(heads, rows) {
@@ -163,14 +163,14 @@ const PAPER = Math.floor(695 / 0.85);
 function paperWidth(place) {
   return place.closest(".columns") && !place.closest(".across") ? (PAPER - 24) / 2 : PAPER;
 }
-// What scrolls can be reached by keyboard.
+// Make an element that scrolls reachable by keyboard.
 function reachable(element) {
   new ResizeObserver(() => {
     if (element.scrollWidth > element.clientWidth + 1 || element.scrollHeight > element.clientHeight + 1) element.tabIndex = 0;
     else element.removeAttribute("tabindex");
   }).observe(element);
 }
-// A fold; what it holds is drawn when it is first opened, or printed.
+// A fold; its content is drawn when it is first opened or printed.
 const unopened = new Map();
 function fold(parent, title, fill = null) {
   const details = add(parent, "details");
@@ -215,7 +215,7 @@ function logTicks(low, high) {
   }
   return out;
 }
-// Places near those given, each at least a gap from the next.
+// Positions near those given, each at least a gap from the next.
 function apart(places, gap = 14) {
   const order = places.map((_, i) => i).sort((a, b) => places[a] - places[b]);
   const out = places.slice();

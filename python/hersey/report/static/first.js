@@ -1,5 +1,4 @@
-// The first screen: where the data come from, what to do, the operating points, what stands against it, the
-// map, and the panel that answers.
+// The first screen: title line, decision, operating points, warnings, and the map beside the panel to try settings.
 
 const TO_RPM = 60 / (2 * Math.PI);
 const celsius = (kelvin) => kelvin - 273.15;
@@ -19,10 +18,10 @@ function titleLine() {
   const head = document.getElementById("title");
   head.className = "title";
   add(head, "h1", data.title);
-  if (data.synthetic) add(head, "span", "synthetic, no measurement", "mark");
+  if (data.synthetic) add(head, "span", "synthetic", "mark");
   const duration = data.files.reduce((sum, f) => sum + f.duration, 0);
   const made = data.made ? new Date(data.made).toLocaleString("en-GB", { day: "numeric", month: "short", year: "numeric", hour: "2-digit", minute: "2-digit" }) : "";
-  const from = [made, `${counted(data.quality.rows)} rows${duration ? ` in ${seconds(duration)}` : ""}`, data.machine ? `machine: ${data.machine.name}` : ""];
+  const from = [made, `${counted(data.quality.rows)} rows${duration ? `, ${seconds(duration)}` : ""}`, data.machine?.name ?? ""];
   add(head, "span", from.filter(Boolean).join(" · "), "meta");
   const tools = add(head, "span", "", "tools");
   link(tools, "Contents", "contents").className = "btn";
@@ -30,9 +29,9 @@ function titleLine() {
   theme(tools);
 }
 
-// What the flags call sections, where it is not their name here.
+// Sections by the names that flags use, and their short names.
 const SECTIONS = { film: "regime", verdict: "regime", models: "candidates", quality: "data", log: "data", fit: "torque", damping: "torque", stability: "band", step: "band", plans: "plan", points: "plan", comparison: "compare" };
-const SHORT = { torque: "Torque", regime: "Regime", data: "Data", band: "Band", plan: "Plan" };
+const SHORT = { torque: "Torque", regime: "Regime", data: "Data", band: "Speeds", plan: "Profile" };
 const sectionOf = (name) => SECTIONS[name] ?? name;
 
 function decision() {
@@ -46,12 +45,12 @@ function decision() {
   add(sign, "span", SIGNALS[kind]);
   const words = add(box, "div");
   const lead = add(words, "p", pretty((told?.instruction ?? data.verdict[0] ?? "").replace(/\.?$/, ".")), "lead");
+  const more = told?.otherwise || told?.interval ? add(words, "p", pretty(told.otherwise ?? ""), "more") : null;
   if (told?.interval) {
-    lead.append(" ");
-    add(lead, "span", pretty(told.interval), "interval");
+    more.append(" ");
+    add(more, "span", sentence(told.interval), "interval");
   }
-  if (told?.otherwise) add(words, "p", pretty(told.otherwise), "more");
-  if (told?.measurement) add(words, "p", pretty(`${told.measurement.text}.`), "more next");
+  if (told?.measurement) nextMeasurement(words, told);
   if (lead.textContent.length + 0.6 * (told?.otherwise.length ?? 0) > 210) row.classList.add("tight");
   if (told?.points.length) points(row, told.points);
   else row.style.gridTemplateColumns = "minmax(0, 1fr)";
@@ -69,6 +68,23 @@ function decision() {
     }
   }
 }
+// The measurement that helps most, with its reason in a fold beside it.
+const CLOSURE_WORDS = { retained: "comes to rest gradually", stiction: "stops abruptly", stribeck: "follows a Stribeck curve", lugre: "follows the LuGre model" };
+function nextMeasurement(words, { measurement, fold: safe, closures }) {
+  const line = add(words, "div", "", "next");
+  add(line, "p", sentence(measurement.text));
+  const why = fold(line, "Why this one");
+  const reasons = [];
+  if (safe?.low != null && safe.high != null) {
+    reasons.push(`V* is only known to lie between ${perSecond(safe.low)} and ${perSecond(safe.high)} mm/s (95 %).`);
+    const ratio = safe.high / safe.low;
+    if (measurement.left < 1) reasons.push(`This measurement should narrow the ratio of the two from ${digits(ratio, 2)} to ${digits(ratio ** measurement.left, 2)}.`);
+  }
+  const likely = Object.entries(closures ?? {}).filter(([name, share]) => share >= 0.05 && share <= 0.95 && CLOSURE_WORDS[name]);
+  if (likely.length > 1) reasons.push(`How the belt comes to rest is not known: it ${likely.map(([name, share]) => `${CLOSURE_WORDS[name]} (${digits(100 * share, 2)} %)`).join(" or ")}.`);
+  const text = add(why, "p", `${reasons.join(" ")} `);
+  link(text, "How V* depends on the stick speed", "band");
+}
 function largeSign(kind) {
   const drawing = svg("svg", { viewBox: "0 0 44 40", "aria-hidden": "true" });
   const outline = { good: "M22 3a17 17 0 1 1 0 34a17 17 0 1 1 0-34Z", watch: "M22 3 42 37H2Z", act: "M5 3h34v34H5Z" }[kind];
@@ -80,7 +96,7 @@ function largeSign(kind) {
 function points(row, all) {
   const element = add(row, "table", "", "points");
   const levels = new Set(all.map((p) => degrees(p.temperature)));
-  add(element, "caption", `Your operating points${levels.size === 1 ? ` at ${[...levels][0]}` : ""}`);
+  add(element, "caption", `Operating points${levels.size === 1 ? ` at ${[...levels][0]}` : ""}`);
   const body = add(element, "tbody");
   all.forEach((point, i) => {
     const line = add(body, "tr");
@@ -88,19 +104,15 @@ function points(row, all) {
     word.append(signal(point.signal), SIGNALS[point.signal]);
     add(line, "td", point.name, point.name.length < 16 ? "n short" : "n");
     add(line, "td", `${perSecond(point.speed)} mm/s${levels.size > 1 ? `, ${degrees(point.temperature)}` : ""}`, "v");
-    const words = add(line, "td", pretty(point.words), "w");
-    if (point.plan) {
-      words.append(" (");
-      link(words, "plan", "plan");
-      words.append(")");
-    }
+    const words = add(line, "td", point.plan ? "" : pretty(point.words), "w");
+    if (point.plan) link(words, pretty(point.words), "plan");
     const press = button(add(line, "td", "", "b"), "Show", () => controller?.show(i));
     press.setAttribute("aria-label", `Show ${point.name}`);
     press.dataset.show = i;
     press.disabled = true;
   });
 }
-// Flags point to their sections once these are there.
+// Link each flag to its section, once the sections are there.
 function linkFlags() {
   for (const item of document.querySelectorAll("#flags li")) {
     const section = document.getElementById(item.dataset.section);
@@ -108,7 +120,7 @@ function linkFlags() {
   }
 }
 
-// What answers to a setting; null where nothing does.
+// The panel; null where no setting can be tried.
 let controller = null;
 async function mapAndPanel() {
   const row = add(report, "div", "", "first");
@@ -119,7 +131,7 @@ async function mapAndPanel() {
   const free = innerHeight - place.getBoundingClientRect().top - scrollY - 8;
   place.style.setProperty("--map-height", `${Math.round(Math.min(560, Math.max(380, free)))}px`);
   if (!data.map) {
-    await chart(place, "torque", { heading: "Torque against speed", note: torqueNote(), height: Math.round(Math.min(560, Math.max(300, free))) - 140 });
+    await chart(place, "torque", { heading: torqueHeading(), level: "h2", note: torqueNote(), height: Math.round(Math.min(560, Math.max(300, free))) - 140 });
     missing(panel);
     return;
   }
@@ -128,19 +140,19 @@ async function mapAndPanel() {
     const bytes = block && typeof WebAssembly === "object" ? bytesOf(JSON.parse(block.textContent)) : null;
     controller = await live(data, bytes, { map: place, panel });
   } else if (typeof operatingMap === "function") operatingMap(place, data.map);
-  else add(panel, "p", "Settings cannot be tried here.", "u");
+  else add(panel, "p", "No settings can be tried in this report.", "u");
   if (controller) for (const press of document.querySelectorAll("[data-show], [data-profile]")) press.disabled = false;
 }
 function bytesOf(text) {
   return Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
 }
-// What would let the report say more: lines to add, ready to copy.
+// Lines that would let the report answer more, ready to copy.
 function missing(panel) {
   const cap = add(panel, "div", "", "cap");
-  add(cap, "h2", "To say more");
+  add(cap, "h2", "To get more from this log");
   const all = data.decision?.missing ?? [];
   if (!all.length) {
-    add(panel, "p", "With a machine's file (--machine) the report shows where the belt runs smoothly, sticks or stalls.", "text");
+    add(panel, "p", "Add a machine file (--machine) to see at which speeds the drive runs smoothly, sticks or stalls.", "text");
     return;
   }
   all.forEach((each, i) => {

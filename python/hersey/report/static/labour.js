@@ -1,5 +1,5 @@
-// A worker that answers the newest question: one that has shown a part of its answer, or takes long, is ended for
-// the next. Its text is that of the core and of the questions, its core the module that the page has compiled.
+// A worker that answers the newest question. A worker that has shown a part of its answer, or takes long, is ended
+// for the next question. It runs the text of the core and of the questions on the module that the page compiled.
 
 function labour(module, heard) {
   const PATIENCE = 400;
@@ -35,7 +35,7 @@ function labour(module, heard) {
       event.preventDefault();
       const { about } = running ?? {};
       running = null;
-      heard({ failure: event.message || "the browser lets no worker run", done: true }, about);
+      heard({ failure: event.message || "the browser does not allow workers", done: true }, about);
     };
   }
   function next() {
@@ -51,7 +51,7 @@ function labour(module, heard) {
       if (!worker) start();
     } catch (error) {
       waiting = null;
-      heard({ failure: `the browser lets no worker run (${error.message})`, done: true }, about);
+      heard({ failure: `the browser does not allow workers (${error.message})`, done: true }, about);
       return;
     }
     running = { ...waiting, since: performance.now() };

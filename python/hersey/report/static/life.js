@@ -1,6 +1,7 @@
-// The page of a life test: what ends the units and when, beside it the ages in other uses of the machine, then section
-// by section what it rests on.
+// The page of a life test: which specimens need attention and what to do, beside it the ages with other limits, then
+// the evidence section by section.
 
+const plain = (text) => sentence(text.replace(/^- /, ""));
 function list(parent, lines, className = "") {
   if (!lines.length) return;
   const items = add(parent, "ul", "", className);
@@ -10,24 +11,60 @@ async function section(parent, each, title = each.title) {
   const element = add(parent, "section", "", "part");
   element.id = each.name;
   if (title) add(element, "h2", title);
-  for (const text of each.text) add(element, "p", text);
-  for (const name of each.charts) await chart(element, name);
+  for (const text of each.text) add(element, "p", plain(text));
+  for (const name of each.charts) await chart(element, name, title ? {} : { level: "h2" });
   for (const { title: of, heads, rows, numeric } of each.tables) {
-    table(of ? fold(element, of) : element, heads, rows, numeric, { name: `${each.name}${of ? "-each" : ""}` });
+    table(of ? fold(element, of) : element, heads, rows, numeric, { name: `${each.name}${of ? "-each" : ""}`, label: of || title });
   }
-  const words = [...each.lines, ...each.warnings.map(warned)];
-  if (words.length) list(words.length > 4 ? fold(element, "More in words") : element, words, "soft");
+  const words = [...each.lines.map(plain), ...each.warnings.map(warned)];
+  if (words.length) list(words.length > 4 ? fold(element, `Details (${words.length})`) : element, words, "soft");
+}
+// What needs attention, and what to measure next.
+function decided({ signal: kind, lead, more, next }) {
+  const box = add(report, "div", "", "life-decision");
+  box.id = "verdict";
+  const line = add(box, "p", "", "lead");
+  line.append(signal(kind), lead);
+  more.forEach((text) => add(box, "p", pretty(text), "more"));
+  if (next.length) {
+    const advice = add(box, "p", "", "next");
+    add(advice, "b", "Do next: ");
+    advice.append(pretty(next[0]), " ");
+    if (next.length > 1) link(advice, `${next.length - 1} more`, "next");
+  }
+}
+function specimens(parent, { heads, rows, first }) {
+  const element = add(parent, "section", "", "part");
+  element.id = "ages";
+  add(element, "h2", "Specimens, most urgent first");
+  const cells = rows.map(([kind, state, ...others]) => [judged(kind, state), ...others]);
+  table(element, heads, cells.slice(0, first), [3], { name: "ages", label: "Specimens" });
+  if (cells.length > first) table(fold(element, `${cells.length - first} more`), heads, cells.slice(first), [3], { name: "ages-more", label: "More specimens" });
+  add(element, "p", "Ages with 90 % intervals.", "note");
+}
+function judged(kind, text) {
+  const cell = document.createElement("b");
+  cell.className = kind;
+  cell.append(signal(kind), text);
+  cell.dataset.text = text;
+  return cell;
 }
 async function main() {
   document.title = `hersey: ${data.title}`;
   const header = document.getElementById("title");
+  header.className = "title";
   add(header, "h1", data.title);
-  add(header, "span", `life of units · hersey ${data.hersey_version}`, "meta");
-  theme(add(header, "div", "", "tools"));
-  const verdict = add(report, "div", "", "verdict");
-  verdict.id = "verdict";
-  data.verdict.forEach((text) => add(verdict, "p", text));
-  list(report, data.warnings.map(warned), "warnings");
+  add(header, "span", data.origin, "meta");
+  const tools = add(header, "span", "", "tools");
+  button(tools, "Print", () => window.print());
+  theme(tools);
+  decided(data.decision);
+  const warnings = data.warnings.map(warned), shown = warnings.slice(0, data.shown_warnings);
+  if (warnings.length) {
+    const box = add(report, "div", "", "warnings");
+    list(box, shown);
+    if (warnings.length > shown.length) list(fold(box, `${warnings.length - shown.length} more ${warnings.length - shown.length === 1 ? "warning" : "warnings"}`), warnings.slice(shown.length));
+  }
   const [ends, ...others] = data.sections;
   const first = add(report, "div", "", data.uses ? "first" : "");
   const left = add(first, "div");
@@ -36,16 +73,17 @@ async function main() {
     panel.id = "uses";
     otherUses(panel, data.uses);
   }
-  await section(left, { ...ends, tables: [] }, "");
-  await section(report, { ...ends, name: "ages", charts: [], text: [], lines: [], warnings: [] });
+  specimens(left, data.decision);
+  await section(left, ends);
   for (const each of others) await section(report, each);
   const last = add(report, "section", "", "part");
   last.id = "reproduce";
   add(last, "h2", "How to reproduce this report");
   add(last, "pre", data.command).id = "command";
-  add(last, "p", `hersey ${data.hersey_version}, document schema ${data.schema_version}. Runs:`, "soft");
-  const all = fold(last, `${data.runs.length} logs`);
+  const all = fold(last, `${data.runs.length} ${data.runs.length === 1 ? "log" : "logs"} and their hashes`);
   add(all, "pre", data.runs.map((run) => `sha256 ${run.sha256}  ${run.log}`).join("\n"));
+  add(all, "p", `Document schema ${data.schema_version}.`, "soft");
+  document.getElementById("end").textContent = `hersey ${data.hersey_version}`;
 }
 
 show(main);

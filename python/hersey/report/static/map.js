@@ -1,5 +1,5 @@
-// The operating map, drawn by our own few lines: temperature across, drive speed up. The same picture stands in
-// the page whether or not it can be asked; only the ring, the setting tried, needs what moves it.
+// The operating map: temperature across, drive speed up. It is the same with and without a panel; only the ring, the
+// setting tried, needs one.
 
 function operatingMap(place, map, move = null) {
   const hot = map.temperature !== null;
@@ -15,21 +15,21 @@ function operatingMap(place, map, move = null) {
   const celsius = (kelvin) => kelvin - 273.15, millimetres = (speed) => 1e3 * speed;
   const rpm = 60 / (2 * Math.PI * map.roll_radius);
   const named = `hatch-${Math.random().toString(36).slice(2)}`;
-  const beyond = map.limited_by === "motor torque" ? "motor stops" : "stall";
+  const beyond = map.limited_by === "motor torque" ? "motor stalls" : "stall";
   let edges = given, lagging = false, changed = false, setting = null, frame = null, printing = false, unnamed = [], keyed = "", tickWords = [];
 
   place.classList.add("map");
   const caption = add(place, "div", "", "cap");
   add(caption, "h2", "Operating map");
-  const hint = add(caption, "span", move ? "drag the ring, or arrow keys on it" : "", "hint");
+  const hint = add(caption, "span", move ? "drag the ring or use arrow keys" : "", "hint");
   const drawing = svg("svg", { role: "group", "aria-label": "Operating map" }, place);
   const hatch = svg("pattern", {
     id: named, width: 7, height: 7, patternUnits: "userSpaceOnUse", patternTransform: "rotate(45)",
   }, svg("defs", {}, drawing));
   svg("path", { d: "M0 0v7", class: "hatch" }, hatch);
-  const picture = svg("g", { role: "img" }, drawing);
+  const image = svg("g", { role: "img" }, drawing), picture = svg("g", { "aria-hidden": "true" }, image);
   const key = add(place, "ul", "", "key");
-  const figures = fold(place, "Table of the map");
+  const figures = fold(place, "Map as a table");
   figures.className = "figures";
 
   // Pixels of a temperature and of a speed, and back.
@@ -56,7 +56,7 @@ function operatingMap(place, map, move = null) {
     drawing.setAttribute("width", room);
     drawing.setAttribute("height", height);
     picture.replaceChildren();
-    picture.setAttribute("aria-label", finding());
+    image.setAttribute("aria-label", finding());
     const clip = svg("rect", { x: left, y: top, width: frame.width, height: frame.height }, svg("clipPath", { id: `${named}-frame` }, picture));
     clip.parentNode.setAttribute("clipPathUnits", "userSpaceOnUse");
     const inside = svg("g", { "clip-path": `url(#${named}-frame)` }, picture);
@@ -85,10 +85,10 @@ function operatingMap(place, map, move = null) {
     if (!edges.folds) return `Operating map: the belt sticks below ${told("transition")} mm/s${from}; V* is not computed for this closure`;
     const band = edges.upper[middle] > 1.01 * edges.transition[middle] || edges.upper.at(-1) > 1.01 * edges.transition.at(-1);
     return `Operating map: the belt sticks below ${told("transition")} mm/s${from}`
-      + (band ? `, and slides from any start above ${told("upper")} mm/s` : ", and slides above");
+      + (band ? `, and runs smoothly from any start above ${told("upper")} mm/s` : ", and runs smoothly above");
   }
 
-  // Areas: the speeds between two edges, and below and above what the drive bears.
+  // Areas: the speeds between two edges, and those below and above the limits of the drive.
   function parts() {
     const lowest = columns.map(() => slowest), highest = columns.map(() => fastest);
     const floor = below.map((v, i) => (edges.starts[i] ? kept(changed ? 0 : v) : fastest)), roof = above.map(kept);
@@ -116,7 +116,7 @@ function operatingMap(place, map, move = null) {
     }
     return zones;
   }
-  // Stretches of columns that have edges: at some temperatures a law has none.
+  // Runs of columns with edges; at some temperatures a law has none.
   function runs(band) {
     const out = [[]];
     for (const each of band) {
@@ -138,7 +138,7 @@ function operatingMap(place, map, move = null) {
     svg("path", { d, fill: `url(#${named})`, "fill-rule": "evenodd" }, inside);
   }
 
-  // Lines of one torque where the belt slides steadily, read off the torques of the map.
+  // Lines of constant torque in steady sliding, from the torques of the map.
   function drawTorques(inside) {
     const rising = map.torque.map((row, i) => row.filter((_, j) => map.speed[j] >= (map.transition[i] ?? Infinity)));
     const all = rising.flat();
@@ -200,7 +200,7 @@ function operatingMap(place, map, move = null) {
       svg("text", { x: right + 7, y: y + 4, class: "ticks" }, picture, digits(value, 4));
     }
     if (!hot) {
-      const words = "one law for all temperatures of the log";
+      const words = "all temperatures of the log";
       svg("text", { x: (left + right) / 2, y: bottom + 18, "text-anchor": "middle", class: "axis" }, picture, words);
       return;
     }
@@ -230,10 +230,10 @@ function operatingMap(place, map, move = null) {
       return `, ${digits(value, value >= 100 ? 3 : 2)}${at}`;
     };
     entry("transition", `transition${valued(edges.transition)}`);
-    if (!edges.folds) entry("fold", "V* over temperature: not computed for this closure");
+    if (!edges.folds) entry("fold", "V*: not computed for this closure");
     else if (edges.upper.some((v, i) => v > 1.01 * edges.transition[i])) entry("fold", `V*${valued(edges.upper)}`);
     if (edges.folds && intervals[3].some((v, i) => v > 1.01 * intervals[1][i])) {
-      entry("fold-interval", changed ? "its 95 % interval in the report" : "its 95 % interval");
+      entry("fold-interval", changed ? "95 % interval as reported" : "95 % interval");
     }
     entry("torque", "drag torque");
     entry("measured", "measured");
@@ -260,10 +260,10 @@ function operatingMap(place, map, move = null) {
     const value = (v) => (Number.isFinite(v) ? digits(millimetres(v)) : Number.isNaN(v) ? "not computed" : "never");
     const range = (i, low, high) => `${value(intervals[low][i])} to ${value(intervals[high][i])}`;
     const known = map.torque_limit !== null;
-    const heads = ["Sticks below (mm/s)", "Transition", "95 % in the report", "Smooth above V*", "95 % in the report", known ? "Stall from" : "Stall"];
+    const heads = ["Sticks below (mm/s)", "Transition", "95 % as reported", "Smooth above V*", "95 % as reported", known ? "Stall from" : "Stall"];
     table(figures, [...(hot ? ["°C"] : []), ...heads], rows.map((i) => [
       ...(hot ? [celsius(columns[i]).toFixed(0)] : []), value(edges.lower[i]), value(edges.transition[i]), range(i, 0, 1),
-      value(edges.upper[i]), range(i, 2, 3), map.torque_limit === null ? "not known" : edges.starts[i] ? value(above[i]) : "not started"]),
+      value(edges.upper[i]), range(i, 2, 3), map.torque_limit === null ? "unknown" : edges.starts[i] ? value(above[i]) : "not started"]),
     [0, 1, 2, 3, 4, 5, 6]);
   }
 

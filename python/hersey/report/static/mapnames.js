@@ -1,8 +1,8 @@
-// Names in the map, each where it covers no other: points, limit, torques, and the word of each zone where it has
-// the most room.
+// Names in the map, placed so that none covers another: points, limit, torques, and the word of each zone where it
+// has the most room.
 
 function mapNames({ map, frame, picture, edges, beyond, slowest, fastest, across, up, speedAt, columnAt, place_of, valueAt, runs }) {
-  // Boxes that hold something.
+  // Boxes that are occupied.
   const taken = [];
   const free = (box) => taken.every((b) => box[2] < b[0] || box[0] > b[2] || box[3] < b[1] || box[1] > b[3]);
   const within = (box) => box[0] >= frame.left + 2 && box[2] <= frame.right - 2 && box[1] >= frame.top + 2 && box[3] <= frame.bottom - 2;
@@ -30,7 +30,7 @@ function mapNames({ map, frame, picture, edges, beyond, slowest, fastest, across
 
   function nameLimit() {
     if (map.speed_limit === null || !(map.speed_limit > slowest && map.speed_limit < fastest)) return;
-    const text = `greatest drive speed ${digits(1e3 * map.speed_limit)}`, width = shape.width(text, 11.5);
+    const text = `drive limit ${digits(1e3 * map.speed_limit)}`, width = shape.width(text, 11.5);
     const y = up(map.speed_limit);
     for (const offset of [-5, 13]) {
       for (const share of [0.5, 0.3, 0.7, 0.2, 0.8]) {
@@ -62,14 +62,14 @@ function mapNames({ map, frame, picture, edges, beyond, slowest, fastest, across
     return speed < valueAt(edges.upper, at) ? "depends" : "smooth";
   }
 
-  // The word of each zone where it has the most room, upright or along the zone; else it stands in the key.
+  // Place the word of each zone where it has the most room, upright or along the zone; else it goes into the key.
   function nameZones(zones, box) {
     // A word on the edge of what was measured would be crossed out.
     const [left, top, right, bottom] = box;
     taken.push([left - 1, top, left + 1, bottom], [right - 1, top, right + 1, bottom], [left, top - 1, right, top + 1], [left, bottom - 1, right, bottom + 1]);
     const nameless = [];
     for (const [name, bands] of Object.entries(zones)) {
-      const word = name === "stall" ? beyond : name, size = 14, width = shape.width(word, size, 700) + 6;
+      const word = name === "stall" ? beyond : name === "depends" ? "depends on start" : name, size = 14, width = shape.width(word, size, 700) + 6;
       let best = null, thick = 0;
       for (const band of bands.flatMap(runs)) {
         thick = Math.max(thick, ...band.map(([, low, high]) => low - high));

@@ -1,8 +1,8 @@
-// The numbers behind the motion that is drawn: a table that sorts and is saved, made anew while it is open.
+// The data of the motion that is drawn: a table that sorts and can be saved, rebuilt while it is open.
 
 function numbers(place) {
   const ROWS = 300;
-  const box = fold(place, "Numbers of this motion");
+  const box = fold(place, "Data of this motion");
   box.className = "numbers behind";
   let last = null, soon = 0;
   function speedAt(profile, time) {

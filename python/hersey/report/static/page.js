@@ -1,19 +1,17 @@
 // The page of a report: the first screen, then the sections, each with its finding. It shows the analysis
-// document and the charts made from it, and computes nothing but units and words.
-
-// Comparison, and whatever else the document holds
+// document and its charts, and computes only units and words.
 
 async function comparison(parent) {
   const { compare } = data;
   if (!compare) return;
   const part = section(parent, "compare", "Comparison", compare.verdict);
-  await chart(part, "compare", { says: compare.verdict, note: `A: ${compare.a}, B: ${compare.b}; bars: simultaneous 95 % limits, temperatures beside each other.` });
-  // What is compared as a ratio is a speed of the roll.
+  await chart(part, "compare", { says: compare.verdict, note: `A: ${compare.a}; B: ${compare.b}. Bars: simultaneous 95 % limits.` });
+  // A quantity that is compared as a ratio is a speed of the roll.
   const of = (c) => c.is_ratio ? [`${c.name}, rpm`, digits(c.of_a * TO_RPM), digits(c.of_b * TO_RPM)] : [c.name, digits(c.of_a), digits(c.of_b)];
-  table(part, ["Number", compare.a, compare.b, "Change", "95 % interval", "p-value", "Real"], compare.changes.map((c) => [
+  table(part, ["Quantity", compare.a, compare.b, "Change", "95 % interval", "p-value", "Real"], compare.changes.map((c) => [
     ...of(c), `${c.is_ratio ? "× " : ""}${digits(c.change.value)}`, bounds(c.change), c.p_value === null ? "–" : digits(c.p_value, 2),
     c.real ? judged("watch", "yes") : "no"]), [1, 2, 3, 4, 5], { name: "comparison", label: "What changed" });
-  const all = compare.warnings.length ? fold(part, "Notes") : part;
+  const all = compare.warnings.length ? fold(part, `Warnings (${compare.warnings.length})`) : part;
   compare.warnings.forEach((each) => add(all, "p", warned(each), "note"));
 }
 async function warmUp(parent) {
@@ -27,13 +25,23 @@ function reproduce(parent) {
   const { rest } = data.fit;
   const inputs = [...data.files, ...(data.against ?? []), ...(data.machine ? [data.machine] : []), ...(rest?.sha256 ?? []).map((sha256) => ({ name: rest.source, sha256 }))];
   const seed = data.decision?.points.find((p) => p.plan)?.plan.seed;
-  const part = section(parent, "reproduce", "Reproduce", `One command, ${plural(inputs.length, "file")}${seed === undefined ? "" : `, one seed (${seed})`}.`);
+  const files = plural(inputs.length, "file");
+  const part = section(parent, "reproduce", "How to reproduce this report",
+    `${data.command ? `Run this command on ${files}` : `The report was made from ${files}`}${seed === undefined ? "" : ` (random seed ${seed})`}.`);
   if (data.command) add(part, "pre", data.command).id = "command";
+  const foot = add(part, "div", "", "foot");
+  if (data.command) button(foot, "Copy command", (from) => copy(data.command, from));
+  button(foot, "Save document (JSON)", () => save("hersey.json", document.getElementById("document").textContent, "application/json"));
   if (data.recipe) {
-    add(part, "p", "Recipe of the dwells. Save it beside the files as recipe.toml and use it with hersey report --recipe recipe.toml.", "note hint");
-    add(part, "pre", data.recipe.toml).id = "recipe";
+    const recipe = fold(part, "Recipe of the dwells (TOML)");
+    recipe.className = "behind";
+    add(recipe, "p", "Save it beside the files as recipe.toml and run hersey report --recipe recipe.toml.", "note hint");
+    add(recipe, "pre", data.recipe.toml).id = "recipe";
+    const keep = add(recipe, "div", "", "foot");
+    button(keep, "Copy recipe", (from) => copy(data.recipe.toml, from));
+    button(keep, "Save recipe", () => save("recipe.toml", data.recipe.toml, "text/plain"));
   }
-  const all = inputs.length > 8 ? fold(part, `${inputs.length} files and their hashes`) : part;
+  const all = fold(part, "Input files and hashes");
   table(all, ["File", "sha256"], inputs.map((f) => {
     const hash = document.createElement("span");
     hash.className = "mono";
@@ -41,14 +49,7 @@ function reproduce(parent) {
     hash.dataset.text = f.sha256;
     return [f.name, hash];
   }), [], { label: "Input" });
-  add(part, "p", `hersey ${data.hersey_version}, document schema ${data.schema_version}, intervals at 95 %.`, "note");
-  const foot = add(part, "div", "", "foot");
-  if (data.command) button(foot, "Copy command", (from) => copy(data.command, from));
-  if (data.recipe) {
-    button(foot, "Copy recipe", (from) => copy(data.recipe.toml, from));
-    button(foot, "Save recipe (TOML)", () => save("recipe.toml", data.recipe.toml, "text/plain"));
-  }
-  button(foot, "Save document (JSON)", () => save("hersey.json", document.getElementById("document").textContent, "application/json"));
+  add(all, "p", `Document schema ${data.schema_version}; intervals at 95 %.`, "note");
 }
 
 function contents(parent) {

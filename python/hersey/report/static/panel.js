@@ -1,4 +1,4 @@
-// The panel that answers: a setting of the machine, what the belt does there, and how to reproduce it.
+// The panel to try settings: what the belt does at a setting of the machine, and how to reproduce it.
 
 async function live(analysis, bytes, { map: mapPlace, panel: place }) {
   place.classList.add("panel");
@@ -8,7 +8,7 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
   const able = bytes && typeof WebAssembly === "object";
   if (!able) {
     operatingMap(mapPlace, analysis.map);
-    add(place, "p", "This browser runs no WebAssembly, so nothing can be tried here; all figures of the report stand.");
+    add(place, "p", "This browser has no WebAssembly, so no settings can be tried. All figures of the report are valid.");
     return still;
   }
   let core;
@@ -16,7 +16,7 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
     core = await physics(bytes);
   } catch (error) {
     operatingMap(mapPlace, analysis.map);
-    add(place, "p", `Nothing can be tried here: ${error.message}. All figures of the report stand.`);
+    add(place, "p", `No settings can be tried: ${error.message}. All figures of the report are valid.`);
     return still;
   }
   const hint = add(heading, "span", "", "hint");
@@ -26,11 +26,11 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
   const { slides, told, reported, speedText } = verdicts({ map, points: analysis.decision?.points ?? [], limit, motor, questions });
   const SLOW = ["stribeck", "lugre"], QUICK_BAND = 5, FRAME = 20_000;
   const CLOSURES = {
-    retained: "retained: keeps its creep", stiction: "stiction: stops dead", stribeck: "Stribeck, smooth", lugre: "LuGre, bristles",
+    retained: "stops gradually (retained)", stiction: "stops abruptly (stiction)", stribeck: "Stribeck", lugre: "LuGre",
   };
-  const ZONES = { creep: "sticks", stick_slip: "sticks", swing: "depends", bistable: "depends", smooth: "smooth", stall: "stall", motor: "stall" };
+  const ZONES = { creep: "sticks", stick_slip: "sticks", swing: "depends on start", bistable: "depends on start", smooth: "smooth", stall: "stall", motor: "stall" };
   let point = worst(), base = known.own(point), setting = known.read(location.hash, base) ?? { ...base };
-  let answer = null, found = null, kicked = null, spread = null, asked = 0, drawn = 0, mapped = "", bandCost = 0, spoken = 0, open = "";
+  let answer = null, found = null, kicked = null, spread = null, asked = 0, drawn = 0, mapped = "", bandCost = 0, spoken = 0, open = "", touched = false;
 
   const picture = operatingMap(mapPlace, map, (speed, temperature) => tried({ speed, temperature }));
   const controls = controlsOf();
@@ -59,11 +59,12 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
   });
   const courses = button(foot, "Profile", () => tried({ profile: setting.profile ? null : [[0, 0], [0.2, setting.speed]] }));
   courses.setAttribute("aria-pressed", "false");
-  const back = button(foot, "Back to the report’s setting", () => reset());
+  const back = button(foot, "Reset", () => reset());
   back.classList.add("back");
+  back.title = "Back to the report’s setting";
   const after = labour(core.module, heard), edges = labour(core.module, heardEdges);
 
-  // The point that most needs a look: the gravest signal, or the first point that the past decides.
+  // The point that most needs attention: the gravest signal, or the first point that is not smooth.
   function worst() {
     const signals = analysis.decision?.points?.map((each) => ["good", "watch", "act"].indexOf(each.signal)) ?? [];
     const gravest = signals.indexOf(Math.max(...signals));
@@ -87,7 +88,7 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
     }
     one(place, "stiffness", "Stiffness", "N/mm", 1e3, base.stiffness / 10, base.stiffness * 10);
     const level = hot ? ` at ${digits(known.stick.temperature - 273.15)} °C` : "";
-    one(place, "stick_speed", hot ? `Stick,${level.slice(3)}` : "Stick speed", "mm/s", 1e-3, base.stick_speed / 10, base.stick_speed * 10, { spoken: `Stick speed${level}`, term: "stick speed" });
+    one(place, "stick_speed", "Stick speed", "mm/s", 1e-3, base.stick_speed / 10, base.stick_speed * 10, { spoken: `Stick speed${level}`, term: "stick speed" });
     const row = add(place, "div", "", "chosen"), label = add(row, "label", "Closure"), select = add(row, "select");
     label.htmlFor = select.id = "try-closure";
     explained(label, "closure");
@@ -109,23 +110,23 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
     const ranges = Object.keys(rangesOf(base));
     if (ranges.length) one(further, "spread", "Spread", "×", 1, 0.1, 3, { count: 2 });
     const stated = ranges.map((name) => name.replace("_", " ")).join(" and ");
-    add(further, "p", ranges.length ? `Spread 1 is what the machine’s file states of ${stated} (95 %).`
-      : "The machine’s file states no [uncertainty]: V* has no spread to show.", "hint");
+    add(further, "p", ranges.length ? `Spread 1 is the uncertainty of ${stated} in the machine file (95 %).`
+      : "The machine file states no [uncertainty], so V* has no spread.", "hint");
     const told_spread = add(further, "p", "", "hint");
     one(further, "bristle_stiffness", "Bristles", "N/mm", 1e3, base.bristle_stiffness / 100, base.bristle_stiffness * 100);
-    one(further, "bristle_damping", "Their damping", "N·s/m", 1, base.bristle_damping / 100, base.bristle_damping * 100);
-    const bristles = add(further, "p", "Bristles: 100 times the stiffness until measured; damping 2 √(bristles × mass).", "hint");
+    one(further, "bristle_damping", "Bristle damping", "N·s/m", 1, base.bristle_damping / 100, base.bristle_damping * 100);
+    const bristles = add(further, "p", "Assumed until measured: bristles 100 × stiffness, damping 2 √(bristles × mass).", "hint");
     return { made, select, mark, more, further, bristles, spread: told_spread };
   }
 
-  // Why a number was not taken, in the place of the hint until the next setting.
+  // Why a number was refused, in place of the hint until the next setting.
   function refuse(text) {
     hint.textContent = text;
     hint.classList.add("refused");
     said.textContent = text;
   }
 
-  // Ends of what is stated of each parameter, spread about the value set.
+  // The stated range of each parameter, about the value set and widened by the spread.
   function rangesOf(now) {
     const stated = analysis.uncertainty ?? {}, ranges = {};
     for (const [name, own] of [["stiffness", base.stiffness], ["mass", base.mass], ["stick_speed", base.stick_speed]]) {
@@ -136,6 +137,7 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
   }
 
   function tried(change) {
+    touched = true;
     setting = { ...setting, ...change };
     if (hot) setting.temperature = Math.min(Math.max(setting.temperature, map.temperature[0]), map.temperature.at(-1));
     if (!asked) asked = requestAnimationFrame(() => { asked = 0; update(); });
@@ -179,12 +181,12 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
       failed(reason(error));
     }
   }
-  // A refusal of the core in the words and at the temperature of the panel's own controls.
+  // A refusal of the core, in the words and at the temperature of the panel's controls.
   function reason({ message, quantity, value, limit: most }) {
     if (quantity !== "stick_speed" || !(most > 0)) return message;
     return `the stick speed must be less than the transition speed, ${speedText(setting.stick_speed * most / value)} here`;
   }
-  // Whether the motion could be had within a frame; what takes longer is left to the worker.
+  // Whether the motion could be computed within a frame; anything slower goes to the worker.
   function answered(task) {
     const next = { train: task.train, unstable: null };
     try {
@@ -255,7 +257,7 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
     const ofReport = map.given && !setting.profile && machineKey(setting) === machineKey(base);
     const { zone, signal: kind, words, sub, own } = ofReport ? { ...now, ...reported(setting) } : now;
     const [least, most] = (spread ?? []).map((v) => digits(1e3 * v));
-    controls.spread.textContent = spread ? `With this spread V* is ${digits(1e3 * found.upper)} [${least}, ${most}] mm/s.` : "\u00a0";
+    controls.spread.textContent = spread ? `With this spread, V* is ${digits(1e3 * found.upper)} [${least}, ${most}] mm/s.` : "\u00a0";
     const far = extrapolated() && !own ? " (extrapolated)" : "";
     verdict.replaceChildren();
     const word = add(verdict, "span", "", `signal ${kind}`);
@@ -268,7 +270,7 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
     if (answer.motion) behind.show(answer.motion, { ...setting });
     clearTimeout(spoken);
     spoken = setTimeout(() => {
-      said.textContent = verdict.textContent;
+      if (touched) said.textContent = verdict.textContent; // the verdict of the page that opens is read in its place
       printed.textContent = inWords();
       if (open) output();
       chart.say(`Belt speed: ${words} at ${speedText(setting.speed)}`, `Phase plane at ${speedText(setting.speed)}: ${words}`);
@@ -314,7 +316,7 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
     const name = map.points[point]?.name;
     const changed = ["speed", "temperature", "stiffness", "mass", "stick_speed", "closure", "spread", "profile"].some(differs) || hidden;
     hint.classList.remove("refused");
-    hint.textContent = changed ? "◆ differs from the report" : name ? `as in the report: ${name}` : "as in the report";
+    hint.textContent = changed ? "◆ differs from the report" : name ? `as reported: ${name}` : "as reported";
     back.disabled = !changed;
   }
   function inWords() {
@@ -346,7 +348,7 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
       out.save = button(line, "Save", () => save(FILES[open] ?? `${open.toLowerCase()}.txt`, field.value, "text/plain"));
     }
     const field = out.querySelector("textarea");
-    const names = { Link: "Address of this setting", Command: "Command that reproduces this setting", TOML: "Machine’s file of this setting", Drag: "Drag curve of this setting" };
+    const names = { Link: "Address of this setting", Command: "Command that reproduces this setting", TOML: "Machine file of this setting", Drag: "Drag curve of this setting" };
     field.setAttribute("aria-label", names[open]);
     field.value = outs[open]();
   }

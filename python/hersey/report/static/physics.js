@@ -1,6 +1,6 @@
-// The core in the page: the questions of a page as numbers for the WebAssembly of crates/wasm, and its answers as
-// objects. Nothing is computed here; all is SI. One function, so that a worker can be made of its text. What each
-// question holds, and in which order, stands in crates/wasm/src.
+// The core in the page: questions become numbers for the WebAssembly of crates/wasm, and its answers become objects.
+// Nothing is computed here; all is SI. It is one function, so that a worker can be made of its text. The content and
+// order of each question are defined in crates/wasm/src.
 
 async function physics(bytes) {
   const MODES = ["ehl", "mixed", "microslip", "stuck"];
@@ -32,7 +32,7 @@ async function physics(bytes) {
   }
 
   function asked(name, numbers) {
-    if (core === null) throw refused({ message: "the physics of the page starts anew: ask again", unfinished: true });
+    if (core === null) throw refused({ message: "the calculation restarts: try again", unfinished: true });
     try {
       const place = core.hersey_question(numbers.length);
       new Float64Array(core.memory.buffer, place, numbers.length).set(numbers);
@@ -44,7 +44,7 @@ async function physics(bytes) {
       // the memory of the page did not suffice: nothing in there can be relied on any more
       core = null;
       WebAssembly.instantiate(module).then((fresh) => { core = fresh.exports; });
-      throw refused({ message: `more than the page can compute: ${error.message}`, unfinished: true });
+      throw refused({ message: `too much for the page to compute: ${error.message}`, unfinished: true });
     }
   }
 

@@ -1,13 +1,13 @@
-// A plan per operating point.
+// The start-up profile of each operating point.
 
 const failuresOf = (plan) => Object.entries(plan.failures).filter(([, count]) => count).map(([name, count]) => `${name.replaceAll("_", " ")} ${count}`).join(", ");
 function planFinding(point) {
   const { plan } = point;
   const name = capital(point.name);
-  const sure = plan.share ? ` It slides in ${digits(100 * plan.share, 2)} % of the machines that fit the log.` : "";
-  if (plan.kind === "overshoot") return `${name}: up to ${perSecond(plan.peak_speed)} mm/s, hold ${digits(plan.hold, 2)} s, down to ${perSecond(plan.target_speed)}.${sure}`;
-  if (plan.kind === "direct") return `${name}: straight up to ${perSecond(plan.target_speed)} mm/s in ${digits(plan.rise, 2)} s.${sure}`;
-  return `${name}: no profile within the limits reaches ${perSecond(plan.target_speed)} mm/s sliding.`;
+  const sure = plan.share ? ` The belt then slides with ${plan.share > 0.99 ? "over 99" : digits(100 * plan.share, 2)} % probability.` : "";
+  if (plan.kind === "overshoot") return `${name}: ramp to ${perSecond(plan.peak_speed)} mm/s, hold ${digits(plan.hold, 2)} s, slow to ${perSecond(plan.target_speed)} mm/s.${sure}`;
+  if (plan.kind === "direct") return `${name}: ramp to ${perSecond(plan.target_speed)} mm/s in ${digits(plan.rise, 2)} s.${sure}`;
+  return `${name}: no profile within the limits reaches smooth running at ${perSecond(plan.target_speed)} mm/s.`;
 }
 async function planSection(parent) {
   const all = data.decision?.points ?? [];
@@ -15,18 +15,19 @@ async function planSection(parent) {
   const whole = data.plan ? [{ name: "profile", speed: data.plan.target_speed, temperature: data.plan.temperature, plan: data.plan }] : [];
   const shown = planned.length ? planned : whole;
   if (!shown.length && !all.length) return;
-  const part = section(parent, "plan", "Plan per point", shown.length ? planFinding(shown[0]) : "No point needs a plan: straight up to speed, and the belt slides.");
+  const part = section(parent, "plan", "Start-up profiles", shown.length ? planFinding(shown[0]) : unplanned(all));
   let i = 0;
   for (const point of shown) {
     await onePlan(part, point, i);
     i += 1;
   }
   for (const point of all.filter((p) => !p.plan)) {
-    add(part, "h3", pointName(point));
-    const line = add(part, "p");
-    line.append(signal(point.signal), point.reason ? pretty(point.reason) : `${point.signal === "act" ? "" : "Needs no plan: "}${pretty(point.words)}.`);
+    const line = add(part, "p", "", "text"), name = add(line, "b", pointName(point));
+    name.prepend(signal(point.signal));
+    line.append(`: ${point.reason ? stopped(point.reason) : point.signal === "good" ? "no profile needed." : stopped(point.words)}`);
   }
 }
+const unplanned = (all) => all.every((point) => point.signal === "good") ? "No operating point needs a start-up profile." : "No start-up profile was found.";
 const pointName = (p) => `${capital(p.name)}, ${perSecond(p.speed)} mm/s${p.temperature === null ? "" : ` at ${degrees(p.temperature)}`}`;
 async function onePlan(parent, point, i) {
   const { plan } = point;
@@ -44,14 +45,14 @@ async function onePlan(parent, point, i) {
     press.disabled = true;
     press.dataset.profile = "";
   }
-  const marks = plan.uses.map((use) => [use.used !== null && use.used > use.limit ? "watch" : "good", `${capital(use.name.replaceAll("_", " "))}: ${use.used === null ? "not told" : amount(use.name, use.used)[0]} of ${amount(use.name, use.limit).join(" ")}`]);
+  const marks = plan.uses.map((use) => [use.used !== null && use.used > use.limit ? "watch" : "good", `${capital(use.name.replaceAll("_", " "))}: ${use.used === null ? "unknown" : amount(use.name, use.used)[0]} of ${amount(use.name, use.limit).join(" ")}`]);
   marks.push(...plan.obstacles.map((each) => ["act", pretty(each.text)]), ...plan.warnings.map((each) => [each.severity, warned(each)]));
   checks(side, marks);
-  const all = fold(columns, "How sure, in full");
+  const all = fold(columns, "Probability in detail");
   all.classList.add("across");
   add(all, "p", pretty(plan.verdict), "text");
-  add(all, "p", `${digits(100 * plan.share, 3)} % of ${plural(plan.draws, "draw")} slide; the true share exceeds ${digits(Math.floor(1000 * plan.share_low) / 10, 3)} % with 95 % confidence. `
-    + `${failuresOf(plan) ? `Others: ${failuresOf(plan)}. ` : ""}Seed ${plan.seed}, ${plural(plan.tried, "profile")} tried.`, "text");
+  add(all, "p", `The belt slides in ${digits(100 * plan.share, 3)} % of ${plural(plan.draws, "draw")}; the true share is above ${digits(Math.floor(1000 * plan.share_low) / 10, 3)} % with 95 % confidence. `
+    + `${failuresOf(plan) ? `Failures: ${failuresOf(plan)}. ` : ""}Random seed ${plan.seed}; ${plural(plan.tried, "profile")} tried.`, "text");
 }
 // A value and its unit.
 function amount(name, value) {

@@ -9,8 +9,8 @@ function profile(place, chart, { change, leave, written, refused }) {
   draws.setAttribute("aria-pressed", "false");
   button(line, "Add a row", () => { const [t, v] = rows.at(-1); emit([...rows, [t + 0.2, v]]); });
   button(line, "Save CSV", () => save("profile.csv", written(rows), "text/csv"));
-  button(line, "Without a profile", () => leave());
-  add(box, "p", "Straight lines between the rows; the last speed stays.", "hint");
+  button(line, "Remove profile", () => leave());
+  add(box, "p", "Straight lines between rows; the last speed is held.", "hint");
   const cells = add(box, "div", "", "rows");
   cells.setAttribute("role", "group");
   cells.setAttribute("aria-label", "Rows of the profile");
@@ -34,7 +34,7 @@ function profile(place, chart, { change, leave, written, refused }) {
           const fits = field.value.trim() !== "" && sound(next);
           field.setAttribute("aria-invalid", String(!fits));
           if (fits) change(next);
-          else refused("Times must ascend from 0, and the last speed be greater than 0");
+          else refused("Times must rise from 0, and the last speed must be above 0");
         });
       }
       const drop = button(cells, "Remove", () => emit(rows.filter((_, j) => j !== i)));
@@ -50,7 +50,7 @@ function profile(place, chart, { change, leave, written, refused }) {
     draws.setAttribute("aria-pressed", String(on));
     handles();
   }
-  // Handles in the chart; while one draws by hand, a sheet over it instead.
+  // Handles in the chart; while drawing by hand, a sheet over it instead.
   function handles() {
     const active = document.activeElement?.dataset?.row;
     chart.over.replaceChildren();

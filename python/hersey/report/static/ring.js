@@ -10,7 +10,7 @@ function mapRing(drawing, { map, hot, columns, slowest, fastest, across, up, spe
     const group = svg("g", { class: "tried" }, drawing);
     const parts = {
       across: svg("path", { class: "lead" }, group), down: svg("path", { class: "lead" }, group),
-      speed: svg("g", { class: "tag" }, group), temperature: svg("g", { class: "tag" }, group),
+      speed: svg("g", { class: "tag", "aria-hidden": "true" }, group), temperature: svg("g", { class: "tag", "aria-hidden": "true" }, group),
     };
     for (const tag of [parts.speed, parts.temperature]) {
       svg("rect", { width: 34, height: 16, rx: 2 }, tag);
@@ -78,7 +78,7 @@ function mapRing(drawing, { map, hot, columns, slowest, fastest, across, up, spe
     if (hot) ring.temperature.lastChild.textContent = inCelsius(setting.temperature).toFixed(0);
     ring.handle.setAttribute("aria-valuenow", digits(inMillimetres(setting.speed)));
     const where = hot ? ` at ${inCelsius(setting.temperature).toFixed(0)} °C` : "";
-    ring.handle.setAttribute("aria-valuetext", `${digits(inMillimetres(setting.speed))} mm/s${where}, ${setting.zone ?? "not known"}`);
+    ring.handle.setAttribute("aria-valuetext", `${digits(inMillimetres(setting.speed))} mm/s${where}, ${setting.zone ?? "unknown"}`);
   }
   return { draw };
 }

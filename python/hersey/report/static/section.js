@@ -1,10 +1,10 @@
-// What the sections of a report are made of: words, intervals, a topic with its finding.
+// Parts of the sections: numbers with intervals, a topic with its finding.
 
 function interval(e, scale = 1, count = 3) {
-  if (e.low === null || e.high === null) return `${digits(e.value * scale, count)} (interval not told)`;
+  if (e.low === null || e.high === null) return `${digits(e.value * scale, count)} (interval unknown)`;
   return `${digits(e.value * scale, count)} [${digits(e.low * scale, count)}, ${digits(e.high * scale, count)}]`;
 }
-const bounds = (e, scale = 1, count = 3) => e.low === null || e.high === null ? "not told" : `[${digits(e.low * scale, count)}, ${digits(e.high * scale, count)}]`;
+const bounds = (e, scale = 1, count = 3) => e.low === null || e.high === null ? "unknown" : `[${digits(e.low * scale, count)}, ${digits(e.high * scale, count)}]`;
 const twoPlaces = (value) => value.toFixed(2).replace("-", "−");
 const share = (part, whole) => `${digits((100 * part) / whole, 2)} %`;
 const NUMBERS = ["no", "one", "two", "three", "four", "five", "six"];
@@ -25,6 +25,19 @@ function section(parent, id, topic, finding) {
   if (finding) add(element, "p", pretty(finding), "finding");
   made.push({ id, topic, element });
   return element;
+}
+// Warnings in sight, and in a fold with their count the notes and what is `elsewhere` on the page.
+function warnings(parent, all, { heading, folded, elsewhere = () => false, id = "" }) {
+  const minor = all.filter((each) => each.severity === "note" || elsewhere(each)), major = all.filter((each) => !minor.includes(each));
+  const box = add(parent, "div", "", "listed");
+  if (id) box.id = id;
+  if (major.length) {
+    add(box, "h3", heading);
+    checks(box, major.map((each) => [each.severity, warned(each)]));
+  }
+  if (!minor.length) return;
+  const list = add(fold(box, `${folded} (${minor.length})`), "ul", "", "checks plain");
+  for (const each of minor) add(list, "li", warned(each));
 }
 function judged(kind, text) {
   const cell = document.createElement("b");

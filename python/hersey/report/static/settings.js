@@ -1,12 +1,11 @@
-// A setting: what is tried, in SI. How it follows from the report, stands in an address, and is typed as a command
-// or written as TOML.
+// A setting to try, in SI: taken from the report, kept in an address, written as a command or as TOML.
 
 function settings(analysis) {
   const { map } = analysis;
   const CLOSURES = ["retained", "stiction", "stribeck", "lugre"];
   const NUMBERS = ["speed", "temperature", "stiffness", "mass", "stick_speed", "bristle_stiffness", "bristle_damping", "spread"];
   const anchor = map.points[0] ?? null;
-  // The stick speed is that at one temperature, where the report states it; elsewhere it follows the map's rule.
+  // The stick speed is set at the temperature at which the report states it; elsewhere it follows the map's rule.
   const stick = anchor ? { speed: anchor.at.stick_speed, temperature: anchor.temperature }
     : { speed: map.drag.stick_speed, temperature: map.drag.reference_temperature };
   const middle = (ends) => Math.sqrt(ends[0] * ends[1]);
@@ -36,7 +35,7 @@ function settings(analysis) {
     if (setting.profile) words.push(`profile=${setting.profile.map((row) => row.join(":")).join(",")}`);
     return `#setting?${[...words, `closure=${setting.closure}`].join("&")}`;
   }
-  // The setting of an address, or null if it holds none; what it does not say is as in the report.
+  // The setting of an address, or null if it holds none; values that it omits are those of the report.
   function read(address, base) {
     if (!address.startsWith("#setting?")) return null;
     const words = new URLSearchParams(address.slice("#setting?".length)), setting = { ...base, profile: null };
@@ -58,7 +57,7 @@ function settings(analysis) {
     return sound && given.at(-1)[1] > 0 ? given : null;
   }
 
-  // Six digits: more are not known, and differ in nothing that is shown.
+  // Six digits: more are neither known nor shown.
   const neat = (value) => Number(value.toPrecision(6));
   const beside = (law) => map.train.grip !== null || law.rest_force !== 0 || law.rest_damping !== 0;
   function command(setting, law, duration) {
@@ -78,18 +77,18 @@ function settings(analysis) {
   }
   function toml(setting, law) {
     const radius = map.roll_radius, at = setting.temperature === null ? "" : ` at ${digits(setting.temperature - 273.15)} °C`;
-    const closed = setting.closure === "retained" ? [] : [`# The panel's closure is ${setting.closure}; files and hersey map, plan and report know only retained.`];
-    const lines = [...closed, "# The setting tried, for the machine's file (hersey map, plan and report) and for hersey simulate --machine.", "[drivetrain]",
+    const closed = setting.closure === "retained" ? [] : [`# The closure tried is ${setting.closure}; machine files and hersey map, plan and report use only retained.`];
+    const lines = [...closed, "# The setting tried: a machine file for hersey map, plan, report and simulate.", "[drivetrain]",
       `stiffness = "${neat(setting.stiffness)} N/m"`, `mass = "${neat(setting.mass)} kg"`, `roll_radius = "${radius} m"`,
       `stick_speed = "${neat(law.stick_speed)} m/s"`];
     if (setting.temperature !== null) lines.push(`stick_speed_temperature = "${setting.temperature} K"`);
     if (map.stick_speed_rule === "fixed") lines.push('stick_speed_rule = "fixed"');
     const limits = [...(map.limited_by === "motor torque" ? [`motor_torque = "${map.torque_limit} N*m"`] : []),
-      ...(map.train.grip === null ? [] : ["roll_friction = 1.0  # with the load below the grip of the roll", `nip_load = "${map.train.grip} N"`]),
+      ...(map.train.grip === null ? [] : ["roll_friction = 1.0  # with this load, the grip of the roll", `nip_load = "${map.train.grip} N"`]),
       ...(map.speed_limit === null ? [] : [`speed = "${map.speed_limit} m/s"`])];
     if (limits.length) lines.push("", "[limits]", ...limits);
     if (law.rest_force !== 0 || law.rest_damping !== 0) {
-      lines.push("", `[rest]  # of the drive${at}`, `torque = "${neat(law.rest_force * radius)} N*m"`,
+      lines.push("", `[rest]  # no-load torque${at}`, `torque = "${neat(law.rest_force * radius)} N*m"`,
         `damping = "${neat(law.rest_damping * radius ** 2)} N*m*s/rad"`);
     }
     if (setting.temperature !== null) {

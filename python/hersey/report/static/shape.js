@@ -1,4 +1,4 @@
-// Paths of our own drawings, and how wide a text becomes, so that names can be placed before they are drawn.
+// Paths of our own drawings, and the width of a text, so that names can be placed before they are drawn.
 
 const shape = {
   pen: document.createElement("canvas").getContext("2d"),
@@ -7,7 +7,7 @@ const shape = {
     shape.pen.font = `${weight} ${size}px ${shape.family}`;
     return shape.pen.measureText(text).width;
   },
-  // Pixels of a line, to a tenth; a point that is no number lifts the pen.
+  // A line in pixels, to a tenth; a point that is not a number interrupts it.
   path(points) {
     let text = "", down = false;
     for (const [x, y] of points) {

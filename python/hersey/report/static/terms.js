@@ -1,4 +1,4 @@
-// What a term means, an entry of the glossary, where the pointer rests on its label.
+// The meaning of a term, from the glossary, shown where the pointer rests on its label.
 
 const glossary = JSON.parse(document.getElementById("glossary").textContent);
 

@@ -1,4 +1,4 @@
-// The log in one figure: what was used, then speed, torque and temperature on one axis of time with one cursor.
+// The log in one figure: the dwells used, then speed, torque and temperature on one axis of time with one cursor.
 
 const ROW = 82;
 const ROW_ON_PAPER = 56;
@@ -15,9 +15,9 @@ function timeline(parent, says) {
   const last = Math.max(...rows.map((row) => row.time.at(-1)));
   const figure = add(parent, "figure", "", "fig");
   figure.id = "timeline";
-  add(figure, "h3", "The log, one time axis");
+  add(figure, "h3", "The log");
   const place = add(figure, "div", "", "chart");
-  add(figure, "p", `Strip: bar used, thin line settling or changing, red stick-slip.${starts.length > 1 ? " Files one after another." : ""} Pointing at one row reads all; arrow keys move the cursor.`, "note");
+  add(figure, "p", `Green: used; red: stick-slip.${starts.length > 1 ? " Files follow one another." : ""} Point or use arrow keys to read values.`, "note");
   const read = add(figure, "p", "", "sr-only");
   read.setAttribute("aria-live", "polite");
 
@@ -28,7 +28,7 @@ function timeline(parent, says) {
     const rowHeight = onPaper ? ROW_ON_PAPER : ROW;
     const right = width - 6;
     const x = (time) => left + ((time - first) / (last - first || 1)) * (right - left);
-    const root = svg("svg", { width, role: "img", "aria-label": says });
+    const root = svg("svg", { width, role: "img", "aria-label": `The log: speed, torque and temperature against time. ${says}` });
     strip(root, x, left, right);
     const scales = rows.map((row, i) => {
       const floor = top + i * (rowHeight + BETWEEN) + rowHeight;
@@ -85,16 +85,17 @@ function timeline(parent, says) {
       at = Math.min(last, Math.max(first, (at ?? (first + last) / 2) + by * (event.shiftKey ? 0.05 : 0.005) * (last - first)));
       move();
     };
+    for (const inner of root.children) inner.setAttribute("aria-hidden", "true");
     place.replaceChildren(root);
     move();
   };
   place.tabIndex = 0;
   place.setAttribute("role", "group");
-  place.setAttribute("aria-label", "The log; arrow keys move the cursor");
+  place.setAttribute("aria-label", "The log: arrow keys move the cursor");
   atWidth(place, draw);
   return figure;
 }
-// Draws what we draw ourselves anew where its place gets another width, and for paper.
+// Redraw our own drawings where their place gets another width, and for paper.
 function atWidth(place, draw) {
   let known = 0;
   const again = (width) => {
@@ -113,7 +114,7 @@ function nearest(times, at) {
   }
   return at - times[low] < times[high] - at ? low : high;
 }
-// What is read at the cursor, on whichever side there is room.
+// The values at the cursor, on the side where there is room.
 function tag(parent, x, y, text, right) {
   const width = 7.2 * text.length + 8;
   const from = x + width + 4 > right ? x - width - 4 : x + 4;

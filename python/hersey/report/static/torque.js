@@ -1,18 +1,18 @@
 // Torque and damping: the charts, what they say, exponents and dwells.
 
 function torqueNote() {
-  const dwells = plural(data.points.length, "dwell");
-  const level = radius === null ? "" : ` 10 rpm is ${perSecond((10 / TO_RPM) * radius)} mm/s at the belt.`;
-  return `${dwells}; filled: reached from below, open: from above, bars: two standard errors. Lines: ${curveNames()}.${data.fit.rest ? " The no-load torque is taken off." : ""}${level}`;
+  const level = radius === null ? "" : ` 10 rpm = ${perSecond((10 / TO_RPM) * radius)} mm/s at the belt.`;
+  return `Filled: reached from a lower speed; open: from a higher one; bars: two standard errors.${level}`;
 }
-// The laws of the drag curves that carry most of the weight.
+const torqueHeading = () => `Drag torque${data.fit.rest ? ", no-load torque subtracted" : ""}`;
+// The models of the drag curves that carry most of the weight.
 function curveNames() {
   const names = new Map();
   for (const { words, weight } of data.fit.laws ?? []) names.set(words, (names.get(words) ?? 0) + weight);
   const most = [...names].filter(([, weight]) => weight >= 0.05).sort((a, b) => b[1] - a[1]);
-  return most.length ? most.map(([words, weight]) => `${words}${most.length > 1 ? ` (${digits(100 * weight, 2)} %)` : ""}`).join(", ") : "the fitted law";
+  return most.length ? most.map(([words, weight]) => `${words}${most.length > 1 ? ` (${digits(100 * weight, 2)} %)` : ""}`).join(", ") : "the fitted law of damping";
 }
-// Transition speeds over temperature, by the map as far as dwells were measured.
+// Transition speeds over the measured temperatures, from the map where there is one.
 function transitions() {
   const { map, fit } = data;
   if (!map?.temperature || !map.measured_temperature) return fit.transition_curve;
@@ -20,25 +20,24 @@ function transitions() {
   return map.temperature.map((temperature, i) => ({ temperature, speed: (map.transition[i] ?? 0) / map.roll_radius }))
     .filter((each) => each.speed > 0 && each.temperature >= low - 1 && each.temperature <= high + 1);
 }
-// What torque does with speed: claims of rising and falling are those of the tests on the dwells.
+// How torque varies with speed; whether it rises and falls is decided by the tests on the dwells.
 function torqueFinding() {
   const { transition, trend, reference_temperature: level } = data.fit, [slow, fast] = data.fit.speed_range;
   const rises = trend?.rises ?? true, falls = trend?.falls ?? transition !== null, curve = transitions();
   if (rises && falls && trend && !(trend.least > 1.01 * slow && trend.least < 0.99 * fast)) {
-    return `Torque rises with speed and falls again, from ${rolled(slow)} to ${rolled(fast)}.`;
+    return `Torque rises with speed, then falls, from ${rolled(slow)} to ${rolled(fast)}.`;
   }
   if (rises && falls && curve.length >= 2) {
     const [cold, hot] = [curve[0], curve.at(-1)];
-    const way = hot.speed > cold.speed ? "climbs" : "falls";
-    return `Torque rises with speed above the transition and falls below it; the transition ${way} from ${rolled(cold.speed)} at ${whole(cold.temperature)} to ${rolled(hot.speed)} at ${whole(hot.temperature)}.`;
+    return `Torque is lowest at the transition speed: ${rolled(cold.speed)} at ${whole(cold.temperature)}, ${rolled(hot.speed)} at ${whole(hot.temperature)}.`;
   }
   if (rises && falls) {
     const at = transition ? `up to ${rolled(transition.speed.value)}${level === null ? "" : ` at ${degrees(level)}`}` : "at the slow end";
-    return `Torque falls with speed ${at} and rises above.`;
+    return `Torque falls with speed ${at} and rises above that.`;
   }
   const over = `from ${rolled(slow)} to ${rolled(fast)}`;
   if (rises || falls) return `Torque ${rises ? "rises" : "falls"} with speed ${over}.`;
-  // the exponent of one law may exclude a level torque where no test without a law does
+  // the exponent of a law may exclude a constant torque where no test without a law does
   const { low, high } = data.fit.coefficients.c, flat = low === null || high === null || (low <= -1 && high >= -1);
   return `Torque ${flat ? "is constant within" : "stays about its mean within"} ${digits(100 * trend.spread, 2)} % ${over}.`;
 }
@@ -46,11 +45,12 @@ async function torqueSection(parent) {
   const finding = torqueFinding();
   const part = section(parent, "torque", "Torque and damping", finding);
   const columns = add(part, "div", "", "columns");
-  if (data.map) await chart(columns, "torque", { heading: "Drag torque", note: "", says: finding });
-  await chart(columns, "damping", { heading: "Damping = torque / speed", note: data.map ? "" : "Dashed: slope −1, where torque does not depend on speed.", says: finding });
+  if (data.map) await chart(columns, "torque", { heading: torqueHeading(), note: "", says: finding });
+  await chart(columns, "damping", { heading: "Damping = torque / speed", note: data.map ? "" : "Dashed: constant torque (slope −1).", says: finding });
   if (!data.map) await chart(columns, "residuals");
-  if (data.map) add(part, "p", `${torqueNote()} Dashed: slope −1, where torque does not depend on speed.`, "note");
-  const all = fold(part, `Exponents, statistics and ${data.points.length === 1 ? "the dwell" : `all ${data.points.length} dwells`}`, async (inside) => {
+  if (data.map) add(part, "p", `${torqueNote()} Dashed: constant torque.`, "note");
+  const all = fold(part, `Models, exponents, statistics and ${data.points.length === 1 ? "the dwell" : `all ${data.points.length} dwells`}`, async (inside) => {
+    add(inside, "p", `Drag curves: ${curveNames()}.`, "text");
     exponents(inside);
     add(inside, "pre", data.fit.summary).id = "summary";
     dwells(inside);
@@ -63,23 +63,23 @@ async function torqueSection(parent) {
 }
 function exponents(parent) {
   const { coefficients: c, transition } = data.fit;
-  const rows = [["exponent of speed, c", digits(c.c.value), bounds(c.c), transition ? "damping above the transition" : "damping, over all speeds"]];
+  const rows = [["exponent of speed, c", digits(c.c.value), bounds(c.c), transition ? "of damping, above the transition" : "of damping, over all speeds"]];
   if (transition) {
     const at = data.fit.reference_temperature === null ? "" : ` at ${degrees(data.fit.reference_temperature)}`;
-    rows.push(["exponent below it", digits(transition.mixed_exponent.value), bounds(transition.mixed_exponent), "below −1: torque falls with speed"]);
+    rows.push(["exponent below it", digits(transition.mixed_exponent.value), bounds(transition.mixed_exponent), "torque falls with speed where it is below −1"]);
     rows.push([`transition${at}, rpm`, digits(transition.speed.value * TO_RPM), bounds(transition.speed, TO_RPM),
-      transition.closure === null ? "where the branches meet" : `least torque of a gradual bend; the trend lines meet at ${digits(transition.meeting_speed * TO_RPM)} rpm`]);
+      transition.closure === null ? "where the branches meet" : `lowest torque of a gradual bend; the trend lines meet at ${digits(transition.meeting_speed * TO_RPM)} rpm`]);
     rows.push(["gain in AICc of the second branch", digits(transition.evidence), "", "over a single power law"]);
   }
   if (c.b) rows.push(["exponent of temperature, b", digits(c.b.value), bounds(c.b), `in ${data.fit.temperature_scale === "K" ? "K" : "°C"}`]);
   rows.push(["R² of torque", digits(data.fit.r_squared_torque, 4), "", `of damping: ${digits(data.fit.r_squared_damping, 4)}`]);
-  table(parent, ["Number", "Value", "95 % interval", "Meaning"], rows, [1, 2], { label: "Exponents and transition" });
-  if (data.fit.no_transition) add(parent, "p", pretty(`No falling branch is announced: ${data.fit.no_transition}.`), "text");
+  table(parent, ["Quantity", "Value", "95 % interval", "Meaning"], rows, [1, 2], { label: "Exponents and transition" });
+  if (data.fit.no_transition) add(parent, "p", pretty(`No falling branch is reported: ${data.fit.no_transition}.`), "text");
 }
 function dwells(parent) {
   const hot = data.points.some((p) => p.temperature !== null);
   const [factor, unit] = torqueUnit();
-  table(parent, ["Roll, rpm", ...(hot ? ["°C"] : []), `Torque, ${unit}`, "± (1 s.e.)", `Damping, ${unit}·s/rad`, "Off the fit, %", "Approached", "From, s", "To, s"],
+  table(parent, ["Roll, rpm", ...(hot ? ["°C"] : []), `Torque, ${unit}`, "± (1 s.e.)", `Damping, ${unit}·s/rad`, "Measured / fitted − 1, %", "Approached", "From, s", "To, s"],
     data.points.map((p) => [
       digits(p.speed * TO_RPM, 4), ...(hot ? [celsius(p.temperature).toFixed(1)] : []), digits(p.torque * factor, 4),
       digits(p.torque_error * factor, 2), digits(p.damping * factor, 4), (100 * Math.expm1(p.residual)).toFixed(1).replace("-", "−"),

@@ -1,5 +1,5 @@
-// Belt speed against time and the phase plane, on one scale of speed. The first slip does not set that scale: it is
-// cut, and its peak written.
+// Belt speed against time and the phase plane, on one scale of speed. The first slip does not set the scale: it is cut
+// off and its peak is written.
 
 function traces(place) {
   const HEIGHT = 190, TOP = 14, BOTTOM = 34, LEFT = 34;
@@ -8,18 +8,18 @@ function traces(place) {
     const box = add(two, "div"), heading = add(box, "h3", `${title} `);
     add(heading, "span", unit);
     const drawing = svg("svg", { role: "group", "aria-label": title, height: HEIGHT }, box);
-    const picture = svg("g", { role: "img" }, drawing), axes = svg("g", {}, picture);
+    const image = svg("g", { role: "img", "aria-label": title }, drawing), picture = svg("g", { "aria-hidden": "true" }, image), axes = svg("g", {}, picture);
     const name = `pane-${Math.random().toString(36).slice(2)}`;
     const edge = svg("rect", { y: TOP }, svg("clipPath", { id: name }, picture));
     const inside = svg("g", { "clip-path": `url(#${name})` }, picture);
     const line = (kind) => svg("path", { class: kind }, inside);
     const lines = Object.fromEntries(["drive", "unstable", "from-rest", "from-above"].map((kind) => [kind, line(kind)]));
-    return { box, drawing, picture, axes, edge, below, lines,
+    return { box, drawing, image, axes, edge, below, lines,
       dot: svg("circle", { r: 4.5, visibility: "hidden" }, inside), peak: svg("text", { class: "peak" }, picture), over: svg("g", {}, drawing) };
   });
   const [time, plane] = panes;
   const key = add(place, "ul", "", "key");
-  const named = { "from-rest": "from rest", "from-above": "from above", unstable: "edge: outside it sticks", drive: "drive" };
+  const named = { "from-rest": "from rest", "from-above": "from above", unstable: "sticks outside", drive: "drive" };
   const entries = Object.entries(named).map(([kind, text]) => {
     const item = add(key, "li");
     svg("path", { d: "M1 6h24", class: kind }, svg("svg", { viewBox: "0 0 26 12", "aria-hidden": "true" }, item));
@@ -29,7 +29,7 @@ function traces(place) {
   let scales = null, last = null, printing = false, seen = null;
   const peakOf = (values, from = 0) => { let most = 0; for (let i = from; i < values.length; i += 1) most = Math.max(most, values[i]); return most; };
 
-  // From which sample on the first slip is over, the belt slower than the drive again.
+  // The first sample after the first slip, when the belt is slower than the drive again.
   function afterFirst({ belt_speed: v }, speed) {
     let i = 0;
     while (i < v.length && v[i] <= speed) i += 1;
@@ -119,7 +119,7 @@ function traces(place) {
       if (v[i] > v[at]) at = i;
       if (v[i] > scales.top && v[i - 1] <= scales.top) cut += 1;
     }
-    const over = v[at] > scales.top, text = over ? `↑ ${digits(1e3 * v[at])}${cut > 1 ? " at most" : ""}` : "";
+    const over = v[at] > scales.top, text = over ? `↑ ${digits(1e3 * v[at])}${cut > 1 ? " max" : ""}` : "";
     const width = over ? shape.width(text) : 0, x = scales.t(s[at]);
     time.peak.textContent = text;
     time.peak.setAttribute("x", x - width - 8 > LEFT ? x - width - 8 : x + 12);
@@ -142,8 +142,8 @@ function traces(place) {
       return [Math.min(Math.max(share, 0), 1) * scales.duration, Math.min(Math.max(up, 0), 1) * scales.top];
     },
     say(text, phase) {
-      time.picture.setAttribute("aria-label", text);
-      plane.picture.setAttribute("aria-label", phase);
+      time.image.setAttribute("aria-label", text);
+      plane.image.setAttribute("aria-label", phase);
     },
     lag(on, kinds = null) {
       if (!kinds) two.classList.toggle("lags", on);

@@ -1,5 +1,5 @@
-// Other uses of the machine: another limit of the torque, coldest start or duty, and the ages in it. All uses were
-// followed before; the page only chooses. Exposes `otherUses(parent, uses)`.
+// Ages with another torque limit, coldest start or duty. All combinations were computed before; the page only chooses
+// one. Exposes `otherUses(parent, uses)`.
 
 const otherUses = (() => {
   const LEFT = 66, RIGHT = 14, TOP = 20, ROW = 22;
@@ -36,7 +36,7 @@ const otherUses = (() => {
     const unit = uses.age_unit || "units of age";
     const box = parent;
     const head = add(box, "div", "", "cap");
-    add(head, "h2", "With another limit, start or duty");
+    add(head, "h2", "Try another limit");
     const hint = add(head, "span", "", "hint");
     const refresh = [];
 
@@ -46,7 +46,7 @@ const otherUses = (() => {
       const text = add(row, "label", label);
       text.htmlFor = `use-${name}`;
       make(row).id = `use-${name}`;
-      refresh.push(() => { mark.textContent = chosen[name] !== (start[name] ?? "") ? "◆" : ""; mark.title = mark.textContent ? "differs from the machine's file" : ""; });
+      refresh.push(() => { mark.textContent = chosen[name] !== (start[name] ?? "") ? "◆" : ""; mark.title = mark.textContent ? "differs from the machine file" : ""; });
     }
     const words = {
       limit: (at) => `${digits(uses.torque_limits[at])} N·m`, cold: (at) => celsius(uses.coldest[at]), duty: (at) => uses.duties[at] === "as stated" ? "as stated" : `only ${uses.duties[at]}`,
@@ -61,7 +61,7 @@ const otherUses = (() => {
         return range;
       });
     }
-    if (uses.torque_limits.length) steps("Motor torque, at the roll", "limit", uses.torque_limits.length);
+    if (uses.torque_limits.length) steps("Motor torque limit", "limit", uses.torque_limits.length);
     if (uses.coldest.length) steps("Coldest start", "cold", uses.coldest.length);
     if (uses.duties.length > 1) {
       control("Duty", "duty", (row) => {
@@ -74,14 +74,14 @@ const otherUses = (() => {
     }
     control(`${unit[0].toUpperCase()}${unit.slice(1)} per day`, "day", (row) => {
       const field = add(row, "input");
-      Object.assign(field, { type: "text", inputMode: "decimal", placeholder: "none: ages only" });
+      Object.assign(field, { type: "text", inputMode: "decimal", placeholder: "optional" });
       const said = add(row, "span", "", "u");
       said.setAttribute("role", "status");
       field.addEventListener("input", () => { chosen.day = field.value.trim(); draw(); });
       refresh.push(() => {
         if (document.activeElement !== field) field.value = chosen.day;
         const wrong = chosen.day !== "" && !(perDay() > 0);
-        said.textContent = wrong ? "a number above 0, such as 500" : "";
+        said.textContent = wrong ? "Type a number above 0, e.g. 500" : "";
         if (wrong) field.setAttribute("aria-invalid", "true");
         else field.removeAttribute("aria-invalid");
       });
@@ -93,13 +93,13 @@ const otherUses = (() => {
     verdict.setAttribute("aria-live", "polite");
     const figure = add(box, "div", "", "chart");
     figure.id = "chart-uses";
-    const held = add(fold(box, "The numbers"), "div");
+    const held = add(fold(box, "Data"), "div");
     const toml = add(box, "pre", "", "mono");
     toml.id = "use-toml";
     const foot = add(box, "div", "", "foot");
     button(foot, "Link", (from) => copy(location.href.split("#")[0] + address(chosen, start), from));
     button(foot, "TOML", (from) => copy(toml.textContent, from));
-    const back = button(foot, "Back to the machine's file", () => { Object.assign(chosen, start); draw(); });
+    const back = button(foot, "Reset", () => { Object.assign(chosen, start); draw(); });
 
     function lines() {
       const out = [];
@@ -115,12 +115,12 @@ const otherUses = (() => {
       const height = TOP + rows * ROW + 34;
       const x = (age) => LEFT + (Math.min(age, end) / end) * (width - LEFT - RIGHT);
       const words = use.ends.map(({ name, age }) => `${name} ${span(age)}`).join("; ");
-      const drawing = svg("svg", { width, height, role: "img", "aria-label": `First end of each unit, ${unit}: ${words}` });
+      const drawing = svg("svg", { width, height, role: "img", "aria-label": `First failure of each specimen, ${unit}: ${words}` });
       for (const tick of ticks(0, end, 5)) {
         svg("line", { x1: x(tick), x2: x(tick), y1: TOP, y2: height - 30, stroke: "var(--rule)" }, drawing);
         svg("text", { x: x(tick), y: height - 15, "text-anchor": "middle", class: "tl" }, drawing, plain(tick));
       }
-      svg("text", { x: 0, y: 12 }, drawing, `First end (${unit}); hollow: as the machine's file states`);
+      svg("text", { x: 0, y: 12 }, drawing, use === own ? `First failure (${unit})` : `First failure (${unit}); hollow: machine file`);
       use.ends.forEach(({ name, age }, i) => {
         const y = TOP + (i + 0.5) * ROW;
         svg("text", { x: LEFT - 8, y: y + 4, "text-anchor": "end" }, drawing, name);
@@ -133,6 +133,7 @@ const otherUses = (() => {
         if (before && use !== own) bar(before.age, 5, false);
         bar(age, use === own ? 0 : -3, true);
       });
+      for (const inner of drawing.children) inner.setAttribute("aria-hidden", "true");
       return drawing;
     }
 
@@ -143,14 +144,14 @@ const otherUses = (() => {
       const day = perDay();
       const days = day > 0 && half?.age.value ? `, ${plain(rounded(half.age.value / day))} days at ${plain(day)} a day` : "";
       verdict.textContent = half
-        ? `Half of new units have ended at ${span(half.age)} ${unit}${days}${use === own ? "." : `; as the machine's file states it: ${span(own.ends.at(-1).age)}.`}`
-        : "Nothing can be followed in this use.";
+        ? `Half of new specimens fail by ${span(half.age)} ${unit}${days}${use === own ? "." : `, instead of ${span(own.ends.at(-1).age)}.`}`
+        : "No failure mode can be followed under these conditions.";
       figure.replaceChildren(picture(use, Math.max(figure.clientWidth, 300)));
       held.replaceChildren();
-      const heads = ["unit", `first end (${unit})`, ...(day > 0 ? ["days"] : []), "by"];
+      const heads = ["Specimen", `First failure (${unit})`, ...(day > 0 ? ["Days"] : []), "Failure mode"];
       table(held, heads, use.ends.map(({ name, age, ways }) => [name, span(age), ...(day > 0 ? [span(age, 1 / day)] : []), ways]), day > 0 ? [1, 2] : [1], { name: "ages" });
       toml.textContent = lines();
-      hint.textContent = address(chosen, start) === "" ? "as the machine's file states" : "◆ differs from the machine's file";
+      hint.textContent = address(chosen, start) === "" ? "as in the machine file" : "◆ differs from the machine file";
       back.disabled = address(chosen, start) === "";
       history.replaceState(null, "", address(chosen, start) || location.pathname + location.search);
     }

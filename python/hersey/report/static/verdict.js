@@ -1,12 +1,12 @@
-// What is said of a setting: its zone, a signal, a word and the line below it.
+// The verdict on a setting: its zone, a signal, a few words and the line below them.
 
 function verdicts({ map, points, limit, motor, questions }) {
-  // What the report itself says of a setting of its own machine: the verdict on a point of the user's, or that of the
-  // intervals of the map, which count all draws of the drive.
+  // The verdict of the report on a setting of its own machine: that of an operating point, or that of the intervals of
+  // the map, which include all draws of the drive.
   const WORDS = {
-    smooth: ["good", "smooth from any start"], bistable: ["watch", "depends on how the speed is reached"],
+    smooth: ["good", "smooth from any start"], bistable: ["watch", "depends on start"],
     stick_slip: ["act", "sticks from any start"], unstarted: ["watch", "may not start from rest"],
-    open: ["watch", "not sure: within the intervals of V* or of the speed of least drag"],
+    open: ["watch", "uncertain: within the 95 % interval of V* or of the transition"],
   };
   const between = (row, temperature) => {
     if (!map.temperature) return row[0];
@@ -18,7 +18,7 @@ function verdicts({ map, points, limit, motor, questions }) {
     const own = points.find((p) => Math.abs(p.speed / speed - 1) < 1e-6 && (!map.temperature || Math.abs(p.temperature - temperature) < 1e-6));
     if (own) return { signal: own.signal, words: own.words, own: true };
     if (map.speed_limit !== null && speed > map.speed_limit * (1 + 1e-9)) {
-      return { signal: "act", words: `faster than the drive, ${digits(1e3 * map.speed_limit)} mm/s` };
+      return { signal: "act", words: `above the drive limit, ${digits(1e3 * map.speed_limit)} mm/s` };
     }
     const held = (map.holding_interval ?? []).map((row) => between(row, temperature));
     if (map.torque_limit !== null && held[0] > map.torque_limit) return { signal: "act", words: "does not start from rest" };
@@ -28,7 +28,7 @@ function verdicts({ map, points, limit, motor, questions }) {
     return { signal, words };
   }
   const speedText = (v) => `${digits(1e3 * v)} mm/s`;
-  // Whether a motion slides in the end: what swings by less than a thousandth of its speed does, too.
+  // Whether a motion ends in sliding; an oscillation below a thousandth of its speed counts as sliding.
   const slides = (motion, { speed }) => motion?.kind === "steady_sliding"
     || (motion?.kind === "oscillation" && motion.speed_max - motion.speed_min < 1e-3 * speed);
   function zoneNow({ setting, answer, found }) {
@@ -48,35 +48,35 @@ function verdicts({ map, points, limit, motor, questions }) {
     const laps = cycle.frequency > 0 ? `${digits(cycle.frequency)} Hz, stuck ${digits(100 * cycle.stuck_fraction, 2)} %` : "";
     if (setting.profile) return { zone, ...follows(now) };
     if (!zone.starts) {
-      const holds = `a belt at rest needs ${torqueText(law.holding_force * radius)} to break loose, the ${motor ? "motor" : "grip"} gives ${torqueText(limit * radius)}`;
-      const on = ["bistable", "smooth"].includes(zone.moving) ? "; slides on once it slides" : "";
+      const holds = `starting needs ${torqueText(law.holding_force * radius)}, the ${motor ? "motor" : "grip"} gives ${torqueText(limit * radius)}`;
+      const on = ["bistable", "smooth"].includes(zone.moving) ? "; slides once it is moving" : "";
       return { zone, signal: "act", words: `does not start from rest${on}`, sub: [torque, holds] };
     }
     switch (zone.state) {
       case "stall":
-        return { zone, signal: "act", words: "stalls: the roll slips on the belt", sub: [torque, `the roll grips ${torqueText(limit * radius)}`] };
+        return { zone, signal: "act", words: "stalls: the roll slips on the belt", sub: [torque, `the grip is ${torqueText(limit * radius)}`] };
       case "motor":
-        return { zone, signal: "act", words: "stalls: more than the motor bears", sub: [torque, `the motor bears ${torqueText(limit * radius)}`] };
+        return { zone, signal: "act", words: "stalls: above the motor limit", sub: [torque, `the motor gives ${torqueText(limit * radius)}`] };
       case "smooth": return { zone, signal: "good", words: "smooth from any start", sub: [torque, settles(motion, setting)] };
       case "bistable": {
-        const kick = kicked ? (kicked.value === null ? "bears any kick" : `bears a kick of ${digits(1e3 * kicked.value, 2)} mm/s`) : "";
-        return { zone, signal: "watch", words: "sticks from rest, slides from above", sub: [torque, laps, kick] };
+        const kick = kicked ? (kicked.value === null ? "survives any speed loss" : `survives a loss of ${digits(1e3 * kicked.value, 2)} mm/s`) : "";
+        return { zone, signal: "watch", words: "depends on start: sticks from rest, slides from above", sub: [torque, laps, kick] };
       }
-      case "swing": return { zone, signal: "watch", words: "swings from above; sticks once it has stuck", sub: [torque, laps] };
+      case "swing": return { zone, signal: "watch", words: "depends on start: oscillates from above, sticks once it has stuck", sub: [torque, laps] };
       default:
-        if (setting.speed <= law.stick_speed) return { zone, signal: "act", words: "creeps, slower than the stick speed", sub: [torque] };
-        return { zone, signal: "act", words: "sticks and slips from any start", sub: [laps && `${laps} of the time`, cycle.speed_max > 0 ? `belt peaks at ${speedText(cycle.speed_max)}` : torque] };
+        if (setting.speed <= law.stick_speed) return { zone, signal: "act", words: "sticks: slower than the stick speed", sub: [torque] };
+        return { zone, signal: "act", words: "sticks from any start", sub: [laps && `${laps} of the time`, cycle.speed_max > 0 ? `belt peak ${speedText(cycle.speed_max)}` : torque] };
     }
   }
   const [perNewtonMetre, torqueName] = torqueUnit();
   const torqueText = (value) => `${digits(perNewtonMetre * value)} ${torqueName}`;
-  // When the belt stays within 2 % of the drive, counted from its first slip.
+  // The time from the first slip until the belt stays within 2 % of the drive.
   function settles({ time, belt_speed: v }, setting) {
     let off = v.length - 1, slip = 0;
     while (off >= 0 && Math.abs(v[off] / setting.speed - 1) <= 0.02) off -= 1;
     while (slip < v.length && v[slip] < setting.speed) slip += 1;
     if (slip >= v.length) return "";
-    if (off > 0.97 * v.length) return `settles later than the ${digits(time.at(-1))} s drawn`;
+    if (off > 0.97 * v.length) return `settles after more than ${digits(time.at(-1))} s`;
     return `settles ${digits(Math.max(time[off + 1] - time[slip], 0), 2)} s after the first slip`;
   }
   function follows({ setting, answer }) {
@@ -85,13 +85,13 @@ function verdicts({ map, points, limit, motor, questions }) {
     while (stuck >= 0 && v[stuck] > law.stick_speed * (1 + 1e-6)) stuck -= 1;
     while (first < v.length && !(v[first] > law.stick_speed * (1 + 1e-6))) first += 1;
     const peak = v.reduce((a, b) => Math.max(a, b), 0), pull = motion.spring_force.reduce((a, b) => Math.max(a, b), 0);
-    const sub = [`belt peaks at ${speedText(peak)}`, `spring pulls ${digits(pull)} N`];
-    if (first >= v.length) return { signal: "act", words: "does not move under this profile", sub };
+    const sub = [`belt peak ${speedText(peak)}`, `spring force up to ${digits(pull)} N`];
+    if (first >= v.length) return { signal: "act", words: "does not start with this profile", sub };
     const watched = 3 * 2 * Math.PI * Math.sqrt(answer.train.mass / answer.train.stiffness);
     if (time.at(-1) - time[Math.max(stuck, 0)] > watched && time.at(-1) > last) {
-      return { signal: "good", words: `slides from ${digits(time[Math.min(stuck + 1, v.length - 1)], 3)} s on under this profile`, sub };
+      return { signal: "good", words: `slides from ${digits(time[Math.min(stuck + 1, v.length - 1)], 3)} s on with this profile`, sub };
     }
-    return { signal: "act", words: "still sticks and slips at the end of this profile", sub };
+    return { signal: "act", words: "still sticks at the end of this profile", sub };
   }
   return { slides, told, reported, speedText };
 }
