@@ -38,13 +38,14 @@ _SHARED = ("lower", "transition", "upper", "stalls", "lower_accuracy", "upper_ac
 class HysteresisBand(Result):
     """Drive speeds that separate sliding and stick-slip, with their accuracy.
 
-    ``lower_accuracy`` and ``upper_accuracy`` are relative. ``method`` is ``half laps`` (slip motions forward
-    and backward in time that meet) or ``simulation`` (from rest, by bisection). If ``deeper``, the stick-slip
-    that survives to the highest speed is released above the stick speed (docs/theory/hysteresis.md). ``sensitivity``
-    holds the relative change of ``upper`` per relative change of each parameter, and ``lower_sensitivity``
-    the same for ``lower``; both are empty if not requested. ``interval`` and ``lower_interval`` enclose 95 %
-    of the folds of the samples given, ``share_bistable`` is the share of them that have a band. ``upper`` is
-    infinite beyond 10,000 transition speeds.
+    ``lower_accuracy`` and ``upper_accuracy`` are relative. ``method`` is ``half laps`` (slip motions
+    forward and backward in time that meet) or ``simulation`` (from rest, by bisection). If ``deeper``,
+    the stick-slip that survives to the highest speed is released above the stick speed
+    (docs/theory/hysteresis.md). ``sensitivity`` holds the relative change of ``upper`` per relative
+    change of each parameter, and ``lower_sensitivity`` the same for ``lower``; both are empty if not
+    requested. ``interval`` and ``lower_interval`` enclose 95 % of the folds of the samples given,
+    ``share_bistable`` is the share of them that have a band. ``upper`` is infinite beyond 10,000
+    transition speeds.
     """
 
     also_stated = ("bistable", "verdict")
