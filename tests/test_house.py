@@ -373,13 +373,14 @@ def test_every_flag_is_in_the_docs() -> None:
     sections = (ROOT / "docs" / "commands.md").read_text().split("\n## hersey ")
     documented = {section.split(maxsplit=1)[0]: section for section in sections[1:]}
     assert set(documented) == set(commands())
-    of_a_log, of_a_belt = sections[0].split("\n## ")[1:]
+    printed, _exit_codes, of_a_log, of_a_belt = sections[0].split("\n## ")[1:]
     for name, command in commands().items():
         parameters = [
             p for each in (command, *getattr(command, "commands", {}).values()) for p in each.params
         ]
         own = {parameter.name for parameter in parameters}
-        text = documented[name] + of_a_log * ("min_dwell" in own) + of_a_belt * ("ehl_exponent" in own)
+        shared = printed * ("quiet" in own) + of_a_log * ("min_dwell" in own)
+        text = documented[name] + shared + of_a_belt * ("ehl_exponent" in own)
         for parameter in parameters:
             for flag in parameter.opts:
                 if flag.startswith("--"):

@@ -14,7 +14,6 @@ LEFT = {
     ("docs", "not told"): 2,
     ("page", "taken off"): 3,
     ("page", "not told"): 3,
-    ("cli", "taken off"): 1,
 }
 
 
