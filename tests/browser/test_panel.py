@@ -271,11 +271,11 @@ def test_the_command_reproduces_the_setting(page: Page, tmp_path: Path) -> None:
     ran = subprocess.run(
         [sys.executable, "-m", "hersey.cli", *words], cwd=tmp_path, capture_output=True, text=True, check=True
     )
-    numbers = dict(re.findall(r"(frequency|stuck fraction) +([\d.]+)", ran.stdout))
+    numbers = dict(re.findall(r"(frequency|stuck) +([\d.]+)", ran.stdout))
     shown = re.search(r"([\d.]+) Hz, stuck ([\d.]+) %", verdict(page))
     assert shown is not None
     assert float(shown[1]) == float(f"{float(numbers['frequency']):.3g}")
-    assert float(shown[2]) == float(f"{100 * float(numbers['stuck fraction']):.2g}")
+    assert float(shown[2]) == float(f"{float(numbers['stuck']):.2g}")
 
 
 def test_a_profile_is_followed_and_edited(page: Page, tmp_path: Path) -> None:

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from unittest import mock
 
-from hersey.cli import main
+from hersey.cli import main, progress
 from hersey.errors import speak
 
 #: The command in a process of its own.
@@ -29,14 +29,23 @@ class Done:
     stdout: str
     stderr: str
 
+    @property
+    def words(self) -> str:
+        """What it printed on stdout on one line, wherever lines end."""
+        return " ".join(self.stdout.split())
 
-def run(*arguments: str | Path, cwd: Path, answers: str = "") -> Done:
-    """Type a command in a folder, and answers; it runs in this process, warnings printed as they would be."""
+
+def run(*arguments: str | Path, cwd: Path, answers: str = "", patience: float = 3600.0) -> Done:
+    """Type a command in a folder, and answers; it runs in this process, warnings printed as they would be.
+
+    Work that takes longer than ``patience``, s, is named on stderr; by default no work does.
+    """
     stdout, stderr = io.StringIO(), io.StringIO()
     with (
         contextlib.chdir(cwd),
         mock.patch.object(sys, "argv", ["hersey", *map(str, arguments)]),
         mock.patch.object(sys, "stdin", io.StringIO(answers)),
+        mock.patch.object(progress, "PATIENCE", patience),
         contextlib.redirect_stdout(stdout),
         contextlib.redirect_stderr(stderr),
         _handlers_kept(),

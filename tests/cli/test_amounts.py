@@ -44,10 +44,7 @@ def test_numbers_with_units_are_in_si_and_so_is_the_baseline_beside_them() -> No
     filled = amounts({"mass": None, "stiffness": "1 N/m"}, needed=("mass", "stiffness"))
     assert filled.in_si
     assert filled.values["mass"] == pytest.approx(OUNCE / INCH, rel=1e-12)
-    assert filled.words == [
-        "- in SI: m, s, N, kg",
-        "- not given, so that of the paper's baseline: mass 10.95 kg",
-    ]
+    assert filled.words == ["- Not given; using the paper's baseline values: mass 10.9 kg."]
 
 
 def test_the_machine_fills_what_is_not_given() -> None:
@@ -60,8 +57,8 @@ def test_the_machine_fills_what_is_not_given() -> None:
 @pytest.mark.parametrize(
     ("given", "machine", "says"),
     [
-        ({"stiffness": "11 N/mm", "mass": "1"}, None, "--mass 1 has no unit beside --stiffness '11 N/mm'"),
-        ({"mass": "1"}, MACHINE, "--mass 1 has no unit beside --machine: write it with one, as '1 kg'"),
+        ({"stiffness": "11 N/mm", "mass": "1"}, None, "--mass 1 has no unit, but --stiffness '11 N/mm' has"),
+        ({"mass": "1"}, MACHINE, "--mass 1 has no unit, which --machine requires: write '1 kg', for example"),
         ({"stiffness": "11 N/mmm"}, None, "--stiffness: unknown unit 'N/mmm'"),
         ({"stiffness": "11 kg"}, None, "--stiffness: unit 'kg' is not a unit of stiffness"),
         ({"mass": "heavy"}, None, "--mass is 'heavy': write a number"),
@@ -150,11 +147,11 @@ def test_a_machine_brings_grip_motor_and_rest(tmp_path: Path) -> None:
     (tmp_path / "weak.toml").write_text("\n".join([*lines, *grip]))
     drag = ["--transition-force", "14 N", "--transition-speed", "25 mm/s"]
     typed = ["simulate", *drag, "--drive-speed", "20 mm/s", "--machine"]
-    weak = run(*typed, "weak.toml", cwd=tmp_path).stdout
-    assert weak.startswith("stalled")
-    assert ", starting at 0.0818182" in weak
-    assert "the motor gives 0.2 N m, but this motion needs up to 0.27 N m" in weak
-    assert "the roll grips the belt with up to 18 N; it does not start one at rest" in weak
+    weak = run(*typed, "weak.toml", cwd=tmp_path).words
+    assert weak.startswith("The belt stalls")
+    assert "the roll slips on the belt from 0.0818182 on" in weak
+    assert "The motor is too weak: the motion needs up to 0.27 of the 0.2 N·m of the motor" in weak
+    assert "The roll can pull the belt with up to 18 N. It cannot start a belt at rest" in weak
     free = json.loads(run(*typed, "free.toml", "--json", cwd=tmp_path).stdout)
     assert (free["kind"], free["motor"]["limit"]) == ("stick_slip", pytest.approx(0.2))
     assert free["motor"]["torque"] > 1.0
@@ -162,8 +159,8 @@ def test_a_machine_brings_grip_motor_and_rest(tmp_path: Path) -> None:
     exponents = ["ehl_exponent = -0.7", "mixed_exponent = -1.2", 'drive_speed = "20 mm/s"']
     shape = ['transition_force = "14 N"', 'transition_speed = "25 mm/s"', *exponents]
     scenario.write_text("\n".join(["[parameters]", *shape]))
-    for file, kind in (("weak.toml", "stalled"), ("free.toml", "stick slip")):
-        done = run("sweep", scenario, "--machine", file, cwd=tmp_path).stdout
-        assert done.startswith(kind)
-        assert "the no-load torque acts beside the drag: 1.333 N and 0 N s/m" in done
-        assert ("the roll grips the belt with up to 18 N" in done) == (file == "weak.toml")
+    for file, kind in (("weak.toml", "stalled"), ("free.toml", "stick-slip")):
+        done = run("sweep", scenario, "--machine", file, cwd=tmp_path).words
+        assert done.startswith(f"1 set of parameters {kind} 1 (100 %)")
+        assert "The no-load torque is added to the drag: 1.33 N + 0 N·s/m times speed" in done
+        assert ("The roll can pull the belt with up to 18 N" in done) == (file == "weak.toml")

@@ -25,7 +25,7 @@ def here(tmp_path: Path) -> Path:
 
 
 def figures(text: str) -> dict[str, float]:
-    return {name: float(value) for name, value in re.findall(r"(frequency|stuck fraction) +([\d.]+)", text)}
+    return {name: float(value) for name, value in re.findall(r"(frequency|stuck) +([\d.]+)", text)}
 
 
 def test_a_table_of_two_branches_moves_as_they_do(here: Path) -> None:
@@ -43,16 +43,16 @@ def test_a_table_of_two_branches_moves_as_they_do(here: Path) -> None:
     done = run("simulate", *BELT, *DRIVE, "--drag-table", "drag.csv", *held, cwd=here)
     stretched = re.search(r"stretch +\S+ to ([\d.]+)", done.stdout)
     assert stretched is not None
-    assert float(stretched[1]) == pytest.approx(90.0 / 11e3, rel=0.02)
+    assert 1e-3 * float(stretched[1]) == pytest.approx(90.0 / 11e3, rel=0.02)
 
 
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (("--stick-speed", "1 mm/s", "--transition-force", "4 N"), "leave one out"),
-        (("--stick-speed", "1 mm/s", "--ehl-exponent", "-0.5"), "leave one out"),
+        (("--stick-speed", "1 mm/s", "--transition-force", "4 N"), "exclude each other"),
+        (("--stick-speed", "1 mm/s", "--ehl-exponent", "-0.5"), "exclude each other"),
         ((), "--stick-speed '0.3 mm/s'"),
-        (("--stick-speed", "2"), "write the other numbers with units too"),
+        (("--stick-speed", "2"), "give the other numbers with units too"),
         (("--stick-speed", "30 mm/s"), "drag.csv: stick_speed is 0.03: it must be less than 0.025"),
     ],
 )
@@ -67,8 +67,8 @@ def test_what_does_not_go_with_a_table_is_refused(here: Path, words: tuple[str, 
     ("text", "said"),
     [
         ("speed (mm/s)\n1\n", "line 1: add a column 'force (N)'"),
-        ("speed (mm/s),force (N)\n", "has no rows: write a speed and a force in each"),
-        ("speed (mm/s),force (N)\n1,2\n3,x\n", "line 3: 'x' is no number"),
+        ("speed (mm/s),force (N)\n", "has no rows: write speed and force in each row"),
+        ("speed (mm/s),force (N)\n1,2\n3,x\n", "line 3: 'x' is not a number"),
         ("speed (mm/s),force (K)\n1,2\n", "column 'force (K)'"),
         ("speed (mm/s),force (N)\n3,2\n1,4\n", "bad.csv: "),
     ],

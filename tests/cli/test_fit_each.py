@@ -31,7 +31,7 @@ def typed(folder: Path, *arguments: str) -> Done:
 
 def test_each_log_is_a_row(folder: Path) -> None:
     done = typed(folder, "logs/*.csv", "--each", "fits.csv")
-    assert (done.returncode, done.stdout, done.stderr) == (0, "fits of 2 logs: fits.csv\n", "")
+    assert (done.returncode, done.stdout, done.stderr) == (0, "2 of 2 logs are fitted.\nfits.csv\n", "")
     table = pl.read_csv(folder / "fits.csv")
     assert table["log"].to_list() == [f"logs/{number}.csv" for number in range(2)]
     assert table["dwells"].to_list() == [10] * 2
@@ -63,7 +63,7 @@ def test_what_fails_is_left_out_only_when_asked(folder: Path) -> None:
     assert "0b.csv" in done.stderr
     assert not (folder / "fits.csv").exists()
     done = typed(folder, "logs/*.csv", "none.csv", "--each", "fits.csv", "--keep-going")
-    assert (done.returncode, done.stdout) == (1, "fits of 2 logs: fits.csv\n")
+    assert (done.returncode, done.stdout) == (1, "2 of 4 logs are fitted.\nfits.csv\n")
     assert [line.split(": ")[0] for line in done.stderr.splitlines()] == ["- logs/0b.csv", "- none.csv"]
     (folder / "fits.csv").unlink()
     done = typed(folder, "none.csv", "--each", "fits.csv", "--keep-going")
@@ -76,9 +76,9 @@ def test_what_fails_is_left_out_only_when_asked(folder: Path) -> None:
     [
         (["--each", "fits.xlsx"], "ends in .csv or .parquet"),
         (["--each", "logs/0.csv"], "is an input"),
-        (["--each", "fits.csv", "--json"], "leave one of them out"),
-        (["--keep-going"], "go with --each TABLE"),
-        (["--workers", "2"], "go with --each TABLE"),
+        (["--each", "fits.csv", "--json"], "give one of them"),
+        (["--keep-going"], "need --each TABLE"),
+        (["--workers", "2"], "need --each TABLE"),
         (["--each", "fits.csv", "--workers", "2", "--scheduler", "tcp://x:1"], "give one"),
         (["x*.csv", "--each", "fits.csv"], "no file matches"),
         (["logs/0.csv", "--each", "fits.csv"], "is given twice"),

@@ -99,6 +99,11 @@ def typed(it: Refused) -> list[str]:
     return proposals[0]
 
 
+def unwrapped(text: str) -> list[str]:
+    """The lines of a text as they were before a terminal's width broke them."""
+    return re.sub(r"\n {2,}", " ", text).splitlines()
+
+
 def key_renamed(it: Refused) -> list[str]:
     """Write the key that was meant for the one that is none, in the file that is named."""
     match = re.search(r"hersey: (\S+): .*unknown (?:key|table) '(\w+)'. Did you mean \[?'?(\w+)", it.message)
@@ -119,7 +124,7 @@ def value_replaced(it: Refused) -> list[str]:
 
 def table_added(it: Refused) -> list[str]:
     """Add the table with the keys that the message gives as examples."""
-    match = re.search(r"hersey: (\S+): .*write (\[\w+\]) and below it yours of (.*)$", it.message)
+    match = re.search(r"hersey: (\S+): .*add (\[\w+\]) with your values, e.g. (.*)$", it.message)
     assert match
     with (it.folder / match[1]).open("a") as file:
         file.write("\n".join(["", match[2], *match[3].split("; "), ""]))
@@ -177,7 +182,7 @@ def swapped(it: Refused) -> list[str]:
 
 def with_unit(it: Refused) -> list[str]:
     """Write the number with the unit that the message shows."""
-    match = re.search(r"(--[\w-]+) \S+ has no unit .* as '([^']*)'", it.message)
+    match = re.search(r"(--[\w-]+) \S+ has no unit, .*: write '([^']*)'", it.message)
     assert match
     at = it.arguments.index(match[1]) + 1
     return [*it.arguments[:at], match[2], *it.arguments[at + 1 :]]
@@ -406,7 +411,7 @@ MISTAKES: dict[str, Mistake] = {
     "numbers with and without units": Mistake(
         {},
         "simulate --stiffness '11 N/mm' --mass 1",
-        ("--mass 1 has no unit beside --stiffness '11 N/mm'",),
+        ("--mass 1 has no unit, but --stiffness '11 N/mm' has",),
         with_unit,
     ),
     "a film without a contact": Mistake(
@@ -526,10 +531,10 @@ def test_what_is_doubtful_is_cautioned_of_and_its_advice_ends_the_caution(
     content, words, _ = DOUBTFUL[case]
     (tmp_path / "log.csv").write_text(content)
     done = run(command, "log.csv", cwd=tmp_path)
-    (caution,) = [line for line in done.stdout.splitlines() if words in line]
+    (caution,) = [line for line in unwrapped(done.stdout) if words in line]
     done = run(*typed(Refused(tmp_path, [command, "log.csv"], f"hersey: {caution}")), cwd=tmp_path)
     assert done.returncode == 0
-    assert words not in done.stdout
+    assert words not in done.words
 
 
 def test_one_bad_cell_costs_its_row_and_is_named(tmp_path: Path) -> None:
@@ -585,10 +590,10 @@ def test_a_table_of_means_takes_the_signs_too(tmp_path: Path) -> None:
         arguments = [verb, "log.csv", "--means", "--isothermal"]
         done = run(*arguments, cwd=tmp_path)
         said = done.stderr if done.returncode else done.stdout
-        (line,) = [each for each in said.splitlines() if "opposite signs" in each][:1]
+        (line,) = [each for each in unwrapped(said) if "opposite signs" in each][:1]
         done = run(*typed(Refused(tmp_path, arguments, f"hersey: {line}")), cwd=tmp_path)
         assert done.returncode == 0, done.stderr
-        assert "opposite signs" not in done.stdout
+        assert "opposite signs" not in done.words
 
 
 def test_a_workbook_of_two_tables_asks_which(tmp_path: Path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -22,11 +23,14 @@ def printed(*arguments: str | Path) -> str:
 
 
 def test_models_of_a_log(bench_csv: Path) -> None:
-    text = printed("models", bench_csv, *BENCH, "--bootstrap", "20", "--seed", "9")
+    short = printed("models", bench_csv, *BENCH, "--bootstrap", "20", "--seed", "9")
+    assert re.search(r"^\* +\d+\.\d +[\d.]+ %  (power law in degC|VFT)", short, re.MULTILINE)
+    assert re.search(r"^  transition speed +[\d.]+ \[[\d.]+, [\d.]+\] rpm$", short, re.MULTILINE)
+    text = printed("models", bench_csv, *BENCH, "--bootstrap", "20", "--seed", "9", "--verbose")
     assert "* power law in degC" in text or "* VFT" in text
     assert "20 fits resampled by level, seed 9" in text
     assert "cal/mol" in text
-    assert "collapse onto one" in text
+    assert "collapse onto one" in " ".join(text.split())
 
 
 def test_models_as_json(bench_csv: Path, tmp_path: Path) -> None:
@@ -55,7 +59,7 @@ def test_design_of_a_log(bench_csv: Path) -> None:
 def test_a_range_that_is_none(bench_csv: Path, flag: str, text: str) -> None:
     done = run("design", bench_csv, *BENCH, flag, text, cwd=ROOT)
     assert done.returncode == 2
-    assert f"{flag} '{text}' is no range" in done.stderr
+    assert f"{flag} '{text}' is not a range" in done.stderr
 
 
 def test_compare_two_logs(bench_csv: Path, tmp_path: Path) -> None:
@@ -69,7 +73,7 @@ def test_compare_two_logs(bench_csv: Path, tmp_path: Path) -> None:
 def test_film_says_who_shares_the_load(bench_csv: Path, tmp_path: Path) -> None:
     machine = tmp_path / "machine.toml"
     machine.write_text((ROOT / "tests" / "stand" / "machine.toml").read_text() + STATED)
-    text = printed("film", machine, "--log", bench_csv, *BENCH)
+    text = printed("film", machine, "--log", bench_csv, *BENCH, "--verbose")
     assert "asperities carry 15 to 44.4 %" in text
     row = next(line for line in text.splitlines() if line.startswith("   180.0 ") and "[" in line)
     assert float(row.split()[1]) / float(row.split()[2]) == pytest.approx(float(row.split()[5]), rel=0.02)

@@ -50,7 +50,7 @@ def test_answers_from_a_pipe_become_two_files_with_comments(folder: Path) -> Non
     assert done.returncode == 0, done.stderr
     assert "channel of the torque [Torque]" in done.stderr
     assert done.stdout.splitlines() == [
-        "mapping: hersey.toml", "machine: machine.toml", "now: hersey report log.csv --machine machine.toml",
+        "hersey.toml", "machine.toml", "Next: hersey report log.csv --machine machine.toml",
     ]  # fmt: skip
     assert read_mapping(folder / "hersey.toml").channels["speed"] == "Speed"
     machine = read_machine(folder / "machine.toml")
@@ -69,8 +69,8 @@ def test_a_dash_leaves_out_and_the_end_leaves_out_the_rest(folder: Path) -> None
         "speed": "Speed",
         "time": "Time",
     }
-    assert "no machine's file" in done.stderr
-    assert done.stdout.endswith("now: hersey report log.csv --mapping own.toml\n")
+    assert "No machine file is written" in done.stderr
+    assert done.stdout.endswith("Next: hersey report log.csv --mapping own.toml\n")
 
 
 @pytest.mark.parametrize(
@@ -79,8 +79,8 @@ def test_a_dash_leaves_out_and_the_end_leaves_out_the_rest(folder: Path) -> None
         ([], "hersey new asks questions: type it in a terminal, or pipe the answers"),
         (["Moment"], "answer 1, channel of the torque: log.csv: there is no column 'Moment' (torque)"),
         (["", "rpm"], "answer 2, unit of the torque: unit 'rpm' is not a unit of torque"),
-        ([*CHANNELS, "11"], "answer 9, k stiffness: '11' has no unit: write one, as in '11 N/mm'"),
-        ([*CHANNELS, "11 N/mm", ""], "answer 10, m mass: this is needed: nothing is written"),
+        ([*CHANNELS, "11"], "answer 9, k stiffness: '11' has no unit: write '11 N/mm', for example"),
+        ([*CHANNELS, "11 N/mm", ""], "answer 10, m mass: this answer is required; nothing is written"),
         ([*CHANNELS, "11 N/mm", "11 kg"], "the answers end before 'R roll radius'"),
     ],
 )
@@ -108,7 +108,7 @@ def test_files_that_are_there_are_not_replaced_unasked(folder: Path) -> None:
     assert run("new", "--force", cwd=folder, answers=lines(*MACHINE)).returncode == 0
     assert read_machine(folder / "machine.toml").mass == 11.0
     done = run("new", "--mapping", "x.toml", cwd=folder)
-    assert "name the LOG too" in done.stderr
+    assert "--mapping needs a LOG" in done.stderr
 
 
 class Terminal:
@@ -154,7 +154,7 @@ def test_in_a_terminal_a_wrong_answer_is_asked_again_and_ctrl_c_leaves_nothing(f
     terminal = Terminal(folder, "new", "--machine", "m.toml")
     terminal.until("k stiffness")
     terminal.type("11")
-    terminal.until("'11' has no unit: write one, as in '11 N/mm'")
+    terminal.until("'11' has no unit: write '11 N/mm', for example")
     terminal.until("k stiffness")
     terminal.type("11 N/mm")
     terminal.until("m mass")
@@ -199,8 +199,8 @@ def test_what_no_log_tells_is_left_to_be_completed(
     done = run("new", "log.csv", cwd=tmp_path, answers=lines(*CHANNELS, ""))
     assert done.returncode == 0, done.stderr
     first, complete, then = done.stdout.splitlines()
-    assert (first, complete) == ("mapping: hersey.toml", f"complete first: hersey.toml, {lines_to_complete}")
-    assert then == "then: hersey report log.csv"
+    assert (first, complete) == ("hersey.toml", f"First complete hersey.toml: {lines_to_complete}")
+    assert then == "Then: hersey report log.csv"
     mapping = tmp_path / "hersey.toml"
     named = [int(number) for number in re.findall(r"line (\d+)", complete)]
     written = mapping.read_text().splitlines()
@@ -225,11 +225,11 @@ def test_a_log_without_temperature_gets_a_command_that_works(tmp_path: Path) -> 
     rows = [",".join(line.split(",")[:3]) for line in text(staircase()).decode().splitlines()]
     (tmp_path / "log.csv").write_text("\n".join(rows) + "\n")
     done = run("new", "log.csv", cwd=tmp_path, answers=lines(*CHANNELS, ""))
-    assert done.stdout.splitlines()[1:] == ["now: hersey report log.csv --isothermal"]
+    assert done.stdout.splitlines()[1:] == ["Next: hersey report log.csv --isothermal"]
     assert run("report", "log.csv", "--isothermal", cwd=tmp_path).returncode == 0
 
 
 def test_a_table_of_means_needs_no_time(tmp_path: Path) -> None:
     means(tmp_path / "log.csv")
     done = run("new", "log.csv", cwd=tmp_path, answers=lines(*CHANNELS, ""))
-    assert done.stdout.splitlines() == ["mapping: hersey.toml", "now: hersey report log.csv"]
+    assert done.stdout.splitlines() == ["hersey.toml", "Next: hersey report log.csv"]

@@ -50,7 +50,7 @@ def test_a_no_load_log_is_taken_off(folder: Path) -> None:
     done = run("fit", "log.csv", "--no-load", "free.csv", "--json", cwd=folder)
     assert done.returncode == 0, done.stderr
     assert exponent(done.stdout) == pytest.approx(-0.6, abs=1e-6)
-    assert "no-load torque: 20 mN m + 1 mN m s/rad times speed" in done.stderr
+    assert "No-load torque subtracted: 20 mN m + 1 mN m s/rad times speed" in done.stderr
     (folder / "fit.json").write_text(done.stdout)
     assert json.loads(done.stdout)["fit"]["rest"]["source"] == "free.csv"
     assert exponent(run("fit", "log.csv", "--json", cwd=folder).stdout) < -0.61
@@ -94,7 +94,7 @@ def test_a_log_of_the_machine_is_found_beside_it(folder: Path) -> None:
         (("fit", "log.csv", "--no-load", "none.csv"), "none.csv"),
         (
             ("map", "machine.toml", "--fit", "whole.json"),
-            "whole.json is fitted to the whole torque, and [rest] of machine.toml says what the drive takes",
+            "whole.json was fitted to the whole torque, but [rest] of machine.toml states a no-load torque",
         ),
     ],
 )

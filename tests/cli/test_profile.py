@@ -39,12 +39,12 @@ def test_it_is_followed_to_its_end(tmp_path: Path) -> None:
         ("time (s),speed\n0,0\n", r"line 1: add a column 'speed \(mm/s\)'"),
         ("time (s),speed (rpm)\n0,0\n", r"column 'speed \(rpm\)': unit 'rpm' is not a unit of belt speed"),
         ("time (s),speed (mm/s)\n", "has no rows"),
-        ("time (s),speed (mm/s)\n0,1\n1,x\n", "line 3: 'x' is no number"),
-        ("time (s),speed (mm/s)\n0,1\n1\n", "line 3: '' is no number"),
+        ("time (s),speed (mm/s)\n0,1\n1,x\n", "line 3: 'x' is not a number"),
+        ("time (s),speed (mm/s)\n0,1\n1\n", "line 3: '' is not a number"),
         ("time (s),speed (mm/s)\n0,1\n1,nan\n", "a number is not finite"),
         ("time (s),speed (mm/s)\n1,1\n0,1\n", "time runs backwards"),
         ("time (s),speed (mm/s)\n0,1\n1,0\n", "the last must be greater than 0"),
-        ("time (s),speed (mm/s)\n0,-1\n1,2\n", "no speed may be less than 0"),
+        ("time (s),speed (mm/s)\n0,-1\n1,2\n", "speeds must not be negative"),
     ],
 )
 def test_what_is_wrong_is_named(tmp_path: Path, text: str, told: str) -> None:
@@ -57,4 +57,7 @@ def test_what_is_wrong_is_named(tmp_path: Path, text: str, told: str) -> None:
 def test_one_speed_or_a_profile(tmp_path: Path) -> None:
     (tmp_path / "p.csv").write_text("time (s),speed (mm/s)\n0,5\n")
     done = run("simulate", "--profile", "p.csv", "--drive-speed", "1 mm/s", cwd=tmp_path)
-    assert (done.returncode, done.stderr) == (2, "hersey: --profile and --drive-speed exclude each other\n")
+    assert (done.returncode, done.stderr) == (
+        2,
+        "hersey: --profile and --drive-speed exclude each other: give one of them\n",
+    )

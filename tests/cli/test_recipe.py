@@ -25,7 +25,7 @@ def folder(tmp_path: Path) -> Path:
     shutil.copy(BENCH, tmp_path / "logs" / "bench.csv")
     done = run("inspect", "logs/bench.csv", *TARE, "--save-recipe", "kept/recipe.toml", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
-    assert done.stdout.rstrip().endswith("recipe: kept/recipe.toml")
+    assert done.stdout.rstrip().endswith("\nkept/recipe.toml")
     return tmp_path
 
 
@@ -127,7 +127,7 @@ def test_a_finished_fit_takes_no_recipe(folder: Path) -> None:
     (folder / "fit.json").write_text("{}")
     machine = ROOT / "tests" / "stand" / "machine.toml"
     done = run("map", machine, "--fit", "fit.json", "--recipe", "kept/recipe.toml", cwd=folder)
-    assert "--fit holds a finished fit" in done.stderr
+    assert "--fit names a saved fit" in done.stderr
 
 
 def test_a_film_is_compared_with_the_log_of_a_recipe(folder: Path) -> None:

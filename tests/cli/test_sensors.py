@@ -24,7 +24,7 @@ gain_error = "3 %"
 [sensors.speed]
 gain_error = "0.5 %"
 """
-BOTH = "errors of the sensor of torque: those of the mapping are used, not those of the machine's file"
+BOTH = "The sensor errors of torque come from the mapping, not from the machine file."
 
 
 @pytest.fixture
@@ -43,7 +43,7 @@ def test_the_mapping_outranks_the_machine_for_each_sensor(
     of_machine = Sensors(torque_gain=0.03, speed_gain=0.005, stated=("torque", "speed"))
     assert Reading().log([log]).sensors == Sensors()
     assert Reading().log([log], machine).sensors == of_machine
-    assert "errors of" not in capsys.readouterr().err
+    assert "sensor errors of" not in capsys.readouterr().err
     (tmp_path / "hersey.toml").write_text('[torque]\ngain_error = "2 %"\n')
     assert Reading().log([log], machine).sensors == replace(of_machine, torque_gain=0.02)
     assert capsys.readouterr().err.splitlines()[-1] == BOTH
@@ -67,6 +67,6 @@ def test_every_command_of_a_machine_takes_its_sensors(command: str, tmp_path: Pa
 @pytest.mark.usefixtures("machine")
 def test_a_finished_fit_keeps_its_own(tmp_path: Path) -> None:
     done = run("map", "machine.toml", "--fit", "none.json", cwd=tmp_path)
-    assert "errors of the sensors: those of the fit are used, not those of the machine's file" in done.stderr
+    assert "The sensor errors come from the fit, not from the machine file." in done.stderr
     done = run("map", ROOT / "tests" / "stand" / "machine.toml", "--fit", "none.json", cwd=tmp_path)
     assert "sensors" not in done.stderr

@@ -170,4 +170,4 @@ def test_the_list_of_verbs_has_them_in_order() -> None:
 def test_a_verb_nearly_right_is_guessed() -> None:
     done = run("simulat", cwd=ROOT)
     assert (done.returncode, done.stdout) == (2, "")
-    assert "Did you mean 'simulate'?" in done.stderr
+    assert done.stderr == "hersey: There is no command 'simulat'. Did you mean: hersey simulate\n"

@@ -27,7 +27,7 @@ def test_a_closed_stdout_is_an_error(typed: list[str], tmp_path: Path) -> None:
     done = shell(">&-", *typed, folder=tmp_path)
     assert done.returncode == 2
     assert done.stderr == (
-        "hersey: stdout is closed, so that no result can be shown: send it to a file, or to /dev/null\n"
+        "hersey: stdout is closed, so no result can be shown: send it to a file, or to /dev/null\n"
     )
 
 
@@ -51,7 +51,7 @@ def test_the_code_tells_it_where_nothing_can_be_said(line: str, tmp_path: Path) 
 def test_the_other_streams_may_be_closed(line: str, tmp_path: Path) -> None:
     done = shell(line, "simulate", "--csv", "motion.csv", folder=tmp_path)
     assert (done.returncode, done.stderr) == (0, "")
-    assert done.stdout.startswith("stick slip\n")
+    assert done.stdout.startswith("The belt sticks and slips.\n")
     assert (tmp_path / "motion.csv").read_text().startswith("time,")
 
 

@@ -75,9 +75,9 @@ def test_map_and_posterior_need_no_transition(here: Path) -> None:
     done = run("map", "machine.toml", *given, "--out", "map.svg", cwd=here)
     assert done.returncode == 0, done.stderr
     assert "fast (250 mm/s" in done.stdout
-    drawn = run("posterior", *given, "--machine", "machine.toml", "--draws", "100", cwd=here)
+    drawn = run("posterior", *given, "--machine", "machine.toml", "--draws", "100", "-v", cwd=here)
     assert drawn.returncode == 0, drawn.stderr
-    assert "constant torque plus a power of speed" in drawn.stdout
+    assert "constant torque plus a power of speed" in drawn.words
     page = run("report", *given, "--machine", "machine.toml", "--out", "r.html", cwd=here)
     assert page.returncode == 0, page.stderr
 

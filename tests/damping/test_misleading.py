@@ -192,7 +192,7 @@ def test_commands_take_coarse_torque(tmp_path: Path, command: str) -> None:
     more = ["--bootstrap", "0"] if command == "models" else []
     done = run(command, "coarse.csv", "--tare", "standing", *more, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
-    assert "Torque is recorded with a resolution of" in done.stdout + done.stderr
+    assert "Torque is recorded with a resolution of" in done.words + done.stderr
 
 
 def test_a_dwell_whose_only_power_is_ripple_has_a_noise() -> None:

@@ -119,7 +119,7 @@ def test_logs_of_one_name_are_told_apart_and_one_file_is_refused(folder: Path) -
 def test_typed(folder: Path, less: Analysis) -> None:
     shown = run("report", "new.csv", "--against", "more.csv", "--isothermal", "--out", "p.html", cwd=folder)
     assert less.compare is not None
-    assert f"Compared with more.csv: {less.compare.verdict}" in shown.stdout
+    assert f"Compared with more.csv: {less.compare.verdict}" in shown.words
     page = (folder / "p.html").read_text()
     assert json.dumps(less.compare.verdict) in page
 

@@ -75,8 +75,8 @@ def test_a_copy_that_fails_leaves_nothing(tmp_path: Path, monkeypatch: pytest.Mo
 def test_the_command_says_what_to_type_next(tmp_path: Path) -> None:
     done = run("examples", "my examples", cwd=tmp_path)
     assert done.stdout.splitlines() == [
-        f"examples: my examples ({len(names(tmp_path / 'my examples'))} files)",
-        "now: hersey report 'my examples/bench.csv' --machine 'my examples/machine.toml' --tare standing",
+        f"{len(names(tmp_path / 'my examples'))} files are in my examples.",
+        "Next: hersey report 'my examples/bench.csv' --machine 'my examples/machine.toml' --tare standing",
     ]
     done = run("examples", "my examples", cwd=tmp_path)
     assert (done.returncode, done.stdout) == (2, "")

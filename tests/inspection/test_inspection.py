@@ -340,7 +340,7 @@ def test_the_mapping_is_proposed_once_and_never_replaced(bench_csv: Path, tmp_pa
     log.write_bytes(bench_csv.read_bytes())
     first = run("inspect", "log.csv", "--save-mapping", cwd=tmp_path)
     assert first.returncode == 0, first.stderr
-    assert f"mapping: {FILE_NAME}" in first.stdout
+    assert first.stdout.splitlines()[-1] == FILE_NAME
     kept = tmp_path / FILE_NAME
     assert read_mapping(kept).channels["torque"] == "Drive torque"
     kept.write_text('[torque]\ntare = "3 mN*m"\n')
@@ -348,7 +348,7 @@ def test_the_mapping_is_proposed_once_and_never_replaced(bench_csv: Path, tmp_pa
     assert second.returncode == 2
     assert "exists: use --force" in second.stderr
     assert kept.read_text() == '[torque]\ntare = "3 mN*m"\n'
-    assert "corrected: tare (torque 0.003 N m)" in run("inspect", "log.csv", cwd=tmp_path).stdout
+    assert "Corrected: tare (torque 0.003 N m)" in run("inspect", "log.csv", cwd=tmp_path).stdout
     kept.write_text("[torque]\ntar = 1\n")
     wrong = run("inspect", "log.csv", cwd=tmp_path)
     assert wrong.returncode == 2

@@ -212,8 +212,12 @@ def test_impossible_values_raise(machine: Machine) -> None:
 def test_the_command(examples_here: Path) -> None:
     done = run("film", "examples/machine.toml", cwd=examples_here)
     assert done.returncode == 0, done.stderr
-    for words in ("nip ", "E' =", "full speed", "isoviscous-elastic", "mean speed u", "alpha p ="):
+    for words in ("full speed", "180 °C", "3.22 µm", "isoviscous-elastic", "mN·m"):
         assert words in done.stdout
+    assert "mean speed u" not in done.stdout
+    done = run("film", "examples/machine.toml", "--verbose", cwd=examples_here)
+    for words in ("nip ", "E' =", "full speed", "isoviscous-elastic", "mean speed u", "alpha p ="):
+        assert words in done.words
     done = run(
         "film", "examples/machine.toml", "--log", "examples/bench.csv", "--tare", "standing", "--json",
         "--figure", "film.svg", cwd=examples_here,

@@ -70,7 +70,8 @@ def test_the_command_writes_and_counts(tmp_path: Path) -> None:
     write(tmp_path, PLAIN)
     done = run("sweep", "scenario.toml", "--out", "sweep.csv", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
-    assert "stick slip      6" in done.stdout
+    assert done.words.startswith("6 sets of parameters stick-slip 6 (100 %)")
+    assert done.stdout.endswith("\nsweep.csv\n")
     assert run("sweep", "scenario.toml", "--out", "sweep.csv", cwd=tmp_path).returncode == 2
     counted = json.loads(run("sweep", "scenario.toml", "--json", cwd=tmp_path).stdout)
     assert counted["sets"] == 6

@@ -79,7 +79,7 @@ def test_through_the_command(tmp_path: Path) -> None:
     options = ["--torque-unit", UNITS["torque"], "--speed-unit", UNITS["speed"], "--isothermal"]
     result = run("report", *files(1), *options, "--rotation", "forward", cwd=tmp_path)
     assert result.returncode == 0, result.stderr
-    assert "torque rises as the drive slows" in result.stdout
+    assert "torque rises as the drive slows" in result.words
     assert (tmp_path / "report.html").stat().st_size < 2_000_000
     document = json.loads(run("report", *files(1), *options, "--json", cwd=tmp_path).stdout)
     assert any("reverse rotation" in w["text"] and "--rotation" in w["text"] for w in document["warnings"])

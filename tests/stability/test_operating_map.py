@@ -571,8 +571,8 @@ def test_the_command_maps_a_fit_and_overwrites_nothing(fit_json: Path, tmp_path:
     machine = ROOT / "tests" / "stand" / "machine.toml"
     first = run("map", machine, "--fit", fit_json, cwd=tmp_path)
     assert first.returncode == 0, first.stderr
-    assert "thick paper (45 mm/s, 180 degC" in first.stdout
-    assert first.stdout.endswith("map: map.html\n")
+    assert "thick paper (45 mm/s, 180 °C" in first.stdout
+    assert first.stdout.endswith("\nmap.html\n")
     assert [p.name for p in tmp_path.iterdir()] == ["map.html"]
     refused = run("map", machine, "--fit", fit_json, cwd=tmp_path)
     assert (refused.returncode, "--force" in refused.stderr) == (2, True)
@@ -583,9 +583,9 @@ def test_the_command_maps_a_fit_and_overwrites_nothing(fit_json: Path, tmp_path:
 def test_the_command_refuses_what_it_cannot_use(fit_json: Path, bench_csv: Path, tmp_path: Path) -> None:
     machine = ROOT / "tests" / "stand" / "machine.toml"
     for arguments, message in (
-        ((machine,), "give either a LOG or --fit"),
-        ((machine, bench_csv, "--fit", fit_json), "give either a LOG or --fit"),
-        ((machine, "--fit", fit_json, "--tare", "standing"), "leave out the options"),
+        ((machine,), "name a LOG, or give --fit"),
+        ((machine, bench_csv, "--fit", fit_json), "name a LOG, or give --fit"),
+        ((machine, "--fit", fit_json, "--tare", "standing"), "omit the options"),
         ((machine, "--fit", fit_json, "--out", "map.jpg"), "ends in .html"),
         ((machine, "--fit", fit_json, "--out", fit_json.with_suffix(".svg") / "a.svg"), "no directory"),
         ((machine, "--fit", machine), "machine.toml: document: not valid JSON"),

@@ -249,7 +249,7 @@ def test_the_command_writes_a_campaign(tmp_path: Path) -> None:
     typed = ("testbench", "--units", "1", "--ages", "0, 20 kpages", "--out-dir", "campaign", "--seed", "3")
     done = run(*typed, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
-    assert "synthetic campaign (seed 3), 2 runs of 1 units: campaign" in done.stdout
+    assert done.stdout == "Synthetic campaign, seed 3: 2 runs of 1 specimen\ncampaign\n"
     folder = tmp_path / "campaign"
     assert sorted(path.name for path in folder.iterdir()) == sorted(
         ("runs.csv", "truth.json", "U1-0.csv", "U1-20000.csv")
@@ -263,11 +263,11 @@ def test_the_command_writes_a_campaign(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("typed", "said"),
     [
-        (("--units", "8"), "needs --ages too"),
-        (("--ages", "0, 5 kpages", "--out-dir", "x"), "needs --units too"),
+        (("--units", "8"), "also needs --ages"),
+        (("--ages", "0, 5 kpages", "--out-dir", "x"), "also needs --units"),
         (
             ("--units", "2", "--ages", "0, 5 kpages", "--out-dir", "x", "--out", "y"),
-            "--out is of a single log",
+            "--out is for a single log",
         ),
         (("--units", "2", "--ages", "5, 2 kpages", "--out-dir", "x"), "must ascend"),
         (("--units", "2", "--ages", "0, 5 h", "--out-dir", "x"), "'0' is not a number of pages"),

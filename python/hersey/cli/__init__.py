@@ -1,33 +1,36 @@
-"""The commands: each mirrors a verb of the package and computes nothing of its own.
+"""The commands: each calls a function of the package and computes nothing of its own.
 
 ============  ==================================================================
-application   the program: its verbs, errors in one line
-interruption  Ctrl-C, whatever the program is in the midst of
-streams       stdin, stdout and stderr: those that are closed, a result that cannot be written
+application   the program: its commands in groups, errors in one line
+interruption  Ctrl-C at any moment
+streams       stdin, stdout and stderr: closed streams, a result that cannot be written
 asking        questions in a terminal, or answers from a pipe
-amounts       numbers of a belt: with units, bare, or from the machine's file
-loading       what a verb needs, loaded at once
+amounts       numbers of a belt: with units, bare, or from the machine file
+loading       loading many modules at once
 belt          the options that describe a belt, its spring and its drag
-columns       columns of a small CSV: a drive's speed over time, a drag curve
+columns       columns of a small CSV: a drive speed over time, a drag curve
 groups        an option with its help, and options that belong together as a data class
-options       options that several verbs share, and the reading of a log by them
+options       options that several commands share, and the reading of a log by them
 recipe_file   a recipe file as options
-quantities    shares, ranges, temperatures and speeds that options name as text
-warming       a machine that warms up: its heat and its drag
-workers       who works: this process, others of this machine, or a scheduler's
-outputs       files that a verb writes: refused early, never replaced unasked
-progress      spinner and bar on a terminal
-terminal      the one way to print for people: nothing that steers a terminal passes
-report ...    one module per verb
+quantities    shares, ranges, temperatures and speeds of options
+warming       a machine that heats up: its heat balance and its drag
+workers       worker processes on this machine, or those of a scheduler
+outputs       files that a command writes: refused early, never replaced without being asked
+printing      how much a command prints: --verbose, --quiet, --json
+figures       numbers with three figures and units, intervals, tables
+progress      progress on stderr: spinner and bar, or plain lines
+terminal      the one way to print for people: no control codes, no line too wide
+report ...    one module per command
 ============  ==================================================================
 
-A mistake of the user's ends in one line on stderr and exit code 2. The version is printed without loading
-the program, the list of verbs without loading a verb.
+An error of the user ends in one line on stderr and exit code 2. The version is printed without loading the
+program, the list of commands without loading a command.
 """
 
 from __future__ import annotations
 
 import sys
+from typing import NoReturn
 
 __all__ = ["main"]
 
@@ -55,7 +58,22 @@ def _run() -> None:
             run()
     except KeyboardInterrupt:
         end()
-    except Exception as error:
+    except OSError as error:  # a stream that is closed
         if comes_of_interrupt(error):
             end()
         raise
+    except Exception as error:
+        if comes_of_interrupt(error):
+            end()
+        _report_fault()
+
+
+def _report_fault() -> NoReturn:
+    """Print the traceback of an error that is a fault of the program, and exit."""
+    import traceback
+
+    from hersey.cli.application import FAULT
+
+    traceback.print_exc()
+    sys.stderr.write("hersey: this is a fault of hersey. Please report it with the lines above.\n")
+    sys.exit(FAULT)

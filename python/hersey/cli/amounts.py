@@ -1,8 +1,8 @@
-"""Numbers of a belt on the command line: with their units, or bare in one consistent set of units.
+"""Numbers of a belt on the command line: with units, or bare in one consistent set of units.
 
-Every number that has a dimension goes through `amounts`. Either all that are given carry units, or none does:
-a bare one beside "11 N/mm" could be meant in any. What is not given comes from the machine's file, or else is
-that of the paper's baseline, which is converted where others carry units.
+Every number that has a dimension goes through `amounts`. Either all given numbers have units or none has,
+because a bare number next to "11 N/mm" could be in any unit. A number that is not given comes from the
+machine file or, without one, from the paper's baseline, converted if the others have units.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from hersey.cli.figures import three
 from hersey.errors import ParameterError, UnitError
 
 if TYPE_CHECKING:
@@ -32,6 +33,15 @@ _KINDS = {
     "to_speed": ("belt speed", "30 mm/s"),
     "duration": ("time", "2 s"),
 }
+#: Units in which results of a kind are printed, and how many make one in SI.
+_SHOWN = {
+    "belt speed": ("mm/s", 1e3),
+    "length": ("mm", 1e3),
+    "frequency": ("Hz", 1.0),
+    "time": ("s", 1.0),
+    "force": ("N", 1.0),
+    "energy": ("mJ", 1e3),
+}
 #: The paper's baseline, in inches, ounces of force and seconds; and these units.
 _BASELINE = {
     "stiffness": 1000.0,
@@ -49,10 +59,10 @@ _OF_THE_PAPER = {
     "belt speed": "in/s",
     "time": "s",
 }
-_BARE = "in the units of the numbers given; the defaults are the paper's: inches, ounces of force, seconds"
-#: What a machine's file states of a belt.
+_BARE = "Results are in the units of the numbers given. Defaults are the paper's (inch, ozf, s)."
+#: Numbers of a belt that a machine file states.
 _OF_A_MACHINE = ("stiffness", "mass", "stick_speed")
-#: Where numbers come from that are not stated by a machine.
+#: What a number that no machine file states means.
 _FROM = {
     "transition_force": "the drag where its branches meet",
     "transition_speed": "where the branches of the drag meet",
@@ -61,7 +71,7 @@ _FROM = {
 
 @dataclass(frozen=True)
 class Amounts:
-    """Numbers by name, and whether they are in SI; ``filled`` says where the others are from."""
+    """Numbers by name, whether they are in SI, and in ``filled`` the source of those not given."""
 
     values: Mapping[str, float | None]
     in_si: bool
@@ -69,9 +79,18 @@ class Amounts:
 
     @property
     def words(self) -> list[str]:
-        """What to say of them below a result."""
-        units = "in SI: m, s, N, kg" if self.in_si else _BARE
-        return [f"- {text}" for text in (units, self.filled) if text]
+        """The notes to print below a result."""
+        return [f"- {text}" for text in ("" if self.in_si else _BARE, self.filled) if text]
+
+    def shown(self, value: float, kind: str) -> str:
+        """Return a number of a result of a kind: with its unit if numbers have units, else bare."""
+        unit, factor = _SHOWN[kind] if self.in_si else ("", 1.0)
+        return three(factor * value, unit)
+
+    def shown_range(self, low: float, high: float, kind: str) -> str:
+        """Return two numbers of a result in the same way, with their unit once."""
+        factor = _SHOWN[kind][1] if self.in_si else 1.0
+        return f"{three(factor * low)} to {self.shown(high, kind)}"
 
 
 def amounts(
@@ -84,14 +103,14 @@ def amounts(
     given
         Text of each option, None where it is not given.
     needed
-        Those without which nothing goes; the others may be missing.
+        Names of the numbers that are required.
     machine_file
-        File of a machine, which states some of them.
+        Machine file, which states some of them.
 
     Raises
     ------
     ParameterError, UnitError
-        With the option, and what to write.
+        If a number cannot be read, lacks a unit or is missing.
     """
     texts = {name: text for name, text in given.items() if text is not None}
     bare = {name: _bare(text) for name, text in texts.items()}
@@ -114,7 +133,7 @@ def amounts(
 
 
 def of_a_machine(file: Path) -> dict[str, float]:
-    """Return what a machine's file states of a belt, in SI, its roll's grip and its no-load torque."""
+    """Return stiffness, mass, stick speed, grip and no-load torque of a machine file, in SI."""
     from hersey.machine.machine import read_machine
 
     machine = read_machine(file)
@@ -128,7 +147,7 @@ def of_a_machine(file: Path) -> dict[str, float]:
 
 
 def _bare(text: str) -> float | None:
-    """A number without a unit, or None; what is neither is refused when it is parsed."""
+    """A number without a unit, or None; any other text is refused when it is parsed."""
     try:
         return float(text)
     except ValueError:
@@ -140,7 +159,7 @@ def _parsed(name: str, text: str) -> float:
 
     kind, example = _KINDS[name]
     if not any(c.isdigit() for c in text):
-        raise ParameterError(f"{_flag(name)} is '{text}': write a number, or one with its unit: '{example}'")
+        raise ParameterError(f"{_flag(name)} is '{text}': write a number with its unit, e.g. '{example}'")
     try:
         return parse(kind, text)
     except UnitError as error:
@@ -158,9 +177,9 @@ def _plain(given: Mapping[str, str | None], needed: tuple[str, ...]) -> dict[str
 
 
 def _without_unit(name: str, text: str, others: list[str], texts: Mapping[str, str]) -> UnitError:
-    beside = f"beside {_flag(others[0])} '{texts[others[0]]}'" if others else "beside --machine"
+    beside = f"but {_flag(others[0])} '{texts[others[0]]}' has" if others else "which --machine requires"
     unit = _KINDS[name][1].split(" ", 1)[1]
-    return UnitError(f"{_flag(name)} {text} has no unit {beside}: write it with one, as '{text} {unit}'")
+    return UnitError(f"{_flag(name)} {text} has no unit, {beside}: write '{text} {unit}', for example")
 
 
 def _with_baseline(values: Mapping[str, float | None], lacking: list[str]) -> Amounts:
@@ -171,9 +190,9 @@ def _with_baseline(values: Mapping[str, float | None], lacking: list[str]) -> Am
         kind = _KINDS[name][0]
         taken[name] = parse(kind, f"{_BASELINE[name]!r} {_OF_THE_PAPER[kind]}")
     baseline = [
-        f"{n.replace('_', ' ')} {taken[n]:.4g} {KINDS[_KINDS[n][0]][0]}" for n in lacking if n != "duration"
+        f"{n.replace('_', ' ')} {three(taken[n], KINDS[_KINDS[n][0]][0])}" for n in lacking if n != "duration"
     ]
-    filled = f"not given, so that of the paper's baseline: {', '.join(baseline)}" if baseline else ""
+    filled = f"Not given; using the paper's baseline values: {', '.join(baseline)}." if baseline else ""
     return Amounts({**values, **taken}, in_si=True, filled=filled)
 
 
@@ -191,8 +210,8 @@ def _with_machine(
         raise ParameterError(f"{file} does not state the {_words(name)}: add {_flag(name)} '{example}'")
     filled = ""
     if "stick_speed" in stated:
-        speed = f"{1e3 * machine.stick_speed:.4g} mm/s"
-        filled = f"stick speed {speed} as {file} has it: taken for that at the temperature of the drag given"
+        speed = three(1e3 * machine.stick_speed, "mm/s")
+        filled = f"The stick speed is {speed} (from {file}), assumed to hold at the temperature of the drag."
     return Amounts({**values, **stated}, in_si=True, filled=filled)
 
 

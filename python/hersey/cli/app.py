@@ -1,4 +1,4 @@
-"""Without a command line: ``hersey app``."""
+"""The app in the browser: ``hersey app``."""
 
 from __future__ import annotations
 
@@ -9,26 +9,28 @@ from typing import Annotated
 from hersey.cli.groups import option
 from hersey.cli.terminal import say
 
-_REPORTS = "Where reports are kept.  [default: hersey-reports]"
+_PORT = "Port on 127.0.0.1.  [default: any free port]"
+_NO_BROWSER = "Print the address without opening a browser."
+_REPORTS = "Folder for finished reports.  [default: hersey-reports]"
 
 
 def app_(
-    port: Annotated[int, option("Port on 127.0.0.1.  [default: one that is free]")] = 0,
+    port: Annotated[int, option(_PORT)] = 0,
     reports: Annotated[Path | None, option(_REPORTS, metavar="DIR")] = None,
-    no_browser: Annotated[bool, option("Print the address and open nothing.", "--no-browser")] = False,
+    no_browser: Annotated[bool, option(_NO_BROWSER, "--no-browser")] = False,
 ) -> None:
-    """Open a page on this computer: drop logs, choose channels, describe the machine, read the report.
+    """Open the app in the browser: choose logs, describe the machine, read the report.
 
     Example: [bold]hersey app[/bold]
 
-    Only this computer can reach it, and nothing leaves it. Ctrl-C ends it.
+    Only this computer can reach the app, and no data leaves the computer. Stop it with Ctrl-C.
     """
     from hersey.app.starting import serve
 
     kept = reports or Path("hersey-reports")
 
     def said(address: str) -> None:
-        say(f"hersey app: {address}", f"reports are kept in {kept}; Ctrl-C ends it")
+        say(f"hersey app: {address}", f"Reports are saved in {kept}. Stop with Ctrl-C.")
         sys.stdout.flush()
 
     serve(port=port, reports=kept.absolute(), browser=not no_browser, said=said)

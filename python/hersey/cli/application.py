@@ -1,10 +1,12 @@
-"""The application: one module per verb, loaded when it is called; mistakes end in one line."""
+"""The application: one module per command, loaded when it is called; errors end in one line."""
 
 from __future__ import annotations
 
 import importlib
+import shlex
 import sys
 from contextlib import suppress
+from pathlib import Path
 from typing import Annotated, Any
 
 import typer
@@ -12,77 +14,110 @@ from typer.core import TyperCommand, TyperGroup
 
 from hersey.cli.groups import option
 from hersey.cli.interruption import INTERRUPTED
-from hersey.cli.terminal import say, warnings_said
-from hersey.errors import HerseyError, speak
+from hersey.cli.terminal import hush, say, say_wrapped, warnings_said
+from hersey.errors import HerseyError, meant, speak
 
-#: The verbs in the order of the help, with the first sentence of each, which stands here too so that the list
-#: of verbs is printed without loading them. Each is a module of this folder, with a function of that name.
-VERBS = {
-    "app": (
-        "Open a page on this computer: drop logs, choose channels, describe the machine, read the report."
-    ),
-    "new": "Ask the few things that a log cannot tell, and write hersey.toml and the machine's file.",
-    "explain": "Explain a term of reports and docs in plain words; without a term, list all of them.",
-    "examples": "Copy the shipped examples into a new folder: logs, a machine file, a life test.",
-    "report": (
-        "Write a report: regime, damping surface, data quality and a stick-slip simulation, in one HTML page."
-    ),
-    "inspect": (
-        "Show what a log holds before anything is fitted: clocks, channels, their faults, what it can tell."
-    ),
-    "fit": "Fit the damping surface B = a T^b w^c and print it, with the verdict on the regime.",
-    "models": (
-        "Fit every candidate law to the same dwells, choose one, and say why; energies and Hersey collapse."
-    ),
-    "film": "Say how thick the lubricant film is, which regime makes it, and what a log says of both.",
-    "map": (
-        "Map where the belt runs smoothly, sticks and slips, or stalls: temperature across, drive speed up."
-    ),
-    "posterior": (
-        "Draw V*, stick speed, stiffness, mass and closure from everything that log and machine file show."
-    ),
-    "plan": (
-        "Find the quickest profile of drive speed from rest that ends smooth, and say how surely it does."
-    ),
-    "warmup": "Find the quickest warm-up whose drag stays below grip and motor: slow until warm.",
-    "compare": (
-        "Compare two lubricants, ages or units: ratio of damping, change of exponents and of the transition."
-    ),
-    "campaign": "Keep the runs of a life test, many units at many ages, in one file: add, list, check.",
-    "life": "Predict which units of a life test fail first, how, and when, and what to measure next.",
-    "design": (
-        "Propose the next dwells to record: those that make the fitted law, or one quantity, known best."
-    ),
-    "cycles": "Find the slips of a stick-slip trace, and with --identify the drive that makes them.",
-    "simulate": (
-        "Simulate the belt at a drive speed or over a profile: what it settles to (defaults: the paper's)."
-    ),
-    "sweep": "Find what every combination of parameters settles to, and count the outcomes.",
-    "hysteresis": "Find the drive speeds between which the past decides whether the belt sticks.",
-    "export": "Write the fitted drive for other tools: a unit that Simulink, Amesim or Modelica run.",
-    "testbench": (
-        "Write a log of the virtual test stand: synthetic, with a known truth, for tests and for learning."
-    ),
+#: The commands in the order of the help, in groups, each with the first sentence of its help. The sentences
+#: are here too, so that the help lists them without loading the commands. Each command is a module of this
+#: folder, with a function of that name.
+PANELS = {
+    "Everyday": {
+        "report": "Write the report of a log as one HTML page, and print its decision.",
+        "inspect": "Show what a log holds, what is wrong with it and what it can show, before a fit.",
+        "app": "Open the app in the browser: choose logs, describe the machine, read the report.",
+        "new": "Ask about log and machine, and write hersey.toml and the machine file.",
+        "explain": "Explain a term of reports and docs, or list all terms.",
+        "examples": "Copy the shipped examples into a new folder: logs, a machine file, a life test.",
+    },
+    "Deeper": {
+        "fit": "Fit the damping surface B = a T^b w^c and print it with the lubrication regime.",
+        "models": "Compare damping models on the same dwells and choose one.",
+        "film": "Compute film thickness and lubrication regime, and compare them with a log.",
+        "map": "Map over temperature and speed where the belt runs smoothly, sticks or stalls.",
+        "posterior": "Estimate V*, stick speed, stiffness, mass and closure from log and machine file.",
+        "plan": "Find the quickest start-up profile that ends in steady sliding.",
+        "warmup": "Find the quickest warm-up whose drag stays within the limits of grip and motor.",
+        "cycles": "Find the slips of a stick-slip trace, and with --identify the drive behind them.",
+        "hysteresis": "Find the speed range in which sticking depends on how the drive was started.",
+        "simulate": "Simulate the belt at a drive speed or over a profile.",
+        "sweep": "Simulate every combination of parameters and count the outcomes.",
+        "design": "Propose the dwells or measurements to record next.",
+    },
+    "Several logs": {
+        "compare": "Compare the damping of two logs: of two lubricants, ages or specimens.",
+        "campaign": "Keep the runs of a life test, many specimens at many ages, in one file.",
+        "life": "Predict which specimens of a life test fail first, how, and when.",
+    },
+    "Other tools": {
+        "export": "Export the drive for Simulink, Amesim, Modelica and other tools.",
+        "testbench": "Write a synthetic log with known true values, for tests and for learning.",
+    },
 }
+#: The sentence of each command.
+VERBS = {name: sentence for group in PANELS.values() for name, sentence in group.items()}
+#: Endings of names that are probably those of logs.
+_LOGS = frozenset(
+    [
+        ".csv",
+        ".txt",
+        ".tsv",
+        ".dat",
+        ".log",
+        ".lvm",
+        ".tdms",
+        ".mf4",
+        ".mdf",
+        ".mat",
+        ".h5",
+        ".hdf5",
+        ".parquet",
+        ".xlsx",
+        ".xlsm",
+        ".xls",
+        ".npz",
+        ".npy",
+    ]
+)
+#: What to type for a file that is not a log, by its ending.
+_OTHER_FILES = {
+    ".toml": ("hersey", "report", "LOG", "--machine", "{}"),
+    ".hersey": ("hersey", "life", "{}", "--machine", "machine.toml"),
+}
+_EXIT_CODES = (
+    "Exit codes: 0 done; 1 the answer is no, or some logs failed; 2 wrong use, bad input, or a result that "
+    "cannot be written; 3 a fault of hersey; 130 interrupted."
+)
+#: Exit code of wrong use, and of a fault of the program.
+MISTAKE, FAULT = 2, 3
 
 
 def load(name: str) -> Any:
-    """Return a verb's command with all its options, from its module."""
+    """Return a command with all its options, from its module."""
     module = importlib.import_module(f"hersey.cli.{name}")
     verbs = getattr(module, name, None)
-    if isinstance(verbs, typer.Typer):  # a verb with verbs of its own
+    if isinstance(verbs, typer.Typer):  # a command with subcommands
         verbs.info.context_settings = _CONTEXT
-        return typer.main.get_command(verbs)
+        group = typer.main.get_command(verbs)
+        for each in (group, *getattr(group, "commands", {}).values()):
+            each.help = _paragraphs(each.help)
+        return group
     verb = typer.Typer(add_completion=False, rich_markup_mode="rich", context_settings=_CONTEXT)
     verb.command(name)(verbs or getattr(module, f"{name}_"))
-    return typer.main.get_command(verb)
+    loaded = typer.main.get_command(verb)
+    loaded.help = _paragraphs(loaded.help)
+    return loaded
+
+
+def _paragraphs(text: str | None) -> str:
+    """A docstring whose lines end only between paragraphs, so that the help can wrap it."""
+    return "\n\n".join(" ".join(each.split()) for each in (text or "").split("\n\n"))
 
 
 class Verb(TyperCommand):
-    """A verb as the list of verbs shows it; it is loaded when it is called."""
+    """A command as the list of commands shows it; it is loaded when it is called."""
 
     def make_context(self, info_name: Any, args: Any, parent: Any = None, **extra: Any) -> Any:
-        """Return the context of the loaded command, which then runs in this one's place."""
+        """Return the context of the loaded command, which then runs instead of this one."""
         return load(str(self.name)).make_context(info_name, args, parent, **extra)
 
 
@@ -91,28 +126,53 @@ class Verbs(TyperGroup):
 
     def __init__(self, **settings: Any) -> None:
         super().__init__(**settings)
-        for name, sentence in VERBS.items():
-            self.add_command(Verb(name, short_help=sentence))
+        for panel, group in PANELS.items():
+            for name, sentence in group.items():
+                self.add_command(Verb(name, short_help=sentence, rich_help_panel=panel))
+
+    def resolve_command(self, ctx: Any, args: list[str]) -> Any:
+        """Return the command that is called; for a log or a misspelled command, fail with what to type."""
+        name = args[0]
+        if name not in VERBS and not name.startswith("-") and not ctx.resilient_parsing:
+            ctx.fail(_what_to_type(name, args[1:]))
+        return super().resolve_command(ctx, args)
+
+
+def _what_to_type(name: str, others: list[str]) -> str:
+    """What to type instead of a command that does not exist."""
+    path = Path(name)
+    with suppress(OSError, ValueError):  # a name that no file can have
+        if path.is_file() or path.suffix.lower() in _LOGS:
+            what = "a file, not a command" if path.is_file() else "not a command"
+            words = _OTHER_FILES.get(path.suffix.lower(), ("hersey", "report", "{}"))
+            typed = [name if word == "{}" else word for word in words]
+            return f"'{name}' is {what}. For a report type: {shlex.join([*typed, *others])}"
+    near = meant(name, VERBS)
+    if near:
+        return f"There is no command '{name}'. Did you mean: {shlex.join(['hersey', near, *others])}"
+    return f"There is no command '{name}'. For a list of all commands type: hersey --help"
 
 
 _CONTEXT = {"help_option_names": ["-h", "--help"], "max_content_width": 110}
 app = typer.Typer(
     cls=Verbs,
     no_args_is_help=True,
-    add_completion=False,
     rich_markup_mode="rich",
     pretty_exceptions_enable=False,
     context_settings=_CONTEXT,
     help=(
-        "From a torque log to the lubrication state of a sliding drive.\n\n"
+        "From a torque log to the lubrication state of a sliding drive, and the speeds at which it runs "
+        "smoothly.\n\n"
         "Example: [bold]hersey report examples/bench.csv[/bold]"
     ),
+    epilog=f"hersey COMMAND --help shows the options of a command.\n\n{_EXIT_CODES}",
 )
 
 
 def main() -> None:
     """Run the command line."""
     speak("terminal")
+    hush(False)
     code: int | None = None
     try:
         with warnings_said():
@@ -124,7 +184,7 @@ def main() -> None:
     except OSError:  # stdout takes no more
         raise
     except Exception as error:
-        usage = getattr(error, "format_message", None)  # click's own errors know how to say it
+        usage = getattr(error, "format_message", None)  # click's own errors have it
         if usage is None:
             raise
         _fail(usage())
@@ -134,11 +194,13 @@ def main() -> None:
 
 
 def _fail(message: str) -> None:
+    """Print an error, on one line unless a terminal is narrower, and exit."""
     text = " ".join(message.split())
     if text:
-        with suppress(OSError):  # a stderr that takes nothing
-            say(f"hersey: {text}", file=sys.stderr)
-    sys.exit(2)
+        printed = say_wrapped if sys.stderr.isatty() else say
+        with suppress(OSError):  # a stderr that is closed
+            printed(f"hersey: {text}", file=sys.stderr)
+    sys.exit(MISTAKE)
 
 
 @app.callback(invoke_without_command=True)

@@ -1,4 +1,4 @@
-"""Questions in a terminal, or answers from a pipe: one a line, each checked at once."""
+"""Questions in a terminal, or answers from a pipe: one per line, each checked at once."""
 
 from __future__ import annotations
 
@@ -10,21 +10,21 @@ from hersey.cli.terminal import say
 from hersey.errors import HerseyError, ParameterError, printable
 
 Answer = TypeVar("Answer")
-#: What leaves out that for which there is a proposal.
+#: The answer that rejects a proposal.
 NONE = "-"
 
 
 class Asking:
-    """Asks on stderr and reads from stdin, so that results alone stand on stdout."""
+    """Asks on stderr and reads from stdin, so that stdout holds only results."""
 
     def __init__(self, order: Sequence[str]) -> None:
-        """Take what is asked, in order, for those who pipe their answers."""
+        """Take the names of the questions in order, for those who pipe their answers."""
         self._order, self._count = order, 0
         self._terminal = sys.stdin.isatty()
 
     @property
     def by_hand(self) -> bool:
-        """Whether a person answers, who can be asked more than is listed for a pipe."""
+        """Whether a person answers, who can be asked more questions than a pipe."""
         return self._terminal
 
     def ask(
@@ -36,23 +36,23 @@ class Asking:
         proposed: str = "",
         needed: bool = False,
     ) -> Answer | None:
-        """Return what ``read`` makes of an answer, or None where it is left out.
+        """Return the answer as ``read`` returns it, or None if the question is skipped.
 
-        ``words`` say more of it, to be shown with it alone. An empty answer takes the proposal, if there is
-        one, and else leaves out. What ``read`` refuses is asked again, in its words; from a pipe it ends the
-        command.
+        ``words`` explain the question. An empty answer accepts the proposal, or skips the question if there
+        is none. If ``read`` refuses an answer, its error is shown and the question is repeated; an answer
+        from a pipe ends the command.
 
         Raises
         ------
         ParameterError
-            If the answers end before what is needed, or one from a pipe cannot be read.
+            If the answers end before a required one, or one from a pipe cannot be read.
         """
         while True:
             text = self._line(what, words, proposed, needed)
             if text == NONE or (not text and not proposed):
                 if not needed:
                     return None
-                self._refuse(what, ParameterError("this is needed"))
+                self._refuse(what, ParameterError("this answer is required"))
                 continue
             try:
                 return read(text or proposed)
@@ -60,13 +60,13 @@ class Asking:
                 self._refuse(what, error)
 
     def _line(self, what: str, words: str, proposed: str, needed: bool) -> str:
-        default = f" [{proposed}]" if proposed else "" if needed else " [left out]"
+        default = f" [{proposed}]" if proposed else "" if needed else " [skip]"
         try:
             sys.stderr.write(printable(f"{what}{f' ({words})' if words else ''}{default}: "))
             sys.stderr.flush()
             line = sys.stdin.readline()
         except KeyboardInterrupt:
-            sys.stderr.write("\n")  # what is said of it begins a line of its own
+            sys.stderr.write("\n")  # the message begins on a new line
             raise
         if not self._terminal:
             sys.stderr.write("\n")
@@ -74,13 +74,13 @@ class Asking:
         if line or (self._count > 1 and not needed and not self._terminal):
             return line.strip()
         if self._count > 1 or self._terminal:
-            raise ParameterError(f"the answers end before '{what}', which is needed: nothing is written")
+            raise ParameterError(f"the answers end before '{what}', which is required; nothing is written")
         raise ParameterError(
-            "hersey new asks questions: type it in a terminal, or pipe the answers, one a line, an empty one "
-            f"for what is proposed or left out: {', '.join(self._order)}"
+            "hersey new asks questions: type it in a terminal, or pipe the answers, one per line, with an "
+            f"empty line to accept a proposal or skip a question: {', '.join(self._order)}"
         )
 
     def _refuse(self, what: str, error: HerseyError) -> None:
         if not self._terminal:
-            raise ParameterError(f"answer {self._count}, {what}: {error}: nothing is written")
+            raise ParameterError(f"answer {self._count}, {what}: {error}; nothing is written")
         say(f"  {error}", file=sys.stderr)

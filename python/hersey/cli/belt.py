@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 from hersey.cli.groups import option
-from hersey.cli.options import BristleDamping, BristleStiffness
+from hersey.cli.options import BRISTLE_DAMPING, BRISTLES
 from hersey.errors import ParameterError
 
 if TYPE_CHECKING:
@@ -20,46 +20,56 @@ if TYPE_CHECKING:
 
 #: Damping exponents of the paper's baseline.
 _EXPONENTS = {"ehl_exponent": -0.7, "mixed_exponent": -1.2}
-#: Numbers of a belt that need not be given.
+#: Numbers of a belt that are optional.
 _OPTIONAL = ("bristle_stiffness", "bristle_damping", "static_force")
 
 
-_TRANSITION_FORCE = "Drag at the transition speed (B0 of the paper), as '14 N'.  [default: 50]"
-_TRANSITION_SPEED = "Speed where the branches meet, as '25 mm/s'.  [default: 1]"
-_STICK_SPEED = "Speed below which the belt sticks, as '0.3 mm/s'.  [default: 0.01]"
-_STATIC_FORCE = "Break-away drag, e.g. '40 N'.  [default: e times that at the stick speed]"
-_TABLE = "In place of the branches: a CSV of the drag curve, columns 'speed (mm/s)' and 'force (N)'."
-_CLOSURE = "What happens below it: retained, stiction, stribeck or lugre."
-_MACHINE = "Machine's file: stiffness, mass and stick speed where they are not given."
+#: Heading of these options in the help.
+_PANEL = "The belt, its spring and its drag"
+_STIFFNESS = "Spring stiffness k, e.g. '11 N/mm'.  [default: 1000]"
+_MASS = "Belt mass m, e.g. '11 kg'.  [default: 1]"
+_TRANSITION_FORCE = "Drag at the transition speed (B0 of the paper), e.g. '14 N'.  [default: 50]"
+_TRANSITION_SPEED = "Speed of least drag, where the branches meet, e.g. '25 mm/s'.  [default: 1]"
+_EHL = "Damping exponent above the transition speed.  [default: -0.7]"
+_MIXED = "Damping exponent below the transition speed.  [default: -1.2]"
+_STICK_SPEED = "Speed below which the belt sticks, e.g. '0.3 mm/s'.  [default: 0.01]"
+_STATIC_FORCE = "Break-away drag, e.g. '40 N'.  [default: e times the drag at the stick speed]"
+_TABLE = "CSV of the drag curve, columns 'speed (mm/s)' and 'force (N)', instead of branches."
+_CLOSURE = "Motion below the stick speed: retained, stiction, stribeck or lugre."
+_MACHINE = "Machine file, for stiffness, mass and stick speed that are not given."
+
+
+def _of_belt(words: str, **more: Any) -> Any:
+    return option(words, panel=_PANEL, **more)
 
 
 @dataclass(frozen=True)
 class Belt:
     """The options that describe a belt, its spring and its drag; the defaults are the paper's baseline.
 
-    Numbers are texts: with a unit, or bare in any consistent set of units (see `hersey.cli.amounts`).
+    Numbers are texts, with a unit or bare in any consistent set of units: see `hersey.cli.amounts`.
     """
 
-    stiffness: Annotated[str | None, option("Spring stiffness k, as '11 N/mm'.  [default: 1000]")] = None
-    mass: Annotated[str | None, option("Belt mass m, as '11 kg'.  [default: 1]")] = None
-    transition_force: Annotated[str | None, option(_TRANSITION_FORCE)] = None
-    transition_speed: Annotated[str | None, option(_TRANSITION_SPEED)] = None
-    ehl_exponent: Annotated[float | None, option("Damping exponent above it.  [default: -0.7]")] = None
-    mixed_exponent: Annotated[float | None, option("Damping exponent below it.  [default: -1.2]")] = None
-    stick_speed: Annotated[str | None, option(_STICK_SPEED)] = None
-    static_force: Annotated[str | None, option(_STATIC_FORCE)] = None
-    drag_table: Annotated[Path | None, option(_TABLE, metavar="FILE")] = None
-    closure: Annotated[str, option(_CLOSURE)] = "retained"
-    bristle_stiffness: BristleStiffness = None
-    bristle_damping: BristleDamping = None
-    machine: Annotated[Path | None, option(_MACHINE, metavar="TOML")] = None
+    stiffness: Annotated[str | None, _of_belt(_STIFFNESS)] = None
+    mass: Annotated[str | None, _of_belt(_MASS)] = None
+    transition_force: Annotated[str | None, _of_belt(_TRANSITION_FORCE)] = None
+    transition_speed: Annotated[str | None, _of_belt(_TRANSITION_SPEED)] = None
+    ehl_exponent: Annotated[float | None, _of_belt(_EHL)] = None
+    mixed_exponent: Annotated[float | None, _of_belt(_MIXED)] = None
+    stick_speed: Annotated[str | None, _of_belt(_STICK_SPEED)] = None
+    static_force: Annotated[str | None, _of_belt(_STATIC_FORCE)] = None
+    drag_table: Annotated[Path | None, _of_belt(_TABLE, metavar="FILE")] = None
+    closure: Annotated[str, _of_belt(_CLOSURE)] = "retained"
+    bristle_stiffness: Annotated[str | None, _of_belt(BRISTLES)] = None
+    bristle_damping: Annotated[str | None, _of_belt(BRISTLE_DAMPING)] = None
+    machine: Annotated[Path | None, _of_belt(_MACHINE, metavar="TOML")] = None
 
     def parts(
         self, *, needed: tuple[str, ...] = (), **further: str | None
     ) -> tuple[Drivetrain, PowerDrag, Amounts]:
-        """Return drivetrain and drag, and all numbers; ``further`` are those of the command.
+        """Return drivetrain, drag and all numbers; ``further`` are those of the command.
 
-        Of ``further`` those in ``needed`` are of the paper's baseline where they are not given.
+        Those of ``further`` that are in ``needed`` default to the paper's baseline.
         """
         from hersey.cli.amounts import amounts
         from hersey.cli.columns import read_drag_table
@@ -84,7 +94,7 @@ class Belt:
             drag = Drag(**of_belt, **exponents, closure=self.closure)
         else:
             if not numbers.in_si:
-                raise ParameterError("--drag-table has units: write the other numbers with units too")
+                raise ParameterError("--drag-table has units: give the other numbers with units too")
             drag = read_drag_table(self.drag_table, **of_belt, closure=self.closure)
         if self.machine is None:
             return train, drag, numbers
@@ -93,18 +103,18 @@ class Belt:
         return _of_the_machine(train, drag, numbers, read_machine(self.machine))
 
     def _check_table(self, texts: dict[str, str | None]) -> None:
-        """Refuse numbers of the branches beside a drag table, and a table without a stick speed."""
+        """Refuse numbers of the branches together with a drag table, and a table without a stick speed."""
         of_branches = {name: texts.pop(name) for name in ("transition_force", "transition_speed")}
         for name, value in {**of_branches, **{n: getattr(self, n) for n in _EXPONENTS}}.items():
             if value is not None:
                 raise ParameterError(
-                    f"--drag-table takes the place of --{name.replace('_', '-')}: leave one out"
+                    f"--drag-table and --{name.replace('_', '-')} exclude each other: give one of them"
                 )
         if texts["stick_speed"] is None and self.machine is None:
-            raise ParameterError("--drag-table needs the stick speed: --stick-speed '0.3 mm/s'")
+            raise ParameterError("--drag-table needs the stick speed: add --stick-speed '0.3 mm/s'")
 
     def motor_use(self, run: Trajectory) -> MotorUse | None:
-        """Return what a motion asks of the machine's motor, None where its file states no torque of it."""
+        """Return the motor torque that a motion needs, None if the machine file states no motor torque."""
         if self.machine is None:
             return None
         from hersey.machine.machine import read_machine
@@ -119,7 +129,8 @@ class Belt:
 def _of_the_machine(
     train: Drivetrain, film: PowerDrag, numbers: Amounts, machine: Machine
 ) -> tuple[Drivetrain, PowerDrag, Amounts]:
-    """The belt given and, beside it, what the machine says of its roll's grip and its no-load torque."""
+    """The belt as given, with the grip of the roll and the no-load torque of the machine file."""
+    from hersey.cli.figures import three
     from hersey.damping.no_load_torque import with_rest
     from hersey.motion.drag import DragTable
     from hersey.units import celsius
@@ -131,10 +142,10 @@ def _of_the_machine(
         kelvin = machine.rest.reference_temperature if isinstance(film, DragTable) else None
         drag = with_rest(film, machine.rest, machine.roll_radius, kelvin)
     if drag != film:
-        at = "" if kelvin is None else f" (at {celsius(kelvin):.0f} degC)"
-        notes.append(f"the no-load torque acts beside the drag given: {machine.rest}{at}")
+        at = "" if kelvin is None else f" (at {celsius(kelvin):.0f} °C)"
+        notes.append(f"The no-load torque is added to the drag: {machine.rest}{at}.")
     if train.grip is not None:
-        notes.append(f"the roll grips the belt with up to {train.grip:.4g} N")
+        notes.append(f"The roll can pull the belt with up to {three(train.grip, 'N')}.")
     if train.grip is not None and drag.holding_force > train.grip:
-        notes.append(f"it does not start one at rest, which bears {drag.holding_force:.4g} N")
-    return train, drag, replace(numbers, filled="; ".join(filter(None, notes)))
+        notes.append(f"It cannot start a belt at rest, which takes {three(drag.holding_force, 'N')}.")
+    return train, drag, replace(numbers, filled=" ".join(filter(None, notes)))

@@ -12,10 +12,11 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hersey.cli.groups import argument, grouped, option
-from hersey.cli.options import AsJson, Force, KeepGoing, Reading, SensorsFile
-from hersey.cli.outputs import NOT_FOUND, may_write, print_json
+from hersey.cli.options import Force, KeepGoing, Reading, SensorsFile
+from hersey.cli.outputs import NOT_FOUND, may_write
+from hersey.cli.printing import Printing, Quiet
 from hersey.cli.progress import bar, working
-from hersey.cli.terminal import say
+from hersey.cli.terminal import note, say
 from hersey.cli.workers import Crew
 from hersey.errors import HerseyError, OutputError, ParameterError
 from hersey.files.tables import TABLES
@@ -29,18 +30,20 @@ campaign = typer.Typer(
     add_completion=False,
     rich_markup_mode="rich",
     help=(
-        "Keep the runs of a life test, many units at many ages, in one file: add, list, check.\n\n"
+        "Keep the runs of a life test, many specimens at many ages, in one file.\n\n"
         "Example: [bold]hersey campaign add life.hersey examples/bench.csv --unit F12 --age '120000 pages' "
         "--tare standing[/bold]\n\n"
-        "Steady points, fit, hash and settings of each log are kept; logs stay where they are."
+        "The file holds steady points, fit, hash and settings of each log; the logs stay where they are."
     ),
 )
-_File = Annotated[Path, argument("CAMPAIGN", "File of the campaign, as life.hersey.")]
+_File = Annotated[Path, argument("CAMPAIGN", "Campaign file, e.g. life.hersey.")]
 
 
-_RUNS = "Log of one run, or of several of one unit at one age, or a pattern as 'logs/*.csv'."
-_AGE = "Age of the unit, as '120000 pages', '310 h' or '2e6 cycles'."
-_TABLE = "Instead of unit and age: a table of runs with columns log, unit and age."
+_RUNS = "Log of one run, or logs of one specimen at one age, or a pattern, e.g. 'logs/*.csv'."
+_UNIT = "Name of the specimen, e.g. F12."
+_AGE = "Age of the specimen, e.g. '120000 pages', '310 h' or '2e6 cycles'."
+_TABLE = "Table of runs with columns log, unit and age, instead of --unit and --age."
+_OUT = "Table to write, .parquet or .csv, one row per dwell."
 
 
 @campaign.command("add")
@@ -48,32 +51,33 @@ _TABLE = "Instead of unit and age: a table of runs with columns log, unit and ag
 def add(
     file: _File,
     *,
-    runs: Annotated[list[Path] | None, argument("[RUN]...", _RUNS)] = None,
-    unit: Annotated[str, option("Name of the unit, as F12.")] = "",
+    runs: Annotated[list[Path] | None, argument("RUN", _RUNS)] = None,
+    unit: Annotated[str, option(_UNIT)] = "",
     age: Annotated[str, option(_AGE)] = "",
     table: Annotated[Path | None, option(_TABLE, metavar="CSV")] = None,
     machine: SensorsFile = None,
     keep_going: KeepGoing = False,
     crew: Crew,
     reading: Reading,
+    printing: Quiet,
     force: Force = False,
 ) -> None:
-    """Add runs, and make the campaign if there is none: all the logs given or none, of a table each.
+    """Add runs to a campaign; the file is created if it does not exist.
 
     Example: [bold]hersey campaign add life.hersey examples/bench.csv --unit F12 --age '120000 pages'
     --tare standing[/bold]
 
-    A log that is there already is skipped; one that has changed, or is under another unit or age, is an
-    error, and replaced with --force. With a table all its runs are added, or of the logs given those that it
-    names; what fails is excluded, as with --keep-going. Exit code 1 says that a run could not be added.
+    A log that is there already is skipped. A log that has changed, or that is there with another specimen or
+    age, is an error; --force replaces it. If one of the logs fails, none is added, unless --keep-going or
+    --table is given: then the others are added, and the exit code is 1.
     """
     if table is None and not runs:
-        raise ParameterError("give either RUN... with --unit and --age, or --table with runs in rows")
+        raise ParameterError("name the logs with --unit and --age, or a table of runs with --table")
     if table is not None and (unit or age):
-        raise ParameterError("--unit and --age stand in the table: leave them out, or name the logs")
+        raise ParameterError("the table holds unit and age: omit --unit and --age, or omit --table")
     if table is None and not (unit and age):
         missing = "--age '120000 pages'" if unit else "--unit F12"
-        raise ParameterError(f"say which unit was recorded, and at which age: add {missing}")
+        raise ParameterError(f"a run needs the name and the age of its specimen: add {missing}")
 
     from hersey.life.age import Age
     from hersey.life.campaign import Campaign, RunToAdd
@@ -86,7 +90,7 @@ def add(
         wanted = [RunToAdd(path, unit, parsed) for path in runs or []]
     Campaign.refuse_unless_writable(file)
     with crew.at_work() as client:
-        adding = _Adding(reading, machine, force, client)
+        adding = _Adding(reading, machine, force, client, printing)
         if table is None and not keep_going:
             adding.all(file, wanted)
             return
@@ -95,7 +99,7 @@ def add(
 
 
 def _of_table(table: Path, logs: list[Path] | None, failed: list[str]) -> list[RunToAdd]:
-    """The runs of a table, or of the logs given those that it names; the others are among the ``failed``."""
+    """The runs of a table, or those of the given logs that it lists; the other logs join the ``failed``."""
     from hersey.life.campaign import RunToAdd, read_runs, rows_of
 
     rows = read_runs(table)
@@ -105,18 +109,19 @@ def _of_table(table: Path, logs: list[Path] | None, failed: list[str]) -> list[R
     failed += [f"{log}: {each}" for log, each in zip(logs, found, strict=True) if isinstance(each, Exception)]
     named = [each for each in found if isinstance(each, RunToAdd)]
     if len(named) < len(rows):
-        say(f"{table.name}: of {len(rows)} runs the logs given are {len(named)}", file=sys.stderr)
+        note(f"{len(named)} of the {len(rows)} runs in {table.name} are among the given logs.")
     return named
 
 
 @dataclass(frozen=True)
 class _Adding:
-    """How runs are read, by whom, and whether they replace what is there."""
+    """How runs are read, by which workers, and whether they replace runs that are there."""
 
     reading: Reading
     machine: Path | None
     force: bool
     client: AtWork
+    printing: Quiet
 
     def all(self, file: Path, wanted: list[RunToAdd]) -> None:
         """Add all runs or none."""
@@ -131,10 +136,10 @@ class _Adding:
                 progress(len(read), len(wanted))
         with Campaign.create(file) as opened:
             for added in opened.add_entries(read, force=self.force):
-                say(added.summary())
+                self.printing.text(added.summary())
 
     def each(self, opened: Campaign, wanted: list[RunToAdd], failed: list[str]) -> None:
-        """Add the runs that can be; those that cannot join the ``failed``, and end the command."""
+        """Add the runs that can be added; the others join the ``failed``, and the exit code is 1."""
         counts: Counter[str] = Counter()
         new: list[tuple[RunToAdd, str]] = []
         for run in wanted:
@@ -160,13 +165,14 @@ class _Adding:
                     failed.append(f"{run.log}: {error}")
                 progress(number, len(new))
         said = [f"{counts[outcome]} {outcome}" for outcome in sorted(counts)]
-        say(f"{opened.path.name}: {', '.join([*said, *([f'{len(failed)} failed'] if failed else [])])}")
+        counted = [*said, *([f"{len(failed)} failed"] if failed else [])]
+        self.printing.text(f"{opened.path.name}: {', '.join(counted)}")
         if failed:
             say(*(f"- {each}" for each in failed), file=sys.stderr)
             raise typer.Exit(NOT_FOUND)
 
     def _read(self, runs: list[tuple[RunToAdd, str]]) -> Iterator[tuple[RunToAdd, Entry | HerseyError]]:
-        """Each run, with what is kept of it or why nothing is."""
+        """Each run, with its entry or its error."""
         from hersey.cli.campaign_reading import entries
 
         logs = [(run.log, settings) for run, settings in runs]
@@ -179,7 +185,7 @@ class _Adding:
         return settings_of(self.reading, run.log, self.machine)
 
     def _there(self, opened: Campaign, run: RunToAdd) -> Added | str:
-        """The run if adding it would change nothing, else how its log is to be read."""
+        """The run if adding it would change nothing, else the settings for reading its log."""
         from hersey.files.reading import hash_of
 
         settings, sha256 = self._settings(run), hash_of(run.log)
@@ -187,82 +193,78 @@ class _Adding:
 
 
 def _noted(added: Added) -> str:
-    """The outcome of a run that was added, whose warnings are printed."""
+    """Print the warnings of a run that was added, and return its outcome."""
     for warning in added.warnings:
-        say(f"{added.path}: {warning}", file=sys.stderr)
+        note(f"{added.path}: {warning}")
     return added.outcome
 
 
 @campaign.command("list")
-def list_(file: _File, as_json: AsJson = False) -> None:
-    """List the units, with their runs, ages and dwells.
+@grouped
+def list_(file: _File, *, printing: Printing) -> None:
+    """List the specimens with their runs, ages and dwells.
 
     Example: [bold]hersey campaign list life.hersey[/bold]
     """
     from hersey.life.campaign import Campaign
 
     with Campaign.open(file, write=False) as opened:
-        if as_json:
-            print_json(opened.to_dict(), warnings=None)
-        else:
-            say(opened.summary())
+        if not printing.json(opened.to_dict(), warnings=None):
+            printing.text(opened.summary())
 
 
 @campaign.command("show")
-def show(
-    file: _File, unit: Annotated[str, argument("UNIT", "Name of the unit.")], as_json: AsJson = False
-) -> None:
-    """Show every run of a unit by age: its log, dwells, exponent and transition.
+@grouped
+def show(file: _File, unit: Annotated[str, argument("UNIT", _UNIT)], *, printing: Printing) -> None:
+    """Show the runs of a specimen by age.
 
     Example: [bold]hersey campaign show life.hersey F12[/bold]
     """
+    from hersey.cli.figures import columns, three
     from hersey.life.age import Age
     from hersey.life.campaign import Campaign
     from hersey.units import rpm
 
     with Campaign.open(file, write=False) as opened:
-        if as_json:
-            print_json(opened.to_dict(unit), warnings=None)
+        if printing.json(opened.to_dict(unit), warnings=None):
             return
-        for row in opened.runs(unit).to_dicts():
-            facts = [f"run {row['run']} at {Age(row['age'], opened.age_unit)}", f"{row['dwells']} dwells"]
-            if row["exponent"] is not None:
-                facts.append(f"exponent {row['exponent']:.3g}")
-            if row["transition_speed"] is not None:
-                facts.append(f"transition at {rpm(row['transition_speed']):.3g} rpm")
-            if row["no_fit"]:
-                facts.append(f"no fit: {row['no_fit']}")
-            say(f"{', '.join(facts)}: {row['log']}")
+        rows = opened.runs(unit).to_dicts()
+        table = []
+        for row in rows:
+            exponent, turn = row["exponent"], row["transition_speed"]
+            cells = [
+                "-" if exponent is None else three(exponent),
+                "-" if turn is None else three(rpm(turn), "rpm"),
+            ]
+            table.append((str(row["run"]), str(Age(row["age"], opened.age_unit)), str(row["dwells"]), *cells))
+        printing.text(*columns(("run", "age", "dwells", "exponent c", "least torque at"), table, indent=0))
+        printing.text(*(f"- run {row['run']} has no fit: {row['no_fit']}" for row in rows if row["no_fit"]))
+        printing.details(*(f"run {row['run']}: {row['log']}" for row in rows))
 
 
 @campaign.command("check")
-def check(file: _File, as_json: AsJson = False) -> None:
-    """Check that the file is sound, every log there and unchanged, ages go forward, and every run has a fit.
+@grouped
+def check(file: _File, *, printing: Printing) -> None:
+    """Check the campaign file, its logs, the order of the ages, and the fits.
 
     Example: [bold]hersey campaign check life.hersey[/bold]
 
-    Exit code 1 says that something was found.
+    The exit code is 1 if something is wrong.
     """
     from hersey.life.campaign import Campaign
 
     with Campaign.open(file, write=False) as opened:
         with bar("checking", unit="runs") as progress:
             found = opened.check(progress)
-        if as_json:
-            print_json(opened.to_dict(), warnings=found.warnings)
-        else:
-            say(found.summary())
+        if not printing.json(opened.to_dict(), warnings=found.warnings):
+            printing.text(found.summary())
     if not found.ok:
         raise typer.Exit(NOT_FOUND)
 
 
 @campaign.command("export")
-def export(
-    file: _File,
-    out: Annotated[Path, option("Table to write: .parquet or .csv, a row per dwell.", metavar="FILE")],
-    force: Force = False,
-) -> None:
-    """Write every dwell as a row, with unit, age and run.
+def export(file: _File, out: Annotated[Path, option(_OUT, metavar="FILE")], force: Force = False) -> None:
+    """Write every dwell as a row of a table, with specimen, age and run.
 
     Example: [bold]hersey campaign export life.hersey --out dwells.parquet[/bold]
     """
@@ -272,4 +274,4 @@ def export(
 
     with Campaign.open(file, write=False) as opened, working("writing the dwells"):
         table.write(opened.export(out.suffix))
-    say(f"dwells: {out}")
+    say(str(out))

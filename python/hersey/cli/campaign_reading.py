@@ -1,6 +1,6 @@
-"""Reading the runs of a campaign in their order: few here, hundreds in two processes, or by workers.
+"""Reading the runs of a campaign in their order: a few here, many in two processes, or by workers.
 
-Run as the script of such a process too, see `hersey.processes.server`.
+It is also the script of such a process: see `hersey.processes.server`.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ _PROCESSES, _AHEAD, _FEW = 2, 6, 8
 
 
 def settings_of(reading: Reading, log: Path, machine: Path | None) -> str:
-    """Return how a log is read, as it is kept: the recipe, and hashes of files beside the log."""
+    """Return how a log is read, as the campaign keeps it: the recipe, and hashes of the other files."""
     recipe = reading.recipe([log])
     beside = {"mapping": recipe.chosen.source, "no_load": recipe.no_load, "machine": machine}
     files = {name: {"path": str(path), "sha256": hash_of(path)} for name, path in beside.items() if path}
@@ -51,7 +51,7 @@ def entry(reading: Reading, log: Path, machine_file: Path | None, settings: str)
 
 
 def _tried(reading: Reading, machine: Path | None, run: tuple[Path, str]) -> Entry | HerseyError:
-    """Read a run where this runs; what is wrong with it is a result like another."""
+    """Read a run in this process; an error is returned, not raised."""
     try:
         return entry(reading, run[0], machine, run[1])
     except HerseyError as error:
@@ -59,7 +59,7 @@ def _tried(reading: Reading, machine: Path | None, run: tuple[Path, str]) -> Ent
 
 
 def answer(request: dict[str, Any], _payload: bytes) -> tuple[dict[str, Any], bytes]:
-    """Read a run in a process of its own."""
+    """Read a run in a worker process."""
     machine = request["machine"]
     read = entry(
         Reading(**request["reading"]), Path(request["log"]), machine and Path(machine), request["settings"]
@@ -73,7 +73,7 @@ def entries(
     machine: Path | None,
     client: AtWork = None,
 ) -> Iterator[Entry | HerseyError]:
-    """Read logs, each with its settings, many several at a time; yield what is kept of each, or why not."""
+    """Read logs, each with its settings, and yield the entry or the error of each, in order."""
     if client is not None:
         from hersey.log.many import each_of
 
@@ -90,7 +90,7 @@ def entries(
 def _in_processes(
     reading: Reading, logs: Sequence[tuple[Path, str]], machine: Path | None
 ) -> Iterator[Entry | HerseyError]:
-    """Read logs in processes of their own, some ahead of the one that is yielded."""
+    """Read logs in worker processes, a few ahead of the one that is yielded."""
     children: SimpleQueue[Child] = SimpleQueue()
     for _ in range(_PROCESSES):
         children.put(Child(Path(__file__)))
@@ -103,7 +103,9 @@ def _in_processes(
         except FailedError as error:
             return UnreadableLogError(str(error))
         except LostError as error:
-            return UnreadableLogError(f"{log.name}: the process that read it ended: {error}: add it alone")
+            return UnreadableLogError(
+                f"{log.name}: the process that read it ended ({error}); add this log alone"
+            )
         finally:
             children.put(child)
 

@@ -1,4 +1,4 @@
-"""Columns of numbers from a small CSV whose heads name quantity and unit: a profile, a drag curve."""
+"""Columns of a small CSV whose headings name quantity and unit: a profile or a drag curve."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ _FORCE = ("force", "force (N)")
 
 
 def read_profile(file: Path) -> Schedule:
-    """Return the drive speed (m/s) over time (s) of a CSV, joined by straight lines; the last speed stays.
+    """Return the drive speed (m/s) over time (s) of a CSV, joined by straight lines; the last speed is held.
 
     Raises
     ------
     ParameterError
-        If a column is missing or has no unit, or a row no two numbers, or times run backwards.
+        If a column is missing or has no unit, a row lacks a number, or times decrease.
     """
     from hersey.motion.schedule import Schedule
 
@@ -35,17 +35,17 @@ def read_profile(file: Path) -> Schedule:
     with _naming(file):
         profile = Schedule(times, speeds)
     if min(speeds) < 0 or speeds[-1] == 0:
-        raise ParameterError(f"{file.name}: no speed may be less than 0, and the last must be greater than 0")
+        raise ParameterError(f"{file.name}: speeds must not be negative, and the last must be greater than 0")
     return profile
 
 
 def read_drag_table(file: Path, **beside: Any) -> DragTable:
-    """Return the drag through the points of a CSV; ``beside`` is what `DragTable` takes beside them.
+    """Return the drag through the points of a CSV; ``beside`` are the other arguments of `DragTable`.
 
     Raises
     ------
     ParameterError
-        If a column is missing or has no unit, a row no two numbers, or the points are no drag curve.
+        If a column is missing or has no unit, a row lacks a number, or the points are not a drag curve.
     """
     from hersey.motion.drag import DragTable
 
@@ -56,7 +56,7 @@ def read_drag_table(file: Path, **beside: Any) -> DragTable:
 
 @contextmanager
 def _naming(file: Path) -> Iterator[None]:
-    """Let what is wrong with the numbers of a file begin with its name."""
+    """Begin errors about the numbers of a file with its name."""
     try:
         yield
     except ParameterError as error:
@@ -69,7 +69,7 @@ def read_columns(file: Path, wanted: Mapping[str, tuple[str, str]]) -> list[tupl
     Parameters
     ----------
     wanted
-        The first word of each head, with its kind of unit and an example of the head.
+        The first word of each heading, with its kind of unit and an example of the heading.
 
     Raises
     ------
@@ -81,7 +81,7 @@ def read_columns(file: Path, wanted: Mapping[str, tuple[str, str]]) -> list[tupl
     try:
         rows = list(csv.reader(io.StringIO(read_text(file))))
     except (UnicodeDecodeError, csv.Error) as error:
-        raise ParameterError(f"{file.name} is no CSV: {error}") from None
+        raise ParameterError(f"{file.name} is not a CSV file: {error}") from None
     columns = dict(_columns(file, rows[0] if rows else [], wanted))
     missing = [example for name, (_, example) in wanted.items() if name not in columns]
     if missing:
@@ -92,14 +92,14 @@ def read_columns(file: Path, wanted: Mapping[str, tuple[str, str]]) -> list[tupl
         if any(cell.strip() for cell in row)
     ]
     if not numbers:
-        raise ParameterError(f"{file.name} has no rows: write a {' and a '.join(wanted)} in each")
+        raise ParameterError(f"{file.name} has no rows: write {' and '.join(wanted)} in each row")
     return list(zip(*numbers, strict=True))
 
 
 def _columns(
     file: Path, heads: list[str], wanted: Mapping[str, tuple[str, str]]
 ) -> Iterator[tuple[str, tuple[int, float, float]]]:
-    """Place of each column and what brings it to SI, by name."""
+    """Index of each column with scale and offset to SI, by name."""
     from hersey.units import conversion
 
     pattern = re.compile(rf"\s*({'|'.join(wanted)})\s*[(\[](.*)[)\]]\s*", re.IGNORECASE)
@@ -119,4 +119,4 @@ def _number(file: Path, line: int, row: list[str], at: int) -> float:
     try:
         return float(text)
     except ValueError:
-        raise ParameterError(f"{file.name}, line {line}: '{text}' is no number") from None
+        raise ParameterError(f"{file.name}, line {line}: '{text}' is not a number") from None

@@ -1,4 +1,4 @@
-"""From a trace of stick-slip: ``hersey cycles``."""
+"""Slips of a stick-slip trace and the drive behind them: ``hersey cycles``."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 from hersey.cli.groups import argument, grouped, option
-from hersey.cli.options import AsJson, Force, MaxMemory, TimeUnit, drawn
-from hersey.cli.outputs import may_draw, print_json, say_written
+from hersey.cli.options import Force, MaxMemory, TimeUnit, drawn
+from hersey.cli.outputs import may_draw
+from hersey.cli.printing import Printing
 from hersey.cli.progress import working
 from hersey.cli.quantities import belt_speed_of, share
-from hersey.cli.terminal import say
 from hersey.errors import ParameterError, UnitError, WrongKindError
 
 if TYPE_CHECKING:
@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from hersey.identification.trace_file import TraceFile
 
 _SHARE = "friction coefficient"
-#: Kinds of the known parameters where they are not those of a belt: of a roll on a torsional spring, and of a
-#: belt whose force is a share of its weight.
+#: Kinds of the known parameters of a roll on a torsional spring, and of a belt whose force is relative to its
+#: weight, where they differ from those of a belt.
 _OF_A_TORQUE: dict[str, str | None] = {
     "stiffness": "torsional stiffness",
     "mass": "moment of inertia",
@@ -37,30 +37,41 @@ _OF_A_SHARE: dict[str, str | None] = {
 }
 
 
-_UNCERTAINTY = "How far the drive speed may be off, as '2 %': half of its 95 % interval.  [default: 0.1 %]"
-_CHANNEL = "Instead of --drive-speed: the column of it, of which the mean counts."
-_LEAST_DROP = "Count slips of at least this fall, as '0.5 N' (default: beyond noise)."
-_KNOWN = "A known parameter, as 'mass=0.3 kg' ('mass=2 kg*cm^2' with a torque); repeatable."
-_CLOSURES = "Closures to compare; stribeck may be added and takes minutes."
-_RUN = "Look only at this run, counted from 1, where the clock of the file starts anew."
+_SPEED = "Speed of the drive, e.g. '20 mm/s', or '3 rpm' for a trace of torque."
+_UNCERTAINTY = "Half width of the 95 % interval of the drive speed, e.g. '2 %'.  [default: 0.1 %]"
+_CHANNEL = "Column of the drive speed, whose mean is used, instead of --drive-speed."
+_LEAST_DROP = "Count only slips of at least this drop, e.g. '0.5 N'.  [default: above noise]"
+_KNOWN = "Known parameter, e.g. 'mass=0.3 kg' ('mass=2 kg*cm^2' for a torque); repeatable."
+_CLOSURES = "Closures to compare; stribeck can be added but takes minutes."
+_RUN = "Use only this run, counted from 1, of a file whose time restarts."
+_TRACE = "Trace of force, torque or speed, in any log format."
+_UNIT = "Unit of that column, e.g. 'N'; 1 if the force is relative to the weight."
+#: Units in which numbers are printed, and how many make one in SI, by the unit in SI.
+_SHOWN = {"m/s": ("mm/s", 1e3), "N/m": ("N/mm", 1e-3)}
+#: Kinds of what is derived from the parameters of a drive, which are those of some parameter.
+_DERIVED = {
+    "release_force": "transition_force",
+    "drag_at_drive_speed": "transition_force",
+    "drive_speed": "stick_speed",
+}
 
 
 @dataclass(frozen=True)
 class _Trace:
-    """The drive speed, and what of a file is the trace."""
+    """The drive speed, and the column of the trace."""
 
-    drive_speed: Annotated[str, option("Speed of the drive, as '20 mm/s', or '3 rpm' with a torque.")] = ""
+    drive_speed: Annotated[str, option(_SPEED)] = ""
     drive_speed_uncertainty: Annotated[str, option(_UNCERTAINTY)] = ""
     drive_speed_channel: Annotated[str, option(_CHANNEL)] = ""
-    quantity: Annotated[str, option("force, torque or speed; found by name if left out.")] = ""
-    time: Annotated[str, option("Name of the time column or variable.")] = ""
+    quantity: Annotated[str, option("Quantity: force, torque or speed.  [default: by name]")] = ""
+    time: Annotated[str, option("Time column or variable.")] = ""
     time_unit: TimeUnit = ""
-    value: Annotated[str, option("Name of the column or variable of the quantity.")] = ""
-    unit: Annotated[str, option("Its unit, as 'N'; 1 for a share of a weight.")] = ""
+    value: Annotated[str, option("Column or variable of the quantity.")] = ""
+    unit: Annotated[str, option(_UNIT)] = ""
     least_drop: Annotated[str, option(_LEAST_DROP)] = ""
 
     def runs(self, file: Path) -> list[tuple[TraceFile, TraceFile | None]]:
-        """Return the runs of a file, each with the channel of its drive speed if that is named."""
+        """Return the runs of a file, each with the column of its drive speed if that is named."""
         from hersey.identification.trace_file import read_trace_runs
 
         of = {name: getattr(self, name) for name in ("time", "time_unit")}
@@ -88,14 +99,14 @@ class _Trace:
 
 @dataclass(frozen=True)
 class _Identification:
-    """Whether the drive behind the cycles is sought, and what is known of it."""
+    """Whether to identify the drive, and its known parameters."""
 
-    identify: Annotated[bool, option("Also identify the drive behind the cycles.", "--identify")] = False
+    identify: Annotated[bool, option("Identify the drive behind the cycles.", "--identify")] = False
     known: Annotated[list[str] | None, option(_KNOWN, metavar="NAME=VALUE")] = None
     closures: Annotated[str, option(_CLOSURES)] = "retained,stiction"
 
     def drive(self, record: CycleRecord, known: dict[str, float]) -> IdentifiedDrive | None:
-        """Return the drive, if it is sought."""
+        """Return the drive, if it is to be identified."""
         from hersey.identification.identified_drive import identify
 
         if not self.identify:
@@ -106,23 +117,23 @@ class _Identification:
 
 @grouped
 def cycles(
-    file: Annotated[Path, argument("TRACE", "Trace in any format that a log may have.")],
+    file: Annotated[Path, argument("TRACE", _TRACE)],
     *,
     trace: _Trace,
     sought: _Identification,
     figure: Annotated[Path | None, drawn("trace, slips and fit")] = None,
     run_number: Annotated[int, option(_RUN, metavar="N")] = 0,
     max_memory: MaxMemory = "2 GB",
-    as_json: AsJson = False,
+    printing: Printing,
     force: Force = False,
 ) -> None:
-    """Find the slips of a stick-slip trace, and with --identify the drive that makes them.
+    """Find the slips of a stick-slip trace, and with --identify the drive behind them.
 
     Example: [bold]hersey cycles examples/stick-slip.csv --drive-speed "20 mm/s" --identify[/bold]
     """
     drawing = may_draw(figure, force, inputs=[file])
     if trace.drive_speed and trace.drive_speed_channel:
-        raise ParameterError("give either --drive-speed or --drive-speed-channel")
+        raise ParameterError("--drive-speed and --drive-speed-channel exclude each other: give one of them")
     if sought.known and not sought.identify:
         raise ParameterError("--known needs --identify")
 
@@ -130,7 +141,7 @@ def cycles(
 
     with memory_limit(max_memory):
         runs = trace.runs(file)
-    chosen = _chosen(file, len(runs), run_number, alone=figure is not None or as_json)
+    chosen = _chosen(file, len(runs), run_number, alone=figure is not None or printing.as_json)
     for number in chosen:
         given, channel = runs[number]
         speed = _drive_speed(trace.drive_speed, given) if channel is None else _of_channel(channel, given)
@@ -139,24 +150,88 @@ def cycles(
         drive, unit = sought.drive(record, known), given.unit.replace("*", " ")
         shown = "share of the weight" if given.unit == "1" else unit
         drawing.draw(record, drive=drive, unit=shown)
-        if as_json:
-            print_json(record, unit=given.unit, drive=drive)
+        if printing.json(record, unit=given.unit, drive=drive):
             continue
-        say("\n" * (number != chosen[0]) + record.summary(unit))
-        if drive is not None:
-            say("\n" + drive.summary(unit))
-        say_written(figure=figure)
+        if len(chosen) > 1:
+            printing.text(*([""] if number != chosen[0] else []), f"Run {number + 1} of {len(runs)}")
+        printing.text(*_lines(record, drive, unit))
+        printing.details("", record.summary(unit), *([] if drive is None else ["", drive.summary(unit)]))
+        printing.warnings(*record.warnings, *(() if drive is None else drive.warnings))
+        printing.files(figure)
+
+
+def _lines(record: CycleRecord, drive: IdentifiedDrive | None, unit: str) -> list[str]:
+    """The motion and its figures, then the drive that makes it."""
+    import numpy as np
+
+    from hersey.cli.figures import labelled, three
+    from hersey.identification.detection import FEWEST_SLIPS
+
+    of, headline = {"1": "of the weight"}.get(unit, unit), record.headline(unit)
+    lines = [f"{headline[:1].upper()}{headline[1:]}."]
+    if record.kind != "steady_sliding" and record.slips >= FEWEST_SLIPS:
+        what = {"stick_slip": "Stick-slip", "inertial": "Inertial oscillation"}[record.kind]
+        lines = [f"{what} with {record.slips} slips."]
+        lap, drop = float(np.median(record.period)), float(np.median(record.drop))
+        low, high = float(np.median(record.force_min)), float(np.median(record.force_max))
+        rows = [
+            ("frequency", f"{three(1 / lap, 'Hz')} (period {three(lap, 's')})"),
+            ("force", f"{three(low)} to {three(high)} {of}, drop {three(drop)} {of}"),
+            ("stuck", f"{100 * record.stuck_fraction:.0f} % of the time"),
+        ]
+        if record.stiffness:
+            name, factor = _SHOWN.get(f"{unit}/m", (f"{unit}/{'rad' if unit == 'N m' else 'm'}", 1.0))
+            rows.append(("stiffness", f"{three(factor * record.stiffness)} {name} (loading slope / speed)"))
+        lines += labelled(rows)
+    return lines + ([] if drive is None else _identified(drive, unit))
+
+
+def _identified(drive: IdentifiedDrive, unit: str) -> list[str]:
+    """The closure, and what the trace determines of the drive."""
+    from hersey.cli.figures import labelled, three, within
+    from hersey.motion.parameters import OF_THE_BELT
+
+    decided = "" if drive.decided else " (the others fit as well)"
+    misfit = f"the fit is within {three(100 * drive.misfit)} % of the drop"
+    rows = []
+    for name, known in {**drive.estimates, **drive.derived}.items():
+        of, factor = _unit_of(name, unit)
+        shown = within((known.value, known.low, known.high), of, factor=factor)
+        rows.append((name.replace("_", " "), shown))
+    for name, value in drive.known.items():
+        of, factor = _unit_of(name, unit)
+        rows.append((name.replace("_", " "), f"{three(factor * value, of)} (given)"))
+    lines = ["", f"Drive: closure {drive.closure}{decided}; {misfit}.", *labelled(rows)]
+    open_ones = [name for name in OF_THE_BELT if name not in drive.estimates and name not in drive.known]
+    if open_ones:
+        lines.append(f"Not determined by this trace: {', '.join(open_ones).replace('_', ' ')}.")
+    speed = three(_unit_of("drive_speed", unit)[1] * drive.drive_speed, _unit_of("drive_speed", unit)[0])
+    known_to = f"{three(100 * drive.drive_speed_uncertainty)} %"
+    return [*lines, f"The intervals assume a drive speed of {speed} within {known_to}."]
+
+
+def _unit_of(name: str, unit: str) -> tuple[str, float]:
+    """The unit in which a number of a drive is printed, and its factor; ``unit`` is that of the trace."""
+    from hersey.motion.parameters import KINDS
+    from hersey.units import KINDS as UNITS
+
+    if name == "free_period":
+        return "s", 1.0
+    kinds = {"N": KINDS, "N m": KINDS | _OF_A_TORQUE}.get(unit, {})
+    kind = kinds.get(_DERIVED.get(name, name))
+    si = UNITS[kind][0] if kind else ""
+    return _SHOWN.get(si, (si.replace("*", "·"), 1.0))
 
 
 def _chosen(trace: Path, runs: int, stated: int, *, alone: bool) -> list[int]:
-    """Which runs of a file are looked at, counted from 0; ``alone``: only one can be."""
+    """The runs of a file that are used, counted from 0; ``alone``: only one can be."""
     if stated > runs or stated < 0:
         raise ParameterError(f"--run-number is {stated}: {trace.name} holds {runs} run{'s' * (runs > 1)}")
     if stated:
         return [stated - 1]
     if alone and runs > 1:
         raise ParameterError(
-            f"{trace.name} holds {runs} runs, for its clock starts anew: a figure or --json shows one, "
+            f"{trace.name} holds {runs} runs, because its time restarts; --figure and --json show one: "
             f"choose it with --run-number 1 to {runs}"
         )
     return list(range(runs))
@@ -169,7 +244,7 @@ def _of_channel(channel: TraceFile, given: TraceFile) -> FloatArray:
     turning = _turns(given)
     if turning != (channel.unit == "rad/s"):
         raise WrongKindError(
-            f"--drive-speed-channel {channel.name} with a trace of {given.quantity} in {given.unit}: it must "
+            f"--drive-speed-channel {channel.name}: with a trace of {given.quantity} in {given.unit} it must "
             f"be {'an angular speed' if turning else 'the speed of a belt'}"
         )
     seen = np.isfinite(channel.value)
@@ -199,7 +274,7 @@ def _least_drop(text: str, given: TraceFile) -> float | None:
     if not text:
         return None
     if given.quantity == "speed":
-        raise ParameterError("--least-drop counts falls of a force: leave it out with a trace of speed")
+        raise ParameterError("--least-drop is a drop of force: omit it for a trace of speed")
     if given.unit == RELATIVE:
         return _of_the_weight("--least-drop", text)
     try:
@@ -237,7 +312,7 @@ def _amount(where: str, text: str, kind: str | None) -> float:
 
 
 def _of_the_weight(where: str, text: str) -> float:
-    """A force as a share of the weight: the one number that needs no unit."""
+    """A force relative to the weight, the one number that needs no unit."""
     return share(where, text) if text.strip().endswith("%") else _number(where, text)
 
 

@@ -1,4 +1,4 @@
-"""The examples that come with the package, copied into a new folder: ``hersey examples``."""
+"""The examples of the package, copied into a new folder: ``hersey examples``."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from hersey.cli.groups import argument
 from hersey.cli.terminal import say
 
 
-def examples(folder: Annotated[Path, argument("FOLDER", "Folder to make; it must not exist yet.")]) -> None:
+def examples(folder: Annotated[Path, argument("FOLDER", "Folder to create; it must not exist yet.")]) -> None:
     """Copy the shipped examples into a new folder: logs, a machine file, a life test.
 
     Example: [bold]hersey examples try-hersey[/bold]
@@ -19,5 +19,5 @@ def examples(folder: Annotated[Path, argument("FOLDER", "Folder to make; it must
 
     written = copy_examples(folder)
     log, machine = str(folder / "bench.csv"), str(folder / "machine.toml")
-    say(f"examples: {folder} ({len(written)} files)")
-    say(f"now: {shlex.join(['hersey', 'report', log, '--machine', machine, '--tare', 'standing'])}")
+    say(f"{len(written)} files are in {folder}.")
+    say(f"Next: {shlex.join(['hersey', 'report', log, '--machine', machine, '--tare', 'standing'])}")

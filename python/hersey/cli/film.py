@@ -7,11 +7,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 from hersey.cli.groups import argument, grouped, option
-from hersey.cli.options import AsJson, Force, Reading, drawn
-from hersey.cli.outputs import may_draw, print_json, say_written
+from hersey.cli.options import Force, Reading, drawn
+from hersey.cli.outputs import may_draw, print_json
+from hersey.cli.printing import Printing
 from hersey.cli.progress import working
 from hersey.cli.quantities import belt_speed_of, temperature_of
-from hersey.cli.terminal import say
 from hersey.errors import ParameterError
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from hersey.verdict.evidence import MeasuredFilm
 
 
-#: What the tables that a film needs say at least, as examples.
+#: The tables that a film needs, with the fewest keys, as examples.
 _EXAMPLES = {
     "contact": (
         'rubber_thickness = "3.5 mm"; modulus = "1 MPa"; poisson_ratio = 0.48; length = "220 mm"; '
@@ -37,27 +37,31 @@ _EXAMPLES = {
 }
 
 
-_AT = "Temperature of the film, as '180 degC', where log or points give none."
-_BELT_SPEED = "Speed of the belt, as '120 mm/s', instead of the points of the file."
+#: Longest name of a point in the table, and rows that it has at most.
+_LONGEST, _MOST = 18, 12
+_LOG = "Log to compare with; repeat for more files."
+_AT = "Film temperature, e.g. '180 degC', if neither log nor operating points give it."
+_BELT_SPEED = "Belt speed, e.g. '120 mm/s', instead of the operating points of the file."
+_MACHINE = "Machine file with the tables \\[contact] and \\[lubricant]."
 
 
 @grouped
 def film(
-    machine_file: Annotated[Path, argument("MACHINE", "TOML file with the tables contact and lubricant.")],
+    machine_file: Annotated[Path, argument("MACHINE", _MACHINE)],
     *,
-    log: Annotated[list[Path] | None, option("A log to compare with; may be given again.")] = None,
+    log: Annotated[list[Path] | None, option(_LOG, metavar="LOG")] = None,
     at: Annotated[str, option(_AT)] = "",
     belt_speed: Annotated[str, option(_BELT_SPEED)] = "",
     figure: Annotated[Path | None, drawn("the regime chart")] = None,
     reading: Reading,
-    as_json: AsJson = False,
+    printing: Printing,
     force: Force = False,
 ) -> None:
-    """Say how thick the lubricant film is, which regime makes it, and what a log says of both.
+    """Compute film thickness and lubrication regime, and compare them with a log.
 
     Example: [bold]hersey film examples/machine.toml --log examples/bench.csv --tare standing[/bold]
 
-    Without a log the film is computed at the points of the file.
+    Without a log, the film is computed at the operating points of the machine file.
     """
     drawing = may_draw(figure, force, inputs=reading.inputs(machine_file, log))
 
@@ -69,7 +73,7 @@ def film(
     _refuse_incomplete(machine, machine_file.name)
     kelvin = temperature_of(at)
     if not log and reading != Reading():
-        raise ParameterError("options that say how to read a log need --log")
+        raise ParameterError("the options for reading a log need --log LOG")
     found = _compared(log, reading, machine, kelvin) if log else _OfALog()
     predicted, names = _predicted(machine, found.measured, kelvin, belt_speed)
     shared = shared_load(machine, predicted, found.measured, found.surface)
@@ -83,11 +87,15 @@ def film(
         "mixed": machine.mixed,
     }
     drawing.draw(predicted, **chart)
-    if as_json:
+    if printing.as_json:
         print_json(film_document(predicted, names, found.measured, found.says, warnings, shared))
         return
-    say(*_lines(predicted, names, found, shared), *(f"- {each.sentence}" for each in warnings))
-    say_written(figure=figure)
+    printing.text(predicted.headline() + "." if found.says is None else found.says.text)
+    if not printing.verbose:
+        printing.text(*_points(predicted, names, shared))
+    printing.details("", *_lines(predicted, names, found, shared))
+    printing.warnings(*warnings)
+    printing.files(figure)
 
 
 class _OfALog(NamedTuple):
@@ -120,11 +128,11 @@ def _compared(logs: list[Path], reading: Reading, machine: Machine, kelvin: floa
 
 
 def _refuse_incomplete(machine: Machine, file: str) -> None:
-    """Refuse a machine's file without the tables that a film needs."""
+    """Refuse a machine file without the tables that a film needs."""
     for table, example in _EXAMPLES.items():
         if getattr(machine, table) is None:
             raise ParameterError(
-                f"{file}: the film needs a table [{table}]: write [{table}] and below it yours of {example}"
+                f"{file}: the film needs a table [{table}]: add [{table}] with your values, e.g. {example}"
             )
 
 
@@ -139,14 +147,16 @@ def _predicted(
     assert machine.lubricant is not None
     if belt_speed:
         if kelvin is None:
-            raise ParameterError("--belt-speed needs a temperature: --at '180 degC'")
+            raise ParameterError("--belt-speed needs a temperature: add --at '180 degC'")
         states = [(belt_speed, belt_speed_of(belt_speed, "--belt-speed"), kelvin)]
     elif machine.points:
         states = [(p.name, p.speed, kelvin or p.temperature) for p in machine.points]
     elif measured is not None:
         return measured.predicted, [f"dwell {i + 1}" for i in range(measured.speed.size)]
     else:
-        raise ParameterError("say where: [[points]] in the file, --log, or --belt-speed with --at")
+        raise ParameterError(
+            "name a state: [[points]] in the machine file, --log LOG, or --belt-speed and --at"
+        )
     speeds = [speed / machine.contact.roll_radius for _, speed, _ in states]
     inside = film_temperature(
         machine.contact, machine.lubricant, speed=speeds, temperature=[kelvin for _, _, kelvin in states]
@@ -156,8 +166,44 @@ def _predicted(
 
 
 def _lines(predicted: Film, names: list[str], found: _OfALog, shared: SharedLoad | None) -> list[str]:
-    """The film, and what asperities and the log say of it, below each other."""
+    """The film by every law, the share of the asperities, and the film of the log."""
     lines = [predicted.summary(names)]
     lines += [] if shared is None else ["", shared.summary(names)]
-    lines += [] if found.measured is None else ["", found.measured.summary()]
-    return lines + ([] if found.says is None else ["", found.says.text])
+    return lines + ([] if found.measured is None else ["", found.measured.summary()])
+
+
+def _points(predicted: Film, names: list[str], shared: SharedLoad | None) -> list[str]:
+    """The film at each point: temperature, thickness, lambda ratio, torque and regime."""
+    import numpy as np
+
+    from hersey.cli.figures import columns, three
+    from hersey.units import celsius
+
+    film, mixed = predicted, None if shared is None else shared.film
+    ratio = [] if mixed is None else np.ravel(mixed.lambda_ratio).tolist()
+    torque = np.ravel(film.torque if mixed is None else mixed.torque)
+    rows = [
+        (
+            name[:_LONGEST],
+            f"{celsius(kelvin):.0f} °C",
+            three(1e6 * least, "µm"),
+            *([three(ratio[i])] if ratio else []),
+            three(1e3 * torque[i], "mN·m"),
+            regime,
+        )
+        for i, (name, kelvin, least, regime) in enumerate(
+            zip(
+                names,
+                np.ravel(film.temperature).tolist(),
+                np.ravel(film.minimum * film.factor).tolist(),
+                film.regime_names(),
+                strict=False,
+            )
+        )
+    ]
+    head = ("point", "temp.", "least film", *(["lambda"] if ratio else []), "torque", "regime")
+    return ["", *columns(head, rows[:_MOST]), *_more(len(rows))]
+
+
+def _more(count: int) -> list[str]:
+    return [f"  and {count - _MOST} more: --verbose"] if count > _MOST else []

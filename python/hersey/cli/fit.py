@@ -6,18 +6,20 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 from hersey.cli.groups import grouped, option
-from hersey.cli.options import AsJson, Force, KeepGoing, Logs, Reading, SensorsFile
+from hersey.cli.options import Force, KeepGoing, Logs, Reading, SensorsFile
 from hersey.cli.outputs import may_write, print_json
+from hersey.cli.printing import Printing
 from hersey.cli.progress import working
-from hersey.cli.terminal import say
 from hersey.cli.workers import Crew
 from hersey.errors import ParameterError
 from hersey.files.tables import TABLES
 
 if TYPE_CHECKING:
+    from hersey.damping.estimate import Estimate
+    from hersey.damping.surface import DampingSurface
     from hersey.machine.machine import Machine
 
-_EACH = "Fit each log by itself: a row per log, in a .csv or .parquet."
+_EACH = "Fit each log separately and write one row per log (.csv or .parquet)."
 
 
 @grouped
@@ -29,36 +31,36 @@ def fit(
     keep_going: KeepGoing = False,
     crew: Crew,
     reading: Reading,
-    as_json: AsJson = False,
+    printing: Printing,
     force: Force = False,
 ) -> None:
-    """Fit the damping surface B = a T^b w^c and print it, with the verdict on the regime.
+    """Fit the damping surface B = a T^b w^c and print it with the lubrication regime.
 
     Example: [bold]hersey fit examples/bench.csv --tare standing[/bold]
 
-    Several logs are runs of one machine, unless --each says that each is fitted by itself: then nothing is
-    written if one fails, or with --keep-going the others are, with exit code 1.
+    Several logs count as runs of one machine and give one fit, unless --each fits them separately. If a log
+    then fails, nothing is written; with --keep-going the others are, and the exit code is 1.
     """
-    if each is not None and as_json:
-        raise ParameterError("--each writes a table, and --json prints one fit: leave one of them out")
+    if each is not None and printing.as_json:
+        raise ParameterError("--each writes a table and --json prints one fit: give one of them")
     if each is None and (keep_going or force or crew.scheduler or crew.count):
-        raise ParameterError("--keep-going, --scheduler, --workers and --force go with --each TABLE")
+        raise ParameterError("--keep-going, --scheduler, --workers and --force need --each TABLE")
     machine = None
     if machine_file is not None:
         from hersey.machine.machine import read_machine
 
         machine = read_machine(machine_file)
     if each is None:
-        _fit_one(logs, reading, machine, as_json)
+        _fit_one(logs, reading, machine, printing)
         return
     from hersey.cli.fitting_each import fit_each
 
     table = may_write(each, force, reading.inputs(logs, machine_file), flag="--each", ends=TABLES)
-    fit_each(logs, reading, machine, table, keep_going, crew)
+    fit_each(logs, reading, machine, table, keep_going, crew, printing)
 
 
-def _fit_one(logs: list[Path], reading: Reading, machine: Machine | None, as_json: bool) -> None:
-    """Fit the logs as one."""
+def _fit_one(logs: list[Path], reading: Reading, machine: Machine | None, printing: Printing) -> None:
+    """Fit all logs together."""
     log = reading.log(logs, machine)
 
     from hersey.damping.curves import fit_curves
@@ -72,8 +74,40 @@ def _fit_one(logs: list[Path], reading: Reading, machine: Machine | None, as_jso
         points = reading.points(logs, log, machine)
         surface = fitted(points, temperature_scale=reading.temperature_scale)
         curves = fit_curves(points, surface, None if machine is None else machine.mixed)
-    if as_json:
+    if printing.as_json:
         print_json(fit_document(log, points, surface, curves))
         return
-    doubts = [f"- {warning.sentence}" for warning in warnings_of(points, surface)]
-    say(surface.summary(), drag_curves(curves.table), regime(points, surface).verdict, *doubts)
+    printing.text(regime(points, surface).verdict)
+    if not printing.verbose:
+        printing.text("", *_estimates(surface))
+    printing.details("", surface.summary(), drag_curves(curves.table))
+    printing.warnings(*warnings_of(points, surface))
+
+
+def _estimates(surface: DampingSurface) -> list[str]:
+    """The law with its estimates, 95 % intervals and units, and what it is fitted to."""
+    from hersey.cli.figures import labelled, three
+    from hersey.units import celsius
+
+    scale = {"degC": "°C"}.get(surface.temperature_scale, surface.temperature_scale)
+    law = f"B = a T^b w^c, T in {scale}" if surface.b else "B = a w^c"
+    at_one = f"N·m·s/rad at {f'T = 1 {scale}, ' * bool(surface.b)}w = 1 rad/s"
+    rows = [("a", f"{_within(surface.a)} {at_one}")]
+    rows += [(name, _within(known)) for name, known in (("b", surface.b), ("c", surface.c)) if known]
+    if surface.transition is not None:
+        kelvin = surface.reference_temperature
+        at = "" if kelvin is None else f" at {celsius(kelvin):.0f} °C"
+        rows.append(("c below w_t", _within(surface.transition.mixed_exponent)))
+        rows.append(("w_t", f"{_within(surface.transition.speed)} rad/s{at} (least torque)"))
+    statistics = surface.statistics
+    rows += [
+        ("dwells", str(statistics.points)),
+        ("scatter", f"{three(100 * statistics.scatter)} % of torque"),
+    ]
+    return [f"{law}, w in rad/s (value, 95 % interval)", *labelled(rows)]
+
+
+def _within(known: Estimate) -> str:
+    from hersey.cli.figures import within
+
+    return within((known.value, known.low, known.high))

@@ -1,4 +1,4 @@
-"""A fit of each of many logs, as a table: ``hersey fit --each``."""
+"""A separate fit of each of many logs, as a table: ``hersey fit --each``."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ import typer
 from hersey.arrays import one_thread
 from hersey.cli.options import Reading
 from hersey.cli.outputs import NOT_FOUND, Output
+from hersey.cli.printing import Printing
 from hersey.cli.progress import bar
 from hersey.cli.terminal import say
 from hersey.cli.workers import Crew
@@ -23,9 +24,15 @@ if TYPE_CHECKING:
 
 
 def fit_each(
-    logs: list[Path], reading: Reading, machine: Machine | None, table: Output, keep_going: bool, crew: Crew
+    logs: list[Path],
+    reading: Reading,
+    machine: Machine | None,
+    table: Output,
+    keep_going: bool,
+    crew: Crew,
+    printing: Printing,
 ) -> None:
-    """Fit each log by itself and write a table with a row for each, in their order."""
+    """Fit each log separately and write a table with a row for each, in their order."""
     from hersey.log.many import collected, each_of, failure_line
 
     task = partial(row, reading if crew.scheduler is None else reading.anywhere(), machine)
@@ -36,7 +43,8 @@ def fit_each(
     rows = [{"log": str(log), **fits[log]} for log in fits]
     if rows and table.path is not None:
         table.write(_table(rows, table.path.suffix))
-        say(f"fits of {len(rows)} logs: {table.path}")
+        printing.text(f"{len(rows)} of {len(logs)} logs are fitted.")
+        printing.files(table.path)
     if fits.failures:
         say(*(f"- {failure_line(*failed)}" for failed in fits.failures.items()), file=sys.stderr)
         raise typer.Exit(NOT_FOUND)

@@ -1,4 +1,4 @@
-"""Options of a command: one with its help, and those that belong together as a frozen data class."""
+"""Options of a command: one with its help, and several that belong together as a data class."""
 
 from __future__ import annotations
 
@@ -13,28 +13,33 @@ import typer
 from hersey.errors import ParameterError
 from hersey.files.patterns import files_of
 
-#: Arguments that name logs: patterns among them stand for files.
+#: Arguments that name logs, in which patterns are allowed.
 _LOGS = {"logs", "runs"}
-#: Parameters that take the logs of a recipe where none are typed.
+#: Parameters that take the logs of a recipe if none are typed.
 _OF_A_RECIPE = ("logs", "log")
-#: Parameter by which the command line says what was typed.
+#: Parameter that shows which options were typed.
 _CONTEXT = "context"
 
 
-def option(words: str, *flags: str, **more: Any) -> Any:
-    """Return an option with its help; its flag is the name of the parameter unless there are others."""
-    return typer.Option(*flags, help=words, **more)
+def option(words: str, *flags: str, panel: str | None = None, **more: Any) -> Any:
+    """Return an option with its help, under a heading of its own if there is a ``panel``.
+
+    Its flag is the name of the parameter unless there are others.
+    """
+    shown = words.replace("  [default:", "  \\[default:")  # which is markup else
+    return typer.Option(*flags, help=shown, rich_help_panel=panel, **more)
 
 
 def argument(name: str, words: str) -> Any:
-    """Return an argument, as help calls it, with its help."""
+    """Return an argument with its name in the help, and its help."""
     return typer.Argument(metavar=name, help=words)
 
 
 def grouped(command: Callable[..., None]) -> Callable[..., None]:
-    """Give a command the options of each of its parameters that is a data class, in the place of that.
+    """Replace each parameter that is a data class by the options of that class.
 
-    A group with a method ``completed`` may name a recipe: what it states counts where nothing was typed.
+    A group with a method ``completed`` can name a recipe, whose settings hold unless an option was typed.
+    The method ``prepare`` of a group is called before the command runs.
     """
     given = inspect.signature(command, eval_str=True).parameters
     groups: dict[str, Any] = {n: p.annotation for n, p in given.items() if is_dataclass(p.annotation)}
@@ -50,11 +55,14 @@ def grouped(command: Callable[..., None]) -> Callable[..., None]:
             name: group(**{field.name: typed.pop(field.name) for field in fields(group)})
             for name, group in groups.items()
         }
+        for group in taken.values():
+            if hasattr(group, "prepare"):
+                group.prepare()
         if reading:
             taken[reading], logs_of_recipe = taken[reading].completed(_chosen(context))
             typed |= {name: logs_of_recipe for name in _OF_A_RECIPE if name in typed and not typed[name]}
         if needs_logs and not typed["logs"]:
-            raise ParameterError("name a LOG, or a recipe that names one: --recipe recipe.toml")
+            raise ParameterError("name a LOG, or a recipe that names one with --recipe recipe.toml")
         command(**typed, **taken)
 
     shown = [
@@ -62,7 +70,7 @@ def grouped(command: Callable[..., None]) -> Callable[..., None]:
         for name, parameter in given.items()
         for each in (_options(groups[name]) if name in groups else [parameter])
     ]
-    if needs_logs:  # what is missing is refused above
+    if needs_logs:  # a missing log is refused above
         shown = [each.replace(default=None) if each.name == "logs" else each for each in shown]
     keyword = inspect.Parameter.KEYWORD_ONLY
     if reading:

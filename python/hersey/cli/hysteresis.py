@@ -1,22 +1,24 @@
-"""The speeds at which the past decides: ``hersey hysteresis``."""
+"""The speeds at which sticking depends on the start: ``hersey hysteresis``."""
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Annotated
 
 from hersey.cli.belt import Belt
 from hersey.cli.groups import grouped, option
-from hersey.cli.options import AsJson
-from hersey.cli.outputs import print_json
+from hersey.cli.printing import Printing
 from hersey.cli.progress import working
-from hersey.cli.terminal import say
 from hersey.errors import ParameterError
 
 if TYPE_CHECKING:
+    from hersey.cli.amounts import Amounts
     from hersey.stability.disturbance import Disturbance, SafeStep
+    from hersey.stability.hysteresis import HysteresisBand
 
-_KICK = "Also say how large a kick or step the belt bears that slides at it, as '30 mm/s'."
-_STEP = "With --to-speed: say whether a step between them makes it stick."
+_KICK = "Find the largest disturbance that sliding at this speed survives, e.g. '30 mm/s'."
+_STEP = "Test a step of the drive speed, from this speed to --to-speed."
+_END = "Speed after the step."
 
 
 @grouped
@@ -24,14 +26,14 @@ def hysteresis(
     *,
     drive_speed: Annotated[str | None, option(_KICK)] = None,
     from_speed: Annotated[str | None, option(_STEP)] = None,
-    to_speed: Annotated[str | None, option("Speed at the end of the step.")] = None,
+    to_speed: Annotated[str | None, option(_END)] = None,
     belt: Belt,
-    as_json: AsJson = False,
+    printing: Printing,
 ) -> None:
-    """Find the drive speeds between which the past decides whether the belt sticks.
+    """Find the speed range in which sticking depends on how the drive was started.
 
-    Numbers carry units, as '11 N/mm', or are bare in any consistent set of units; the defaults are the
-    paper's baseline in inches, ounces of force and seconds. With units, results are in SI.
+    Give all numbers with units, e.g. '11 N/mm', or all bare in any consistent set of units. The defaults are
+    the paper's baseline, in inches, ounces of force and seconds.
 
     Example: [bold]hersey hysteresis --from-speed 2.5 --to-speed 1.2[/bold]
     """
@@ -43,33 +45,66 @@ def hysteresis(
 
     train, law, numbers = belt.parts(drive_speed=drive_speed, from_speed=from_speed, to_speed=to_speed)
     sliding, before, after = (numbers.values[name] for name in ("drive_speed", "from_speed", "to_speed"))
-    bears, step = None, None
-    with working("looking for the band"):
+    kick, step = None, None
+    with working("computing V*"):
         band = band_of(train, law)
         if sliding is not None:
-            bears = disturbance(train, law, drive_speed=sliding)
+            kick = disturbance(train, law, drive_speed=sliding)
         if before is not None and after is not None:
             step = safe_step(train, law, from_speed=before, to_speed=after)
-    if as_json:
-        print_json(band, disturbance=bears, step=step)
+    if printing.json(band, disturbance=kick, step=step):
         return
-    lines = [band.summary({**vars(train), **vars(law)})]
-    lines += [] if bears is None else [_borne(bears)]
-    lines += [] if step is None else [_stepped(step)]
-    say(*lines, *numbers.words)
+    printing.text(*_band(band, numbers))
+    printing.text(*([] if kick is None else [_survived(kick, numbers)]))
+    printing.text(*([] if step is None else [_stepped(step, numbers)]))
+    printing.text(*numbers.words)
+    printing.details("", band.summary({**vars(train), **vars(law)}))
 
 
-def _borne(found: Disturbance) -> str:
-    return (
-        f"Sliding at {found.drive_speed:g} it bears a sudden loss of belt speed of {found.kick:.6g}, "
-        f"and a sudden fall of the drive from {found.drive_speed + found.step:.6g}."
+def _band(band: HysteresisBand, numbers: Amounts) -> list[str]:
+    """What the belt does at which drive speeds."""
+    lower, least, upper = (numbers.shown(v, "belt speed") for v in (band.lower, band.transition, band.upper))
+    between = numbers.shown_range(band.transition, band.upper, "belt speed")
+    lines = []
+    if band.stalls:
+        lines.append("The roll cannot start a belt at rest: it slips on it at any drive speed.")
+    if band.upper == 0:
+        return [
+            *lines,
+            f"No stick-slip. A belt that slides keeps sliding above {least}, within the grip of the roll.",
+        ]
+    if not band.bistable:
+        return [*lines, f"Stick-slip ends at {upper}, whatever the start (speed of least drag: {least})."]
+    if band.upper == math.inf:
+        return [
+            *lines,
+            f"Sticks below {lower}. Above {least} it depends on the start, with no upper end.",
+        ]
+    return [
+        *lines,
+        f"Smooth from any start above {upper} (V*). Sticks from any start below {lower}.",
+        f"From {between} the belt sticks if started from rest and slides if slowed from above.",
+    ]
+
+
+def _survived(found: Disturbance, numbers: Amounts) -> str:
+    at, kick = (numbers.shown(v, "belt speed") for v in (found.drive_speed, found.kick))
+    above = numbers.shown(found.drive_speed + found.step, "belt speed")
+    if found.kick == found.step == math.inf:
+        return f"Sliding at {at} survives any disturbance."
+    loss = (
+        "any sudden loss of belt speed"
+        if found.kick == math.inf
+        else f"a sudden loss of belt speed of {kick}"
     )
+    return f"Sliding at {at} survives {loss} and a sudden step of the drive down from {above}."
 
 
-def _stepped(step: SafeStep) -> str:
-    does, ramp = "sticks" if step.sticks else "goes on sliding", "any ramp is safe"
-    if step.ramp_time == float("inf"):
-        ramp = "no ramp is slow enough"
+def _stepped(step: SafeStep, numbers: Amounts) -> str:
+    before, after = (numbers.shown(v, "belt speed") for v in (step.from_speed, step.to_speed))
+    does, ramp = "makes the belt stick" if step.sticks else "keeps the belt sliding", "Any ramp is safe."
+    if step.ramp_time == math.inf:
+        ramp = "No ramp is slow enough."
     elif step.ramp_time > 0:
-        ramp = f"ramps of {step.ramp_time:.3g} s and longer are safe"
-    return f"From {step.from_speed:g} to {step.to_speed:g} at once it {does}; {ramp}."
+        ramp = f"Use a ramp of at least {numbers.shown(step.ramp_time, 'time')}."
+    return f"A sudden step from {before} to {after} {does}. {ramp}"

@@ -3,14 +3,21 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from hersey.cli.groups import grouped, option
-from hersey.cli.options import AsJson, Force, Logs, Reading, SaveRecipe, drawn
-from hersey.cli.outputs import may_draw, may_save_recipe, may_write, show
+from hersey.cli.options import Force, Logs, Reading, SaveRecipe, drawn
+from hersey.cli.outputs import may_draw, may_save_recipe, may_write
+from hersey.cli.printing import Printing
 from hersey.cli.progress import working
+from hersey.errors import Setting
 
-_SAVE_MAPPING = "Write a proposal for the channels as hersey.toml beside the log."
+if TYPE_CHECKING:
+    from hersey.inspection import Inspection
+
+_SAVE_MAPPING = "Write the proposed channels and units as hersey.toml beside the log."
+#: Longest name of a channel in the table, and most channels without a role that it shows.
+_LONGEST, _OTHERS = 28, 8
 
 
 @grouped
@@ -21,14 +28,14 @@ def inspect(
     save_recipe: SaveRecipe = None,
     figure: Annotated[Path | None, drawn("every channel")] = None,
     reading: Reading,
-    as_json: AsJson = False,
+    printing: Printing,
     force: Force = False,
 ) -> None:
-    """Show what a log holds before anything is fitted: clocks, channels, their faults, what it can tell.
+    """Show what a log holds, what is wrong with it and what it can show, before a fit.
 
     Example: [bold]hersey inspect examples/bench.csv --figure channels.svg[/bold]
 
-    It works on logs that cannot be fitted too, and says why they cannot.
+    Logs that cannot be fitted can be inspected too; the reason is shown.
     """
     kept, inputs = None, reading.inputs(logs)
     if save_mapping:
@@ -54,4 +61,46 @@ def inspect(
         if save_recipe is not None:
             saved.write(recipe.toml(save_recipe.parent))
         drawing.draw(inspection, "drawing the channels", paths=logs)
-    show(inspection, as_json, mapping=kept, recipe=save_recipe, figure=figure)
+    if printing.json(inspection):
+        return
+    if printing.verbose or inspection.support is None:  # what a log lacks can be anywhere in it
+        printing.text(inspection.summary())
+    else:
+        printing.text(*_lines(inspection))
+    printing.files(kept, save_recipe, figure)
+
+
+def _lines(inspection: Inspection) -> list[str]:
+    """The files, what is wrong, whether a fit is possible, and the channels with a role."""
+    from hersey.cli.figures import columns, three
+
+    lines = [f"{file.name}: {file.format}, {file.rows} rows" for file in inspection.files]
+    support = inspection.support
+    if support is not None:
+        lines.append(f"{support.dwells} dwells")
+        lines += [f"  can show     {text}" for text in support.can]
+        lines += [f"  cannot show  {text}" for text in support.cannot]
+    lines += [f"Corrected: {each}" for each in inspection.corrections]
+    lines += [
+        f"{rows} rows of {name} are dropped: a number is missing or impossible"
+        for name, rows in inspection.dropped.items()
+    ]
+    if inspection.needed:
+        lines.append(f"To fit it, add {' '.join(Setting(each, 'switch').to() for each in inspection.needed)}")
+    found = [each.sentence for each in (*inspection.warnings, *inspection.channel_warnings)]
+    for file in inspection.files:
+        found += [each.sentence for each in file.warnings]
+        found += [f"{file.name}: {role}: {why}." for role, why in file.without.items()]
+    lines += [f"- {each}" for each in dict.fromkeys(found)]
+    rows = [
+        (
+            channel.name[:_LONGEST],
+            channel.role or "-",
+            three(channel.traits.low),
+            three(channel.traits.high),
+            channel.unit,
+        )
+        for file in inspection.files
+        for channel in sorted(file.channels, key=lambda each: not each.role)[: _OTHERS + 4]
+    ]
+    return [*lines, "", *columns(("channel", "role", "from", "to", "unit"), rows)]

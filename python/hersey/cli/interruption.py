@@ -1,8 +1,8 @@
-"""Ctrl-C, whatever the program is in the midst of.
+"""Ctrl-C at any moment.
 
-Python raises `KeyboardInterrupt` between two of its own steps, so a library that computes for long in its own
-language delays it, and one that catches every exception swallows it. A thread of ours sees the signal at
-once, gives the program a moment to end by itself, and else ends it.
+Python raises `KeyboardInterrupt` between two of its own instructions, so a library that computes for long in
+native code delays it, and one that catches every exception loses it. A thread here sees the signal at once,
+gives the program a moment to end, and then ends it.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from typing import NoReturn
 
 #: Exit code after Ctrl-C, as shells have it.
 INTERRUPTED = 130
-#: Time that the program has to end by itself, s.
+#: Time that the program has to end, s.
 _PATIENCE = 0.25
 _ending = threading.Lock()
 
@@ -46,22 +46,22 @@ def interruptible() -> Iterator[None]:
 
 
 def comes_of_interrupt(error: BaseException) -> bool:
-    """Whether Ctrl-C is behind an error: Python makes another of it where a class is made."""
+    """Whether an error was caused by Ctrl-C, which Python replaces while it creates a class."""
     cause = error.__cause__
     return cause is not None and (isinstance(cause, KeyboardInterrupt) or comes_of_interrupt(cause))
 
 
 def end() -> NoReturn:
-    """End at once: nothing half-written stays, and processes of ours end with this one."""
-    _ending.acquire()  # never given back: the first to come here ends the process
+    """End at once: remove unfinished files, and end worker processes with this one."""
+    _ending.acquire()  # never released: the first thread here ends the process
     try:
         from hersey.files.writing import remove_unfinished
 
         remove_unfinished()
-        shown_cursor = "\x1b[?25h" if sys.stderr.isatty() else ""  # a bar hides it
+        shown_cursor = "\x1b[?25h" if sys.stderr.isatty() else ""  # a progress bar hides it
         sys.stderr.write(f"{shown_cursor}hersey: interrupted\n")
         sys.stderr.flush()
-    finally:  # also where nobody reads what is said
+    finally:  # also if nobody reads the message
         os._exit(INTERRUPTED)
 
 
@@ -74,7 +74,7 @@ def _watch(signals: socket.socket) -> None:
 
 
 def _swallowed(lost: sys.UnraisableHookArgs) -> None:
-    """Say nothing of an interrupt that Python swallows: the thread that watches ends the program."""
+    """Ignore an interrupt that Python loses: the watching thread ends the program."""
     if not issubclass(lost.exc_type, KeyboardInterrupt):
         sys.__unraisablehook__(lost)
 

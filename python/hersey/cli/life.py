@@ -1,42 +1,51 @@
-"""What ends the units of a life test, and when: ``hersey life``."""
+"""Which specimens of a life test fail first, how and when: ``hersey life``."""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from hersey.cli.groups import argument, grouped, option
-from hersey.cli.options import AsJson, Figures, Force
-from hersey.cli.outputs import PAGES, command, may_write, may_write_folder, show
+from hersey.cli.options import Figures, Force
+from hersey.cli.outputs import PAGES, command, may_write, may_write_folder
+from hersey.cli.printing import Printing
 from hersey.cli.progress import steps, working
 
-_MACHINE = "Machine file: limits, operating points, film."
+if TYPE_CHECKING:
+    from hersey.life.time_to_failure.estimate import TimeToFailure
+
+_CAMPAIGN = "Campaign file, made by 'hersey campaign add'."
+_MACHINE = "Machine file with limits, operating points, contact and lubricant."
+_UNIT = "Specimen whose maps are drawn.  [default: the next to fail]"
+#: Specimens in the table, and pieces of advice.
+_SHOWN, _ADVISED = 10, 1
 
 
 @grouped
 def life(
-    file: Annotated[Path, argument("CAMPAIGN", "File of the campaign, see 'hersey campaign'.")],
+    file: Annotated[Path, argument("CAMPAIGN", _CAMPAIGN)],
     *,
     machine_file: Annotated[Path, option(_MACHINE, "--machine", metavar="TOML")],
-    out: Annotated[Path | None, option("The page to write, .html.  [default: life.html]")] = None,
+    out: Annotated[Path | None, option("Write the page here, .html.  [default: life.html]")] = None,
     figures: Figures = None,
-    unit: Annotated[str, option("Whose maps are drawn.  [default: the unit that ends next]")] = "",
+    unit: Annotated[str, option(_UNIT)] = "",
     seed: Annotated[int, option("Random seed.", min=0)] = 0,
-    as_json: AsJson = False,
+    printing: Printing,
     force: Force = False,
 ) -> None:
-    """Predict which units of a life test fail first, how, and when, and what to measure next.
+    """Predict which specimens of a life test fail first, how, and when.
 
     Example: [bold]hersey life life.hersey --machine examples/machine.toml[/bold]
 
-    With --json the whole answer goes to stdout, and a page is written only if --out is given.
+    With --json the whole answer is printed instead, and a page is written only if --out is given.
     """
-    page = out or (None if as_json else Path("life.html"))
+    page = out or (None if printing.as_json else Path("life.html"))
     written = may_write(page, force, inputs=[file, machine_file], ends=PAGES)
     may_write_folder(figures, force)
 
     from hersey.life.campaign import Campaign
     from hersey.life.following import follow
+    from hersey.life.indicator import NOT_JUDGED
     from hersey.machine.machine import read_machine
 
     machine = read_machine(machine_file)
@@ -54,4 +63,28 @@ def life(
 
         with working("writing the figures"):
             write_life_figures(answer, figures, overwrite=force)
-    show(answer, as_json, f"seed {seed}", report=page)
+    if printing.json(answer):
+        return
+    found = answer.time_to_failure
+    if printing.verbose:
+        printing.text(answer.summary(), f"seed {seed}")
+    else:
+        printing.text(*_lines(found))
+        warnings = (*found.warnings, *answer.warnings)
+        printing.warnings(*(each for each in warnings if each.kind != NOT_JUDGED))
+        printing.text(*(f"- Not judged: {each.sentence}" for each in warnings if each.kind == NOT_JUDGED))
+        printing.text(*(f"Next: {each}." for each in found.advice[:_ADVISED]))
+    printing.files(page, figures)
+
+
+def _lines(found: TimeToFailure) -> list[str]:
+    """When specimens fail and by what, then each specimen."""
+    from hersey.cli.figures import labelled
+
+    headline = found.headline()
+    lines = [f"{headline[:1].upper()}{headline[1:]}."]
+    lines.append(f"Age at failure ({found.age_unit or 'age'}), 90 % interval:")
+    ends = [(each.unit, str(each).removeprefix(f"{each.unit}: ")) for each in found.units[:_SHOWN]]
+    lines += labelled(ends)
+    more = len(found.units) - _SHOWN
+    return lines + ([f"  and {more} more specimens"] if more > 0 else [])

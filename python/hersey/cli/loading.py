@@ -1,4 +1,4 @@
-"""Loading much at once, without a search through it for what can be forgotten."""
+"""Loading many modules at once, without garbage collection."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from contextlib import contextmanager
 
 @contextmanager
 def loading() -> Iterator[None]:
-    """Load modules: they stay, and Python's search for what does not would take a tenth of the time of it."""
+    """Switch garbage collection off while modules load, which saves a tenth of the time."""
     gc.disable()
     try:
         yield

@@ -1,4 +1,4 @@
-"""The few things that a log cannot tell, asked in the terminal: ``hersey new``."""
+"""Questions about the machine and the log, in the terminal: ``hersey new``."""
 
 from __future__ import annotations
 
@@ -22,26 +22,28 @@ if TYPE_CHECKING:
 _ROLES = ("torque", "speed", "temperature", "time")
 
 
-_MACHINE = "Machine's file to write.  [default: machine.toml]"
-_MAPPING = "Mapping to write.  [default: hersey.toml beside the log]"
-_ALL = "Ask also for limits, nip, lubricant and the no-load torque."
+_LOG = "Log whose channels are proposed."
+_MACHINE = "Write the machine file here.  [default: machine.toml]"
+_MAPPING = "Write the mapping here.  [default: hersey.toml beside the log]"
+_ALL = "Ask about limits, nip, lubricant and no-load torque too."
 
 
 def new(
-    log: Annotated[Path | None, argument("[LOG]", "Log whose channels are proposed.")] = None,
+    log: Annotated[Path | None, argument("LOG", _LOG)] = None,
     machine: Annotated[Path | None, option(_MACHINE, metavar="TOML")] = None,
     mapping: Annotated[Path | None, option(_MAPPING, metavar="TOML")] = None,
     everything: Annotated[bool, option(_ALL, "--all")] = False,
     force: Force = False,
 ) -> None:
-    """Ask the few things that a log cannot tell, and write hersey.toml and the machine's file.
+    """Ask about log and machine, and write hersey.toml and the machine file.
 
     Example: [bold]hersey new bench.csv[/bold]
 
-    Enter takes what is proposed, or leaves out; - leaves out what is proposed. Every number needs its unit.
+    Press Enter to accept the proposal in brackets or to skip the question; type - to reject the proposal.
+    Every number needs its unit.
     """
     if mapping is not None and log is None:
-        raise ParameterError("--mapping is about the channels of a log: name the LOG too")
+        raise ParameterError("--mapping needs a LOG, whose channels it describes")
     machine = machine or Path("machine.toml")
     inputs = [log] if log else []
     outputs = [may_write(machine, force, inputs, flag="--machine", ends=[".toml"])]
@@ -66,7 +68,7 @@ def new(
         overwrite={each.path: each.replace for each in outputs if each.path},
     )
     for path in texts:
-        say(f"{'mapping' if path == mapping else 'machine'}: {path}")
+        say(str(path))
     if log is not None and mapping is not None:
         options += [] if mapping == log.with_name("hersey.toml") else ["--mapping", str(mapping)]
         options += ["--machine", str(machine)] if text else []
@@ -74,7 +76,7 @@ def new(
 
 
 def _asking(roles: Sequence[str], questions: list[Question]) -> Asking:
-    """What asks for the channels of these roles, what the questions ask, and operating points."""
+    """Questions about the channels of these roles, the machine, and its operating points."""
     from hersey.cli.asking import Asking
     from hersey.machine.questions import POINT
 
@@ -84,15 +86,15 @@ def _asking(roles: Sequence[str], questions: list[Question]) -> Asking:
 
 
 def _say_next(mapping: Path, text: str, command: list[str]) -> None:
-    """Say what is to be completed in a mapping, and the command that reads it."""
+    """Print what must be completed in a mapping, and the command that reads it."""
     to_complete = _to_complete(text)
     if to_complete:
-        say(f"complete first: {mapping}, {', '.join(to_complete)}")
-    say(f"{'then' if to_complete else 'now'}: {shlex.join(command)}")
+        say(f"First complete {mapping}: {', '.join(to_complete)}")
+    say(f"{'Then' if to_complete else 'Next'}: {shlex.join(command)}")
 
 
 def _to_complete(mapping: str) -> list[str]:
-    """The lines of a mapping whose values are empty, each with what belongs there."""
+    """The lines of a mapping whose values are empty, each with its key and role."""
     found, role = [], ""
     for number, line in enumerate(mapping.splitlines(), 1):
         stated = line.partition("#")[0].strip()
@@ -104,9 +106,9 @@ def _to_complete(mapping: str) -> list[str]:
 
 
 def _mapping(log: Path, asking: Asking) -> tuple[str, list[str]]:
-    """The mapping of a log, whose channels are proposed as they are found, and options that the log needs.
+    """The mapping of a log, whose channels are proposed as found, and options that the log needs.
 
-    What the log does not tell and nobody answered is left to be completed in the file.
+    A channel or unit that is neither found nor answered is left empty in the file, to be completed.
     """
     from hersey.app.looking import look
     from hersey.log.reading import list_channels
@@ -133,7 +135,7 @@ def _mapping(log: Path, asking: Asking) -> tuple[str, list[str]]:
             options.append("--isothermal")
         elif given or not known:
             lacking += [key for field in ("channel", "unit") if (key := f"{role}.{field}") not in given]
-    title = f"Channels of {log.name}, as told to hersey new."
+    title = f"Channels of {log.name}, from the answers to hersey new."
     return mapping_text(answers, title=title, lacking=lacking), options
 
 
@@ -172,7 +174,7 @@ def _is_of(role: str, unit: str) -> bool:
 
 
 def _machine(asked: list[Question], asking: Asking, path: Path) -> str:
-    """The machine's file, empty where the first answer is left out."""
+    """The machine file, empty if the first question is skipped."""
     from hersey.machine.questions import lacking
     from hersey.machine.writing import machine_text
 
@@ -181,7 +183,7 @@ def _machine(asked: list[Question], asking: Asking, path: Path) -> str:
 
         def fits(text: str, question: Question = question) -> None:
             with_it = {**answers, question.key: text}
-            if not lacking(with_it):  # what fits no other answer is said here
+            if not lacking(with_it):  # answers that contradict each other are refused here
                 _refuse_wrong(machine_text(with_it))
 
         read = _reader(question, fits)
@@ -190,17 +192,17 @@ def _machine(asked: list[Question], asking: Asking, path: Path) -> str:
         if text:
             answers[question.key] = text
             if question.field == "stick_speed" and asking.by_hand and len(question.values(text)) == 1:
-                words = "left out, V* takes it as exact; as 1 mm/s to 4 mm/s, or ± 50 %"
-                uncertainty = asking.ask("how far it is known", _known(text, read), words=words)
+                words = "e.g. 1 mm/s to 4 mm/s, or ± 50 %; if skipped, the value counts as exact"
+                uncertainty = asking.ask("its uncertainty", _known(text, read), words=words)
                 answers[question.key] = uncertainty or text
         elif not answers:
-            say(f"no machine's file is written: {path} would begin with it", file=sys.stderr)
+            say(f"No machine file is written, because {path} needs this answer.", file=sys.stderr)
             return ""
     return machine_text(answers, _points(asking))
 
 
 def _points(asking: Asking) -> list[dict[str, str]]:
-    """The operating points, until one is left out."""
+    """The operating points, until one is skipped."""
     points: list[dict[str, str]] = []
     while point := _point(len(points) + 1, asking):
         points.append(point)
@@ -208,7 +210,7 @@ def _points(asking: Asking) -> list[dict[str, str]]:
 
 
 def _point(number: int, asking: Asking) -> dict[str, str]:
-    """An operating point, empty where the first answer is left out."""
+    """An operating point, empty if its first question is skipped."""
     from hersey.machine.questions import POINT
 
     point: dict[str, str] = {}
@@ -225,11 +227,11 @@ def _point(number: int, asking: Asking) -> dict[str, str]:
 
 
 def _reader(question: Question, fits: Callable[[str], None] | None = None) -> Callable[[str], str]:
-    """What refuses an answer that has no unit where one is needed, cannot be read, or does not fit."""
+    """A reader that refuses an answer without its unit, or one that is wrong or contradicts another."""
 
     def read(text: str) -> str:
         if question.with_unit(text) != text:
-            raise ParameterError(f"'{text}' has no unit: write one, as in '{question.with_unit(text)}'")
+            raise ParameterError(f"'{text}' has no unit: write '{question.with_unit(text)}', for example")
         question.values(text)
         if fits is not None:
             fits(text)
@@ -239,12 +241,12 @@ def _reader(question: Question, fits: Callable[[str], None] | None = None) -> Ca
 
 
 def _known(value: str, read: Callable[[str], str]) -> Callable[[str], str]:
-    """Read a range in the place of a value, or a share behind it."""
+    """Read a range, or a share after the value."""
     return lambda typed: read(f"{value} {typed}" if typed.startswith(("±", "+")) else typed)
 
 
 def _refuse_wrong(text: str) -> None:
-    """Raise what the reader says of a machine's file."""
+    """Raise the reader's error for this machine file."""
     from tempfile import TemporaryDirectory
 
     from hersey.machine.machine import read_machine
@@ -256,4 +258,4 @@ def _refuse_wrong(text: str) -> None:
 
 
 def _words(question: Question) -> str:
-    return f"{question.words}; as {question.example}"
+    return f"{question.words}; e.g. {question.example}"

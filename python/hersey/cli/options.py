@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import sys
 from collections.abc import Sequence, Set
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -13,7 +12,7 @@ from hersey.cli.groups import argument, option
 from hersey.cli.progress import bar, working
 from hersey.cli.quantities import amounts_in
 from hersey.cli.recipe_file import ROLES, read_recipe
-from hersey.cli.terminal import say
+from hersey.cli.terminal import note
 from hersey.errors import ParameterError
 
 if TYPE_CHECKING:
@@ -25,82 +24,96 @@ if TYPE_CHECKING:
     from hersey.machine.machine import Machine
     from hersey.posterior.result import Posterior
 
-_LOGS = "Log file, several of one machine, or a pattern as 'logs/*.csv'."
-Logs = Annotated[list[Path], argument("LOG", f"{_LOGS} Can be left out if --recipe names them.")]
-SomeLogs = Annotated[list[Path] | None, argument("[LOG]...", _LOGS)]
-_FIT = "Instead of a log: what hersey fit --json printed."
+#: Headings in the help of the options that say how a log is read, and how it becomes dwells.
+READ, REDUCED = "How to read the log", "Dwells and corrections"
+
+_LOGS = "Log file, several logs of one machine, or a pattern, e.g. 'logs/*.csv'"
+Logs = Annotated[list[Path], argument("LOG", f"{_LOGS}; or use --recipe.")]
+SomeLogs = Annotated[list[Path] | None, argument("LOG", f"{_LOGS}.")]
+_FIT = "Use a fit that 'hersey fit --json' printed, instead of a log."
 FitFile = Annotated[Path | None, option(_FIT, "--fit", metavar="JSON")]
-_TRACE = "Recording of starts from rest or stick-slip of this machine; repeat for more files."
+_TRACE = "Use a recording of a start from rest or of stick-slip; repeat for more files."
 Traces = Annotated[list[Path] | None, option(_TRACE, metavar="FILE")]
-_SENSORS = "Machine's file: no-load torque, sensors."
+_SENSORS = "Machine file, for its no-load torque and sensor errors."
 SensorsFile = Annotated[Path | None, option(_SENSORS, "--machine", metavar="TOML")]
-Figures = Annotated[Path | None, option("Also write each chart as SVG, PNG and PDF.", metavar="DIR")]
-Start = Annotated[str, option("rest, or steady (sliding with the drive).")]
-_BRISTLES = "Of lugre: force per deflection of the bristles, as '1000 N/mm'."
-BristleStiffness = Annotated[str | None, option(_BRISTLES)]
-BristleDamping = Annotated[str | None, option("Of lugre: force per rate of deflection, as '10 N*s/m'.")]
-AsJson = Annotated[bool, option("Print the whole result as JSON.", "--json")]
-TimeUnit = Annotated[str, option("Unit of time, as 's' or 'ms'.")]
-MaxMemory = Annotated[str, option("Memory that a file of any format but text may take while it is read.")]
+Figures = Annotated[Path | None, option("Write each chart as SVG, PNG and PDF into a folder.", metavar="DIR")]
+Start = Annotated[str, option("Start from rest, or steady (sliding with the drive).")]
+BRISTLES = "Force per deflection of the bristles (lugre), e.g. '1000 N/mm'."
+BristleStiffness = Annotated[str | None, option(BRISTLES)]
+BRISTLE_DAMPING = "Force per rate of deflection (lugre), e.g. '10 N*s/m'."
+BristleDamping = Annotated[str | None, option(BRISTLE_DAMPING)]
+_TIME_UNIT, _MEMORY = (
+    "Unit of time, e.g. 's' or 'ms'.",
+    "Limit the memory for reading a file that is not text.",
+)
+TimeUnit = Annotated[str, option(_TIME_UNIT)]
+MaxMemory = Annotated[str, option(_MEMORY)]
 Force = Annotated[bool, option("Replace files that exist.", "--force")]
-_KEEP_GOING = "Leave out logs that fail, say why at the end, with exit code 1."
+_KEEP_GOING = "Skip logs that fail, list them at the end, and exit with code 1."
 KeepGoing = Annotated[bool, option(_KEEP_GOING, "--keep-going")]
-
-
-_SAVE_RECIPE = "Write how the logs were read and reduced as a recipe, for --recipe."
+_SAVE_RECIPE = "Write how the logs were read and reduced, for --recipe."
 SaveRecipe = Annotated[Path | None, option(_SAVE_RECIPE, "--save-recipe", metavar="TOML")]
 
 
 def drawn(what: str) -> Any:
     """Return the option ``--figure`` of a command that draws something."""
-    return option(f"Draw {what}: .html, .png, .svg or .pdf.", "--figure")
+    return option(f"Draw {what} (.html, .png, .svg or .pdf).", "--figure")
 
 
-_RADIUS = "Radius of a friction force and a sliding speed: '25 mm', or the name of its column."
-_LOAD = "Normal load: '50 N', one for each run as '10 N, 20 N', or the name of its column."
-_MAPPING = "Roles, units and corrections of the channels.  [default: hersey.toml beside the log]"
-_DROP_MISSING = "Leave out rows in which a number is missing or impossible, also where they are many."
-_MEANS = "The file is a table of means: one row per dwell, no clock."
-_NO_LOAD = "Log of the drive without the film, read alike: what it takes is taken off the torque."
+def read(words: str, *flags: str, **more: Any) -> Any:
+    """Return an option that says how a log is read."""
+    return option(words, *flags, panel=READ, **more)
 
 
-_RECIPE = "Take logs and settings from a recipe; logs and options that are typed replace its own."
+def reduced(words: str, *flags: str, **more: Any) -> Any:
+    """Return an option that says how a log becomes dwells."""
+    return option(words, *flags, panel=REDUCED, **more)
+
+
+_TORQUE_UNIT = "Unit of torque; may have a factor, e.g. '9.84 mN*m / 100' for %."
+_RADIUS = "Radius for a log of friction force and sliding speed: '25 mm' or its column."
+_LOAD = "Normal load: '50 N', '10 N, 20 N' for two runs, or its column."
+_MAPPING = "File with roles, units and corrections.  [default: hersey.toml beside the log]"
+_DROP_MISSING = "Drop rows with a missing or impossible number, however many."
+_MEANS = "Read a table of means: one row per dwell, no time column."
+_NO_LOAD = "Log of the drive without the lubricated contact; its torque is subtracted."
+_RECIPE = "Use the logs and settings of a recipe; options typed here override it."
 
 
 @dataclass(frozen=True)
 class Reading:
     """The options that say how a log is read and reduced to dwells."""
 
-    torque: Annotated[str, option("Name of the torque column, as 'Tq' or 'Tq (ozf.in)'.")] = ""
-    torque_unit: Annotated[str, option("Unit of torque, may carry a factor: '9.84 mN*m / 100' for %.")] = ""
-    torque_sign: Annotated[int, option("-1 turns the sign of the torque.")] = 1
-    speed: Annotated[str, option("Name of the speed column.")] = ""
-    speed_unit: Annotated[str, option("Unit of speed, as 'rpm'.")] = ""
-    speed_sign: Annotated[int, option("-1 turns the sign of the speed.")] = 1
-    temperature: Annotated[str, option("Name of the temperature column.")] = ""
-    temperature_unit: Annotated[str, option("Unit of temperature, as 'degC'.")] = ""
-    time: Annotated[str, option("Name of the time column.")] = ""
-    time_unit: TimeUnit = ""
-    every: Annotated[str, option("Time between rows where the file has no clock, as '2 ms'.")] = ""
-    radius: Annotated[str, option(_RADIUS)] = ""
-    radius_unit: Annotated[str, option("Unit of a column of the radius, as 'mm'.")] = ""
-    load: Annotated[str, option(_LOAD)] = ""
-    load_unit: Annotated[str, option("Unit of a column of the load, as 'N'.")] = ""
-    run: Annotated[str, option("Name of the column that numbers the runs in a file.")] = ""
-    mapping: Annotated[str, option(_MAPPING, metavar="TOML")] = ""
-    isothermal: Annotated[bool, option("Leave temperature out: fit B = a w^c.", "--isothermal")] = False
-    drop_missing: Annotated[bool, option(_DROP_MISSING, "--drop-missing")] = False
-    means: Annotated[bool, option(_MEANS, "--means")] = False
-    max_memory: MaxMemory = "2 GB"
-    min_dwell: Annotated[str, option("Shortest dwell, with its unit.")] = "2 s"
-    tare: Annotated[str, option("none, or standing: subtract the torque read while standing.")] = "none"
-    rotation: Annotated[str, option("both, forward or reverse: dwells to use.")] = "both"
-    temperature_scale: Annotated[str, option("degC or K: scale of T in B = a T^b w^c.")] = "degC"
-    no_load: Annotated[str, option(_NO_LOAD, metavar="LOG")] = ""
-    recipe_file: Annotated[str, option(_RECIPE, "--recipe", metavar="TOML")] = ""
+    torque: Annotated[str, read("Torque column, e.g. 'Tq' or 'Tq (ozf.in)'.")] = ""
+    torque_unit: Annotated[str, read(_TORQUE_UNIT)] = ""
+    torque_sign: Annotated[int, read("Use -1 to flip the sign of torque.")] = 1
+    speed: Annotated[str, read("Speed column.")] = ""
+    speed_unit: Annotated[str, read("Unit of speed, e.g. 'rpm'.")] = ""
+    speed_sign: Annotated[int, read("Use -1 to flip the sign of speed.")] = 1
+    temperature: Annotated[str, read("Temperature column.")] = ""
+    temperature_unit: Annotated[str, read("Unit of temperature, e.g. 'degC'.")] = ""
+    time: Annotated[str, read("Time column.")] = ""
+    time_unit: Annotated[str, read(_TIME_UNIT)] = ""
+    every: Annotated[str, read("Time between rows of a log without a time column, e.g. '2 ms'.")] = ""
+    radius: Annotated[str, read(_RADIUS)] = ""
+    radius_unit: Annotated[str, read("Unit of the radius column, e.g. 'mm'.")] = ""
+    load: Annotated[str, read(_LOAD)] = ""
+    load_unit: Annotated[str, read("Unit of the load column, e.g. 'N'.")] = ""
+    run: Annotated[str, read("Column that numbers the runs in a file.")] = ""
+    mapping: Annotated[str, read(_MAPPING, metavar="TOML")] = ""
+    isothermal: Annotated[bool, reduced("Ignore temperature: fit B = a w^c.", "--isothermal")] = False
+    drop_missing: Annotated[bool, read(_DROP_MISSING, "--drop-missing")] = False
+    means: Annotated[bool, read(_MEANS, "--means")] = False
+    max_memory: Annotated[str, read(_MEMORY)] = "2 GB"
+    min_dwell: Annotated[str, reduced("Shortest dwell, e.g. '2 s'.")] = "2 s"
+    tare: Annotated[str, reduced("Torque zero to subtract: none, or standing (read at rest).")] = "none"
+    rotation: Annotated[str, reduced("Use dwells in both, forward or reverse rotation.")] = "both"
+    temperature_scale: Annotated[str, reduced("Scale of T in B = a T^b w^c: degC or K.")] = "degC"
+    no_load: Annotated[str, reduced(_NO_LOAD, metavar="LOG")] = ""
+    recipe_file: Annotated[str, read(_RECIPE, "--recipe", metavar="TOML")] = ""
 
     def completed(self, typed: Set[str]) -> tuple[Reading, list[Path]]:
-        """Return the same with what the recipe file states beside the options ``typed``, and its logs.
+        """Return the same with the settings of the recipe file, except options ``typed``, and its logs.
 
         Raises
         ------
@@ -113,7 +126,7 @@ class Reading:
         return replace(self, **{name: value for name, value in stated.items() if name not in typed}), logs
 
     def anywhere(self) -> Reading:
-        """Return the same, its files whole: workers may have been started in another folder."""
+        """Return the same with absolute paths: workers may have been started in another folder."""
         given = {name: getattr(self, name) for name in ("mapping", "no_load")}
         whole: dict[str, Any] = {name: str(Path(path).absolute()) for name, path in given.items() if path}
         return replace(self, **whole)
@@ -134,14 +147,14 @@ class Reading:
         return Recipe(logs=tuple(logs), **(own | amounts | given | same))
 
     def inputs(self, *given: Path | list[Path] | None) -> list[Path]:
-        """Return the files that a command reads: those given and those of options; none may be an output."""
+        """Return the files that a command reads, of which none may be an output."""
         named = [Path(path) for path in (self.recipe_file, self.mapping, self.no_load) if path]
         for paths in given:
             named += [paths] if isinstance(paths, Path) else paths or []
         return named
 
     def log(self, paths: list[Path], machine: Machine | None = None) -> TorqueLog | MeansTable:
-        """Read the files as one log, or as tables of means, with a progress bar; say what was left out."""
+        """Read the files as one log, or as tables of means; print which rows were dropped."""
         from hersey.log import memory_limit
 
         recipe = self.recipe(paths)
@@ -149,10 +162,10 @@ class Reading:
             log: TorqueLog | MeansTable = recipe.log(machine, progress=progress)
         for file in log.files:
             if file.missing_rows:
-                _warn(*(str(each.within(file.name)) for each in file.warnings))
+                note(*(str(each.within(file.name)) for each in file.warnings))
         stated = set() if machine is None else set(machine.sensors.stated)
         for role in sorted(stated and stated & set(recipe.chosen.sensors.stated)):
-            _warn(f"errors of the sensor of {role}: those of the mapping are used, {_NOT_OF_FILE}")
+            note(f"The sensor errors of {role} come from the mapping, {_NOT_OF_FILE}.")
         return log
 
     def trace(self, path: Path, machine: Machine | None = None) -> TorqueLog:
@@ -160,23 +173,26 @@ class Reading:
         from hersey.log.torque_log import TorqueLog
 
         if machine is None:
-            raise ParameterError("--trace needs --machine: what a start shows depends on stiffness and mass")
+            raise ParameterError("--trace needs --machine, because a start depends on stiffness and mass")
         read = self.log([path], machine)
         if not isinstance(read, TorqueLog):
-            raise ParameterError(f"{path} is a table of means: a trace needs time, torque and speed")
+            raise ParameterError(
+                f"{path} is a table of means; a trace needs columns of time, torque and speed"
+            )
         return read
 
     def points(
         self, paths: list[Path], log: TorqueLog | MeansTable, machine: Machine | None = None
     ) -> SteadyPoints:
-        """Reduce the log of these files to dwells; say what a log of the drive without the film shows."""
+        """Reduce the log of these files to dwells; print what the no-load log shows."""
         points = self.recipe(paths).dwells(log, machine)
         if self.no_load and points.rest is not None:
-            _warn(points.rest.headline(), *(f"- {warning}" for warning in points.rest.warnings))
+            note(f"No-load torque subtracted: {points.rest}.")
+            note(*(f"- {warning.sentence}" for warning in points.rest.warnings))
         return points
 
     def points_of(self, paths: list[Path], machine: Machine | None = None) -> SteadyPoints:
-        """Read one of several logs and reduce it; what is wrong with it begins with its name."""
+        """Read one of several logs and reduce it; errors begin with its name."""
         from hersey.damping.recipe import naming_logs
 
         with naming_logs(paths):
@@ -191,7 +207,7 @@ class Reading:
         *,
         seed: int = 1,
     ) -> tuple[DampingSurface, Posterior | None]:
-        """Read a finished fit, or fit a log and draw the drives that it allows; no draws without a log."""
+        """Read a saved fit, or fit a log and draw from its posterior; there are no draws without a log."""
         if fit_file is not None or not paths:
             return self.surface(paths, fit_file, machine), None
         from hersey.damping.fit import fit
@@ -201,7 +217,7 @@ class Reading:
         points = self.points(paths, self.log(paths, machine), machine)
         surface = fit(points, temperature_scale=self.temperature_scale)
         threads = os.cpu_count() or 1
-        with working("drawing the drives that the log allows"):
+        with working("drawing from the posterior"):
             return surface, posterior(
                 points, machine, surface=surface, traces=recorded, seed=seed, threads=threads
             )
@@ -209,15 +225,15 @@ class Reading:
     def surface(
         self, paths: list[Path] | None, fit_file: Path | None, machine: Machine | None = None
     ) -> DampingSurface:
-        """Read a finished fit, or fit the log of a machine."""
+        """Read a saved fit, or fit the log of a machine."""
         from hersey.damping.fit import fit
 
         if fit_file is not None and self != Reading():
-            raise ParameterError(
-                "--fit holds a finished fit: leave out the options that say how to read a log"
-            )
+            raise ParameterError("--fit names a saved fit: omit the options that say how to read a log")
         if (fit_file is None) == (not paths):
-            raise ParameterError("give either a LOG or --fit with what 'hersey fit LOG --json' printed")
+            raise ParameterError(
+                "name a LOG, or give --fit with the file that 'hersey fit LOG --json' printed"
+            )
         if fit_file is not None:
             return finished_fit(fit_file, machine)
         logs = paths or []
@@ -227,26 +243,23 @@ class Reading:
 
 
 _AS_GIVEN = ("isothermal", "drop_missing", "means", "tare", "rotation", "temperature_scale")
-_NOT_OF_FILE = "not those of the machine's file"
+_NOT_OF_FILE = "not from the machine file"
 
 
 def finished_fit(file: Path, machine: Machine | None = None) -> DampingSurface:
-    """Read a fit that ``hersey fit --json`` printed; say what of the machine's file it outranks."""
+    """Read a fit that ``hersey fit --json`` printed; print which parts of the machine file it replaces."""
     from hersey.document.saved_fit import read_fit
 
     if machine is not None and machine.sensors.stated:
-        _warn(f"errors of the sensors: those of the fit are used, {_NOT_OF_FILE}")
+        note(f"The sensor errors come from the fit, {_NOT_OF_FILE}.")
     surface = read_fit(file)
     if machine is None or machine.rest is None:
         return surface
     if surface.rest is None:
         raise ParameterError(
-            f"{file.name} is fitted to the whole torque, and {machine.rest.source} says what the drive takes "
-            "besides the film: write the fit anew with hersey fit LOG --machine, or leave [rest] out"
+            f"{file.name} was fitted to the whole torque, but {machine.rest.source} states a no-load torque "
+            "to subtract: write the fit again with hersey fit LOG --machine TOML --json, or delete [rest] "
+            "from the machine file"
         )
-    _warn("no-load torque: that of the fit is used, not that of the machine's file")
+    note(f"The no-load torque comes from the fit, {_NOT_OF_FILE}.")
     return surface
-
-
-def _warn(*lines: str) -> None:
-    say(*lines, file=sys.stderr)

@@ -1,4 +1,4 @@
-"""Files that a command writes: refused early, never replaced unasked."""
+"""Files that a command writes: refused early, never replaced without being asked."""
 
 from __future__ import annotations
 
@@ -16,31 +16,28 @@ import typer
 
 from hersey.charts import PICTURES
 from hersey.cli.progress import working
-from hersey.cli.terminal import say
 from hersey.errors import ExistingFileError, OutputError, printable
 
 if TYPE_CHECKING:
     from pydantic import BaseModel
 
     from hersey.result import Result
-    from hersey.stability.plan import Plan
-    from hersey.stability.warm_up_result import WarmUp
 
 #: Kinds of file that a page is.
 PAGES = (".html", ".htm")
-#: Exit code where what was sought does not exist.
+#: Exit code where what was asked for does not exist, or could not be done for every log.
 NOT_FOUND = 1
 
 
 def command() -> str:
-    """Return the command as the user could type it again."""
+    """Return the command as the user can type it again."""
     return " ".join(["hersey", *(shlex.quote(part) for part in sys.argv[1:])])
 
 
 def print_json(result: Any, **beside: Any) -> None:
-    """Print what a command found as JSON, with versions and command.
+    """Print a result as JSON, with versions and command.
 
-    ``beside`` are fields that the result itself does not have.
+    ``beside`` are further fields.
     """
     from hersey import _core
     from hersey.result import json_record, json_value
@@ -51,26 +48,26 @@ def print_json(result: Any, **beside: Any) -> None:
 
 
 def print_document(document: BaseModel) -> None:
-    """Print a whole document, every sign beyond ASCII as its code."""
+    """Print a whole document in ASCII."""
     print(json.dumps(document.model_dump(mode="json"), indent=1, allow_nan=False))
 
 
 @dataclass(frozen=True)
 class Output:
-    """A file that a command may write, or none: then nothing is written."""
+    """A file that a command may write; without a path nothing is written."""
 
     path: Path | None
     replace: bool = False
 
     def write(self, content: str | bytes) -> None:
-        """Write the file, whole or not at all."""
+        """Write the whole file or nothing."""
         if self.path is not None:
             from hersey.files.writing import write_atomically
 
             write_atomically(self.path, content, overwrite=self.replace)
 
     def draw(self, result: Result, doing: str = "drawing", **chart: Any) -> None:
-        """Write the chart of a result; ``chart`` is what else the chart takes."""
+        """Write the chart of a result; ``chart`` are further arguments of the chart."""
         if self.path is not None:
             from hersey.charts import chart_of
             from hersey.charts.render import picture
@@ -88,10 +85,10 @@ def may_write(
     flag: str = "--out",
     ends: Sequence[str] = (),
 ) -> Output:
-    """Refuse early what cannot be written, and ask before replacing anything.
+    """Refuse a file that cannot be written, and ask before replacing one.
 
-    ``ends`` are the kinds of file that can be written, any if there are none. A file that is not there now is
-    not replaced at the end if it appears meanwhile, unless --force says so.
+    ``ends`` are the endings of files that can be written; empty for any. A file that appears while the
+    command works is not replaced without --force.
     """
     if path is None:
         return Output(None)
@@ -102,7 +99,7 @@ def may_write(
         if not path.parent.is_dir():
             raise OutputError(f"{path}: there is no directory {path.parent}")
         if exists and (path.is_symlink() or not path.is_file()):
-            raise OutputError(f"{path} is no ordinary file: name another")
+            raise OutputError(f"{path} is not an ordinary file: name another")
         if any(exists and other.exists() and path.samefile(other) for other in inputs):
             raise OutputError(f"{path} is an input: name another file for the output")
     if ends and path.suffix not in ends:
@@ -121,7 +118,7 @@ def _either(ends: Sequence[str]) -> str:
 
 @contextmanager
 def _said_why(path: Path) -> Iterator[None]:
-    """Let what the system says of a path name it."""
+    """Begin an error of the system with the path."""
     try:
         yield
     except OSError as error:
@@ -131,7 +128,7 @@ def _said_why(path: Path) -> Iterator[None]:
 
 
 def may_write_folder(folder: Path | None, force: bool, flag: str = "--figures") -> None:
-    """Refuse early a folder that cannot take the figures, or that holds something."""
+    """Refuse a folder that cannot be written, or that is not empty."""
     if folder is None:
         return
     with _said_why(folder):
@@ -144,7 +141,7 @@ def may_write_folder(folder: Path | None, force: bool, flag: str = "--figures") 
 
 
 def _counts(file: Path) -> bool:
-    """Whether a file is more than what a command that was killed left of its own."""
+    """Whether a file is not just the unfinished file of a command that was killed."""
     from hersey.files.writing import SUFFIX
 
     return not (file.name.startswith(".") and file.suffix == SUFFIX)
@@ -153,54 +150,20 @@ def _counts(file: Path) -> bool:
 def may_draw(
     path: Path | None, force: bool, inputs: Sequence[Path] = (), *, flag: str = "--figure"
 ) -> Output:
-    """Refuse early a figure of an unknown kind, or one that cannot be written."""
+    """Refuse a figure of an unknown kind, or one that cannot be written."""
     return may_write(path, force, inputs, flag=flag, ends=PICTURES)
 
 
 def may_save_recipe(path: Path | None, force: bool, inputs: Sequence[Path]) -> Output:
-    """Refuse early a recipe that cannot be written."""
+    """Refuse a recipe that cannot be written."""
     return may_write(path, force, inputs, flag="--save-recipe", ends=[".toml"])
 
 
 def may_write_table_and_figure(
     table: Path | None, figure: Path | None, force: bool, inputs: Sequence[Path]
 ) -> tuple[Output, Output]:
-    """Refuse early what ``--out`` and ``--figure`` name, if it cannot be written."""
+    """Refuse the files of ``--out`` and ``--figure`` if they cannot be written."""
     if table is not None and figure is not None and table.absolute() == figure.absolute():
-        raise OutputError(f"--out and --figure both name {table}: name two files")
+        raise OutputError(f"--out and --figure both name {table}: name two different files")
     drawing = may_draw(figure, force, inputs)
     return may_write(table, force, inputs, ends=[".csv"]), drawing
-
-
-def show(result: Result, as_json: bool, *notes: str, **files: Path | None) -> None:
-    """Print a result: as JSON, or in words with notes below, and the files that were written."""
-    if as_json:
-        print_json(result)
-    else:
-        say(result.summary(), *notes)
-        say_written(**files)
-
-
-def say_written(**files: Path | None) -> None:
-    """Name the files that were written, each by what it is."""
-    for what, path in files.items():
-        if path is not None:
-            say(f"{what}: {path}")
-
-
-def give(
-    result: Plan | WarmUp, outputs: tuple[Output, Output], as_json: bool, called: str, **chart: Any
-) -> None:
-    """Write table and figure of a course that a command has found, and print the result.
-
-    ``called`` is what the command calls its table, ``chart`` what else the chart takes. Where nothing was
-    found nothing is written, and the command ends with `NOT_FOUND`.
-    """
-    if not result.found:
-        show(result, as_json)
-        raise typer.Exit(NOT_FOUND)
-    table, figure = outputs
-    figure.draw(result, **chart)
-    if table.path is not None:
-        table.write(result.table())
-    show(result, as_json, **{called: table.path, "figure": figure.path})

@@ -7,8 +7,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 from hersey.cli.groups import argument, grouped, option
-from hersey.cli.options import AsJson, FitFile, Force, Reading, SomeLogs, Traces, drawn
-from hersey.cli.outputs import give, may_write_table_and_figure
+from hersey.cli.options import FitFile, Force, Reading, SomeLogs, Traces, drawn
+from hersey.cli.outputs import may_write_table_and_figure
+from hersey.cli.printing import Printing, write_course
 from hersey.cli.progress import bar, working
 from hersey.cli.quantities import target_of, temperature_of
 from hersey.cli.warming import beyond_the_log, heat_of
@@ -25,18 +26,27 @@ if TYPE_CHECKING:
     Temperature = float | Schedule | HeatBalance | None
 
 
-_MACHINE = "TOML file of the drivetrain, its limits and uncertainty."
-_TARGET = "Target speed of the belt, as '60 mm/s', or of the roll, as '40 rpm'."
-_PROFILE = "Instead: temperature against time, in any format that a log may have."
-_HEAT = "Instead: the temperature that \\[heat] of the file and the plan make."
-_FROM = "With --heat: of the cold start.  [default: that of \\[heat]]"
+_MACHINE = "Machine file with drivetrain, limits and uncertainties."
+_TARGET = "Target speed of the belt, e.g. '60 mm/s', or of the roll, e.g. '40 rpm'."
+_PROFILE = "Use a temperature that varies: a file of time and temperature."
+_HEAT = "Compute the temperature from \\[heat] of the machine file."
+_FROM = "Temperature of the cold start, with --heat.  [default: that of \\[heat]]"
+_CONFIDENCE = "Probability with which the profile must work, 0.5 to 0.999."
+_OUT = "Write the profile for a motor controller."
+#: Unit in which a limit is printed, and how many make one in SI.
+_UNITS = {
+    "speed": ("mm/s", 1e3),
+    "acceleration": ("mm/s²", 1e3),
+    "grip": ("N", 1.0),
+    "motor torque": ("N·m", 1.0),
+}
 
 
 @dataclass(frozen=True)
 class _Film:
-    """The temperature of the film: one, a course, or what heats it from a start."""
+    """The temperature of the film: constant, varying, or computed from its heating."""
 
-    at: Annotated[str, option("Temperature, as '150 degC'.")] = ""
+    at: Annotated[str, option("Film temperature, e.g. '150 degC'.")] = ""
     temperature_profile: Annotated[Path | None, option(_PROFILE, metavar="FILE")] = None
     heat: Annotated[bool, option(_HEAT, "--heat")] = False
     start: Annotated[str, option(_FROM, "--from")] = ""
@@ -44,9 +54,11 @@ class _Film:
     def refuse_two(self) -> None:
         """Refuse more than one of them."""
         if sum((bool(self.at), self.temperature_profile is not None, self.heat)) > 1:
-            raise ParameterError("give one of --at, --temperature-profile and --heat")
+            raise ParameterError(
+                "--at, --temperature-profile and --heat exclude each other: give one of them"
+            )
         if self.start and not self.heat:
-            raise ParameterError("--from goes with --heat")
+            raise ParameterError("--from needs --heat")
 
     def temperature(self, machine: Machine, file: Path, max_memory: str) -> Temperature:
         """Return what is given of it, K; None where nothing is."""
@@ -61,10 +73,10 @@ class _Film:
 
 @dataclass(frozen=True)
 class _Proof:
-    """How surely a profile must work, and on which draws that is shown."""
+    """With what probability a profile must work, and the seed of the draws that test it."""
 
-    confidence: Annotated[float, option("Share of the belts that must run smoothly, 0.5 to 0.999.")] = 0.95
-    seed: Annotated[int, option("Of all random draws.", min=0)] = 1
+    confidence: Annotated[float, option(_CONFIDENCE)] = 0.95
+    seed: Annotated[int, option("Random seed.", min=0)] = 1
 
 
 @grouped
@@ -77,18 +89,18 @@ def plan(
     target: Annotated[str, option(_TARGET)] = "",
     film: _Film,
     proof: _Proof,
-    out: Annotated[Path | None, option("Write the profile for a motor controller.", metavar="CSV")] = None,
+    out: Annotated[Path | None, option(_OUT, metavar="CSV")] = None,
     figure: Annotated[Path | None, drawn("profile and motion")] = None,
     reading: Reading,
-    as_json: AsJson = False,
+    printing: Printing,
     force: Force = False,
 ) -> None:
-    """Find the quickest profile of drive speed from rest that ends smooth, and say how surely it does.
+    """Find the quickest start-up profile that ends in steady sliding.
 
     Example: [bold]hersey plan examples/machine.toml examples/bench.csv --tare standing --target "60 mm/s"
     --at "150 degC" --out profile.csv --figure plan.png[/bold]
 
-    Exit code 1 says that no profile exists; then nothing is written.
+    The exit code is 1 if no profile exists; then nothing is written.
     """
     inputs = reading.inputs(machine_file, logs, fit_file, film.temperature_profile, trace)
     outputs = may_write_table_and_figure(out, figure, force, inputs)
@@ -109,13 +121,66 @@ def plan(
     if course is not None:
         beyond = beyond_the_log(surface, course.values)
         planned = replace(planned, warnings=(*planned.warnings, *beyond))
-    give(planned, outputs, as_json, called="profile", temperature=course)
+    write_course(planned, outputs, printing, lambda: _lines(planned), temperature=course)
+
+
+def _lines(planned: Plan) -> list[str]:
+    """The profile in words and as a table, and how much of each limit it uses."""
+    from hersey.cli.figures import columns, four, labelled, three
+
+    if not planned.found:
+        return [
+            "No profile ends in steady sliding.",
+            *(f"- {_sentence(each.text)}" for each in planned.obstacles),
+        ]
+    lines = [_verdict(planned)]
+    rows = [(four(time), four(1e3 * speed)) for time, speed in planned.rows()]
+    lines += [planned.proof(), "", *columns(("time (s)", "drive speed (mm/s)"), rows, first=">"), ""]
+    uses = []
+    for use in planned.uses:
+        name = use.name.replace("_", " ")
+        unit, factor = _UNITS.get(name, ("", 1.0))
+        share = f"{100 * use.used / use.limit:.0f} %"
+        uses.append((name, f"{three(factor * use.used)} of {three(factor * use.limit, unit)} ({share})"))
+    lines += ["Largest share of each limit", *labelled(uses)]
+    return lines if planned.course is None else [*lines, _temperatures(planned.course, planned)]
+
+
+def _verdict(planned: Plan) -> str:
+    """The profile in a sentence, and when the belt slides steadily."""
+    from hersey.cli.figures import three
+
+    def taking(time: float) -> str:
+        return f"in {three(time, 's')}" if time > 0 else "at once"
+
+    target, peak = (three(1e3 * speed, "mm/s") for speed in (planned.target_speed, planned.peak_speed))
+    if planned.kind == "direct":
+        way = f"Speed up to {target} {taking(planned.rise)}."
+    else:
+        held = f"hold {three(planned.hold, 's')}, " if planned.hold > 0 else ""
+        way = (
+            f"Speed up to {peak} {taking(planned.rise)}, {held}slow down to {target} {taking(planned.fall)}."
+        )
+    wait = f"Wait {three(planned.wait, 's')}. " if planned.wait > 0 else ""
+    return f"{wait}{way} The belt slides steadily from {three(planned.duration, 's')} on."
+
+
+def _temperatures(course: Schedule, planned: Plan) -> str:
+    """The film temperature at first, at the start and at the end."""
+    from hersey.units import celsius
+
+    at = [f"{celsius(course.at(time)):.0f} °C" for time in (0.0, planned.wait, planned.duration)]
+    return f"Film temperature: {at[0]} at first, {at[1]} at the start, {at[2]} once the belt slides steadily."
+
+
+def _sentence(text: str) -> str:
+    return f"{text[:1].upper()}{text[1:]}{'' if text[-1:] in ('.', '?', '!') else '.'}"
 
 
 def _of_a_fit(
     surface: DampingSurface, machine: Machine, target: float, temperature: Temperature, proof: _Proof
 ) -> Plan:
-    """The plan of one law with two branches, which a fit is."""
+    """The plan of a saved fit, which holds a single model."""
     from hersey.schema.warning import Warning
     from hersey.stability.plan import plan_of_log
 
@@ -134,7 +199,7 @@ def _of_a_fit(
 def _of_draws(
     draws: Posterior, surface: DampingSurface, target: float, temperature: Temperature, proof: _Proof
 ) -> Plan:
-    """The plan of all drives that the log allows."""
+    """The plan that works for the draws of the posterior."""
     from hersey.decision.start_up import plan_start_up
     from hersey.decision.warming import plan_warm_start
     from hersey.stability.plan import check_temperature

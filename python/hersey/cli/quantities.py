@@ -1,4 +1,4 @@
-"""What options name as text: shares, ranges, temperatures and speeds, in SI."""
+"""Shares, ranges, temperatures and speeds of options, in SI."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def amounts_in(text: str) -> str | list[str] | None:
-    """Return a text that begins like an amount, several between commas as a list, or None for any other."""
+    """Return a text that begins with a number, a list of such texts with commas, or None for other text."""
     parts = text.split(",")
     if not all(re.match(r"\s*[-+]?\.?[0-9]", part) for part in parts):
         return None
@@ -23,7 +23,7 @@ def share(flag: str, text: str) -> float:
     """Return the share that an option such as ``'2 %'`` names."""
     match = re.fullmatch(r"\s*([0-9]+(?:\.[0-9]*)?)\s*%\s*", text[:60])
     if match is None:
-        raise ParameterError(f"{flag} is '{text}': write a share such as '2 %'")
+        raise ParameterError(f"{flag} is '{text}': write a percentage, e.g. '2 %'")
     return float(match[1]) / 100
 
 
@@ -35,7 +35,7 @@ def range_of(kind: str, flag: str, text: str) -> tuple[float, float] | None:
         return None
     match = re.fullmatch(r"\s*(\S+)\s+to\s+([-+.\deE]+)\s+(\S.*?)\s*", text)
     if match is None:
-        raise ParameterError(f"{flag} '{text}' is no range: write it as '2 to 200 rpm' or '60 to 200 degC'")
+        raise ParameterError(f"{flag} '{text}' is not a range: write e.g. '2 to 200 rpm' or '60 to 200 degC'")
     low, high, unit = match.groups()
     return parse(kind, f"{low} {unit}"), parse(kind, f"{high} {unit}")
 
@@ -54,7 +54,7 @@ def target_of(text: str, machine: Machine, flag: str = "--target") -> float:
     from hersey.units import parse
 
     if not text:
-        raise ParameterError("give the target: --target '60 mm/s'")
+        raise ParameterError("the target speed is missing: add --target '60 mm/s'")
     try:
         target = parse("belt speed", text)
     except WrongKindError:

@@ -1,4 +1,4 @@
-"""A recipe file as options of a command: each setting as it would be typed."""
+"""A recipe file as options of a command, each setting as it would be typed."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def read_recipe(path: Path) -> tuple[list[Path], dict[str, Any]]:
     Raises
     ------
     HerseyError
-        If the file is no recipe, or states what no option can.
+        If the file is not a recipe, or has a setting that no option has.
     """
     from hersey.damping.recipe import Recipe
 
@@ -35,7 +35,7 @@ def read_recipe(path: Path) -> tuple[list[Path], dict[str, Any]]:
 
 
 def _options(recipe: Recipe, file: str) -> dict[str, Any]:
-    """What a recipe states, as the options take it."""
+    """The settings of a recipe, as values of options."""
     stated = recipe.stated()
     stated.pop("logs", None)
     _refuse_unclear(stated, file)
@@ -49,7 +49,7 @@ def _options(recipe: Recipe, file: str) -> dict[str, Any]:
 
 
 def _refuse_unclear(stated: dict[str, Any], file: str) -> None:
-    """Refuse a column where an amount is stated too, or that would be taken for one."""
+    """Refuse a column together with an amount, and a column whose name looks like an amount."""
     for role in ("load", "radius"):
         column = stated.get("channels", {}).get(role, "")
         if column and role in stated:
@@ -61,7 +61,7 @@ def _refuse_unclear(stated: dict[str, Any], file: str) -> None:
 
 
 def _typed(name: str, value: Any) -> Any:
-    """A setting as its option takes it."""
+    """A setting as the value of its option."""
     if name in _UNITS:
         values = value if isinstance(value, tuple) else (value,)
         return ", ".join(f"{each!r} {_UNITS[name]}" for each in values)

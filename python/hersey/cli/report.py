@@ -8,47 +8,42 @@ from typing import TYPE_CHECKING, Annotated
 
 from hersey.cli.groups import grouped, option
 from hersey.cli.loading import loading
-from hersey.cli.options import AsJson, Figures, Force, Logs, Reading, SaveRecipe, Traces
-from hersey.cli.outputs import (
-    PAGES,
-    command,
-    may_save_recipe,
-    may_write,
-    may_write_folder,
-    print_document,
-    say_written,
-)
+from hersey.cli.options import Figures, Force, Logs, Reading, SaveRecipe, Traces
+from hersey.cli.outputs import PAGES, command, may_save_recipe, may_write, may_write_folder, print_document
+from hersey.cli.printing import Printing
 from hersey.cli.progress import steps, working
-from hersey.cli.terminal import say
 
 if TYPE_CHECKING:
     from hersey.study import Study
+    from hersey.study.first_screen.result import DecisionPart
 
-_MACHINE = "Drivetrain of the machine, for the simulation."
-_AGAINST = "An earlier log, read alike, to compare this one with; again for each further file of it."
+#: Section of the page whose finding is printed with the decision.
+_COMPARED = "compare"
+_MACHINE = "Machine file, for safe speeds, the operating map and start-up profiles."
+_AGAINST = "Compare with an earlier log, read with the same options; repeat for more files."
 
 
 @grouped
 def report(
     logs: Logs,
     *,
-    out: Annotated[Path | None, option("The page to write, .html.  [default: report.html]")] = None,
+    out: Annotated[Path | None, option("Write the page here, .html.  [default: report.html]")] = None,
     figures: Figures = None,
     machine_file: Annotated[Path | None, option(_MACHINE, "--machine", metavar="TOML")] = None,
     against: Annotated[list[Path] | None, option(_AGAINST, metavar="LOG")] = None,
     trace: Traces = None,
     save_recipe: SaveRecipe = None,
     reading: Reading,
-    as_json: AsJson = False,
+    printing: Printing,
     force: Force = False,
 ) -> None:
-    """Write a report: regime, damping surface, data quality and a stick-slip simulation, in one HTML page.
+    """Write the report of a log as one HTML page, and print its decision.
 
     Example: [bold]hersey report examples/bench.csv --machine examples/machine.toml --tare standing[/bold]
 
-    With --json the analysis document goes to stdout, and a page is written only if --out is given.
+    With --json the whole document is printed instead, and a page is written only if --out is given.
     """
-    page = out or (None if as_json else Path("report.html"))
+    page = out or (None if printing.as_json else Path("report.html"))
     inputs = reading.inputs(logs, machine_file, against, trace)
     written = may_write(page, force, inputs, ends=PAGES)
     kept = may_save_recipe(save_recipe, force, inputs)
@@ -70,11 +65,43 @@ def report(
 
         with working("writing the figures"):
             write_figures(document, figures, overwrite=force)
-    if as_json:
+    if printing.as_json:
         print_document(document)
         return
-    say(*found.summary().splitlines())
-    say_written(report=page, recipe=save_recipe)
+    _print(found, printing)
+    printing.files(page, save_recipe, figures)
+
+
+def _print(found: Study, printing: Printing) -> None:
+    """Print the decision, the comparison, and the warnings; with --verbose all that is behind them."""
+    decision = found.decision
+    printing.text(*_decision(decision))
+    judged = {each.point.name for each in found.behaviour.points} if found.behaviour is not None else set()
+    points = [each for each in decision.points if printing.verbose or each.name not in judged]
+    printing.text(*(f"{each.name}: {_sentence(each.words)}" for each in points))
+    if found.comparison is not None:
+        printing.text(f"Compared with {found.comparison.names[0]}: {found.comparison.verdict}")
+    flags = [flag for flag in decision.flags if flag.where != _COMPARED]
+    printing.text(*(f"- {flag.title}: {_sentence(flag.text)}" for flag in printing.chosen(flags)))
+    if printing.verbose:
+        said = {flag.text for flag in flags}
+        printing.warnings(*(each for each in found.warnings if not {each.text, str(each)} & said))
+        printing.text("", *found.verdict, "", found.surface.summary())
+
+
+def _decision(decision: DecisionPart) -> list[str]:
+    """The instruction, the interval behind it, and what to measure next, as sentences."""
+    said = (decision.instruction, decision.interval, decision.otherwise)
+    lines = [_sentence(text) for text in said if text]
+    lines = [lines[0], " ".join(lines[1:])]
+    return [*filter(None, lines), *([_sentence(decision.measurement.text)] if decision.measurement else [])]
+
+
+def _sentence(text: str) -> str:
+    """A text that begins with a capital and ends with a full stop."""
+    name = any(sign in text.split(" ", 1)[0].rstrip(":.") for sign in "_.")  # of a file or a key
+    whole = text if name else f"{text[:1].upper()}{text[1:]}"
+    return whole if whole[-1:] in (".", "?", "!") else f"{whole}."
 
 
 def _studied(
@@ -84,7 +111,7 @@ def _studied(
     against: list[Path] | None,
     trace: list[Path] | None,
 ) -> Study:
-    """Everything for one log and one machine."""
+    """The study of a log and a machine."""
     from hersey.machine.machine import read_machine
     from hersey.study import study
 

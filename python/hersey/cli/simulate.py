@@ -8,37 +8,49 @@ from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 from hersey.cli.belt import Belt
 from hersey.cli.groups import grouped, option
-from hersey.cli.options import AsJson, FitFile, Force, Start, drawn, finished_fit
-from hersey.cli.outputs import may_draw, may_write, print_json
+from hersey.cli.options import FitFile, Force, Start, drawn, finished_fit
+from hersey.cli.outputs import may_draw, may_write
+from hersey.cli.printing import Printing
 from hersey.cli.progress import working
 from hersey.cli.quantities import target_of
-from hersey.cli.terminal import say
 from hersey.cli.warming import beyond_the_log, heat_of, warming_drag
 from hersey.errors import ParameterError
 
 if TYPE_CHECKING:
+    from hersey.cli.amounts import Amounts
     from hersey.machine.motor import MotorUse
     from hersey.motion.schedule import Schedule
     from hersey.motion.simulation import StickSlipCycle
     from hersey.motion.trajectory import Trajectory
 
-#: Time simulated with temperature as a state if none is given.
+#: Time simulated with --heat if none is given.
 _WARMING = "60 s"
-_PROFILE = "Instead of it: a CSV of drive speeds, columns 'time (s)' and 'speed (mm/s)'."
-_DURATION = "Time simulated, for --csv and --check, as '2 s'.  [default: 2]"
-_HEAT = "Temperature as a state, by \\[heat] of --machine and the drag of --fit, from cold."
-_FROM = "With --heat: temperature at the start.  [default: that of \\[heat]]"
+_SPEED = "Speed of the drive, e.g. '30 mm/s'.  [default: 1]"
+_PROFILE = "CSV of the drive speed, columns 'time (s)' and 'speed (mm/s)', instead of a constant speed."
+_DURATION = "Time to simulate for --csv, --figure and --check, e.g. '2 s'.  [default: 2]"
+_CHECK = "Simulate with a second integrator too, and compare."
+_HEAT = "Simulate heating from cold, with \\[heat] of --machine and the drag of --fit."
+_FROM = "Temperature at the start, with --heat.  [default: that of \\[heat]]"
+#: What the motion settles to, in words.
+_KINDS = {
+    "stick_slip": "The belt sticks and slips.",
+    "steady_sliding": "The belt slides steadily.",
+    "oscillation": "The belt oscillates without sticking.",
+    "unsettled": "The motion has not settled.",
+    "stalled": "The belt stalls: the roll slips on it and does not move it.",
+    "grip_slip": "The belt slides steadily, slower than the roll, which slips on it.",
+}
 
 
 @dataclass(frozen=True)
 class _Drive:
     """How the drive moves, from what start and for how long."""
 
-    drive_speed: Annotated[str | None, option("Speed of the drive, as '30 mm/s'.  [default: 1]")] = None
+    drive_speed: Annotated[str | None, option(_SPEED)] = None
     profile: Annotated[Path | None, option(_PROFILE, metavar="FILE")] = None
     start: Start = "rest"
     duration: Annotated[str | None, option(_DURATION)] = None
-    check: Annotated[bool, option("Simulate with a second integrator too, and compare.", "--check")] = False
+    check: Annotated[bool, option(_CHECK, "--check")] = False
 
     def course(self) -> Schedule | None:
         """Return the profile, if there is one."""
@@ -51,7 +63,7 @@ class _Drive:
 
 @dataclass(frozen=True)
 class _Heat:
-    """Whether temperature is a state, and what then makes it."""
+    """Whether heating is simulated, and from which fit and temperature."""
 
     heat: Annotated[bool, option(_HEAT, "--heat")] = False
     fit_file: FitFile = None
@@ -61,22 +73,23 @@ class _Heat:
         """Refuse options that exclude each other."""
         if drive.profile is not None and (self.heat or drive.drive_speed is not None):
             other = "--heat" if self.heat else "--drive-speed"
-            raise ParameterError(f"--profile and {other} exclude each other")
+            raise ParameterError(f"--profile and {other} exclude each other: give one of them")
         if not self.heat and (self.fit_file is not None or self.begin):
-            raise ParameterError(f"{'--from' if self.begin else '--fit'} goes with --heat")
+            raise ParameterError(f"{'--from' if self.begin else '--fit'} needs --heat")
 
 
-#: What JSON says beside the cycle; null where it is not asked for.
+#: Fields of the JSON beside the cycle; null if not asked for.
 _BESIDE = ("energy", "check", "motor", "warming")
 
 
 class _Motion(NamedTuple):
-    """A motion that was simulated, what it settles to, what JSON says beside, and all of it in lines."""
+    """A simulated motion, what it settles to, the other fields of the JSON, and the text to print."""
 
     run: Trajectory | None
     cycle: StickSlipCycle
     beside: dict[str, Any]
     lines: list[str]
+    details: list[str]
 
 
 @grouped
@@ -87,13 +100,13 @@ def simulate(
     heat: _Heat,
     figure: Annotated[Path | None, drawn("the motion")] = None,
     belt: Belt,
-    as_json: AsJson = False,
+    printing: Printing,
     force: Force = False,
 ) -> None:
-    """Simulate the belt at a drive speed or over a profile: what it settles to (defaults: the paper's).
+    """Simulate the belt at a drive speed or over a profile.
 
-    Numbers carry units, as '11 N/mm', or are bare in any consistent set of units; those of the paper are
-    inches, ounces of force and seconds. With units, results are in SI.
+    Give all numbers with units, e.g. '11 N/mm', or all bare in any consistent set of units. The defaults are
+    the paper's baseline, in inches, ounces of force and seconds.
 
     Example: [bold]hersey simulate --stiffness 2000 --drive-speed 1.3[/bold]
     """
@@ -106,19 +119,20 @@ def simulate(
         if csv is not None:
             table.write(_rows(found.run))
         drawing.draw(found.run)
-    if as_json:
-        print_json(found.cycle, **dict.fromkeys(_BESIDE) | found.beside)
+    if printing.json(found.cycle, **dict.fromkeys(_BESIDE) | found.beside):
         return
-    say(*found.lines)
+    printing.text(*found.lines)
+    printing.details("", *found.details)
+    printing.files(csv, figure)
 
 
 def _settled(belt: Belt, drive: _Drive, written: bool) -> _Motion:
-    """What the belt settles to, and the run from its start if it is written or says more."""
+    """What the belt settles to, and its motion from the start if that is written or adds to the result."""
     from hersey.motion.simulation import simulate as moved
     from hersey.motion.simulation import stick_slip
 
     course, speed_given = drive.course(), drive.drive_speed
-    if course is not None:  # the last speed stays, and has a unit: so must all others
+    if course is not None:  # it has units, so all other numbers need units too
         speed_given = f"{course.at(float('inf'))} m/s"
     train, drag, numbers = belt.parts(
         needed=("drive_speed", "duration"), drive_speed=speed_given, duration=drive.duration
@@ -132,17 +146,51 @@ def _settled(belt: Belt, drive: _Drive, written: bool) -> _Motion:
         motor = belt.motor_use(run)
     ended = None if course is None or run is None else _end(run)
     cycle = stick_slip(train, drag, drive_speed=speed, start=ended or drive.start)
-    before = "" if course is None else f"After {time:g} s of the profile it settles:\n"
+    before = [] if course is None else [f"After {numbers.shown(time, 'time')} of the profile:"]
     beside = {} if run is None else {"energy": run.energy, "check": run.check, "motor": motor}
-    lines = [] if run is None else _of_run(run, motor, time)
-    return _Motion(run, cycle, beside, [before + cycle.summary(), *lines, *numbers.words])
+    lines = [] if run is None else _of_run(run, motor, time, numbers)
+    details = [cycle.summary(), *([] if run is None else [run.summary()])]
+    return _Motion(run, cycle, beside, [*before, *_cycle(cycle, numbers), *lines, *numbers.words], details)
 
 
-def _of_run(run: Trajectory, motor: MotorUse | None, time: float) -> list[str]:
-    lines = [f"energy balance: {run.energy.residual:.1e} of the energy turned over is missing"]
-    lines += [] if run.check is None else [str(run.check)]
-    lines += [f"over {time:g} s {run.slipping_in_words()}"] if run.roll_slips else []
-    return lines + ([] if motor is None else [str(motor)])
+def _cycle(cycle: StickSlipCycle, numbers: Amounts) -> list[str]:
+    """What the motion settles to."""
+    from hersey.cli.figures import labelled, three
+
+    lines = [_KINDS.get(cycle.kind, f"{cycle.kind.replace('_', ' ').capitalize()}.")]
+    if cycle.frequency == 0:
+        speed = numbers.shown(cycle.speed_max, "belt speed")
+        stretch = numbers.shown(cycle.stretch_max, "length")
+        return [*lines, *labelled([("belt speed", speed), ("stretch", stretch)])]
+    rows = [
+        ("frequency", numbers.shown(cycle.frequency, "frequency")),
+        ("stuck", f"{three(100 * cycle.stuck_fraction)} % of the time"),
+        ("belt speed", numbers.shown_range(cycle.speed_min, cycle.speed_max, "belt speed")),
+        ("stretch", numbers.shown_range(cycle.stretch_min, cycle.stretch_max, "length")),
+        ("drag work", f"{numbers.shown(cycle.drag_work, 'energy')} per cycle"),
+    ]
+    if cycle.grip_slip_duration > 0:
+        rows.append(("roll slips", f"{numbers.shown(cycle.grip_slip_duration, 'time')} per cycle"))
+    return [*lines, *labelled(rows)]
+
+
+def _of_run(run: Trajectory, motor: MotorUse | None, time: float, numbers: Amounts) -> list[str]:
+    """What the motion over the time simulated adds: the check, slipping of the roll, and the motor."""
+    lines = [] if run.check is None else [f"Check: {run.check}."]
+    slips = f"In {numbers.shown(time, 'time')} of motion {run.slipping_in_words()}."
+    lines += [slips] if run.roll_slips else []
+    return lines + ([] if motor is None else [_motor(motor)])
+
+
+def _motor(motor: MotorUse) -> str:
+    """The torque that the motion needs beside that of the motor."""
+    from hersey.cli.figures import three
+
+    needs = f"the motion needs up to {three(motor.torque)} of the {three(motor.limit, 'N·m')} of the motor"
+    if motor.exceeded_from is None:
+        return f"The motor is strong enough: {needs}."
+    when = f"first after {three(motor.exceeded_from, 's')}, {three(100 * motor.exceeded)} % of the time"
+    return f"The motor is too weak: {needs} ({when})."
 
 
 def _end(run: Trajectory) -> tuple[float, float]:
@@ -151,7 +199,7 @@ def _end(run: Trajectory) -> tuple[float, float]:
 
 
 def _rows(run: Trajectory) -> bytes:
-    """A motion as a CSV, a row per step."""
+    """A motion as a CSV, one row per sample."""
     import polars as pl
 
     from hersey.files.tables import table
@@ -164,7 +212,9 @@ def _rows(run: Trajectory) -> bytes:
 
 
 def _warmed(belt: Belt, drive: _Drive, heat: _Heat) -> _Motion:
-    """The motion with temperature as a state, and what it settles to where it ends."""
+    """The motion with heating, and what it settles to at the last temperature."""
+    from hersey.cli.amounts import Amounts
+    from hersey.cli.figures import three
     from hersey.machine.machine import read_machine
     from hersey.motion.simulation import simulate as moved
     from hersey.motion.simulation import stick_slip
@@ -172,14 +222,14 @@ def _warmed(belt: Belt, drive: _Drive, heat: _Heat) -> _Motion:
 
     if belt.machine is None or heat.fit_file is None:
         raise ParameterError(
-            "--heat needs --machine with [heat], and --fit with what hersey fit --json printed"
+            "--heat needs --machine TOML with [heat], and --fit with the file that hersey fit --json printed"
         )
     if belt != Belt(machine=belt.machine):
         raise ParameterError(
-            "--heat takes belt and drag from --machine and --fit: leave the other numbers out"
+            "--heat uses the belt of --machine and the drag of --fit: omit the other options of the belt"
         )
     if drive.drive_speed is None:
-        raise ParameterError("give the speed of the drive: --drive-speed '30 mm/s'")
+        raise ParameterError("--heat needs the speed of the drive: add --drive-speed '30 mm/s'")
     machine = read_machine(belt.machine)
     balance = heat_of(machine, belt.machine, heat.begin)
     speed = target_of(drive.drive_speed, machine, "--drive-speed")
@@ -193,7 +243,11 @@ def _warmed(belt: Belt, drive: _Drive, heat: _Heat) -> _Motion:
     assert film is not None
     last = float(film[-1])
     cycle = stick_slip(train, drag, drive_speed=speed, temperature=last, start=_end(run))
-    beyond = [f"- {each}" for each in beyond_the_log(surface, film)]
-    settled = f"At {celsius(last):.4g} degC it settles to {cycle.headline()}."
+    numbers = Amounts({}, in_si=True)
+    warmed = (
+        f"In {three(time, 's')} the film heats from {celsius(film[0]):.0f} to {celsius(last):.0f} °C. Then:"
+    )
+    beyond = [f"- {each.sentence}" for each in beyond_the_log(surface, film)]
+    lines = [warmed, *_cycle(cycle, numbers), *_of_run(run, None, time, numbers), *beyond]
     beside = {"energy": run.energy, "check": run.check, "warming": run}
-    return _Motion(run, cycle, beside, [run.summary(), settled, *beyond])
+    return _Motion(run, cycle, beside, lines, [cycle.summary(), run.summary()])

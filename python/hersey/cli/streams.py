@@ -1,4 +1,4 @@
-"""The streams of the program: those that it was started without, and a result that nobody can receive."""
+"""stdin, stdout and stderr: streams that are closed, and a result that cannot be written."""
 
 from __future__ import annotations
 
@@ -7,26 +7,26 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 
-#: Exit code of a result that could not be written, as of any mistake of the user's.
+#: Exit code if the result cannot be written, the same as for wrong use.
 UNWRITTEN = 2
 
 
 @contextmanager
 def standard_streams() -> Iterator[None]:
-    """Run the program with all three streams, and end with an error where its result cannot be written.
+    """Run the program with all three streams, and end with an error if its result cannot be written.
 
-    A closed pipe is no error: whoever reads has seen enough.
+    A pipe that its reader closes is not an error.
     """
     lacks_stdout = sys.stdout is None
     _open_missing()
     if lacks_stdout:
-        _complain("stdout is closed, so that no result can be shown: send it to a file, or to /dev/null")
+        _complain("stdout is closed, so no result can be shown: send it to a file, or to /dev/null")
         sys.exit(UNWRITTEN)
     code: object = 0
     try:
         try:
             yield
-        except SystemExit as end:  # also that of typer where a pipe is closed
+        except SystemExit as end:  # also that of typer if a pipe is closed
             code = 0 if isinstance(end.__context__, BrokenPipeError) else end.code
         sys.stdout.flush()
     except BrokenPipeError:
@@ -39,7 +39,7 @@ def standard_streams() -> Iterator[None]:
 
 
 def _open_missing() -> None:
-    """Open the null device for each stream that is closed, so that no file of ours gets its number."""
+    """Open the null device for each closed stream, so that no other file gets its number."""
     for number in range(3):
         try:
             os.fstat(number)
@@ -51,7 +51,7 @@ def _open_missing() -> None:
 
 
 def _give_up_stdout() -> None:
-    """Let what waits to be written go nowhere, or Python would fail on it at its end."""
+    """Discard what is still to be written, or Python would fail on it at exit."""
     with suppress(OSError, ValueError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 

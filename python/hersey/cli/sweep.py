@@ -1,4 +1,4 @@
-"""What every combination of parameters settles to: ``hersey sweep``."""
+"""Every combination of parameters, simulated and counted: ``hersey sweep``."""
 
 from __future__ import annotations
 
@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from hersey.cli.amounts import of_a_machine
 from hersey.cli.groups import argument, grouped, option
-from hersey.cli.options import AsJson, Force
-from hersey.cli.outputs import may_write, print_json, say_written
+from hersey.cli.options import Force
+from hersey.cli.outputs import may_write
+from hersey.cli.printing import Printing
 from hersey.cli.progress import bar, working
 from hersey.cli.terminal import say
 from hersey.cli.workers import Crew
@@ -25,25 +26,41 @@ if TYPE_CHECKING:
     from hersey.motion.scenario import Scenario
     from hersey.motion.work import Work
 
-#: More sets than this no disk holds.
+#: Most sets of a sweep, more than any disk holds.
 _MOST = 1e12
-_MACHINE = "Machine's file: stiffness, mass and stick speed where the scenario has none, grip, rest."
-_OUT = "Write every set as a row: .parquet or .csv; or a folder of chunks: .zarr, .parquet."
-_RESUME = "Go on with what the folder holds of the same sweep."
+_SCENARIO = "TOML file that describes the sweep."
+_MACHINE = "Machine file, for grip, no-load torque, and what the scenario does not state."
+_OUT = "Write one row per set (.parquet or .csv), or a folder of chunks (.zarr or .parquet)."
+_RESUME = "Continue the same sweep in that folder, or start again."
+_THREADS = "Threads to use; the result does not depend on it."
+_CHUNK = "Keep the sweep in a folder, N sets at a time."
+#: The outcomes, in words.
+_KINDS = {
+    "stick_slip": "stick-slip",
+    "steady_sliding": "steady sliding",
+    "grip_slip": "roll slips on the sliding belt",
+}
+#: Ranges of the stick-slip that are printed: name, unit, and how many make one in SI.
+_RANGES = {
+    "frequency": ("frequency", "Hz", 1.0),
+    "stuck_fraction": ("stuck", "% of the time", 100.0),
+    "speed_max": ("highest belt speed", "mm/s", 1e3),
+    "stretch_max": ("greatest stretch", "mm", 1e3),
+}
 
 
 @dataclass(frozen=True)
 class _Chunks:
-    """How a sweep is kept in a folder."""
+    """How a sweep is stored in a folder."""
 
-    chunk: Annotated[int | None, option("Keep the sweep in a folder, N sets at a time.", metavar="N")] = None
+    chunk: Annotated[int | None, option(_CHUNK, metavar="N")] = None
     resume: Annotated[bool, option(_RESUME, "--resume/--no-resume")] = True
 
     def are_kept(self, out: Path | None, crew: Crew) -> bool:
-        """Return whether the sweep is kept in a folder of chunks."""
+        """Return whether the sweep is stored in a folder of chunks."""
         if out is None or out.suffix == ".csv":
             if self.chunk is not None:
-                raise ParameterError("--chunk is of a sweep that is kept: name a folder by --out sweep.zarr")
+                raise ParameterError("--chunk needs a folder: add --out sweep.zarr")
             return False
         if out.suffix == ".zarr":
             return True
@@ -53,23 +70,23 @@ class _Chunks:
 
 @grouped
 def sweep(
-    scenario: Annotated[Path, argument("SCENARIO", "TOML file that describes the sweep.")],
+    scenario: Annotated[Path, argument("SCENARIO", _SCENARIO)],
     *,
     machine: Annotated[Path | None, option(_MACHINE, metavar="TOML")] = None,
     out: Annotated[Path | None, option(_OUT, metavar="FILE")] = None,
-    threads: Annotated[int, option("Threads to use; the result is the same for any number.", min=1)] = 1,
+    threads: Annotated[int, option(_THREADS, min=1)] = 1,
     crew: Crew,
     chunks: _Chunks,
-    as_json: AsJson = False,
+    printing: Printing,
     force: Force = False,
 ) -> None:
-    """Find what every combination of parameters settles to, and count the outcomes.
+    """Simulate every combination of parameters and count the outcomes.
 
     Example: [bold]hersey sweep examples/scenario.toml --out sweep.parquet --threads 2[/bold]
     """
     folder = out if chunks.are_kept(out, crew) else None
     if threads != 1 and crew.asked:
-        raise ParameterError("--threads is of this process alone: with workers leave it out")
+        raise ParameterError("--threads is for this process only: omit it with --workers or --scheduler")
     inputs = [scenario, *([machine] if machine else [])]
     table = may_write(out if folder is None else None, force, inputs=inputs, ends=[*TABLES, ".zarr"])
 
@@ -87,11 +104,11 @@ def sweep(
 
         with working("writing the rows"):
             table.write(rows(result, table.path.suffix))
-    if as_json:
-        print_json(counted)
+    if printing.json(counted):
         return
-    say(*_lines(counted), *(f"- {each}" for each in (*warnings, *_of_the_machine(described))))
-    say_written(sweep=out)
+    printing.text(*_lines(counted, in_si=described.units == "SI"))
+    printing.text(*(f"- {each}" for each in (*warnings, *_of_the_machine(described))))
+    printing.files(out)
 
 
 def _read(scenario: Path, machine: Path | None, *, kept: bool) -> Scenario:
@@ -106,45 +123,58 @@ def _read(scenario: Path, machine: Path | None, *, kept: bool) -> Scenario:
 def _keep(
     described: Scenario, folder: Path, resume: bool, force: bool, work: Work
 ) -> tuple[dict[str, Any], list[str]]:
-    """Run a sweep into a folder; what it counts, and what to say of it."""
+    """Run a sweep into a folder; its counts and its warnings."""
     from hersey.scale.store import SweepFolder
 
     with _said_if_interrupted():
         found = described.keep(SweepFolder(folder, resume, force), work)
-    before = [f"{found.before} of {found.chunks} chunks were there"] if found.before else []
+    before = [f"{found.before} of {found.chunks} chunks were there already"] if found.before else []
     return found.summary(), [*map(str, found.warnings), *before]
 
 
 def _run(described: Scenario, work: Work) -> tuple[dict[str, Any], list[str], xr.Dataset]:
-    """Run a sweep in memory; what it counts, what to say of it, and all of it."""
+    """Run a sweep in memory; its counts, its warnings, and all of its results."""
     from hersey.motion.scenario import summary
 
     result = described.run(work)
     return summary(result), result.attrs.get("warnings", []), result
 
 
-def _lines(counted: dict[str, Any]) -> list[str]:
-    """What a sweep counts, and what failed."""
-    lines = [f"{kind.replace('_', ' '):16s}{share}" for kind, share in counted["kinds"].items()]
+def _lines(counted: dict[str, Any], *, in_si: bool) -> list[str]:
+    """The outcomes of a sweep, the ranges of its stick-slip, and what failed."""
+    from hersey.cli.figures import labelled, three
+
+    sets = counted["sets"]
+    outcomes = sorted(counted["kinds"].items(), key=lambda each: -each[1])
+    rows = [
+        (_KINDS.get(kind, kind.replace("_", " ")), f"{number} ({100 * number / sets:.0f} %)")
+        for kind, number in outcomes
+    ]
+    ranges = []
     for name, (low, high) in counted["stick_slip"].items():
-        lines.append(f"  {name.replace('_', ' '):16s}{low:.6g} to {high:.6g}")
+        label, unit, factor = _RANGES.get(name, (name.replace("_", " "), "", 1.0))
+        if not in_si and name != "stuck_fraction":
+            unit, factor = "", 1.0
+        ranges.append((label, f"{three(factor * low)} to {three(factor * high, unit)}"))
+    lines = [f"{sets} set{'s' * (sets != 1)} of parameters", *labelled(rows)]
+    lines += ["Where the belt sticks and slips", *labelled(ranges)] if ranges else []
     return lines + [f"- {failure}" for failure in counted["failures"]]
 
 
 def _of_the_machine(described: Scenario) -> Iterator[str]:
-    """What a machine's file brought to a sweep."""
+    """The grip and the no-load torque that a machine file adds to a sweep."""
+    from hersey.cli.figures import three
+
     if described.grip is not None:
-        yield f"the roll grips the belt with up to {described.grip:.4g} N"
+        yield f"The roll can pull the belt with up to {three(described.grip, 'N')}."
     if described.rest_force or described.rest_damping:
-        yield (
-            f"the no-load torque acts beside the drag: {described.rest_force:.4g} N and "
-            f"{described.rest_damping:.4g} N s/m"
-        )
+        force, damping = three(described.rest_force, "N"), three(described.rest_damping, "N·s/m")
+        yield f"The no-load torque is added to the drag: {force} + {damping} times speed."
 
 
 @contextmanager
 def _said_if_interrupted() -> Iterator[None]:
-    """Say on Ctrl-C what is kept."""
+    """Print on Ctrl-C what is stored."""
     try:
         yield
     except KeyboardInterrupt as interrupt:

@@ -1,4 +1,4 @@
-"""A machine that warms up: what heats it, its drag, and temperatures that the log does not cover."""
+"""A machine that heats up: heat balance, drag, and temperatures outside the log."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ if TYPE_CHECKING:
 
 
 def heat_of(machine: Machine, file: Path, start: str) -> HeatBalance:
-    """Return what warms a machine, from the temperature that ``--from`` names, or as its file states."""
+    """Return the heat balance of a machine, starting at the temperature of ``--from`` or of its file."""
     if machine.heat is None:
         raise ParameterError(
-            f"{file.name} does not say what warms the nip: add [heat], with film_capacity, roll_capacity, "
-            "exchange, surroundings and heater_power"
+            f"{file.name} has no heat balance: add [heat] with film_capacity, roll_capacity, exchange, "
+            "surroundings and heater_power"
         )
     kelvin = temperature_of(start, "--from")
     if kelvin is None:
@@ -33,14 +33,14 @@ def heat_of(machine: Machine, file: Path, start: str) -> HeatBalance:
 
 
 def warming_drag(surface: DampingSurface, machine: Machine) -> Drag:
-    """Return the fitted drag as it varies with temperature."""
+    """Return the fitted drag with its temperature dependence."""
     if surface.b is None:
-        raise ParameterError("the log is isothermal: drag against temperature is needed for a warm-up")
+        raise ParameterError("the fit is isothermal, but a warm-up needs drag at several temperatures")
     return surface.drag(**machine.belt)
 
 
 def beyond_the_log(surface: DampingSurface, kelvin: ArrayLike) -> list[Warning]:
-    """Return the warning of temperatures (K) that the log does not cover."""
+    """Return a warning if temperatures (K) lie outside the log."""
     import numpy as np
 
     from hersey.schema.warning import Warning

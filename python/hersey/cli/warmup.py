@@ -1,4 +1,4 @@
-"""A warm-up that keeps grip and motor: ``hersey warmup``."""
+"""The quickest warm-up within the limits of grip and motor: ``hersey warmup``."""
 
 from __future__ import annotations
 
@@ -7,8 +7,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 from hersey.cli.groups import argument, grouped, option
-from hersey.cli.options import AsJson, FitFile, Force, Reading, SomeLogs, drawn
-from hersey.cli.outputs import give, may_write_table_and_figure
+from hersey.cli.options import FitFile, Force, Reading, SomeLogs, drawn
+from hersey.cli.outputs import may_write_table_and_figure
+from hersey.cli.printing import Printing, write_course
 from hersey.cli.progress import working
 from hersey.cli.quantities import share, target_of
 from hersey.cli.warming import beyond_the_log, heat_of, warming_drag
@@ -16,22 +17,25 @@ from hersey.errors import ParameterError
 
 if TYPE_CHECKING:
     from hersey.machine.machine import Machine
+    from hersey.stability.warm_up_result import WarmUp
 
 
-_MACHINE = "TOML file of the drivetrain, its limits and \\[heat]."
-_OUT = "Write the course; plan --temperature-profile reads it."
+_MACHINE = "Machine file with drivetrain, limits and \\[heat]."
+_OUT = "Write the warm-up as a table, which plan --temperature-profile reads."
+_TARGET = "Full speed of the belt, e.g. '120 mm/s', or of the roll, e.g. '80 rpm'."
+_FROM = "Temperature of the cold start, e.g. '20 degC'.  [default: that of \\[heat]]"
+#: Rows of the table.
+_ROWS = 12
 
 
 @dataclass(frozen=True)
 class _Course:
-    """The warm-up that is sought."""
+    """Target, start and margin of the warm-up."""
 
-    target: Annotated[str, option("Full speed of the belt, as '120 mm/s', or of the roll, as '80 rpm'.")] = ""
-    start: Annotated[str, option("Temperature of the cold start.  [default: that of \\[heat]]", "--from")] = (
-        ""
-    )
-    margin: Annotated[str, option("Share of the limit of force that is kept to spare.")] = "10 %"
-    longest: Annotated[str, option("Time looked at, with its unit.")] = "30 min"
+    target: Annotated[str, option(_TARGET)] = ""
+    start: Annotated[str, option(_FROM, "--from")] = ""
+    margin: Annotated[str, option("Keep this share of the force limit in reserve.")] = "10 %"
+    longest: Annotated[str, option("Longest warm-up to consider.")] = "30 min"
 
     def sought(self, machine: Machine) -> dict[str, float]:
         """Return target, margin and longest time in SI."""
@@ -54,15 +58,15 @@ def warmup(
     out: Annotated[Path | None, option(_OUT, metavar="CSV")] = None,
     figure: Annotated[Path | None, drawn("speed, drag and temperatures")] = None,
     reading: Reading,
-    as_json: AsJson = False,
+    printing: Printing,
     force: Force = False,
 ) -> None:
-    """Find the quickest warm-up whose drag stays below grip and motor: slow until warm.
+    """Find the quickest warm-up whose drag stays within the limits of grip and motor.
 
     Example: [bold]hersey warmup examples/machine.toml examples/bench.csv --tare standing --target "120 mm/s"
     --from "20 degC" --figure warm-up.png[/bold]
 
-    Exit code 1 says that full speed is not reached; then nothing is written.
+    The exit code is 1 if full speed is not reached; then nothing is written.
     """
     inputs = reading.inputs(machine_file, logs, fit_file)
     outputs = may_write_table_and_figure(out, figure, force, inputs)
@@ -80,16 +84,88 @@ def warmup(
     limit = Warning("force limit", "the limit is that of the {limit}", limit=weakest)
     beyond = beyond_the_log(surface, warm.film_temperature)
     warm = replace(warm, warnings=(*warm.warnings, limit, *beyond))
-    give(warm, outputs, as_json, called="course")
+    write_course(warm, outputs, printing, lambda: _lines(warm, weakest))
+
+
+def _lines(warm: WarmUp, weakest: str) -> list[str]:
+    """The warm-up in words, what the alternatives would do, and a table."""
+    import math
+
+    import numpy as np
+
+    from hersey.cli.figures import columns, four, three
+    from hersey.units import celsius
+
+    lines = [_verdict(warm)]
+    if math.isfinite(warm.start):
+        limit = f"limit of the {weakest}, {three(warm.force_limit, 'N')}, less {three(100 * warm.margin)} %"
+        lines.append(f"Drag stays below {three(warm.kept_below, 'N')} ({limit}).")
+    lines += _alternatives(warm)
+    last = min(warm.time.size - 1, int(np.searchsorted(warm.time, warm.full_speed)))
+    film, roll = celsius(warm.film_temperature), celsius(warm.roll_temperature)
+    rows = [
+        (four(warm.time[i]), four(1e3 * warm.drive_speed[i]), f"{film[i]:.1f}", f"{roll[i]:.1f}")
+        for i in np.unique(np.linspace(0, last, _ROWS).round().astype(int)).tolist()
+    ]
+    return [*lines, "", *columns(("time (s)", "drive (mm/s)", "film (°C)", "roll (°C)"), rows, first=">")]
+
+
+def _verdict(warm: WarmUp) -> str:
+    """When to start and when full speed is reached."""
+    import math
+
+    from hersey.cli.figures import three
+    from hersey.units import celsius
+
+    target, longest = three(1e3 * warm.target_speed, "mm/s"), three(float(warm.time[-1]), "s")
+    if not math.isfinite(warm.start):
+        end = f"{celsius(float(warm.film_temperature[-1])):.0f} °C"
+        return (
+            f"The drive cannot start within {longest}: at {end} drag is still above the limit at any speed."
+        )
+    first = "Start at once" if warm.start == 0 else f"Stand for {three(warm.start, 's')}, then start"
+    if not math.isfinite(warm.full_speed):
+        last = three(1e3 * float(warm.drive_speed[-1]), "mm/s")
+        return f"{first}. {target} is not reached within {longest}; the speed is then {last}."
+    at = int(warm.time.searchsorted(warm.full_speed))
+    film = f"{celsius(float(warm.film_temperature[at])):.0f} °C"
+    sticks = "" if math.isfinite(warm.slides_from) else " The belt sticks at that speed."
+    least = warm.target_speed / warm.acceleration + 2.0 * float(warm.time[1])
+    slow = " and run slowly until warm" if warm.full_speed - warm.start > least else ""
+    when = f"Full speed {target} is reached after {three(warm.full_speed, 's')}, at {film}."
+    return f"{first}{slow}. {when}{sticks}"
+
+
+def _alternatives(warm: WarmUp) -> list[str]:
+    """What full speed at once, and standing until warm, would do."""
+    import math
+
+    from hersey.cli.figures import three
+
+    share = (
+        f"{three(warm.drag_at_once, 'N')}, {three(100 * warm.drag_at_once / warm.force_limit)} % of the limit"
+    )
+    if not math.isfinite(warm.within_at_once):
+        ends = f"above the limit for {three(float(warm.time[-1]), 's')}"
+    else:
+        ends = (
+            f"within the limit after {three(warm.within_at_once, 's')}"
+            if warm.within_at_once > 0
+            else "within it"
+        )
+    lines = [f"Full speed at once takes {share}: {ends}."]
+    if not math.isfinite(warm.full_speed_standing):
+        return [*lines, "Standing until warm does not reach full speed."]
+    return [*lines, f"Standing until warm reaches full speed after {three(warm.full_speed_standing, 's')}."]
 
 
 def _limits(machine: Machine, file: str) -> tuple[str, dict[str, float]]:
-    """What limits the force, and the limits of force and acceleration."""
+    """The name of the force limit, and the limits of force and acceleration."""
     limit = machine.limits.force(machine.roll_radius)
     if limit is None:
         raise ParameterError(
-            f"{file} states no limit of force: add motor_torque, or roll_friction and nip_load, to [limits]"
+            f"{file} has no force limit: add motor_torque, or roll_friction and nip_load, to [limits]"
         )
     if machine.limits.acceleration is None:
-        raise ParameterError(f"{file} states no acceleration: add it to [limits]")
+        raise ParameterError(f"{file} has no acceleration limit: add acceleration to [limits]")
     return limit[0], {"force_limit": limit[1], "acceleration": machine.limits.acceleration}

@@ -1,4 +1,4 @@
-"""Who works: threads of this process, processes on this machine, or the workers of a scheduler."""
+"""Worker processes on this machine, or the workers of a Dask scheduler."""
 
 from __future__ import annotations
 
@@ -15,23 +15,23 @@ if TYPE_CHECKING:
 
     from hersey.scale.local import LocalWorkers
 
-    #: Who works; None is this process alone.
+    #: The workers; None is this process alone.
     AtWork = Client | LocalWorkers | None
 
-_SCHEDULER = "Let the workers of this scheduler of Dask work, as tcp://host:8786."
-_WORKERS = "Use N worker processes on this machine."
+_SCHEDULER = "Use the workers of a Dask scheduler, e.g. tcp://host:8786."
+_WORKERS = "Use N worker processes on this machine (Dask)."
 
 
 @dataclass(frozen=True)
 class Crew:
-    """Who works, if not this process alone."""
+    """The workers that are used, if not this process alone."""
 
     scheduler: Annotated[str | None, option(_SCHEDULER, metavar="ADDRESS")] = None
     count: Annotated[int | None, option(_WORKERS, "--workers", metavar="N", min=1)] = None
 
     @property
     def asked(self) -> bool:
-        """Whether anybody is asked."""
+        """Whether workers are asked for."""
         return self.scheduler is not None or self.count is not None
 
     def at_work(self) -> AbstractContextManager[AtWork]:
@@ -41,7 +41,7 @@ class Crew:
 
 @contextmanager
 def workers(scheduler: str | None, count: int | None) -> Iterator[AtWork]:
-    """Yield the client of a scheduler, or so many processes on this machine; None where neither is asked.
+    """Yield the client of a scheduler, or ``count`` processes on this machine, or None for neither.
 
     Raises
     ------
@@ -51,7 +51,7 @@ def workers(scheduler: str | None, count: int | None) -> Iterator[AtWork]:
         If a scheduler is given and Dask is not installed.
     """
     if scheduler is not None and count is not None:
-        raise ParameterError("--scheduler and --workers both say who works: give one")
+        raise ParameterError("--scheduler and --workers exclude each other: give one of them")
     if scheduler is not None:
         from hersey.scale.cluster import connected
 
