@@ -211,5 +211,7 @@ def test_only_the_columns_that_are_used_must_have_one_length(tmp_path: Path) -> 
     for channels in (named, {"speed": "speed"}, {}):
         points = hersey.SteadyPoints.from_table(tmp_path / "a.mat", channels=channels)
         assert points.column("torque").tolist() == [1.0, 1.1, 1.2]
-    with pytest.raises(UnreadableLogError, match=r"'other_speed' \(speed\) has 7 rows, but .* \(torque\) has 3"):
+    with pytest.raises(
+        UnreadableLogError, match=r"'other_speed' \(speed\) has 7 rows, but .* \(torque\) has 3"
+    ):
         hersey.SteadyPoints.from_table(tmp_path / "a.mat", channels=named | {"speed": "other_speed"})
