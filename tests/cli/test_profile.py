@@ -42,7 +42,7 @@ def test_it_is_followed_to_its_end(tmp_path: Path) -> None:
         ("time (s),speed (mm/s)\n0,1\n1,x\n", "line 3: 'x' is not a number"),
         ("time (s),speed (mm/s)\n0,1\n1\n", "line 3: '' is not a number"),
         ("time (s),speed (mm/s)\n0,1\n1,nan\n", "a number is not finite"),
-        ("time (s),speed (mm/s)\n1,1\n0,1\n", "time runs backwards"),
+        ("time (s),speed (mm/s)\n1,1\n0,1\n", "times must ascend"),
         ("time (s),speed (mm/s)\n0,1\n1,0\n", "the last must be greater than 0"),
         ("time (s),speed (mm/s)\n0,-1\n1,2\n", "speeds must not be negative"),
     ],

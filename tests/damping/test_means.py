@@ -199,7 +199,7 @@ def test_a_table_of_means_has_no_tare_and_no_corrections(tmp_path: Path) -> None
     (tmp_path / "hersey.toml").write_text("[torque]\ngear_ratio = 2.0\n")
     refused = run("fit", "means.csv", cwd=tmp_path)
     assert refused.returncode == 2
-    assert "states corrections" in refused.stderr
+    assert "contains corrections" in refused.stderr
     (tmp_path / "hersey.toml").write_text('[torque]\nchannel = "Torque"\nunit = "mN*m"\n')
     assert run("fit", "means.csv", cwd=tmp_path).returncode == 0
 
@@ -211,5 +211,7 @@ def test_only_the_columns_that_are_used_must_have_one_length(tmp_path: Path) -> 
     for channels in (named, {"speed": "speed"}, {}):
         points = hersey.SteadyPoints.from_table(tmp_path / "a.mat", channels=channels)
         assert points.column("torque").tolist() == [1.0, 1.1, 1.2]
-    with pytest.raises(UnreadableLogError, match=r"'other_speed' \(speed\) has 7 rows and .* \(torque\) 3"):
+    with pytest.raises(
+        UnreadableLogError, match=r"'other_speed' \(speed\) has 7 rows, but .* \(torque\) has 3"
+    ):
         hersey.SteadyPoints.from_table(tmp_path / "a.mat", channels=named | {"speed": "other_speed"})

@@ -39,7 +39,7 @@ def check_temperatures(kelvin: FloatArray, drag: PowerDrag) -> None:
     wrong = kelvin[~(np.isfinite(kelvin) & (kelvin > drag.temperature_zero))]
     if wrong.size:
         raise ParameterError(
-            f"temperature is {float(wrong[0]):g} K: a law in {scale} needs temperatures above 0 {scale}"
+            f"temperature is {float(wrong[0]):g} K: a law in {scale} holds above 0 {scale} only"
         )
 
 
