@@ -10,7 +10,7 @@ from hersey.cli.application import load
 _OPTION = re.compile(
     r"(?<![\w-])(--[a-z][a-z-]*)(?: (?:'([^']*)'|(-?[0-9.]+)(?=[ ,.;:)]|$)|([A-Za-z]+)(?=[.,;:)]|$)))?"
 )
-_OTHERWISE = re.compile(r",? or (?=say |name |leave |write |add )")
+_OTHERWISE = re.compile(r",? or (?=say |name |leave |omit |set |write |add )")
 _MEANT = re.compile(r"^hersey: File not found: (\S+)\. Did you mean '([^']*)'\?")
 _IN_IT = re.compile(r"^hersey: (\S+) is a folder\. Name a file in it, e\.g\. '([^']*)'")
 
@@ -22,7 +22,7 @@ def followed(arguments: list[str], message: str) -> list[list[str]]:
         return [[match[2] if argument == match[1] else argument for argument in arguments]]
     commands = []
     for part in _OTHERWISE.split(message.partition(": ")[2]):
-        command, left_out = list(arguments), re.findall(r"leave out (--[a-z-]+)", part)
+        command, left_out = list(arguments), re.findall(r"(?:leave out|[Oo]mit) (--[a-z-]+)", part)
         for flag in left_out:
             command = _without(command, flag, flags)
         for flag, *values in _OPTION.findall(part):

@@ -118,8 +118,11 @@ def test_a_table_with_a_mistake_is_refused_whole(folder: Path, table: str, said:
     [
         (["add", "life.hersey", "0.csv"], "add --unit F12"),
         (["add", "life.hersey", "0.csv", "--unit", "F12"], "add --age '120000 pages'"),
-        (["add", "life.hersey", *F12], "give either RUN..."),
-        (["add", "life.hersey", "--table", "0.csv", *F12], "stand in the table"),
+        (["add", "life.hersey", *F12], "name the logs with --unit and --age, or a table of runs"),
+        (
+            ["add", "life.hersey", "--table", "0.csv", *F12],
+            "the table holds unit and age: omit --unit",
+        ),
         (["add", "0.csv", "1.csv", *F12], "0.csv is not a campaign file"),
         (["add", "life.hersey", "none.csv", *F12], "File not found: none.csv"),
         (["add", "life.hersey", "0.csv", "none.csv", *F12], "File not found: none.csv"),
@@ -143,7 +146,7 @@ def test_logs_by_a_pattern_go_with_the_rows_of_a_table(folder: Path) -> None:
     done = typed(folder, "add", "life.hersey", "?.csv", "--table", "tables/runs.csv")
     assert (done.returncode, done.stdout) == (1, "life.hersey: 3 added, 1 failed\n")
     assert done.stderr == (
-        "runs.csv: of 4 runs the logs given are 3\n"
+        "3 of the 4 runs in runs.csv are among the given logs.\n"
         "- 3.csv: runs.csv has no row for it. Add one, or do not give this log\n"
     )
     with hersey.Campaign.open(folder / "life.hersey") as campaign:

@@ -77,12 +77,14 @@ def test_the_uncertainty_of_the_drive_speed_and_falls_that_are_not_counted(tmp_p
     document = json.loads(printed(CSV, *speed, "--identify", *known, "--json"))["drive"]
     stiffness = document["estimates"]["stiffness"]
     assert document["systematic"]["stiffness"] == pytest.approx(0.02 * stiffness["value"], rel=0.1)
-    assert printed(CSV, "--least-drop", "1 kN").startswith("Stick slip: 110 falls beyond the noise, none of")
+    assert printed(CSV, "--least-drop", "1 kN").startswith(
+        "Stick slip: 110 drops exceed the noise, none of at least 1e+03 N"
+    )
     path = tmp_path / "share.csv"
     path.write_text("\n".join(["time [s],force [1]", *(f"{0.01 * i},{i % 50 / 500}" for i in range(600))]))
     for least in ("20 %", "0.2"):
         told = " ".join(printed(path, "--least-drop", least).split())
-        assert "falls beyond the noise, none of 20 % of the load or more: the greatest is 9" in told
+        assert "drops exceed the noise, none of at least 20 % of the load; the largest is 9" in told
 
 
 def numbers_of(heading: str, tmp_path: Path) -> Path:
@@ -125,7 +127,7 @@ def test_a_torque_is_told_in_its_units(tmp_path: Path) -> None:
     path = numbers_of("time [s],torque [mN*m]", tmp_path)
     told = printed(path, "--drive-speed", "0.02 rad/s", "--least-drop", "0.1 mN*m")
     assert "N m/rad (loading slope / speed)" in told
-    assert "falls beyond the noise, none of 1 N m or more" in " ".join(
+    assert "drops exceed the noise, none of at least 1 N m" in " ".join(
         printed(path, "--least-drop", "1 N*m").split()
     )
     known = ["--known", "mass=5 kg*cm^2", "--closures", "retained"]
@@ -166,7 +168,10 @@ def test_a_mistake_ends_in_one_line(tmp_path: Path) -> None:
         (["--identify", "--known", "ehl_exponent=-0.7 s"], "ehl_exponent is '-0.7 s': write a number"),
         (["--least-drop", "5 mm"], "--least-drop: unit 'mm' is not a unit of force"),
         (["--least-drop", "5"], "--least-drop: '5' is not a number with a unit of force"),
-        (["--drive-speed-uncertainty", "2"], "--drive-speed-uncertainty is '2': write a share such as '2 %'"),
+        (
+            ["--drive-speed-uncertainty", "2"],
+            "--drive-speed-uncertainty is '2': write a percentage, e.g. '2 %'",
+        ),
         (["--drive-speed-uncertainty", "90 %"], "drive_speed_uncertainty is 0.9: it must be greater than 0"),
         (["--value", "pull"], "there is no column 'pull'. Columns: time [s], force [N]"),
         (["--quantity", "heat"], "unknown quantity 'heat'"),

@@ -64,7 +64,7 @@ def test_a_column_of_a_length_is_proposed_as_the_radius_and_not_taken(tmp_path: 
     assert "'Track radius [mm]' may be the radius: --radius 'Track radius'" in refused.stderr
     assert "Wear" not in refused.stderr
     looked = run("inspect", "wear.csv", "--isothermal", "--radius", "Track radius", cwd=tmp_path)
-    assert "'Fn [N]' may be the normal load and is not used: if it is, use --load 'Fn'" in looked.words
+    assert "'Fn [N]' may be the normal load, but is not used. If it is, use --load 'Fn'" in looked.words
     assert run("inspect", "wear.csv", "--save-mapping", cwd=tmp_path).returncode == 0
     proposal = (tmp_path / "hersey.toml").read_text()
     assert '# channel = "Track radius"' in proposal

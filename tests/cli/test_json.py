@@ -143,18 +143,6 @@ def test_what_a_fit_prints_stands_in_the_document() -> None:
     assert set(part_of(PRINTED["fit"]).model_fields) <= set(Analysis.model_fields)
 
 
-def test_the_docs_list_every_part() -> None:
-    """The table of the page on the document is that of the code: command, part, and what the part is."""
-    text = (ROOT / "docs" / "reference" / "document.md").read_text()
-    rows = re.findall(r"^\| `hersey (\w+) --json` \| `(\w+)` \| (.*?) \|$", text, re.M)
-    expected = [(name, part.__name__, first_line(part)) for name, part in PRINTED.items()]
-    assert rows == expected
-
-
-def first_line(part: type) -> str:
-    return (part.__doc__ or "").split("\n", 1)[0]
-
-
 def test_every_part_says_what_it_is() -> None:
     seen: set[type[Part]] = set()
 

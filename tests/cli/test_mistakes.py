@@ -325,7 +325,7 @@ MISTAKES: dict[str, Mistake] = {
     "one temperature": Mistake(
         {"log.csv": table(rows(temperatures=(100,)))},
         "fit log.csv",
-        ("one temperature (100.0 to 100.0 degC)",),
+        ("one temperature (100.0 degC)",),
     ),
     "no temperature": Mistake(
         {"log.csv": table([line[:3] for line in rows()], *HEADER[:3])},
@@ -342,7 +342,7 @@ MISTAKES: dict[str, Mistake] = {
         {"log.csv": table([line[1:] for line in rows()], *HEADER[1:])}, "fit log.csv", ("no time column",)
     ),
     "seconds called milliseconds": Mistake(
-        {"log.csv": named(0, "Time [ms]")}, "fit log.csv", ("the whole log lasts 0.0899 s",)
+        {"log.csv": named(0, "Time [ms]")}, "fit log.csv", ("the whole log lasts only 0.0899 s",)
     ),
     "a clock that runs backwards": Mistake(
         {"log.csv": table(rows()[:300] + rows()[270:])},

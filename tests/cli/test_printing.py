@@ -86,7 +86,7 @@ def test_verbose_adds_statistics_and_notes(reported: dict[str, str]) -> None:
         re.findall(r"^- ", reported[""], re.MULTILINE)
     )
     assert verbose.endswith("\nreport.html\n")
-    assert verbose.count("Temperature and time go together") == 1
+    assert verbose.count("Temperature and time changed together") == 1
     assert_narrow(verbose)
 
 
@@ -324,7 +324,9 @@ def test_exit_codes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_help_and_docs_name_every_exit_code() -> None:
     text = " ".join(run("--help", cwd=ROOT).stdout.split())
-    docs = (ROOT / "docs" / "commands.md").read_text().split("## Exit codes")[1].split("\n## ")[0]
+    docs = (
+        (ROOT / "docs" / "reference" / "commands.md").read_text().split("## Exit codes")[1].split("\n## ")[0]
+    )
     for code in (0, 1, 2, 3, 130):
         assert re.search(rf"[:;] {code} \w", text), code
         assert f"| {code} |" in docs
