@@ -274,7 +274,7 @@ _COARSE = np.linspace(0.0, 3.0, 11)
 
 
 def _oil(random: np.random.Generator) -> tuple[Oil, str]:
-    """A lubricant and its table in the machine's file."""
+    """A lubricant and its table in the machine file."""
     density = random.uniform(850.0, 1950.0)
     low, high = 40.0 + ZERO, 200.0 + ZERO
     thin = random.uniform(4.0, 15.0)  # mm^2/s at 200 degC

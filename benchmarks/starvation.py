@@ -4,7 +4,7 @@ The generator stands in this file and shares no code with the fitter, nor with t
 viscosity (ASTM D341), the soft line film of Herrebrugh, shear and a rolling part of another power, and a
 contact that fades as an exponential of film over roughness. Roughness, boundary friction, the rest of the
 drive and viscosity differ from run to run; dwells scatter by 1 % of the whole torque. Varied are the
-sharpness of starvation, and viscosity against that of the machine's file.
+sharpness of starvation, and viscosity against that of the machine file.
 
 Usage: python -m benchmarks.starvation [--runs 96]
 """

@@ -40,7 +40,7 @@ NO_LOAD = replace(
 
 
 def write(folder: Path) -> None:
-    """Write the three files into a folder; the no-load log first, for the machine's file reads it."""
+    """Write the three files into a folder; the no-load log first, for the machine file reads it."""
     free = testbench.PhysicalTruth(None, REST)
     testbench.run(seed=NO_LOAD_SEED, truth=free, stand=NO_LOAD).write(folder / "no-load.csv")
     machine = read_machine(HERE / "machine.toml")

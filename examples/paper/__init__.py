@@ -1,6 +1,6 @@
 """The paper's figures drawn anew and two of our own, each with claims and how well they hold.
 
-Figs. 1 to 8 are drawn of a machine's file and a log, in SI; Figs. 9 to 14 and our own of the paper's model,
+Figs. 1 to 8 are drawn of a machine file and a log, in SI; Figs. 9 to 14 and our own of the paper's model,
 in its units: inches, ounces of force, seconds.
 
 =============  ====================================================================

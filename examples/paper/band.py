@@ -83,7 +83,7 @@ def motions_of(case: Case) -> Motions:
     drive = np.linspace(SHOWN[0], band.upper * (1.0 - AT_FOLD), _VALUES)
     swept = sweep(case.train, case.drag, drive_speed=drive)
     sticking = swept.kind.values == "stick_slip"
-    # close to v_t the small swing shrinks as the square root of nothing: it needs laps of its own
+    # close to v_t the small oscillation shrinks as the square root of nothing: it needs laps of its own
     start, end = case.stick_speed, case.drag.transition_speed
     slowest = np.r_[np.geomspace(start, 0.5 * end, 81), np.linspace(0.5 * end, 0.999 * end, 161)[1:]]
     return Motions(
@@ -136,7 +136,7 @@ def parts(case: Case, cycles: CyclesWithoutSticking) -> Claim:
 
 
 def small_swing(case: Case, motions: Motions) -> Claim:
-    """Judge whether the small swing below v_t lasts down to the lower edge and is the one drawn."""
+    """Judge whether the small oscillation below v_t lasts down to the lower edge and is the one drawn."""
     lower, cycles = motions.band.lower, motions.cycles
     below, above = (
         stick_slip(case.train, case.drag, drive_speed=lower * (1.0 + side * AT_LOWER), start="steady")
@@ -147,7 +147,7 @@ def small_swing(case: Case, motions: Motions) -> Claim:
     ends = below.kind == "stick_slip" and above.kind == "oscillation"
     return Claim(
         "Band",
-        "Just below v_t a small swing without sticking lasts, down to the lower edge of the band.",
+        "Just below v_t a small oscillation without sticking lasts, down to the lower edge of the band.",
         f"holds if a belt started sliding swings without sticking at {AT_LOWER:g} of the lower edge above it "
         f"as slow as drawn within {SAME:.1%}, and sticks as much below; in direction if within {ALIKE:.0%}.",
         Verdict.of(ends and miss <= SAME, ends and miss <= ALIKE),
@@ -215,7 +215,7 @@ def _lower_end(motions: Motions) -> Chart:
         *_rule(x, y, band.transition, 1.27, "v_t", 9),
         *_without_sticking(motions.cycles, ENLARGED, x, y),
         *_steady(motions, ENLARGED, x, y),
-        *_label(0.9831, 1.028, "small swing", x, y),
+        *_label(0.9831, 1.028, "small oscillation", x, y),
         *_label(0.9838, 1.42, "unstable", x, y),
     ]
     return alt.layer(*layers).properties(
@@ -226,7 +226,7 @@ def _lower_end(motions: Motions) -> Chart:
 def _without_sticking(
     cycles: CyclesWithoutSticking, shown_from_to: tuple[float, float], x: alt.X, y: alt.Y
 ) -> list[alt.Chart]:
-    """Least and greatest speeds of the unstable cycle, dashed, and of the small swing."""
+    """Least and greatest speeds of the unstable cycle, dashed, and of the small oscillation."""
     layers = []
     inside = (cycles.drive_speed >= shown_from_to[0]) & (cycles.drive_speed <= shown_from_to[1])
     for which, look in (

@@ -49,9 +49,7 @@ def figure_1(machine: Machine) -> PaperFigure:
     """
     contact = contact_of(machine)
     title = "Cross-section of the machine"
-    subtitle = (
-        "full lines: to scale, from the machine's file; dashed: not stated there, drawn for orientation"
-    )
+    subtitle = "full lines: to scale, from the machine file; dashed: not stated there, drawn for orientation"
     panels = alt.hconcat(_whole(machine, contact), _enlarged(machine, contact), spacing=10)
     chart = panels.properties(title=alt.Title(f"Fig. 1: {title}", subtitle=subtitle))
     data = {f"nip_width_{rule} (m)": (float(nip_width(contact, rule=rule)),) for rule in RULES}
@@ -67,7 +65,7 @@ def contact_of(machine: Machine) -> Contact:
         If its file states none.
     """
     if machine.contact is None:
-        raise ParameterError("the machine's file states no [contact]")
+        raise ParameterError("the machine file states no [contact]")
     return machine.contact
 
 
@@ -81,7 +79,7 @@ def film_at(machine: Machine, point: OperatingPoint) -> Film:
     """
     contact = contact_of(machine)
     if machine.lubricant is None:
-        raise ParameterError("the machine's file states no [lubricant]")
+        raise ParameterError("the machine file states no [lubricant]")
     speed = point.speed / contact.roll_radius
     inside = film_temperature(contact, machine.lubricant, speed=speed, temperature=point.temperature)
     return film_thickness(contact, machine.lubricant, speed=speed, temperature=inside)

@@ -44,7 +44,7 @@ def drive_figures(
             make(6, lambda: figure_6(machine, measured))
             make(8, lambda: figure_8(machine, measured))
         else:
-            left_out.append("Figs. 1, 5, 6 and 8 are left out: they need a machine's file, --machine")
+            left_out.append("Figs. 1, 5, 6 and 8 are left out: they need a machine file, --machine")
         if measured is not None:
             make(2, lambda: figure_2(measured, machine))
             make(3, lambda: figure_3(measured))
@@ -56,7 +56,7 @@ def drive_figures(
 
 
 def shipped() -> tuple[Measured, Machine]:
-    """Return the log of the virtual test stand and the machine's file of the example."""
+    """Return the log of the virtual test stand and the machine file of the example."""
     machine = read_machine(_EXAMPLES / "machine.toml")
     points = read(_EXAMPLES / "bench.csv").steady(tare="standing")
     return Measured.of(points if machine.rest is None else points.without(machine.rest)), machine

@@ -34,7 +34,7 @@ def figure_8(machine: Machine, measured: Measured | None = None) -> PaperFigure:
     """
     contact, mixed = contact_of(machine), machine.mixed
     if machine.lubricant is None:
-        raise ParameterError("the machine's file states no [lubricant]")
+        raise ParameterError("the machine file states no [lubricant]")
     heat = machine.points[0].temperature if machine.points else None
     film = None
     if measured is not None:
@@ -44,7 +44,7 @@ def figure_8(machine: Machine, measured: Measured | None = None) -> PaperFigure:
         )
     elif mixed is None:
         raise ParameterError(
-            "without a log it needs what shares the load: [asperities] and [boundary] of the machine's file"
+            "without a log it needs what shares the load: [asperities] and [boundary] of the machine file"
         )
     title = "Friction coefficient against the Hersey number"
     limits = {"grip": machine.limits.roll_friction, "motor": motor_friction(machine)}
@@ -94,7 +94,7 @@ def collapses(film: MeasuredFilm) -> Claim:
         "logarithms); in direction if by less than half of what they do about their mean.",
         Verdict.of(scatter <= ABOUT, scatter < 0.5 * spread),
         f"They scatter by {scatter:.1%} about the curve and by {spread:.0%} about their mean. The Hersey "
-        "number takes the viscosity of the machine's file.",
+        "number takes the viscosity of the machine file.",
         {"scatter": scatter, "spread": spread},
     )
 

@@ -43,7 +43,7 @@ def figure_5(machine: Machine) -> PaperFigure:
     """
     contact = contact_of(machine)
     if not machine.points:
-        raise ParameterError("the machine's file states no [[points]] at which the film is drawn")
+        raise ParameterError("the machine file states no [[points]] at which the film is drawn")
     point = machine.points[0]
     film = film_at(machine, point)
     solution = _solved(film)

@@ -23,7 +23,7 @@ def figure_6(machine: Machine, measured: Measured | None = None) -> PaperFigure:
     forces = forces_of(machine, measured)
     title = "Mass, spring and drag"
     panels: list[Chart] = [_diagram(machine)]
-    subtitle = "diagram with the numbers of the machine's file"
+    subtitle = "diagram with the numbers of the machine file"
     if forces:
         panels.append(_bars(machine, forces))
         subtitle += "; below: forces at the belt to scale, and how far each stretches the spring"

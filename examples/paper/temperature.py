@@ -103,8 +103,7 @@ def is_energy(measured: Measured, machine: Machine) -> Claim:
     return Claim(
         "Eq. 9",
         "The slope, over the exponent 0.3 of viscosity, is the activation energy of the lubricant.",
-        f"holds if it is within {ABOUT:.0%} of that of the machine's file; in direction if within a "
-        "factor 2.",
+        f"holds if it is within {ABOUT:.0%} of that of the machine file; in direction if within a factor 2.",
         Verdict.of(abs(ratio - 1.0) <= ABOUT, 0.5 <= ratio <= 2.0),
         f"The log has {energy / 1e3:.3g} kJ/mol, the lubricant of the file {stated / 1e3:.3g} kJ/mol at the "
         "mean of 1/T.",

@@ -114,7 +114,7 @@ def agrees(measured: Measured, machine: Machine | None) -> Claim | None:
         f"{_LEVEL:g}; in direction if the exponents are.",
         Verdict.of(alike and 1.0 / _LEVEL <= ratio <= _LEVEL, alike),
         f"The exponents differ by {far:.3f} at most; the torque measured is {shown(ratio)} times that of "
-        "Eq. 9 for the machine's file (geometric mean over the rising branch).",
+        "Eq. 9 for the machine file (geometric mean over the rising branch).",
         {"largest_difference": far, "measured_over_equation_9": ratio},
     )
 

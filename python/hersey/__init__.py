@@ -16,7 +16,7 @@ motion          drag against speed, schedules, the motion of the belt, sweeps
 damping         dwells, the damping surface, candidate laws, comparison, design of tests
 inspection      what a log holds, before a fit
 lubrication     lubricant, contact, film, the paper's equations, the numerical line contact
-machine         the machine's file: drivetrain, nip, limits, uncertainty, operating points
+machine         the machine file: drivetrain, nip, limits, uncertainty, operating points
 verdict         what exponents and film say together
 identification  the cycles of a trace, and the drive behind them
 stability       hysteresis, disturbances, the operating map, drive profiles, warm-ups

@@ -331,7 +331,7 @@ def toml(one: Analysis, text: str) -> Dropped:
     return file
 
 
-#: All tables that a machine's file knows, most of them without a field in the form.
+#: All tables that a machine file knows, most of them without a field in the form.
 WHOLE = (ROOT / "examples" / "machine.toml").read_text()
 
 

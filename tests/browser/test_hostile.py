@@ -147,7 +147,7 @@ def test_a_log_inspected(
     assert_harmless(picture(chart, ".svg"))
 
 
-#: Names that a machine's file may hold.
+#: Names that a machine file may hold.
 IN_A_FILE = tuple(name for name in ON_A_LINE if len(name) <= 1000)
 
 

@@ -1,4 +1,4 @@
-"""Numbers of a belt with units, bare, or from the machine's file: `simulate`, `hysteresis` and `sweep`."""
+"""Numbers of a belt with units, bare, or from the machine file: `simulate`, `hysteresis` and `sweep`."""
 
 from __future__ import annotations
 

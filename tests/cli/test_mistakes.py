@@ -423,7 +423,7 @@ MISTAKES: dict[str, Mistake] = {
         ("machine.toml: the film needs a table [contact]",),
         table_added,
     ),
-    "a machine's file with a slip": Mistake(
+    "a machine file with a slip": Mistake(
         {**GOOD, "machine.toml": MACHINE},
         "report log.csv --machine machine.tml",
         ("File not found: machine.tml",),

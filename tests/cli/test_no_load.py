@@ -1,4 +1,4 @@
-"""What the drive takes without the film: by ``--no-load``, or from the machine's file; never by both."""
+"""What the drive takes without the film: by ``--no-load``, or from the machine file; never by both."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def table(torque: np.ndarray, celsius: np.ndarray) -> str:
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """A log of a film of exponent -0.6 beside 20 mN m + 1 mN m s/rad, one without it, a machine's file."""
+    """A log of a film of exponent -0.6 beside 20 mN m + 1 mN m s/rad, one without it, a machine file."""
     w, t = RPM * 2 * np.pi / 60, np.array([[100.0], [130.0], [160.0]])
     rest = (0.02 + 0.001 * w) * np.ones_like(t)
     film = 0.1 * (t / 150.0) ** -0.9 * w**0.4

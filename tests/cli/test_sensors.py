@@ -1,4 +1,4 @@
-"""Errors of the sensors from the machine's file, and which count where the mapping states them too."""
+"""Errors of the sensors from the machine file, and which count where the mapping states them too."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``hersey export fmu``: a fit and a machine's file become a unit; what is wrong is said in a line."""
+"""``hersey export fmu``: a fit and a machine file become a unit; what is wrong is said in a line."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The table [heat] of the machine's file: SI, what is not stated, and who starts how warm."""
+"""The table [heat] of the machine file: SI, what is not stated, and who starts how warm."""
 
 from __future__ import annotations
 

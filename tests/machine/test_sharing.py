@@ -1,4 +1,4 @@
-"""What shares the load, as the machine's file states it: the contact, and the drag of its belt."""
+"""What shares the load, as the machine file states it: the contact, and the drag of its belt."""
 
 from __future__ import annotations
 

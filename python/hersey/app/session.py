@@ -1,6 +1,6 @@
 """The analyses of one start: changes by the page, and the processes that read and compute.
 
-An analysis has a folder with a random name. It holds the machine's file and the mapping, with links to the
+An analysis has a folder with a random name. It holds the machine file and the mapping, with links to the
 logs that these name, a folder ``results``, and a folder for each dropped file. In the last the file lies
 alone in ``dropped``, so that nothing of ours can have its name.
 """

@@ -72,7 +72,7 @@ def friction_chart(
     mixed
         What shares the load; then regimes are shaded by the share that asperities carry.
     temperature
-        Of the model, K: it hangs on it only where boundary friction does.
+        Of the model, K: it depends on it only where boundary friction does.
     grip, motor
         Friction coefficients beyond which the belt slips on the roll, and the motor gives no more.
     """

@@ -32,7 +32,7 @@ _ROUNDING = 1e-9
 
 
 class _FitFile(BaseModel):
-    """What a fit needs of the document; the rest of it (regime, timeline ...) is left alone."""
+    """What a fit needs of the document; the rest of it (regime, timeline ...) is not read."""
 
     model_config = ConfigDict(frozen=True, extra="ignore", allow_inf_nan=False)
 

@@ -205,7 +205,7 @@ def open_once(path: str | Path) -> Iterator[OpenFile]:
 def appended(path: str | Path) -> Iterator[OpenFile]:
     """Open once a file to which a logger may append; ask its `growth` when it is read.
 
-    What fails because it changed in any other way is told as that change.
+    What fails because it changed in any other way is reported as that change.
 
     Raises
     ------
@@ -226,7 +226,7 @@ def appended(path: str | Path) -> Iterator[OpenFile]:
 def unchanged(path: str | Path) -> Iterator[OpenFile]:
     """Open a file once, and refuse it at the end if it changed.
 
-    What fails because it changed meanwhile is told as that change.
+    What fails because it changed meanwhile is reported as that change.
 
     Raises
     ------

@@ -110,7 +110,7 @@ def _refined(value: FloatArray, slips: Falls, window: int) -> Falls:
 
 
 def steep_lasts(value: FloatArray, slips: Falls, window: int) -> FloatArray:
-    """How many samples each fall lasts, from its steep part; what a running mean adds to it is taken off."""
+    """How many samples each fall lasts, from its steep part; what a running mean adds to it is subtracted."""
     width = window // 2 | 1
     mean = averaged(value, width)
     lasts = (crossing(mean, slips, 0.9) - crossing(mean, slips, 0.1)) / TEN_TO_NINETY

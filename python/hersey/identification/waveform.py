@@ -45,7 +45,7 @@ class Waveform:
 
 
 def mean_waveform(record: CycleRecord) -> Waveform:
-    """Return the mean lap of a trace; a linear drift of the level is taken off.
+    """Return the mean lap of a trace; a linear drift of the level is subtracted.
 
     Raises
     ------

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 #: Limits of the torque that are tried, over the one stated, and coldest starts beside the one as it is, K.
 _LIMITS = (0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.25, 1.5, 1.8)
 _COLDER = (-10.0, 0.0, 10.0)
-#: The duty as the machine's file states it.
+#: The duty as the machine file states it.
 AS_STATED = "as stated"
 #: Ways whose limit is that of the motor's torque.
 _MOTOR = "motor torque"
@@ -57,7 +57,7 @@ class Use(Record):
     duty: str
     stated: Annotated[
         bool, Means("whether this is the operating condition of the machine file")
-    ]  #: the use that the machine's file states
+    ]  #: the use that the machine file states
     ends: Annotated[
         tuple[UseEnd, ...], Means("specimens, then a tenth and half of new specimens; empty if unknown")
     ]  #: specimens, a tenth and half of new specimens; none where nothing can be followed

@@ -333,16 +333,16 @@ def _fitted(logs: FloatArray, counts: FloatArray, failed: BoolArray) -> tuple[Fl
 
 
 def _plan(failed: BoolArray) -> tuple[int, ...]:
-    """How many specimens leave at each failure: the one that fails, and those taken off before the next.
+    """How many specimens leave at each failure: the one that fails, and those withdrawn before the next.
 
-    Specimens taken off before the first failure say least, and leave no trace in the draws.
+    Specimens withdrawn before the first failure say least, and leave no trace in the draws.
     """
     return tuple(np.diff(np.append(np.flatnonzero(failed), failed.size)).tolist())
 
 
 @lru_cache(maxsize=32)
 def _estimates_of_standard(plan: tuple[int, ...], seed: int) -> tuple[FloatArray, FloatArray]:
-    """Scales and shapes estimated from draws from the law of scale 1 and shape 1, taken off by the plan.
+    """Scales and shapes estimated from draws from the law of scale 1 and shape 1, withdrawn by the plan.
 
     Spacings of failures under such a plan are exponential, each over the specimens then at risk (Viveros and
     Balakrishnan, Technometrics 36, 1994, 84-91).

@@ -20,7 +20,7 @@ columns        columns as they stand, for readers with roles of their own
 assembly       from a recording to a run on the clock of the torque
 reading        `read`: from files to a log
 many           many files, each a log of its own: in turn, in threads, or by workers
-corrections    what lies between sensor and film, taken off with a record
+corrections    what lies between sensor and film, subtracted with a record
 cell_table     a table as it stands: cells of text or numbers
 mean_roles     which column of a table of means plays which role
 means          a table of means: a row per dwell, no clock

@@ -1,4 +1,4 @@
-"""Corrections of a log: what lies between sensor and film is taken off, and each step leaves a record.
+"""Corrections of a log: what lies between sensor and film is subtracted, and each step leaves a record.
 
 Every function takes a log, or one already corrected, and returns it corrected with one more record; nothing
 is corrected unless it is asked for. Their order matters: what happens at the motor (current, sign, tare,

@@ -1,4 +1,4 @@
-"""What a file says of the errors of the sensors: the tables that a mapping and a machine's file share."""
+"""What a file says of the errors of the sensors: the tables that a mapping and a machine file share."""
 
 from __future__ import annotations
 

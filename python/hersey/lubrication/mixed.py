@@ -1,7 +1,7 @@
 """Mixed lubrication: what the film carries, what the contact, and the torque that both make.
 
-Film and asperities share the load; the force hangs on x = eta U alone where boundary friction is constant, U
-the sliding speed (belt speed). lambda is the central film over the composite rms roughness. The formulas
+Film and asperities share the load; the force depends on x = eta U alone where boundary friction is constant,
+U the sliding speed (belt speed). lambda is the central film over the composite rms roughness. The formulas
 stand in the core and, with their sources and limits, in ``docs/theory/mixed.md``.
 """
 
@@ -30,7 +30,7 @@ from hersey.units import celsius, takes_si
 if TYPE_CHECKING:
     import polars as pl
 
-#: The core takes no film whose thickness hangs on load less than so.
+#: The core takes no film whose thickness depends on load less than so.
 _LEAST_LOAD_EXPONENT = 0.01
 #: Least roundness of the dry pressure that the core takes.
 _FLATTEST = 0.01

@@ -1,4 +1,4 @@
-"""What moves: a drivetrain with its drag, or a machine's file with the fitted law of its log."""
+"""What moves: a drivetrain with its drag, or a machine file with the fitted law of its log."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ class Drivetrain(Record):
 
 
 class StatedMachine(Protocol):
-    """A machine's file, `hersey.machine.Machine`."""
+    """A machine file, `hersey.machine.Machine`."""
 
     @property
     def train(self) -> Drivetrain:

@@ -65,7 +65,7 @@ class AnyDrag:
 
     @property
     def holding_force(self) -> float:
-        """The force that a belt at rest bears: ``breakaway_force`` and that of the no-load torque."""
+        """The force that a belt at rest withstands: ``breakaway_force`` and that of the no-load torque."""
         return self.law().holding_force
 
     @takes_si(force="force", temperature="temperature")

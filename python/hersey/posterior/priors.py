@@ -65,7 +65,7 @@ class DrivePriors:
             _value(nominal, spread, latent[:, i])
             for i, (nominal, spread) in enumerate(zip(self.nominal, self.spread, strict=True))
         ]
-        columns[3] = np.maximum(columns[3], 1.02)  # a belt at rest bears more than one that slides
+        columns[3] = np.maximum(columns[3], 1.02)  # a belt at rest withstands more than one that slides
         return np.column_stack(columns)
 
     def range_of(self, name: str) -> tuple[float, float]:

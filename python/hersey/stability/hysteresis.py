@@ -1,7 +1,7 @@
 """The band of drive speeds where the past decides: steady sliding from above, stick-slip from below.
 
 Three speeds divide the behaviour (Figs. 13-14 of the paper). Below ``lower`` every start ends in
-stick-slip. Between there and the transition speed a small swing without sticking survives. Between the
+stick-slip. Between there and the transition speed a small oscillation without sticking survives. Between the
 transition speed and ``upper``, the fold V*, a belt that slides goes on sliding and one that sticks goes on
 sticking; above, stick-slip dies out.
 """

@@ -58,7 +58,7 @@ export function renew(place, ...children) {
   const control = active?.dataset.control;
   const typed = active && "value" in active ? active.value : null;
   const dirty = active?.dataset.typed === "1";
-  if (active) active.dataset.typed = ""; // what is taken off the page sends nothing
+  if (active) active.dataset.typed = ""; // what has left the page sends nothing
   const ends = active?.selectionStart !== undefined && active?.type !== "checkbox" ? [active.selectionStart, active.selectionEnd] : null;
   place.replaceChildren(...children.filter((child) => child));
   if (!control) return;

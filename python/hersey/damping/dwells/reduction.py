@@ -348,7 +348,7 @@ def _curvature(speed: FloatArray) -> float:
     """Error of taking the mean torque for that of the mean speed, relative.
 
     w^p over a swing of relative deviation s is p (p - 1)/2 s^2 more than at the mean: under s^2/2 for any p
-    between -0.6 and 1.6. Small swings may be noise of the encoder: the mean is right.
+    between -0.6 and 1.6. Small oscillations may be noise of the encoder: the mean is right.
     """
     swing = float(np.std(speed)) / abs(float(np.mean(speed)))
     return 0.5 * swing**2 if swing > NOTABLE_SWING else 0.0

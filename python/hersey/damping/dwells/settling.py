@@ -14,7 +14,7 @@ from hersey.damping.dwells.shared_noise import Powers, SharedNoise
 from hersey.damping.dwells.steadiness import MAX_SPEED_DRIFT, SIGNIFICANT
 from hersey.log.torque_log import Run
 
-#: Fewest dwells that show a settling in common, and the steps in which it is told.
+#: Fewest dwells that show a settling in common, and the steps in which it is reported.
 FEWEST, STEPS = 5, 400
 #: Share of the dwells that are long enough to be taken.
 LONG_ENOUGH = 0.75

@@ -15,7 +15,7 @@ from hersey.schema.warning import Warning
 
 
 class CandidatePart(Part):
-    """A candidate law as fitted; parameters in the coordinates of the fit."""
+    """A model as fitted; parameters in the coordinates of the fit."""
 
     key: str
     name: str

@@ -128,7 +128,7 @@ def points_of(reduction: str, dwells: Iterable[tuple[Any, ...]]) -> SteadyPoints
 
 
 def rests_of(dwells: pl.DataFrame, rests: Mapping[int, NoLoadTorque | None]) -> FloatArray:
-    """Return what was taken off as the no-load torque of each dwell, N m with its sign; shape (dwells,).
+    """Return what was subtracted as the no-load torque of each dwell, N m with its sign; shape (dwells,).
 
     ``dwells`` holds ``run_id``, ``speed`` and ``temperature`` in SI; ``rests`` go with the runs, and
     equal ones are one object.
@@ -151,7 +151,7 @@ def rests_of(dwells: pl.DataFrame, rests: Mapping[int, NoLoadTorque | None]) -> 
 def drive_of(
     reduction: str, same: dict[str, tuple[NoLoadTorque | None, Sensors]]
 ) -> tuple[NoLoadTorque | None, Sensors]:
-    """Return the no-load torque that was taken off a run, and its sensors; ``same``: those met before.
+    """Return the no-load torque that was subtracted from a run, and its sensors; ``same``: those met before.
 
     Raises
     ------

@@ -235,7 +235,7 @@ class _Asked:
 
 
 def _lacks(mode: str, table: str, keys: str) -> Warning:
-    """A failure mode that is not judged, and which keys of a table of the machine's file would do it."""
+    """A failure mode that is not judged, and which keys of a table of the machine file would do it."""
     return Warning(
         NOT_JUDGED,
         "add {keys} to [{table}] of the machine file",

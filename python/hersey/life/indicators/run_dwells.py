@@ -72,7 +72,7 @@ class CampaignRuns:
 
 
 def read_runs_of(campaign: Campaign, rest: NoLoadTorque | None = None) -> CampaignRuns:
-    """Return the runs of a campaign; ``rest`` is taken off those of which none was taken off before."""
+    """Return the runs of a campaign; ``rest`` is subtracted where none was subtracted before."""
     runs, drives = Runs.of(campaign), campaign.drives()
     numbers = runs.run
     of_run, table = campaign.measured()
@@ -146,7 +146,7 @@ def _rest_of(of_run: IntArray, table: FloatArray, rests: dict[int, NoLoadTorque 
 
 
 def _dwells(rows: FloatArray, rest: FloatArray, *, was_off: bool) -> RunDwells:
-    """Dwells in the sense of rotation, and the torque of the ``rest`` that is, or was, taken off them."""
+    """Dwells in the sense of rotation, and the torque of the ``rest`` that is, or was, subtracted."""
     speed, temperature, torque, error = rows.T
     belt, drive = (torque, torque + rest) if was_off else (torque - rest, torque)
     sense = np.sign(speed)

@@ -13,7 +13,7 @@ from numpy.lib import format as npy
 from hersey.log.formats.matrices import array_signals
 from hersey.log.recording import Recording, Signal
 
-#: Kinds of numbers; what else an array may hold is told, not read.
+#: Kinds of numbers; what else an array may hold is reported, not read.
 _NUMBERS = "iufbmM"
 _KINDS = {"O": "Python objects, which only pickle could load", "U": "text", "S": "text", "c": "complex"}
 

@@ -56,7 +56,7 @@ _KEPT = ("PATH", "LD_LIBRARY_PATH", "DYLD_LIBRARY_PATH", "SYSTEMROOT", "PYTHONHO
 #: By the clock, as many times the processor time: for a process that waits for ever.
 _PATIENCE = 60
 _SCRIPT = Path(__file__).with_name("answering.py")
-#: All that the process is told of its surroundings. Each thread takes memory, and there may be many cores.
+#: All that the process knows of its surroundings. Each thread takes memory, and there may be many cores.
 _ENVIRONMENT = {
     **{name: value for name in _KEPT if (value := os.environ.get(name))},
     "POLARS_MAX_THREADS": "4",

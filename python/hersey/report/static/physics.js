@@ -150,10 +150,10 @@ async function physics(bytes) {
       };
     },
 
-    // Drag in steady sliding at each speed (N), the rest of the drive counted.
+    // Drag in steady sliding at each speed (N), the no-load torque counted.
     forces: (law, speeds) => asked("hersey_forces", [...law.numbers, ...list("speed", speeds)]),
 
-    // What a belt at rest bears (N).
+    // What a belt at rest withstands (N).
     holding: (law) => law.holding_force,
 
     // Motion under a drive of straight lines through `schedule`, [[s, m/s], ...], or at one speed.
@@ -209,7 +209,7 @@ async function physics(bytes) {
 
     // The same at many temperatures (K; null for a drag that does not vary), by the rule of the stick speed. Without a
     // band the three speeds are one. Where there is none at a temperature, not a number; if at none, an error says why.
-    // With what a belt at rest bears (N).
+    // With what a belt at rest withstands (N).
     edges({ train, drag, temperatures, rule, lower = false, ...options }) {
       const fixed = known("rule", RULES, rule) === 1;
       const scale = temperatures ? Array.from(temperatures, (t) => scaled(drag, t)) : [];

@@ -89,7 +89,7 @@ class OperatingMap(Result):
         return np.inf if self.torque_limit is None else self.torque_limit
 
     def _may_start(self, low: ArrayLike, holding: ArrayLike, high: ArrayLike) -> NDArray[np.bool_] | np.bool_:
-        """Whether the limit lies within the interval of what a belt at rest bears."""
+        """Whether the limit lies within the interval of what a belt at rest withstands."""
         return (np.minimum(low, holding) <= self._limit) & (self._limit < np.maximum(high, holding))
 
     @property

@@ -46,7 +46,7 @@ def plan_of_log(
     Parameters
     ----------
     surface, machine
-        The fit of the log, and what the machine's file states.
+        The fit of the log, and what the machine file states.
     target_speed
         m/s.
     temperature
