@@ -145,8 +145,8 @@ def past_decides(band: HysteresisBand, cycles: list[StickSlipCycle]) -> Claim:
         "that speed is between v_t and V*; in direction if V* is above v_t.",
         Verdict.of(below and above and inside, band.bistable),
         f"From {band.transition:g} to {band.upper:.7g} in/s both last. Below {band.lower:.6g} in/s all "
-        "ends in stick-slip; from there to v_t a small oscillation lasts without sticking. One per cent more stick "
-        f"speed, which nobody measures, moves V* by {share:.2f} %.",
+        "ends in stick-slip; from there to v_t a small oscillation lasts without sticking. One per cent more "
+        f"stick speed, which nobody measures, moves V* by {share:.2f} %.",
         {
             "lower": band.lower,
             "transition": band.transition,

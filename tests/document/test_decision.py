@@ -44,7 +44,7 @@ def test_the_first_sentence_is_about_the_users_points(decide: Decide, found: Beh
     )
     _, low, high = found.posterior.fold_interval(HOT)
     ends = f"[{figures(1e3 * low, up=False)}, {figures(1e3 * high, up=True)}]"
-    assert said.interval.startswith("At 180 °C V* is ")
+    assert said.interval.startswith("At 180 °C V*, above which stick-slip cannot last, is ")
     assert said.interval.endswith(ends)
     safe = figures(1e3 * found.posterior.safe_speed(HOT), up=True)
     assert said.otherwise.startswith(f"The belt slides from any start above {safe} mm/s.")
@@ -262,7 +262,7 @@ def test_one_temperature_is_not_named(points: hersey.SteadyPoints, machine: Mach
     document = _table(speeds, torques, alone)
     assert document.decision is not None
     assert document.decision.instruction.startswith("360 mm/s ")
-    assert document.decision.interval.startswith("V* is ")
+    assert document.decision.interval.startswith("V*, above which stick-slip cannot last, is ")
     assert document.map is not None
     assert document.map.temperature is None
 

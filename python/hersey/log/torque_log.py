@@ -120,7 +120,7 @@ class Effect(Record):
 
 @dataclass(frozen=True)
 class Correction(Record):
-    """Record of one correction: its parameters as written with units, its effects, and what it left as it was."""
+    """Record of one correction: its parameters as written with units, its effects, and what stayed."""
 
     name: str
     parameters: tuple[tuple[str, str], ...]

@@ -8,8 +8,8 @@ from typing import Annotated
 from hersey.result import OPEN, Means, Record
 
 #: States, from the slow side up. ``creep``: below the stick speed the closure ``retained`` takes the belt
-#: along at the speed of the drive. ``swing``: a small oscillation without sticking survives, a stuck belt sticks
-#: on. ``stall``: the roll slips on the belt; ``motor``: the motor gives up.
+#: along at the speed of the drive. ``swing``: a small oscillation without sticking survives, a stuck
+#: belt sticks on. ``stall``: the roll slips on the belt; ``motor``: the motor gives up.
 STATES = ("creep", "stick_slip", "swing", "bistable", "smooth", "stall", "motor")
 _VERDICTS = {
     "creep": "Below the stick speed, where nothing was measured: the belt creeps or sticks.",

@@ -78,7 +78,7 @@ def of_machine(found: Behaviour, map_: OperatingMap, unit: str) -> Instruction:
     if not edges.turns:
         interval = f"{where}V* is not known: torque may still fall at the fastest dwell"
     elif edges.bistable:
-        interval = _interval(f"{where}V* is", fold)
+        interval = _interval(f"{where}V*, above which stick-slip cannot last, is", fold)
     else:
         interval = _interval(f"{where}drag is lowest at", turn)
     said, signal = _of_points(found)
@@ -168,7 +168,7 @@ def of_log(surface: DampingSurface, trend: Trend) -> Instruction:
     factor = 60.0 / math.tau
     value, low, high = found.value, found.low, found.high
     text = _lead(lead, f"keep the roll above {figures(high * factor, up=True)} rpm")
-    interval = f"torque is lowest at {roll(value)} rpm {within(low, high, factor)}"
+    interval = f"torque is lowest at {roll(value)} rpm {within(low, high, factor)} (95 %)"
     return Instruction("watch", text, interval, f"{slower}. To find the safe speed, add stiffness and mass.")
 
 
@@ -236,7 +236,7 @@ def _starting(edges: Edges, map_: OperatingMap, unit: str) -> str:
 
 def _interval(what: str, edge: Edge) -> str:
     if edge.estimable:
-        return between(what, edge.value, edge.low, edge.high)
+        return f"{between(what, edge.value, edge.low, edge.high)} (95 %)"
     least = figures(1e3 * edge.low, up=False)
     value = f"{mm(edge.value)} mm/s" if math.isfinite(edge.value) else "not found"
     return f"{what} {value}, at least {least}; no upper end can be determined"
