@@ -333,6 +333,6 @@ def test_temperatures_are_shared_within_three_kelvin() -> None:
         if shared:
             assert compare(cold, hot).temperatures == pytest.approx(np.linspace(398.0, 400.0, 4))
         else:
-            words = "B ends at 123 degC, A begins at 127 degC"
+            words = "B ends at 123 degC, A starts at 127 degC"
             with pytest.raises(InsufficientDataError, match=words):
                 compare(hot, cold)

@@ -180,7 +180,7 @@ def test_the_commands_take_a_table_of_means(tmp_path: Path) -> None:
     assert document["fit"]["coefficients"]["c"]["value"] == pytest.approx(-0.8, abs=0.002)
     report = run("report", "means.csv", "--verbose", cwd=tmp_path)
     assert report.returncode == 0, report.stderr
-    assert "a table of means, one row per dwell. Without a trace, stick-slip" in report.words
+    assert "a table of means, one row per dwell: stick-slip" in report.words
     assert (tmp_path / "report.html").stat().st_size > 100_000
     for flags in ([], ["--means"]):
         inspected = run("inspect", "means.csv", *flags, cwd=tmp_path)

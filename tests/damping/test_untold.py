@@ -29,7 +29,7 @@ def test_limits_of_two_visits_say_that_they_are_those_of_these_visits() -> None:
     assert surface.c.estimable
     assert "interval not known" in surface.summary()
     assert "cannot be determined for a visit: too few" in surface.summary()
-    with pytest.warns(UntoldWarning, match="visits recorded"):
+    with pytest.warns(UntoldWarning, match="recorded visits"):
         surface.predict(speed="20 rpm", temperature="120 degC")
     with pytest.warns(UntoldWarning):
         compare_models(two, bootstrap=0, cross_validate=False).predict(speed="20 rpm", temperature="120 degC")

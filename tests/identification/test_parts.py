@@ -484,8 +484,8 @@ def test_the_chart_of_a_trace_in_numbers(drive: IdentifiedDrive) -> None:
     assert {r["line"] for r in fitted} == {"fitted motion"}
     heading = trace_chart(record, drive).to_dict(validate=False)["title"]["subtitle"]
     assert heading == [
-        f"stick slip: {record.slips} slips, period {np.median(record.period):.4g} s; dots: where the "
-        f"slip is half done",
+        f"stick slip: {record.slips} slips, period {np.median(record.period):.4g} s; dots: middle "
+        "of each slip",
         f"fitted motion: closure retained, within {100 * drive.misfit:.2g} % of the drop",
     ]
     undecided = trace_chart(record, replace(drive, decided=False)).to_dict(validate=False)["title"][

@@ -222,8 +222,12 @@ def test_where_drag_falls_steeply_there_may_be_no_cycle() -> None:
 @pytest.mark.parametrize(
     ("change", "slowest", "words"),
     [
-        ({"closure": "lugre", "bristle_stiffness": 1e4, "bristle_damping": 1.0}, 0.1, "without bristles"),
-        ({"mixed_exponent": -0.9}, 0.1, "does not fall"),
+        (
+            {"closure": "lugre", "bristle_stiffness": 1e4, "bristle_damping": 1.0},
+            0.1,
+            "its closure must not be 'lugre'",
+        ),
+        ({"mixed_exponent": -0.9}, 0.1, "the drag must fall below the transition speed"),
         ({}, 0.009, "slowest"),
         ({}, 1.0, "slowest"),
         ({}, math.nan, "slowest"),

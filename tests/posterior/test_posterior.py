@@ -298,7 +298,7 @@ def test_evidence_needs_the_temperature_that_the_fit_has(alone: Posterior, demo:
     for kelvin, said in ((None, "temperature is missing"), (270.0, "temperature is 270 K")):
         with pytest.raises(hersey.HerseyError, match=said):
             posterior(demo, model.machine, surface=model.surface, evidence=[Start(kelvin, 0.1, slid=True)])
-    with pytest.raises(hersey.HerseyError, match="holds above 0 degC only"):
+    with pytest.raises(hersey.HerseyError, match="holds only above 0 degC"):
         alone.edges(float("nan"))
 
 

@@ -88,5 +88,5 @@ def test_one_speed_tells_no_drift() -> None:
         "torque error (N m)": found.value * found.error,
         "temperature (K)": np.full(found.age.size, 299.0),
     }
-    with pytest.raises(InsufficientDataError, match="one speed"):
+    with pytest.raises(InsufficientDataError, match="all dwells have the same speed"):
         fit_drift(pl.DataFrame(columns))

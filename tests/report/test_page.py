@@ -95,7 +95,7 @@ def test_a_written_file_has_the_rights_of_any_other(tmp_path: Path) -> None:
 
 
 def test_where_nothing_can_be_written(tmp_path: Path) -> None:
-    with pytest.raises(OutputError, match="is a directory: name a file in it"):
+    with pytest.raises(OutputError, match=r"is a folder\. Name a file in it"):
         write_atomically(tmp_path, "x", overwrite=True)
     with pytest.raises(OutputError, match=r"page cannot be written: No such file or directory"):
         write_atomically(tmp_path / "none" / "page", "x", overwrite=True)

@@ -456,10 +456,13 @@ def test_the_command_lets_processes_work_and_says_nothing_else(tmp_path: Path) -
     ("typed", "says"),
     [
         (["--out", "a.zarr", "--chunk", "0"], "chunk is 0: it must be from 1 to 40000 sets"),
-        (["--out", "a.csv", "--chunk", "10"], "--chunk is of a sweep that is kept"),
-        (["--chunk", "10"], "--chunk is of a sweep that is kept"),
-        (["--out", "a.zarr", "--workers", "2", "--scheduler", "tcp://a:1"], "both say who works"),
-        (["--out", "a.zarr", "--workers", "2", "--threads", "2"], "--threads is of this process alone"),
+        (["--out", "a.csv", "--chunk", "10"], "--chunk needs a folder: add --out sweep.zarr"),
+        (["--chunk", "10"], "--chunk needs a folder: add --out sweep.zarr"),
+        (
+            ["--out", "a.zarr", "--workers", "2", "--scheduler", "tcp://a:1"],
+            "exclude each other",
+        ),
+        (["--out", "a.zarr", "--workers", "2", "--threads", "2"], "--threads is for this process only"),
         (["--scheduler", "nowhere"], "'nowhere' is not the address of a scheduler"),
     ],
 )

@@ -133,8 +133,8 @@ def test_the_page_says_who_carries_the_torque(page: Analysis, machine: Machine) 
     level = np.full(whole.size, budget.temperature - ZERO_CELSIUS)
     assert whole == pytest.approx(truth.torque(np.array(budget.speed), level), rel=0.01)
     shares, agreement, hard = budget.text
-    assert "208 mN m at 5 rpm (film 3%, contact 10%, rest 87%)" in shares
-    assert "at 17.4 rpm (film 6%, contact 1%, rest 94%)" in shares
+    assert "208 mN m at 5 rpm (film 3 %, contact 10 %, no-load 87 %)" in shares
+    assert "at 17.4 rpm (film 6 %, contact 1 %, no-load 94 %)" in shares
     assert agreement.startswith("Measured torque is 1.00 times that")
     assert hard.startswith("Eq. 9 of the paper gives 1 N m at 17.4 rpm, 84 times film and contact")
     # The level of the paper, 50 ozf at 1 in/s.

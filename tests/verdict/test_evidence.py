@@ -524,7 +524,7 @@ def test_the_regime_chart_in_numbers(contact: Contact, oil: Lubricant, measured:
         validate=False
     )
     assert hidden["layer"][2]["data"]["values"] == []
-    assert hidden["title"]["subtitle"][0].endswith(" No point is shown: alpha is not known, g_V = 0.")
+    assert hidden["title"]["subtitle"][0].endswith(" No points: alpha is unknown, so g_V = 0.")
 
 
 @pytest.mark.parametrize(("thickness", "load"), [(9e-3, 60.0), (0.9e-3, 300.0)])

@@ -14,6 +14,8 @@ _CODE = re.compile(r"`[^`\n]*`")
 _HEADING = re.compile(r"^#{1,6} (.+?)\s*$", re.MULTILINE)
 #: Anchors that mkdocstrings makes.
 _NAMED = re.compile(r"^::: (\S+)$", re.MULTILINE)
+#: Anchors that a page writes itself.
+_WRITTEN = re.compile(r'<a id="([^"]+)"></a>')
 
 
 def links(page: Path) -> list[str]:
@@ -32,7 +34,7 @@ def anchors(page: Path) -> set[str]:
         anchor = re.sub(r"[^\w\- ]", "", words.lower()).replace(" ", "-")
         number = next(i for i in range(1000) if (f"{anchor}-{i}" if i else anchor) not in found)
         found.add(f"{anchor}-{number}" if number else anchor)
-    return found | set(_NAMED.findall(text))
+    return found | set(_NAMED.findall(text)) | set(_WRITTEN.findall(text))
 
 
 def broken(page: Path) -> list[str]:

@@ -153,7 +153,7 @@ def test_one_temperature_refuses_thermal_candidates_by_name() -> None:
     one = dwells(Law(Thermal(KELVIN, REFERENCE), ONE), [0.1, 0.0, -0.7], temperatures=np.array([400.0]))
     refused = dict(compare_models(one, bootstrap=0, cross_validate=False).refused)
     assert (
-        refused["Arrhenius x power of speed, one branch"] == "needs 2 temperatures, the log has 1 (127 degC)"
+        refused["Arrhenius x power of speed, one branch"] == "needs 2 temperatures; the log has 1 (127 degC)"
     )
 
 
@@ -262,7 +262,7 @@ def test_comparison_of_a_log_is_one_document(points: hersey.SteadyPoints) -> Non
     assert low < -0.7 < high
     text = found.summary()
     for heading in (
-        "[[Candidates]]",
+        "[[Models]]",
         "[[Choice]]",
         "[[Parameters]]",
         "[[Activation energy]]",
@@ -276,7 +276,7 @@ def test_comparison_of_a_log_is_one_document(points: hersey.SteadyPoints) -> Non
     assert sum(r["akaike_weight"] for r in plain["candidates"]) == pytest.approx(1.0)
     aicc = [r["aicc"] for r in plain["candidates"]]
     assert aicc == sorted(aicc)
-    with pytest.raises(ParameterError, match="no candidate 'nonsense'"):
+    with pytest.raises(ParameterError, match="no model 'nonsense' was fitted"):
         found.candidate("nonsense")
     with pytest.raises(ParameterError, match="bootstrap is -1"):
         compare_models(points, bootstrap=-1)

@@ -98,7 +98,7 @@ def test_it_is_chosen_where_it_made_the_dwells() -> None:
     assert found.chosen.candidate.key == "mixed"
     assert SHARED in found.summary()
     named = {p.name: p for p in found.parameters}
-    low, high = named["composite rms roughness of both surfaces"].interval or (0.0, 0.0)
+    low, high = named["roughness of both faces, rms"].interval or (0.0, 0.0)
     assert low < 0.4e-6 * np.exp(-0.15) < high
     low, high = named["boundary friction"].interval or (0.0, 0.0)
     assert low < 0.1 * np.exp(0.1) < high
