@@ -225,7 +225,7 @@ def test_where_drag_falls_steeply_there_may_be_no_cycle() -> None:
         (
             {"closure": "lugre", "bristle_stiffness": 1e4, "bristle_damping": 1.0},
             0.1,
-            "its closure must not be 'lugre'",
+            "must not be 'lugre'",
         ),
         ({"mixed_exponent": -0.9}, 0.1, "the drag must fall below the transition speed"),
         ({}, 0.009, "slowest"),
