@@ -44,7 +44,7 @@ def test_the_first_sentence_is_about_the_users_points(decide: Decide, found: Beh
     )
     _, low, high = found.posterior.fold_interval(HOT)
     ends = f"[{figures(1e3 * low, up=False)}, {figures(1e3 * high, up=True)}]"
-    assert said.interval.startswith("At 180 °C V*, above which stick-slip cannot last, is ")
+    assert said.interval.startswith("V*, above which stick-slip cannot last at 180 °C, is ")
     assert said.interval.endswith(f"{ends} (95 %)")
     safe = figures(1e3 * found.posterior.safe_speed(HOT), up=True)
     assert said.otherwise.startswith(f"The belt slides from any start above {safe} mm/s.")

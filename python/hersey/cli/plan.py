@@ -142,7 +142,10 @@ def _lines(planned: Plan) -> list[str]:
         unit, factor = _UNITS.get(name, ("", 1.0))
         share = f"{100 * use.used / use.limit:.0f} %"
         uses.append((name, f"{three(factor * use.used)} of {three(factor * use.limit, unit)} ({share})"))
-    lines += ["Largest share of each limit", *labelled(uses)]
+    if uses:
+        lines += ["Largest share of each limit", *labelled(uses)]
+    else:
+        lines.append("The machine file states no limit of speed, acceleration or torque ([limits]).")
     return lines if planned.course is None else [*lines, _temperatures(planned.course, planned)]
 
 

@@ -78,7 +78,8 @@ def of_machine(found: Behaviour, map_: OperatingMap, unit: str) -> Instruction:
     if not edges.turns:
         interval = f"{where}V* is not known: torque may still fall at the fastest dwell"
     elif edges.bistable:
-        interval = _interval(f"{where}V*, above which stick-slip cannot last, is", fold)
+        here = "" if kelvin is None else f" at {degrees(kelvin)}"
+        interval = _interval(f"V*, above which stick-slip cannot last{here}, is", fold)
     else:
         interval = _interval(f"{where}drag is lowest at", turn)
     said, signal = _of_points(found)
@@ -169,7 +170,8 @@ def of_log(surface: DampingSurface, trend: Trend) -> Instruction:
     value, low, high = found.value, found.low, found.high
     text = _lead(lead, f"keep the roll above {figures(high * factor, up=True)} rpm")
     interval = f"torque is lowest at {roll(value)} rpm {within(low, high, factor)} (95 %)"
-    return Instruction("watch", text, interval, f"{slower}. To find the safe speed, add stiffness and mass.")
+    safe = "The safe speed is higher. To find it, add stiffness and mass."
+    return Instruction("watch", text, interval, f"{slower}. {safe}")
 
 
 def _one_branch(surface: DampingSurface, trend: Trend) -> Instruction:
