@@ -199,6 +199,7 @@ def test_a_stick_speed_that_is_fixed_holds_at_one_temperature(typed: Typed) -> N
             "cycle.json: fit: Field required. Save the fit again with: hersey fit LOG",
         ),
         (HOT, {"fit": "none.json"}, "none.json"),
+        (HOT, {"fit": "rising.csv"}, "Save the fit again with: hersey fit LOG --json > fit.json"),
         (
             HOT,
             {"fit": "isothermal.json"},

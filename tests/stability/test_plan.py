@@ -246,6 +246,16 @@ def test_the_command_writes_table_and_figure(examples_here: Path) -> None:
 
 
 @pytest.mark.usefixtures("few_draws", "few_laws")
+def test_a_temperature_outside_the_log_is_warned_of(examples_here: Path) -> None:
+    command = ["plan", "examples/machine.toml", "examples/bench.csv", "--tare", "standing"]
+    hot = run(*command, "--target", "200 mm/s", "--at", "250 degC", cwd=examples_here)
+    assert hot.returncode == 0
+    assert "drag at 250 degC to 250 degC is extrapolated" in hot.words
+    inside = run(*command, "--target", "200 mm/s", "--at", "150 degC", cwd=examples_here)
+    assert "extrapolated" not in inside.words
+
+
+@pytest.mark.usefixtures("few_draws", "few_laws")
 def test_the_command_says_what_forbids_a_profile(examples_here: Path) -> None:
     command = ["plan", "examples/machine.toml", "examples/bench.csv", "--tare", "standing"]
     refused = run(*command, "--target", "25 mm/s", "--at", "180 degC", "--out", "p.csv", cwd=examples_here)

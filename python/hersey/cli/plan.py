@@ -120,7 +120,9 @@ def plan(
     course = temperature if isinstance(temperature, Schedule) else planned.course if film.heat else None
     if course is not None:
         beyond = beyond_the_log(surface, course.values)
-        planned = replace(planned, warnings=(*planned.warnings, *beyond))
+    else:
+        beyond = beyond_the_log(surface, temperature) if isinstance(temperature, float) else []
+    planned = replace(planned, warnings=(*planned.warnings, *beyond))
     write_course(planned, outputs, printing, lambda: _lines(planned), temperature=course)
 
 

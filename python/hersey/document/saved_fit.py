@@ -73,7 +73,9 @@ def read_fit(path: str | Path) -> DampingSurface:
 
 
 def _broken(path: Path, field: str, reason: str) -> ParameterError:
-    how = f" with: hersey fit LOG --json > {path.name}" if way_in() == "terminal" else ""
+    # a file that may be the log itself is never named as the place to write to
+    name = path.name if path.suffix == ".json" else "fit.json"
+    how = f" with: hersey fit LOG --json > {name}" if way_in() == "terminal" else ""
     return ParameterError(f"{path.name}: {field}: {reason}. Save the fit again{how}")
 
 
