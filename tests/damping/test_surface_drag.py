@@ -92,6 +92,9 @@ def test_no_power_of_a_temperature_below_zero(surface: DampingSurface) -> None:
         surface.transition_speed(273.0)
     with pytest.raises(ParameterError, match="temperature is nan K"):
         surface.drag(roll_radius=RADIUS, stick_speed=STICK, temperature=float("nan"))
+    for ask in (surface.damping, surface.torque, surface.predict):
+        with pytest.raises(ParameterError, match="temperature is 180 K, .* Write '180 degC'"):
+            ask(speed=1.0, temperature=[400.0, 180.0])
 
 
 def test_drag_at_one_temperature(surface: DampingSurface) -> None:

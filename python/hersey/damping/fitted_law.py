@@ -22,7 +22,7 @@ from hersey.damping.estimate import Estimate
 from hersey.damping.no_load_torque import NoLoadTorque
 from hersey.errors import ExtrapolationWarning, ParameterError, UntoldWarning
 from hersey.result import Result
-from hersey.units import takes_si
+from hersey.units import ZERO_CELSIUS, takes_si
 
 #: Law of temperature by the scale of T in T^b.
 SCALES = {"degC": CELSIUS, "K": KELVIN}
@@ -114,9 +114,20 @@ class FittedLaw(Result):
             if temperature is None:
                 raise ParameterError("this law depends on temperature. Give the temperature in K")
             kelvin = np.asarray(temperature, dtype=float)
+            self._refuse_below_zero(kelvin)
             self._warn_outside("temperature", kelvin, self.temperature_range)
             speeds, kelvin = np.broadcast_arrays(speeds, kelvin)
         return speeds, self._inputs(speeds, kelvin)
+
+    def _refuse_below_zero(self, kelvin: FloatArray) -> None:
+        """Raise `ParameterError` for temperatures whose power has no value in the scale of the law."""
+        scale = self.temperature_scale
+        below = kelvin[kelvin <= (0.0 if scale == "K" else ZERO_CELSIUS)]
+        if below.size:
+            raise ParameterError(
+                f"temperature is {below.flat[0]:g} K, but a law in {scale} holds only above 0 {scale}. Numbers "
+                "are in K. Write '180 degC' for a temperature in degC"
+            )
 
     def _inputs(self, speed: FloatArray, kelvin: FloatArray | None) -> Inputs:
         z = np.log(speed.ravel() / self.reference_speed)
