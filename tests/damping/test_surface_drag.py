@@ -93,7 +93,7 @@ def test_no_power_of_a_temperature_below_zero(surface: DampingSurface) -> None:
     with pytest.raises(ParameterError, match="temperature is nan K"):
         surface.drag(roll_radius=RADIUS, stick_speed=STICK, temperature=float("nan"))
     for ask in (surface.damping, surface.torque, surface.predict):
-        with pytest.raises(ParameterError, match="temperature is 180 K, .* Write '180 degC'"):
+        with pytest.raises(ParameterError, match=r"temperature is 180 K, .* Write '180 degC'"):
             ask(speed=1.0, temperature=[400.0, 180.0])
 
 

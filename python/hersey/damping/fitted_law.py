@@ -125,8 +125,8 @@ class FittedLaw(Result):
         below = kelvin[kelvin <= (0.0 if scale == "K" else ZERO_CELSIUS)]
         if below.size:
             raise ParameterError(
-                f"temperature is {below.flat[0]:g} K, but a law in {scale} holds only above 0 {scale}. Numbers "
-                "are in K. Write '180 degC' for a temperature in degC"
+                f"temperature is {below.flat[0]:g} K, but a law in {scale} holds only above 0 {scale}. "
+                "Numbers are in K. Write '180 degC' for a temperature in degC"
             )
 
     def _inputs(self, speed: FloatArray, kelvin: FloatArray | None) -> Inputs:
