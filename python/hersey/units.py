@@ -57,7 +57,7 @@ _QUANTITIES: dict[str, tuple[str, str, str]] = {
     "torque": ("N*m", "N*m", "N*m mN*m N*mm N*cm kN*m Nm mNm Nmm Ncm ozf*in lbf*in lbf*ft kgf*cm gf*cm"),
     "speed": ("rad/s", "rpm", "rpm rad/s rev/s rev/min deg/s"),
     "temperature": ("K", "degC", "degC degF K"),
-    "stiffness": ("N/m", "N/m", "N/m N/mm kN/m N/um lbf/in ozf/in"),
+    "stiffness": ("N/m", "N/mm", "N/m N/mm kN/m N/um lbf/in ozf/in"),
     "mass": ("kg", "kg", "kg g mg lb oz slug"),
     "length": ("m", "mm", "m mm cm um nm inch ft mil"),
     "belt speed": ("m/s", "mm/s", "m/s mm/s cm/s um/s in/s m/min mm/min ft/min"),

@@ -22,6 +22,7 @@ ROLES = ("time", "torque", "speed", "temperature")
 OTHER_ROLES = ("load", "radius", "run")
 #: What a person sets beside the channels.
 EVERY = Setting("every")
+MEANS = Setting("means", "switch")
 #: What a column of a role may hold, kinds of units: the first where there is a choice.
 ROLE_KINDS: dict[str, tuple[str, ...]] = {
     "time": ("time",),
@@ -199,6 +200,7 @@ def no_channel(role: str, columns: tuple[Column, ...], file: str) -> ChannelErro
         )
     elif role == "time":
         way_out += f", or give the time between rows with {EVERY.to('2 ms', python='0.002')}"
+        way_out += f". If each row is the mean of one dwell, use {MEANS.to()}"
     if role == "temperature":
         way_out += f", or use {ISOTHERMAL.to()} to exclude temperature"
     said = f"{file}: no {role} column found. Columns: {_listed(columns)}"
