@@ -431,7 +431,7 @@ MISTAKES: dict[str, Mistake] = {
     "logs without common speeds": Mistake(
         {"a.csv": table(rows()), "log.csv": table(rows((200, 300, 400, 500)))},
         "compare a.csv log.csv",
-        ("have no speed in common", "a.csv covers 10 to 120 rpm, log.csv covers 200 to 500 rpm"),
+        ("have too few speeds in common", "a.csv covers 10 to 120 rpm, log.csv covers 200 to 500 rpm"),
         recorded,
     ),
     "machine and log swapped": Mistake(

@@ -111,7 +111,7 @@ def test_logs_of_one_name_are_told_apart_and_one_file_is_refused(folder: Path) -
         document_of(study(now, against=dwells(folder / "new.csv")))
     faster = dwells(written(folder, "fast.csv", of="again.csv", times=1e3))
     with pytest.raises(
-        InsufficientDataError, match=r"no speed in common: fast\.csv covers .* rpm, new\.csv "
+        InsufficientDataError, match=r"too few speeds in common: fast\.csv covers .* rpm, new\.csv "
     ):
         document_of(study(now, against=faster))
 

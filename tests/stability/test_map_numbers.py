@@ -310,7 +310,7 @@ def test_sentences_of_a_map_that_knows_little(
     assert [str(each) for each in bare.warnings[1:]] == [
         "the map shows no stall, because no torque limit is stated. "
         "Add motor_torque, or roll_friction and nip_load, to [limits]",
-        "fast: extrapolated, because no dwell is near this point",
+        "fast: extrapolated, because the point lies outside the measured range",
         "fast: faster than the drive can run (400 mm/s)",
     ]
     assert bare.warnings[-1].values == {"limit": 0.4}

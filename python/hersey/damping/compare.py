@@ -226,7 +226,7 @@ def _shared(a: Observations, b: Observations, names: tuple[str, str]) -> tuple[F
     slow, fast = max(a.speed.min(), b.speed.min()), min(a.speed.max(), b.speed.max())
     if fast < LEAST_SPAN * slow:
         raise InsufficientDataError(
-            f"the logs have no speed in common: {names[0]} covers {rpm(a.speed.min()):.3g} to "
+            f"the logs have too few speeds in common: {names[0]} covers {rpm(a.speed.min()):.3g} to "
             f"{rpm(a.speed.max()):.3g} rpm, {names[1]} covers {rpm(b.speed.min()):.3g} to "
             f"{rpm(b.speed.max()):.3g} rpm. Record one at speeds of the other"
         )

@@ -37,7 +37,7 @@ def map_of(
     not_judged = [
         Warning(
             "point not judged",
-            "not judged. {error}",
+            "not judged, because {error}",
             severity="watch",
             where=each.point.name,
             error=str(each.error),

@@ -336,12 +336,9 @@ def _warnings(warm: WarmUp, rule: _Rule, resting: Trajectory) -> Iterator[Warnin
     if math.isfinite(warm.full_speed) and warm.slides_from > warm.full_speed:
         yield Warning(
             "slides late",
-            "the belt slides steadily only "
-            + (
-                "from {slides_from:.4g} s on"
-                if math.isfinite(warm.slides_from)
-                else "after the time simulated"
-            ),
+            "the belt slides steadily only from {slides_from:.4g} s on"
+            if math.isfinite(warm.slides_from)
+            else "the belt does not slide steadily within the time simulated",
             severity="watch",
             remedy="plan a start with plan_profile, using the temperature profile of this warm-up",
             slides_from=warm.slides_from,

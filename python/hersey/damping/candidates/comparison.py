@@ -204,13 +204,13 @@ def _by_cross_validation(
         return ()
     best = min(tried, key=lambda r: float(r.cross_validation or 0.0))
     what = f"excluding one {data.clustered_by} at a time"
-    error = f"the chosen model predicts the excluded dwells within {_per_cent(chosen)}"
+    error = f"the chosen model predicts the excluded dwells with an rms error of {_per_cent(chosen)}"
     if best is chosen or best.left_out is None:
         return (f"Cross-validation, {what}: {error}, the best of all models.",)
     gain = chosen.left_out**2 - best.left_out**2
     chance = float(np.std(gain, ddof=1) * np.sqrt(gain.size))
     apart = "beyond chance" if float(np.sum(gain)) > 2 * chance else "within chance"
-    other = f"{best.candidate.name} within {_per_cent(best)}, a difference {apart}"
+    other = f"{best.candidate.name} with {_per_cent(best)}, a difference {apart}"
     return (f"Cross-validation, {what}: {error}; {other}.",)
 
 

@@ -51,7 +51,7 @@ def not_identified(fit: LawFit, data: Observations) -> dict[str, str]:
         if 1.0 + c <= LEAST_POWER:
             out["at"] = (
                 "torque above the transition hardly depends on viscosity (1 + c is at its bound), so "
-                "its place at other temperatures is unknown. Record faster speeds"
+                "the transition at other temperatures is unknown. Record faster speeds"
             )
     return out
 
@@ -76,7 +76,7 @@ def _contact_shown(fit: LawFit) -> dict[str, str]:
         "boundary": "slower speeds, at which asperities carry more load",
     }
     return {
-        name: f"unknown within a factor of {np.e:.1f}. Record {what}"
+        name: f"uncertain by more than a factor of {np.e:.1f}. Record {what}"
         for name, what in more.items()
         if name in fit.law.names
         and (fit.error(name) > 1.0 or abs(fit.values[fit.law.index(name)]) >= 0.99 * BOUND)

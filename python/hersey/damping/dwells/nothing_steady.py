@@ -58,7 +58,7 @@ def _way_out(
         return f"{held}, but the whole log lasts only {lasted:.3g} s. {_other_clock(log)}"
     if any(r.why.kind == "other rotation" for r in rejected):
         other = "reverse" if asked.rotation == "forward" else "forward"
-        return f"The drive turns in {other} direction. Use {ROTATION.to(other)}"
+        return f"The drive turns in the {other} direction. Use {ROTATION.to(other)}"
     short = [(r.why.lasts, r.why.rows) for r in rejected if r.why.kind == "too short"]
     if _runs_up_and_down(log, rejected):
         slow, fast = (rpm(float(f([f(np.abs(run.speed)) for run in log.runs]))) for f in (np.min, np.max))

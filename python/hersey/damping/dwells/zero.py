@@ -214,8 +214,8 @@ class Zero:
             out.append(_drifting(rise, p, count))
         if count == 2:
             words = (
-                "the drive stood still only twice, so drift of the torque zero is known only between "
-                "these times"
+                "the drive stood still only twice, so only the total change of the torque zero is known, not "
+                "its course between or outside these times"
             )
             out.append(Warning("two standing stretches", words))
         return tuple(out)

@@ -220,7 +220,7 @@ def damaged(path: Path, what: str) -> ParameterError:
 
 def _foreign(path: Path, what: str) -> HerseyError:
     return ParameterError(
-        f"{path.name} was not made by 'hersey campaign add' ({what}). Restore it from a backup, or add "
+        f"{path.name} is not as 'hersey campaign add' made it ({what}). Restore it from a backup, or add "
         "the logs to a new campaign"
     )
 

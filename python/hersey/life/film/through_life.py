@@ -289,8 +289,8 @@ def _of_the_law(age: FloatArray, place: IntArray, machine: Machine) -> list[Warn
     warnings.append(
         Warning(
             "nip taken as constant",
-            "the nip is assumed constant. Thicker oil raises torque at all dwells, a thin layer only "
-            "changes cold and fast ones; a nip that widens with age would look like thicker oil",
+            "the nip is assumed constant. Thicker oil changes torque at all dwells, a thin layer only "
+            "at cold and fast ones; a nip that widens with age would look like thicker oil",
         )
     )
     return warnings

@@ -100,9 +100,9 @@ class AtStates:
         parts = [f"{factor:.3g} times the speed"] if abs(factor - 1.0) > 0.02 else []
         if abs(kelvin) > 1.0:
             parts.append(f"{abs(kelvin):.3g} K {'warmer' if kelvin > 0 else 'colder'}")
-        return f"{' and '.join(parts) or 'just outside'} than the nearest dwell".replace(
-            "speed than", "speed of"
-        )
+        if not parts:
+            return "just outside the dwells"
+        return f"{' and '.join(parts)} than the nearest dwell".replace("speed than", "speed of")
 
 
 def _more(places: list[int]) -> str:

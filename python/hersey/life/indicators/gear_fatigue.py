@@ -186,8 +186,7 @@ class _GearLoad:
             self.warnings.append(
                 Warning(
                     "stick-slip counted",
-                    "stick-slip at {point} is included in {count} {count:run|runs}, where torque falls "
-                    "with speed",
+                    "stick-slip occurs at {point} in {count} {count:run|runs}, where torque falls with speed",
                     point=point.name,
                     count=len(places),
                 )

@@ -48,12 +48,12 @@ class NextRun(Record):
         what = (
             (
                 f"measure {self.unit} again at {rounded(self.age)} {age_unit}; this narrows the interval of "
-                "its end"
+                "its end, in width,"
             )
             if self.unit is not None
             else (
                 f"follow one more specimen to its end (about {rounded(self.age)} {age_unit}); this narrows "
-                "the interval of B10"
+                "the interval of B10, in width,"
             )
         )
         widths = f"{rounded(self.before)} to about {rounded(self.after)} {age_unit}"

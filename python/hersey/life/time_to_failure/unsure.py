@@ -60,7 +60,7 @@ def _of_specimens(units: Sequence[SpecimenEnd]) -> Iterator[Warning]:
     if passed:
         yield Warning(
             "limit reached",
-            "{specimens} reached a limit before they were last seen, at the age given",
+            "{specimens} reached a limit before the last run, at the age given",
             severity="act",
             specimens=listed(passed),
         )

@@ -153,7 +153,7 @@ def _of_a_point(map_: OperatingMap, point: PlacedPoint) -> Iterator[Warning]:
     if point.at.extrapolated:
         yield Warning(
             "point extrapolated",
-            "extrapolated, because no dwell is near this point",
+            "extrapolated, because the point lies outside the measured range",
             severity="watch",
             where=point.name,
         )

@@ -67,7 +67,7 @@ def operating_map(
     Raises
     ------
     InsufficientDataError
-        If torque does not fall with speed anywhere in the data, so there is no stick-slip to map.
+        If the data show no falling branch, so there is no stick-slip to map.
     ParameterError
         If a value is out of range, with its name.
 
@@ -110,9 +110,8 @@ def _check(surface: DampingSurface, machine: Machine, draws: int) -> None:
         raise ParameterError(f"draws is {draws}: it must be at least 1")
     if surface.transition is None:
         raise InsufficientDataError(
-            "no operating map: torque does not fall with speed anywhere in the data "
-            f"({surface.rejected_transition}). Record slower dwells, until torque rises as the drive "
-            "slows"
+            f"no operating map: the data show no falling branch ({surface.rejected_transition}). Record "
+            "slower dwells, until torque rises as the drive slows"
         )
 
 

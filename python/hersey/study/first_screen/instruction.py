@@ -170,7 +170,7 @@ def of_log(surface: DampingSurface, trend: Trend) -> Instruction:
     value, low, high = found.value, found.low, found.high
     text = _lead(lead, f"keep the roll above {figures(high * factor, up=True)} rpm")
     interval = f"torque is lowest at {roll(value)} rpm {within(low, high, factor)} (95 %)"
-    safe = "The safe speed is higher. To find it, add stiffness and mass."
+    safe = "The safe speed may be higher. To find it, add a machine file."
     return Instruction("watch", text, interval, f"{slower}. {safe}")
 
 
