@@ -379,7 +379,7 @@ MISTAKES: dict[str, Mistake] = {
     "two speeds": Mistake(shorter_log(20, 60), "fit log.csv", ("20 rpm and 60 rpm",), recorded),
     "a tare without standing": Mistake(GOOD, "fit log.csv --tare standing", ("never stands still",)),
     "reverse of a log that turns forward": Mistake(
-        GOOD, "fit log.csv --rotation reverse", ("15 x rotation is not reverse", "turns in forward")
+        GOOD, "fit log.csv --rotation reverse", ("15 x rotation is not reverse", "turns in the forward")
     ),
     "a gear ratio of 0": Mistake(
         {**GOOD, "hersey.toml": "[torque]\ngear_ratio = 0\n"},

@@ -256,7 +256,7 @@ def test_what_to_measure_next_is_said() -> None:
     assert len(of_f1) == 3
     assert of_f1[-1].after < of_f1[0].after
     assert "again at" in told().advice[0]
-    assert "this narrows the interval of its end from" in told().advice[0]
+    assert "this narrows the interval of its end, in width, from" in told().advice[0]
     assert any(run.unit is None for run in runs)
 
 

@@ -194,7 +194,7 @@ def test_cross_validation_says_whether_another_is_better_beyond_chance() -> None
     good, bad = 0.02 * random.standard_normal(72), 0.02 * random.standard_normal(72)
     what = (
         "Cross-validation, excluding one level at a time: the chosen model predicts the excluded "
-        "dwells within "
+        "dwells with an rms error of "
     )
     best = entry(0.0, missed=0.5 * good)
     assert _by_cross_validation((best, entry(1.0, missed=bad)), best, DATA) == (
@@ -208,7 +208,7 @@ def test_cross_validation_says_whether_another_is_better_beyond_chance() -> None
         error = np.sqrt(np.sum((gain - gain.mean()) ** 2) / 71) * np.sqrt(72)
         apart = "beyond" if gain.sum() > 2 * error else "within"
         assert _by_cross_validation((chosen, other), chosen, DATA) == (
-            f"{what}{100 * chosen.cross_validation:.2f} %; {NAMES[HELD]} within "
+            f"{what}{100 * chosen.cross_validation:.2f} %; {NAMES[HELD]} with "
             f"{100 * other.cross_validation:.2f} %, a difference {apart} chance.",
         )
     assert _by_cross_validation((entry(0.0), best), entry(0.0), DATA) == ()
