@@ -119,10 +119,15 @@ class FittedLaw(Result):
             speeds, kelvin = np.broadcast_arrays(speeds, kelvin)
         return speeds, self._inputs(speeds, kelvin)
 
+    @property
+    def temperature_zero(self) -> float:
+        """Zero of the scale in which the law is a power of temperature, K."""
+        return 0.0 if self.temperature_scale == "K" else ZERO_CELSIUS
+
     def _refuse_below_zero(self, kelvin: FloatArray) -> None:
         """Raise `ParameterError` for temperatures whose power has no value in the scale of the law."""
         scale = self.temperature_scale
-        below = kelvin[kelvin <= (0.0 if scale == "K" else ZERO_CELSIUS)]
+        below = kelvin[kelvin <= self.temperature_zero]
         if below.size:
             raise ParameterError(
                 f"temperature is {below.flat[0]:g} K, but a law in {scale} holds only above 0 {scale}. "

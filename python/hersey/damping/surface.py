@@ -26,7 +26,7 @@ from hersey.damping.no_load_torque import with_rest
 from hersey.damping.surface_words import headline_of, record_of, summary_of, table_of
 from hersey.errors import InsufficientDataError, ParameterError, UntoldWarning
 from hersey.motion.drag import Drag
-from hersey.units import ZERO_CELSIUS, takes_si
+from hersey.units import takes_si
 
 if TYPE_CHECKING:
     import polars as pl
@@ -351,11 +351,6 @@ class DampingSurface(FittedLaw):
                 values = np.column_stack([values, -b / np.maximum(1.0 + c, LEAST_POWER)])
             out.append(values)
         return out
-
-    @property
-    def temperature_zero(self) -> float:
-        """Zero of the scale in which the law is a power of temperature, K."""
-        return 0.0 if self.temperature_scale == "K" else ZERO_CELSIUS
 
     def check_temperature(self, temperature: float | None) -> None:
         """Raise `ParameterError` for a temperature (K) at which the law is not defined."""

@@ -64,6 +64,14 @@ function signal(kind) {
   svg("path", { d: SHAPES[kind], fill: "currentColor" }, icon);
   return icon;
 }
+// A verdict beside its signal, as a cell of a table.
+function judged(kind, text) {
+  const cell = document.createElement("b");
+  cell.className = kind;
+  cell.append(signal(kind), text);
+  cell.dataset.text = text;
+  return cell;
+}
 // Items with a signal before each: [[signal, text], ...].
 function checks(parent, items) {
   const list = add(parent, "ul", "", "checks");

@@ -42,13 +42,6 @@ function specimens(parent, { heads, rows, first }) {
   if (cells.length > first) table(fold(element, `${cells.length - first} more`), heads, cells.slice(first), [3], { name: "ages-more", label: "More specimens" });
   add(element, "p", "Ages with 90 % intervals.", "note");
 }
-function judged(kind, text) {
-  const cell = document.createElement("b");
-  cell.className = kind;
-  cell.append(signal(kind), text);
-  cell.dataset.text = text;
-  return cell;
-}
 async function main() {
   document.title = `hersey: ${data.title}`;
   const header = document.getElementById("title");

@@ -39,10 +39,3 @@ function warnings(parent, all, { heading, folded, elsewhere = () => false, id = 
   const list = add(fold(box, `${folded} (${minor.length})`), "ul", "", "checks plain");
   for (const each of minor) add(list, "li", warned(each));
 }
-function judged(kind, text) {
-  const cell = document.createElement("b");
-  cell.className = kind;
-  cell.append(signal(kind), text);
-  cell.dataset.text = text;
-  return cell;
-}
