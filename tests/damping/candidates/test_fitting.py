@@ -374,8 +374,8 @@ def test_a_transition_needs_torque_to_tell_viscosity() -> None:
     law = Law(Thermal(ARRHENIUS, REFERENCE), HELD)
     data = dwells(law, [0.1, 0.02, -0.94, -1.6, -0.2])
     why = (
-        "torque above the transition hardly depends on viscosity (1 + c is at its bound), so its "
-        "place at other temperatures is unknown. Record faster speeds"
+        "torque above the transition hardly depends on viscosity (1 + c is at its bound), so the "
+        "transition at other temperatures is unknown. Record faster speeds"
     )
     for c, lost in ((-0.9499, {}), (-0.9501, {"at": why})):
         fit = hand_fit(law, [0.1, 0.02, c, -1.6, -0.2], points=len(data))
