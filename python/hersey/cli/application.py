@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import importlib
-import shlex
 import sys
 from contextlib import suppress
-from pathlib import Path
 from typing import Annotated, Any
 
 import typer
@@ -14,8 +12,19 @@ from typer.core import TyperCommand, TyperGroup
 
 from hersey.cli.groups import option
 from hersey.cli.interruption import INTERRUPTED
+from hersey.cli.mistyped import (
+    Commands,
+    missing,
+    misused,
+    printed,
+    unknown_command,
+    unknown_option,
+    unknown_subcommand,
+    unquoted,
+    without_value,
+)
 from hersey.cli.terminal import hush, say, say_wrapped, warnings_said
-from hersey.errors import HerseyError, meant, speak
+from hersey.errors import HerseyError, speak
 
 #: The commands in the order of the help, in groups, each with the first sentence of its help. The sentences
 #: are here too, so that the help lists them without loading the commands. Each command is a module of this
@@ -55,34 +64,6 @@ PANELS = {
 }
 #: The sentence of each command.
 VERBS = {name: sentence for group in PANELS.values() for name, sentence in group.items()}
-#: Endings of names that are probably those of logs.
-_LOGS = frozenset(
-    [
-        ".csv",
-        ".txt",
-        ".tsv",
-        ".dat",
-        ".log",
-        ".lvm",
-        ".tdms",
-        ".mf4",
-        ".mdf",
-        ".mat",
-        ".h5",
-        ".hdf5",
-        ".parquet",
-        ".xlsx",
-        ".xlsm",
-        ".xls",
-        ".npz",
-        ".npy",
-    ]
-)
-#: What to type for a file that is not a log, by its ending.
-_OTHER_FILES = {
-    ".toml": ("hersey", "report", "LOG", "--machine", "{}"),
-    ".hersey": ("hersey", "life", "{}", "--machine", "machine.toml"),
-}
 _EXIT_CODES = (
     "Exit codes: 0 done; 1 the answer is no, or some logs failed; 2 wrong use, bad input, or a result that "
     "cannot be written; 3 a fault of hersey; 130 interrupted."
@@ -96,7 +77,7 @@ def load(name: str) -> Any:
     module = importlib.import_module(f"hersey.cli.{name}")
     verbs = getattr(module, name, None)
     if isinstance(verbs, typer.Typer):  # a command with subcommands
-        verbs.info.context_settings = _CONTEXT
+        verbs.info.context_settings, verbs.info.cls = _CONTEXT, Subcommands
         group = typer.main.get_command(verbs)
         for each in (group, *getattr(group, "commands", {}).values()):
             each.help = _paragraphs(each.help)
@@ -111,6 +92,9 @@ def load(name: str) -> Any:
 def _paragraphs(text: str | None) -> str:
     """A docstring whose lines end only between paragraphs, so that the help can wrap it."""
     return "\n\n".join(" ".join(each.split()) for each in (text or "").split("\n\n"))
+
+
+COMMANDS = Commands(tuple(VERBS), load)
 
 
 class Verb(TyperCommand):
@@ -134,23 +118,19 @@ class Verbs(TyperGroup):
         """Return the command that is called; for a log or a misspelled command, fail with what to type."""
         name = args[0]
         if name not in VERBS and not name.startswith("-") and not ctx.resilient_parsing:
-            ctx.fail(_what_to_type(name, args[1:]))
+            ctx.fail(unknown_command(name, args[1:], COMMANDS))
         return super().resolve_command(ctx, args)
 
 
-def _what_to_type(name: str, others: list[str]) -> str:
-    """What to type instead of a command that does not exist."""
-    path = Path(name)
-    with suppress(OSError, ValueError):  # a name that no file can have
-        if path.is_file() or path.suffix.lower() in _LOGS:
-            what = "a file, not a command" if path.is_file() else "not a command"
-            words = _OTHER_FILES.get(path.suffix.lower(), ("hersey", "report", "{}"))
-            typed = [name if word == "{}" else word for word in words]
-            return f"'{name}' is {what}. For a report type: {shlex.join([*typed, *others])}"
-    near = meant(name, VERBS)
-    if near:
-        return f"There is no command '{name}'. Did you mean: {shlex.join(['hersey', near, *others])}"
-    return f"There is no command '{name}'. For a list of all commands type: hersey --help"
+class Subcommands(TyperGroup):
+    """The subcommands of a command."""
+
+    def resolve_command(self, ctx: Any, args: list[str]) -> Any:
+        """Return the subcommand that is called; fail with what to type instead of one that does not exist."""
+        name = args[0]
+        if name not in self.commands and not name.startswith("-") and not ctx.resilient_parsing:
+            ctx.fail(unknown_subcommand(str(ctx.info_name), name, args[1:], list(self.commands)))
+        return super().resolve_command(ctx, args)
 
 
 _CONTEXT = {"help_option_names": ["-h", "--help"], "max_content_width": 110}
@@ -178,7 +158,7 @@ def main() -> None:
         with warnings_said():
             code = app(standalone_mode=False)
     except HerseyError as error:
-        _fail(str(error))
+        _fail(_slip() or str(error))
     except typer.Abort:
         raise KeyboardInterrupt from None
     except OSError:  # stdout takes no more
@@ -187,10 +167,30 @@ def main() -> None:
         usage = getattr(error, "format_message", None)  # click's own errors have it
         if usage is None:
             raise
-        _fail(usage())
+        _fail(_slip() or _misuse(error) or usage())
     if code == INTERRUPTED:  # which is what typer makes of it
         raise KeyboardInterrupt
     sys.exit(code or 0)
+
+
+def _misuse(error: Any) -> str:
+    """What to type instead of an option that does not exist or lacks its value; else nothing."""
+    if hasattr(error, "possibilities"):
+        return unknown_option(error.option_name, error.ctx, COMMANDS)
+    if hasattr(error, "option_name"):
+        return misused(error.option_name, COMMANDS)
+    return missing(error.param, error.ctx) if hasattr(error, "param_type") else ""
+
+
+def _slip() -> str:
+    """What to type where words belong together or apart, which can be the cause of any error."""
+    words = sys.argv[1:]
+    if typed := unquoted(words):
+        return f"Put a number and its unit in quotes: {typed}"
+    if flag := without_value(words, COMMANDS):
+        return misused(flag, COMMANDS)
+    typed = printed(words)
+    return f"To write the result into a file type: --json > {typed}" if typed else ""
 
 
 def _fail(message: str) -> None:

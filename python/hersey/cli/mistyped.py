@@ -1,0 +1,362 @@
+"""What to type instead of a command line that cannot be understood."""
+
+from __future__ import annotations
+
+import shlex
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
+from itertools import pairwise
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from hersey.errors import meant
+
+#: Endings of names that are probably those of logs.
+LOGS = frozenset(
+    [
+        ".csv",
+        ".txt",
+        ".tsv",
+        ".dat",
+        ".log",
+        ".lvm",
+        ".tdms",
+        ".mf4",
+        ".mdf",
+        ".mat",
+        ".h5",
+        ".hdf5",
+        ".parquet",
+        ".xlsx",
+        ".xlsm",
+        ".xls",
+        ".npz",
+        ".npy",
+    ]
+)
+#: Ending of a machine file, and of a campaign.
+_MACHINE, _CAMPAIGN = ".toml", ".hersey"
+#: What to type for a file that is not a log, by its ending.
+_OTHER_FILES = {
+    _MACHINE: ("report", "LOG", "--machine", "{}"),
+    _CAMPAIGN: ("life", "{}", "--machine", "machine.toml"),
+}
+#: Options that mean the same in different commands, and words for them; the first that a command has is
+#: proposed.
+_SAME = (
+    ("out", "each", "csv", "o", "output", "outfile", "save", "write", "file", "table", "html", "export"),
+    ("figure", "figures", "plot", "chart", "picture", "image", "png", "svg", "pdf", "draw"),
+    ("figures", "out-dir", "outdir", "output-dir", "dir", "folder"),
+    ("drive-speed", "target", "belt-speed", "speed", "velocity", "v"),
+    ("at", "temperature", "temp", "t"),
+    ("value", "torque", "force", "column", "channel", "y"),
+    ("duration", "time", "t-end", "tend", "end", "seconds", "length"),
+    ("every", "dt", "fs", "rate", "sample-rate", "sampling-rate", "sample-time", "interval", "period"),
+    ("least-drop", "threshold", "min-drop"),
+    ("unit", "specimen", "sample", "id"),
+    ("units", "specimens", "samples", "n"),
+    ("workers", "threads", "jobs", "cores", "processes", "j"),
+    ("against", "baseline", "compare", "reference", "with"),
+    ("tare", "offset", "zero"),
+    ("from", "begin", "start-temperature", "t0"),
+    ("stiffness", "k", "spring"),
+    ("mass", "m", "inertia"),
+    ("force", "overwrite", "replace", "yes", "y"),
+    ("quiet", "silent", "q"),
+    ("verbose", "debug", "details", "full"),
+    ("draws", "count", "samples", "n"),
+)
+#: Option that prints a result.
+_PRINTS = "--json"
+#: Options of which the first names a file to write.
+_WRITING = _SAME[0]
+#: Parts of a name that do not say which option is meant.
+_IDLE = frozenset(["col", "column", "channel", "name", "file", "path"])
+#: Files that a command may take as an argument, by a word for them: names of such arguments.
+_ARGUMENTS: Mapping[str, tuple[str, ...]] = {
+    "machine": ("MACHINE", "[JSON] TOML"),
+    "fit": ("[JSON] TOML",),
+    "log": ("LOG", "TRACE", "RUN"),
+    "logs": ("LOG", "RUN"),
+    "trace": ("TRACE",),
+    "input": ("LOG", "TRACE", "SCENARIO"),
+    "scenario": ("SCENARIO",),
+    "campaign": ("CAMPAIGN",),
+}
+#: Arguments, and words for one, that come first.
+_FIRST = ("MACHINE", "SCENARIO", "CAMPAIGN", "fit")
+#: Most options or commands that are proposed.
+_MOST = 4
+
+
+class Commands(NamedTuple):
+    """The names of all commands, and what loads one with its options."""
+
+    names: Sequence[str]
+    load: Callable[[str], Any]
+
+
+def retyped(*words: str) -> str:
+    """Return a command line as it can be typed."""
+    return shlex.join(["hersey", *words])
+
+
+# ---- commands
+
+
+def unknown_command(name: str, others: Sequence[str], commands: Commands) -> str:
+    """Say what to type instead of a command that does not exist."""
+    path = Path(name)
+    with suppress(OSError, ValueError):  # a name that no file can have
+        if path.is_file() or path.suffix.lower() in {*LOGS, *_OTHER_FILES}:
+            if others and others[0] in commands.names:
+                typed = _behind(others[0], name, others[1:], commands)
+                return f"The command comes first. Type: {retyped(*typed)}"
+            what = "a file, not a command" if path.is_file() else "not a command"
+            words = _OTHER_FILES.get(path.suffix.lower(), ("report", "{}"))
+            typed = [name if word == "{}" else word for word in words]
+            return f"'{name}' is {what}. For a report type: {retyped(*typed, *others)}"
+    near = meant(name, commands.names)
+    if near:
+        return f"There is no command '{name}'. Did you mean: {retyped(near, *others)}"
+    return f"There is no command '{name}'. For a list of all commands type: hersey --help"
+
+
+def _behind(verb: str, file: str, others: Sequence[str], commands: Commands) -> list[str]:
+    """The command with the file that was typed before it: a machine file is an option of most commands."""
+    if Path(file).suffix.lower() == _MACHINE and "machine" in _options(commands.load(verb)):
+        return [verb, *others, "--machine", file]
+    return [verb, file, *others]
+
+
+def unknown_subcommand(verb: str, name: str, others: Sequence[str], known: Sequence[str]) -> str:
+    """Say what to type instead of a subcommand that does not exist."""
+    said = f"hersey {verb} has no subcommand '{name}'"
+    near = meant(name, known)
+    if near:
+        return f"{said}. Did you mean: {retyped(verb, near, *others)}"
+    if len(known) == 1:
+        return f"{said}. Type: {retyped(verb, known[0], name, *others)}"
+    names = [each for each in (name, *others) if not each.startswith("-")]
+    campaigns = [each for each in names if Path(each).suffix.lower() == _CAMPAIGN]
+    if any(Path(each).suffix.lower() in LOGS for each in names):
+        first = [] if campaigns else [f"life{_CAMPAIGN}"]
+        return f"{said}. To add a log type: {retyped(verb, 'add', *first, name, *others)}"
+    if campaigns:
+        return f"{said}. To list the runs type: {retyped(verb, 'list', campaigns[0])}"
+    return f"{said}. It has: {', '.join(known)}"
+
+
+# ---- options
+
+
+def unknown_option(name: str, context: Any, commands: Commands) -> str:
+    """Say what to type instead of an option that a command does not have."""
+    verb = _path(context)
+    rest = sys.argv[1 + len(verb) :]
+    at = next((i for i, each in enumerate(rest) if each.partition("=")[0].startswith(name)), len(rest))
+    token, _, value = (rest[at] if at < len(rest) else name).partition("=")
+    if not verb:
+        return _before_the_command(token, rest, commands.names)
+    after = at + 1
+    if not value and after < len(rest) and not rest[after].startswith("-"):
+        value, after = rest[after], after + 1
+    word, options = _word(token), list(_options(context.command))
+    said = f"hersey {' '.join(verb)} has no option {token}"
+    argument = _argument(word, context.command)
+    if argument:
+        others, file = [*rest[:at], *rest[after:]], value or argument.lower()
+        typed = [file, *others] if argument in _FIRST or word in _FIRST else [*others, file]
+        return f"{said}: the file is an argument. Type: {retyped(*verb, *typed)}"
+    near = _near(word, options, value)
+    having = [each for each in commands.names if word in _options(commands.load(each))]
+    if having and not near:
+        takes_value = _options(commands.load(having[0]))[word]
+        omitted = shlex.join([token, value] if takes_value and value else [token])
+        listed = ", ".join(f"hersey {each}" for each in having[:_MOST])
+        return f"{said}. Omit {omitted}. It is an option of {listed}"
+    near = near or _alike(word, options)
+    if near:
+        return f"{said}. Did you mean {_either(near)}?"
+    return f"{said}. For all options type: {retyped(*verb, '--help')}"
+
+
+def _before_the_command(token: str, rest: Sequence[str], verbs: Sequence[str]) -> str:
+    """What to type instead of an option in front of the command, or without a command."""
+    verb = next((each for each in rest if each in verbs), "")
+    if verb:
+        at = rest.index(verb)
+        return f"Options follow the command. Type: {retyped(verb, *rest[:at], *rest[at + 1 :])}"
+    if any(Path(each).suffix.lower() in LOGS for each in rest):
+        return f"Options follow a command. For a report type: {retyped('report', *rest)}"
+    near = _near(_word(token), ["version", "help"], "")
+    to_type = f"Did you mean {_either(near)}?" if near else "For a list of all commands type: hersey --help"
+    return f"hersey has no option {token}. {to_type}"
+
+
+def _path(context: Any) -> list[str]:
+    """The names of the command and its subcommand."""
+    names: list[str] = []
+    while context.parent is not None:
+        names.insert(0, context.info_name)
+        context = context.parent
+    return names
+
+
+def _word(token: str) -> str:
+    """The name of an option as it is written here, without parts that say nothing."""
+    word = token.lstrip("-").lower().replace("_", "-")
+    parts = word.split("-")
+    while len(parts) > 1 and parts[-1] in _IDLE:
+        parts.pop()
+    return "-".join(parts)
+
+
+def _options(command: Any) -> dict[str, bool]:
+    """The long names of the options of a command, without dashes, and whether a value follows each."""
+    return {
+        name.removeprefix("--"): not getattr(each, "is_flag", False)
+        for each in command.params
+        for name in each.opts
+        if name.startswith("--")
+    }
+
+
+def _argument(word: str, command: Any) -> str:
+    """The name of the argument that a word means, if the command takes such a file as an argument."""
+    metavars = [each.metavar for each in command.params if not each.opts[0].startswith("-")]
+    return next((each for each in _ARGUMENTS.get(word, ()) if each in metavars), "")
+
+
+def _near(word: str, options: Sequence[str], value: str) -> list[str]:
+    """The options of a command that a word means, as they are typed."""
+    if word in options:
+        return [f"--{word}"]
+    if word in _WRITING and (written := _written(options, value)):
+        return written
+    longer = [each for each in options if each.startswith(word)]
+    shortest = [
+        each for each in longer if not any(each != one and each.startswith(f"{one}-") for one in longer)
+    ]
+    if shortest and (len(word) > 1 or len(shortest) <= _MOST):
+        return [f"--{each}" for each in shortest[:_MOST]]
+    for row in _SAME:
+        has = [each for each in row if each in options]
+        if word in row and has:
+            return [f"--{has[0]}"]
+    parts = set(word.split("-"))
+    holding = [each for each in options if parts <= set(each.split("-"))]
+    if holding:
+        return [f"--{each}" for each in holding[:_MOST]]
+    held = [each for each in options if set(each.split("-")) < parts]
+    return [f"--{each}" for each in held[:1]]
+
+
+def _alike(word: str, options: Sequence[str]) -> list[str]:
+    """The option that a word with a slip is nearest to."""
+    close = meant(word, options) if len(word) > 1 else ""
+    return [f"--{close}"] if close else []
+
+
+def _written(options: Sequence[str], value: str) -> list[str]:
+    """The options by which a command writes a file of this name."""
+    from hersey.charts import PICTURES
+
+    suffix = Path(value).suffix.lower()
+    found = [each for each in ("figure",) if each in options and suffix in PICTURES and "out" not in options]
+    found = found or [each for each in _WRITING[:3] if each in options][:1]
+    typed = [f"--{each}" for each in found]
+    if "json" in options and "out" not in options and (suffix == ".json" or found in ([], ["each"])):
+        typed.append(f"--json > {shlex.quote(value) if suffix == '.json' else 'result.json'}")
+    return typed
+
+
+def _either(names: Sequence[str]) -> str:
+    *first, last = names
+    return f"{', '.join(first)} or {last}" if first else last
+
+
+# ---- what is missing
+
+
+def missing(parameter: Any, context: Any) -> str:
+    """Say what a command needs that was not typed."""
+    name = (
+        f"{parameter.opts[0]} {parameter.metavar or ''}".rstrip()
+        if parameter.opts[0].startswith("-")
+        else parameter.metavar
+    )
+    return f"{retyped(*_path(context))} needs {name}: {_help(parameter)}"
+
+
+def misused(name: str, commands: Commands) -> str:
+    """Say what an option needs that was typed without its value, or with one that it does not take."""
+    parameter = _parameters(sys.argv[1:], commands).get(name)
+    if parameter is None:
+        return ""
+    if getattr(parameter, "is_flag", False):
+        return f"{name} takes no value: type {name}{' > result.json' * (name == _PRINTS)}"
+    return f"{name} needs a value: {_help(parameter)}"
+
+
+def without_value(words: Sequence[str], commands: Commands) -> str:
+    """Return the first option that was typed without its value, so that the next option became the value."""
+    known = _parameters(words, commands)
+    for flag, value in pairwise(words):
+        if value.partition("=")[0] in known and not getattr(known.get(flag), "is_flag", flag not in known):
+            return flag
+    return ""
+
+
+def _parameters(words: Sequence[str], commands: Commands) -> dict[str, Any]:
+    """The options of the command that was typed, by their names."""
+    if not words or words[0] not in commands.names:
+        return {}
+    command = commands.load(words[0])
+    subcommands = getattr(command, "commands", {})
+    if subcommands:
+        command = subcommands.get(next(iter(words[1:]), ""), command)
+    return {name: each for each in command.params for name in each.opts if name.startswith("-")}
+
+
+def _help(parameter: Any) -> str:
+    return (parameter.help or "").partition("  \\[")[0].rstrip(".")
+
+
+def unquoted(words: Sequence[str]) -> str:
+    """Return an option whose number and unit were typed as two words, as it should be typed, or nothing."""
+    for flag, number, unit in zip(words, words[1:], words[2:], strict=False):
+        if flag.startswith("--") and _is_number(number) and _is_unit(unit):
+            return f"{flag} '{number} {unit}'"
+    return ""
+
+
+def printed(words: Sequence[str]) -> str:
+    """Return the file that was typed behind --json, as if it were written there, or nothing."""
+    for flag, file in pairwise(words):
+        if flag == _PRINTS and Path(file).suffix == ".json" and not Path(file).exists():
+            return shlex.quote(file)
+    return ""
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
+
+
+def _is_unit(text: str) -> bool:
+    """Whether a text is the unit of something, and not a file."""
+    from hersey.errors import UnitError
+    from hersey.units import KINDS, conversion
+
+    if text.startswith("-") or Path(text).exists():
+        return False
+    for kind in KINDS:
+        with suppress(UnitError):
+            conversion(kind, text)
+            return True
+    return False

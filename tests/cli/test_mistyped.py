@@ -1,0 +1,112 @@
+"""Command lines with a slip: the message names an option of the command, or a line that can be typed."""
+
+from __future__ import annotations
+
+import re
+import shlex
+from pathlib import Path
+
+import pytest
+
+from hersey.cli.application import load
+from tests.cli.command import run
+
+
+def options(verb: str) -> set[str]:
+    """The options of a command."""
+    return {name for each in load(verb).params for name in each.opts}
+
+
+@pytest.mark.parametrize(
+    ("typed", "meant"),
+    [
+        (["report", "a.csv", "--temp", "T"], ["--temperature"]),
+        (["report", "a.csv", "--torque_unit=Nm"], ["--torque-unit"]),
+        (["report", "a.csv", "-machine", "m.toml"], ["--machine"]),
+        (["report", "a.csv", "-o", "x.html"], ["--out"]),
+        (["fit", "a.csv", "--out", "fit.json"], ["--each", "--json > fit.json"]),
+        (["compare", "a.csv", "b.csv", "--out", "x.json"], ["--json > x.json"]),
+        (["simulate", "--out", "x.csv"], ["--csv"]),
+        (["simulate", "--out", "x.png"], ["--figure"]),
+        (["simulate", "--speed", "5"], ["--drive-speed"]),
+        (["cycles", "a.csv", "--torque", "T"], ["--value"]),
+        (["campaign", "add", "l.hersey", "a.csv", "--specimen", "F1"], ["--unit"]),
+    ],
+)
+def test_an_unknown_option_names_the_one_that_was_meant(
+    typed: list[str], meant: list[str], tmp_path: Path
+) -> None:
+    done = run(*typed, cwd=tmp_path)
+    assert done.returncode == 2
+    proposed = re.fullmatch(r"hersey: .* has no option .*\. Did you mean (.*)\?\n", done.stderr)
+    assert proposed, done.stderr
+    assert proposed[1].split(" or ") == meant
+    if typed[0] != "campaign":
+        assert {each.split()[0] for each in meant} <= options(typed[0])
+
+
+def test_an_option_of_other_commands_is_omitted_with_its_value(tmp_path: Path) -> None:
+    done = run("report", "a.csv", "--fit", "f.json", cwd=tmp_path)
+    assert done.returncode == 2
+    assert ". Omit --fit f.json. " in done.stderr
+    named = re.findall(r"hersey (\w+)(?:,|$)", done.stderr.partition("option of")[2].strip())
+    assert named
+    assert all("--fit" in options(verb) for verb in named)
+
+
+@pytest.mark.parametrize(
+    ("typed", "line"),
+    [
+        ("plan a.csv --machine m.toml --target '60 mm/s'", "plan m.toml a.csv --target '60 mm/s'"),
+        ("plan --machine=m.toml a.csv", "plan m.toml a.csv"),
+        ("export fmu --fit f.json m.toml --out x.fmu", "export fmu f.json m.toml --out x.fmu"),
+        ("export f.json m.toml --out x.fmu", "export fmu f.json m.toml --out x.fmu"),
+        ("report --log a.csv --tare standing", "report --tare standing a.csv"),
+        ("--machine m.toml report a.csv", "report --machine m.toml a.csv"),
+        ("--machine m.toml a.csv", "report --machine m.toml a.csv"),
+        ("a.csv report --machine m.toml", "report a.csv --machine m.toml"),
+        ("m.toml report a.csv", "report a.csv --machine m.toml"),
+        ("m.toml plan a.csv", "plan m.toml a.csv"),
+        ("campaign a.csv --unit F1", "campaign add life.hersey a.csv --unit F1"),
+        ("campaign l.hersey a.csv --unit F1", "campaign add l.hersey a.csv --unit F1"),
+        ("campaign l.hersey", "campaign list l.hersey"),
+        ("campaign lst l.hersey", "campaign list l.hersey"),
+    ],
+)
+def test_words_in_the_wrong_place_are_put_right(typed: str, line: str, tmp_path: Path) -> None:
+    done = run(*shlex.split(typed), cwd=tmp_path)
+    assert done.returncode == 2
+    assert done.stderr.endswith(f": hersey {line}\n")
+
+
+@pytest.mark.parametrize(
+    ("typed", "advice"),
+    [
+        ("simulate --stiffness 11 N/mm --mass '11 kg'", "--stiffness '11 N/mm'"),
+        ("plan m.toml a.csv --target 60 mm/s", "--target '60 mm/s'"),
+        ("report a.csv --json result.json", "--json > result.json"),
+        ("report a.csv --json=result.json", "--json > result.json"),
+    ],
+)
+def test_words_that_belong_together_or_apart(typed: str, advice: str, tmp_path: Path) -> None:
+    done = run(*shlex.split(typed), cwd=tmp_path)
+    assert done.returncode == 2
+    assert done.stderr.endswith(f": {advice}\n") or done.stderr.endswith(f" type {advice}\n")
+
+
+@pytest.mark.parametrize(
+    ("typed", "name"),
+    [
+        ("report a.csv --tare", "--tare"),
+        ("report a.csv --tare --machine m.toml", "--tare"),
+        ("life l.hersey", "--machine TOML"),
+        ("plan", "MACHINE"),
+    ],
+)
+def test_what_is_missing_is_named_with_its_help(typed: str, name: str, tmp_path: Path) -> None:
+    done = run(*shlex.split(typed), cwd=tmp_path)
+    assert done.returncode == 2
+    parameters = load(typed.split()[0]).params
+    known = next(each for each in parameters if name.split()[0] in (*each.opts, each.metavar))
+    assert f"{name} needs a value: " in done.stderr or f" needs {name}: " in done.stderr
+    assert done.stderr.rstrip().endswith(known.help.rstrip("."))
