@@ -14,6 +14,8 @@ from typing import Any, Literal, Self
 
 #: How alike (`difflib`) a name must be to one that is there to be proposed, and characters of it at the most.
 _ALIKE, _LONGEST = 0.6, 100
+#: Ends of a sentence.
+_ENDS = (".", "?", "!")
 #: How a person comes in: the way out is given in the words of it.
 Way = Literal["python", "terminal", "page"]
 _way: list[Way] = ["python"]
@@ -95,10 +97,7 @@ class HerseyError(Exception):
 
     def __str__(self) -> str:
         """Return what is wrong and what to do."""
-        if not self.remedy:
-            return self.reason
-        stop = "" if self.reason[-1:] in (".", "?") else "."
-        return f"{self.reason}{stop} {printable(self.remedy[:1].upper() + self.remedy[1:])}"
+        return followed_by(self.reason, printable(self.remedy))
 
     def to_dict(self) -> dict[str, Any]:
         """Return error, reason, remedy, and name and kind of the setting (or empty texts) as JSON."""
@@ -274,6 +273,26 @@ class SandboxWarning(UserWarning):
         return (
             f"The sandbox for untrusted files is incomplete. A file could {could}. Open only files you trust."
         )
+
+
+def followed_by(text: str, remedy: str) -> str:
+    """Return what is wrong and, in a sentence of its own, what to do, which may be empty."""
+    if not remedy:
+        return text
+    return f"{text}{'' if text.endswith(_ENDS) else '.'} {remedy[:1].upper()}{remedy[1:]}"
+
+
+def sentence(text: str, *, named: bool = False) -> str:
+    """Return a clause as a sentence; a name that it begins with, as of a file or a key, stays as it is.
+
+    Examples
+    --------
+    >>> sentence("the belt sticks"), sentence("bench.csv is cut off"), sentence("is it?")
+    ('The belt sticks.', 'bench.csv is cut off.', 'Is it?')
+    """
+    named = named or any(sign in text.split(" ", 1)[0].rstrip(":.") for sign in "_.")
+    first = text if named else f"{text[:1].upper()}{text[1:]}"
+    return first if first.endswith(_ENDS) else f"{first}."
 
 
 def printable(text: str, *, lines: bool = False) -> str:

@@ -110,3 +110,32 @@ def test_what_is_missing_is_named_with_its_help(typed: str, name: str, tmp_path:
     known = next(each for each in parameters if name.split()[0] in (*each.opts, each.metavar))
     assert f"{name} needs a value: " in done.stderr or f" needs {name}: " in done.stderr
     assert done.stderr.rstrip().endswith(known.help.rstrip("."))
+
+
+def drive(tmp_path: Path, *header: str, torque: float = 0.2) -> None:
+    """A log of a steady drive, 20 s long."""
+    rows = [f"{0.1 * i:.1f},{torque + 0.001 * (i % 3)},30" for i in range(200)]
+    (tmp_path / "a log.csv").write_text("\n".join([",".join(header), *rows]))
+
+
+def test_cycles_finds_the_torque_of_a_log_and_names_the_command_for_steady_sliding(tmp_path: Path) -> None:
+    drive(tmp_path, "Time [s]", "Drive torque [N*m]", "Drive speed [rpm]")
+    done = run("cycles", "a log.csv", cwd=tmp_path)
+    assert done.returncode == 0
+    assert "type: hersey report 'a log.csv'" in done.stdout
+    done = run("cycles", "a log.csv", "--json", cwd=tmp_path)
+    assert '"unit": "N*m"' in done.stdout
+
+
+def test_a_trace_in_the_place_of_a_log_is_sent_to_cycles(tmp_path: Path) -> None:
+    drive(tmp_path, "time [s]", "force [N]", "remark")
+    for verb in ("report", "inspect"):
+        done = run(verb, "a log.csv", cwd=tmp_path)
+        line = re.search(r"type: (hersey cycles .*)", done.stdout + done.stderr)
+        assert line
+        assert run(*shlex.split(line[1])[1:], cwd=tmp_path).returncode == 0
+
+
+def test_a_log_without_torque_and_force_is_not_sent_to_cycles(tmp_path: Path) -> None:
+    drive(tmp_path, "time [s]", "x [V]", "speed [V]")
+    assert "hersey cycles" not in run("report", "a log.csv", cwd=tmp_path).stderr

@@ -94,7 +94,7 @@ def test_falls_that_are_not_counted_are_said() -> None:
         "the largest is 13.6 % of the load"
     )
     assert "none of at least 0.2 N" in none.summary("N")
-    with pytest.raises(InsufficientDataError, match="Do not set least_drop to identify"):
+    with pytest.raises(InsufficientDataError, match="omit least_drop"):
         identify(none)
 
 

@@ -144,7 +144,10 @@ def test_other_warnings_of_a_record() -> None:
     record = cycles(time, noisy, least_drop=0.1)
     within = of_kind(record, "least drop within noise")
     assert within.values == {"least_drop": 0.1, "taken": record.least_drop}
-    assert str(within) == f"least_drop 0.1 is within the noise, so {record.least_drop:.3g} was used"
+    assert (
+        str(within)
+        == f"the smallest drop asked for, 0.1, is within the noise, so {record.least_drop:.3g} was used"
+    )
     assert record.samples.noise == pytest.approx(0.5, rel=0.1)
     less = cycles(time, noisy, least_drop=8.0).warnings
     assert "least drop within noise" not in [each.kind for each in less]

@@ -7,12 +7,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 from hersey.cli.groups import argument, grouped, option
+from hersey.cli.mistyped import retyped
 from hersey.cli.options import Force, MaxMemory, TimeUnit, drawn
 from hersey.cli.outputs import may_draw
 from hersey.cli.printing import Printing
 from hersey.cli.progress import working
 from hersey.cli.quantities import belt_speed_of, share
-from hersey.errors import ParameterError, UnitError, WrongKindError
+from hersey.errors import ParameterError, UnitError, WrongKindError, sentence
 
 if TYPE_CHECKING:
     from hersey.arrays import FloatArray
@@ -155,6 +156,8 @@ def cycles(
         if len(chosen) > 1:
             printing.text(*([""] if number != chosen[0] else []), f"Run {number + 1} of {len(runs)}")
         printing.text(*_lines(record, drive, unit))
+        if record.kind == "steady_sliding" and given.quantity == "torque":
+            printing.text(f"For the drag of steady sliding type: {retyped('report', str(file))}")
         printing.details("", record.summary(unit), *([] if drive is None else ["", drive.summary(unit)]))
         printing.warnings(*record.warnings, *(() if drive is None else drive.warnings))
         printing.files(figure)
@@ -167,8 +170,7 @@ def _lines(record: CycleRecord, drive: IdentifiedDrive | None, unit: str) -> lis
     from hersey.cli.figures import labelled, three
     from hersey.identification.detection import FEWEST_SLIPS
 
-    of, headline = {"1": "of the weight"}.get(unit, unit), record.headline(unit)
-    lines = [f"{headline[:1].upper()}{headline[1:]}."]
+    of, lines = {"1": "of the weight"}.get(unit, unit), [sentence(record.headline(unit))]
     if record.kind != "steady_sliding" and record.slips >= FEWEST_SLIPS:
         what = {"stick_slip": "Stick-slip", "inertial": "Inertial oscillation"}[record.kind]
         lines = [f"{what} with {record.slips} slips."]

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 from hersey.cli.groups import grouped, option
-from hersey.cli.options import Force, Logs, Reading, SaveRecipe, drawn
+from hersey.cli.options import Force, Logs, Reading, SaveRecipe, drawn, of_a_trace
 from hersey.cli.outputs import may_draw, may_save_recipe, may_write
 from hersey.cli.printing import Printing
 from hersey.cli.progress import working
@@ -65,6 +65,7 @@ def inspect(
         return
     if printing.verbose or inspection.support is None:  # what a log lacks can be anywhere in it
         printing.text(inspection.summary())
+        printing.text(*filter(None, [] if inspection.support else [of_a_trace(logs)]))
     else:
         printing.text(*_lines(inspection))
     printing.files(kept, save_recipe, figure)

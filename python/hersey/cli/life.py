@@ -10,6 +10,7 @@ from hersey.cli.options import Figures, Force
 from hersey.cli.outputs import PAGES, command, may_write, may_write_folder
 from hersey.cli.printing import Printing
 from hersey.cli.progress import steps, working
+from hersey.errors import sentence
 
 if TYPE_CHECKING:
     from hersey.life.time_to_failure.estimate import TimeToFailure
@@ -81,8 +82,7 @@ def _lines(found: TimeToFailure) -> list[str]:
     """When specimens fail and by what, then each specimen."""
     from hersey.cli.figures import labelled
 
-    headline = found.headline()
-    lines = [f"{headline[:1].upper()}{headline[1:]}."]
+    lines = [sentence(found.headline())]
     lines.append(f"Age at failure ({found.age_unit or 'age'}), 90 % interval:")
     ends = [(each.unit, str(each).removeprefix(f"{each.unit}: ")) for each in found.units[:_SHOWN]]
     lines += labelled(ends)

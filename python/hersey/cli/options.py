@@ -9,11 +9,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 from hersey.cli.groups import argument, option
+from hersey.cli.mistyped import retyped
 from hersey.cli.progress import bar, working
 from hersey.cli.quantities import amounts_in
 from hersey.cli.recipe_file import ROLES, read_recipe
 from hersey.cli.terminal import note
-from hersey.errors import ParameterError
+from hersey.errors import ChannelError, HerseyError, ParameterError, followed_by
 
 if TYPE_CHECKING:
     from hersey.damping.dwells import SteadyPoints
@@ -158,8 +159,13 @@ class Reading:
         from hersey.log import memory_limit
 
         recipe = self.recipe(paths)
-        with bar("reading") as progress, memory_limit(self.max_memory):
-            log: TorqueLog | MeansTable = recipe.log(machine, progress=progress)
+        try:
+            with bar("reading") as progress, memory_limit(self.max_memory):
+                log: TorqueLog | MeansTable = recipe.log(machine, progress=progress)
+        except ChannelError as error:
+            hint = of_a_trace(paths)
+            error.remedy = followed_by(error.remedy, hint) if error.remedy else hint
+            raise
         for file in log.files:
             if file.missing_rows:
                 note(*(str(each.within(file.name)) for each in file.warnings))
@@ -240,6 +246,19 @@ class Reading:
         log = self.log(logs, machine)
         with working("fitting the surface"):
             return fit(self.points(logs, log, machine), temperature_scale=self.temperature_scale)
+
+
+def of_a_trace(paths: list[Path]) -> str:
+    """Return what to type for a stick-slip trace in the place of a log; nothing if the file is no trace."""
+    from hersey.identification.trace_file import read_trace_runs
+
+    if len(paths) != 1:
+        return ""
+    try:
+        read_trace_runs(paths[0])
+    except HerseyError:
+        return ""
+    return f"If it is a stick-slip trace, type: {retyped('cycles', str(paths[0]))}"
 
 
 _AS_GIVEN = ("isothermal", "drop_missing", "means", "tare", "rotation", "temperature_scale")

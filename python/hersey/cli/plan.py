@@ -13,7 +13,7 @@ from hersey.cli.printing import Printing, write_course
 from hersey.cli.progress import bar, working
 from hersey.cli.quantities import target_of, temperature_of
 from hersey.cli.warming import beyond_the_log, heat_of
-from hersey.errors import ParameterError
+from hersey.errors import ParameterError, sentence
 
 if TYPE_CHECKING:
     from hersey.damping.surface import DampingSurface
@@ -133,7 +133,7 @@ def _lines(planned: Plan) -> list[str]:
     if not planned.found:
         return [
             "No profile ends in steady sliding.",
-            *(f"- {_sentence(each.text)}" for each in planned.obstacles),
+            *(f"- {sentence(each.text)}" for each in planned.obstacles),
         ]
     lines = [_verdict(planned)]
     rows = [(four(time), four(1e3 * speed)) for time, speed in planned.rows()]
@@ -176,10 +176,6 @@ def _temperatures(course: Schedule, planned: Plan) -> str:
 
     at = [f"{celsius(course.at(time)):.0f} °C" for time in (0.0, planned.wait, planned.duration)]
     return f"Film temperature: {at[0]} at first, {at[1]} at the start, {at[2]} once the belt slides steadily."
-
-
-def _sentence(text: str) -> str:
-    return f"{text[:1].upper()}{text[1:]}{'' if text[-1:] in ('.', '?', '!') else '.'}"
 
 
 def _of_a_fit(

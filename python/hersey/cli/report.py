@@ -12,6 +12,7 @@ from hersey.cli.options import Figures, Force, Logs, Reading, SaveRecipe, Traces
 from hersey.cli.outputs import PAGES, command, may_save_recipe, may_write, may_write_folder, print_document
 from hersey.cli.printing import Printing
 from hersey.cli.progress import steps, working
+from hersey.errors import sentence
 
 if TYPE_CHECKING:
     from hersey.study import Study
@@ -78,11 +79,11 @@ def _print(found: Study, printing: Printing) -> None:
     printing.text(*_decision(decision))
     judged = {each.point.name for each in found.behaviour.points} if found.behaviour is not None else set()
     points = [each for each in decision.points if printing.verbose or each.name not in judged]
-    printing.text(*(f"{each.name}: {_sentence(each.words)}" for each in points))
+    printing.text(*(f"{each.name}: {sentence(each.words)}" for each in points))
     if found.comparison is not None:
         printing.text(f"Compared with {found.comparison.names[0]}: {found.comparison.verdict}")
     flags = [flag for flag in decision.flags if flag.where != _COMPARED]
-    printing.text(*(f"- {flag.title}: {_sentence(flag.text)}" for flag in printing.chosen(flags)))
+    printing.text(*(f"- {flag.title}: {sentence(flag.text)}" for flag in printing.chosen(flags)))
     if printing.verbose:
         said = {flag.text for flag in flags}
         printing.warnings(*(each for each in found.warnings if not {each.text, str(each)} & said))
@@ -92,16 +93,9 @@ def _print(found: Study, printing: Printing) -> None:
 def _decision(decision: DecisionPart) -> list[str]:
     """The instruction, the interval behind it, and what to measure next, as sentences."""
     said = (decision.instruction, decision.interval, decision.otherwise)
-    lines = [_sentence(text) for text in said if text]
+    lines = [sentence(text) for text in said if text]
     lines = [lines[0], " ".join(lines[1:])]
-    return [*filter(None, lines), *([_sentence(decision.measurement.text)] if decision.measurement else [])]
-
-
-def _sentence(text: str) -> str:
-    """A text that begins with a capital and ends with a full stop."""
-    name = any(sign in text.split(" ", 1)[0].rstrip(":.") for sign in "_.")  # of a file or a key
-    whole = text if name else f"{text[:1].upper()}{text[1:]}"
-    return whole if whole[-1:] in (".", "?", "!") else f"{whole}."
+    return [*filter(None, lines), *([sentence(decision.measurement.text)] if decision.measurement else [])]
 
 
 def _studied(

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from hersey.errors import Setting
 from hersey.identification.detection import FEWEST_SLIPS
 from hersey.identification.sampling import Samples
 from hersey.identification.slip_figures import SlipFigures
@@ -48,7 +49,7 @@ def _of_the_falls(
     if least_drop is not None and least > least_drop:
         yield Warning(
             "least drop within noise",
-            "least_drop {least_drop:g} is within the noise, so {taken:.3g} was used",
+            "the smallest drop asked for, {least_drop:g}, is within the noise, so {taken:.3g} was used",
             severity="watch",
             least_drop=least_drop,
             taken=least,
@@ -58,8 +59,11 @@ def _of_the_falls(
         yield Warning(
             "many small slips",
             "{small} of {slips} slips are smaller than half the median, so their number depends on the "
-            "smallest drop counted ({least:.3g} here; samples scatter by {scatter:.3g}). Set least_drop",
+            "smallest drop counted ({least:.3g} here; samples scatter by {scatter:.3g})",
             severity="watch",
+            remedy="choose it with {option}, e.g. half the median: {half:.3g} in the unit of the trace",
+            option=Setting("least_drop"),
+            half=0.5 * float(np.median(drop)),
             small=small,
             slips=drop.size,
             least=least,

@@ -243,10 +243,12 @@ def _check(record: CycleRecord, known: Mapping[str, float], closures: tuple[str,
         kind = record.kind.replace("_", " ")
         raise InsufficientDataError(f"the record shows {kind}, but a drive is identified from stick-slip")
     if record.slips < FEWEST_LAPS <= record.falls:
-        raise InsufficientDataError(f"{record.headline()}. Do not set least_drop to identify a drive")
+        raise InsufficientDataError(
+            f"{record.headline()}. To identify a drive, omit {Setting('least_drop').to()}"
+        )
     if record.drive_speed is None:
-        needed = Setting("drive_speed").to()
-        raise ParameterError(f"the drive speed is needed to identify a drive. Give it with {needed}")
+        needed = Setting("drive_speed").to("20 mm/s", python="0.02")
+        raise ParameterError(f"the drive speed is needed to identify a drive. Give it, e.g. {needed}")
     for name, value in known.items():
         if name not in OF_THE_BELT:
             raise ParameterError(f"unknown parameter '{name}' in known. Use {', '.join(OF_THE_BELT)}")

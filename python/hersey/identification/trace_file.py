@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from hersey.arrays import FloatArray
-from hersey.errors import ChannelError, ParameterError, Setting, UnitError, UnreadableLogError
-from hersey.log.channels import called
+from hersey.errors import ChannelError, ParameterError, Setting, UnitError, UnreadableLogError, meant
+from hersey.log.channels import ROLE_KINDS, called, is_called, is_of_kind
 from hersey.log.columns import OpenColumns, open_columns
 from hersey.log.rows import LeftOut, runs_of
 from hersey.log.text.column import Column
@@ -179,19 +179,33 @@ def _chosen(
     opened: OpenColumns, columns: tuple[Column, ...], wanted: str, names: tuple[str, ...], role: str
 ) -> Column:
     """The column that is named, or the only one with a known name."""
-    known = _listed(opened)
+    known, setting = _listed(opened), Setting("time" if role == "time" else "value")
     candidates = called(wanted, columns) if wanted else [c for c in columns if _plain(c.name) in names]
+    if not wanted and not candidates:
+        candidates = [c for c in columns if _could_be(role, c)]
     if wanted and not candidates:
-        raise ChannelError(f"{opened.file}: there is no column '{wanted}'. Columns: {known}")
+        near = meant(wanted, [c.path for c in opened.columns])
+        raise ChannelError(
+            f"{opened.file}: there is no column '{wanted}'. Columns: {known}",
+            remedy=f"did you mean {setting.to(near)}?" if near else "",
+        )
     if len(candidates) != 1:
-        flag = Setting("time" if role == "time" else "value").to()
+        first = candidates[0].path if candidates else ""
         what = (
             f"the {role} column could be {' or '.join(map(str, candidates))}"
             if candidates
-            else f"no {role} column found"
+            else f"no {role} column found{', which a trace needs' * (role == 'time')}"
         )
-        raise ChannelError(f"{opened.file}: {what}. Name it with {flag}. Columns: {known}")
+        raise ChannelError(f"{opened.file}: {what}. Name it with {setting.to(first)}. Columns: {known}")
     return candidates[0]
+
+
+def _could_be(role: str, column: Column) -> bool:
+    """Whether a column has a name that columns of torque or speed have in a log, and a unit of their kind."""
+    if role not in ROLE_KINDS:
+        return False
+    kinds = ("speed", "belt speed") if role == "speed" else (role,)
+    return is_called(role, column) and any(is_of_kind(kind, column.unit) for kind in kinds)
 
 
 def _quantity(opened: OpenColumns, value: str) -> str:
@@ -201,11 +215,14 @@ def _quantity(opened: OpenColumns, value: str) -> str:
     known = [quantity for quantity, (_, usual) in QUANTITIES.items() if names & set(usual)]
     if len(known) == 1:
         return known[0]
+    known = known or [q for q in ("torque", "speed") if any(_could_be(q, column) for column in columns)][:1]
+    if len(known) == 1:
+        return known[0]
     if value and not known:
         return "force"
     what = " and ".join(known) or "no force, torque or speed"
-    usual = {name for quantity in known for name in QUANTITIES[quantity][1]}
-    first = next((c for c in opened.columns if _plain(c.name) in usual), None)
+    usual = [name for quantity in known for name in QUANTITIES[quantity][1]]
+    first = next((c for name in usual for c in opened.columns if _plain(c.name) == name), None)
     named = Setting("value").to(first.path if first and not value else "")
     raise ChannelError(f"{opened.file} has {what}. Name the column with {named}. Columns: {_listed(opened)}")
 

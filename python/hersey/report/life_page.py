@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from hersey import _core
 from hersey.charts.life import life_charts
+from hersey.errors import sentence
 from hersey.life.age import Age
 from hersey.life.indicator import NOT_JUDGED
 from hersey.life.time_to_failure.unsure import FEW
@@ -94,7 +95,7 @@ def _decision(found: TimeToFailure) -> dict[str, Any]:
         elif math.isfinite(least):
             more.append(f"{others} running specimens should reach at least {least:.6g}{unit}.")
     if len(found.units) >= FEW:
-        more.append(_sentence(found.headline()))
+        more.append(sentence(found.headline()))
     rows = [
         [*states[each.unit], each.unit, each.ways, f"{each.age.last:.6g}", str(each.age.age)]
         for each in order[:_SHOWN]
@@ -104,7 +105,7 @@ def _decision(found: TimeToFailure) -> dict[str, Any]:
         "signal": "act" if failed else "watch" if unclear else "good",
         "lead": lead,
         "more": more,
-        "next": [_sentence(each) for each in found.advice],
+        "next": [sentence(each) for each in found.advice],
         "heads": ["State", "Specimen", "Failure mode", f"Last seen{in_unit}", f"Failure at{in_unit}"],
         "rows": rows,
         "first": _FIRST,
@@ -135,10 +136,6 @@ def _named(names: Sequence[str]) -> str:
     if len(names) > _NAMED:
         return f"{', '.join(shown)} and {len(names) - _NAMED} more"
     return shown[0] if len(shown) == 1 else f"{', '.join(shown[:-1])} and {shown[-1]}"
-
-
-def _sentence(text: str) -> str:
-    return f"{text[:1].upper()}{text[1:].rstrip('.')}."
 
 
 def _of_all(found: TimeToFailure) -> list[Warning]:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
-from hersey.errors import Setting, printable
+from hersey.errors import Setting, followed_by, printable, sentence
 from hersey.schema.record import Means, Record, json_record
 from hersey.units import celsius, rpm
 
@@ -165,20 +165,12 @@ class Warning(Record):
     @property
     def text(self) -> Annotated[str, Means("what is wrong, and what to do")]:
         """What is wrong and what to do, in the words of the way in."""
-        text = self._shown(self.words)
-        if not self.remedy:
-            return text
-        remedy = self._shown(self.remedy)
-        stop = "" if text[-1:] in (".", "?") else "."
-        return f"{text}{stop} {remedy[:1].upper()}{remedy[1:]}"
+        return followed_by(self._shown(self.words), self._shown(self.remedy))
 
     @property
     def sentence(self) -> str:
         """What it concerns, what is wrong and what to do, as a sentence."""
-        said = str(self)
-        name = self.where or any(sign in said.split(" ", 1)[0].rstrip(":.") for sign in "_.")
-        first = said if name else said[:1].upper() + said[1:]
-        return first if first[-1:] in (".", "?", "!") else f"{first}."
+        return sentence(str(self), named=bool(self.where))
 
     def to_dict(self) -> dict[str, Any]:
         """Return it as JSON: what it is, its numbers in SI, and the words."""
