@@ -100,7 +100,11 @@ def test_the_band_is_printed_and_piped(tmp_path: Path) -> None:
     assert band["step"]["sticks"]
     assert band["disturbance"]["kick"] == pytest.approx(0.902, abs=1e-3)
     half = run("hysteresis", "--from-speed", "2.5", cwd=tmp_path)
-    assert (half.returncode, half.stderr) == (2, "hersey: a step needs both --from-speed and --to-speed\n")
+    assert (half.returncode, half.stderr) == (
+        2,
+        "hersey: --from-speed is one end of a step of the drive speed: add --to-speed with the speed after "
+        "the step\n",
+    )
 
 
 def test_simulation_is_written_as_csv(tmp_path: Path) -> None:

@@ -161,7 +161,7 @@ def test_a_mistake_ends_in_one_line(tmp_path: Path) -> None:
         (["--drive-speed", "0 mm/s"], "must be greater than 0"),
         (["--drive-speed", "3 rpm"], "--drive-speed with a trace of force in N"),
         (["--known", "mass=1 kg"], "--known needs --identify"),
-        (["--identify"], "Give it with --drive-speed"),
+        (["--identify"], "--drive-speed '20 mm/s'"),
         (["--identify", "--known", "weight=1 kg"], "write NAME=VALUE with one of stiffness, mass"),
         (["--identify", "--known", "mass=1 s"], "--known mass: unit 's' is not a unit of mass"),
         (["--identify", "--known", "mass=1"], "--known mass: '1' is not a number with a unit of mass"),

@@ -59,7 +59,8 @@ _OF_THE_PAPER = {
     "belt speed": "in/s",
     "time": "s",
 }
-_BARE = "Results are in the units of the numbers given. Defaults are the paper's (inch, ozf, s)."
+_BARE = "Results are in the units of the numbers given."
+_PAPER_UNITS = "Numbers are in inches, ounces of force (ozf) and seconds, as in the paper"
 #: Numbers of a belt that a machine file states.
 _OF_A_MACHINE = ("stiffness", "mass", "stick_speed")
 #: What a number that no machine file states means.
@@ -80,7 +81,7 @@ class Amounts:
     @property
     def words(self) -> list[str]:
         """The notes to print below a result."""
-        return [f"- {text}" for text in ("" if self.in_si else _BARE, self.filled) if text]
+        return [f"- {text}" for text in (self.filled or ("" if self.in_si else _BARE),) if text]
 
     def shown(self, value: float, kind: str) -> str:
         """Return a number of a result of a kind: with its unit if numbers have units, else bare."""
@@ -117,7 +118,9 @@ def amounts(
     has_unit = [name for name in texts if bare[name] is None]
     of_any = [name for name in texts if bare[name] is not None and _KINDS[name][0] != "time"]
     if machine_file is None and not [name for name in has_unit if _KINDS[name][0] != "time"]:
-        return Amounts({**_plain(given, needed), **{n: _parsed(n, texts[n]) for n in has_unit}}, in_si=False)
+        values, filled = _plain(given, needed)
+        values |= {name: _parsed(name, texts[name]) for name in has_unit}
+        return Amounts(values, in_si=False, filled=filled)
     if of_any:
         raise _without_unit(of_any[0], texts[of_any[0]], has_unit, texts)
     values: dict[str, float | None] = dict.fromkeys(given)
@@ -170,10 +173,18 @@ def _flag(name: str) -> str:
     return "--" + name.replace("_", "-")
 
 
-def _plain(given: Mapping[str, str | None], needed: tuple[str, ...]) -> dict[str, float | None]:
-    """Numbers in any consistent set of units, and the paper's baseline for the rest."""
-    baseline = {name: _BASELINE[name] for name in needed if name in _BASELINE}
-    return {name: baseline.get(name) if text is None else _bare(text) for name, text in given.items()}
+def _plain(
+    given: Mapping[str, str | None], needed: tuple[str, ...]
+) -> tuple[dict[str, float | None], str]:
+    """Numbers in any consistent set of units, the paper's baseline for the rest, and which those are."""
+    lacking = {name: _BASELINE[name] for name in needed if name in _BASELINE and given[name] is None}
+    values = {name: lacking.get(name) if text is None else _bare(text) for name, text in given.items()}
+    assumed = [
+        f"{name.replace('_', ' ')} {three(value, _OF_THE_PAPER[_KINDS[name][0]])}"
+        for name, value in lacking.items()
+        if name != "duration"
+    ]
+    return values, f"{_PAPER_UNITS}. Assumed, as not given: {', '.join(assumed)}." if assumed else ""
 
 
 def _without_unit(name: str, text: str, others: list[str], texts: Mapping[str, str]) -> UnitError:
@@ -189,9 +200,11 @@ def _with_baseline(values: Mapping[str, float | None], lacking: list[str]) -> Am
     for name in lacking:
         kind = _KINDS[name][0]
         taken[name] = parse(kind, f"{_BASELINE[name]!r} {_OF_THE_PAPER[kind]}")
-    baseline = [
-        f"{n.replace('_', ' ')} {three(taken[n], KINDS[_KINDS[n][0]][0])}" for n in lacking if n != "duration"
-    ]
+    baseline = []
+    for name in (name for name in lacking if name != "duration"):
+        kind = _KINDS[name][0]
+        unit, factor = _SHOWN.get(kind, (KINDS[kind][0], 1.0))
+        baseline.append(f"{name.replace('_', ' ')} {three(factor * taken[name], unit)}")
     filled = f"Not given; using the paper's baseline values: {', '.join(baseline)}." if baseline else ""
     return Amounts({**values, **taken}, in_si=True, filled=filled)
 

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hersey.cli.groups import argument, grouped, option
+from hersey.cli.mistyped import LOGS, retyped
 from hersey.cli.options import Force, KeepGoing, Reading, SensorsFile
 from hersey.cli.outputs import NOT_FOUND, may_write
 from hersey.cli.printing import Printing, Quiet
@@ -71,6 +72,12 @@ def add(
     age, is an error; --force replaces it. If one of the logs fails, none is added, unless --keep-going or
     --table is given: then the others are added, and the exit code is 1.
     """
+    if file.suffix.lower() in LOGS:  # its name ends in .hersey
+        typed = sys.argv[3:]
+        raise ParameterError(
+            f"{file} is not a campaign: name one first, and it is created if it does not exist. "
+            f"Type: {retyped('campaign', 'add', 'life.hersey', *typed)}"
+        )
     if table is None and not runs:
         raise ParameterError("name the logs with --unit and --age, or a table of runs with --table")
     if table is not None and (unit or age):

@@ -17,6 +17,7 @@ import typer
 from hersey.charts import PICTURES
 from hersey.cli.progress import working
 from hersey.errors import ExistingFileError, OutputError, printable
+from hersey.files.writing import refuse_without_folder
 
 if TYPE_CHECKING:
     from pydantic import BaseModel
@@ -96,8 +97,7 @@ def may_write(
         exists = os.path.lexists(path)
         if path.is_dir():
             raise OutputError(f"{path} is a directory: name a file in it")
-        if not path.parent.is_dir():
-            raise OutputError(f"{path}: there is no directory {path.parent}")
+        refuse_without_folder(path)
         if exists and (path.is_symlink() or not path.is_file()):
             raise OutputError(f"{path} is not an ordinary file: name another")
         if any(exists and other.exists() and path.samefile(other) for other in inputs):
@@ -136,8 +136,7 @@ def may_write_folder(folder: Path | None, force: bool, flag: str = "--figures") 
             raise OutputError(f"{folder} is a file: {flag} needs a directory")
         if folder.is_dir() and any(map(_counts, folder.iterdir())) and not force:
             raise OutputError(f"{folder} is not empty: use --force to write into it")
-        if not folder.parent.is_dir():
-            raise OutputError(f"{folder}: there is no directory {folder.parent}")
+        refuse_without_folder(folder)
 
 
 def _counts(file: Path) -> bool:

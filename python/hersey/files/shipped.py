@@ -23,10 +23,11 @@ def copy_examples(folder: Path) -> list[Path]:
     OutputError
         If it cannot be written, or if this installation has no examples.
     """
-    from hersey.files.writing import write_all
+    from hersey.files.writing import refuse_without_folder, write_all
 
     home = _home()
     files = sorted(path.relative_to(home) for path in home.rglob("*") if path.suffix in _KINDS)
+    refuse_without_folder(folder)
     try:
         folder.mkdir()
     except FileExistsError:

@@ -8,12 +8,13 @@ from __future__ import annotations
 
 import os
 import secrets
+import shlex
 from collections.abc import Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import BinaryIO
 
-from hersey.errors import OVERWRITE, ExistingFileError, OutputError
+from hersey.errors import OVERWRITE, ExistingFileError, OutputError, way_in
 
 #: End of the name of a file that is not whole yet.
 SUFFIX = ".part"
@@ -21,6 +22,21 @@ SUFFIX = ".part"
 _NAME_BYTES = 200
 #: Files that are not whole yet.
 _unfinished: set[Path] = set()
+
+
+def refuse_without_folder(path: Path) -> None:
+    """Refuse a file, or a folder, that would be in a folder that does not exist.
+
+    Raises
+    ------
+    OutputError
+        It says how to make the folder.
+    """
+    folder = path.parent
+    if folder.is_dir():
+        return
+    make = f"mkdir -p {shlex.quote(str(folder))}" if way_in() == "terminal" else "Path.mkdir(parents=True)"
+    raise OutputError(f"{path}: there is no directory {folder}", remedy=f"make it first: {make}")
 
 
 def write_atomically(path: Path, content: str | bytes, *, overwrite: bool) -> None:

@@ -20,7 +20,7 @@ from typing import Any, Protocol
 from numpy.typing import NDArray
 
 from hersey.errors import OVERWRITE, OutputError, Setting, way_in
-from hersey.files.writing import SUFFIX, unfinished, write_atomically
+from hersey.files.writing import SUFFIX, refuse_without_folder, unfinished, write_atomically
 from hersey.scale.cutting import Cut
 from hersey.schema.warning import Warning
 
@@ -250,8 +250,7 @@ def _written(fill: float) -> float | str:
 def _taken(kind: Kind, out: SweepFolder, scenario: Scenario) -> Iterator[Scenario | None]:
     """Yield the manifest of what was begun and shall go on, or None; what shall go is gone then."""
     path = out.absolute
-    if not path.parent.is_dir():
-        raise OutputError(f"{path}: folder {path.parent} does not exist")
+    refuse_without_folder(path)
     if not path.exists() or (path.is_dir() and not any(path.iterdir())):
         yield None
         return

@@ -14,6 +14,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from hersey.errors import HerseyError, MissingFileError, OutputError, ParameterError
+from hersey.files.writing import refuse_without_folder
 from hersey.life.campaign.content import damaged, refuse_damage, refuse_other_tables
 from hersey.life.campaign.entry import COLUMNS
 from hersey.life.campaign.guarded import LONGEST, GuardedConnection, connect
@@ -104,14 +105,15 @@ def refuse_no_place(path: Path, create: bool) -> None:
             raise ParameterError(f"{path} is not a file. Name a campaign file, e.g. life{SUFFIX}")
         return
     if not create:
-        raise MissingFileError(f"{path} does not exist. Create it with: hersey campaign add {path.name} LOG")
+        raise MissingFileError(
+            f"{path} does not exist. Create it with: hersey campaign add {path.name} LOG --unit F12 --age '310 h'"
+        )
     if path.suffix != SUFFIX:
         raise ParameterError(
             f"{path} is not a campaign name. Give the campaign first, with a name that ends in "
             f"{SUFFIX}, then the logs"
         )
-    if not path.parent.is_dir():
-        raise OutputError(f"{path}: folder {path.parent} does not exist")
+    refuse_without_folder(path)
 
 
 def _connected(path: Path, *, create: bool, write: bool, wait: float) -> GuardedConnection:
