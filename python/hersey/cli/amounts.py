@@ -118,9 +118,8 @@ def amounts(
     has_unit = [name for name in texts if bare[name] is None]
     of_any = [name for name in texts if bare[name] is not None and _KINDS[name][0] != "time"]
     if machine_file is None and not [name for name in has_unit if _KINDS[name][0] != "time"]:
-        values, filled = _plain(given, needed)
-        values |= {name: _parsed(name, texts[name]) for name in has_unit}
-        return Amounts(values, in_si=False, filled=filled)
+        plain, filled = _plain(given, needed)
+        return Amounts(plain | {n: _parsed(n, texts[n]) for n in has_unit}, in_si=False, filled=filled)
     if of_any:
         raise _without_unit(of_any[0], texts[of_any[0]], has_unit, texts)
     values: dict[str, float | None] = dict.fromkeys(given)
@@ -173,9 +172,7 @@ def _flag(name: str) -> str:
     return "--" + name.replace("_", "-")
 
 
-def _plain(
-    given: Mapping[str, str | None], needed: tuple[str, ...]
-) -> tuple[dict[str, float | None], str]:
+def _plain(given: Mapping[str, str | None], needed: tuple[str, ...]) -> tuple[dict[str, float | None], str]:
     """Numbers in any consistent set of units, the paper's baseline for the rest, and which those are."""
     lacking = {name: _BASELINE[name] for name in needed if name in _BASELINE and given[name] is None}
     values = {name: lacking.get(name) if text is None else _bare(text) for name, text in given.items()}

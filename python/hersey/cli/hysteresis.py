@@ -38,7 +38,9 @@ def hysteresis(
     Example: [bold]hersey hysteresis --from-speed 2.5 --to-speed 1.2[/bold]
     """
     if (from_speed is None) != (to_speed is None):
-        given, other = ("--to-speed", "--from-speed") if from_speed is None else ("--from-speed", "--to-speed")
+        given, other = (
+            ("--to-speed", "--from-speed") if from_speed is None else ("--from-speed", "--to-speed")
+        )
         end = f"the speed {'before' if from_speed is None else 'after'} the step"
         raise ParameterError(f"{given} is one end of a step of the drive speed: add {other} with {end}")
 

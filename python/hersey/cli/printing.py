@@ -105,9 +105,11 @@ def write_course(
         if table.path is not None:
             table.write(found.table())
     if not printing.json(found):
-        printing.text(*lines())
-        printing.details("", found.summary())
-        printing.warnings(*found.warnings)
+        if printing.verbose:  # it has the warnings too
+            printing.text(found.summary())
+        else:
+            printing.text(*lines())
+            printing.warnings(*found.warnings)
         if found.found:
             printing.files(table.path, figure.path)
     if not found.found:

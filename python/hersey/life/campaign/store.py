@@ -106,7 +106,8 @@ def refuse_no_place(path: Path, create: bool) -> None:
         return
     if not create:
         raise MissingFileError(
-            f"{path} does not exist. Create it with: hersey campaign add {path.name} LOG --unit F12 --age '310 h'"
+            f"{path} does not exist. Create it with: hersey campaign add {path.name} LOG --unit F12 "
+            "--age '310 h'"
         )
     if path.suffix != SUFFIX:
         raise ParameterError(

@@ -35,6 +35,16 @@ NOTHING: Mapping[str, Any] = {
 }
 
 
+#: SI unit of each limit.
+_UNITS = {
+    "speed": "m/s",
+    "acceleration": "m/s²",
+    "motor_torque": "N·m",
+    "spring_force": "N",
+    "grip": "N",
+}
+
+
 class ProfileRow(NamedTuple):
     """A point of a drive profile."""
 
@@ -160,7 +170,10 @@ class Plan(Result):
             lines += [self.proof(), "", f"  {'time (s)':>12s}  {'drive speed (mm/s)':>18s}"]
             lines += [f"  {time:12.6g}  {1e3 * value:18.6g}" for time, value in self.rows()]
             lines.append("")
-            lines += [f"{use.name.replace('_', ' ')}: {use.used:.4g} of {use.limit:.4g}" for use in self.uses]
+            lines += [
+                f"{use.name.replace('_', ' ')}: {use.used:.4g} of {use.limit:.4g} {_UNITS.get(use.name, '')}"
+                for use in self.uses
+            ]
             lines += [self.temperature_words()] if self.course is not None else []
             lines += [f"- {warning}" for warning in self.warnings]
             lines += [f"- {number} of {self.draws} draws: {why}" for why, number in self.failures.items()]
