@@ -123,7 +123,7 @@ def test_a_table_with_a_mistake_is_refused_whole(folder: Path, table: str, said:
             ["add", "life.hersey", "--table", "0.csv", *F12],
             "the table holds unit and age: omit --unit",
         ),
-        (["add", "0.csv", "1.csv", *F12], "0.csv is not a campaign file"),
+        (["add", "0.csv", "1.csv", *F12], "0.csv is not a campaign: "),
         (["add", "life.hersey", "none.csv", *F12], "File not found: none.csv"),
         (["add", "life.hersey", "0.csv", "none.csv", *F12], "File not found: none.csv"),
         (["add", "life.hersey", "0.csv", "?.csv", *F12], "0.csv is given twice"),

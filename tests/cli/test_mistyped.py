@@ -139,3 +139,22 @@ def test_a_trace_in_the_place_of_a_log_is_sent_to_cycles(tmp_path: Path) -> None
 def test_a_log_without_torque_and_force_is_not_sent_to_cycles(tmp_path: Path) -> None:
     drive(tmp_path, "time [s]", "x [V]", "speed [V]")
     assert "hersey cycles" not in run("report", "a log.csv", cwd=tmp_path).stderr
+
+
+def test_a_missing_folder_comes_with_the_line_that_makes_it(tmp_path: Path) -> None:
+    typed = ["testbench", "--out", "my results/log.csv"]
+    refused = run(*typed, cwd=tmp_path)
+    assert refused.returncode == 2
+    line = refused.stderr.rpartition(": ")[2]
+    assert shlex.split(line) == ["mkdir", "-p", "my results"]
+    (tmp_path / "my results").mkdir()
+    assert run(*typed, cwd=tmp_path).returncode == 0
+
+
+def test_assumed_numbers_are_printed_with_units(tmp_path: Path) -> None:
+    text = run("simulate", "--stiffness", "2000", cwd=tmp_path).words
+    assert "mass 1 ozf*s^2/in" in text
+    assert "stiffness" not in text
+    whole = ["--mass", "1", "--transition-force", "50", "--transition-speed", "1", "--stick-speed", "0.01"]
+    text = run("simulate", "--stiffness", "2000", *whole, "--drive-speed", "1", cwd=tmp_path).words
+    assert "ozf" not in text

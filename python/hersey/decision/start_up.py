@@ -216,12 +216,14 @@ def _failures(count: int) -> dict[str, int]:
 def _obstacle(asked: _Asked, below_transition: float) -> Obstacle:
     speed = f"{1e3 * asked.target:.3g} mm/s"
     if below_transition > 0.0:
-        transition = asked.found.edges(asked.kelvin).transition
-        value, low, high, needed = map(float, np.quantile(transition, (0.5, 0.025, 0.975, SEARCHED)))
+        edges = asked.found.edges(asked.kelvin)
+        value, low, high, needed = map(float, np.quantile(edges.transition, (0.5, 0.025, 0.975, SEARCHED)))
+        safe = float(np.quantile(edges.fold, 0.975))
         text = (
             f"{speed} is below the speed of lowest drag, {1e3 * value:.3g} mm/s [{1e3 * low:.3g}, "
             f"{1e3 * high:.3g}], with {100 * below_transition:.0f} % probability, and steady sliding is "
-            f"unstable there. Choose a target of at least {1e3 * needed:.3g} mm/s"
+            f"unstable there. Choose a target well above {1e3 * needed:.3g} mm/s: from {1e3 * safe:.3g} mm/s "
+            "on the belt slides from any start"
         )
         return Obstacle("target_speed", asked.target, needed, text)
     if asked.limits.speed is not None and asked.target > asked.limits.speed:

@@ -211,7 +211,7 @@ def time_to_failure(
             progress(i + 1, len(indicators.each))
     ending = [each for each in fitted if not each.mode.sign]
     if not ending:
-        why = "; ".join(map(str, warnings)) or "no indicator is given"
+        why = "; ".join(_by_reason(warnings)) or "no indicator is given"
         raise InsufficientDataError(f"no failure mode can be judged: {why}")
     random = np.random.default_rng([seed, 2])
     of_runs = correlations([each.residuals for each in ending])
@@ -236,6 +236,14 @@ def time_to_failure(
         warnings=(*warnings, *unsure(ending, units, _together(ending, of_runs)), *_of_modes(ending, units)),
         seed=seed,
     )
+
+
+def _by_reason(warnings: Sequence[Warning]) -> list[str]:
+    """The reasons why something cannot be judged, each once behind all that it holds for."""
+    concerned: dict[str, list[str]] = {}
+    for each in warnings:
+        concerned.setdefault(each.text, []).append(each.where)
+    return [": ".join(filter(None, (", ".join(where), why))) for why, where in concerned.items()]
 
 
 def _shares(ending: Sequence[FittedWay], new: FloatArray) -> dict[str, Interval]:
