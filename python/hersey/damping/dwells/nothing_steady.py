@@ -7,6 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from hersey.damping.dwells.few_rows import held_for_few_rows
 from hersey.damping.dwells.groups import MIN_SAMPLES, distinct_speeds
 from hersey.damping.dwells.judging import Asked
 from hersey.damping.dwells.points import Rejection
@@ -34,6 +35,8 @@ def nothing_steady(
     log: TorqueLog, rejected: tuple[Rejection, ...], asked: Asked, dwells_with: Callable[[float], int]
 ) -> str:
     """Return the message; ``dwells_with`` counts the dwells that another least duration, s, would give."""
+    if few := held_for_few_rows(log):
+        return few
     name = log.files[0].name + (f" and {len(log.files) - 1} more" if len(log.files) > 1 else "")
     reasons: dict[str, list[Reason]] = {}
     for r in rejected:

@@ -20,6 +20,7 @@ from hersey.damping.dwells.shared_noise import Powers, SharedNoise, shared_noise
 from hersey.damping.dwells.steadiness import MAX_TEMPERATURE_DRIFT, drift_over, straightened
 from hersey.damping.dwells.zero import Zero, standing_stretches, starts_of
 from hersey.errors import TARE, InsufficientDataError, ParameterError
+from hersey.log.channels import MEANS
 from hersey.log.torque_log import Run, TorqueLog
 
 #: Rounds in which dwells are judged again by the noise of those kept, at the most.
@@ -58,7 +59,8 @@ def steady_points(
         raise ParameterError(f"min_dwell is {min_dwell:g} s: it must be greater than 0")
     if log.rows < MIN_SAMPLES:
         raise InsufficientDataError(
-            f"{log.files[0].name} has {log.rows} rows, but one dwell needs at least {MIN_SAMPLES}"
+            f"{log.files[0].name} has {log.rows} rows, but one dwell needs at least {MIN_SAMPLES}",
+            remedy=f"if each row is the mean of a dwell, use {MEANS.to()}",
         )
     return _Reduction(log, tare == "standing", Asked(min_dwell, rotation)).points()
 
