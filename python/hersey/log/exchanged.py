@@ -140,10 +140,9 @@ def _exchanged(run: Run) -> dict[str, str]:
         hot = _Moves.of(np.add.reduceat(run.temperature, starts) / counts, over)
         if found := _with_temperature(hot, **moves):
             return found
-    if moves["torque"].stairs and moves["speed"].unrest > _CLOSER * moves["torque"].unrest:
-        if _range(torque, speed) > _range(speed, torque):
-            return dict(_TWO)
-    return dict(_TWO) if _of_few_drives(np.abs(run.torque), np.abs(run.speed)) else {}
+    closer = moves["torque"].stairs and moves["speed"].unrest > _CLOSER * moves["torque"].unrest
+    found = closer and _range(torque, speed) > _range(speed, torque)
+    return dict(_TWO) if found or _of_few_drives(np.abs(run.torque), np.abs(run.speed)) else {}
 
 
 def _of_few_drives(torque: FloatArray, speed: FloatArray) -> bool:

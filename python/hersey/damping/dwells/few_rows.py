@@ -25,8 +25,8 @@ def held_for_few_rows(log: TorqueLog) -> str:
         return ""
     typical = float(np.median(few))
     return (
-        f"{log.files[0].name}: {len(few)} of {len(lengths)} held speeds have fewer than {MIN_SAMPLES} rows (typically "
-        f"{typical:.0f}), which one dwell needs. Log at least every "
+        f"{log.files[0].name}: {len(few)} of {len(lengths)} held speeds have fewer than {MIN_SAMPLES} rows "
+        f"(typically {typical:.0f}), which one dwell needs. Log at least every "
         f"{0.5 * typical / MIN_SAMPLES * interval:.2g} s, or hold each speed for at least "
         f"{2 * MIN_SAMPLES * interval:.3g} s"
     )
