@@ -26,6 +26,8 @@ _JUMP, _LARGE, _OVER = 0.05, 0.1, 2.0
 _UP_AND_DOWN, _LEVELS = 6, 3
 #: Median change from block to block, as share of the span, of what is held at levels.
 _HELD = 0.005
+#: A temperature that jumps by less, K, may be one that is recorded coarsely.
+_COARSE = 10.0
 #: A speed is held so many times as closely as the torque scatters.
 _CLOSER = 10.0
 #: Span, as share of the median, below which a channel is constant.
@@ -51,13 +53,14 @@ class _Moves:
     down: int
     unrest: float
     constant: bool
+    span: float
 
     @classmethod
     def of(cls, means: FloatArray, over: int) -> _Moves:
         low, high = np.quantile(means, [0.02, 0.98])
         span = float(high - low)
         if span <= 0.0:
-            return cls(0, False, 0, 0, 0.0, True)
+            return cls(0, False, 0, 0, 0.0, True, 0.0)
         ahead, changes = (means[over:] - means[:-over]) / span, np.abs(np.diff(means)) / span
         return cls(
             _times(np.abs(ahead) > _JUMP),
@@ -66,6 +69,7 @@ class _Moves:
             _times(ahead < -_LARGE),
             float(np.median(changes)),
             span < _CONSTANT * abs(float(np.median(means))),
+            span,
         )
 
     @property
@@ -161,15 +165,14 @@ def _with_temperature(hot: _Moves, torque: _Moves, speed: _Moves) -> dict[str, s
     """What the column of a temperature that jumps up and down plays, and which is the temperature."""
     if hot.up + hot.down < _UP_AND_DOWN or not hot.up or not hot.down:
         return {}
-    if hot.stairs and (speed.smooth or speed.constant):
-        if torque.unrest > hot.unrest:
-            return {"temperature": "speed", "speed": "temperature"}
-        return {"temperature": "torque", "speed": "temperature", "torque": "speed"}
+    levels = hot.stairs and hot.span > _COARSE
+    if levels and (speed.smooth or speed.constant) and torque.unrest > hot.unrest:
+        return {"temperature": "speed", "speed": "temperature"}
+    if levels and torque.smooth and speed.unrest > hot.unrest:
+        return {"temperature": "speed", "speed": "torque", "torque": "temperature"}
     if speed.stairs and torque.smooth:
         return {"temperature": "torque", "torque": "temperature"}
-    if hot.stairs and torque.smooth and speed.unrest > hot.unrest:
-        return {"temperature": "speed", "speed": "torque", "torque": "temperature"}
-    if torque.stairs and speed.smooth and hot.unrest > torque.unrest:
+    if torque.stairs and not torque.constant and speed.smooth and hot.unrest > torque.unrest:
         return {"temperature": "torque", "torque": "speed", "speed": "temperature"}
     return {}
 
