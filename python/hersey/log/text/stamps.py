@@ -11,7 +11,7 @@ import polars as pl
 
 from hersey.arrays import FloatArray
 from hersey.errors import Setting
-from hersey.log.text.numbers import NumberStyle, is_missing
+from hersey.log.text.numbers import NumberStyle, is_missing, with_thousands
 from hersey.schema.warning import Warning
 
 _CLOCK = r"[0-9]{1,2}:[0-9]{2}:[0-9]{2}([.,][0-9]{1,9})?"
@@ -186,6 +186,9 @@ class Stamps:
 def numbers_in(cells: pl.Series, written: NumberStyle | Stamps) -> tuple[FloatArray, pl.Series]:
     """Return cells of text as numbers, or times in s, and which of them are odd: these become NaN."""
     odd = ~written.readable(cells)
+    if isinstance(written, NumberStyle) and odd.any():  # thousands marks may first come far down a file
+        written = with_thousands(written, cells.filter(odd).str.strip_chars().to_list())
+        odd = ~written.readable(cells)
     values = written.values(cells.set(odd, ""))
     assert values is not None
     return values, odd
