@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import polars as pl
 import pytest
 
 import hersey
@@ -41,3 +42,21 @@ def test_a_slow_drive_of_great_torque_is_not_doubted(tmp_path: Path) -> None:
     path = tmp_path / "log.csv"
     path.write_text("Time [s],Torque [N*m],Speed [rpm],Temperature [degC]\n" + body)
     assert doubtful_units(hersey.read(path)) == []
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "units"),
+    [
+        (77.0, 356.0, ["degF"]),  # from a start at 25 degC
+        (298.0, 454.0, ["K"]),
+        (330.0, 350.0, ["K", "degF"]),
+        (600.0, 900.0, []),
+    ],
+)
+def test_which_unit_of_temperature_would_be_likely(low: float, high: float, units: list[str]) -> None:
+    time = np.arange(STEPS.size) * 0.1
+    degrees = np.linspace(low, high, STEPS.size)
+    table = {"Time [s]": time, "Torque [N*m]": TORQUE, "Speed [rpm]": SPEED, "Temp [degC]": degrees}
+    (warning,) = doubtful_units(hersey.read(pl.DataFrame(table)))
+    assert warning.kind == "unit of temperature doubtful"
+    assert [unit for unit in ("K", "degF", "degC") if f"'{unit}'" in warning.text] == units

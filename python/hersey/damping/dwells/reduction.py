@@ -9,7 +9,7 @@ from hersey.arrays import FloatArray
 from hersey.damping.dwells.groups import MIN_SAMPLES
 from hersey.damping.dwells.judging import Asked, Dwell, Stretch, judged
 from hersey.damping.dwells.noise import mean_and_error
-from hersey.damping.dwells.nothing_steady import nothing_steady
+from hersey.damping.dwells.nothing_steady import nothing_steady, too_brief
 from hersey.damping.dwells.points import Rejection, SteadyPoints
 from hersey.damping.dwells.relaxation import Relaxation, Trend, relaxation
 from hersey.damping.dwells.resolution import Resolution, repeats, rounding_error, step_of
@@ -80,6 +80,8 @@ class _Reduction:
         self.steps = [self._steps(i) for i in range(len(log.runs))]
         self.zero = self._zero(None)
         if subtracted and self.zero is None:
+            if brief := too_brief(log, asked.min_dwell):
+                raise InsufficientDataError(f"{log.files[0].name}: {brief}")
             raise InsufficientDataError(
                 f"the drive never stands still for 2 s, so there is no tare. Omit {TARE.to()}, or set "
                 'tare = "4 mN*m" under [torque] in hersey.toml'
