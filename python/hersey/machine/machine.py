@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass as plain_dataclass
 from dataclasses import field
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import BeforeValidator
@@ -23,6 +23,7 @@ from hersey.lubrication.contact import Contact
 from hersey.lubrication.lubricant import Lubricant
 from hersey.lubrication.mixed import MixedContact, mixed_contact
 from hersey.lubrication.mixed_drag import MixedDrag
+from hersey.machine.at_belt import AtBelt
 from hersey.machine.duty import GearTable, LifeTable, refuse_other_than_all
 from hersey.machine.heat import HeatTable
 from hersey.machine.limits import Limits, OperatingPoint
@@ -174,11 +175,19 @@ class Machine:
 class DrivetrainTable(Table):
     """What moves the belt, and below which speed it sticks, in SI."""
 
-    stiffness: Annotated[float, Quantity("stiffness", 1.0, 1e10)]
-    mass: Annotated[float, Quantity("mass", 1e-6, 1e6)]
-    roll_radius: Annotated[float, Quantity("length", 1e-5, 100.0)]
+    called: ClassVar[Mapping[str, str]] = {
+        "k": "stiffness",
+        "spring": "stiffness",
+        "m": "mass",
+        "weight": "mass",
+        "r": "roll_radius",
+    }
+
+    stiffness: Annotated[float, AtBelt("stiffness", 1.0, 1e10, "11 N/mm")]
+    mass: Annotated[float, AtBelt("mass", 1e-6, 1e6, "11 kg")]
+    roll_radius: Annotated[float, Quantity("length", 1e-5, 100.0, "15 mm")]
     #: Stick speed: results depend on it and logs rarely show it, so state its range in [uncertainty].
-    stick_speed: Annotated[float, Quantity("belt speed", 1e-9, 10.0)]
+    stick_speed: Annotated[float, AtBelt("belt speed", 1e-9, 10.0, "1 mm/s")]
     #: Temperature at which stick_speed holds; without it the reference temperature of the fit.
     stick_speed_temperature: Annotated[float, Quantity("temperature", 150.0, 1000.0, "150 degC")] | None = (
         None

@@ -20,7 +20,7 @@ from hersey.machine.limits import Limits, OperatingPoint
 from hersey.machine.machine import DrivetrainTable
 from hersey.machine.nip import ContactTable, LubricantTable
 from hersey.machine.no_load import RestTable
-from hersey.machine.uncertainty import read_uncertainty
+from hersey.machine.uncertainty import range_ends, read_uncertainty
 from hersey.motion.parameters import KINDS as PARAMETERS
 from hersey.units import KINDS, convert, parse
 
@@ -79,7 +79,7 @@ class Question:
         if not self.unit:
             return text
         value, share = _split(text)
-        parts = re.split(r"\s+to\s+|\s*\u2013\s*", value)
+        parts = range_ends(value) or (value,)
         listed = " to ".join(
             f"{part.strip()} {self.unit}" if _BARE.fullmatch(part) else part for part in parts
         )
@@ -107,8 +107,9 @@ class Question:
     def _uncertain(self, text: str) -> dict[str, Any]:
         value, share = _split(text)
         out: dict[str, Any] = {}
-        if share or re.search(r"\sto\s", value):
-            uncertainty = share or value
+        ends = None if share else range_ends(value)
+        if share or ends:
+            uncertainty = share or " to ".join(ends or ())
             with naming(self.field):
                 known = read_uncertainty(self.field, uncertainty)
             out[f"uncertainty.{self.field}"] = uncertainty
