@@ -115,10 +115,11 @@ class Quantity:
     def _with_unit(self, given: object, _: ValidationInfo[Any]) -> float:
         if not isinstance(given, str):
             assert self.kind is not None
-            numeric = isinstance(given, int | float) and not isinstance(given, bool)
             unit = self.example.partition(" ")[2] or KINDS[self.kind][1]
-            number = f"{given:.15g}" if numeric and math.isfinite(given) else "1"
-            such = f', e.g. "{number} {unit}"'
+            numeric = isinstance(given, int | float) and not isinstance(given, bool) and math.isfinite(given)
+            number = f"{given:.15g}" if numeric else "1"
+            one = given[0] if isinstance(given, list) and len(given) == 1 else None
+            such = f': "{one}"' if isinstance(one, str) else f', e.g. "{number} {unit}"'
             raise UnitError(f"is {_written(given)}, without a unit. Write it in quotes with its unit{such}")
         return self.parsed(given)
 
@@ -365,6 +366,17 @@ def naming(file: str, key: str = "") -> Iterator[None]:
         raise _named(f"{file}: {key}" if key else file, error, key) from None
 
 
+@contextmanager
+def at_line(path: Path, name: str, *place: str) -> Iterator[None]:
+    """Put the file, the line of a place in it, and the name of it before what is raised inside."""
+    try:
+        yield
+    except (ParameterError, UnitError) as error:
+        line = line_of(read_text(path, most=_MOST_BYTES), place)
+        where = f"{path.name}, line {line}" if line else path.name
+        raise _named(f"{where}: {name}", error) from None
+
+
 def _mistake(file: str, error: ValidationError, kind: Any, text: str) -> ParameterError | UnitError:
     """The first mistake in our own words; what is missing comes after what is wrong."""
     first = min(error.errors(), key=lambda mistake: mistake["type"] == "missing")
@@ -401,7 +413,7 @@ def _words(
 def _unknown(loc: tuple[str | int, ...], about: Mapping[str, Any], file: Any) -> str:
     """What to say of a key or a table that is not known: where it belongs, or what was probably meant."""
     key, known, is_table = about["key"], about["known"], isinstance(about["given"], dict)
-    homes = [] if is_table and not loc else list(_homes(file, key))
+    homes = [] if is_table else list(_homes(file, key))
     if loc:
         all_known = f" Known keys: {', '.join(known)}"
         begins = f"{_place(loc, {})} has an unknown key '{key}'."
@@ -413,7 +425,7 @@ def _unknown(loc: tuple[str | int, ...], about: Mapping[str, Any], file: Any) ->
         if homes:
             return f"{begins} It belongs in {' or '.join(homes)}. Move the line there"
         return f"{begins}{_near(key, known)}{all_known}"
-    if homes and not is_table:
+    if homes:
         return f"'{key}' is in no table. It belongs in {' or '.join(homes)}. Write that line above it"
     tables = ", ".join(f"[{name}]" for name in known)
     if not is_table:

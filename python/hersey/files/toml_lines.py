@@ -90,14 +90,17 @@ def explain(text: str, error: ValueError) -> str:
     if not found:
         return ""
     number, correction = found[0]
-    write = [
-        (_COMMENT.fullmatch(line) or line)["body"].strip() or line for line in correction.line.split("\n")
-    ]
+    write = [_without_comment(line) for line in correction.line.split("\n")]
     then = f" Write: {write[0]}" if len(write) == 1 else f" Write two lines: {write[0]} and {write[1]}"
     more = [str(line) for line, _ in found[1:]]
     shown = ", ".join(more[:_NAMED]) + (", ..." if len(more) > _NAMED else "")
     also = f" (correct line{'s' if len(more) > 1 else ''} {shown} too)" if more else ""
     return f"line {number}: {correction.wrong}.{then}{also}"
+
+
+def _without_comment(line: str) -> str:
+    match = _COMMENT.fullmatch(line)
+    return (match["body"].strip() if match else "") or line.strip()
 
 
 def _corrected(text: str, error: ValueError) -> tuple[int, Correction, str, ValueError | None] | None:

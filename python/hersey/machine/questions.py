@@ -57,6 +57,7 @@ class Question:
     needed: bool = False  #: whether its table says nothing without it
     first: bool = False  #: whether it is asked of everyone; the others may be folded
     uncertain: bool = False  #: whether a range, or a share behind the value, is an answer too
+    assumed: str = ""  #: what holds for a person who does not know it, or empty
 
     @property
     def key(self) -> str:
@@ -161,6 +162,8 @@ def _middle(field: str, low: float, high: float, unit: str) -> str:
     return f"{convert(math.sqrt(low * high), si, unit):.4g} {unit}"
 
 
+#: Stick speed of a drive of which it is not known.
+STICK_SPEED = "0.3 mm/s to 3 mm/s"
 #: What is asked about the machine, in the order of the file.
 MACHINE = (
     Question(
@@ -177,7 +180,7 @@ MACHINE = (
     ),
     Question(
         "drivetrain", "stick_speed", "the belt sticks below it; rarely measured, so a range is fine",
-        "0.1 mm/s to 1 mm/s", "mm/s", "", needed=True, first=True, uncertain=True,
+        STICK_SPEED, "mm/s", "", needed=True, first=True, uncertain=True, assumed=STICK_SPEED,
     ),
     Question(
         "drivetrain", "stick_speed_temperature",

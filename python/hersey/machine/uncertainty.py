@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hersey.arrays import FloatArray
-from hersey.errors import ParameterError
+from hersey.errors import ParameterError, meant
 from hersey.motion.parameters import KINDS, OF_THE_BELT
 from hersey.units import KINDS as UNITS
 from hersey.units import parse
@@ -60,7 +60,7 @@ class Uncertainty:
 
 
 def read_uncertainty(parameter: str, text: object) -> Uncertainty:
-    """Return what ``"10 %"``, ``"0.1 mm/s to 1 mm/s"`` or, for an exponent, ``"-0.75 to -0.65"`` says.
+    """Return what ``"10 %"``, ``"0.3 mm/s to 3 mm/s"`` or, for an exponent, ``"-0.75 to -0.65"`` says.
 
     Raises
     ------
@@ -69,11 +69,13 @@ def read_uncertainty(parameter: str, text: object) -> Uncertainty:
 
     Examples
     --------
-    >>> read_uncertainty("stick_speed", "0.1 mm/s to 1 mm/s").limits
-    (0.0001, 0.001)
+    >>> read_uncertainty("stick_speed", "0.3 mm/s to 3 mm/s").limits
+    (0.0003, 0.003)
     """
     if parameter not in OF_THE_BELT:
-        raise ParameterError(f"there is no such parameter. Use one of {', '.join(OF_THE_BELT)}")
+        near = meant(parameter, OF_THE_BELT)
+        hint = f"Did you mean {near}? Use" if near else "Use"
+        raise ParameterError(f"there is no such parameter. {hint} one of {', '.join(OF_THE_BELT)}")
     if not isinstance(text, str):
         raise ParameterError(f"it is {text!r}. Write a string such as '10 %'")
     share = re.fullmatch(r"\s*(?:±\s*|\+/-\s*)?([0-9.]+)\s*%\s*", text)
