@@ -384,25 +384,25 @@ MISTAKES: dict[str, Mistake] = {
     "a gear ratio of 0": Mistake(
         {**GOOD, "hersey.toml": "[torque]\ngear_ratio = 0\n"},
         "fit log.csv",
-        ("hersey.toml: torque.gear_ratio is 0",),
+        ("hersey.toml, line 2: torque.gear_ratio is 0",),
         value_replaced,
     ),
     "an unknown key of a mapping": Mistake(
         {**GOOD, "hersey.toml": '[torque]\nchanel = "Torque"\n'},
         "fit log.csv",
-        ("hersey.toml: [torque] has an unknown key 'chanel'",),
+        ("hersey.toml, line 2: [torque] has an unknown key 'chanel'",),
         key_renamed,
     ),
     "an unknown table of a mapping": Mistake(
         {**GOOD, "hersey.toml": "[torqe]\nsign = 1\n"},
         "fit log.csv",
-        ("hersey.toml: unknown table 'torqe'",),
+        ("hersey.toml, line 1: unknown table 'torqe'",),
         key_renamed,
     ),
     "an unknown key of a machine": Mistake(
         {**GOOD, "machine.toml": MACHINE.replace("stiffness", "stifness")},
         "report log.csv --machine machine.toml",
-        ("machine.toml: [drivetrain] has an unknown key 'stifness'",),
+        ("machine.toml, line 2: [drivetrain] has an unknown key 'stifness'",),
         key_renamed,
     ),
     "an unknown kind of figure": Mistake(

@@ -310,7 +310,7 @@ def _refuse_escapes(file: str, document: Mapping[str, Any], text: str) -> None:
         if set(value) & set("\b\t\n\f\r"):
             line = line_of(text, place)
             written = re.search(r'"(.*?)"\s*(?:#|,|]|$)', text.split("\n")[line - 1]) if line else None
-            if written and "\\" in written[1] and "'" not in written[1]:
+            if written and re.search(r"\\[btnfr]", written[1]) and "'" not in written[1]:
                 raise ParameterError(
                     f"{file}, line {line}: in double quotes a backslash is special, so a path needs single "
                     f"ones. Write: {place[-1]} = '{written[1]}'"
@@ -429,7 +429,8 @@ def _unknown(loc: tuple[str | int, ...], about: Mapping[str, Any], file: Any) ->
         return f"'{key}' is in no table. It belongs in {' or '.join(homes)}. Write that line above it"
     tables = ", ".join(f"[{name}]" for name in known)
     if not is_table:
-        return f"'{key}' is in no table, and no table has such a key. Delete the line. Known tables: {tables}"
+        near = _near(key, known) or " Delete the line."
+        return f"unknown key '{key}', in no table.{near} Known names: {', '.join(known)}"
     return f"unknown table '{key}'.{_near(key, known, '[{}]')} Known tables: {tables}"
 
 

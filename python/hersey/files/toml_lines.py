@@ -8,9 +8,9 @@ import tomllib
 from collections.abc import Iterator
 from typing import NamedTuple
 
-#: Characters of a text in which corrections are tried, lines that are searched back for the start of a list,
-#: and lines that a message names.
-_MOST, _BACK, _NAMED = 100_000, 50, 5
+#: Characters of a text and of a line in which corrections are tried; lines that a message names, and mistakes
+#: of one text that are looked for.
+_MOST, _LONGEST, _NAMED, _REPEATED = 20_000, 500, 5, 10
 #: A key of a table, the value after it, and a comment at the end of a line.
 _KEY = r"[A-Za-z0-9_-]+(?:\.[A-Za-z0-9_-]+)*"
 _STATED = re.compile(r"\s*(?P<key>[^=:\"']+?)\s*(?P<sign>:=|==|=>|=|:)\s*(?P<value>.*)")
@@ -84,7 +84,7 @@ def explain(text: str, error: ValueError) -> str:
         return hint
     found: list[tuple[int, Correction]] = []
     mistake: ValueError | None = error
-    while mistake is not None and len(found) < 30 and (first := _corrected(text, mistake)):
+    while mistake is not None and len(found) < _REPEATED and (first := _corrected(text, mistake)):
         number, correction, text, mistake = first
         found.append((number, correction))
     if not found:
@@ -106,10 +106,10 @@ def _without_comment(line: str) -> str:
 def _corrected(text: str, error: ValueError) -> tuple[int, Correction, str, ValueError | None] | None:
     """Line and correction of the first mistake, the text with it, and the mistake that is next."""
     lines, at = text.split("\n"), place_of(text, error)
-    tried = [number for number in range(at, max(at - _BACK, 0), -1) if number <= len(lines)]
-    for number in tried:
-        line = lines[number - 1]
-        if number < at and "[" not in line:  # what ends a line too late is a list that goes on
+    above = (number for number in range(min(at, len(lines)) - 1, 0, -1) if "= [" in lines[number - 1])
+    for number in (min(at, len(lines)), next(above, 0)):  # what ends a line too late is a list that goes on
+        line = lines[number - 1] if number else ""
+        if not line or len(line) > _LONGEST:
             continue
         for correction in _corrections(line):
             changed = "\n".join([*lines[: number - 1], correction.line, *lines[number:]])
