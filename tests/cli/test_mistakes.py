@@ -106,7 +106,9 @@ def unwrapped(text: str) -> list[str]:
 
 def key_renamed(it: Refused) -> list[str]:
     """Write the key that was meant for the one that is none, in the file that is named."""
-    match = re.search(r"hersey: (\S+): .*unknown (?:key|table) '(\w+)'. Did you mean \[?'?(\w+)", it.message)
+    match = re.search(
+        r"hersey: (\S+?)(?:, line \d+)?: .*unknown (?:key|table) '(\w+)'. Did you mean \[?'?(\w+)", it.message
+    )
     assert match
     path = it.folder / match[1]
     path.write_text(path.read_text().replace(match[2], match[3], 1))
@@ -115,7 +117,7 @@ def key_renamed(it: Refused) -> list[str]:
 
 def value_replaced(it: Refused) -> list[str]:
     """Write the example of the message for the value of the key that it names."""
-    match = re.search(r"hersey: (\S+): \w+\.(\w+) is .*e\.g\. (\S+)$", it.message)
+    match = re.search(r"hersey: (\S+?)(?:, line \d+)?: \w+\.(\w+) is .*e\.g\. (\S+)$", it.message)
     assert match
     path = it.folder / match[1]
     path.write_text(re.sub(rf"{match[2]} = .*", f"{match[2]} = {match[3]}", path.read_text()))
