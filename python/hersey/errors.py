@@ -251,6 +251,10 @@ class UntoldWarning(UserWarning):
         )
 
 
+class PlausibilityWarning(UserWarning):
+    """A value that is possible, but so unusual that its unit is probably wrong."""
+
+
 class SandboxWarning(UserWarning):
     """Untrusted files are read in an incomplete sandbox; ``missing`` names what the system does not have.
 

@@ -141,7 +141,7 @@ _OFFSETS = {
 _SPELLINGS = (
     (r"(?i:(°|º|deg(\.|rees?)?)\s*C|℃|celsius)|C", "degC"),
     (r"(?i:(°|º|deg(\.|rees?)?)\s*F|℉|fahrenheit)|F", "degF"),
-    (r"°\s*K|deg\s*K", "K"),
+    (r"°\s*K|deg\s*K|(?i:kelvin)", "K"),
     (r"(?i:ozf?s?[\s.*·-]?in|in[\s.*·-]?ozf?s?)", "ozf*in"),
     (r"(?i:lbf?s?[\s.*·-]?in|in[\s.*·-]?lbf?s?)", "lbf*in"),
     (r"(?i:lbf?s?[\s.*·-]?ft|ft[\s.*·-]?lbf?s?)", "lbf*ft"),
@@ -272,11 +272,12 @@ def _meant(kind: str, unit: str, alike: float = _ALIKE) -> str:
 
 def nearest_unit(kind: str, unit: str, alike: float = _ALIKE) -> str:
     """Return the usual unit of a kind that one with a slip is nearest to, or an empty text."""
-    from difflib import get_close_matches
+    from difflib import SequenceMatcher
 
-    usual = {_folded(each): each for each in reversed(_USUAL[kind].split())}
-    match = get_close_matches(_folded(unit), usual, n=1, cutoff=alike)
-    return usual[match[0]] if match else ""
+    usual = _USUAL[kind].split()
+    ratios = [SequenceMatcher(None, _folded(each), _folded(unit)).ratio() for each in usual]
+    most = max(ratios)
+    return usual[ratios.index(most)] if most >= alike else ""
 
 
 def _folded(unit: str) -> str:
@@ -324,13 +325,40 @@ def parse(kind: str, text: str) -> float:
         raise UnitError(f"{shown}. Write a number and a unit of {kind}, e.g. '1 {example}'")
     match = re.fullmatch(rf"\s*({_NUMBER})\s*([A-Za-z°ºµμ%℃℉].*?)\s*", text)
     if match is None:
-        number = text.strip() if re.fullmatch(_NUMBER, text.strip()) else "1"
-        raise UnitError(f"'{text}' is not a number with a unit of {kind}. Write e.g. '{number} {example}'")
+        raise UnitError(f"'{text}' is not a number with a unit of {kind}. Write {_written(kind, text)}")
+    if re.match(r"(\S+\s+)?to\s", match[2]):
+        raise UnitError(f"'{text}' is a range. Write one value here, e.g. '{match[1]} {example}'")
     line = conversion(kind, match[2])
     value = line.scale * float(match[1]) + line.offset
     if not math.isfinite(value):
         raise UnitError(f"'{text}' is not a finite number")
     return value
+
+
+def _written(kind: str, text: str) -> str:
+    """A quantity as it was probably meant, or an example."""
+    example = KINDS[kind][1]
+    plain = re.sub(r"^(?:[^\w.+-]+|(?i:ca\.?|about|approx\.?)\s)\s*", "", text.strip())
+    comma = re.fullmatch(r"([-+]?[0-9]+),([0-9]+)([^\d.,].*)?", plain)
+    grouped = re.fullmatch(r"([-+]?[0-9]{1,3}(?:[,.'\s][0-9]{3})+)(?:[.,]([0-9]+))?([^\d.,].*)?", plain)
+    if comma:  # three digits behind it could be thousands
+        numbers, rest = [f"{comma[1]}.{comma[2]}"], comma[3]
+        numbers += [comma[1] + comma[2]] if len(comma[2]) == 3 and len(comma[1]) < 4 else []
+    elif grouped:
+        whole = re.sub(r"[,.'\s]", "", grouped[1])
+        numbers, rest = [f"{whole}.{grouped[2]}" if grouped[2] else whole], grouped[3]
+    elif number := re.match(rf"{_NUMBER}(?![.\d])", plain):
+        numbers, rest = [number[0]], plain[number.end() :]
+    else:
+        return f"e.g. '1 {example}'"
+    unit = (rest or "").strip()
+    unit = "inch" if unit in ('"', "''") else unit
+    try:
+        conversion(kind, unit or example)
+    except UnitError:
+        return f"e.g. '{numbers[0]} {example}'"
+    such = "" if unit else "e.g. "
+    return such + " or ".join(f"'{number} {unit or example}'" for number in numbers)
 
 
 def si(kind: str, value: Any) -> Any:
