@@ -31,7 +31,6 @@ BLOCKS = blocks()
 #: What takes more than about two seconds, by the call that does.
 LONG = (
     "compare_models(",
-    "film_life(",
     "follow(",
     "posterior(",
 )
