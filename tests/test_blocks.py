@@ -32,7 +32,6 @@ BLOCKS = blocks()
 LONG = (
     "compare_models(",
     "follow(",
-    "posterior(",
 )
 RUN = {name: code for name, (needs, code) in BLOCKS.items() if not needs}
 QUICK = {name: code for name, code in RUN.items() if not any(call in code for call in LONG)}
