@@ -68,8 +68,11 @@ class IdentifiedDrive(Result):
     decided: bool
     estimates: Annotated[Mapping[str, Estimate], Means("what the record determines")]
     values: Mapping[str, float]
-    known: Mapping[str, float]
-    derived: Mapping[str, Estimate]
+    known: Annotated[Mapping[str, float], Means("parameters that were given")]
+    derived: Annotated[
+        Mapping[str, Estimate],
+        Means("free period, release force, drag at the drive speed; the drive speed if better than stated"),
+    ]
     systematic: Annotated[
         Mapping[str, float], Means("half width added to an interval by the uncertainty of the drive speed")
     ]

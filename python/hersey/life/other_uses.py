@@ -54,7 +54,7 @@ class Use(Record):
 
     torque_limit: Annotated[float | None, Means(unit="N m")]
     coldest: Annotated[float | None, Means("coldest start", "K")]
-    duty: str
+    duty: Annotated[str, Means("as stated, or the one operating point at which the drive then runs")]
     stated: Annotated[
         bool, Means("whether this is the operating condition of the machine file")
     ]  #: the use that the machine file states
