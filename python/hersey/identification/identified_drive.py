@@ -22,7 +22,7 @@ from hersey.motion.drag import Drag
 from hersey.motion.parameters import KINDS, OF_THE_BELT
 from hersey.result import OPEN, Means, Record, Result
 from hersey.schema.warning import Warning
-from hersey.units import argument
+from hersey.units import argument, takes_si
 
 if TYPE_CHECKING:
     import polars as pl
@@ -157,6 +157,7 @@ _UNITS = {
 }
 
 
+@takes_si()
 def identify(
     record: CycleRecord, *, known: Mapping[str, float] | None = None, closures: tuple[str, ...] = COMPARED
 ) -> IdentifiedDrive:
