@@ -66,7 +66,9 @@ def test_no_function_takes_a_value_of_a_wrong_type() -> None:
     for name, function in checked():
         for each in inspect.signature(function).parameters.values():
             call = function if inspect.isfunction(function) else function.__init__
-            door = inspect.getclosurevars(call).nonlocals["door"]
+            while "door" not in (held := inspect.getclosurevars(call).nonlocals):
+                call = call.__wrapped__
+            door = held["door"]
             argument = door.arguments.get(each.name)
             if argument is None or "anything" in argument.kinds:
                 continue

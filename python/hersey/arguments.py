@@ -51,6 +51,7 @@ _ALIASES = {
     "BeltDrag": ("AnyDrag", "FittedLaw"),
     "PowerDrag": ("Drag", "DragTable"),
     "Observations": ("Observations", "MeansTable"),
+    "SharedLoad": ("MixedContact",),
 }
 _SHOWN = {"AnyDrag": "Drag", "FittedLaw": "DampingSurface"}
 _SHOWN |= {"Observations": "SteadyPoints", "MeansTable": "SteadyPoints"}
@@ -59,6 +60,7 @@ _CLASSES = {*_SOURCES, *_OTHERS, *_SHOWN, *(name for names in _ALIASES.values() 
 _PLAIN = {"float": "number", "int": "whole", "bool": "switch", "str": "text", "Path": "path", "None": "none"}
 _COLLECTIONS = {"Mapping": "mapping", "dict": "mapping", "Sequence": "sequence", "tuple": "sequence"}
 _COLLECTIONS |= {"list": "sequence", "Callable": "function"}
+_PLAIN |= {"Share": "number", "Text": "text"}
 _ARRAYS = ("ArrayLike", "FloatArray", "IntArray", "NDArray")
 _IN_WORDS = {
     "number": "a number",
@@ -134,11 +136,7 @@ class _Argument:
         fits = (
             any(each.__name__ in self.classes for each in type(value).__mro__)
             or ("mapping" in self.kinds and isinstance(value, Mapping))
-            or (
-                "sequence" in self.kinds
-                and not isinstance(value, Mapping | set)
-                and hasattr(value, "__len__")
-            )
+            or ("sequence" in self.kinds and hasattr(value, "__getitem__") and not isinstance(value, Mapping))
             or ("function" in self.kinds and callable(value))
             or ("whole" in self.kinds and isinstance(value, Integral))
             or ("number" in self.kinds and isinstance(value, Real))
