@@ -143,7 +143,7 @@ class MeasuredRange:
         """Warn of speeds and temperatures outside; of a schedule, its highest speed and its temperatures."""
         for name, value in speeds.items():
             high = float(np.max(getattr(value, "values", value)))
-            below = not hasattr(value, "values") and high < self.speed[0] * (1.0 - _GRAZED)
+            below = not hasattr(value, "values") and 0 < high < self.speed[0] * (1.0 - _GRAZED)
             if below or high > self.speed[1] * (1.0 + _GRAZED):
                 low, top = (f"{1e3 * each:.4g}" for each in self.speed)
                 _warn_extrapolated(name, f"{1e3 * high:.4g} mm/s", f"{low} to {top} mm/s", stacklevel + 1)
