@@ -393,7 +393,7 @@ def numbers(name: str, value: Any, *, one: bool) -> Any:
     try:
         array = np.asarray(value, dtype=float)
     except (TypeError, ValueError):
-        raise ArgumentError(f"{name} is {described(value)}. It must be {wanted}") from None
+        raise ArgumentError(f"{name} is not {wanted}, but {described(value)}") from None
     if np.asarray(value).dtype.kind in "mMc":
         raise ArgumentError(f"{name} is {described(value)}. It must be {wanted}")
     if one and array.size != 1:

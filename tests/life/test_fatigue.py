@@ -202,7 +202,7 @@ def test_units_at_the_door() -> None:
         (lambda: rainflow_cycles([1.0, math.nan, 2.0]), "sample 1"),
         (lambda: rainflow_cycles([]), "empty"),
         (lambda: rainflow_cycles([[1.0, 2.0]]), "2 dimensions"),
-        (lambda: rainflow_cycles(["a"]), "signal is a list"),
+        (lambda: rainflow_cycles(["a"]), "not a number"),
         (lambda: damage_rate([1.0, 2.0], 0.0, CURVE), "duration is 0"),
         (lambda: miner_damage(block(1.0, 1), CURVE, ratio=-1.0), "ratio is -1"),
         (lambda: life_of(-1.0), "rate is -1"),
