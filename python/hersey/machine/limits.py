@@ -10,10 +10,18 @@ from pydantic.dataclasses import dataclass
 from hersey.files.toml import Quantity, Share, Table, Text
 from hersey.machine.at_belt import AtBelt
 from hersey.motion.belt import Drivetrain
+from hersey.units import takes_si
 
 _Speed = Annotated[float, AtBelt("belt speed", 1e-6, 1e3)]
 
 
+@takes_si(
+    motor_torque="torque",
+    nip_load="force",
+    acceleration="acceleration",
+    speed="belt speed",
+    spring_force="force",
+)
 @dataclass(frozen=True)
 class Limits(Table):
     """Limits of the machine, in SI; None where not stated.
@@ -55,6 +63,7 @@ class Limits(Table):
         return train if train.grip is not None else replace(train, grip=self.grip)
 
 
+@takes_si(speed="belt speed", temperature="temperature")
 @dataclass(frozen=True)
 class OperatingPoint(Table):
     """A named state of the machine: belt speed (m/s) and temperature (K).

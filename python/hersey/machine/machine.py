@@ -35,7 +35,7 @@ from hersey.machine.sharing import NEEDED, AsperitiesTable, BoundaryTable
 from hersey.machine.uncertainty import Uncertainty, read_uncertainty
 from hersey.motion.belt import Drivetrain
 from hersey.motion.heat import HeatBalance
-from hersey.units import fields_in_si, takes_si
+from hersey.units import takes_si
 
 #: Belt speed (m/s) whose film says which law holds, where the machine states no points.
 _USUAL_SPEED = 0.1
@@ -53,6 +53,7 @@ _KINDS = {
 }
 
 
+@takes_si(**_KINDS)
 @plain_dataclass(frozen=True)
 class Machine:
     """The machine, in SI.
@@ -87,10 +88,6 @@ class Machine:
     life: LifeTable = field(default_factory=LifeTable)
     gear: GearTable | None = None
     heat: HeatBalance | None = None
-
-    def __post_init__(self) -> None:
-        """Bring the values to SI if they come with units."""
-        fields_in_si(self, _KINDS)
 
     def __repr__(self) -> str:
         """Return what moves the belt, with units, and how many operating points there are, on one line."""
@@ -239,6 +236,7 @@ def _refuse_another(path: Path, document: Mapping[str, Any]) -> None:
             )
 
 
+@takes_si()
 def read_machine(path: str | Path) -> Machine:
     """Read ``[drivetrain]``, and the other tables if they are there.
 

@@ -11,12 +11,13 @@ from hersey.arrays import FloatArray
 from hersey.errors import ParameterError, meant
 from hersey.motion.parameters import KINDS, OF_THE_BELT
 from hersey.units import KINDS as UNITS
-from hersey.units import parse
+from hersey.units import parse, takes_si
 
 #: Standard deviations that enclose 95 % of a normal distribution on either side.
 _DEVIATIONS = 1.96
 
 
+@takes_si()
 @dataclass(frozen=True)
 class Uncertainty:
     """Either a share of the value, or a range of SI values.
