@@ -227,7 +227,7 @@ function operatingMap(place, map, move = null) {
     const valued = (values) => {
       if (!setting && hot) return "";
       const value = millimetres(valueAt(values, setting?.temperature ?? 0));
-      return `, ${digits(value, value >= 100 ? 3 : 2)}${at}`;
+      return ` ${digits(value, value >= 100 ? 3 : 2)} mm/s${at}`;
     };
     entry("transition", `transition${valued(edges.transition)}`);
     if (!edges.folds) entry("fold", "V*: not computed for this closure");

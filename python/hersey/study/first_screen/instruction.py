@@ -44,6 +44,10 @@ _SLIDES_ON = Words(
     "may stick from rest, and is smooth once it slides",
     "may stick from rest, and are smooth once they slide",
 )
+_SLIDES_ON_ONLY = Words(
+    "sticks from rest, and is smooth once it slides",
+    "stick from rest, and are smooth once they slide",
+)
 _NOT_KNOWN = Words(
     "cannot be judged: torque may still fall at the fastest dwell",
     "cannot be judged: torque may still fall at the fastest dwell",
@@ -81,7 +85,7 @@ def of_machine(found: Behaviour, map_: OperatingMap, unit: str) -> Instruction:
         here = "" if kelvin is None else f" at {degrees(kelvin)}"
         interval = _interval(f"V*, above which stick-slip cannot last{here}, is", fold)
     else:
-        interval = _interval(f"{where}drag is lowest at", turn)
+        interval = _interval(f"{where}torque is lowest, at the transition, at", turn)
     said, signal = _of_points(found)
     general, of_general = _general(edges, map_, unit)
     if not said:
@@ -116,7 +120,7 @@ def _verdict_words(found: PointBehaviour) -> tuple[Words, Signal]:
     if kind == "unknown" and found.verdict.probability.unknown > 1.0 - SAFE:
         return _NOT_KNOWN, "watch"
     if kind == "depends" and not planned:
-        return _SLIDES_ON, "act"
+        return _SLIDES_ON_ONLY if found.verdict.sticks_from_rest >= SAFE else _SLIDES_ON, "act"
     if kind in ("depends", "unknown") and planned:
         return Words("needs the start-up profile", "need the start-up profile"), "watch"
     return _OF_KIND[kind]
@@ -146,6 +150,9 @@ def _slides(edges: Edges) -> str:
 
 
 def _below(edges: Edges) -> str:
+    turn = edges.transition
+    if edges.turns:
+        return f"{between('Below the transition,', turn.value, turn.low, turn.high)}, it sticks."
     return f"Below {figures(1e3 * edges.sticks_below, up=False)} mm/s it sticks."
 
 
