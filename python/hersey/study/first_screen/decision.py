@@ -28,7 +28,7 @@ def decision(known: Findings) -> DecisionPart:
         return unanswered(question, known)
     trend = trend_of(Observations.of(points))
     if known.behaviour is None or map_ is None:
-        said = of_log(surface, trend)
+        said = of_log(known, trend)
     else:
         said = of_machine(known.behaviour, map_, known.units["torque"])
     of_points = _of_points(known, rises=trend.rises and not trend.falls)

@@ -7,12 +7,16 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from hersey.damping.surface import DampingSurface
+import numpy as np
+
+from hersey.damping.dwells import groups_of_temperature
+from hersey.damping.estimate import Estimate
 from hersey.damping.trend import Trend
 from hersey.decision.behaviour import Behaviour, PointBehaviour
 from hersey.decision.edges import Edge, Edges, edges_of
 from hersey.posterior.result import SAFE
 from hersey.stability.operating_map import OperatingMap
+from hersey.study.findings import Findings
 from hersey.study.first_screen.result import Signal
 from hersey.study.first_screen.words import (
     at,
@@ -28,6 +32,7 @@ from hersey.study.first_screen.words import (
     torque,
     within,
 )
+from hersey.verdict.regimes import named_in_words, neighbours
 
 #: Signals, the gravest last.
 _ORDER: tuple[Signal, ...] = ("good", "watch", "act")
@@ -160,33 +165,57 @@ def _capital(text: str) -> str:
     return f"{text[:1].upper()}{text[1:]}"
 
 
-def of_log(surface: DampingSurface, trend: Trend) -> Instruction:
-    """Return what the log alone tells, in speeds of the roll."""
+def of_log(known: Findings, trend: Trend) -> Instruction:
+    """Return what the log alone tells, in speeds of the roll: what is known first, then what is missing."""
+    surface = known.surface
     if surface.transition is None:
-        return _one_branch(surface, trend)
+        return _one_branch(known, trend)
     ends = [None] if surface.b is None or surface.temperature_range is None else [*surface.temperature_range]
     kelvin = max(ends, key=surface.transition_speed)
     found = surface.transition_estimate(kelvin)
-    lead = at(kelvin)
-    slower = "Below it torque rises as the drive slows, and stick-slip is possible"
-    if not found.estimable:
-        text = _lead(lead, f"keep the roll well above {roll(found.value)} rpm")
-        interval = f"torque is lowest at {roll(found.value)} rpm, interval not known"
-        return Instruction("watch", text, interval, f"{slower}.")
-    factor = 60.0 / math.tau
-    value, low, high = found.value, found.low, found.high
-    text = _lead(lead, f"keep the roll above {figures(high * factor, up=True)} rpm")
-    interval = f"torque is lowest at {roll(value)} rpm {within(low, high, factor)} (95 %)"
-    safe = "The safe speed may be higher. To find it, add a machine file."
-    return Instruction("watch", text, interval, f"{slower}. {safe}")
+    lowest, factor = f"torque is lowest at {roll(found.value)} rpm", 60.0 / math.tau
+    if found.estimable:
+        lowest += f" {within(found.low, found.high, factor)}"
+        least = f"above {figures(found.high * factor, up=True)} rpm"
+    else:
+        lowest += ", interval not known"
+        least = f"well above {roll(found.value)} rpm"
+    otherwise = f"{_sides(known, kelvin, found)} Keep the roll {least}; the safe speed may be higher."
+    if known.machine is None:
+        otherwise += " To find it, add stiffness and mass in a machine file."
+    text = _lead(at(kelvin), f"{lowest}. The safe speed is not yet known")
+    return Instruction("watch", text, f"above the minimum, {_exponent(known)}", otherwise)
 
 
-def _one_branch(surface: DampingSurface, trend: Trend) -> Instruction:
+def _sides(known: Findings, kelvin: float | None, turn: Estimate) -> str:
+    """On which side of the least torque the tested speeds lie, at the temperature that is spoken of."""
+    speeds = np.abs(known.points.column("speed"))
+    if kelvin is not None:
+        levels = known.points.column("temperature")
+        groups = list(groups_of_temperature(levels))
+        speeds = speeds[min(groups, key=lambda group: abs(float(np.mean(levels[group])) - kelvin))]
+    low, high = (turn.low, turn.high) if turn.estimable else (turn.value, turn.value)
+    below, above = speeds[speeds < low], speeds[speeds > high]
+    where = f"The tested speeds up to {roll(below.max())} rpm lie below the minimum:" if below.size else "Below it"
+    said = f"{where} torque rises as the drive slows, and stick-slip is possible."
+    return f"{said} Those from {roll(above.min())} rpm lie above it." if below.size and above.size else said
+
+
+def _exponent(known: Findings) -> str:
+    """How damping varies with speed, and the lubrication that this points to."""
+    c, named = known.surface.c, known.regime.named
+    value = f"damping varies as speed^{signed(c.value)}"
+    value += f" [{signed(c.low)}, {signed(c.high)}]" if c.estimable else ", interval not determined"
+    if named is not None:
+        return f"{value}, as expected for {named_in_words(named)}"
+    nearest = neighbours(c.value)
+    return f"{value}, {nearest}" if nearest else value
+
+
+def _one_branch(known: Findings, trend: Trend) -> Instruction:
     """What a log says whose fit shows no transition; claims are tested on the dwells themselves."""
-    low, high = (roll(speed) for speed in surface.speed_range)
-    c = surface.c
-    interval = f"exponent of damping {signed(c.value)}"
-    interval += f" [{signed(c.low)}, {signed(c.high)}]" if c.estimable else ", interval not determined"
+    low, high = (roll(speed) for speed in known.surface.speed_range)
+    c, interval = known.surface.c, _exponent(known)
     if trend.falls and not trend.rises:
         return Instruction(
             "watch",
@@ -197,10 +226,10 @@ def _one_branch(surface: DampingSurface, trend: Trend) -> Instruction:
     if trend.falls:
         return Instruction(
             "watch",
-            f"Keep the roll well above {roll(trend.least)} rpm: below it torque rises as the drive slows",
+            f"Torque is lowest near {roll(trend.least)} rpm, and below that rises as the drive slows",
             interval,
-            "Torque falls and rises with speed, but no transition can be determined. Record more "
-            f"dwells below {roll(trend.least)} rpm.",
+            f"Keep the roll well above {roll(trend.least)} rpm; the safe speed is not yet known. To determine "
+            "the transition, record more dwells below that speed.",
         )
     if trend.constant:
         # the exponent of one law may exclude a level torque where no test without a law does
