@@ -178,7 +178,7 @@ def test_a_start_is_as_sure_as_the_force_that_it_takes(
     said = decide(_with_motor(near, share))
     assert (said.points[0].verdict, said.points[0].signal) == (kind, signal)
     if kind == "unknown":
-        assert said.points[0].words.startswith("may not start (38 %): starting from rest takes ")
+        assert said.points[0].words.startswith("may not start (38 %) or may stick (under 1 %): starting")
         assert said.flags[0].title == "The motor may not start the belt"
 
 

@@ -78,7 +78,9 @@ def test_warnings_of_the_machine(decide: Decide, found: Behaviour, map_: Operati
     bare = replace(map_, train=replace(map_.train, grip=None))
     far = tuple(replace(p, at=replace(p.at, extrapolated=p.name == "crawl")) for p in map_.points)
     titles = {f.title: f.text for f in decide(replace(found, points=(), map=replace(bare, points=far))).flags}
-    assert titles["Operating points are extrapolated"] .startswith("the dwells do not reach crawl: they range from ")
+    assert titles["Operating points are extrapolated"].startswith(
+        "the dwells do not reach crawl: they range from "
+    )
     assert titles["The roll may slip at the start"].startswith("the grip of the roll is not stated")
     gripping = replace(map_, train=replace(map_.train, grip=1e6))
     assert "The roll may slip at the start" not in {
@@ -131,7 +133,11 @@ def test_warnings_of_the_log(points: hersey.SteadyPoints, surface: DampingSurfac
         return {flag.title: flag.text for flag in flags(Findings(points=dwells, surface=fit, regime=log))}
 
     calm = told(named="soft EHL")
-    titles = ("Few dwells support the falling branch", "The load varies", "The lubrication regime is not determined")
+    titles = (
+        "Few dwells support the falling branch",
+        "The load varies",
+        "The lubrication regime is not determined",
+    )
     assert not {*titles, "Points scatter 6 % about the fit"} & calm.keys()
     noisy = replace(surface, statistics=replace(surface.statistics, scatter=0.06))
     shown = told(fit=noisy, named="soft EHL")

@@ -19,7 +19,17 @@ from hersey.schema.warning import Warning
 from hersey.stability.operating_map import OperatingMap
 from hersey.study.findings import Findings
 from hersey.study.first_screen.reasons import in_words
-from hersey.study.first_screen.words import at, between, degrees, figures, listed, mm, signed, starting, torque
+from hersey.study.first_screen.words import (
+    at,
+    between,
+    degrees,
+    figures,
+    listed,
+    mm,
+    signed,
+    starting,
+    torque,
+)
 from hersey.study.nip_film import FilmPart, VerdictPart
 from hersey.study.torque_budget import TorqueBudgetPart
 from hersey.verdict.warnings import SCATTER
@@ -41,7 +51,8 @@ def flags(known: Findings) -> list[Warning]:
     """
     points, surface, found, map_ = known.points, known.surface, known.behaviour, known.map
     out = [] if found is None else _unused(found)
-    out += [*_contradictions(known.nip, known.torque_budget), *_of_log(points, surface)]
+    turns = found is None or map_ is None or edges_of(found.posterior, found.temperature).turns
+    out += [*_contradictions(known.nip, known.torque_budget), *_of_log(points, surface, asked=not turns)]
     if known.why:
         out.append(Warning("no band", "{why}", severity="act", title="No band", where="band", why=known.why))
     if found is not None and map_ is not None:
@@ -149,12 +160,12 @@ def _whole(points: SteadyPoints, found: Behaviour, unit: str) -> Iterator[Warnin
         least = float(np.min(np.abs(points.column("torque"))))
         yield Warning(
             "torque of more than the film",
-            "{fold}, assumes that the whole torque, {shown} at its lowest, comes from the film. If part of "
+            "{fold} assumes that the whole torque, {shown} at its lowest, comes from the film. If part of "
             "it is that of bearings, gears or rubber, V* is higher. State that part in [rest]",
             severity="watch",
             title="Torque may hold more than the film",
             where="data",
-            fold=between("V*,", fold.value, fold.low, fold.high),
+            fold=between("V* of", fold.value, fold.low, fold.high) if fold.estimable else "V*",
             least=least,
             shown=torque(least, unit),
         )
@@ -255,8 +266,8 @@ def _unused(found: Behaviour) -> list[Warning]:
     if not found.posterior.convergence.converged:
         agreed = found.posterior.convergence
         words = (
-            "two runs of the sampler differ by up to {apart:.2g %} in V*, and {distinct:.2g %} of the draws "
-            "are distinct. Treat the intervals as rough, or run hersey posterior"
+            "V* of two runs of the sampler differs by a factor of up to {apart:.2f}, and {distinct:.0f %} of "
+            "the draws are distinct. Treat the intervals as rough, or run hersey posterior"
         )
         warning = Warning(
             "not converged",
@@ -264,7 +275,7 @@ def _unused(found: Behaviour) -> list[Warning]:
             severity="watch",
             title="V* has not converged",
             where="band",
-            apart=agreed.ratio - 1.0,
+            apart=agreed.ratio,
             distinct=agreed.distinct,
         )
         out.append(warning)
@@ -287,20 +298,29 @@ def _plans(found: Behaviour) -> Iterator[Warning]:
             )
 
 
-def _of_log(points: SteadyPoints, surface: DampingSurface) -> Iterator[Warning]:
-    """What is doubtful in the log itself: a unit or a zero shifts every number."""
+def few_slow_dwells(points: SteadyPoints, surface: DampingSurface) -> bool:
+    """Return whether too few dwells lie below the transition."""
+    return surface.transition is not None and _below(points, surface) <= _FEW
+
+
+def _of_log(points: SteadyPoints, surface: DampingSurface, *, asked: bool) -> Iterator[Warning]:
+    """What is doubtful in the log itself: a unit or a zero shifts every number.
+
+    ``asked``: the instruction asks for slower dwells already.
+    """
     for each in doubtful_units(points.log)[:1]:
         yield each.titled("A unit is doubtful", section="data")
     for each in doubtful_tare(points)[:1]:
         yield each.titled("The zero is doubtful", section="data")
-    if surface.transition is not None and (below := _below(points, surface)) <= _FEW:
+    if few_slow_dwells(points, surface):
         yield Warning(
             "few slow dwells",
-            "only {below} of {dwells} dwells lie below the transition. Measure slower dwells",
+            "only {below} of {dwells} dwells lie below the transition",
             severity="watch",
             title="Few dwells support the falling branch",
             where="torque",
-            below=below,
+            below=_below(points, surface),
+            remedy="" if asked else "measure slower dwells",
             dwells=len(points),
         )
     if surface.transition is not None and surface.transition.freed is not None:

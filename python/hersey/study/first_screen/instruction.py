@@ -19,6 +19,7 @@ from hersey.stability.operating_map import OperatingMap
 from hersey.study.findings import Findings
 from hersey.study.first_screen.result import Signal
 from hersey.study.first_screen.words import (
+    MINUS,
     at,
     between,
     degrees,
@@ -27,12 +28,11 @@ from hersey.study.first_screen.words import (
     mm,
     per_cent_of,
     roll,
-    signed,
     starting,
     torque,
     within,
 )
-from hersey.verdict.regimes import named_in_words, neighbours
+from hersey.verdict.regimes import FALLING, named_in_words, neighbours
 
 #: Signals, the gravest last.
 _ORDER: tuple[Signal, ...] = ("good", "watch", "act")
@@ -77,8 +77,11 @@ class Instruction:
     otherwise: str
 
 
-def of_machine(found: Behaviour, map_: OperatingMap, unit: str) -> Instruction:
-    """Return what to do with a machine whose drives were drawn; torques in a unit."""
+def of_machine(found: Behaviour, map_: OperatingMap, unit: str, *, few: bool = False) -> Instruction:
+    """Return what to do with a machine whose drives were drawn; torques in a unit.
+
+    ``few`` says that too few slow dwells were recorded, so that one instruction asks for all that is missing.
+    """
     kelvin = found.temperature
     edges = edges_of(found.posterior, kelvin)
     where, fold, turn = at(kelvin), edges.fold, edges.transition
@@ -86,13 +89,14 @@ def of_machine(found: Behaviour, map_: OperatingMap, unit: str) -> Instruction:
         return _not_started(where, kelvin, edges, map_, unit)
     if not edges.turns:
         interval = f"{where}V* is not known: torque may still fall at the fastest dwell"
+        interval += f". Record faster {'and slower ' if few else ''}dwells" if found.points else ""
     elif edges.bistable:
         here = "" if kelvin is None else f" at {degrees(kelvin)}"
         interval = _interval(f"V*, above which stick-slip cannot last{here}, is", fold)
     else:
         interval = _interval(f"{where}torque is lowest, at the transition, at", turn)
     said, signal = _of_points(found)
-    general, of_general = _general(edges, map_, unit)
+    general, of_general = _general(edges, map_, unit, few=few)
     if not said:
         return Instruction(
             of_general, f"{where}{general}" if where else _capital(general), interval, _below(edges)
@@ -131,12 +135,14 @@ def _verdict_words(found: PointBehaviour) -> tuple[Words, Signal]:
     return _OF_KIND[kind]
 
 
-def _general(edges: Edges, map_: OperatingMap, unit: str) -> tuple[str, Signal]:
-    """What to do without operating points."""
+def _general(edges: Edges, map_: OperatingMap, unit: str, *, few: bool) -> tuple[str, Signal]:
+    """What to do without operating points; ``few``: slower dwells are needed, too."""
     if not math.isfinite(edges.safe):
         if not edges.turns:
             return (
-                "record faster dwells: torque may still fall at the fastest, so V* is not known",
+                "record faster and slower dwells: torque may still fall at the fastest, so V* is not known"
+                if few
+                else "record faster dwells: torque may still fall at the fastest, so V* is not known",
                 "watch",
             )
         return "do not rely on a start from rest: no speed is known to be smooth", "watch"
@@ -196,7 +202,11 @@ def _sides(known: Findings, kelvin: float | None, turn: Estimate) -> str:
         speeds = speeds[min(groups, key=lambda group: abs(float(np.mean(levels[group])) - kelvin))]
     low, high = (turn.low, turn.high) if turn.estimable else (turn.value, turn.value)
     below, above = speeds[speeds < low], speeds[speeds > high]
-    where = f"The tested speeds up to {roll(below.max())} rpm lie below the minimum:" if below.size else "Below it"
+    where = (
+        f"The tested speeds up to {roll(below.max())} rpm lie below the minimum:"
+        if below.size
+        else "Below it"
+    )
     said = f"{where} torque rises as the drive slows, and stick-slip is possible."
     return f"{said} Those from {roll(above.min())} rpm lie above it." if below.size and above.size else said
 
@@ -204,11 +214,12 @@ def _sides(known: Findings, kelvin: float | None, turn: Estimate) -> str:
 def _exponent(known: Findings) -> str:
     """How damping varies with speed, and the lubrication that this points to."""
     c, named = known.surface.c, known.regime.named
-    value = f"damping varies as speed^{signed(c.value)}"
-    value += f" [{signed(c.low)}, {signed(c.high)}]" if c.estimable else ", interval not determined"
+    value = f"damping varies as speed^{str(c).replace('-', MINUS)}"
+    if named == FALLING:
+        return f"{value}, as in mixed or boundary lubrication"
     if named is not None:
         return f"{value}, as expected for {named_in_words(named)}"
-    nearest = neighbours(c.value)
+    nearest = neighbours(c.value).replace("(-", f"({MINUS}")
     return f"{value}, {nearest}" if nearest else value
 
 
@@ -228,8 +239,8 @@ def _one_branch(known: Findings, trend: Trend) -> Instruction:
             "watch",
             f"Torque is lowest near {roll(trend.least)} rpm, and below that rises as the drive slows",
             interval,
-            f"Keep the roll well above {roll(trend.least)} rpm; the safe speed is not yet known. To determine "
-            "the transition, record more dwells below that speed.",
+            f"Keep the roll well above {roll(trend.least)} rpm; the safe speed is not yet known. To "
+            "determine the transition, record more dwells below that speed.",
         )
     if trend.constant:
         # the exponent of one law may exclude a level torque where no test without a law does

@@ -115,7 +115,7 @@ def _judged(
     if kind == "sticks":
         turn = edges.transition
         if not edges.turns:
-            return "act", "sticks from any start: drag falls at this speed"
+            return "act", f"sticks from any start ({per_cent(chances.sticks)}): torque falls at this speed"
         lowest = between("the transition is", turn.value, turn.low, turn.high)
         return "act", f"sticks from any start ({per_cent(chances.sticks)}): {lowest}"
     if kind == "smooth":
@@ -123,7 +123,8 @@ def _judged(
     if chances.unknown > 1.0 - SAFE:
         return "watch", "cannot be judged: torque may still fall at the fastest dwell"
     if verdict.starts < 1.0 and edges.starts is None:
-        return "watch", f"may not start ({per_cent(1.0 - verdict.starts)}): {needs}"
+        chance = f"may not start ({per_cent(1.0 - verdict.starts)})"
+        return "watch", f"{chance} or may stick ({per_cent(verdict.sticks_from_rest)}): {needs}"
     return _with_plan(found, verdict)
 
 
