@@ -166,16 +166,16 @@ def test_the_verdict_is_that_of_the_core(
     assert ("extrapolated" in verdict(page)) == state.extrapolated
     cycle = cycle_of(native, speed, kelvin)
     if cycle.kind == "stick_slip":
-        assert f"{cycle.frequency:.3g} Hz, stuck {100 * cycle.stuck_fraction:.2g} %" in verdict(page)
+        assert f"{cycle.frequency:.3g} Hz, at rest {100 * cycle.stuck_fraction:.2g} %" in verdict(page)
     if state.state == "bistable":
         page.wait_for_function(
-            "() => document.querySelector('.verdict-line').textContent.includes('survives')"
+            "() => document.querySelector('.verdict-line').textContent.includes('withstands')"
         )
         bears = disturbance(native.train, native.drag, drive_speed=speed, temperature=kelvin).kick
         assert (
-            "survives any speed loss" in verdict(page)
+            "withstands any sudden loss of speed" in verdict(page)
             if np.isinf(bears)
-            else f"survives a loss of {1e3 * bears:.2g} mm/s" in verdict(page)
+            else f"withstands a sudden loss of {1e3 * bears:.2g} mm/s" in verdict(page)
         )
 
 
@@ -272,7 +272,7 @@ def test_the_command_reproduces_the_setting(page: Page, tmp_path: Path) -> None:
         [sys.executable, "-m", "hersey.cli", *words], cwd=tmp_path, capture_output=True, text=True, check=True
     )
     numbers = dict(re.findall(r"(frequency|stuck) +([\d.]+)", ran.stdout))
-    shown = re.search(r"([\d.]+) Hz, stuck ([\d.]+) %", verdict(page))
+    shown = re.search(r"([\d.]+) Hz, at rest ([\d.]+) %", verdict(page))
     assert shown is not None
     assert float(shown[1]) == float(f"{float(numbers['frequency']):.3g}")
     assert float(shown[2]) == float(f"{float(numbers['stuck']):.2g}")

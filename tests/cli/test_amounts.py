@@ -149,7 +149,7 @@ def test_a_machine_brings_grip_motor_and_rest(tmp_path: Path) -> None:
     typed = ["simulate", *drag, "--drive-speed", "20 mm/s", "--machine"]
     weak = run(*typed, "weak.toml", cwd=tmp_path).words
     assert weak.startswith("The belt stalls")
-    assert ", starting at 0.0818182" in weak
+    assert ", starting at 0.0818 s" in weak
     assert "The motor is too weak: the motion needs up to 0.27 of the 0.2 N·m of the motor" in weak
     assert "The roll can pull the belt with up to 18 N. It cannot start a belt at rest" in weak
     free = json.loads(run(*typed, "free.toml", "--json", cwd=tmp_path).stdout)

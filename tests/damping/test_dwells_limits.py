@@ -360,6 +360,14 @@ def test_reasons_are_counted_where_nothing_is_steady() -> None:
     assert said.endswith("A dwell must hold one speed for at least 2 s")
 
 
+def test_a_list_of_reasons_holds_no_instruction() -> None:
+    with pytest.raises(InsufficientDataError) as caught:
+        log_of(dwells(30, 60, 45), -np.ones(1500)).steady()
+    listed, instructions = str(caught.value).split("). ", 1)
+    assert listed.endswith("(3 x torque and speed have opposite signs")
+    assert instructions.startswith("Flip torque or speed with ")
+
+
 def test_what_cannot_be_asked_of_dwells_is_refused() -> None:
     log = log_of(dwells(30, 60), np.ones(1000))
     for bad in (0.0, -1.0, float("inf"), float("nan")):

@@ -95,7 +95,7 @@ def test_what_did_not_change_has_its_place_too(folder: Path) -> None:
     other = replace(found, changes=(moved,))
     told = flags(Findings(points=now, surface=surface, regime=seen, comparison=other))
     assert [flag.severity for flag in told if flag.where == "compare"] == ["watch"]
-    assert any(flag.title == "The model has changed since again.csv" for flag in told)
+    assert any(flag.title == "Fitted parameters have changed since again.csv" for flag in told)
     # more drag by a twentieth somewhere, its limits above 1
     more = replace(found, low=np.full_like(found.low, 1.05), high=np.full_like(found.high, 1.15), changes=())
     told = flags(Findings(points=now, surface=surface, regime=seen, comparison=more))

@@ -40,7 +40,7 @@ def trajectory_chart(run: Trajectory, *, units: tuple[str, str, str] = SI) -> Ch
     changes = f"{len(run.events)} changes of mode" if run.events else "no change of mode"
     words = [f"{run.time.size} samples; {changes}"]
     if run.roll_slips:
-        words.append(f"shaded: {run.slipping_in_words()}")
+        words.append(f"shaded: {run.slipping_in_words(lambda duration: f'{duration:.6g} {time}')}")
     return stacked(*panels, title=alt.Title("Motion of the belt", subtitle=words), spacing=8)
 
 

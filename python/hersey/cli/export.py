@@ -204,7 +204,7 @@ def _contact(machine: Machine, file: str, temperature: float | None) -> MixedDra
     """Drag of the contact model of a machine file, if there is no fit."""
     if machine.mixed is None:
         raise ParameterError(
-            f"{file} has no [asperities] and [boundary], so its drag is not known without a fit: name a fit "
+            f"{file} has no [asperities] and [boundary], so its drag is not known without a fit. Name a fit "
             "before it (hersey fit LOG --machine TOML --json > fit.json), or add both tables"
         )
     if temperature is None:

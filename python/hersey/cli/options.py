@@ -277,7 +277,7 @@ def finished_fit(file: Path, machine: Machine | None = None) -> DampingSurface:
     if surface.rest is None:
         raise ParameterError(
             f"{file.name} was fitted to the whole torque, but {machine.rest.source} states a no-load torque "
-            "to subtract: write the fit again with hersey fit LOG --machine TOML --json, or delete [rest] "
+            "to subtract. Write the fit again with hersey fit LOG --machine TOML --json, or delete [rest] "
             "from the machine file"
         )
     note(f"The no-load torque comes from the fit, {_NOT_OF_FILE}.")

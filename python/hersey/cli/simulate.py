@@ -177,7 +177,8 @@ def _cycle(cycle: StickSlipCycle, numbers: Amounts) -> list[str]:
 def _of_run(run: Trajectory, motor: MotorUse | None, time: float, numbers: Amounts) -> list[str]:
     """What the motion over the time simulated adds: the check, slipping of the roll, and the motor."""
     lines = [] if run.check is None else [f"Check: {run.check}."]
-    slips = f"In {numbers.shown(time, 'time')} of motion {run.slipping_in_words()}."
+    slipping = run.slipping_in_words(lambda duration: numbers.shown(duration, "time"))
+    slips = f"In {numbers.shown(time, 'time')} of motion {slipping}."
     lines += [slips] if run.roll_slips else []
     return lines + ([] if motor is None else [_motor(motor)])
 

@@ -218,8 +218,7 @@ class DampingSurface(FittedLaw):
     def _belt_drag(self, roll_radius: float, temperature: float | None, sticking: dict[str, Any]) -> Drag:
         if self.transition is None:
             raise InsufficientDataError(
-                f"the data show no falling branch: {self.rejected_transition}. Record slower dwells, "
-                "until torque rises as the drive slows"
+                f"the data show no falling branch: {self.rejected_transition}. {what_to_record(self)}"
             )
         if temperature is None and self.b is not None and self.reference_temperature is not None:
             return self._varying_drag(roll_radius, self.reference_temperature, self.b.value, sticking)
@@ -317,8 +316,7 @@ class DampingSurface(FittedLaw):
         """Return the draws of `drag_samples` and its warnings; for threads, which share warnings."""
         if self.transition is None:
             raise InsufficientDataError(
-                f"the data show no falling branch: {self.rejected_transition}. Record slower dwells, "
-                "until torque rises as the drive slows"
+                f"the data show no falling branch: {self.rejected_transition}. {what_to_record(self)}"
             )
         if count < 1 or seed < 0:
             name, value, least = ("count", count, 1) if count < 1 else ("seed", seed, 0)
@@ -426,3 +424,12 @@ class DampingSurface(FittedLaw):
     def to_frame(self) -> pl.DataFrame:
         """Return the coefficients with error and 95 % interval; T of the law in its scale, w in rad/s."""
         return table_of(self)
+
+
+def what_to_record(surface: FittedLaw) -> str:
+    """Return what to record where the data show no transition, as a sentence without its full stop."""
+    if surface.c.high < -1.0:
+        return "Record faster dwells, until torque rises with speed"
+    if surface.c.low > -1.0:
+        return "Record slower dwells, until torque rises as the drive slows"
+    return "Record slower and faster dwells, until torque falls and then rises with speed"

@@ -35,6 +35,11 @@ class Verdict:
     starts: float
     bears: float
 
+    @property
+    def sticks_from_rest(self) -> float:
+        """Probability that the belt sticks if the drive goes straight from rest to the speed."""
+        return self.probability.from_above + self.probability.sticks
+
 
 @dataclass(frozen=True)
 class Unjudged:

@@ -57,7 +57,7 @@ _GROUPS = {
 _EVENTS = {
     "3.0": (
         "With event mode a step returns early at every change of mode (stick, release, start of mixed "
-        "lubrication or full film, start and end of roll slip), so outputs can be read at that moment. "
+        "lubrication or full film, start and end of roll slip). Outputs can be read at that moment. "
         "Without it, steps continue through changes of mode. The motion is the same, because each "
         "change is located to rounding inside the step."
     ),

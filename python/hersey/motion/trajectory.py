@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Annotated, NamedTuple
@@ -115,14 +116,18 @@ class Trajectory(Result):
         spans = zip(begins, [*ends, float(self.time[-1])], strict=False)
         return [(begin, end) for begin, end in spans if end > begin]
 
-    def slipping_in_words(self) -> str:
-        """Return when and how long the roll slips as text; empty if it never does."""
+    def slipping_in_words(self, shown: Callable[[float], str] = "{:.6g}".format) -> str:
+        """Return when and how long the roll slips as text; empty if it never does.
+
+        ``shown`` writes a time, with its unit.
+        """
         if not (spans := self.roll_slips):
             return ""
         total, begin = sum(end - begin for begin, end in spans), spans[0][0]
         if len(spans) == 1:
-            return f"the roll slips on the belt for {total:.6g}, starting at {begin:.6g}"
-        return f"the roll slips on the belt {len(spans)} times for {total:.6g} in total, first at {begin:.6g}"
+            return f"the roll slips on the belt for {shown(total)}, starting at {shown(begin)}"
+        times = f"{len(spans)} times for {shown(total)} in total"
+        return f"the roll slips on the belt {times}, first at {shown(begin)}"
 
     def summary(self) -> str:
         """Return ranges, energies and check as text, in the units of the arguments."""

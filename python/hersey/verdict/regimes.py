@@ -115,6 +115,16 @@ def named_in_words(name: str) -> str:
     return f"a {name}" if name in _COUNTED else name
 
 
+def neighbours(exponent: float) -> str:
+    """Return between which regimes an exponent of damping lies, e.g. ``between soft EHL (-0.60) and ...``."""
+    above = [row for row in REGIMES if row.low > exponent]
+    below = [row for row in REGIMES if row.high < exponent]
+    if not (above and below):
+        return ""
+    ends = ((above[-1].name, above[-1].low), (below[0].name, below[0].high))
+    return "between " + " and ".join(f"{named_in_words(name)} ({value:.2f})" for name, value in ends)
+
+
 def listed(names: list[str]) -> str:
     """Return names as a sentence lists them."""
     return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"

@@ -53,8 +53,8 @@ def doubtful_order(points: SteadyPoints) -> list[Warning]:
     return [
         Warning(
             "in order",
-            "wear-in or other drift cannot be separated from {quantity} and would bias exponent "
-            "{exponent}. Repeat the first {quantity} at the end",
+            "wear-in or other drift would look like an effect of {quantity}. Repeat the first {quantity} "
+            "at the end",
             severity="watch",
             title="{quantity:capital} and time changed together",
             quantity=what,

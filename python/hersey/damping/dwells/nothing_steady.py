@@ -11,8 +11,8 @@ from hersey.damping.dwells.few_rows import held_for_few_rows
 from hersey.damping.dwells.groups import MIN_SAMPLES, distinct_speeds
 from hersey.damping.dwells.judging import Asked
 from hersey.damping.dwells.points import Rejection
-from hersey.damping.dwells.reasons import CAUSES, Reason, cause
-from hersey.errors import ROTATION, Setting
+from hersey.damping.dwells.reasons import CAUSES, Reason, remedies, sizes
+from hersey.errors import ROTATION, Setting, turned
 from hersey.log.channels import EVERY
 from hersey.log.torque_log import NO_CLOCK, Run, TorqueLog
 from hersey.units import rpm
@@ -42,14 +42,23 @@ def nothing_steady(
     for r in rejected:
         reasons.setdefault(r.why.label, []).append(r.why)
     listed = ", ".join(f"{len(alike)} x {_in_short(alike)}" for alike in reasons.values())
-    return f"{name}: no dwell found ({listed}). {_way_out(log, rejected, asked, dwells_with)}"
+    ways = [*(_remedy(alike) for alike in reasons.values()), _way_out(log, rejected, asked, dwells_with)]
+    return f"{name}: no dwell found ({listed}). {'. '.join(filter(None, ways))}"
 
 
 def _in_short(alike: list[Reason]) -> str:
-    """Reasons of one kind in words; what says what to do says it."""
-    if alike[0].kind in CAUSES:
-        return f"{alike[0].label}{cause(alike)}"
-    return str(alike[0]) if alike[0].kind == "opposite signs" else alike[0].label
+    """Reasons of one kind in words, without what to do."""
+    return alike[0].label + (sizes(alike) if alike[0].kind in CAUSES else "")
+
+
+def _remedy(alike: list[Reason]) -> str:
+    """What to do about reasons of one kind, as a sentence without its full stop; or nothing."""
+    if alike[0].kind == "opposite signs":
+        return f"Flip torque or speed with {turned('torque')}"
+    if alike[0].kind == "zero torque":
+        return "Check that the torque sensor is connected"
+    said = remedies(alike) if alike[0].kind in CAUSES else ""
+    return f"{said[:1].upper()}{said[1:]}"
 
 
 def too_brief(log: TorqueLog, min_dwell: float) -> str:

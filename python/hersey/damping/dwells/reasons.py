@@ -154,19 +154,49 @@ def _shares(alike: list[Reason]) -> str:
 
 def cause(alike: list[Reason]) -> str:
     """Return numbers of spikes, or of ripples, over several dwells, and what to do."""
+    return f"{sizes(alike)}: {remedies(alike)}"
+
+
+def sizes(alike: list[Reason]) -> str:
+    """Return numbers of spikes, or of ripples, over several dwells."""
     size = _times(float(median(r.share or 0.0 for r in alike)))
     if alike[0].kind == "spikes":
-        return f" ({sum(r.count for r in alike)} samples, off by {size} the mean): {_SPIKES}"
-    longest = max(alike, key=lambda r: r.frequency * r.lasts)
-    slow, fast = min(r.frequency for r in alike), max(r.frequency for r in alike)
+        return f" ({sum(r.count for r in alike)} samples, off by {size} the mean)"
+    slow, fast = _frequencies(alike)
     low, high = f"{slow:.3g}", f"{fast:.3g}"
     at = f" at {low if low == high else f'{low} to {high}'} Hz, amplitude {size} the mean, "
+    if _once_a_turn(alike):
+        return f"{at}{_longest(alike).turns()}"
+    if _same_frequency(alike):
+        return f"{at}the same at every speed, so not from roll or belt"
     turns = [r.per_turn for r in alike]
-    if max(turns) - min(turns) <= 2.0 * WHOLE_TURN * max(turns):
-        return f"{at}{longest.turns()}: {longest.remedy()}"
-    if len(alike) > 1 and fast - slow <= WHOLE_TURN * fast:
-        return f"{at}the same at every speed, so not from roll or belt: {_OWN}"
-    return f"{at}{min(turns):.3g} to {max(turns):.3g} times per roll revolution: {longest.remedy()}"
+    return f"{at}{min(turns):.3g} to {max(turns):.3g} times per roll revolution"
+
+
+def remedies(alike: list[Reason]) -> str:
+    """Return what to do about spikes, or ripples, over several dwells."""
+    if alike[0].kind == "spikes":
+        return _SPIKES
+    return _OWN if _same_frequency(alike) and not _once_a_turn(alike) else _longest(alike).remedy()
+
+
+def _frequencies(alike: list[Reason]) -> tuple[float, float]:
+    return min(r.frequency for r in alike), max(r.frequency for r in alike)
+
+
+def _once_a_turn(alike: list[Reason]) -> bool:
+    """Whether ripples come equally often in a turn of the roll at all speeds."""
+    turns = [r.per_turn for r in alike]
+    return max(turns) - min(turns) <= 2.0 * WHOLE_TURN * max(turns)
+
+
+def _same_frequency(alike: list[Reason]) -> bool:
+    slow, fast = _frequencies(alike)
+    return len(alike) > 1 and fast - slow <= WHOLE_TURN * fast
+
+
+def _longest(alike: list[Reason]) -> Reason:
+    return max(alike, key=lambda r: r.frequency * r.lasts)
 
 
 def _sentence(text: str) -> str:

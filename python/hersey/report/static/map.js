@@ -21,7 +21,7 @@ function operatingMap(place, map, move = null) {
   place.classList.add("map");
   const caption = add(place, "div", "", "cap");
   add(caption, "h2", "Operating map");
-  const hint = add(caption, "span", move ? "drag the ring or use arrow keys" : "", "hint");
+  const hint = add(caption, "span", move ? "drag the ring, or arrow keys" : "", "hint");
   const drawing = svg("svg", { role: "group", "aria-label": "Operating map" }, place);
   const hatch = svg("pattern", {
     id: named, width: 7, height: 7, patternUnits: "userSpaceOnUse", patternTransform: "rotate(45)",
@@ -223,15 +223,14 @@ function operatingMap(place, map, move = null) {
       item.append(text);
       explained(item, { transition: "transition", fold: "V*" }[kind]);
     };
-    const at = setting && hot ? ` at ${celsius(setting.temperature).toFixed(0)} °C` : "";
     const valued = (values) => {
       if (!setting && hot) return "";
       const value = millimetres(valueAt(values, setting?.temperature ?? 0));
-      return `, ${digits(value, value >= 100 ? 3 : 2)}${at}`;
+      return ` ${digits(value, value >= 100 ? 3 : 2)} mm/s`;
     };
     entry("transition", `transition${valued(edges.transition)}`);
     if (!edges.folds) entry("fold", "V*: not computed for this closure");
-    else if (edges.upper.some((v, i) => v > 1.01 * edges.transition[i])) entry("fold", `V*${valued(edges.upper)}`);
+    else if (edges.upper.some((v, i) => v > 1.01 * edges.transition[i])) entry("fold", `V*${valued(edges.upper)}${setting && hot ? ` at ${celsius(setting.temperature).toFixed(0)} °C` : ""}`);
     if (edges.folds && intervals[3].some((v, i) => v > 1.01 * intervals[1][i])) {
       entry("fold-interval", changed ? "95 % interval as reported" : "95 % interval");
     }

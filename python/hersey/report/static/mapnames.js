@@ -30,7 +30,7 @@ function mapNames({ map, frame, picture, edges, beyond, slowest, fastest, across
 
   function nameLimit() {
     if (map.speed_limit === null || !(map.speed_limit > slowest && map.speed_limit < fastest)) return;
-    const text = `drive limit ${digits(1e3 * map.speed_limit)}`, width = shape.width(text, 11.5);
+    const text = `drive limit ${digits(1e3 * map.speed_limit)} mm/s`, width = shape.width(text, 11.5);
     const y = up(map.speed_limit);
     for (const offset of [-5, 13]) {
       for (const share of [0.5, 0.3, 0.7, 0.2, 0.8]) {

@@ -26,7 +26,7 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
   const { slides, told, reported, speedText } = verdicts({ map, points: analysis.decision?.points ?? [], limit, motor, questions });
   const SLOW = ["stribeck", "lugre"], QUICK_BAND = 5, FRAME = 20_000;
   const CLOSURES = {
-    retained: "stops gradually (retained)", stiction: "stops abruptly (stiction)", stribeck: "Stribeck", lugre: "LuGre",
+    retained: "gradually (retained)", stiction: "abruptly (stiction)", stribeck: "Stribeck", lugre: "LuGre",
   };
   const ZONES = { creep: "sticks", stick_slip: "sticks", swing: "depends on start", bistable: "depends on start", smooth: "smooth", stall: "stall", motor: "stall" };
   let point = worst(), base = known.own(point), setting = known.read(location.hash, base) ?? { ...base };
@@ -89,7 +89,7 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
     one(place, "stiffness", "Stiffness", "N/mm", 1e3, base.stiffness / 10, base.stiffness * 10);
     const level = hot ? ` at ${digits(known.stick.temperature - 273.15)} °C` : "";
     one(place, "stick_speed", "Stick speed", "mm/s", 1e-3, base.stick_speed / 10, base.stick_speed * 10, { spoken: `Stick speed${level}`, term: "stick speed" });
-    const row = add(place, "div", "", "chosen"), label = add(row, "label", "Closure"), select = add(row, "select");
+    const row = add(place, "div", "", "chosen"), label = add(row, "label", "Belt stops"), select = add(row, "select");
     label.htmlFor = select.id = "try-closure";
     explained(label, "closure");
     const mark = document.createElement("span");

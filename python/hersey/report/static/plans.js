@@ -4,9 +4,12 @@ const failuresOf = (plan) => Object.entries(plan.failures).filter(([, count]) =>
 function planFinding(point) {
   const { plan } = point;
   const name = capital(point.name);
-  const sure = plan.share ? ` The belt then slides with ${plan.share > 0.99 ? "over 99" : digits(100 * plan.share, 2)} % probability.` : "";
-  if (plan.kind === "overshoot") return `${name}: ramp to ${perSecond(plan.peak_speed)} mm/s, hold ${digits(plan.hold, 2)} s, slow to ${perSecond(plan.target_speed)} mm/s.${sure}`;
-  if (plan.kind === "direct") return `${name}: ramp to ${perSecond(plan.target_speed)} mm/s in ${digits(plan.rise, 2)} s.${sure}`;
+  const sure = plan.share ? ` The belt slides with ${plan.share > 0.99 ? "over 99" : digits(100 * plan.share, 2)} % probability.` : "";
+  const way = (verb, speed, time) => time > 0 ? `${verb} to ${perSecond(speed)} mm/s${verb === "ramp" && plan.kind === "direct" ? ` in ${digits(time, 2)} s` : ""}` : `step to ${perSecond(speed)} mm/s at once`;
+  const jumps = !(plan.rise > 0) || (plan.kind === "overshoot" && !(plan.fall > 0));
+  const limit = jumps ? " For a ramp instead of a step, state the acceleration of the drive in [limits], e.g. acceleration = \"500 mm/s^2\"." : "";
+  if (plan.kind === "overshoot") return `${name}: ${way("ramp", plan.peak_speed, plan.rise)}, hold ${digits(plan.hold, 2)} s, ${way("slow", plan.target_speed, plan.fall)}.${sure}${limit}`;
+  if (plan.kind === "direct") return `${name}: ${way("ramp", plan.target_speed, plan.rise)}.${sure}${limit}`;
   return `${name}: no profile within the limits reaches smooth running at ${perSecond(plan.target_speed)} mm/s.`;
 }
 async function planSection(parent) {

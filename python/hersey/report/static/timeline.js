@@ -17,7 +17,7 @@ function timeline(parent, says) {
   figure.id = "timeline";
   add(figure, "h3", "The log");
   const place = add(figure, "div", "", "chart");
-  add(figure, "p", `Green: used; red: stick-slip.${starts.length > 1 ? " Files follow one another." : ""} Point or use arrow keys to read values.`, "note");
+  add(figure, "p", `Green: used; red: stick-slip.${starts.length > 1 ? " Files follow one another." : ""} Arrow keys read values.`, "note");
   const read = add(figure, "p", "", "sr-only");
   read.setAttribute("aria-live", "polite");
 

@@ -1,8 +1,8 @@
 // Torque and damping: the charts, what they say, exponents and dwells.
 
 function torqueNote() {
-  const level = radius === null ? "" : ` 10 rpm = ${perSecond((10 / TO_RPM) * radius)} mm/s at the belt.`;
-  return `Filled: reached from a lower speed; open: from a higher one; bars: two standard errors.${level}`;
+  const level = radius === null ? "" : ` 10 rpm = ${perSecond((10 / TO_RPM) * radius)} mm/s.`;
+  return `Filled: from a lower speed; open: from a higher; bars: two standard errors.${level}`;
 }
 const torqueHeading = () => `Drag torque${data.fit.rest ? ", no-load torque subtracted" : ""}`;
 // The models of the drag curves that carry most of the weight.

@@ -16,7 +16,7 @@ function verdicts({ map, points, limit, motor, questions }) {
   };
   function reported({ speed, temperature }) {
     const own = points.find((p) => Math.abs(p.speed / speed - 1) < 1e-6 && (!map.temperature || Math.abs(p.temperature - temperature) < 1e-6));
-    if (own) return { signal: own.signal, words: own.words, own: true };
+    if (own) return { signal: own.signal, words: own.verdict === "depends" && own.plan?.rows.length ? "needs the start-up profile" : own.words, own: true };
     if (map.speed_limit !== null && speed > map.speed_limit * (1 + 1e-9)) {
       return { signal: "act", words: `above the drive limit, ${digits(1e3 * map.speed_limit)} mm/s` };
     }
@@ -45,7 +45,7 @@ function verdicts({ map, points, limit, motor, questions }) {
     const { setting, answer, kicked } = now;
     const { cycle, motion, force, law } = answer, radius = map.roll_radius, zone = zoneNow(now);
     const torque = `torque ${torqueText(force * radius)}`;
-    const laps = cycle.frequency > 0 ? `${digits(cycle.frequency)} Hz, stuck ${digits(100 * cycle.stuck_fraction, 2)} %` : "";
+    const laps = cycle.frequency > 0 ? `${digits(cycle.frequency)} Hz, at rest ${digits(100 * cycle.stuck_fraction, 2)} %` : "";
     if (setting.profile) return { zone, ...follows(now) };
     if (!zone.starts) {
       const holds = `starting needs ${torqueText(law.holding_force * radius)}, the ${motor ? "motor" : "grip"} gives ${torqueText(limit * radius)}`;
@@ -59,7 +59,7 @@ function verdicts({ map, points, limit, motor, questions }) {
         return { zone, signal: "act", words: "stalls: above the motor limit", sub: [torque, `the motor gives ${torqueText(limit * radius)}`] };
       case "smooth": return { zone, signal: "good", words: "smooth from any start", sub: [torque, settles(motion, setting)] };
       case "bistable": {
-        const kick = kicked ? (kicked.value === null ? "survives any speed loss" : `survives a loss of ${digits(1e3 * kicked.value, 2)} mm/s`) : "";
+        const kick = kicked ? (kicked.value === null ? "sliding withstands any sudden loss of speed" : `sliding withstands a sudden loss of ${digits(1e3 * kicked.value, 2)} mm/s`) : "";
         return { zone, signal: "watch", words: "depends on start: sticks from rest, slides from above", sub: [torque, laps, kick] };
       }
       case "swing": return { zone, signal: "watch", words: "depends on start: oscillates from above, sticks once it has stuck", sub: [torque, laps] };

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from hersey.arrays import FloatArray
-from hersey.damping.surface import DampingSurface
+from hersey.damping.surface import DampingSurface, what_to_record
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.machine.limits import OperatingPoint
 from hersey.machine.machine import Machine
@@ -102,8 +102,8 @@ def _check(surface: DampingSurface, draws: int) -> None:
         raise ParameterError(f"draws is {draws}: it must be at least 1")
     if surface.transition is None:
         raise InsufficientDataError(
-            f"no operating map: the data show no falling branch ({surface.rejected_transition}). Record "
-            "slower dwells, until torque rises as the drive slows"
+            f"no operating map: the data show no transition ({surface.rejected_transition}). "
+            f"{what_to_record(surface)}"
         )
 
 

@@ -12,7 +12,7 @@ from hersey.decision.edges import edges_of
 from hersey.decision.plausibility import asked
 from hersey.study.findings import Findings
 from hersey.study.first_screen.advice import advised
-from hersey.study.first_screen.flags import flags
+from hersey.study.first_screen.flags import few_slow_dwells, flags
 from hersey.study.first_screen.instruction import of_log, of_machine
 from hersey.study.first_screen.missing import missing
 from hersey.study.first_screen.points import point_decision, points_of_log, unjudged, worst
@@ -28,9 +28,10 @@ def decision(known: Findings) -> DecisionPart:
         return unanswered(question, known)
     trend = trend_of(Observations.of(points))
     if known.behaviour is None or map_ is None:
-        said = of_log(surface, trend)
+        said = of_log(known, trend)
     else:
-        said = of_machine(known.behaviour, map_, known.units["torque"])
+        few = few_slow_dwells(points, surface)
+        said = of_machine(known.behaviour, map_, known.units["torque"], few=few)
     of_points = _of_points(known, rises=trend.rises and not trend.falls)
     against = flags(known)
     signals: list[Signal] = [said.signal, *(point.signal for point in of_points)]

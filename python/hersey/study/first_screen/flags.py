@@ -12,16 +12,26 @@ from hersey.damping.dwells.doubtful import doubtful_order, doubtful_tare
 from hersey.damping.surface import DampingSurface
 from hersey.decision.behaviour import Behaviour
 from hersey.decision.edges import edges_of
+from hersey.errors import Setting
 from hersey.log.doubtful import doubtful_units
 from hersey.posterior.result import SAFE
 from hersey.schema.warning import Warning
 from hersey.stability.operating_map import OperatingMap
 from hersey.study.findings import Findings
 from hersey.study.first_screen.reasons import in_words
-from hersey.study.first_screen.words import at, figures, listed, mm, signed, starting
+from hersey.study.first_screen.words import (
+    at,
+    between,
+    degrees,
+    figures,
+    listed,
+    mm,
+    signed,
+    starting,
+    torque,
+)
 from hersey.study.nip_film import FilmPart, VerdictPart
 from hersey.study.torque_budget import TorqueBudgetPart
-from hersey.verdict.regime import Regime
 from hersey.verdict.warnings import SCATTER
 
 #: How many the first screen has room for.
@@ -41,15 +51,17 @@ def flags(known: Findings) -> list[Warning]:
     """
     points, surface, found, map_ = known.points, known.surface, known.behaviour, known.map
     out = [] if found is None else _unused(found)
-    out += [*_contradictions(known.nip, known.torque_budget), *_of_log(points, surface)]
+    turns = found is None or map_ is None or edges_of(found.posterior, found.temperature).turns
+    out += [*_contradictions(known.nip, known.torque_budget), *_of_log(points, surface, asked=not turns)]
     if known.why:
         out.append(Warning("no band", "{why}", severity="act", title="No band", where="band", why=known.why))
     if found is not None and map_ is not None:
-        out += [*_whole(points), *_of_machine(found, map_, known.units["torque"])]
+        unit = known.units["torque"]
+        out += [*_whole(points, found, unit), *_of_machine(found, map_, unit)]
     if found is not None:
         out += [*_not_computed(found), *_plans(found)]
     scatter = surface.statistics.scatter if found is None else found.posterior.model.curves.scatter
-    out += _left_open(points, known.regime, scatter)
+    out += _left_open(known, scatter)
     grave = {"act": 0, "watch": 1, "note": 2, "good": 3}
     asked = [] if known.comparison is None else [_compared(known.comparison)]
     kept = sorted(out, key=lambda flag: grave[flag.severity])[: MOST - len(asked)]
@@ -82,7 +94,7 @@ def _compared(found: LogComparison) -> Warning:
         severity="watch" if drags or differs else "good",
         title="Damping has changed since {log}"
         if drags
-        else "The model has changed since {log}"
+        else "Fitted parameters have changed since {log}"
         if differs
         else "Nothing significant has changed since {log}",
         where="compare",
@@ -141,16 +153,21 @@ def _torque(low: float, mean: float, high: float) -> Warning:
     )
 
 
-def _whole(points: SteadyPoints) -> Iterator[Warning]:
+def _whole(points: SteadyPoints, found: Behaviour, unit: str) -> Iterator[Warning]:
     """Bearings and gears in the torque flatten its fall: V* is estimated too low."""
     if points.rest is None:
+        fold = edges_of(found.posterior, found.temperature).fold
+        least = float(np.min(np.abs(points.column("torque"))))
         yield Warning(
             "torque of more than the film",
-            "V* is from the whole torque; if that includes bearings, rubber or gears, V* is too low. "
-            "State [rest]",
+            "{fold} assumes that the whole torque, {shown} at its lowest, comes from the film. If part of "
+            "it is that of bearings, gears or rubber, V* is higher. State that part in [rest]",
             severity="watch",
             title="Torque may hold more than the film",
             where="data",
+            fold=between("V* of", fold.value, fold.low, fold.high) if fold.estimable else "V*",
+            least=least,
+            shown=torque(least, unit),
         )
 
 
@@ -171,10 +188,22 @@ def _of_machine(found: Behaviour, map_: OperatingMap, unit: str) -> Iterator[War
         )
     far = [p.name for p in map_.points if p.at.extrapolated]
     if far:
-        words = "the dwells do not reach {points}"
+        words = "the dwells do not reach {points}: they range from {slow} to {fast} mm/s{levels}"
         title = "Operating points are extrapolated"
+        slow, fast = map_.measured_speed
+        levels = ""
+        if map_.measured_temperature is not None:
+            levels = " and from " + " to ".join(degrees(kelvin) for kelvin in map_.measured_temperature)
         yield Warning(
-            "points extrapolated", words, severity="watch", title=title, where="data", points=listed(far)
+            "points extrapolated",
+            words,
+            severity="watch",
+            title=title,
+            where="data",
+            points=listed(far),
+            slow=mm(slow),
+            fast=mm(fast),
+            levels=levels,
         )
 
 
@@ -235,9 +264,21 @@ def _unused(found: Behaviour) -> list[Warning]:
     """Evidence that does not count, and draws that do not agree."""
     out = [each.titled("A recording was not used", section="band") for each in found.posterior.warnings[:1]]
     if not found.posterior.convergence.converged:
-        words = "two runs of the sampler differ. Treat the intervals as rough, or run hersey posterior"
-        title = "V* has not converged"
-        out.append(Warning("not converged", words, severity="watch", title=title, where="band"))
+        agreed = found.posterior.convergence
+        words = (
+            "V* of two runs of the sampler differs by a factor of up to {apart:.2f}, and {distinct:.0f %} of "
+            "the draws are distinct. Treat the intervals as rough, or run hersey posterior"
+        )
+        warning = Warning(
+            "not converged",
+            words,
+            severity="watch",
+            title="V* has not converged",
+            where="band",
+            apart=agreed.ratio,
+            distinct=agreed.distinct,
+        )
+        out.append(warning)
     return out
 
 
@@ -257,20 +298,29 @@ def _plans(found: Behaviour) -> Iterator[Warning]:
             )
 
 
-def _of_log(points: SteadyPoints, surface: DampingSurface) -> Iterator[Warning]:
-    """What is doubtful in the log itself: a unit or a zero shifts every number."""
+def few_slow_dwells(points: SteadyPoints, surface: DampingSurface) -> bool:
+    """Return whether too few dwells lie below the transition."""
+    return surface.transition is not None and _below(points, surface) <= _FEW
+
+
+def _of_log(points: SteadyPoints, surface: DampingSurface, *, asked: bool) -> Iterator[Warning]:
+    """What is doubtful in the log itself: a unit or a zero shifts every number.
+
+    ``asked``: the instruction asks for slower dwells already.
+    """
     for each in doubtful_units(points.log)[:1]:
         yield each.titled("A unit is doubtful", section="data")
     for each in doubtful_tare(points)[:1]:
         yield each.titled("The zero is doubtful", section="data")
-    if surface.transition is not None and (below := _below(points, surface)) <= _FEW:
+    if few_slow_dwells(points, surface):
         yield Warning(
             "few slow dwells",
-            "only {below} of {dwells} dwells lie below the transition. Measure slower dwells",
+            "only {below} of {dwells} dwells lie below the transition",
             severity="watch",
             title="Few dwells support the falling branch",
             where="torque",
-            below=below,
+            below=_below(points, surface),
+            remedy="" if asked else "measure slower dwells",
             dwells=len(points),
         )
     if surface.transition is not None and surface.transition.freed is not None:
@@ -303,12 +353,28 @@ def _below(points: SteadyPoints, surface: DampingSurface) -> int:
     return int(np.count_nonzero(speed < np.array(at)))
 
 
-def _left_open(points: SteadyPoints, seen: Regime, scatter: float) -> Iterator[Warning]:
+def _left_open(known: Findings, scatter: float) -> Iterator[Warning]:
+    points, seen, c = known.points, known.regime, known.surface.c
     yield from (each.titled(each.heading, section="data") for each in doubtful_order(points)[:1])
     if seen.named is None:
-        why = seen.why_unnamed or "several regimes fit the dwells"
-        title = "No regime can be named"
-        yield Warning("no regime", "{why}", severity="watch", title=title, where="regime", why=why)
+        remedy = ""
+        if points.rest is None and c.value > -1.0:
+            remedy = (
+                "a no-load torque brings the exponent closer to -1. Record the drive without the contact, "
+                "and subtract its torque with {how}"
+            )
+        elif len(seen.explanations) > 1:
+            remedy = "record a wider range of speeds to tell them apart"
+        yield Warning(
+            "no regime",
+            "{why}",
+            severity="watch",
+            title="The lubrication regime is not determined",
+            where="regime",
+            remedy=remedy,
+            why=seen.why_unnamed or "several regimes fit the dwells",
+            how=Setting("no_load"),
+        )
     if scatter > SCATTER:
         yield Warning(
             "scatter",

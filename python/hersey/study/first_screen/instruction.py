@@ -7,14 +7,19 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from hersey.damping.surface import DampingSurface
+import numpy as np
+
+from hersey.damping.dwells import groups_of_temperature
+from hersey.damping.estimate import Estimate
 from hersey.damping.trend import Trend
 from hersey.decision.behaviour import Behaviour, PointBehaviour
 from hersey.decision.edges import Edge, Edges, edges_of
 from hersey.posterior.result import SAFE
 from hersey.stability.operating_map import OperatingMap
+from hersey.study.findings import Findings
 from hersey.study.first_screen.result import Signal
 from hersey.study.first_screen.words import (
+    MINUS,
     at,
     between,
     degrees,
@@ -23,11 +28,11 @@ from hersey.study.first_screen.words import (
     mm,
     per_cent_of,
     roll,
-    signed,
     starting,
     torque,
     within,
 )
+from hersey.verdict.regimes import FALLING, named_in_words, neighbours
 
 #: Signals, the gravest last.
 _ORDER: tuple[Signal, ...] = ("good", "watch", "act")
@@ -43,6 +48,10 @@ class Words(NamedTuple):
 _SLIDES_ON = Words(
     "may stick from rest, and is smooth once it slides",
     "may stick from rest, and are smooth once they slide",
+)
+_SLIDES_ON_ONLY = Words(
+    "sticks from rest, and is smooth once it slides",
+    "stick from rest, and are smooth once they slide",
 )
 _NOT_KNOWN = Words(
     "cannot be judged: torque may still fall at the fastest dwell",
@@ -68,8 +77,11 @@ class Instruction:
     otherwise: str
 
 
-def of_machine(found: Behaviour, map_: OperatingMap, unit: str) -> Instruction:
-    """Return what to do with a machine whose drives were drawn; torques in a unit."""
+def of_machine(found: Behaviour, map_: OperatingMap, unit: str, *, few: bool = False) -> Instruction:
+    """Return what to do with a machine whose drives were drawn; torques in a unit.
+
+    ``few`` says that too few slow dwells were recorded, so that one instruction asks for all that is missing.
+    """
     kelvin = found.temperature
     edges = edges_of(found.posterior, kelvin)
     where, fold, turn = at(kelvin), edges.fold, edges.transition
@@ -77,13 +89,14 @@ def of_machine(found: Behaviour, map_: OperatingMap, unit: str) -> Instruction:
         return _not_started(where, kelvin, edges, map_, unit)
     if not edges.turns:
         interval = f"{where}V* is not known: torque may still fall at the fastest dwell"
+        interval += f". Record faster {'and slower ' if few else ''}dwells" if found.points else ""
     elif edges.bistable:
         here = "" if kelvin is None else f" at {degrees(kelvin)}"
         interval = _interval(f"V*, above which stick-slip cannot last{here}, is", fold)
     else:
-        interval = _interval(f"{where}drag is lowest at", turn)
+        interval = _interval(f"{where}torque is lowest, at the transition, at", turn)
     said, signal = _of_points(found)
-    general, of_general = _general(edges, map_, unit)
+    general, of_general = _general(edges, map_, unit, few=few)
     if not said:
         return Instruction(
             of_general, f"{where}{general}" if where else _capital(general), interval, _below(edges)
@@ -116,18 +129,20 @@ def _verdict_words(found: PointBehaviour) -> tuple[Words, Signal]:
     if kind == "unknown" and found.verdict.probability.unknown > 1.0 - SAFE:
         return _NOT_KNOWN, "watch"
     if kind == "depends" and not planned:
-        return _SLIDES_ON, "act"
+        return _SLIDES_ON_ONLY if found.verdict.sticks_from_rest >= SAFE else _SLIDES_ON, "act"
     if kind in ("depends", "unknown") and planned:
         return Words("needs the start-up profile", "need the start-up profile"), "watch"
     return _OF_KIND[kind]
 
 
-def _general(edges: Edges, map_: OperatingMap, unit: str) -> tuple[str, Signal]:
-    """What to do without operating points."""
+def _general(edges: Edges, map_: OperatingMap, unit: str, *, few: bool) -> tuple[str, Signal]:
+    """What to do without operating points; ``few``: slower dwells are needed, too."""
     if not math.isfinite(edges.safe):
         if not edges.turns:
             return (
-                "record faster dwells: torque may still fall at the fastest, so V* is not known",
+                "record faster and slower dwells: torque may still fall at the fastest, so V* is not known"
+                if few
+                else "record faster dwells: torque may still fall at the fastest, so V* is not known",
                 "watch",
             )
         return "do not rely on a start from rest: no speed is known to be smooth", "watch"
@@ -146,6 +161,9 @@ def _slides(edges: Edges) -> str:
 
 
 def _below(edges: Edges) -> str:
+    turn = edges.transition
+    if edges.turns:
+        return f"{between('Below the transition,', turn.value, turn.low, turn.high)}, it sticks."
     return f"Below {figures(1e3 * edges.sticks_below, up=False)} mm/s it sticks."
 
 
@@ -153,33 +171,62 @@ def _capital(text: str) -> str:
     return f"{text[:1].upper()}{text[1:]}"
 
 
-def of_log(surface: DampingSurface, trend: Trend) -> Instruction:
-    """Return what the log alone tells, in speeds of the roll."""
+def of_log(known: Findings, trend: Trend) -> Instruction:
+    """Return what the log alone tells, in speeds of the roll: what is known first, then what is missing."""
+    surface = known.surface
     if surface.transition is None:
-        return _one_branch(surface, trend)
+        return _one_branch(known, trend)
     ends = [None] if surface.b is None or surface.temperature_range is None else [*surface.temperature_range]
     kelvin = max(ends, key=surface.transition_speed)
     found = surface.transition_estimate(kelvin)
-    lead = at(kelvin)
-    slower = "Below it torque rises as the drive slows, and stick-slip is possible"
-    if not found.estimable:
-        text = _lead(lead, f"keep the roll well above {roll(found.value)} rpm")
-        interval = f"torque is lowest at {roll(found.value)} rpm, interval not known"
-        return Instruction("watch", text, interval, f"{slower}.")
-    factor = 60.0 / math.tau
-    value, low, high = found.value, found.low, found.high
-    text = _lead(lead, f"keep the roll above {figures(high * factor, up=True)} rpm")
-    interval = f"torque is lowest at {roll(value)} rpm {within(low, high, factor)} (95 %)"
-    safe = "The safe speed may be higher. To find it, add a machine file."
-    return Instruction("watch", text, interval, f"{slower}. {safe}")
+    lowest, factor = f"torque is lowest at {roll(found.value)} rpm", 60.0 / math.tau
+    if found.estimable:
+        lowest += f" {within(found.low, found.high, factor)}"
+        least = f"above {figures(found.high * factor, up=True)} rpm"
+    else:
+        lowest += ", interval not known"
+        least = f"well above {roll(found.value)} rpm"
+    otherwise = f"{_sides(known, kelvin, found)} Keep the roll {least}; the safe speed may be higher."
+    if known.machine is None:
+        otherwise += " To find it, add stiffness and mass in a machine file."
+    text = _lead(at(kelvin), f"{lowest}. The safe speed is not yet known")
+    return Instruction("watch", text, f"above the minimum, {_exponent(known)}", otherwise)
 
 
-def _one_branch(surface: DampingSurface, trend: Trend) -> Instruction:
+def _sides(known: Findings, kelvin: float | None, turn: Estimate) -> str:
+    """On which side of the least torque the tested speeds lie, at the temperature that is spoken of."""
+    speeds = np.abs(known.points.column("speed"))
+    if kelvin is not None:
+        levels = known.points.column("temperature")
+        groups = list(groups_of_temperature(levels))
+        speeds = speeds[min(groups, key=lambda group: abs(float(np.mean(levels[group])) - kelvin))]
+    low, high = (turn.low, turn.high) if turn.estimable else (turn.value, turn.value)
+    below, above = speeds[speeds < low], speeds[speeds > high]
+    where = (
+        f"The tested speeds up to {roll(below.max())} rpm lie below the minimum:"
+        if below.size
+        else "Below it"
+    )
+    said = f"{where} torque rises as the drive slows, and stick-slip is possible."
+    return f"{said} Those from {roll(above.min())} rpm lie above it." if below.size and above.size else said
+
+
+def _exponent(known: Findings) -> str:
+    """How damping varies with speed, and the lubrication that this points to."""
+    c, named = known.surface.c, known.regime.named
+    value = f"damping varies as speed^{str(c).replace('-', MINUS)}"
+    if named == FALLING:
+        return f"{value}, as in mixed or boundary lubrication"
+    if named is not None:
+        return f"{value}, as expected for {named_in_words(named)}"
+    nearest = neighbours(c.value).replace("(-", f"({MINUS}")
+    return f"{value}, {nearest}" if nearest else value
+
+
+def _one_branch(known: Findings, trend: Trend) -> Instruction:
     """What a log says whose fit shows no transition; claims are tested on the dwells themselves."""
-    low, high = (roll(speed) for speed in surface.speed_range)
-    c = surface.c
-    interval = f"exponent of damping {signed(c.value)}"
-    interval += f" [{signed(c.low)}, {signed(c.high)}]" if c.estimable else ", interval not determined"
+    low, high = (roll(speed) for speed in known.surface.speed_range)
+    c, interval = known.surface.c, _exponent(known)
     if trend.falls and not trend.rises:
         return Instruction(
             "watch",
@@ -190,10 +237,10 @@ def _one_branch(surface: DampingSurface, trend: Trend) -> Instruction:
     if trend.falls:
         return Instruction(
             "watch",
-            f"Keep the roll well above {roll(trend.least)} rpm: below it torque rises as the drive slows",
+            f"Torque is lowest near {roll(trend.least)} rpm, and below that rises as the drive slows",
             interval,
-            "Torque falls and rises with speed, but no transition can be determined. Record more "
-            f"dwells below {roll(trend.least)} rpm.",
+            f"Keep the roll well above {roll(trend.least)} rpm; the safe speed is not yet known. To "
+            "determine the transition, record more dwells below that speed.",
         )
     if trend.constant:
         # the exponent of one law may exclude a level torque where no test without a law does

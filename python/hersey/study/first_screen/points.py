@@ -115,37 +115,31 @@ def _judged(
     if kind == "sticks":
         turn = edges.transition
         if not edges.turns:
-            return "act", "sticks from any start: drag falls at this speed"
-        return (
-            "act",
-            f"sticks from any start: {between('drag is lowest at', turn.value, turn.low, turn.high)}",
-        )
+            return "act", f"sticks from any start ({per_cent(chances.sticks)}): torque falls at this speed"
+        lowest = between("the transition is", turn.value, turn.low, turn.high)
+        return "act", f"sticks from any start ({per_cent(chances.sticks)}): {lowest}"
     if kind == "smooth":
-        return "good", f"smooth from any start, {per_cent(chances.smooth)}"
+        return "good", f"smooth from any start (sticks: {per_cent(verdict.sticks_from_rest)})"
     if chances.unknown > 1.0 - SAFE:
         return "watch", "cannot be judged: torque may still fall at the fastest dwell"
     if verdict.starts < 1.0 and edges.starts is None:
-        return "watch", f"may not start: {needs}"
+        chance = f"may not start ({per_cent(1.0 - verdict.starts)})"
+        return "watch", f"{chance} or may stick ({per_cent(verdict.sticks_from_rest)}): {needs}"
     return _with_plan(found, verdict)
 
 
 def _with_plan(found: PointBehaviour, verdict: Verdict) -> tuple[Signal, str]:
     """What is said where the way to the point decides, or where that is not sure."""
-    chances, plan = verdict.probability, found.plan
-    sure = verdict.kind == "depends"
-    chance = f"smooth from any start with {per_cent(chances.smooth)}" if chances.smooth >= 0.005 else ""
+    plan, sticks = found.plan, per_cent(verdict.sticks_from_rest)
     if plan is not None and plan.found:
-        words = "needs the start-up profile"
-        return "watch", f"{words}; {chance}" if chance else words
+        slides = per_cent(plan.share)
+        return "watch", f"needs the start-up profile: sticks without it ({sticks}), slides with it ({slides})"
     if plan is not None and any(each.limit == "target_speed" for each in plan.obstacles):
-        return (
-            "act",
-            f"may stick: with {per_cent(chances.sticks)} probability it is below the speed of lowest drag",
-        )
-    if plan is not None:
-        why = "may stick from rest, smooth once it slides" if sure else "may stick"
-        return "act", f"{why}: no start-up profile within the limits works"
-    return "watch", f"may stick from rest, smooth once it slides{f'; {chance}' if chance else ''}"
+        below = per_cent(verdict.probability.sticks)
+        return "act", f"may stick: with {below} probability it is below the transition"
+    once = ", smooth once it slides" if verdict.kind == "depends" else ""
+    why = f"{'sticks' if verdict.sticks_from_rest >= SAFE else 'may stick'} from rest ({sticks}){once}"
+    return ("watch", why) if plan is None else ("act", f"{why}: no start-up profile within the limits works")
 
 
 def _beyond(map_: OperatingMap, found: PointBehaviour, unit: str) -> str:

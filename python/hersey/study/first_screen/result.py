@@ -34,7 +34,7 @@ class PointDecisionPart(Part):
     speed: float
     temperature: float
     signal: Signal
-    words: str = Field(description="e.g. 'smooth from any start, 99 %'")
+    words: str = Field(description="e.g. 'smooth from any start (sticks: under 1 %)'")
     verdict: Literal["smooth", "depends", "sticks", "not started", "stalls", "too fast", "unknown"] = Field(
         default="unknown", description="'smooth' is from any start; 'depends' on how the speed is reached"
     )

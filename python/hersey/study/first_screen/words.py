@@ -9,7 +9,7 @@ from hersey.units import rpm as in_rpm
 
 #: Units of a torque, and how many of them a N m is.
 PER = {"N·m": 1.0, "mN·m": 1e3}
-_MINUS = "\N{MINUS SIGN}"
+MINUS = "\N{MINUS SIGN}"
 
 
 def mm(speed: float) -> str:
@@ -24,7 +24,7 @@ def roll(speed: float) -> str:
 
 def degrees(kelvin: float) -> str:
     """Return a temperature."""
-    return f"{celsius(kelvin):.0f} °C".replace("-", _MINUS)
+    return f"{celsius(kelvin):.0f} °C".replace("-", MINUS)
 
 
 def at(kelvin: float | None, *, first: bool = True) -> str:
@@ -36,7 +36,7 @@ def at(kelvin: float | None, *, first: bool = True) -> str:
 
 def signed(value: float) -> str:
     """Return an exponent to two places."""
-    return f"{value:.2f}".replace("-", _MINUS)
+    return f"{value:.2f}".replace("-", MINUS)
 
 
 def figures(value: float, *, up: bool | None = None) -> str:
