@@ -6,6 +6,7 @@ Pages of theory and validation explain their terms where they use them, and cite
 
 from __future__ import annotations
 
+import re
 import tomllib
 from typing import Any
 
@@ -17,6 +18,7 @@ from tests.website.reading import helped, lower_words, prose, said, technical
 
 WORDS: dict[str, Any] = tomllib.loads((ROOT / "tests" / "website" / "words.toml").read_text(encoding="utf-8"))
 MOST_ENTRIES = 30
+MOST_WORDS = 30_000
 
 
 def explained() -> set[str]:
@@ -45,3 +47,14 @@ def test_no_abbreviation_or_name_stands_there_unexplained(texts: Any) -> None:
 def test_an_unknown_abbreviation_is_seen() -> None:
     text = "The XYZ and its QRSs, of Nobodyknown, say aicc. Plain sentences begin so; [FILE.md] is none."
     assert technical(text, {"plain", "the"}) == {"XYZ", "QRS", "Nobodyknown"}
+
+
+def test_the_docs_stay_short() -> None:
+    """README and the pages that people write; what follows from the code has its length from there."""
+    generated = {"commands.md", "files.md", "document.md"}
+    pages = [
+        ROOT / "README.md",
+        *(page for page in DOCS.rglob("*.md") if page.name not in generated and page.parent.name != "python"),
+    ]
+    words = sum(len(re.findall(r"\S*\w\S*", page.read_text(encoding="utf-8"))) for page in pages)
+    assert 20_000 < words <= MOST_WORDS
