@@ -15,6 +15,7 @@ import pytest
 from hersey.report.glossary import entries, find
 from tests.conftest import ROOT
 from tests.website.reading import helped, lower_words, prose, said, technical
+from website.navigation import DOCS
 
 WORDS: dict[str, Any] = tomllib.loads((ROOT / "tests" / "website" / "words.toml").read_text(encoding="utf-8"))
 MOST_ENTRIES = 30
