@@ -49,9 +49,9 @@ class Line:
 #: Text above the tables.
 WORDS = """
 `python -m benchmarks.validation` writes this page. It gives `hersey inspect` and `hersey report` every
-file of a collection of public measurements that is a log, or could be taken for one. No command may
-end in a traceback or hang, following the advice of a message must change the outcome, and no verdict
-may claim a transition which the data cannot show. Long sentences are cut.
+file of a collection of public measurements that could be taken for a log. No command may end in a
+traceback or hang, following the advice of a message must change the outcome, and no verdict may claim
+a transition which the data cannot show. Long sentences are cut.
 """
 LOGS = """
 Options follow the description of the files.

@@ -31,9 +31,7 @@ BLOCKS = blocks()
 #: What takes more than about two seconds, by the call that does.
 LONG = (
     "compare_models(",
-    "film_life(",
     "follow(",
-    "posterior(",
 )
 RUN = {name: code for name, (needs, code) in BLOCKS.items() if not needs}
 QUICK = {name: code for name, code in RUN.items() if not any(call in code for call in LONG)}

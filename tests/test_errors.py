@@ -100,5 +100,5 @@ def test_speeds_of_a_force_are_the_inverse_of_the_law() -> None:
     assert DRAG.force([slower, faster]) == pytest.approx([80.0, 80.0], rel=1e-13)
     assert DRAG.speeds_of(1e3)[0] == 0.0
     warm = Drag(50, 1, **PAPER, reference_temperature=450.0, force_temperature_exponent=-2.0)
-    at = warm.speeds_of(80.0, 400.0)
-    assert warm.force(at, 400.0) == pytest.approx([80.0, 80.0], rel=1e-13)
+    at = warm.speeds_of(80.0, temperature=400.0)
+    assert warm.force(at, temperature=400.0) == pytest.approx([80.0, 80.0], rel=1e-13)

@@ -26,6 +26,7 @@ PACKAGE = ROOT / "python" / "hersey"
 ROOMS = (
     "_core",
     "errors",
+    "arguments",
     "units",
     "arrays",
     "schema",
@@ -122,7 +123,7 @@ def test_no_circle() -> None:
 
 
 def test_the_root_holds_only_what_every_room_needs() -> None:
-    needed = {"arrays", "errors", "result", "units"}
+    needed = {"arguments", "arrays", "errors", "result", "units"}
     assert {path.stem for path in PACKAGE.glob("*.py")} == {"__init__", *needed}
 
 

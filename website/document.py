@@ -69,7 +69,7 @@ def undescribed() -> list[str]:
         f"{each.heading}.{name}"
         for each in (*printed.values(), *parts)
         for name, schema in each.schema.get("properties", {}).items()
-        if not _meaning(each, name, schema) and not re.search(rf"\b{name}\b", each.schema["description"])
+        if not _meaning(each, name, schema)
     ]
 
 

@@ -85,7 +85,7 @@ def _keys(kind: Any) -> Iterator[tuple[str, list[_Row]]]:
         yield "", [_of_recipe(each) for each in dataclasses.fields(Recipe)]
         return
     hints = get_type_hints(kind, include_extras=True)
-    for name in hints:
+    for name in (each.name for each in dataclasses.fields(kind)):
         if name == "uncertainty" and kind is _MachineFile:
             yield f"[{name}]", [_of_uncertainty(each) for each in OF_THE_BELT]
         else:
@@ -96,7 +96,7 @@ def _tables(name: str, kind: Any, heading: str) -> Iterator[tuple[str, list[_Row
     """A table, and those within it."""
     hints = get_type_hints(kind, include_extras=True)
     fields = {each.name: each for each in dataclasses.fields(kind)}
-    inner = {key: _plain(hint) for key, hint in hints.items() if _is_table(_plain(hint))}
+    inner = {key: _plain(hints[key]) for key in fields if _is_table(_plain(hints[key]))}
     rows = [_row(name, key, hints[key], field, kind) for key, field in fields.items() if key not in inner]
     if rows:
         yield heading, rows

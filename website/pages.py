@@ -6,7 +6,7 @@ from functools import cache
 from pathlib import Path
 
 from hersey.report import glossary
-from website import commands, document, files, names
+from website import commands, document, files, names, notebooks
 from website.navigation import DOCS
 
 REFERENCE = DOCS / "reference"
@@ -22,7 +22,7 @@ def made() -> dict[Path, str]:
     }
     rooms = {f"python/{name}": text for name, text in names.pages()}
     reference = {REFERENCE / name: text for name, text in (single | rooms).items()}
-    return reference | {DOCS / "glossary.md": glossary.markdown()}
+    return reference | {DOCS / "glossary.md": glossary.markdown()} | dict(notebooks.notebooks())
 
 
 def renew() -> list[Path]:

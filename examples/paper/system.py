@@ -61,7 +61,7 @@ def motor_left(machine: Machine) -> float:
     if machine.rest is None or not machine.points:
         return machine.limits.motor_torque
     point = machine.points[0]
-    taken = machine.rest.torque(point.speed / machine.roll_radius, point.temperature)
+    taken = machine.rest.torque(point.speed / machine.roll_radius, temperature=point.temperature)
     return max(machine.limits.motor_torque - float(taken), 0.0)
 
 

@@ -4,6 +4,7 @@ Rooms, in the order in which data passes through them; each says in its own head
 
 ==============  ==============================================================================
 errors          the closed table of what can go wrong, and what to do in the words of the way in
+arguments       what a user passes to a function: names and types
 units           the one door for units
 arrays          numbers or arrays as arguments
 schema          the schema of what the document and every ``--json`` hold, from the fields of the results

@@ -193,11 +193,16 @@ class ParameterError(HerseyError, ValueError):
         unit: str | None = None,
         index: int | None = None,
         bound: str | None = None,
+        remedy: str = "",
     ) -> None:
         """Take the message and what is known of the parameter."""
-        super().__init__(*message)
+        super().__init__(*message, remedy=remedy)
         self.quantity, self.value, self.limit, self.unit, self.index = quantity, value, limit, unit, index
         self.bound = bound
+
+
+class ArgumentError(ParameterError, TypeError):
+    """An argument that is missing, unknown or of the wrong type."""
 
 
 class ForkedError(HerseyError, RuntimeError):
@@ -249,6 +254,10 @@ class UntoldWarning(UserWarning):
             "Limits are known only for the recorded visits: each temperature was visited once, so the "
             "scatter between visits is unknown."
         )
+
+
+class PlausibilityWarning(UserWarning):
+    """A value that is possible, but so unusual that its unit is probably wrong."""
 
 
 class SandboxWarning(UserWarning):

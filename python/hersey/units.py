@@ -14,17 +14,17 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache, lru_cache, wraps
-from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar, cast
+from typing import TYPE_CHECKING, Any, TypeVar, cast
 
-from hersey.errors import UnitError, WrongKindError
+from hersey.arguments import Door, numbers
+from hersey.errors import ParameterError, UnitError, WrongKindError
 
 if TYPE_CHECKING:
     import numpy as np
     import pint
     from numpy.typing import NDArray
 
-P = ParamSpec("P")
-R = TypeVar("R")
+F = TypeVar("F", bound=Callable[..., Any])
 #: A key of `KINDS`, or several where an argument may be one of them.
 Kind = str | tuple[str, ...]
 
@@ -141,7 +141,7 @@ _OFFSETS = {
 _SPELLINGS = (
     (r"(?i:(°|º|deg(\.|rees?)?)\s*C|℃|celsius)|C", "degC"),
     (r"(?i:(°|º|deg(\.|rees?)?)\s*F|℉|fahrenheit)|F", "degF"),
-    (r"°\s*K|deg\s*K", "K"),
+    (r"°\s*K|deg\s*K|(?i:kelvin)", "K"),
     (r"(?i:ozf?s?[\s.*·-]?in|in[\s.*·-]?ozf?s?)", "ozf*in"),
     (r"(?i:lbf?s?[\s.*·-]?in|in[\s.*·-]?lbf?s?)", "lbf*in"),
     (r"(?i:lbf?s?[\s.*·-]?ft|ft[\s.*·-]?lbf?s?)", "lbf*ft"),
@@ -272,11 +272,12 @@ def _meant(kind: str, unit: str, alike: float = _ALIKE) -> str:
 
 def nearest_unit(kind: str, unit: str, alike: float = _ALIKE) -> str:
     """Return the usual unit of a kind that one with a slip is nearest to, or an empty text."""
-    from difflib import get_close_matches
+    from difflib import SequenceMatcher
 
-    usual = {_folded(each): each for each in reversed(_USUAL[kind].split())}
-    match = get_close_matches(_folded(unit), usual, n=1, cutoff=alike)
-    return usual[match[0]] if match else ""
+    usual = _USUAL[kind].split()
+    ratios = [SequenceMatcher(None, _folded(each), _folded(unit)).ratio() for each in usual]
+    most = max(ratios)
+    return usual[ratios.index(most)] if most >= alike else ""
 
 
 def _folded(unit: str) -> str:
@@ -324,13 +325,40 @@ def parse(kind: str, text: str) -> float:
         raise UnitError(f"{shown}. Write a number and a unit of {kind}, e.g. '1 {example}'")
     match = re.fullmatch(rf"\s*({_NUMBER})\s*([A-Za-z°ºµμ%℃℉].*?)\s*", text)
     if match is None:
-        number = text.strip() if re.fullmatch(_NUMBER, text.strip()) else "1"
-        raise UnitError(f"'{text}' is not a number with a unit of {kind}. Write e.g. '{number} {example}'")
+        raise UnitError(f"'{text}' is not a number with a unit of {kind}. Write {_written(kind, text)}")
+    if re.match(r"(\S+\s+)?to\s", match[2]):
+        raise UnitError(f"'{text}' is a range. Write one value here, e.g. '{match[1]} {example}'")
     line = conversion(kind, match[2])
     value = line.scale * float(match[1]) + line.offset
     if not math.isfinite(value):
         raise UnitError(f"'{text}' is not a finite number")
     return value
+
+
+def _written(kind: str, text: str) -> str:
+    """A quantity as it was probably meant, or an example."""
+    example = KINDS[kind][1]
+    plain = re.sub(r"^(?:[^\w.+-]+|(?i:ca\.?|about|approx\.?)\s)\s*", "", text.strip())
+    comma = re.fullmatch(r"([-+]?[0-9]+),([0-9]+)([^\d.,].*)?", plain)
+    grouped = re.fullmatch(r"([-+]?[0-9]{1,3}(?:[,.'\s][0-9]{3})+)(?:[.,]([0-9]+))?([^\d.,].*)?", plain)
+    if comma:  # three digits behind it could be thousands
+        numbers, rest = [f"{comma[1]}.{comma[2]}"], comma[3]
+        numbers += [comma[1] + comma[2]] if len(comma[2]) == 3 and len(comma[1]) < 4 else []
+    elif grouped:
+        whole = re.sub(r"[,.'\s]", "", grouped[1])
+        numbers, rest = [f"{whole}.{grouped[2]}" if grouped[2] else whole], grouped[3]
+    elif number := re.match(rf"{_NUMBER}(?![.\d])", plain):
+        numbers, rest = [number[0]], plain[number.end() :]
+    else:
+        return f"e.g. '1 {example}'"
+    unit = (rest or "").strip()
+    unit = "inch" if unit in ('"', "''") else unit
+    try:
+        conversion(kind, unit or example)
+    except UnitError:
+        return f"e.g. '{numbers[0]} {example}'"
+    such = "" if unit else "e.g. "
+    return such + " or ".join(f"'{number} {unit or example}'" for number in numbers)
 
 
 def si(kind: str, value: Any) -> Any:
@@ -342,7 +370,7 @@ def si(kind: str, value: Any) -> Any:
         A key of `KINDS`.
     value
         Number or array in SI, returned as it is; string with its unit (``"400 rpm"``); pint quantity; or a
-        list or tuple of strings or quantities, which becomes an array.
+        list, tuple or column of strings or quantities, which becomes an array.
 
     Raises
     ------
@@ -356,61 +384,124 @@ def si(kind: str, value: Any) -> Any:
     """
     if isinstance(value, str):
         return parse(kind, value)
-    if isinstance(value, list | tuple) and any(isinstance(v, str) or hasattr(v, "magnitude") for v in value):
+    if (items := _with_units(value)) is not None:
         import numpy as np
 
-        return np.array([si(kind, item) for item in value], dtype=float)
+        return np.array([si(kind, item) for item in items], dtype=float)
     if hasattr(value, "magnitude") and hasattr(value, "units"):
         line = conversion(kind, f"{value.units:~C}" or str(value.units))
         return line.scale * value.magnitude + line.offset
     return value
 
 
-def argument(name: str, kind: Kind, value: Any) -> Any:
+def _with_units(value: Any) -> list[Any] | None:
+    """The items of a list or a column of strings or quantities; None for anything else."""
+    if isinstance(value, list | tuple):
+        held = any(isinstance(v, str | list | tuple) or hasattr(v, "magnitude") for v in value)
+        return list(value) if held else None
+    if hasattr(value, "dtype") and not hasattr(value, "magnitude") and getattr(value, "ndim", 1) == 1:
+        import numpy as np
+
+        return list(value) if np.asarray(value).dtype.kind in "OU" else None
+    return None
+
+
+#: A plain number below this is no temperature of a drive in K, but one in degC.
+_COLDEST = 250.0
+
+
+def argument(name: str, kind: Kind, value: Any, *, one: bool = False) -> Any:
     """Return an argument in SI as `si` does, of the first of several kinds that its unit is one of.
 
     Raises
     ------
     UnitError
         With the name of the argument.
+    ArgumentError, ParameterError
+        If it is no number or array, not the ``one`` that is needed, or a temperature in K that can only be
+        one in degC.
     """
+    if value is None:
+        return None
     kinds = (kind,) if isinstance(kind, str) else kind
+    if not isinstance(value, str) and not hasattr(value, "magnitude"):
+        if (items := _with_units(value)) is None:
+            found = numbers(name, value, one=one)
+            if kinds == ("temperature",) and name != "temperature_zero":
+                _refuse_celsius(name, found)
+            return found
+        import numpy as np
+
+        value = np.array([argument(name, kind, item) for item in items], dtype=float)
+        return numbers(name, value, one=one)
     for each in kinds:
         try:
-            return si(each, value)
+            return numbers(name, si(each, value), one=one)
         except UnitError as error:
             if each == kinds[-1] or not isinstance(error, WrongKindError):
                 raise type(error)(f"{name}: {error}") from None
     return value
 
 
-def takes_si(**kinds: Kind) -> Callable[[Callable[P, R]], Callable[P, R]]:
-    """Let a function take the arguments named as `argument` does, each of its kind.
+def _refuse_celsius(name: str, value: Any) -> None:
+    """Refuse plain numbers in K that can only have been meant in degC."""
+    coldest = value
+    if not isinstance(value, float | int):
+        import numpy as np
 
-    They may be parameters of the function, or keywords that it takes by ``**``.
+        coldest = float(np.nanmin(value)) if np.size(value) and not np.all(np.isnan(value)) else _COLDEST
+    if coldest < _COLDEST:
+        kelvin = f", or '{coldest:g} K' if that is meant" if coldest > 0 else ""
+        raise ParameterError(
+            f"{name} is {coldest:g} without a unit, which means {coldest:g} K ({celsius(coldest):.4g} degC)",
+            quantity=name,
+            value=float(coldest),
+            unit="K",
+            remedy=f"write '{coldest:g} degC'{kelvin}",
+        )
+
+
+def takes_si(**kinds: Kind) -> Callable[[F], F]:
+    """Check what a function or a record is called with; take the arguments named as `argument` does.
+
+    Names and types follow from the signature (`hersey.arguments`). Quantities, each of its kind, may be
+    parameters of the function, or keywords that it takes by ``**``.
     """
 
-    def decorate(function: Callable[P, R]) -> Callable[P, R]:
-        signature = inspect.signature(function)
-        by_name = [p.name for p in signature.parameters.values() if p.kind is p.VAR_KEYWORD]
+    def decorate(function: F) -> F:
+        if isinstance(function, type):
+            _check_fields(function, kinds)
+            return function
+        title = function.__name__
+        if title == "__init__":
+            title = function.__qualname__.split(".")[-2]
+        door = Door(inspect.signature(function), title, kinds, _read)
 
         @wraps(function)
-        def called(*args: P.args, **kwargs: P.kwargs) -> R:
-            given = signature.bind(*args, **kwargs)
-            for into in (given.arguments, *(given.arguments.get(name, {}) for name in by_name)):
-                for name in kinds.keys() & into.keys():
-                    into[name] = argument(name, kinds[name], into[name])
-            return function(*given.args, **given.kwargs)
+        def called(*args: Any, **kwargs: Any) -> Any:
+            return function(**door.admit(args, kwargs))
 
-        return called
+        return cast("F", called)
 
     return decorate
 
 
-def fields_in_si(record: Any, kinds: Mapping[str, Kind]) -> None:
-    """Bring the fields of a frozen record to SI, each of its kind, as `argument` does."""
-    for name, kind in kinds.items():
-        object.__setattr__(record, name, argument(name, kind, getattr(record, name)))
+def _check_fields(record: Any, kinds: Mapping[str, Kind]) -> None:
+    """Let a record check the fields that it is made with."""
+    door, made = Door(inspect.signature(record), record.__name__, kinds, _read), record.__init__
+
+    @wraps(made)
+    def called(self: Any, *args: Any, **kwargs: Any) -> None:
+        made(self, **door.admit(args, kwargs))
+
+    record.__init__ = called
+
+
+def _read(name: str, kind: Kind | None, value: Any, *, one: bool) -> Any:
+    """Return a quantity in SI, or plain numbers if no kind is given; refuse what cannot be."""
+    if kind is None:
+        return numbers(name, value, one=one)
+    return argument(name, kind, value, one=one)
 
 
 def convert(value: float, si: str, unit: str) -> float:

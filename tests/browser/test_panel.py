@@ -157,11 +157,11 @@ def test_the_verdict_is_that_of_the_core(
     page: Page, native: OperatingMap, share: float, celsius: int
 ) -> None:
     kelvin = celsius + 273.15
-    transition = native.state_at(kelvin, 0.1).transition
+    transition = native.state_at(temperature=kelvin, speed=0.1).transition
     enter(page, "temperature", str(celsius))
     enter(page, "speed", f"{1e3 * share * transition:.4g}")
     speed = float(f"{share * transition:.4g}")
-    state = native.state_at(kelvin, speed)
+    state = native.state_at(temperature=kelvin, speed=speed)
     assert verdict(page).startswith(WORDS[state.state])
     assert ("extrapolated" in verdict(page)) == state.extrapolated
     cycle = cycle_of(native, speed, kelvin)
@@ -416,7 +416,7 @@ def test_torques_have_one_unit(page: Page, document: Analysis) -> None:
     drag = document.map.drag  # type: ignore[union-attr]
     kelvin = float(page.input_value("#try-temperature")) + 273.15
     radius = document.map.roll_radius  # type: ignore[union-attr]
-    assert float(said[1]) == pytest.approx(per * radius * drag.force(0.04, kelvin), rel=0.006)
+    assert float(said[1]) == pytest.approx(per * radius * drag.force(0.04, temperature=kelvin), rel=0.006)
 
 
 def test_the_numbers_behind_a_motion(page: Page) -> None:

@@ -106,7 +106,9 @@ def unwrapped(text: str) -> list[str]:
 
 def key_renamed(it: Refused) -> list[str]:
     """Write the key that was meant for the one that is none, in the file that is named."""
-    match = re.search(r"hersey: (\S+): .*unknown (?:key|table) '(\w+)'. Did you mean \[?'?(\w+)", it.message)
+    match = re.search(
+        r"hersey: (\S+?)(?:, line \d+)?: .*unknown (?:key|table) '(\w+)'. Did you mean \[?'?(\w+)", it.message
+    )
     assert match
     path = it.folder / match[1]
     path.write_text(path.read_text().replace(match[2], match[3], 1))
@@ -115,7 +117,7 @@ def key_renamed(it: Refused) -> list[str]:
 
 def value_replaced(it: Refused) -> list[str]:
     """Write the example of the message for the value of the key that it names."""
-    match = re.search(r"hersey: (\S+): \w+\.(\w+) is .*e\.g\. (\S+)$", it.message)
+    match = re.search(r"hersey: (\S+?)(?:, line \d+)?: \w+\.(\w+) is .*e\.g\. (\S+)$", it.message)
     assert match
     path = it.folder / match[1]
     path.write_text(re.sub(rf"{match[2]} = .*", f"{match[2]} = {match[3]}", path.read_text()))
@@ -384,25 +386,25 @@ MISTAKES: dict[str, Mistake] = {
     "a gear ratio of 0": Mistake(
         {**GOOD, "hersey.toml": "[torque]\ngear_ratio = 0\n"},
         "fit log.csv",
-        ("hersey.toml: torque.gear_ratio is 0",),
+        ("hersey.toml, line 2: torque.gear_ratio is 0",),
         value_replaced,
     ),
     "an unknown key of a mapping": Mistake(
         {**GOOD, "hersey.toml": '[torque]\nchanel = "Torque"\n'},
         "fit log.csv",
-        ("hersey.toml: [torque] has an unknown key 'chanel'",),
+        ("hersey.toml, line 2: [torque] has an unknown key 'chanel'",),
         key_renamed,
     ),
     "an unknown table of a mapping": Mistake(
         {**GOOD, "hersey.toml": "[torqe]\nsign = 1\n"},
         "fit log.csv",
-        ("hersey.toml: unknown table 'torqe'",),
+        ("hersey.toml, line 1: unknown table 'torqe'",),
         key_renamed,
     ),
     "an unknown key of a machine": Mistake(
         {**GOOD, "machine.toml": MACHINE.replace("stiffness", "stifness")},
         "report log.csv --machine machine.toml",
-        ("machine.toml: [drivetrain] has an unknown key 'stifness'",),
+        ("machine.toml, line 2: [drivetrain] has an unknown key 'stifness'",),
         key_renamed,
     ),
     "an unknown kind of figure": Mistake(

@@ -80,7 +80,7 @@ def test_a_dash_leaves_out_and_the_end_leaves_out_the_rest(folder: Path) -> None
         (["Moment"], "answer 1, channel of the torque: log.csv: there is no column 'Moment' (torque)"),
         (["", "rpm"], "answer 2, unit of the torque: unit 'rpm' is not a unit of torque"),
         ([*CHANNELS, "11"], "answer 9, k stiffness: '11' has no unit: write '11 N/mm', for example"),
-        ([*CHANNELS, "11 N/mm", ""], "answer 10, m mass: this answer is required; nothing is written"),
+        ([*CHANNELS, "11 N/mm", ""], "answer 10, m mass: this answer is required. Estimate it"),
         ([*CHANNELS, "11 N/mm", "11 kg"], "the answers end before 'R roll radius'"),
     ],
 )
@@ -207,7 +207,7 @@ def test_what_no_log_tells_is_left_to_be_completed(
     assert [i for i, line in enumerate(written, 1) if re.match(r'\w+ = "" ', line)] == named
     refused = run("report", "log.csv", cwd=tmp_path)
     assert refused.returncode == 2
-    assert re.search("hersey.toml: [a-z]+[.](unit|channel) is empty. Fill it in", refused.stderr)
+    assert re.search("hersey.toml, line [0-9]+: [a-z]+[.](unit|channel) is empty. Fill it in", refused.stderr)
     role = ""
     for i, line in enumerate(written):
         role = line.strip("[]") if line.startswith("[") else role

@@ -104,7 +104,7 @@ def test_no_file_is_overwritten_unasked(folder: Path) -> None:
     ("text", "says"),
     [
         ("logs = []\n", "name a LOG, or a recipe that names one"),
-        ("[torque]\nsign = -1\n", "recipe.toml: "),
+        ("[torque]\nsign = -1\n", "recipe.toml, line 1: "),
         ('logs = ["gone.csv"]\n', "gone.csv"),
         ('[channels]\nfilm = "x"\n', "recipe.toml: channels.film: use one of time, torque"),
         ('[units]\nrun = "1"\n', "recipe.toml: units.run: use one of"),

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
+import polars as pl
 import pytest
 
+import hersey
 from hersey.damping.dwells import SteadyPoints, groups_of_temperature
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.units import rpm
@@ -371,6 +373,29 @@ def test_what_cannot_be_asked_of_dwells_is_refused() -> None:
         log.steady(tare="standing")
     with pytest.raises(InsufficientDataError, match="run has 19 rows, but one dwell needs at least 20"):
         log_of(np.ones(19), np.ones(19)).steady()
+
+
+@pytest.mark.parametrize(("interval", "few"), [(1.0, True), (0.5, False)])
+def test_a_slow_logger_is_the_reason_where_dwells_have_few_rows(interval: float, few: bool) -> None:
+    """Four speeds of 15 s: 15 rows at 1 Hz are too few, 30 at 2 Hz enough."""
+    rows = round(15 / interval)
+    speed = np.repeat([20.0, 40.0, 80.0, 160.0], rows) * RPM
+    scatter = 1.0 + 0.01 * noise(1, speed.size)
+    frame = pl.DataFrame(
+        {
+            "t [s]": np.arange(speed.size) * interval,
+            "torque [N*m]": speed**0.3 * scatter,
+            "speed [rad/s]": speed,
+        }
+    )
+    log = hersey.read(frame, isothermal=True)
+    if not few:
+        assert len(log.steady()) == 4
+        return
+    with pytest.raises(
+        InsufficientDataError, match=r"4 of 4 held speeds have fewer than 20 rows .* every 0\.38 s"
+    ):
+        log.steady()
 
 
 def test_a_group_of_temperatures_spans_six_kelvin() -> None:

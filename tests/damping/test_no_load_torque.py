@@ -67,7 +67,7 @@ def stated(uncertainty: float = 0.0) -> NoLoadTorque:
 def test_an_exact_rest_is_found_exactly() -> None:
     rest = hersey.no_load_torque(no_load())
     w, t = np.array([0.7, 3.0, -9.0]), np.array([110.0, 150.0, 170.0])
-    assert rest.torque(w, t + 273.15) == pytest.approx(rest_torque(w, t), rel=1e-9)
+    assert rest.torque(w, temperature=t + 273.15) == pytest.approx(rest_torque(w, t), rel=1e-9)
     assert rest.sha256 == ("0",)
     assert rest.speed_range == pytest.approx((0.5, 15.0))
     assert not rest.warnings
@@ -106,8 +106,10 @@ def test_a_log_without_the_film_tells_the_rest() -> None:
     table = testbench.run(seed=4, truth=Lifted(), stand=stand).table
     rest = hersey.no_load_torque(hersey.read(table).steady(tare="standing"))
     w = np.array([1.0, 6.0, 12.0])
-    found, true = rest.torque(w, AT), rest_torque(w, np.full(3, 150.0))
-    assert np.all(np.abs(found - true) < 3.0 * np.linalg.norm(rest.errors(w, np.full(3, AT)), axis=1))
+    found, true = rest.torque(w, temperature=AT), rest_torque(w, np.full(3, 150.0))
+    assert np.all(
+        np.abs(found - true) < 3.0 * np.linalg.norm(rest.errors(w, temperature=np.full(3, AT)), axis=1)
+    )
     assert found == pytest.approx(true, rel=0.05)
     assert 0.0 < rest.constant.error < 0.1 * CONSTANT
     assert rest.source == "frame"
@@ -295,7 +297,7 @@ def test_motion_map_and_limits_count_film_and_rest() -> None:
                 assert drag.force(v) * 0.015 == pytest.approx(total, rel=1e-9)
     hot, limits = [400.0, AT], hersey.Limits(motor_torque=1.2)
     map_ = map_of(surface, hersey.Drivetrain(11e3, 11.0), **belt, limits=limits, temperatures=hot, draws=2)
-    assert map_.state_at(AT, 0.1).torque == pytest.approx(
+    assert map_.state_at(temperature=AT, speed=0.1).torque == pytest.approx(
         surface.total_torque(speed=0.1 / 0.015, temperature=AT), rel=1e-9
     )
     for kelvin, speed in zip(hot, map_.stall_above, strict=True):

@@ -113,15 +113,23 @@ def test_amounts_of_a_recipe_take_units() -> None:
 @pytest.mark.parametrize(
     ("text", "error", "says"),
     [
-        ("tarre = 'standing'", ParameterError, r"recipe\.toml: .*'tarre'.* Did you mean .*tare"),
-        ("every = 3", UnitError, "recipe.toml: every is 3, without a unit"),
-        ("load = ['2 N', '3 m']", UnitError, "recipe.toml: load: unit 'm' is not a unit of force"),
-        ("signs = {torque = 'x'}", ParameterError, r"recipe\.toml: signs\.torque is 'x'"),
-        ("logs = [3]", ParameterError, "recipe.toml: logs is 3: write the name of a file"),
-        ("logs = [['a.csv']]", ParameterError, r"recipe.toml: logs is \['a.csv'\]: write the name of a file"),
-        ("mapping = ['a.toml']", ParameterError, "recipe.toml: mapping is .*: write the name of a file"),
-        ("no_load = []", ParameterError, "recipe.toml: no_load is .*: write the name of a file"),
-        ("mapping = ''", ParameterError, "recipe.toml: mapping is '': write the name of a file"),
+        ("tarre = 'standing'", ParameterError, r"recipe\.toml, line 1: .*'tarre'.* Did you mean .*tare"),
+        ("every = 3", UnitError, "recipe.toml, line 1: every is 3, without a unit"),
+        ("load = ['2 N', '3 m']", UnitError, "recipe.toml, line 1: load: unit 'm' is not a unit of force"),
+        ("signs = {torque = 'x'}", ParameterError, r"recipe\.toml, line 1: signs\.torque is 'x'"),
+        ("logs = [3]", ParameterError, "recipe.toml, line 1: logs is 3: write the name of a file"),
+        (
+            "logs = [['a.csv']]",
+            ParameterError,
+            r"recipe.toml, line 1: logs is \['a.csv'\]: write the name of a file",
+        ),
+        (
+            "mapping = ['a.toml']",
+            ParameterError,
+            "recipe.toml, line 1: mapping is .*: write the name of a file",
+        ),
+        ("no_load = []", ParameterError, "recipe.toml, line 1: no_load is .*: write the name of a file"),
+        ("mapping = ''", ParameterError, "recipe.toml, line 1: mapping is '': write the name of a file"),
     ],
 )
 def test_a_mistake_in_a_saved_recipe_is_named(

@@ -152,9 +152,9 @@ def test_extrapolation_warns_and_names_the_axis(points: hersey.SteadyPoints) -> 
 def test_speed_and_temperature_are_named(points: hersey.SteadyPoints, name: str) -> None:
     """Two plain numbers can be swapped unseen: 420 rad/s at 5 K gave nan."""
     method = getattr(hersey.fit(points), name)
-    with pytest.raises(TypeError, match="too many positional arguments"):
+    with pytest.raises(TypeError, match="by name"):
         method(5.0, 420.0)
-    with pytest.raises(TypeError, match="too many positional arguments"):
+    with pytest.raises(TypeError, match="by name"):
         method(5.0, temperature=420.0)
 
 

@@ -44,7 +44,7 @@ def test_tables_move_as_the_curves_of_the_draws(drawn: Posterior) -> None:
         for (_, table), curve in zip(tables, curves, strict=True):
             constant, damping = drawn.model.no_load(kelvin)
             expected = curve[among] + constant + damping * grid[among]
-            assert table.force(grid[among], kelvin) == pytest.approx(expected, rel=within)
+            assert table.force(grid[among], temperature=kelvin) == pytest.approx(expected, rel=within)
 
 
 def test_starts_of_tables_are_those_of_the_draws(drawn: Posterior) -> None:
@@ -110,7 +110,9 @@ def test_the_cold_drag_is_as_open_as_the_draws_leave_it(drawn: Posterior) -> Non
     tables = drags_through(drawn.model, few, HOT, cold)
     speed = 0.045
     constant, damping = drawn.model.no_load(cold)
-    of_tables = [float(table.force(speed, cold)) - constant - damping * speed for _, table in tables]
+    of_tables = [
+        float(table.force(speed, temperature=cold)) - constant - damping * speed for _, table in tables
+    ]
     of_draws = drawn.model.force_at(few, cold, speed)
     low, middle, high = np.quantile(of_tables, (0.05, 0.5, 0.95))
     expected = np.quantile(of_draws, (0.05, 0.5, 0.95))

@@ -206,7 +206,7 @@ def test_a_stick_speed_that_is_fixed_holds_at_one_temperature(typed: Typed) -> N
             "the fit is isothermal: omit --temperature",
         ),
         (HOT, {"fit": "rising.json"}, "the data show no falling branch: too few slow dwells"),
-        (HOT, {"machine": "slack.toml"}, "slack.toml: [drivetrain] needs the key 'stiffness'"),
+        (HOT, {"machine": "slack.toml"}, "[drivetrain] needs the key 'stiffness'"),
         (HOT, {"machine": "none.toml"}, "none.toml"),
     ],
 )

@@ -244,7 +244,7 @@ def test_it_says_what_it_is_made_of(surface: hersey.DampingSurface, tmp_path: Pa
             {"drive": "torque", "roll_radius": 0.02, "start": "steady"},
             "start 'steady' needs drive 'speed'",
         ),
-        ({"drive_speed": float("nan")}, "finite"),
+        ({"drive_speed": float("nan")}, "is NaN"),
         ({"drive_speed": "30 rpm"}, "rpm"),
         ({"tolerance": 2.0}, "tolerance"),
         ({"name": " "}, "name is ' ': it must be one line of visible characters"),

@@ -73,7 +73,7 @@ def campaign(units: int = 8) -> hersey.Campaign:
                     "run_id": [row["run"]] * log.height,
                     "speed (rad/s)": speed,
                     "temperature (K)": kelvin,
-                    "torque (N m)": log["torque [N*m]"].to_numpy() - rest.torque(speed, kelvin),
+                    "torque (N m)": log["torque [N*m]"].to_numpy() - rest.torque(speed, temperature=kelvin),
                     "torque error (N m)": log["torque error [N*m]"].to_numpy(),
                 }
             )
@@ -165,7 +165,7 @@ def write(path: Path, units: int = 2) -> Path:
         names = ("speed (rad/s)", "torque (N m)", "torque error (N m)", "temperature (K)")
         for (unit, age), dwells in whole.dwells().group_by("unit", "age (pages)", maintain_order=True):
             speed, torque, error, kelvin = (dwells[name].to_numpy()[::2] for name in names)
-            torque = torque + rest.torque(speed, kelvin)
+            torque = torque + rest.torque(speed, temperature=kelvin)
             rows = zip(*(each.tolist() for each in (speed, torque, error, kelvin)), strict=True)
             add(written, str(unit), float(age), list(rows))  # type: ignore[arg-type]
     return path

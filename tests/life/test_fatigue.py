@@ -192,7 +192,7 @@ def test_units_at_the_door() -> None:
     ("call", "words"),
     [
         (lambda: SNCurve(0.0, 2e6, 5.0), "amplitude is 0"),
-        (lambda: SNCurve(20.0, math.nan, 5.0), "cycles is nan"),
+        (lambda: SNCurve(20.0, math.nan, 5.0), "cycles is NaN"),
         (lambda: SNCurve(20.0, 2e6, None), "slope is None"),  # type: ignore[arg-type]
         (lambda: SNCurve(20.0, 2e6, 5.0, second_slope=3.0), "at least the slope"),
         (lambda: SNCurve(20.0, 2e6, 5.0, second_slope="miner"), "it must be a number or 'haibach'"),

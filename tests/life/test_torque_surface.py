@@ -30,7 +30,7 @@ def dwells_of(truth: AgedTruth, seed: int, limit: float = 1.0) -> RunDwells:
     whole = truth.torque(speed, level)
     noise = STAND.repeatability * np.random.default_rng(seed).standard_normal(whole.size)
     shown = whole * (1.0 + noise)
-    belt = shown - truth.rest.torque(speed, level + ZERO_CELSIUS)
+    belt = shown - truth.rest.torque(speed, temperature=level + ZERO_CELSIUS)
     run = RunDwells(speed, level + ZERO_CELSIUS, belt, shown, STAND.repeatability * shown)
     return only(run, whole <= limit)
 
@@ -54,7 +54,7 @@ def test_errors_at_both_corners_are_as_said() -> None:
     normal = []
     for truth, run in zip(truths, runs, strict=True):
         found = TorqueSurface(run, kernel).at(CORNERS[0], CORNERS[1] + ZERO_CELSIUS)
-        belt = truth.torque(*CORNERS) - truth.rest.torque(CORNERS[0], CORNERS[1] + ZERO_CELSIUS)
+        belt = truth.torque(*CORNERS) - truth.rest.torque(CORNERS[0], temperature=CORNERS[1] + ZERO_CELSIUS)
         normal.append(np.log(found.torque / belt) / found.error)
     errors = np.array(normal)
     assert np.all(np.abs(errors.mean(axis=0)) < 0.45)  # three standard errors of a mean of 48

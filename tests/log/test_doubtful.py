@@ -5,9 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import polars as pl
 import pytest
 
 import hersey
+from hersey.errors import ChannelError
 from hersey.log.doubtful import doubtful_units
 
 STEPS = np.repeat([20.0, 60.0, 180.0, 400.0], 100)
@@ -24,9 +26,14 @@ def test_columns_under_each_others_names(
     body = "".join(f"{0.1 * i:.1f},{q:.6g},{w:.6g},90\n" for i, (q, w) in enumerate(rows))
     path = tmp_path / "log.csv"
     path.write_text("Time [s],Torque [N*m],Speed [rpm],Temperature [degC]\n" + body)
-    found = doubtful_units(hersey.read(path))
-    assert [each.kind for each in found] == ["torque and speed exchanged"] * said
-    assert all("columns are swapped" in each.text for each in found)
+    if not said:
+        assert doubtful_units(hersey.read(path)) == []
+        return
+    with pytest.raises(ChannelError, match="swapped") as refused:
+        hersey.read(path)
+    assert refused.value.setting is not None
+    assert refused.value.setting.name == "torque"
+    hersey.read(path, channels={"torque": "Torque", "speed": "Speed"})  # confirmed
 
 
 def test_a_slow_drive_of_great_torque_is_not_doubted(tmp_path: Path) -> None:
@@ -35,3 +42,21 @@ def test_a_slow_drive_of_great_torque_is_not_doubted(tmp_path: Path) -> None:
     path = tmp_path / "log.csv"
     path.write_text("Time [s],Torque [N*m],Speed [rpm],Temperature [degC]\n" + body)
     assert doubtful_units(hersey.read(path)) == []
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "units"),
+    [
+        (77.0, 356.0, ["degF"]),  # from a start at 25 degC
+        (298.0, 454.0, ["K"]),
+        (330.0, 350.0, ["K", "degF"]),
+        (600.0, 900.0, []),
+    ],
+)
+def test_which_unit_of_temperature_would_be_likely(low: float, high: float, units: list[str]) -> None:
+    time = np.arange(STEPS.size) * 0.1
+    degrees = np.linspace(low, high, STEPS.size)
+    table = {"Time [s]": time, "Torque [N*m]": TORQUE, "Speed [rpm]": SPEED, "Temp [degC]": degrees}
+    (warning,) = doubtful_units(hersey.read(pl.DataFrame(table)))
+    assert warning.kind == "unit of temperature doubtful"
+    assert [unit for unit in ("K", "degF", "degC") if f"'{unit}'" in warning.text] == units

@@ -94,9 +94,37 @@ def test_dates(cells: tuple[str, ...], times: list[float], says: str) -> None:
     assert str(stamps.warning("t")) == f"'t' contains {says}"
 
 
+@pytest.mark.parametrize(
+    ("cells", "times"),
+    [
+        (("59:59.8", "59:59.9", "00:00.0", "0:00.1"), [0.0, 0.1, 0.2, 0.3]),  # Excel shows no hours
+        (("59:59,8", "00:00,0"), [0.0, 0.2]),
+        (("59:59.5", "60:00.0", "100:00.0"), [0.0, 0.5, 2400.5]),
+        (("0:00", "0:01", "1:00"), [0.0, 1.0, 60.0]),
+        (("0:01:30", "00:01:30,5", "24:00:00", "25:00:00"), [0.0, 0.5, 86310.0, 89910.0]),
+        (("00:00:01:500", "00:00:02:000"), [0.0, 0.5]),
+        (("0 days 00:00:00.050000", "1 days 00:00:00"), [0.0, 86399.95]),
+    ],
+)
+def test_clocks_without_a_date(cells: tuple[str, ...], times: list[float]) -> None:
+    stamps = stamps_of(*cells)
+    assert all(map(is_stamp, cells))
+    assert seconds(stamps, *cells) == pytest.approx(times, abs=1e-6)
+    assert (stamps.warning("t").severity == "watch") == ("." not in "".join(cells) and cells[0] == "0:00")
+
+
+def test_changes_of_hour_are_counted() -> None:
+    stamps = stamps_of("59:59.8")
+    assert seconds(stamps, "59:59.8", "00:00.0") == pytest.approx([0.0, 0.2])
+    assert seconds(stamps, "59:59.8", "00:00.0") == pytest.approx([3600.0, 3600.2])
+    warning = stamps.warning("t")
+    assert (warning.values["midnights"], warning.values["period"]) == (2, "hour")
+
+
 def test_what_is_no_stamp() -> None:
     assert is_stamp("12:00:00.5")
-    assert not is_stamp("12:00")
+    assert not is_stamp("12:0")
+    assert not is_stamp("12:00,")
     assert not is_stamp("12.5")
     assert stamp_style(["12:00:00", "12:00:01", "x"]) is not None
     assert stamp_style(["12:00:00", "x"]) is None

@@ -207,3 +207,48 @@ def test_a_table_that_is_written_anew_between_two_looks_is_refused(tmp_path: Pat
 def test_a_file_that_is_not_there() -> None:
     with pytest.raises(MissingFileError, match="File not found"), open_delimited(Path("none.csv")):
         pass
+
+
+@pytest.mark.parametrize(
+    ("separator", "number"),
+    [
+        (";", "{:,.2f}"),
+        (";", "{:_.2f}"),  # 1.234,50
+        (",", '"{:,.2f}"'),
+    ],
+)
+def test_thousands_marks_that_begin_far_down_the_file(separator: str, number: str, tmp_path: Path) -> None:
+    """Behind what is looked at for the style of a file."""
+
+    def written(value: float, form: str) -> str:
+        text = form.format(value)
+        return text.replace(".", ",").replace("_", ".") if "_" in form else text
+
+    times = np.arange(24_000) * 0.05
+    rest = "0,5" if "_" in number else "0.5"
+    plain = number if "_" in number else "{:.2f}"
+    lines = [
+        separator.join((written(t, number if t >= 1000 else plain), rest, str(60 + i % 2), rest))
+        for i, t in enumerate(times)
+    ]
+    path = tmp_path / "log.csv"
+    head = separator.join(("Time [s]", "Torque [N*m]", "Speed [rpm]", "Temp [degC]"))
+    path.write_text("\n".join([head, *lines]))
+    np.testing.assert_allclose(hersey.read(path).runs[0].time, times)
+
+
+def test_a_mark_that_could_be_either_names_the_way_out(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    path.write_text(TEXT + '40,1.5,"1,000",150\n')
+    with pytest.raises(UnreadableLogError, match="line 42, column 'Speed': '1,000'") as refused:
+        hersey.read(path)
+    assert "thousands" in refused.value.remedy
+
+
+def test_rows_in_the_order_of_another_column_are_to_be_sorted(tmp_path: Path) -> None:
+    rows = sorted(((i, 20 * (i // 25 % 4)) for i in range(400)), key=lambda row: row[1])
+    path = tmp_path / "log.csv"
+    path.write_text(HEADER + "".join(f"{i},1.5,{30 + speed},150\n" for i, speed in rows))
+    with pytest.raises(UnreadableLogError) as refused:
+        hersey.read(path)
+    assert refused.value.remedy.startswith("sort the rows by 'Time'")

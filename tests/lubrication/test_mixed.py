@@ -224,7 +224,7 @@ def test_the_law_of_hard_nips_is_checked_up_to_a_tenth_of_the_load() -> None:
             "softer nip",
         ),
         (lambda: mixed(0.0), "boundary friction"),
-        (lambda: mixed(float("nan")), "boundary friction"),
+        (lambda: mixed(float("nan")), "friction is NaN"),
         (lambda: mixed(speed=0.0), "entrainment speed"),
         (lambda: BoundaryFriction(0.1, slope=-1e-3), "temperature"),
         (lambda: BoundaryFriction(0.1, slope=-1e-3, temperature=WARM).at(500.0), "226.9 degC"),

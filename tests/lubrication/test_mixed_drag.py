@@ -36,7 +36,7 @@ def force() -> CubicSpline:
 
 def test_the_force_is_that_of_the_equations(force: CubicSpline) -> None:
     speeds = np.geomspace(4e-4, 0.5, 23)
-    assert DRAG.force(speeds, 373.15) == pytest.approx(force(np.log(speeds)), rel=1e-6)
+    assert DRAG.force(speeds, temperature=373.15) == pytest.approx(force(np.log(speeds)), rel=1e-6)
 
 
 def test_the_transition_is_the_least_force(force: CubicSpline) -> None:

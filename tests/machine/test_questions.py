@@ -127,7 +127,7 @@ def test_each_question_asks_for_a_key_and_its_example_is_an_answer(question: Que
         ("drivetrain.stiffness", "11", "stiffness: '11' is not a number with a unit of stiffness"),
         ("drivetrain.mass", "-3 kg", "mass is -3 kg: it must be greater than 0"),
         ("drivetrain.roll_radius", "15 kg", "not a unit of length"),
-        ("drivetrain.stick_speed", "1 mm/s to 0.1 mm/s", "give the lower end first"),
+        ("drivetrain.stick_speed", "1 mm/s to 0.1 mm/s", "Write '0.1 mm/s to 1 mm/s'"),
         ("limits.roll_friction", "much", "roll_friction is 'much', not a number"),
         ("torque.sign", "2", "sign is 2: it must be 1 or -1"),
         ("lubricant.viscosities", "40 degC 5 mPa*s", "Write temperature and viscosity"),

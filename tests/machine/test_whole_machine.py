@@ -31,14 +31,17 @@ def test_a_map_of_the_machine_holds_its_stick_speed_where_it_was_stated() -> Non
     assert law.stick_speed == pytest.approx(3e-3, rel=1e-12)
     band = hersey.hysteresis(machine.train, law)
     map_ = hersey.operating_map(surface, machine, temperatures=[AT, AT + 1], draws=2)
-    assert map_.state_at(AT, 0.05).upper == pytest.approx(band.upper, rel=1e-9)
+    assert map_.state_at(temperature=AT, speed=0.05).upper == pytest.approx(band.upper, rel=1e-9)
     assert [point.name for point in map_.points] == ["full speed", "thick paper"]
     assert map_.stall_above is not None
     bare = hersey.operating_map(
         surface, replace(machine, stick_speed_rule="fixed", points=()), temperatures=[AT, AT + 1], draws=2
     )
     assert bare.points == ()
-    assert bare.state_at(AT + 1, 0.05).upper != map_.state_at(AT + 1, 0.05).upper
+    assert (
+        bare.state_at(temperature=AT + 1, speed=0.05).upper
+        != map_.state_at(temperature=AT + 1, speed=0.05).upper
+    )
 
 
 def test_bands_laps_and_plans_take_the_machine() -> None:
@@ -70,5 +73,5 @@ def test_a_surface_needs_a_machine() -> None:
     surface, machine = fitted()
     with pytest.raises(ParameterError, match="needs roll radius and stick speed"):
         hersey.hysteresis(machine.train, surface, temperature=AT)
-    with pytest.raises(ParameterError, match="needs roll radius and stick speed"):
+    with pytest.raises(ParameterError, match=r"machine is a Drivetrain\. It must be a Machine"):
         hersey.operating_map(surface, machine.train)  # type: ignore[arg-type]

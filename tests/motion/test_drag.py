@@ -49,7 +49,7 @@ def test_all_forces_and_all_speeds_move_with_temperature(kelvin: float) -> None:
     assert not law.varies_with_temperature
     assert law.temperature_zero == 0.0
     speeds = np.array([0.02, 0.5, 6.0])
-    np.testing.assert_allclose(WARM.force(speeds, kelvin), law.force(speeds), rtol=1e-12)
+    np.testing.assert_allclose(WARM.force(speeds, temperature=kelvin), law.force(speeds), rtol=1e-12)
 
 
 def test_a_law_in_kelvin_counts_from_zero() -> None:
@@ -145,8 +145,8 @@ def test_a_table_varies_with_temperature_as_two_branches_do() -> None:
         scaled = asked / ratio**2.9
         film = 14.0 * ratio**-0.4 * (scaled / 0.025) ** np.where(scaled < 0.025, -0.2, 0.3)
         rest = (3.0 + 20.0 * asked) * (1.0 - 0.002 * (kelvin - 423.15))
-        assert table.force(asked, kelvin) == pytest.approx(film + rest, rel=1e-12)
+        assert table.force(asked, temperature=kelvin) == pytest.approx(film + rest, rel=1e-12)
         assert table.at(kelvin).force(asked) == pytest.approx(film + rest, rel=1e-12)
-        assert law.force(asked, kelvin) == pytest.approx(film + rest, rel=1e-12)
+        assert law.force(asked, temperature=kelvin) == pytest.approx(film + rest, rel=1e-12)
         assert table.at(kelvin).stick_speed == pytest.approx(1e-3 * ratio**2.9, rel=1e-12)
         assert not table.at(kelvin).varies_with_temperature

@@ -131,7 +131,7 @@ def test_progress_is_told_and_can_stop_the_sweep() -> None:
         ({"stick_speed": [0.1, 2.0]}, "set 1: stick_speed is 2: it must be less than 1"),
         ({"drive_speed": [1.0, float("nan")]}, "drive_speed is NaN"),
         ({"stiffness": []}, "stiffness is empty"),
-        ({"stiffness": {"soft": 1.0}}, "stiffness is not a number"),
+        ({"stiffness": {"soft": 1.0}}, "stiffness is a dictionary"),
         ({"stiffness": [[1.0]]}, "zip=True"),
         ({"stiffness": [1, 2], "mass": [1, 2, 3], "zip": True}, "do not match"),
         ({"work": hersey.Work(threads=0)}, "threads"),

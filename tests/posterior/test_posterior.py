@@ -98,7 +98,9 @@ def test_the_typical_drive_varies_with_temperature_as_its_draw(whole: Posterior)
         constant, damping = whole.model.no_load(kelvin)
         # powers of temperature stand for the viscosity of the draw, and are exact at the headline's
         rel = 1e-3 if celsius == 180.0 else 0.03
-        assert drag.force(speeds, kelvin) == pytest.approx(force + constant + damping * speeds, rel=rel)
+        assert drag.force(speeds, temperature=kelvin) == pytest.approx(
+            force + constant + damping * speeds, rel=rel
+        )
     [fold] = whole.model.folds(draw, HOT, accuracy=1e-5).upper
     low, high = np.quantile(whole.edges(HOT).fold, [0.4, 0.6])
     assert low < fold < high
@@ -162,11 +164,11 @@ def test_the_same_seed_gives_the_same_bits_and_the_rest_is_told(
 def test_probabilities_add_up_and_follow_the_draws(alone: Posterior) -> None:
     edges = alone.edges(HOT)
     for speed in (0.01, 0.026, 0.06, 0.15, 0.5):
-        chance = alone.probability(HOT, speed)
+        chance = alone.probability(kelvin=HOT, speed=speed)
         assert chance.smooth + chance.from_above + chance.sticks + chance.stalls == pytest.approx(1.0)
         assert chance.smooth == np.mean(edges.fold < speed)
         assert chance.sticks == np.mean(speed < edges.transition)
-    assert alone.probability(HOT, alone.safe_speed(HOT) * 1.0001).smooth >= 0.975
+    assert alone.probability(kelvin=HOT, speed=alone.safe_speed(HOT) * 1.0001).smooth >= 0.975
 
 
 @pytest.mark.filterwarnings("ignore::FutureWarning")

@@ -63,7 +63,7 @@ def test_what_makes_no_sense_is_refused() -> None:
         hersey.safe_step(TRAIN, DRAG, from_speed=0.5, to_speed=1.0)
     with pytest.raises(ParameterError, match="to_speed is -1"):
         hersey.safe_step(TRAIN, DRAG, from_speed=2.5, to_speed=-1.0)
-    with pytest.raises(ParameterError, match="drive_speed is nan"):
+    with pytest.raises(ParameterError, match="drive_speed is NaN"):
         hersey.disturbance(TRAIN, DRAG, drive_speed=float("nan"))
 
 

@@ -225,8 +225,8 @@ def test_a_state_is_extrapolated_outside_the_dwells(few: OperatingMap) -> None:
         (hot - 0.1, high / 2, False),
         (hot + 0.1, high / 2, True),
     ):
-        assert few.state_at(t, v).extrapolated == outside, (t, v)
-    state = few.state_at(440.0, 0.1)
+        assert few.state_at(temperature=t, speed=v).extrapolated == outside, (t, v)
+    state = few.state_at(temperature=440.0, speed=0.1)
     assert state.torque == pytest.approx(0.015 * float(few.drag.at(440.0).force(0.1)))
     band = hysteresis(few.train, few.drag.at(440.0), sensitivity=False)
     assert (state.lower, state.transition, state.upper) == pytest.approx(
@@ -236,22 +236,23 @@ def test_a_state_is_extrapolated_outside_the_dwells(few: OperatingMap) -> None:
 
 def test_states_and_torques_go_with_their_temperatures(few: OperatingMap) -> None:
     kelvin, speed = np.array([465.0, 400.0, 465.0]), np.array([0.04, 0.05, 0.2])
-    many = few.look_up(kelvin, speed)
+    many = few.look_up(temperature=kelvin, speed=speed)
     for state, t, v in zip(many, kelvin, speed, strict=True):
-        assert state == few.state_at(float(t), float(v))
-    assert few.states(kelvin[:, None], speed).shape == (3, 3)
+        assert state == few.state_at(temperature=float(t), speed=float(v))
+    assert few.states(temperature=kelvin[:, None], speed=speed).shape == (3, 3)
     # of a motor of 4.5 N m and a belt that bears 4.18 N m by the estimate, of one of 9 N m for certain
-    assert few.doubtful.tolist() == [few.state_at(float(t), 0.3).doubtful for t in KELVIN]
+    assert few.doubtful.tolist() == [few.state_at(temperature=float(t), speed=0.3).doubtful for t in KELVIN]
     assert few.doubtful[-1]
     strong = replace(few, torque_limit=9.0)
     assert not strong.doubtful.any()
-    assert not any(state.doubtful for state in strong.look_up(467.0, [0.01, 0.3]))
-    assert strong.look_up(467.0, 0.3)[0].verdict() == "Smooth."
+    assert not any(state.doubtful for state in strong.look_up(temperature=467.0, speed=[0.01, 0.3]))
+    assert strong.look_up(temperature=467.0, speed=0.3)[0].verdict() == "Smooth."
     weak = replace(few, torque_limit=3.0)
-    assert weak.look_up(467.0, 0.3)[0].verdict().startswith("The motor cannot start")
+    assert weak.look_up(temperature=467.0, speed=0.3)[0].verdict().startswith("The motor cannot start")
     may = "The drive may be unable to start a belt at rest. If it starts:"
     words = {
-        s: few.look_up(467.0, v)[0].verdict() for s, v in (("slow", 0.01), ("band", 0.045), ("fast", 0.3))
+        s: few.look_up(temperature=467.0, speed=v)[0].verdict()
+        for s, v in (("slow", 0.01), ("band", 0.045), ("fast", 0.3))
     }
     assert words == {
         "slow": f"{may} Stick-slip is certain.",
@@ -549,7 +550,7 @@ def test_points_and_the_cells_under_the_pointer(few: OperatingMap) -> None:
     cells = rows(layers(few)[-1])
     assert len(cells) == 24 * 30
     for row in cells[:: len(cells) // 7]:
-        state = few.state_at(row["x"] + 273.15, row["y"] / 1e3)
+        state = few.state_at(temperature=row["x"] + 273.15, speed=row["y"] / 1e3)
         assert row["left"] < row["x"] < row["right"]
         assert row["bottom"] < row["y"] < row["top"]
         assert row["rpm"] == pytest.approx(row["y"] / 1e3 / 0.015 / RPM)
@@ -610,7 +611,7 @@ def test_labels_stand_at_what_they_name(few: OperatingMap) -> None:
         ("depends on start", "bistable"),
     ):
         if text in texts:
-            assert few.state_at(*texts[text]).state == state
+            assert few.state_at(temperature=texts[text][0], speed=texts[text][1]).state == state
     assert {"smooth", "sticks"} <= set(texts)
     assert texts["drive limit"][1] == pytest.approx(0.4, rel=0.2)
     for point in few.points:

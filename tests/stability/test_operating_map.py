@@ -85,7 +85,7 @@ def test_the_map_agrees_with_simulation_from_below_and_above(
 ) -> None:
     drawn = map_of(surface, machine.train, **QUICK)
     kelvin, speed = np.linspace(360.0, 466.0, size), np.geomspace(2e-4, 0.15, size)
-    states = drawn.states(kelvin[:, None], speed[None, :])
+    states = drawn.states(temperature=kelvin[:, None], speed=speed[None, :])
     assert {"creep", "stick_slip", "bistable", "smooth"} <= set(states.ravel())
     rest, steady = simulated(machine.train, drawn, kelvin, speed)
     padded = np.pad(states, 1, mode="edge")
@@ -102,7 +102,7 @@ def test_the_edges_part_what_simulation_finds_beside_them(surface: DampingSurfac
         lower, bend, upper = drawn.lower[i], drawn.transition[i], drawn.upper[i]
         beside = [0.997 * lower, (lower * bend) ** 0.5, 1.003 * bend, 0.999 * upper, 1.001 * upper]
         expected = ["stick_slip", "swing", "bistable", "bistable", "smooth"]
-        assert drawn.states(t, beside).tolist() == expected
+        assert drawn.states(temperature=t, speed=beside).tolist() == expected
         for speed, state in zip(beside, expected, strict=True):
             rest, steady = simulated(machine.train, drawn, np.array([t]), np.array([speed]))
             assert (rest[0, 0], steady[0, 0]) == SETTLES_TO[state], (t, speed)
@@ -113,7 +113,7 @@ def test_below_the_stick_speed_the_belt_creeps(surface: DampingSurface, machine:
     drawn = map_of(surface, machine.train, **QUICK, temperatures=kelvin)
     for t, stick in zip(kelvin, drawn.stick_speed, strict=True):
         assert stick == drawn.drag.at(t).stick_speed
-        assert drawn.states(t, [0.1 * stick, 0.999 * stick, 1.001 * stick]).tolist() == [
+        assert drawn.states(temperature=t, speed=[0.1 * stick, 0.999 * stick, 1.001 * stick]).tolist() == [
             "creep",
             "creep",
             "stick_slip",
@@ -131,11 +131,14 @@ def test_where_the_roll_slips_a_belt_may_swing_without_sticking(
     law = map_of(surface, machine.train, **QUICK, temperatures=[kelvin, 460.0]).drag.at(kelvin)
     limits = Limits(roll_friction=0.5, nip_load=2 * 1.02 * law.holding_force)
     drawn = map_of(surface, machine.train, **QUICK, limits=limits, temperatures=[kelvin, 460.0])
-    state = drawn.state_at(kelvin, 0.9999 * drawn.upper[0])
+    state = drawn.state_at(temperature=kelvin, speed=0.9999 * drawn.upper[0])
     assert state.state == "bistable"
     assert "oscillates while the roll slips" in state.verdict()
     free = map_of(surface, machine.train, **QUICK, temperatures=[kelvin, 460.0])
-    assert "sticks if started from rest" in free.state_at(kelvin, 0.99 * free.upper[0]).verdict()
+    assert (
+        "sticks if started from rest"
+        in free.state_at(temperature=kelvin, speed=0.99 * free.upper[0]).verdict()
+    )
 
 
 def test_stall_is_where_the_drag_exceeds_the_limit(surface: DampingSurface, machine: Machine) -> None:
@@ -147,10 +150,15 @@ def test_stall_is_where_the_drag_exceeds_the_limit(surface: DampingSurface, mach
     for speed in (above, below):
         assert float(drawn.drag.at(t).force(speed)) * 0.015 == pytest.approx(drawn.torque_limit, rel=1e-9)
     around = [0.999 * below, 1.001 * below, 0.999 * above, 1.001 * above]
-    assert [s.moving == "stall" for s in drawn.look_up(t, around)] == [True, True, False, True]
+    assert [s.moving == "stall" for s in drawn.look_up(temperature=t, speed=around)] == [
+        True,
+        True,
+        False,
+        True,
+    ]
     # one that slides more slowly than the transition sticks sooner or later, and is held for good
     assert drawn.lower[30] == 0
-    assert set(drawn.states(t, around)) == {"stall"}
+    assert set(drawn.states(temperature=t, speed=around)) == {"stall"}
     motor = map_of(surface, machine.train, **QUICK, limits=replace(grip, motor_torque=0.74))
     assert (motor.torque_limit, motor.limited_by) == (0.74, "motor torque")
     free = map_of(surface, machine.train, **QUICK)
@@ -160,7 +168,7 @@ def test_stall_is_where_the_drag_exceeds_the_limit(surface: DampingSurface, mach
     assert free.starts.all()
     assert "no torque limit" in [each.kind for each in free.warnings]
     tight = map_of(surface, machine.train, **QUICK, limits=Limits(motor_torque=0.5))
-    assert set(tight.states(t, tight.speed)) == {"motor"}
+    assert set(tight.states(temperature=t, speed=tight.speed)) == {"motor"}
 
 
 @pytest.mark.parametrize(
@@ -177,10 +185,10 @@ def test_what_the_roll_cannot_bear_simulation_finds_slipping(
     gripping = replace(machine.train, grip=grip)
     for t, speed, kind in ((453.15, 0.01, slow), (360.0, 1.1 * drawn.stall_above[0], fast)):
         cycle = hersey.stick_slip(gripping, drawn.drag.at(t), drive_speed=speed)
-        state = drawn.state_at(t, speed)
+        state = drawn.state_at(temperature=t, speed=speed)
         assert cycle.kind == kind
         assert (state.state == "stall") == (kind in ("stalled", "grip_slip"))
-    smooth = drawn.state_at(453.15, 0.15)
+    smooth = drawn.state_at(temperature=453.15, speed=0.15)
     assert (smooth.state, smooth.moving) == ("smooth" if grip == 300.0 else "stall", "smooth")
     assert ("keeps sliding" in smooth.verdict()) == (grip == 250.0)
     started = [each for each in drawn.warnings if each.kind == "belt not started"]
@@ -233,7 +241,7 @@ def test_a_map_of_a_small_grip_is_what_simulation_does(
     drag = drawn.drag.at(453.15)
     edge = drawn.upper[1]
     for speed in (0.3 * drawn.lower[1], 0.98 * edge, 1.02 * edge, min(1.1 * drawn.stall_above[1], 3 * edge)):
-        state = drawn.state_at(453.15, speed)
+        state = drawn.state_at(temperature=453.15, speed=speed)
         rest, sliding = DOES[state.moving]
         steady = (1.001 * speed, min(float(drag.force(speed)), grip) / train.stiffness)
         assert what_it_does(train, drag, speed, "rest") in (rest if state.starts else "stalls"), (
@@ -261,7 +269,7 @@ def test_points_are_judged(drawn: OperatingMap) -> None:
     assert ("thick paper", "verdict not certain") not in said  # only the fit is counted here
     assert ("cold <b>start</b>", "point extrapolated") in said
     assert str(drawn.warnings[0]).endswith("State the uncertainty of stick_speed")
-    assert drawn.state_at(453.15, 0.12) == judged["full speed"]
+    assert drawn.state_at(temperature=453.15, speed=0.12) == judged["full speed"]
 
 
 def test_what_is_uncertain_widens_the_interval_of_the_fold(
@@ -393,7 +401,7 @@ def test_bad_look_ups_are_refused(
     drawn: OperatingMap, temperature: float | None, speed: float, message: str
 ) -> None:
     with pytest.raises(ParameterError, match=message):
-        drawn.state_at(temperature, speed)
+        drawn.state_at(temperature=temperature, speed=speed)
 
 
 def test_without_a_falling_branch_there_is_no_map(surface: DampingSurface, machine: Machine) -> None:
@@ -410,10 +418,10 @@ def test_an_isothermal_fit_has_a_map_of_one_column(isothermal: DampingSurface, m
     assert drawn.lower.shape == (1,)
     assert drawn.transition_interval.shape == (2, 1)
     assert "isothermal fit" in [each.kind for each in drawn.warnings]
-    assert drawn.state_at(None, 0.12).state == "smooth"
+    assert drawn.state_at(temperature=None, speed=0.12).state == "smooth"
     assert "as in the log" in drawn.summary()
     with pytest.raises(ParameterError, match="isothermal"):
-        drawn.state_at(400.0, 0.12)
+        drawn.state_at(temperature=400.0, speed=0.12)
     with pytest.raises(ParameterError, match="isothermal"):
         map_of(isothermal, machine.train, **QUICK, temperatures=[400.0, 410.0])
     svg = picture(map_chart(drawn, tooltips=False), ".svg").decode()

@@ -178,7 +178,7 @@ def test_what_comes_after_a_profile_counts() -> None:
         TRAIN, replace(WARM, force_temperature_exponent=-6.0, speed_temperature_exponent=0.0)
     )
     peak = stiff.trial(up, held, force=True).peak_force
-    cold = float(stiff.drag.force(2.5, 250.0))
+    cold = float(stiff.drag.force(2.5, temperature=250.0))
     assert cold > 1.5 * peak
     assert stiff.trial(up, cools, force=True).peak_force == pytest.approx(cold, rel=1e-9)
     assert stiff.trial(up, cools, 0.99 * cold).why == "force"

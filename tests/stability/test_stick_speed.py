@@ -48,7 +48,7 @@ def test_map_band_and_plan_agree(fitted: hersey.DampingSurface, rule: str, at: f
     by_itself = fitted.drag(**m.belt, temperature=HOT)
     planned, _ = drag_and_draws(fitted, m, HOT, 1, varies=False)
     map_ = map_of(fitted, m.train, **m.belt, temperatures=[430.0, HOT], draws=2)
-    state = map_.state_at(HOT, 0.03)
+    state = map_.state_at(temperature=HOT, speed=0.03)
     laws = [by_itself, planned]
     if rule == WITH_TRANSITION:
         laws.append(fitted.drag(**m.belt).at(HOT))

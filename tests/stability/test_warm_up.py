@@ -161,7 +161,7 @@ def test_a_mixed_contact_warms_up_and_its_belt_is_watched() -> None:
     )
     sliding = warm.drive_speed > CONTACT_DRAG.transition_speed(310.0)
     assert np.nanmax(warm.drag[sliding]) < 4.5 * 1.002
-    assert warm.drag_at_once == pytest.approx(float(CONTACT_DRAG.force(0.1, 300.0)), rel=1e-6)
+    assert warm.drag_at_once == pytest.approx(float(CONTACT_DRAG.force(0.1, temperature=300.0)), rel=1e-6)
     assert warm.slides_from > warm.full_speed
     (late,) = (each for each in warm.warnings if each.kind == "slides late")
     assert late.values == {"slides_from": warm.slides_from}

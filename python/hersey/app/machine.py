@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -146,7 +147,9 @@ def file_faults(text: str, folder: Path, dropped: Mapping[str, Path]) -> list[Fa
         read_machine(path)
     except HerseyError as error:
         path.unlink(missing_ok=True)
-        said = str(error).removeprefix(f"{MACHINE_FILE}: ").removeprefix(f"{MACHINE_FILE} ")
+        said = str(error)
+        for beginning in (": ", " ", ", "):  # a line of it is one of the text that was typed
+            said = said.removeprefix(f"{MACHINE_FILE}{beginning}")
         return [Fault("toml", "The machine cannot be read.", said, "the machine")]
     return []
 
@@ -212,7 +215,7 @@ def mapping_faults(
         write_atomically(path, mapping_of_form(answers, others), overwrite=True)
         read_mapping(path)
     except HerseyError as error:
-        said = str(error).removeprefix(f"{MAPPING_FILE}: ")
+        said = re.sub(rf"^{re.escape(MAPPING_FILE)}(, line \d+)?: ", "", str(error))
         key = error.setting.name if error.setting is not None else ""
         at = f"field:{key}" if key in BY_KEY else "corrections"
         return [Fault(at, "This cannot be read.", said, "corrections")]

@@ -94,11 +94,11 @@ def rest_chart(rest: NoLoadTorque) -> Chart:
     hot: list[float | None] = [rest.reference_temperature]
     if rest.temperature_range is not None and rest.reference_temperature is not None:
         hot = list(np.linspace(*rest.temperature_range, _TEMPERATURES))
-    factor, unit = torque_unit(float(rest.torque(speed[-1:], hot[0]).max()))
+    factor, unit = torque_unit(float(rest.torque(speed[-1:], temperature=hot[0]).max()))
     rows: list[Row] = []
     for t in hot:
-        torque = factor * rest.torque(speed, t)
-        reach = 2.0 * factor * np.linalg.norm(rest.errors(speed, t), axis=1)
+        torque = factor * rest.torque(speed, temperature=t)
+        reach = 2.0 * factor * np.linalg.norm(rest.errors(speed, temperature=t), axis=1)
         low = np.maximum(torque - reach, 1e-2 * torque)  # a logarithm has no place for nothing
         rows += curve_rows(speed, torque, t, (low, torque + reach))
     title = alt.Title("No-load torque", subtitle="lines: fitted law; shaded: two standard errors")

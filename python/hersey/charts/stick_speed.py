@@ -28,7 +28,8 @@ def stick_speed_chart(document: Analysis) -> Chart:
     edge = [top if v is None else v for v in upper]
     base = plot(rows_of(stick=stick, transition=transition, upper=upper, edge=edge))
     sides = logarithmic_axis((min(stick), max(stick)))
-    x = alt.X("stick:Q", title="Stick speed (mm/s), assumed", **sides)
+    at = "" if sweep.temperature is None else f" at {celsius(sweep.temperature):.0f} °C"
+    x = alt.X("stick:Q", title=f"Stick speed{at} (mm/s), assumed", **sides)
     y_scale = alt.Scale(domain=[0, top], nice=False)
     turns, folds, ends = (
         alt.Y(f"{name}:Q", title="Drive speed (mm/s)", scale=y_scale)
@@ -47,7 +48,6 @@ def stick_speed_chart(document: Analysis) -> Chart:
         *_points(document, top, y_scale),
         *_stated(sweep, x, folds),
     ]
-    at = "" if sweep.temperature is None else f" at {celsius(sweep.temperature):.0f} °C"
     title = alt.Title(
         f"V* against the stick speed{at}",
         subtitle="solid: transition; dashed: V*",

@@ -12,6 +12,9 @@ from hersey.errors import HerseyError, ParameterError, printable
 Answer = TypeVar("Answer")
 #: The answer that rejects a proposal.
 NONE = "-"
+#: Answers that ask for help, and those of a person who does not know.
+_HELP = ("?", "h", "help")
+_UNKNOWN = ("don't know", "dont know", "do not know", "not known", "no idea", "unknown", "n/a", "na", "none")
 
 
 class Asking:
@@ -49,15 +52,21 @@ class Asking:
         """
         while True:
             text = self._line(what, words, proposed, needed)
-            if text == NONE or (not text and not proposed):
-                if not needed:
-                    return None
-                self._refuse(what, ParameterError("this answer is required"))
+            if self._terminal and text.lower() in _HELP:
+                say(f"  {_help(words, proposed, needed)}", file=sys.stderr)
                 continue
-            try:
-                return read(text or proposed)
-            except HerseyError as error:
-                self._refuse(what, error)
+            if text != NONE and (text or proposed):
+                try:
+                    return read(text or proposed)
+                except HerseyError as error:
+                    if text.lower() not in _UNKNOWN:
+                        self._refuse(what, error)
+                        continue
+                if proposed:
+                    return read(proposed)
+            if not needed:
+                return None
+            self._refuse(what, ParameterError(_required(proposed)))
 
     def _line(self, what: str, words: str, proposed: str, needed: bool) -> str:
         default = f" [{proposed}]" if proposed else "" if needed else " [skip]"
@@ -71,7 +80,7 @@ class Asking:
         if not self._terminal:
             sys.stderr.write("\n")
         self._count += 1
-        if line or (self._count > 1 and not needed and not self._terminal):
+        if line or (self._count > 1 and (proposed or not needed) and not self._terminal):
             return line.strip()
         if self._count > 1 or self._terminal:
             raise ParameterError(f"the answers end before '{what}', which is required; nothing is written")
@@ -84,3 +93,20 @@ class Asking:
         if not self._terminal:
             raise ParameterError(f"answer {self._count}, {what}: {error}; nothing is written")
         say(f"  {error}", file=sys.stderr)
+
+
+def _required(proposed: str) -> str:
+    """What to do about a question that cannot be skipped."""
+    if proposed:
+        return f"this answer is required. Press Enter for {proposed}"
+    return (
+        "this answer is required. Estimate it (a mass may be a range, e.g. 5 kg to 20 kg), or press Ctrl-C "
+        "to end without writing a file"
+    )
+
+
+def _help(words: str, proposed: str, needed: bool) -> str:
+    """What a question is about, and what can be answered."""
+    enter = f"accepts {proposed}" if proposed else "" if needed else "skips the question"
+    said = [words[:1].upper() + words[1:], f"Enter {enter}" if enter else "An answer is required"]
+    return f"{'. '.join(part for part in said if part)}. Ctrl-C ends, and nothing is written."

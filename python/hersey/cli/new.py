@@ -39,8 +39,8 @@ def new(
 
     Example: [bold]hersey new bench.csv[/bold]
 
-    Press Enter to accept the proposal in brackets or to skip the question; type - to reject the proposal.
-    Every number needs its unit.
+    Press Enter to accept the proposal in brackets or to skip the question. Type - to reject the proposal, and
+    ? for help. Every number needs its unit.
     """
     if mapping is not None and log is None:
         raise ParameterError("--mapping needs a LOG, whose channels it describes")
@@ -188,7 +188,10 @@ def _machine(asked: list[Question], asking: Asking, path: Path) -> str:
 
         read = _reader(question, fits)
         needed = bool(answers) and question in lacking(answers)
-        text = asking.ask(question.name, read, words=_words(question), needed=needed)
+        assumed = question.assumed if needed else ""
+        text = asking.ask(question.name, read, words=_words(question), proposed=assumed, needed=needed)
+        if text and text == assumed:
+            say(f"  {question.name}: {text} is assumed. Results depend on it.", file=sys.stderr)
         if text:
             answers[question.key] = text
             if question.field == "stick_speed" and asking.by_hand and len(question.values(text)) == 1:
@@ -228,9 +231,12 @@ def _point(number: int, asking: Asking) -> dict[str, str]:
 
 def _reader(question: Question, fits: Callable[[str], None] | None = None) -> Callable[[str], str]:
     """A reader that refuses an answer without its unit, or one that is wrong or contradicts another."""
+    from hersey.machine.uncertainty import range_ends
 
     def read(text: str) -> str:
-        if question.with_unit(text) != text:
+        ends = range_ends(text) if question.uncertain else None
+        plain = " to ".join(ends) if ends else text
+        if question.with_unit(plain) != plain:
             raise ParameterError(f"'{text}' has no unit: write '{question.with_unit(text)}', for example")
         question.values(text)
         if fits is not None:
@@ -258,4 +264,5 @@ def _refuse_wrong(text: str) -> None:
 
 
 def _words(question: Question) -> str:
-    return f"{question.words}; e.g. {question.example}"
+    example = "press Enter if you do not know it" if question.assumed else f"e.g. {question.example}"
+    return f"{question.words}; {example}"

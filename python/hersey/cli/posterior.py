@@ -86,7 +86,8 @@ def _lines(found: Posterior) -> list[str]:
     ]
     for name, values in found.intervals().items():
         unit, factor = _SHOWN.get(name, ("", 1.0))
-        rows.append((name.replace("_", " "), within(values, unit, factor=factor)))
+        estimated = " (estimated)" if name == "stick_speed" else ""  # beside the value of the machine file
+        rows.append((f"{name.replace('_', ' ')}{estimated}", within(values, unit, factor=factor)))
     return [*lines, *labelled(rows)]
 
 

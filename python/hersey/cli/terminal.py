@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any, TextIO
 
-from hersey.errors import SandboxWarning, printable
+from hersey.errors import PlausibilityWarning, SandboxWarning, printable
 
 #: Replacements of characters that a terminal lacks.
 _PLAIN = str.maketrans(
@@ -130,6 +130,8 @@ def warnings_said() -> Iterator[None]:
     usual = warnings.formatwarning
 
     def formatted(message: Warning | str, *about: Any, **more: Any) -> str:
+        if isinstance(message, PlausibilityWarning):
+            return f"hersey: warning: {printable(str(message))}\n"
         if isinstance(message, SandboxWarning):  # about the system, not about a line of the program
             return f"hersey: {printable(str(message))}\n"
         return printable(usual(message, *about, **more), lines=True)

@@ -36,7 +36,7 @@ def warming_drag(surface: DampingSurface, machine: Machine) -> Drag:
     """Return the fitted drag with its temperature dependence."""
     if surface.b is None:
         raise ParameterError("the fit is isothermal, but a warm-up needs drag at several temperatures")
-    return surface.drag(**machine.belt)
+    return replace(surface.drag(**machine.belt), measured=None)
 
 
 def beyond_the_log(surface: DampingSurface, kelvin: ArrayLike) -> list[Warning]:

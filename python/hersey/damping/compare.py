@@ -30,7 +30,7 @@ from hersey.damping.estimate import CONFIDENCE, Estimate
 from hersey.errors import ISOTHERMAL, HerseyError, InsufficientDataError
 from hersey.result import Means, Record, Result
 from hersey.schema.warning import Warning
-from hersey.units import convert, rpm
+from hersey.units import convert, rpm, takes_si
 
 if TYPE_CHECKING:
     import polars as pl
@@ -137,6 +137,7 @@ class LogComparison(Result):
         )
 
 
+@takes_si()
 def compare(
     a: SteadyPoints | Observations, b: SteadyPoints | Observations, *, names: tuple[str, str] = ("A", "B")
 ) -> LogComparison:

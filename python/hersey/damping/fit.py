@@ -25,7 +25,7 @@ from hersey.damping.shown import why_not_shown
 from hersey.damping.surface import DampingSurface
 from hersey.damping.systematic import sensor_shifts
 from hersey.errors import ISOTHERMAL, InsufficientDataError, ParameterError, Setting
-from hersey.units import celsius
+from hersey.units import celsius, takes_si
 
 #: Temperature below which no lubricant flows, K: what reads less is in another unit.
 NO_OIL_FLOWS = 193.15
@@ -33,6 +33,7 @@ NO_OIL_FLOWS = 193.15
 _ROUNDS = 12
 
 
+@takes_si()
 def fit(points: SteadyPoints, *, temperature_scale: str = "degC") -> DampingSurface:
     """Fit the damping surface to steady points.
 

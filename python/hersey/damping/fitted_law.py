@@ -148,7 +148,7 @@ class FittedLaw(Result):
     def total_torque(self, *, speed: ArrayLike, temperature: ArrayLike | None = None) -> FloatArray:
         """Return the torque of the log (N m): that of the film plus any no-load torque subtracted."""
         film = self.torque(speed=speed, temperature=temperature)
-        return film if self.rest is None else film + self.rest.torque(speed, temperature)
+        return film if self.rest is None else film + self.rest.torque(speed, temperature=temperature)
 
     @takes_si(speed="speed", temperature="temperature")
     def predict(self, *, speed: Any, temperature: Any = None) -> Band:

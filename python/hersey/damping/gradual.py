@@ -28,7 +28,7 @@ class Closure(Record):
     that the dwells show there, which the trend lines themselves do not.
     """
 
-    values: FloatArray
+    values: Annotated[FloatArray, Means("of the variables of the fit, in their order", shape="(n,)")]
     covariance: Annotated[FloatArray, Means(shape="(n, m)")]
 
 

@@ -21,6 +21,7 @@ from hersey.damping.no_load_torque import NoLoadTorque, estimates_of
 from hersey.errors import TARE, InsufficientDataError, ParameterError, turned
 from hersey.log.sensors import SHARE_OF_LARGEST, Sensors
 from hersey.schema.warning import Warning
+from hersey.units import takes_si
 
 #: Dwells beyond the numbers fitted.
 _SPARE = 2
@@ -30,6 +31,7 @@ _LITTLE = 0.1
 _SEEN = 1e-3
 
 
+@takes_si()
 def no_load_torque(points: SteadyPoints) -> NoLoadTorque:
     """Fit the no-load torque: a constant part, a part proportional to speed, and its temperature slope.
 

@@ -121,7 +121,7 @@ class NoLoadTorque(Result):
         )
 
     @takes_si(speed="speed", temperature="temperature")
-    def torque(self, speed: ArrayLike, temperature: ArrayLike | None = None) -> FloatArray:
+    def torque(self, speed: ArrayLike, *, temperature: ArrayLike | None = None) -> FloatArray:
         """Return the torque (N m) at speeds (rad/s), with the sign of the speed; temperature in K.
 
         Without a temperature, the torque at the reference temperature is returned.
@@ -131,7 +131,7 @@ class NoLoadTorque(Result):
         return np.asarray(np.sign(speeds) * at_reference * self._at_temperature(temperature))
 
     @takes_si(speed="speed", temperature="temperature")
-    def errors(self, speed: ArrayLike, temperature: ArrayLike | None = None) -> FloatArray:
+    def errors(self, speed: ArrayLike, *, temperature: ArrayLike | None = None) -> FloatArray:
         """Return the change of torque (N m) by one standard error of each independent error.
 
         Shape (speeds, errors); wider than the covariance has it where few degrees of freedom stand behind it.

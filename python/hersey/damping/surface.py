@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from hersey.arrays import FloatArray
+from hersey.arrays import FloatArray, refuse_unknown
 from hersey.damping.candidates.branched import LEAST_POWER, transition_exponent
 from hersey.damping.distributions import square_quantile
 from hersey.damping.estimate import Estimate, quantile
@@ -25,7 +25,7 @@ from hersey.damping.fitted_law import FittedLaw
 from hersey.damping.no_load_torque import with_rest
 from hersey.damping.surface_words import headline_of, record_of, summary_of, table_of
 from hersey.errors import InsufficientDataError, ParameterError, UntoldWarning
-from hersey.motion.drag import Drag
+from hersey.motion.drag import Drag, MeasuredRange
 from hersey.units import takes_si
 
 if TYPE_CHECKING:
@@ -62,8 +62,19 @@ class DampingSurface(FittedLaw):
     def transition_speed(self, temperature: float | None = None) -> float:
         """Return the transition speed (rad/s) at a temperature (K); NaN if the data show none.
 
-        Torque is lowest there: at the corner, or at the minimum of a gradual bend.
+        Torque is lowest there: at the corner, or at the minimum of a gradual bend. Warns with
+        `ExtrapolationWarning` outside the range of the data, as all methods do.
         """
+        self._warn_of(temperature)
+        return self._transition_at(temperature)
+
+    def _warn_of(self, *temperatures: float | None) -> None:
+        """Warn of a temperature outside the data, where the law varies with it."""
+        for kelvin in temperatures:
+            if kelvin is not None and self.b is not None:
+                self._warn_outside("temperature", np.asarray(kelvin, dtype=float), self.temperature_range)
+
+    def _transition_at(self, temperature: float | None) -> float:
         if self.transition is None:
             return float("nan")
         if temperature is None or self.reference_temperature is None:
@@ -84,6 +95,7 @@ class DampingSurface(FittedLaw):
             raise InsufficientDataError(f"the data show no falling branch: {self.rejected_transition}")
         if temperature is None or self.b is None or self.reference_temperature is None:
             return self.transition.speed
+        self._warn_of(temperature)
         x = self._checked_temperature(temperature)
         values, covariance = self._closure
         _, b, c, *_ = values
@@ -95,7 +107,7 @@ class DampingSurface(FittedLaw):
             away[1] = x * transition_exponent(1.0, c)
             away[2] = x * b / (1.0 + c) ** 2 if 1.0 + c > LEAST_POWER else 0.0
         error = float(np.sqrt(away @ covariance @ away))
-        speed, freedom = self.transition_speed(temperature), self.freedoms.of(away)
+        speed, freedom = self._transition_at(temperature), self.freedoms.of(away)
         reach = np.exp(quantile(freedom) * error)
         estimable = self.transition.speed.estimable and self.b.estimable
         low, high = (speed / reach, speed * reach) if estimable else (-np.inf, np.inf)
@@ -107,12 +119,16 @@ class DampingSurface(FittedLaw):
 
         At a gradual bend, a smooth curve through the dwells gives it.
         """
+        self._warn_of(temperature)
+        return self._torque_at(temperature)
+
+    def _torque_at(self, temperature: float | None) -> float:
         if self.transition is None:
             return float("nan")
         values, _ = self._closure
         at = self.reference_temperature if temperature is None else temperature
         inputs = self._inputs(
-            np.array([self.transition_speed(temperature)]), None if at is None else np.array([at])
+            np.array([self._transition_at(temperature)]), None if at is None else np.array([at])
         )
         return float(np.exp(self._law.predict(self._with_torque(values), inputs))[0])
 
@@ -135,14 +151,24 @@ class DampingSurface(FittedLaw):
         ParameterError
             If the rule is unknown, or the law does not hold at a temperature.
         """
+        self._warn_of(temperature, stick_speed_temperature)
+        return self._stick_speed_at(temperature, stick_speed, stick_speed_temperature, stick_speed_rule)
+
+    def _stick_speed_at(
+        self,
+        temperature: float | None,
+        stick_speed: float,
+        stick_speed_temperature: float | None = None,
+        stick_speed_rule: str = WITH_TRANSITION,
+    ) -> float:
         if stick_speed_rule not in (WITH_TRANSITION, FIXED):
             raise ParameterError(
                 f"stick_speed_rule '{stick_speed_rule}' is not known. Use '{WITH_TRANSITION}' or '{FIXED}'"
             )
         if stick_speed_rule == FIXED or self.b is None or self.transition is None:
             return stick_speed
-        stated = self.transition_speed(stick_speed_temperature)
-        return float(stick_speed * self.transition_speed(temperature) / stated)
+        stated = self._transition_at(stick_speed_temperature)
+        return float(stick_speed * self._transition_at(temperature) / stated)
 
     @takes_si(
         roll_radius="length",
@@ -181,47 +207,61 @@ class DampingSurface(FittedLaw):
         InsufficientDataError
             If the data show no transition: without a falling branch there is no stick-slip to compute.
         """
-        if self.transition is None:
-            raise InsufficientDataError(
-                f"the data show no falling branch: {self.rejected_transition}. Record slower dwells, "
-                "until torque rises as the drive slows"
-            )
+        self._warn_of(temperature, stick_speed_temperature)
         sticking: dict[str, Any] = {
             "stick_speed": stick_speed,
             "stick_speed_temperature": stick_speed_temperature,
             "stick_speed_rule": stick_speed_rule,
         }
+        return self._belt_drag(roll_radius, temperature, sticking)
+
+    def _belt_drag(self, roll_radius: float, temperature: float | None, sticking: dict[str, Any]) -> Drag:
+        if self.transition is None:
+            raise InsufficientDataError(
+                f"the data show no falling branch: {self.rejected_transition}. Record slower dwells, "
+                "until torque rises as the drive slows"
+            )
         if temperature is None and self.b is not None and self.reference_temperature is not None:
             return self._varying_drag(roll_radius, self.reference_temperature, self.b.value, sticking)
         film = Drag(
-            transition_force=self.transition_torque(temperature) / roll_radius,
-            transition_speed=self.transition_speed(temperature) * roll_radius,
+            transition_force=self._torque_at(temperature) / roll_radius,
+            transition_speed=self._transition_at(temperature) * roll_radius,
             ehl_exponent=self.c.value,
             mixed_exponent=self.transition.mixed_exponent.value,
-            stick_speed=self.stick_speed_at(temperature, **sticking),
+            stick_speed=self._stick_speed_at(temperature, **sticking),
+            measured=self._measured(roll_radius),
         )
         return film if self.rest is None else with_rest(film, self.rest, roll_radius, temperature)
+
+    def _measured(self, roll_radius: float) -> MeasuredRange:
+        low, high = self.speed_range
+        return MeasuredRange((low * roll_radius, high * roll_radius), self.temperature_range)
 
     def _varying_drag(
         self, roll_radius: float, reference: float, exponent: float, sticking: dict[str, Any]
     ) -> Drag:
         """The drag that varies with temperature, from that at a reference temperature (K)."""
         assert self.transition is not None
-        if sticking["stick_speed_rule"] == FIXED:
+        if sticking.get("stick_speed_rule") == FIXED:
             raise ParameterError(
                 f"stick_speed_rule '{FIXED}' cannot be used while temperature varies. Give one "
                 f"temperature, or use stick_speed_rule '{WITH_TRANSITION}'"
             )
         moved = self.transition.temperature_exponent
         return replace(
-            self.drag(roll_radius=roll_radius, temperature=reference, **sticking),
+            self._belt_drag(roll_radius, reference, sticking),
             reference_temperature=reference,
             force_temperature_exponent=exponent + (1.0 + self.c.value) * moved,
             speed_temperature_exponent=moved,
             temperature_zero=self.temperature_zero,
         )
 
-    @takes_si(roll_radius="length", temperature="temperature")
+    @takes_si(
+        roll_radius="length",
+        temperature="temperature",
+        stick_speed="belt speed",
+        stick_speed_temperature="temperature",
+    )
     def drag_samples(
         self, count: int, seed: int, *, roll_radius: float, temperature: float | None = None, **sticking: Any
     ) -> dict[str, FloatArray]:
@@ -259,6 +299,11 @@ class DampingSurface(FittedLaw):
         ParameterError
             If a value is out of range, with its name.
         """
+        known = ("stick_speed", "stick_speed_temperature", "stick_speed_rule")
+        refuse_unknown("drag_samples", sticking, known)
+        if "stick_speed" not in sticking:
+            raise ParameterError("drag_samples needs stick_speed, e.g. stick_speed='0.3 mm/s'")
+        self._warn_of(temperature)
         drawn, said = self.drawn_drag(
             count, seed, roll_radius=roll_radius, temperature=temperature, **sticking
         )
@@ -282,7 +327,7 @@ class DampingSurface(FittedLaw):
             reason = "this law depends on temperature. Give the temperature in K"
             other = "this law does not depend on temperature. Omit temperature"
             raise ParameterError(reason if self.b is not None else other)
-        at = self.drag(roll_radius=roll_radius, temperature=temperature, **sticking)
+        at = self._belt_drag(roll_radius, temperature, sticking)
         x = 0.0
         if temperature is not None and self.reference_temperature is not None:
             x = self._checked_temperature(temperature)

@@ -50,7 +50,7 @@ def judge(found: Posterior, kelvin: float | None, speed: float) -> Verdict:
     A verdict needs 97.5 % probability; smooth sliding counts only where the drive starts the belt.
     """
     machine = found.model.machine
-    chances = found.probability(kelvin, speed)
+    chances = found.probability(kelvin=kelvin, speed=speed)
     limit = drive_limit(machine.limits, machine.roll_radius, machine.train.grip)
     starts, bears = 1.0, 1.0
     if math.isfinite(limit):

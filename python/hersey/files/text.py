@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 from pathlib import Path
 
 from hersey.errors import ParameterError
@@ -14,7 +15,7 @@ _SHOWN = 60
 
 
 def read_text(path: Path, *, most: int = MOST_BYTES) -> str:
-    """Return the text, UTF-8, with or without its mark.
+    """Return the text, UTF-8 with or without its mark, or UTF-16 with it.
 
     Raises
     ------
@@ -23,13 +24,14 @@ def read_text(path: Path, *, most: int = MOST_BYTES) -> str:
     ParameterError
         If it has more than ``most`` bytes.
     UnicodeDecodeError
-        If it is not UTF-8: what that means is for the caller to say.
+        If it is neither: what that means is for the caller to say.
     """
     with open_file(path) as file:
         text = file.read(most + 1)
     if len(text) > most:
         raise ParameterError(f"{path.name} is larger than {most} bytes, the limit for such a file")
-    return text.decode("utf-8-sig").replace("\r\n", "\n")
+    marked = text.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
+    return text.decode("utf-16" if marked else "utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")
 
 
 def shown(value: object) -> str:

@@ -14,11 +14,11 @@ from __future__ import annotations
 import math
 import re
 import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass as plain_dataclass
 from pathlib import Path
-from typing import Annotated, Any, NamedTuple, TypeVar
+from typing import Annotated, Any, ClassVar, NamedTuple, TypeVar, get_args, get_origin
 
 from pydantic import (
     AfterValidator,
@@ -33,6 +33,7 @@ from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from hersey.errors import HerseyError, ParameterError, Setting, UnitError, meant
 from hersey.files.text import read_text, shown
+from hersey.files.toml_lines import explain, line_of
 from hersey.units import KINDS, parse
 
 Tables = TypeVar("Tables")
@@ -41,7 +42,7 @@ Tables = TypeVar("Tables")
 _GOES_ON = re.compile(r"(is|has|holds|lacks|needs) |\.")
 #: No value of a file comes near this.
 _LARGEST = 1e300
-_SHARE = re.compile(r"([0-9]+(?:\.[0-9]*)?)\s*%")
+_SHARE = re.compile(r"(?:±|\+/-)?\s*([0-9]+(?:\.[0-9]*)?)\s*%")
 #: Bytes of a file, characters of a text, dots of a key, and tables within tables at the most.
 _MOST_BYTES, _LONGEST_TEXT, _MOST_DOTS, _DEEPEST = 4_000_000, 1000, 20, 20
 #: Whole numbers of TOML have 64 bits.
@@ -61,6 +62,7 @@ _WAY_OUT = {
     "bool_type": "Write true or false",
     "literal_error": "Write {expected}",
 }
+_NO_TEXT = "is not plain text in UTF-8. Save it with a text editor as plain text, encoding UTF-8"
 
 
 class Reading(NamedTuple):
@@ -68,6 +70,7 @@ class Reading(NamedTuple):
 
     path: Path
     plain: bool = False
+    document: Mapping[str, Any] = {}
 
 
 @plain_dataclass(frozen=True)
@@ -87,7 +90,9 @@ class Quantity:
         """Return the value in SI if it is believed; what is made in Python is in SI."""
         if info.context is None:
             return float(given) if isinstance(given, int) else given
-        value = self._number(given) if self.kind is None or info.context.plain else self._with_unit(given)
+        value = (
+            self._number(given) if self.kind is None or info.context.plain else self._with_unit(given, info)
+        )
         if self.low > 0 >= value:
             example = f'"{self.example}"' if self.kind else self.example
             such = f", e.g. {example}" if self.example else ""
@@ -107,29 +112,32 @@ class Quantity:
         assert self.kind is not None
         return parse(self.kind, text)
 
-    def _with_unit(self, given: object) -> float:
+    def _with_unit(self, given: object, _: ValidationInfo[Any]) -> float:
         if not isinstance(given, str):
             assert self.kind is not None
-            number = given if isinstance(given, int | float) and math.isfinite(given) else 1
-            example = self.example or f"{number} {KINDS[self.kind][1]}"
-            such = f', e.g. "{example}"'
+            unit = self.example.partition(" ")[2] or KINDS[self.kind][1]
+            numeric = isinstance(given, int | float) and not isinstance(given, bool) and math.isfinite(given)
+            number = f"{given:.15g}" if numeric else "1"
+            one = given[0] if isinstance(given, list) and len(given) == 1 else None
+            such = f': "{one}"' if isinstance(one, str) else f', e.g. "{number} {unit}"'
             raise UnitError(f"is {_written(given)}, without a unit. Write it in quotes with its unit{such}")
         return self.parsed(given)
 
     def _number(self, given: object) -> float:
         if isinstance(given, bool) or not isinstance(given, int | float) or not abs(given) < _LARGEST:
-            numeric = isinstance(given, str) and _is_number(given)
+            number = _number_in(given) if isinstance(given, str) else None
             such = f". Write a number, e.g. {self.example}" if self.example else ""
-            remedy = ". Write it without quotes" if numeric else such
+            remedy = such if number is None else f". Write {number:.15g}, without quotes"
             raise ParameterError(f"is {shown(given)}, not a number{remedy}")
         return float(given)
 
 
-def _is_number(text: str) -> bool:
-    try:
-        return math.isfinite(float(text))
-    except ValueError:
-        return False
+def _number_in(text: str) -> float | None:
+    """The number that a text was meant for, as ``"0.6"``, ``"0,6"`` or ``"60 %"``."""
+    match = re.fullmatch(r"\s*([-+]?[0-9]+)[.,]?([0-9]*)\s*(%?)\s*", text) if len(text) < 60 else None
+    if match is None:
+        return None
+    return float(f"{match[1]}.{match[2] or 0}") / (100 if match[3] else 1)
 
 
 def _share(given: object, info: ValidationInfo[Any]) -> object:
@@ -137,8 +145,16 @@ def _share(given: object, info: ValidationInfo[Any]) -> object:
         return given
     match = _SHARE.fullmatch(given.strip()) if isinstance(given, str) and len(given) < 60 else None
     if match is None or not 0 < float(match[1]) < 1000:
-        raise ParameterError(f"is {shown(given)}, not a percentage. Write e.g. '20 %'")
+        raise ParameterError(f"is {shown(given)}, not a percentage. Write {_percentage(given)}")
     return float(match[1]) / 100
+
+
+def _percentage(given: object) -> str:
+    """The percentage that a value was meant for, or an example."""
+    number = _number_in(given.strip().lstrip("±")) if isinstance(given, str) else given
+    if isinstance(number, bool) or not isinstance(number, int | float) or not 0 < number < 100:
+        return 'e.g. "20 %"'
+    return f'"{number if number >= 1 else 100 * number:.4g} %", in quotes'
 
 
 def _not_blank(text: str, info: ValidationInfo[Any]) -> str:
@@ -154,15 +170,23 @@ Text = Annotated[str, AfterValidator(_not_blank)]
 
 @dataclass(frozen=True)
 class Table:
-    """A table of a file, whose keys are all known."""
+    """A table of a file, whose keys are all known; ``called`` holds other names that people give them."""
+
+    called: ClassVar[Mapping[str, str]] = {}
 
     @model_validator(mode="before")
     @classmethod
     def _known(cls, table: Any) -> Any:
         known = cls.__pydantic_fields__  # type: ignore[attr-defined]
-        unknown = sorted(set(table) - set(known)) if isinstance(table, dict) else []
+        unknown = [key for key in table if key not in known] if isinstance(table, dict) else []
         if unknown:
-            raise PydanticCustomError("unknown", "{key}", {"key": unknown[0], "known": list(known)})
+            about = {
+                "key": unknown[0],
+                "known": list(known),
+                "given": table[unknown[0]],
+                "called": cls.called,
+            }
+            raise PydanticCustomError("unknown", "{key}", about)
         return table
 
 
@@ -176,29 +200,50 @@ def read_toml(path: str | Path) -> dict[str, Any]:
     ParameterError
         If it is not TOML.
     """
-    path, text = Path(path), ""
+    return _read(Path(path))[0]
+
+
+def _read(path: Path) -> tuple[dict[str, Any], str]:
+    """The document of a file, and its text."""
+    text = ""
     try:
         text = read_text(path, most=_MOST_BYTES)
+        if "\0" in text:
+            raise ParameterError(f"{path.name} {_NO_TEXT}")
         _refuse_long_keys(text)
         document = tomllib.loads(text)
     except HerseyError:
         raise
+    except UnicodeDecodeError as error:
+        raise ParameterError(f"{path.name} {_not_utf8(error)}") from None
     except (ValueError, RecursionError) as error:  # a number of thousands of digits is no TOMLDecodeError
-        raise ParameterError(f"{path.name} is not valid TOML: {error}{_no_toml(path, text)}") from None
+        raise ParameterError(f"{path.name} is not valid TOML: {_no_toml(path, text, error)}") from None
     with naming(path.name):
         _refuse_large(document)
-    return document
+    return document, text
 
 
-def _no_toml(path: Path, text: str) -> str:
-    """What to say of a file that is no TOML at all, by its name or because it is a table; else nothing."""
-    first = text.lstrip().partition("\n")[0]
-    if path.suffix == ".toml" or ("," not in first and ";" not in first and "\t" not in first):
-        return ""
-    return (
-        ". It looks like a log, but a machine file or a mapping (TOML) is needed here. Did you swap "
-        "the two files?"
+def _not_utf8(error: UnicodeDecodeError) -> str:
+    """Where a file is not UTF-8, and the character that was probably meant."""
+    whole: bytes = error.object
+    if b"\0" in whole[:1000]:
+        return _NO_TEXT
+    line, char = (
+        whole.count(b"\n", 0, error.start) + 1,
+        whole[error.start : error.start + 1].decode("cp1252", "replace"),
     )
+    return f"line {line}: '{char}' is not in UTF-8. Save the file as plain text, encoding UTF-8"
+
+
+def _no_toml(path: Path, text: str, error: Exception) -> str:
+    """Where and why a text is no TOML, with the corrected line if one is known."""
+    first = text.lstrip().partition("\n")[0]
+    if path.suffix != ".toml" and first[:1] != "{" and any(mark in first for mark in ",;\t"):
+        return (
+            f"{error}. It looks like a log, but a machine file or a mapping (TOML) is needed here. Did you "
+            "swap the two files?"
+        )
+    return (explain(text, error) if isinstance(error, ValueError) else "") or str(error)
 
 
 def _refuse_long_keys(text: str) -> None:
@@ -249,10 +294,36 @@ def read_tables(path: str | Path, kind: type[Tables], *, plain: bool = False) ->
         Each names the file and the key, and says the way out.
     """
     path = Path(path)
+    document, text = _read(path)
+    _refuse_escapes(path.name, document, text)
     try:
-        return TypeAdapter(kind).validate_python(read_toml(path), context=Reading(path, plain))
+        return TypeAdapter(kind).validate_python(document, context=Reading(path, plain, document))
     except ValidationError as error:
-        raise _mistake(path.name, error) from None
+        raise _mistake(path.name, error, kind, text) from None
+
+
+def _refuse_escapes(file: str, document: Mapping[str, Any], text: str) -> None:
+    r"""Refuse a path such as ``"C:\bench\new.csv"``, in which ``\b`` and ``\n`` are control characters."""
+    if "\\" not in text:
+        return
+    for place, value in _texts(document):
+        if set(value) & set("\b\t\n\f\r"):
+            line = line_of(text, place)
+            written = re.search(r'"(.*?)"\s*(?:#|,|]|$)', text.split("\n")[line - 1]) if line else None
+            if written and re.search(r"\\[btnfr]", written[1]) and "'" not in written[1]:
+                raise ParameterError(
+                    f"{file}, line {line}: in double quotes a backslash is special, so a path needs single "
+                    f"ones. Write: {place[-1]} = '{written[1]}'"
+                )
+
+
+def _texts(value: Any, place: tuple[str | int, ...] = ()) -> Iterator[tuple[tuple[str | int, ...], str]]:
+    """Every text of a document, with its place."""
+    if isinstance(value, str):
+        yield place, value
+    elif isinstance(value, dict | list):
+        for key, each in value.items() if isinstance(value, dict) else enumerate(value):
+            yield from _texts(each, (*place, key))
 
 
 def refuse_value(kind: type, key: str, given: object) -> None:
@@ -295,30 +366,43 @@ def naming(file: str, key: str = "") -> Iterator[None]:
         raise _named(f"{file}: {key}" if key else file, error, key) from None
 
 
-def _mistake(file: str, error: ValidationError) -> ParameterError | UnitError:
+@contextmanager
+def at_line(path: Path, name: str, *place: str) -> Iterator[None]:
+    """Put the file, the line of a place in it, and the name of it before what is raised inside."""
+    try:
+        yield
+    except (ParameterError, UnitError) as error:
+        line = line_of(read_text(path, most=_MOST_BYTES), place)
+        where = f"{path.name}, line {line}" if line else path.name
+        raise _named(f"{where}: {name}", error) from None
+
+
+def _mistake(file: str, error: ValidationError, kind: Any, text: str) -> ParameterError | UnitError:
     """The first mistake in our own words; what is missing comes after what is wrong."""
     first = min(error.errors(), key=lambda mistake: mistake["type"] == "missing")
-    about, place = first.get("ctx", {}), _place(first["loc"], first["input"]) if first["loc"] else ""
+    about, loc = first.get("ctx", {}), first["loc"]
+    place = _place(loc, first["input"]) if loc else ""
+    line = line_of(text, (*loc, about["key"]) if first["type"] == "unknown" else loc)
+    where = f"{file}, line {line}" if line else file
     if first["type"] == "value_error":
-        return _named(f"{file}: {place}", about["error"], place)
-    refusal = ParameterError(f"{file}: {_words(first['type'], first['loc'], first['input'], about)}")
+        return _named(f"{where}: {place}", about["error"], place)
+    said = _words(first["type"], loc, first["input"], about, kind)
+    refusal = ParameterError(f"{where}: {said}")
     refusal.setting = Setting(place)
     return refusal
 
 
-def _words(kind: str, loc: tuple[str | int, ...], given: object, about: Mapping[str, Any]) -> str:
-    """What is wrong, and the way out, of a mistake that pydantic knows."""
+def _words(
+    kind: str, loc: tuple[str | int, ...], given: object, about: Mapping[str, Any], file: Any = None
+) -> str:
+    """What is wrong, and the way out, of a mistake that pydantic knows; ``file`` holds the tables."""
     match kind:
         case "missing" if len(loc) == 1:
             return f"table [{loc[0]}] is missing"
         case "missing":
-            return f"{_place(loc[:-1], {})} needs the key '{loc[-1]}'"
-        case "unknown" if not loc:
-            tables = ", ".join(f"[{name}]" for name in about["known"])
-            return f"unknown table '{about['key']}'.{_near(about, '[{}]')} Known tables: {tables}"
+            return f"{_place(loc[:-1], {})} needs the key '{loc[-1]}'{_add(file, loc)}"
         case "unknown":
-            known = ", ".join(about["known"])
-            return f"{_place(loc, {})} has an unknown key '{about['key']}'.{_near(about)} Known keys: {known}"
+            return _unknown(loc, about, file)
         case "dataclass_type" | "dict_type":
             table = ".".join(name for name in loc if isinstance(name, str))
             return f"{_place(loc, given)} is not a table. Write [{table}]"
@@ -326,9 +410,71 @@ def _words(kind: str, loc: tuple[str | int, ...], given: object, about: Mapping[
     return f"{_place(loc, given)} is {shown(given)}. {way_out.format(**about)}"
 
 
-def _near(about: Mapping[str, Any], written: str = "'{}'") -> str:
+def _unknown(loc: tuple[str | int, ...], about: Mapping[str, Any], file: Any) -> str:
+    """What to say of a key or a table that is not known: where it belongs, or what was probably meant."""
+    key, known, is_table = about["key"], about["known"], isinstance(about["given"], dict)
+    homes = [] if is_table else list(_homes(file, key))
+    if loc:
+        all_known = f" Known keys: {', '.join(known)}"
+        begins = f"{_place(loc, {})} has an unknown key '{key}'."
+        if key in about["called"]:
+            return f"{begins} Did you mean '{about['called'][key]}'?{all_known}"
+        radius = next((name for name in known if "radius" in name), "") if "diameter" in key else ""
+        if radius:
+            return f"{begins} Write the radius, {radius} = {_half(about['given'])}"
+        if homes:
+            return f"{begins} It belongs in {' or '.join(homes)}. Move the line there"
+        return f"{begins}{_near(key, known)}{all_known}"
+    if homes:
+        return f"'{key}' is in no table. It belongs in {' or '.join(homes)}. Write that line above it"
+    tables = ", ".join(f"[{name}]" for name in known)
+    if not is_table:
+        near = _near(key, known) or " Delete the line."
+        return f"unknown key '{key}', in no table.{near} Known names: {', '.join(known)}"
+    return f"unknown table '{key}'.{_near(key, known, '[{}]')} Known tables: {tables}"
+
+
+def _half(given: object) -> str:
+    """Half of a value with its unit."""
+    match = re.fullmatch(r"\s*([0-9]+(?:[.,][0-9]+)?)\s*(\D.*)?", str(given)[:60])
+    half = f"{float(match[1].replace(',', '.')) / 2:.10g}" if match else ""
+    return f'"{half} {match[2].strip()}"' if match and match[2] else "half of it"
+
+
+def _homes(file: Any, key: str, within: str = "") -> Iterator[str]:
+    """The tables of a file that know a key, as it names them."""
+    for name, field in getattr(file, "__pydantic_fields__", {}).items():
+        path = f"{within}{name}"
+        for table, listed in _tables_in(field.annotation):
+            if key in table.__pydantic_fields__:
+                yield f"[[{path}]]" if listed else f"[{path}]"
+            yield from _homes(table, key, f"{path}.")
+
+
+def _tables_in(annotation: Any, listed: bool = False) -> Iterator[tuple[Any, bool]]:
+    """The tables of an annotation, and whether there may be many."""
+    if isinstance(annotation, type) and issubclass(annotation, Table):
+        yield annotation, listed
+    for part in get_args(annotation):
+        yield from _tables_in(part, listed or get_origin(annotation) is tuple)
+
+
+def _add(file: Any, loc: tuple[str | int, ...]) -> str:
+    """The line to add for a key that is missing, if its table gives an example of it."""
+    table = file
+    for name in (each for each in loc[:-1] if isinstance(each, str)):
+        field = getattr(table, "__pydantic_fields__", {}).get(name)
+        table = next((each for each, _ in _tables_in(field.annotation)), None) if field else None
+    field = getattr(table, "__pydantic_fields__", {}).get(loc[-1])
+    example = (
+        next((each.example for each in field.metadata if isinstance(each, Quantity)), "") if field else ""
+    )
+    return f'. Add e.g. {loc[-1]} = "{example}"' if example else ""
+
+
+def _near(key: str, known: Sequence[str], written: str = "'{}'") -> str:
     """Which of the known names was probably meant, or nothing."""
-    near = meant(str(about["key"]), about["known"])
+    near = meant(key, known)
     return f" Did you mean {written.format(near)}?" if near else ""
 
 

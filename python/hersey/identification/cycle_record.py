@@ -23,7 +23,7 @@ from hersey.identification.drive_speed import driven
 from hersey.identification.motion_kind import Motion, is_regular, motion_of
 from hersey.identification.sampling import Samples, even_samples
 from hersey.identification.slip_figures import SlipFigures, slip_figures
-from hersey.result import OPEN, Means, Record, Result, json_record
+from hersey.result import Means, Record, Result, json_record
 from hersey.schema.warning import Warning
 from hersey.units import takes_si
 
@@ -46,9 +46,9 @@ _PER_CYCLE = ("period", "drop", "force_max", "force_min", "fall_duration")
 class Scatter(Record):
     """A figure that each cycle has: median, mean, standard deviation, and standard error of the mean."""
 
-    median: Annotated[float, OPEN]
-    mean: Annotated[float, OPEN]
-    deviation: Annotated[float, OPEN]
+    median: Annotated[float, Means("over the cycles; null without any", open=True)]
+    mean: Annotated[float, Means("over the cycles; null without any", open=True)]
+    deviation: Annotated[float, Means("standard deviation of the cycles; null for one", open=True)]
     error: Annotated[float, Means("of the mean", open=True)]
 
     @classmethod

@@ -204,7 +204,7 @@ class DriveFit:
     def _lap(self, values: FloatArray) -> ModelLap | None:
         parameters = self.parameters(values)
         try:
-            drag = Drag(**{name: parameters[name] for name in OF_THE_BELT[2:]}, closure=self.closure)
+            drag = Drag(*(parameters[name] for name in OF_THE_BELT[2:]), closure=self.closure)
         except ParameterError:
             return None
         train = Drivetrain(parameters["stiffness"], parameters["mass"])

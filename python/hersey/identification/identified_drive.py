@@ -22,7 +22,7 @@ from hersey.motion.drag import Drag
 from hersey.motion.parameters import KINDS, OF_THE_BELT
 from hersey.result import OPEN, Means, Record, Result
 from hersey.schema.warning import Warning
-from hersey.units import argument
+from hersey.units import argument, takes_si
 
 if TYPE_CHECKING:
     import polars as pl
@@ -68,8 +68,11 @@ class IdentifiedDrive(Result):
     decided: bool
     estimates: Annotated[Mapping[str, Estimate], Means("what the record determines")]
     values: Mapping[str, float]
-    known: Mapping[str, float]
-    derived: Mapping[str, Estimate]
+    known: Annotated[Mapping[str, float], Means("parameters that were given")]
+    derived: Annotated[
+        Mapping[str, Estimate],
+        Means("free period, release force, drag at the drive speed; the drive speed if better than stated"),
+    ]
     systematic: Annotated[
         Mapping[str, float], Means("half width added to an interval by the uncertainty of the drive speed")
     ]
@@ -99,8 +102,7 @@ class IdentifiedDrive(Result):
     @property
     def drag(self) -> Drag:
         """Drag of the best fit."""
-        names = OF_THE_BELT[2:]
-        return Drag(**{name: self.values[name] for name in names}, closure=self.closure)
+        return Drag(*(self.values[name] for name in OF_THE_BELT[2:]), closure=self.closure)
 
     def to_frame(self) -> pl.DataFrame:
         """Return the estimates with their 95 % intervals; the units apply to a trace in newtons."""
@@ -157,6 +159,7 @@ _UNITS = {
 }
 
 
+@takes_si()
 def identify(
     record: CycleRecord, *, known: Mapping[str, float] | None = None, closures: tuple[str, ...] = COMPARED
 ) -> IdentifiedDrive:
@@ -314,7 +317,7 @@ def _estimate(name: str, value: float, low: float, high: float, factor: float) -
 def _quantities(fit: DriveFit, values: FloatArray) -> FloatArray:
     """Fitted parameters (logarithms, exponents themselves) and the logarithms of `DERIVED`."""
     parameters = fit.parameters(np.append(values, 0.0))
-    drag = Drag(**{name: parameters[name] for name in OF_THE_BELT[2:]}, closure=fit.closure)
+    drag = Drag(*(parameters[name] for name in OF_THE_BELT[2:]), closure=fit.closure)
     free = 2.0 * np.pi * np.sqrt(parameters["mass"] / parameters["stiffness"])
     held = float(drag.force(parameters["stick_speed"])) if fit.closure == "retained" else drag.breakaway_force
     driven = float(drag.force(parameters["drive_speed"]))

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from hersey.arrays import FloatArray
 from hersey.damping.dwells.resolution import quantisation_step
 from hersey.log.neighbours import runs_of_true
-from hersey.result import OPEN, Record
+from hersey.result import OPEN, Means, Record
 
 IndexArray = NDArray[np.intp]
 
@@ -62,19 +62,18 @@ class Fault(Record):
 
 @dataclass(frozen=True)
 class Traits(Record):
-    """What a channel looks like, in its own unit; ``step`` and ``noise`` are None where they are not known.
-
-    ``noise`` is the standard deviation from row to row, ``refresh`` the rows for which values are held.
-    """
+    """What a channel looks like, in its own unit."""
 
     rows: int
     missing: int
     low: Annotated[float, OPEN]
     high: Annotated[float, OPEN]
     median: Annotated[float, OPEN]
-    step: float | None
-    noise: float | None
-    refresh: int
+    step: Annotated[float | None, Means("smallest step between readings; null if none is seen")]
+    noise: Annotated[
+        float | None, Means("standard deviation from row to row; null if constant or fewer than 8 readings")
+    ]
+    refresh: Annotated[int, Means("rows for which a reading is usually held; 1 if it changes every row")]
     faults: tuple[Fault, ...]
 
 

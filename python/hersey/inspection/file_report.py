@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from hersey.inspection.faults import DITHER, Fault, Traits, traits
 from hersey.inspection.raw import Lacking, RawChannel, RawLog, roles_of
 from hersey.log.channels import OTHER_ROLES, ChannelChoice, Stated, is_of_kind
 from hersey.log.torque_log import NO_CLOCK
-from hersey.result import Record
+from hersey.result import Means, Record
 from hersey.schema.warning import Warning
 from hersey.units import conversion
 
@@ -52,8 +52,8 @@ class FileReport(Record):
     name: str
     format: str
     rows: int
-    clocks: tuple[Clock, ...]
-    channels: tuple[ChannelReport, ...]
+    clocks: Annotated[tuple[Clock, ...], Means("each clock of the file once; empty if it has none")]
+    channels: Annotated[tuple[ChannelReport, ...], Means("every channel, used or not")]
     lacking: Mapping[str, Lacking]
     warnings: tuple[Warning, ...]
     cut_off: bool

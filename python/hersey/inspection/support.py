@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +20,7 @@ from hersey.damping.rising import Rising, rising
 from hersey.damping.surface import DampingSurface
 from hersey.errors import InsufficientDataError, Setting
 from hersey.log.means import MeansTable
-from hersey.result import Record
+from hersey.result import Means, Record
 from hersey.units import convert, rpm
 
 #: Speeds that span less than this factor, and temperatures that span less than so many kelvin, give an
@@ -52,7 +52,7 @@ class Support(Record):
 
     dwells: int
     speeds: int
-    speed_range: tuple[float, float] | None
+    speed_range: Annotated[tuple[float, float] | None, Means("least and greatest, without sign", "rad/s")]
     temperatures: tuple[float, ...]
     rejected: dict[Kind, int]
     can: tuple[str, ...]

@@ -191,7 +191,9 @@ def ageing_maps(campaign: Campaign, machine: Machine, found: TimeToFailure, *, u
     drive_torques, found_edges = [], []
     for _, _, belt, rest in shown:
         no_load = (
-            np.zeros_like(belt) if rest is None else np.array([rest.torque(rolls, t) for t in hot.tolist()])
+            np.zeros_like(belt)
+            if rest is None
+            else np.array([rest.torque(rolls, temperature=t) for t in hot.tolist()])
         )
         drive_torques.append(np.exp(belt) + no_load)
         rows = zip(np.exp(belt), hot.tolist(), strict=True)

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 
 from hersey.arrays import FloatArray, numbers_of
 from hersey.errors import InsufficientDataError, ParameterError
-from hersey.units import fields_in_si, takes_si
+from hersey.units import takes_si
 
 if TYPE_CHECKING:
     from hersey.motion.belt import Drivetrain
@@ -44,6 +44,7 @@ class RainflowCycles:
         return f"<RainflowCycles: {self.counts.sum():g} cycles{greatest}>"
 
 
+@takes_si(amplitude="torque", endurance="torque", ultimate="torque")
 @dataclass(frozen=True)
 class SNCurve:
     """Cycles to failure against amplitude: N = cycles (amplitude / a)^slope.
@@ -83,8 +84,7 @@ class SNCurve:
     ultimate: float | None = None
 
     def __post_init__(self) -> None:
-        """Bring torques to SI and refuse what is no curve."""
-        fields_in_si(self, dict.fromkeys(("amplitude", "endurance", "ultimate"), "torque"))
+        """Refuse what is no curve."""
         for name in ("amplitude", "cycles", "slope"):
             _refuse_not_positive(name, getattr(self, name))
         for name in ("endurance", "ultimate"):
@@ -121,6 +121,7 @@ class SNCurve:
             )
         return float(second)  # type: ignore[arg-type]
 
+    @takes_si(amplitude="torque", mean="torque")
     def life(self, amplitude: ArrayLike, mean: ArrayLike = 0.0) -> FloatArray:
         """Return the cycles to failure at amplitudes about means, N m; infinite below the endurance limit.
 
@@ -150,6 +151,7 @@ class SNCurve:
         return np.where(a < (self.endurance or 0.0), np.inf, life)
 
 
+@takes_si()
 def rainflow_cycles(signal: ArrayLike, *, repeating: bool = False) -> RainflowCycles:
     """Return the cycles of a signal by rainflow counting (ASTM E1049-85, 5.4.4), in the order they are found.
 
@@ -196,6 +198,7 @@ def rainflow_cycles(signal: ArrayLike, *, repeating: bool = False) -> RainflowCy
     return RainflowCycles(ranges, means, counts)
 
 
+@takes_si()
 def miner_damage(cycles: RainflowCycles, curve: SNCurve, *, ratio: float = 1.0) -> float:
     """Return Miner's sum of torque cycles in N m; the part is assumed to fail at 1.
 
@@ -276,6 +279,7 @@ def stick_slip_damage_rate(
     return float(cycle.frequency / life)
 
 
+@takes_si()
 def life_of(rate: float, *, spent: float = 0.0, limit: float = 1.0) -> float:
     """Return the time until Miner's sum reaches ``limit``, in the unit of the rate; infinite without damage.
 

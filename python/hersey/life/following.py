@@ -17,6 +17,7 @@ from hersey.life.other_uses import OtherUses, other_uses
 from hersey.life.time_to_failure.estimate import TimeToFailure, time_to_failure
 from hersey.result import Result
 from hersey.schema.warning import Warning
+from hersey.units import takes_si
 
 if TYPE_CHECKING:
     import polars as pl
@@ -67,6 +68,7 @@ class LifeTest(Result):
 
 
 @one_thread()
+@takes_si()
 def follow(
     campaign: Campaign,
     machine: Machine,

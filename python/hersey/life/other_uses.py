@@ -20,7 +20,7 @@ from hersey.life.time_to_failure.first import ages_of_new, ends_of_specimens
 from hersey.life.time_to_failure.joined import correlations
 from hersey.life.time_to_failure.way import FittedWay, fitted_way, last_ages
 from hersey.result import Means, Record, Result
-from hersey.units import celsius
+from hersey.units import celsius, takes_si
 
 if TYPE_CHECKING:
     import polars as pl
@@ -54,7 +54,7 @@ class Use(Record):
 
     torque_limit: Annotated[float | None, Means(unit="N m")]
     coldest: Annotated[float | None, Means("coldest start", "K")]
-    duty: str
+    duty: Annotated[str, Means("as stated, or the one operating point at which the drive then runs")]
     stated: Annotated[
         bool, Means("whether this is the operating condition of the machine file")
     ]  #: the use that the machine file states
@@ -109,6 +109,7 @@ class OtherUses(Result):
 
 
 @one_thread()
+@takes_si()
 def other_uses(
     campaign: Campaign,
     machine: Machine,

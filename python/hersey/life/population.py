@@ -18,6 +18,7 @@ from hersey.arrays import BoolArray, FloatArray, numbers_of
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.result import OPEN, Record, Result, json_record, table_of
 from hersey.schema.warning import Warning
+from hersey.units import takes_si
 
 if TYPE_CHECKING:
     import polars as pl
@@ -195,6 +196,7 @@ class Population(Result):
         return table_of(rows)
 
 
+@takes_si()
 def weibull(
     ages: ArrayLike, failed: ArrayLike, *, unit: str = "", level: float = 0.90, seed: int = 0
 ) -> Population:

@@ -18,6 +18,7 @@ stray_times    rows whose time lies off the clock around them
 wanted         what the user wants of a log, checked
 columns        columns as they stand, for readers with roles of their own
 assembly       from a recording to a run on the clock of the torque
+exchanged      columns under each other's names: refused
 reading        `read`: from files to a log
 many           many files, each a log of its own: in turn, in threads, or by workers
 corrections    what lies between sensor and film, subtracted with a record

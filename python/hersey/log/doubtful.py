@@ -6,18 +6,18 @@ import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.errors import Setting
+from hersey.log.believed import as_written, in_si
 from hersey.log.means import MeansTable
-from hersey.log.torque_log import Run, TorqueLog
+from hersey.log.torque_log import TorqueLog
 from hersey.schema.warning import Warning
-from hersey.units import celsius
+from hersey.units import celsius, conversion
 
 #: A log of a drive has rows more often than so, s, and no lubricant is hotter, degC.
 RARE, TOO_HOT = 10.0, 320.0
+#: No drive is colder, and one that starts cold starts between these, degC.
+TOO_COLD, ROOM = -60.0, (5.0, 40.0)
 #: Share of the temperatures that is looked at: a spike of the sensor is no unit.
 _MOST = 0.99
-#: A torque beyond this, N m, at no speed beyond that, rad/s, is of few drives; and nearly all of them hold
-#: their speed more closely than this share of what the torque does from row to row.
-_GREAT, _SLOW, _STEADIER = 10.0, 0.1, 1.0 / 3.0
 
 
 def doubtful_units(log: TorqueLog | MeansTable) -> list[Warning]:
@@ -35,41 +35,37 @@ def doubtful_units(log: TorqueLog | MeansTable) -> list[Warning]:
                 how=Setting("time", "unit"),
             )
         )
-    hottest = max((float(np.quantile(each, _MOST)) for each in _temperatures(log)), default=0.0)
+    temperatures = _temperatures(log)
+    hottest = max((float(np.quantile(each, _MOST)) for each in temperatures), default=0.0)
     if celsius(hottest) > TOO_HOT:
+        coldest = min(float(np.quantile(each, 1.0 - _MOST)) for each in temperatures)
+        likely = _likely_units(log, coldest, hottest)
         out.append(
             Warning(
                 "unit of temperature doubtful",
                 "temperature reaches {temperature:.0f degC}, more than a lubricant withstands",
                 severity="watch",
-                remedy="if the numbers are in K, use {how:K}",
+                remedy="; ".join(f"if the numbers are in {unit}, use {{how:{unit}}}" for unit in likely)
+                or "check the column and its unit",
                 temperature=hottest,
                 how=Setting("temperature", "unit"),
-            )
-        )
-    if any(_look_exchanged(run) for run in log.runs):
-        out.append(
-            Warning(
-                "torque and speed exchanged",
-                "torque is large and steadier than speed, and speed is almost zero",
-                severity="watch",
-                remedy="check whether the torque and speed columns are swapped",
             )
         )
     return out
 
 
-def _look_exchanged(run: Run) -> bool:
-    """Whether what is called a torque behaves as a speed does, and the other way round."""
-    torque, speed = np.abs(run.torque), np.abs(run.speed)
-    if torque.size < 3 or np.quantile(torque, _MOST) < _GREAT or np.quantile(speed, _MOST) > _SLOW:
-        return False
-    return _unrest(torque) < _STEADIER * _unrest(speed)
-
-
-def _unrest(values: FloatArray) -> float:
-    """Median change from row to row over the median."""
-    return float(np.median(np.abs(np.diff(values)))) / max(float(np.median(values)), 1e-300)
+def _likely_units(log: TorqueLog | MeansTable, coldest: float, hottest: float) -> list[str]:
+    """The units in which temperatures, K as read, would be those of a lubricant; from a cold start if any."""
+    read_as = next((c.unit for c in log.files[0].channels if c.role == "temperature"), "")
+    if not read_as:
+        return []
+    written = as_written(np.array([coldest, hottest]), conversion("temperature", read_as))
+    ends = {unit: in_si(written, conversion("temperature", unit)) for unit in ("K", "degF", "degC")}
+    likely = {
+        u: low for u, (low, high) in ends.items() if celsius(low) > TOO_COLD and celsius(high) < TOO_HOT
+    }
+    cold = [unit for unit, low in likely.items() if ROOM[0] < celsius(low) < ROOM[1]]
+    return cold or list(likely)
 
 
 def _temperatures(log: TorqueLog | MeansTable) -> list[FloatArray]:

@@ -316,6 +316,13 @@ def _refuse_many(
     if bad <= max(1.0, (MOST_ALLOWED if allowed else MOST) * rows):
         return
     share = f"{bad / rows:.0%} of {reading.role} '{reading.column.path}' is impossible ({bad} of {rows} rows)"
+    if any(each.reason is Reason.CLOCK for each in found):
+        raise UnreadableLogError(
+            f"{file}, {found[0]}; {share}",
+            remedy=f"sort the rows by '{reading.column.path}' if they are in another order. Otherwise "
+            f"{_way_out(bad, rows)}",
+            setting=Setting("time", "channel"),
+        )
     meant = _meant_unit(reading) if kind == "temperature" else ""
     unit = f"if the unit is wrong, use {Setting(reading.role, 'unit').to(meant)}"
     raise UnreadableLogError(

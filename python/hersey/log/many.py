@@ -13,6 +13,7 @@ from hersey.errors import HerseyError, ParameterError, UnfinishedError
 from hersey.files.patterns import files_of
 from hersey.log.reading import read
 from hersey.scale.tasks import done, in_order
+from hersey.units import takes_si
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -54,6 +55,7 @@ class ManyLogs(Mapping[Path, R], Generic[R]):
         return f"<ManyLogs: {len(self.found)} logs, {len(self.failures)} skipped>"
 
 
+@takes_si()
 def read_many(
     paths: str | Path | Iterable[str | Path],
     *,

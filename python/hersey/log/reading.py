@@ -11,6 +11,7 @@ import numpy as np
 from hersey.errors import ParameterError
 from hersey.log.assembly import Assembly
 from hersey.log.channels import OTHER_ROLES, ROLES, ChannelChoice, Stated
+from hersey.log.exchanged import refuse_exchanged
 from hersey.log.formats import format_of, opened
 from hersey.log.formats.frame import frame_recording, is_frame
 from hersey.log.friction import of_each_run
@@ -94,7 +95,9 @@ def read(
             raise ParameterError(f"{name} has the same content as an earlier file. Give each file once")
         done += read_here
     done = of_each_run(done, stated)
-    return TorqueLog(tuple(run for run, _ in done), tuple(log for _, log in done))
+    log = TorqueLog(tuple(run for run, _ in done), tuple(log for _, log in done))
+    refuse_exchanged(log, choices)
+    return log
 
 
 def _runs(file: Any, wanted: Wanted, frame: str, progress: Progress | None) -> list[tuple[Run, LogFile]]:

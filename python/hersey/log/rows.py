@@ -135,6 +135,8 @@ def runs_of(
         if len(starts) > _MOST_RUNS:
             raise UnreadableLogError(
                 f"{file}: the time column restarts more than {_MOST_RUNS} times, so it is not a clock",
+                remedy="sort the rows by time, or name another column with "
+                f"{Setting('time', 'channel').to()}",
                 setting=Setting("time", "channel"),
             )
     return [_rows(kept, start, end) for start, end in itertools.pairwise([*starts, kept.size])]

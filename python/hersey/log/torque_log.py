@@ -102,10 +102,10 @@ class Effect(Record):
     ``share`` is of the median of the absolute values before, or None where that is zero.
     """
 
-    role: str
-    largest: float
-    typical: Annotated[float, Means("root mean square")]
-    share: float | None
+    role: Annotated[str, Means("channel that was moved: torque, speed or temperature")]
+    largest: Annotated[float, Means("largest change, in SI")]
+    typical: Annotated[float, Means("root mean square change, in SI")]
+    share: Annotated[float | None, Means("typical over the median before; null where that is 0")]
 
     def __str__(self) -> str:
         """Return it in words."""
@@ -123,8 +123,8 @@ class Correction(Record):
     """Record of one correction: its parameters as written with units, its effects, and what stayed."""
 
     name: str
-    parameters: tuple[tuple[str, str], ...]
-    effects: tuple[Effect, ...]
+    parameters: Annotated[tuple[tuple[str, str], ...], Means("name and value with unit of each")]
+    effects: Annotated[tuple[Effect, ...], Means("one for each role that it moved")]
     warnings: tuple[Warning, ...] = ()
 
     def __str__(self) -> str:

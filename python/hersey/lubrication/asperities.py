@@ -12,9 +12,10 @@ from hersey import _core
 from hersey.arrays import FloatArray
 from hersey.errors import ParameterError
 from hersey.result import Means, Record
-from hersey.units import celsius, fields_in_si, takes_si
+from hersey.units import celsius, takes_si
 
 
+@takes_si(modulus="pressure")
 @dataclass(frozen=True)
 class Asperities(Record):
     """Asperities of two hard surfaces, after Greenwood and Tripp (1970).
@@ -40,8 +41,7 @@ class Asperities(Record):
     sigma_over_beta: float = 0.01
 
     def __post_init__(self) -> None:
-        """Bring the modulus to SI if it comes with a unit, and check the values."""
-        fields_in_si(self, {"modulus": "pressure"})
+        """Check the values."""
         for name, value in vars(self).items():
             if not 0 < value < np.inf:
                 raise ParameterError(f"{name} is {value:g}: it must be greater than 0")
@@ -53,6 +53,7 @@ class Asperities(Record):
         return _core.GREENWOOD_TRIPP * slope * self.modulus
 
 
+@takes_si(temperature="temperature")
 @dataclass(frozen=True)
 class BoundaryFriction(Record):
     """Friction if asperities carry the whole load: coefficient + slope (T - temperature).
@@ -66,8 +67,7 @@ class BoundaryFriction(Record):
     temperature: Annotated[float | None, Means("of the coefficient", "K")] = None
 
     def __post_init__(self) -> None:
-        """Bring the temperature to K if it comes with a unit, and check the values."""
-        fields_in_si(self, {"temperature": "temperature"})
+        """Check the values."""
         if not 0 < self.coefficient < np.inf:
             raise ParameterError(f"boundary friction is {self.coefficient:g}: it must be greater than 0")
         if self.slope and self.temperature is None:

@@ -15,7 +15,7 @@ from hersey.arrays import FloatArray, pointwise
 from hersey.errors import ParameterError
 from hersey.lubrication import paper
 from hersey.result import Means, Record
-from hersey.units import fields_in_si, takes_si
+from hersey.units import takes_si
 
 #: Rules for the width of a nip.
 RULES = ("layer", "hertz", "paper")
@@ -67,6 +67,7 @@ class Nip(Record):
         return _core.layer_factor(self.edge, self.width_over_hertz)
 
 
+@takes_si(**_KINDS)
 @dataclass(frozen=True)
 class Contact(Record):
     """A belt between a rubber-covered roll and a heater, in SI.
@@ -115,8 +116,7 @@ class Contact(Record):
     sensor_side: Annotated[str | None, Means("wall of the film whose temperature the sensor reads")] = None
 
     def __post_init__(self) -> None:
-        """Bring the values to SI if they come with units, and check them."""
-        fields_in_si(self, _KINDS)
+        """Check the values."""
         positive = ("roll_radius", "rubber_thickness", "modulus", "length", "load", "roughness", "supply")
         for name in (*positive, "nip_uncertainty"):
             value = getattr(self, name)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +14,7 @@ from hersey.arrays import FloatArray
 from hersey.lubrication import paper
 from hersey.lubrication.contact import RULES, Contact, Nip, nip_width
 from hersey.lubrication.lubricant import Lubricant
-from hersey.result import Record, Result, json_record
+from hersey.result import Means, Record, Result, json_record
 from hersey.units import celsius
 
 if TYPE_CHECKING:
@@ -69,8 +69,8 @@ CONSTANTS: tuple[Constant, ...] = (
 class Correction(Record):
     """A factor on the film, and where the rule behind it holds; arrays of the shape of the film."""
 
-    factor: FloatArray
-    valid: NDArray[np.bool_]
+    factor: Annotated[FloatArray, Means("by which the film is multiplied", shape="(points,)")]
+    valid: Annotated[NDArray[np.bool_], Means("whether the rule holds there", shape="(points,)")]
 
 
 @dataclass(frozen=True, repr=False)

@@ -11,14 +11,15 @@ from numpy.typing import ArrayLike
 
 from hersey import _core
 from hersey.arrays import FloatArray, pointwise
-from hersey.errors import ParameterError
+from hersey.errors import ArgumentError, ParameterError
 from hersey.result import Record
-from hersey.units import ZERO_CELSIUS, argument, fields_in_si, takes_si
+from hersey.units import ZERO_CELSIUS, argument, takes_si
 
 #: Laws of viscosity against temperature, and how many points each takes.
 MODELS = {name: form.points for name, form in _core.VISCOSITY_LAWS.items()}
 
 
+@takes_si(relaxation_time="time")
 @dataclass(frozen=True)
 class ShearThinning:
     """Carreau's law: eta/eta_0 = limit + (1 - limit) [1 + (relaxation_time rate)^2]^((exponent - 1)/2).
@@ -32,8 +33,7 @@ class ShearThinning:
     limit: float = 0.0
 
     def __post_init__(self) -> None:
-        """Bring the time to s if it comes with a unit, and check the values."""
-        fields_in_si(self, {"relaxation_time": "time"})
+        """Check the values."""
         self.share(1.0)
 
     def share(self, rate: ArrayLike) -> FloatArray:
@@ -41,6 +41,7 @@ class ShearThinning:
         return pointwise(_core.carreau, rate, self.relaxation_time, self.exponent, self.limit)
 
 
+@takes_si(density="density", conductivity="thermal conductivity")
 @dataclass(frozen=True)
 class Lubricant(Record):
     """A lubricant with viscosity fitted to points of its data sheet.
@@ -88,7 +89,6 @@ class Lubricant(Record):
 
     def __post_init__(self) -> None:
         """Bring the values to SI if they come with units, and check the points against the law."""
-        fields_in_si(self, {"density": "density", "conductivity": "thermal conductivity"})
         for name, kind in (("points", "viscosity"), ("pressure_viscosity", "pressure-viscosity coefficient")):
             object.__setattr__(self, name, _pairs_in_si(name, kind, getattr(self, name)))
         if self.model not in MODELS:
@@ -173,7 +173,13 @@ class Lubricant(Record):
 
 def _pairs_in_si(name: str, kind: str, pairs: Sequence[tuple[Any, Any]]) -> tuple[tuple[Any, Any], ...]:
     """Pairs of a temperature and a quantity of ``kind``, in SI."""
-    return tuple((argument(name, "temperature", t), argument(name, kind, value)) for t, value in pairs)
+    try:
+        given = [(t, value) for t, value in pairs]
+    except (TypeError, ValueError):
+        raise ArgumentError(
+            f"{name} must be pairs of a temperature and a {kind}, such as (('40 degC', ...), ...)"
+        ) from None
+    return tuple((argument(name, "temperature", t), argument(name, kind, value)) for t, value in given)
 
 
 _BATCHELOR = "Stachowiak and Batchelor, Engineering Tribology, Table 2.3"

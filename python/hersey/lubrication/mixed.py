@@ -77,18 +77,22 @@ class MixedContact(Record):
     lubricant: Lubricant
     asperities: Asperities
     friction: BoundaryFriction
-    regime: str
+    regime: Annotated[str, Means("law of the film")]
     reference: Annotated[float, Means("eta U at which the film alone is as thick as the roughness, Pa m")]
     film_exponent: float
-    load_exponent: float
+    load_exponent: Annotated[
+        float, Means("a film that is not soft varies as its share of the load to minus this power")
+    ]
     edge: Annotated[
         float, Means("mean pressure over K sqrt(l) of a soft nip at the reference; 0 if not soft")
     ]
     roundness: Annotated[float, Means("K^2 a/(2 p_max^2) of the dry pressure of a soft nip")]
-    stiffness: float
+    stiffness: Annotated[
+        float, Means("pressure of the asperities over F(lambda), over the mean pressure of the nip")
+    ]
     shear: Annotated[float, Means("for a film of lambda = 1 over the nip", "N")]
     rolling: Annotated[float, Means("contribution of inlet and pressure, at the reference", "N")]
-    rolling_exponent: float
+    rolling_exponent: Annotated[float, Means("rolling varies as eta U to this power")]
 
     def numbers(self, temperature: FloatArray) -> list[Any]:
         """Return the numbers of the law, in the order of the core, at temperatures (K)."""

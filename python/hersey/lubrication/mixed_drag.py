@@ -8,9 +8,10 @@ import numpy as np
 
 from hersey.lubrication.mixed import MixedContact
 from hersey.motion.drag import KINDS, BesideShape, Wire
-from hersey.units import fields_in_si, takes_si
+from hersey.units import takes_si
 
 
+@takes_si(temperature="temperature", **KINDS)
 @dataclass(frozen=True)
 class MixedDrag(BesideShape):
     """Drag force of a `MixedContact` against belt speed and temperature.
@@ -44,8 +45,7 @@ class MixedDrag(BesideShape):
     rest_temperature_slope: float = 0.0
 
     def __post_init__(self) -> None:
-        """Bring the values to SI if they come with units, and let the core check them."""
-        fields_in_si(self, {"temperature": "temperature", **KINDS})
+        """Let the core check the values."""
         self.law()
 
     @property

@@ -17,7 +17,7 @@ from hersey.arrays import FloatArray
 from hersey.errors import ParameterError
 from hersey.result import Means
 from hersey.schema.warning import Warning
-from hersey.units import fields_in_si, takes_si
+from hersey.units import takes_si
 
 #: Nodes between inlet and outlet.
 NODES = 201
@@ -40,6 +40,7 @@ _OF_THE_CORE = (
 _BARUS = 0.4e9
 
 
+@takes_si(thickness="length")
 @dataclass(frozen=True)
 class ElasticLayer:
     """An elastic layer on a rigid base: ``thickness`` (m) and Poisson ratio ``poisson``, up to 0.5."""
@@ -47,11 +48,8 @@ class ElasticLayer:
     thickness: float
     poisson: float
 
-    def __post_init__(self) -> None:
-        """Bring the thickness to SI if it comes with its unit."""
-        fields_in_si(self, {"thickness": "length"})
 
-
+@takes_si(viscosity="viscosity", pressure_viscosity="pressure-viscosity coefficient")
 @dataclass(frozen=True)
 class ThickeningFluid:
     """A lubricant that pressure thickens, at one temperature.
@@ -72,11 +70,6 @@ class ThickeningFluid:
     pressure_viscosity: float = 0.0
     thickening: Literal["roelands", "barus"] = "roelands"
     compressible: bool = False
-
-    def __post_init__(self) -> None:
-        """Bring the values to SI if they come with units."""
-        kinds = {"viscosity": "viscosity", "pressure_viscosity": "pressure-viscosity coefficient"}
-        fields_in_si(self, kinds)
 
 
 @dataclass(frozen=True)

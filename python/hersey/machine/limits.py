@@ -8,11 +8,20 @@ from typing import Annotated
 from pydantic.dataclasses import dataclass
 
 from hersey.files.toml import Quantity, Share, Table, Text
+from hersey.machine.at_belt import AtBelt
 from hersey.motion.belt import Drivetrain
+from hersey.units import takes_si
 
-_Speed = Annotated[float, Quantity("belt speed", 1e-6, 1e3)]
+_Speed = Annotated[float, AtBelt("belt speed", 1e-6, 1e3)]
 
 
+@takes_si(
+    motor_torque="torque",
+    nip_load="force",
+    acceleration="acceleration",
+    speed="belt speed",
+    spring_force="force",
+)
 @dataclass(frozen=True)
 class Limits(Table):
     """Limits of the machine, in SI; None where not stated.
@@ -22,15 +31,15 @@ class Limits(Table):
     ``spring_force`` (N) in the gear train.
     """
 
-    motor_torque: Annotated[float, Quantity("torque", 1e-6, 1e6)] | None = None
+    motor_torque: Annotated[float, AtBelt("torque", 1e-6, 1e6)] | None = None
     roll_friction: Annotated[float, Quantity(None, 1e-3, 10.0)] | None = None
-    nip_load: Annotated[float, Quantity("force", 1e-3, 1e7)] | None = None
+    nip_load: Annotated[float, AtBelt("force", 1e-3, 1e7)] | None = None
     #: Greatest acceleration of the drive, at the belt.
     acceleration: Annotated[float, Quantity("acceleration", 1e-6, 1e5)] | None = None
     #: Greatest speed of the drive, at the belt.
     speed: _Speed | None = None
     #: Greatest force in the gear train, at the belt.
-    spring_force: Annotated[float, Quantity("force", 1e-6, 1e7)] | None = None
+    spring_force: Annotated[float, AtBelt("force", 1e-6, 1e7)] | None = None
 
     def force(self, roll_radius: float) -> tuple[str, float] | None:
         """Return the least of grip, motor torque over the roll's radius (m) and spring force, with its name.
@@ -54,6 +63,7 @@ class Limits(Table):
         return train if train.grip is not None else replace(train, grip=self.grip)
 
 
+@takes_si(speed="belt speed", temperature="temperature")
 @dataclass(frozen=True)
 class OperatingPoint(Table):
     """A named state of the machine: belt speed (m/s) and temperature (K).

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass as plain_dataclass
 from dataclasses import field
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import BeforeValidator
@@ -14,8 +15,8 @@ from pydantic.dataclasses import dataclass
 
 from hersey.damping.no_load_torque import NoLoadTorque, with_rest
 from hersey.damping.surface import WITH_TRANSITION
-from hersey.errors import MAPPING, ParameterError, printable
-from hersey.files.toml import Quantity, Table, naming, read_tables, read_toml
+from hersey.errors import MAPPING, ParameterError, PlausibilityWarning, printable
+from hersey.files.toml import Quantity, Table, at_line, naming, read_tables, read_toml
 from hersey.log.sensor_tables import SensorTables, sensors_of
 from hersey.log.sensors import Sensors
 from hersey.lubrication.asperities import Asperities, BoundaryFriction
@@ -23,6 +24,8 @@ from hersey.lubrication.contact import Contact
 from hersey.lubrication.lubricant import Lubricant
 from hersey.lubrication.mixed import MixedContact, mixed_contact
 from hersey.lubrication.mixed_drag import MixedDrag
+from hersey.machine.at_belt import AtBelt
+from hersey.machine.doubts import doubts
 from hersey.machine.duty import GearTable, LifeTable, refuse_other_than_all
 from hersey.machine.heat import HeatTable
 from hersey.machine.limits import Limits, OperatingPoint
@@ -32,12 +35,14 @@ from hersey.machine.sharing import NEEDED, AsperitiesTable, BoundaryTable
 from hersey.machine.uncertainty import Uncertainty, read_uncertainty
 from hersey.motion.belt import Drivetrain
 from hersey.motion.heat import HeatBalance
-from hersey.units import fields_in_si, takes_si
+from hersey.units import takes_si
 
 #: Belt speed (m/s) whose film says which law holds, where the machine states no points.
 _USUAL_SPEED = 0.1
 
 
+#: What a file is that has such a key, and where it belongs.
+_OTHER_FILES = {"parameters": ("scenario", "hersey sweep"), "logs": ("recipe", "hersey fit --recipe")}
 #: Kinds of the units in which the numbers of a machine may be given.
 _KINDS = {
     "stiffness": "stiffness",
@@ -48,6 +53,7 @@ _KINDS = {
 }
 
 
+@takes_si(**_KINDS)
 @plain_dataclass(frozen=True)
 class Machine:
     """The machine, in SI.
@@ -82,10 +88,6 @@ class Machine:
     life: LifeTable = field(default_factory=LifeTable)
     gear: GearTable | None = None
     heat: HeatBalance | None = None
-
-    def __post_init__(self) -> None:
-        """Bring the values to SI if they come with units."""
-        fields_in_si(self, _KINDS)
 
     def __repr__(self) -> str:
         """Return what moves the belt, with units, and how many operating points there are, on one line."""
@@ -174,11 +176,19 @@ class Machine:
 class DrivetrainTable(Table):
     """What moves the belt, and below which speed it sticks, in SI."""
 
-    stiffness: Annotated[float, Quantity("stiffness", 1.0, 1e10)]
-    mass: Annotated[float, Quantity("mass", 1e-6, 1e6)]
-    roll_radius: Annotated[float, Quantity("length", 1e-5, 100.0)]
+    called: ClassVar[Mapping[str, str]] = {
+        "k": "stiffness",
+        "spring": "stiffness",
+        "m": "mass",
+        "weight": "mass",
+        "r": "roll_radius",
+    }
+
+    stiffness: Annotated[float, AtBelt("stiffness", 1.0, 1e10, "11 N/mm")]
+    mass: Annotated[float, AtBelt("mass", 1e-6, 1e6, "11 kg")]
+    roll_radius: Annotated[float, Quantity("length", 1e-5, 100.0, "15 mm")]
     #: Stick speed: results depend on it and logs rarely show it, so state its range in [uncertainty].
-    stick_speed: Annotated[float, Quantity("belt speed", 1e-9, 10.0)]
+    stick_speed: Annotated[float, AtBelt("belt speed", 1e-9, 10.0, "1 mm/s")]
     #: Temperature at which stick_speed holds; without it the reference temperature of the fit.
     stick_speed_temperature: Annotated[float, Quantity("temperature", 150.0, 1000.0, "150 degC")] | None = (
         None
@@ -211,6 +221,22 @@ class _MachineFile(Table):
     gear: GearTable | None = None
 
 
+def _refuse_another(path: Path, document: Mapping[str, Any]) -> None:
+    """Refuse a mapping, a recipe or a scenario in the place of a machine file."""
+    if found := {"torque", "speed"} & set(document):
+        raise ParameterError(
+            f"{path.name} contains [{min(found)}], so it is the mapping of a log, not a machine file. "
+            f"Give it as {MAPPING.to(printable(str(path)))}"
+        )
+    for key, (kind, command) in _OTHER_FILES.items():
+        if key in document:
+            raise ParameterError(
+                f"{path.name} contains '{key}', so it is a {kind} ({command}), not a machine file, which has "
+                "a table [drivetrain]"
+            )
+
+
+@takes_si()
 def read_machine(path: str | Path) -> Machine:
     """Read ``[drivetrain]``, and the other tables if they are there.
 
@@ -220,7 +246,7 @@ def read_machine(path: str | Path) -> Machine:
     shares the load with the film; they need each other, ``[contact]`` with a roughness, and ``[lubricant]``.
     ``[life]`` and ``[gear]`` say how it is used, and what a life test asks of it.
 
-    Every value is a string such as ``"11 N/mm"``; an uncertainty is ``"10 %"`` or ``"0.1 mm/s to 1 mm/s"``
+    Every value is a string such as ``"11 N/mm"``; an uncertainty is ``"10 %"`` or ``"0.3 mm/s to 3 mm/s"``
     (see `Uncertainty`).
 
     Raises
@@ -230,15 +256,12 @@ def read_machine(path: str | Path) -> Machine:
     """
     path = Path(path)
     document = read_toml(path)
-    if "drivetrain" not in document and {"torque", "speed"} & set(document):
-        raise ParameterError(
-            f"{path.name} contains [{min({'torque', 'speed'} & set(document))}], so it is the mapping "
-            f"of a log, not a machine file. Give it as {MAPPING.to(printable(str(path)))}"
-        )
+    if "drivetrain" not in document:
+        _refuse_another(path, document)
     tables = read_tables(path, _MachineFile)
     uncertainty = {}
     for parameter, text in tables.uncertainty.items():
-        with naming(f"{path.name}: uncertainty.{parameter}"):
+        with at_line(path, f"uncertainty.{parameter}", "uncertainty", parameter):
             uncertainty[parameter] = read_uncertainty(parameter, text)
     parts: dict[str, Any] = {
         "contact": lambda of: of.contact(tables.drivetrain.roll_radius, tables.limits.nip_load),
@@ -250,7 +273,7 @@ def read_machine(path: str | Path) -> Machine:
         "asperities": lambda of: of.asperities(),
     }
     for table, made in parts.items():
-        with naming(f"{path.name}: [{table}]"):
+        with at_line(path, f"[{table}]", table):
             parts[table] = None if getattr(tables, table) is None else made(getattr(tables, table))
     with naming(f"{path.name}: points"):
         refuse_other_than_all(tables.points)
@@ -266,4 +289,6 @@ def read_machine(path: str | Path) -> Machine:
     )
     with naming(path.name):
         _ = machine.mixed  # what it lacks is said here, with the file
+    for doubt in doubts(machine.stiffness, machine.mass, machine.stick_speed, machine.points):
+        warnings.warn(PlausibilityWarning(f"{printable(path.name)}: {doubt}"), stacklevel=2)
     return machine

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 from pydantic import BeforeValidator, ValidationInfo
 from pydantic.dataclasses import dataclass
@@ -12,6 +13,7 @@ from hersey.errors import ParameterError, WrongKindError
 from hersey.files.toml import Quantity, Share, Table
 from hersey.lubrication.contact import Contact, shore_a_modulus
 from hersey.lubrication.lubricant import EXAMPLES, Lubricant, ShearThinning
+from hersey.machine.at_belt import AtBelt
 
 #: Where a coefficient that holds for all temperatures is noted, K.
 _ANY = "298.15 K"
@@ -20,6 +22,12 @@ _ANY = "298.15 K"
 @dataclass(frozen=True)
 class ContactTable(Table):
     """The nip as a machine file states it; radius and load may stand in other tables."""
+
+    called: ClassVar[Mapping[str, str]] = {
+        "thickness": "rubber_thickness",
+        "hardness": "shore_a",
+        "force": "load",
+    }
 
     #: Outer radius of the roll; without it that of [drivetrain].
     roll_radius: Annotated[float, Quantity("length", 1e-4, 10.0)] | None = None
@@ -32,7 +40,7 @@ class ContactTable(Table):
     #: Length of the nip, along the roll.
     length: Annotated[float, Quantity("length", 1e-4, 100.0)] | None = None
     #: Load that presses the roll on the heater; without it nip_load of [limits].
-    load: Annotated[float, Quantity("force", 1e-3, 1e7)] | None = None
+    load: Annotated[float, AtBelt("force", 1e-3, 1e7)] | None = None
     #: Radius of the heater; flat if not stated.
     heater_radius: Annotated[float, Quantity("length", 1e-4, 1e6)] | None = None
     #: Roughness of belt and heater together, rms; needed with [asperities].

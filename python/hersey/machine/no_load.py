@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shlex
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -12,7 +13,7 @@ from pydantic.dataclasses import dataclass
 from hersey.damping.no_load import no_load_torque
 from hersey.damping.no_load_torque import NoLoadTorque
 from hersey.damping.recipe import Recipe
-from hersey.errors import MissingFileError, ParameterError
+from hersey.errors import HerseyError, MissingFileError, ParameterError, meant
 from hersey.files.text import shown
 from hersey.files.toml import Quantity, Share, Table, Text
 
@@ -84,8 +85,20 @@ class RestTable(Table):
     def _of_log(self, path: Path) -> NoLoadTorque:
         named = path.parent / str(self.log)
         if not named.is_file():
+            near = meant(named.name, [each.name for each in named.parent.glob("*") if each.is_file()])
+            remedy = f'did you mean log = "{near}"?' if near and named.parent == path.parent else ""
             raise MissingFileError(
                 f"{path.name}: [rest] names the log {self.log}, but there is no such file beside the "
-                "machine file"
+                "machine file",
+                remedy=remedy or "copy it there, or write its path: log = '...'",
             )
-        return no_load_torque(Recipe(logs=(named,), tare=self.tare or "none").points())
+        try:
+            return no_load_torque(Recipe(logs=(named,), tare=self.tare or "none").points())
+        except HerseyError as error:
+            refusal = error.within(f"{path.name}: [rest] log")
+            refusal.setting = None
+            refusal.remedy = (
+                f"check it with: hersey inspect {shlex.quote(str(self.log))}. Describe its columns in "
+                f'{named.stem}.hersey.toml beside it, or replace log by a number, torque = "20 mN*m"'
+            )
+            raise refusal from None

@@ -20,7 +20,7 @@ from hersey.machine.limits import Limits, OperatingPoint
 from hersey.machine.machine import DrivetrainTable
 from hersey.machine.nip import ContactTable, LubricantTable
 from hersey.machine.no_load import RestTable
-from hersey.machine.uncertainty import read_uncertainty
+from hersey.machine.uncertainty import range_ends, read_uncertainty
 from hersey.motion.parameters import KINDS as PARAMETERS
 from hersey.units import KINDS, convert, parse
 
@@ -57,6 +57,7 @@ class Question:
     needed: bool = False  #: whether its table says nothing without it
     first: bool = False  #: whether it is asked of everyone; the others may be folded
     uncertain: bool = False  #: whether a range, or a share behind the value, is an answer too
+    assumed: str = ""  #: what holds for a person who does not know it, or empty
 
     @property
     def key(self) -> str:
@@ -79,7 +80,7 @@ class Question:
         if not self.unit:
             return text
         value, share = _split(text)
-        parts = re.split(r"\s+to\s+|\s*\u2013\s*", value)
+        parts = range_ends(value) or (value,)
         listed = " to ".join(
             f"{part.strip()} {self.unit}" if _BARE.fullmatch(part) else part for part in parts
         )
@@ -107,8 +108,9 @@ class Question:
     def _uncertain(self, text: str) -> dict[str, Any]:
         value, share = _split(text)
         out: dict[str, Any] = {}
-        if share or re.search(r"\sto\s", value):
-            uncertainty = share or value
+        ends = None if share else range_ends(value)
+        if share or ends:
+            uncertainty = share or " to ".join(ends or ())
             with naming(self.field):
                 known = read_uncertainty(self.field, uncertainty)
             out[f"uncertainty.{self.field}"] = uncertainty
@@ -160,6 +162,8 @@ def _middle(field: str, low: float, high: float, unit: str) -> str:
     return f"{convert(math.sqrt(low * high), si, unit):.4g} {unit}"
 
 
+#: Stick speed of a drive of which it is not known.
+STICK_SPEED = "0.3 mm/s to 3 mm/s"
 #: What is asked about the machine, in the order of the file.
 MACHINE = (
     Question(
@@ -176,7 +180,7 @@ MACHINE = (
     ),
     Question(
         "drivetrain", "stick_speed", "the belt sticks below it; rarely measured, so a range is fine",
-        "0.1 mm/s to 1 mm/s", "mm/s", "", needed=True, first=True, uncertain=True,
+        STICK_SPEED, "mm/s", "", needed=True, first=True, uncertain=True, assumed=STICK_SPEED,
     ),
     Question(
         "drivetrain", "stick_speed_temperature",

@@ -11,7 +11,7 @@ from hersey.log.columns import OpenColumns, open_columns
 from hersey.log.formats import format_of
 from hersey.log.text.column import Column
 from hersey.motion.schedule import Schedule
-from hersey.units import conversion
+from hersey.units import conversion, takes_si
 
 #: Points above which a temperature profile is no longer read: it is searched and simulated many times.
 MOST_POINTS = 2000
@@ -20,6 +20,7 @@ _MOST_BYTES = 1_000_000
 _UNITS = {"time": "s", "temperature": "degC"}
 
 
+@takes_si()
 def read_temperature_profile(path: str | Path) -> Schedule:
     """Read columns such as ``time [s]`` and ``temperature [degC]`` of a file of any format of a log.
 

@@ -8,14 +8,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from hersey.arrays import FloatArray
-from hersey.errors import ParameterError
+from hersey.errors import ParameterError, meant
 from hersey.motion.parameters import KINDS, OF_THE_BELT
-from hersey.units import parse
+from hersey.units import KINDS as UNITS
+from hersey.units import parse, takes_si
 
 #: Standard deviations that enclose 95 % of a normal distribution on either side.
 _DEVIATIONS = 1.96
 
 
+@takes_si()
 @dataclass(frozen=True)
 class Uncertainty:
     """Either a share of the value, or a range of SI values.
@@ -59,7 +61,7 @@ class Uncertainty:
 
 
 def read_uncertainty(parameter: str, text: object) -> Uncertainty:
-    """Return what ``"10 %"``, ``"0.1 mm/s to 1 mm/s"`` or, for an exponent, ``"-0.75 to -0.65"`` says.
+    """Return what ``"10 %"``, ``"0.3 mm/s to 3 mm/s"`` or, for an exponent, ``"-0.75 to -0.65"`` says.
 
     Raises
     ------
@@ -68,11 +70,13 @@ def read_uncertainty(parameter: str, text: object) -> Uncertainty:
 
     Examples
     --------
-    >>> read_uncertainty("stick_speed", "0.1 mm/s to 1 mm/s").limits
-    (0.0001, 0.001)
+    >>> read_uncertainty("stick_speed", "0.3 mm/s to 3 mm/s").limits
+    (0.0003, 0.003)
     """
     if parameter not in OF_THE_BELT:
-        raise ParameterError(f"there is no such parameter. Use one of {', '.join(OF_THE_BELT)}")
+        near = meant(parameter, OF_THE_BELT)
+        hint = f"Did you mean {near}? Use" if near else "Use"
+        raise ParameterError(f"there is no such parameter. {hint} one of {', '.join(OF_THE_BELT)}")
     if not isinstance(text, str):
         raise ParameterError(f"it is {text!r}. Write a string such as '10 %'")
     share = re.fullmatch(r"\s*(?:±\s*|\+/-\s*)?([0-9.]+)\s*%\s*", text)
@@ -81,14 +85,35 @@ def read_uncertainty(parameter: str, text: object) -> Uncertainty:
             return Uncertainty(share=float(share[1]) / 100)
         except ValueError:
             raise ParameterError(f"'{text}' is not a share. Write e.g. '10 %'") from None
-    ends = re.split(r"\s+to\s+", text.strip())
-    if len(ends) != 2:
-        raise ParameterError(f"'{text}' is neither a share ('10 %') nor a range ('... to ...')")
     kind = KINDS[parameter]
+    ends = range_ends(text)
+    if ends is None:
+        example = f"1 {UNITS[kind][1]} to 2 {UNITS[kind][1]}" if kind else "-0.75 to -0.65"
+        raise ParameterError(f"'{text}' is neither a share ('10 %') nor a range ('{example}')")
     try:
         low, high = (float(end) if kind is None else parse(kind, end) for end in ends)
     except ValueError as error:
         if kind is not None or isinstance(error, ParameterError):
             raise
         raise ParameterError(f"'{text}' is not a range of two numbers: {error}") from None
+    if low > high:
+        raise ParameterError(f"'{text}' begins with its upper end. Write '{ends[1]} to {ends[0]}'")
     return Uncertainty(limits=(low, high))
+
+
+def range_ends(text: str) -> tuple[str, str] | None:
+    """Return the ends of a range, as ``"0.3 to 3 mm/s"``; a unit at the upper end holds for both.
+
+    Examples
+    --------
+    >>> range_ends("0.3 - 3 mm/s")
+    ('0.3 mm/s', '3 mm/s')
+    """
+    ends = re.split(r"\s+(?:to|-)\s+|\s*(?:\u2013|\.{2,3}|\u2026)\s*|(?<=[0-9])-(?=[0-9])", text.strip())
+    if len(ends) != 2 or not all(ends):
+        return None
+    low, high = ends
+    unit = re.fullmatch(r"[-+]?[0-9.,]+(?:[eE][-+]?[0-9]+)?\s*(\D.*)?", high)
+    if unit and unit[1] and re.fullmatch(r"[-+]?[0-9.,]+(?:[eE][-+]?[0-9]+)?", low):
+        low = f"{low} {unit[1]}"
+    return low, high

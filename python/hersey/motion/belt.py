@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated, Any, Protocol, TypeAlias, TypeVar, cast
 
 import numpy as np
 
 from hersey.errors import ParameterError
-from hersey.motion.drag import AnyDrag
+from hersey.motion.drag import AnyDrag, PowersOfTemperature
 from hersey.result import Means, Record
-from hersey.units import fields_in_si, takes_si
+from hersey.units import takes_si
 
 T = TypeVar("T")
 
 
+@takes_si(stiffness="stiffness", mass="mass", grip="force")
 @dataclass(frozen=True)
 class Drivetrain(Record):
     """Spring (gear train, roll core and rubber) of ``stiffness`` and moving ``mass``.
@@ -27,10 +28,6 @@ class Drivetrain(Record):
     stiffness: Annotated[float, Means(unit="N/m")]
     mass: Annotated[float, Means(unit="kg")]
     grip: Annotated[float | None, Means("largest force before the roll slips on the belt", "N")] = None
-
-    def __post_init__(self) -> None:
-        """Bring the values to SI if they come with units."""
-        fields_in_si(self, {"stiffness": "stiffness", "mass": "mass", "grip": "force"})
 
     @classmethod
     @takes_si(stiffness="torsional stiffness", inertia="moment of inertia", roll_radius="length")
@@ -89,10 +86,14 @@ Train: TypeAlias = "Drivetrain | StatedMachine"
 BeltDrag: TypeAlias = "AnyDrag | FittedLaw"
 
 
-def belt_of(train: Train, drag: BeltDrag, temperature: T) -> tuple[Drivetrain, AnyDrag, T | None]:
+def belt_of(
+    train: Train, drag: BeltDrag, temperature: T, **speeds: Any
+) -> tuple[Drivetrain, AnyDrag, T | None]:
     """Return drivetrain, drag and temperature; of a machine with all that its file says of the belt.
 
     A stick speed that is ``fixed`` holds at one temperature (K): the drag is that there, and varies no more.
+    Warns with `ExtrapolationWarning` if the temperature, or one of the ``speeds`` (m/s) by the name of its
+    argument, is outside the log of the drag; the drag returned warns no more.
 
     Raises
     ------
@@ -102,12 +103,21 @@ def belt_of(train: Train, drag: BeltDrag, temperature: T) -> tuple[Drivetrain, A
     machine = cast("StatedMachine", train) if hasattr(train, "belt") else None
     plain = cast("Drivetrain", train) if machine is None else machine.train
     if isinstance(drag, AnyDrag):
-        return plain, drag, temperature
+        return plain, _warned(drag, temperature, speeds), temperature
     if machine is None:
         raise ParameterError(
             "a fitted surface needs roll radius and stick speed of the machine. Give read_machine(...) "
             "instead of its train, or surface.drag(...) instead of the surface"
         )
     if machine.belt["stick_speed_rule"] == "fixed" and isinstance(temperature, int | float):
-        return plain, drag.drag(**machine.belt, temperature=temperature), None
-    return plain, drag.drag(**machine.belt), temperature
+        at_one = drag.drag(**machine.belt, temperature=temperature)
+        return plain, _warned(at_one, None, speeds), None
+    return plain, _warned(drag.drag(**machine.belt), temperature, speeds), temperature
+
+
+def _warned(drag: AnyDrag, temperature: Any, speeds: dict[str, Any]) -> AnyDrag:
+    """Warn of what is outside the log of a drag, and return it without its range."""
+    if not isinstance(drag, PowersOfTemperature) or drag.measured is None:
+        return drag
+    drag.measured.warn(temperature, {n: v for n, v in speeds.items() if v is not None}, stacklevel=5)
+    return replace(drag, measured=None)

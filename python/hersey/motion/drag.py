@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import KW_ONLY, dataclass, replace
+import warnings
+from collections.abc import Mapping, Sequence
+from dataclasses import KW_ONLY, dataclass, field, replace
 from typing import Annotated, Any, Self
 
 import numpy as np
@@ -11,9 +12,9 @@ from numpy.typing import ArrayLike
 
 from hersey import _core
 from hersey.arrays import FloatArray
-from hersey.errors import ParameterError
+from hersey.errors import ExtrapolationWarning, ParameterError
 from hersey.result import Means, Record
-from hersey.units import fields_in_si, takes_si
+from hersey.units import celsius, takes_si
 
 #: What the belt does near zero speed; see docs/theory/closures.md.
 CLOSURES = tuple(_core.CLOSURES)
@@ -69,7 +70,7 @@ class AnyDrag:
         return self.law().holding_force
 
     @takes_si(force="force", temperature="temperature")
-    def speeds_of(self, force: float, temperature: float | None = None) -> tuple[float, float]:
+    def speeds_of(self, force: float, *, temperature: float | None = None) -> tuple[float, float]:
         """Return the speeds below and above the transition at which drag has risen to ``force``.
 
         Zero below if the belt is held before, infinite above if drag never rises so far.
@@ -80,7 +81,7 @@ class AnyDrag:
         return speeds.slower, speeds.faster
 
     @takes_si(speed="belt speed", temperature="temperature")
-    def force(self, speed: ArrayLike, temperature: float | None = None) -> FloatArray:
+    def force(self, speed: ArrayLike, *, temperature: float | None = None) -> FloatArray:
         """Return the drag force in steady sliding at each speed, with its sign."""
         speeds = np.asarray(speed, dtype=float)
         law = self.law_at(temperature) if self.varies_with_temperature else self.law()
@@ -131,13 +132,51 @@ _POWERS = (
 )
 
 
+@dataclass(frozen=True)
+class MeasuredRange:
+    """The speeds (m/s) and temperatures (K) of the log that a drag was fitted to."""
+
+    speed: tuple[float, float]
+    temperature: tuple[float, float] | None = None
+
+    def warn(self, temperature: Any, speeds: Mapping[str, Any], stacklevel: int) -> None:
+        """Warn of speeds and temperatures outside; of a schedule, its highest speed and its temperatures."""
+        for name, value in speeds.items():
+            high = float(np.max(getattr(value, "values", value)))
+            below = not hasattr(value, "values") and 0 < high < self.speed[0] * (1.0 - _GRAZED)
+            if below or high > self.speed[1] * (1.0 + _GRAZED):
+                low, top = (f"{1e3 * each:.4g}" for each in self.speed)
+                _warn_extrapolated(name, f"{1e3 * high:.4g} mm/s", f"{low} to {top} mm/s", stacklevel + 1)
+        film = getattr(temperature, "film_temperature", temperature)
+        if self.temperature is None or film is None:
+            return
+        kelvin = np.asarray(getattr(film, "values", film), dtype=float)
+        cold, hot = self.temperature[0] * (1.0 - _GRAZED), self.temperature[1] * (1.0 + _GRAZED)
+        if kelvin.min() < cold or kelvin.max() > hot:
+            outside = kelvin.min() if kelvin.min() < cold else kelvin.max()
+            low, top = (f"{celsius(each):.4g}" for each in self.temperature)
+            _warn_extrapolated(
+                "temperature", f"{celsius(outside):.4g} degC", f"{low} to {top} degC", stacklevel + 1
+            )
+
+
+#: Share by which values may be outside the range of the log without a warning.
+_GRAZED = 1e-3
+
+
+def _warn_extrapolated(name: str, value: str, measured: str, stacklevel: int) -> None:
+    text = f"{name} is {value}, outside the measured range, {measured}, so the result is extrapolated"
+    warnings.warn(text, ExtrapolationWarning, stacklevel=stacklevel + 1)
+
+
 @dataclass(frozen=True, kw_only=True)
 class PowersOfTemperature(BesideShape):
     """How a drag law varies with temperature, if a ``reference_temperature`` is given.
 
     All forces vary as (T/T_ref)^force_temperature_exponent and all speeds as
     (T/T_ref)^speed_temperature_exponent, T counted from ``temperature_zero`` (273.15 for degC). What the
-    drive takes without the contact changes by ``rest_temperature_slope`` (relative, per K).
+    drive takes without the contact changes by ``rest_temperature_slope`` (relative, per K). ``measured`` is
+    the range of the log, outside which a motion is extrapolated.
     """
 
     reference_temperature: Annotated[float | None, Means(unit="K")] = None
@@ -145,6 +184,9 @@ class PowersOfTemperature(BesideShape):
     speed_temperature_exponent: float = 0.0
     temperature_zero: Annotated[float, Means(unit="K")] = 0.0
     rest_temperature_slope: Annotated[float, Means("relative", "1/K")] = 0.0
+    measured: MeasuredRange | None = field(default=None, compare=False, repr=False)
+
+    not_stated = ("measured",)
 
     @property
     def varies_with_temperature(self) -> bool:
@@ -188,6 +230,13 @@ class PowersOfTemperature(BesideShape):
 _TEMPERATURES = dict.fromkeys(("reference_temperature", "temperature_zero"), "temperature")
 
 
+@takes_si(
+    transition_force="force",
+    transition_speed="belt speed",
+    static_growth_time="time",
+    **KINDS,
+    **_TEMPERATURES,
+)
 @dataclass(frozen=True)
 class Drag(PowersOfTemperature):
     """Drag force against belt speed (Eqs. 17-30), and temperature if a ``reference_temperature`` is given.
@@ -224,9 +273,7 @@ class Drag(PowersOfTemperature):
     static_growth_time: Annotated[float | None, Means(unit="s")] = None
 
     def __post_init__(self) -> None:
-        """Bring the values to SI if they come with units, and let the core check them."""
-        kinds = {"transition_force": "force", "transition_speed": "belt speed", "static_growth_time": "time"}
-        fields_in_si(self, {**kinds, **KINDS, **_TEMPERATURES})
+        """Let the core check the values."""
         if self.static_growth and (self.closure != "stiction" or self.static_growth_time is None):
             needed = "static_growth_time" if self.closure == "stiction" else "closure 'stiction'"
             raise ParameterError(f"static_growth is {self.static_growth:g}: it needs {needed}")
@@ -275,6 +322,7 @@ class Drag(PowersOfTemperature):
         return [np.full(sets, np.nan if value is None else float(value)) for value in values]
 
 
+@takes_si(speeds="belt speed", forces="force", **KINDS, **_TEMPERATURES)
 @dataclass(frozen=True)
 class DragTable(PowersOfTemperature):
     """Drag through measured points, joined by straight lines in logarithmic scales.
@@ -299,8 +347,7 @@ class DragTable(PowersOfTemperature):
     stick_speed: Annotated[float, Means(unit="m/s")]
 
     def __post_init__(self) -> None:
-        """Bring the values to SI if they come with units, and let the core check them."""
-        fields_in_si(self, {"speeds": "belt speed", "forces": "force", **KINDS, **_TEMPERATURES})
+        """Let the core check the values."""
         object.__setattr__(self, "speeds", tuple(float(v) for v in self.speeds))
         object.__setattr__(self, "forces", tuple(float(f) for f in self.forces))
         self.law()

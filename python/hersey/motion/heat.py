@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from hersey.errors import ParameterError
 from hersey.motion.schedule import Schedule, ScheduleArguments
-from hersey.units import fields_in_si
+from hersey.units import takes_si
 
 #: Kinds of what a balance takes.
 _KINDS: dict[str, str | tuple[str, ...]] = {
@@ -30,6 +30,7 @@ _Arguments = tuple[
 ]
 
 
+@takes_si(**_KINDS)
 @dataclass(frozen=True)
 class HeatBalance:
     """Two bodies that exchange heat: one with the film (heater, belt and film), and the roll.
@@ -85,8 +86,7 @@ class HeatBalance:
     roll_load: float | Schedule = 0.0
 
     def __post_init__(self) -> None:
-        """Bring the values to SI if they come with units, and check them."""
-        fields_in_si(self, _KINDS)
+        """Check the values."""
         if self.setpoint is not None and isinstance(self.heater_power, Schedule):
             raise ParameterError("heater_power must be constant with a setpoint: it is the maximum power")
         if self.heater_gain is not None and self.setpoint is None:

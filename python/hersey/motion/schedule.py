@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from hersey.arrays import FloatArray
 from hersey.errors import ParameterError
-from hersey.units import fields_in_si
+from hersey.units import takes_si
 
 #: What a schedule may be one of.
 _KINDS = ("belt speed", "speed", "temperature", "force", "torque")
@@ -17,6 +17,7 @@ _KINDS = ("belt speed", "speed", "temperature", "force", "torque")
 ScheduleArguments = tuple[list[float], list[float], list[list[float]] | None]
 
 
+@takes_si(times="time", values=_KINDS)
 @dataclass(frozen=True, eq=False)
 class Schedule:
     """A quantity at ``times``, joined by straight lines, or smoothly without overshoot if ``smooth``.
@@ -40,8 +41,7 @@ class Schedule:
     smooth: bool = False
 
     def __post_init__(self) -> None:
-        """Bring the points to SI if they come with units, check and freeze them."""
-        fields_in_si(self, {"times": "time", "values": _KINDS})
+        """Check the points and freeze them."""
         times, values = (np.atleast_1d(np.asarray(x, dtype=float)) for x in (self.times, self.values))
         if times.ndim != 1 or times.shape != values.shape:
             raise ParameterError(f"schedule: {times.size} times, but {values.size} values")
@@ -73,6 +73,7 @@ class Schedule:
         """The value at time 0."""
         return self.at(0.0)
 
+    @takes_si(time="time")
     def at(self, time: float) -> float:
         """Return the value at ``time``, before the jump if there is one."""
         times, values = self._points

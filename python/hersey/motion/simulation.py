@@ -124,8 +124,8 @@ class StickSlipCycle(Result):
     drive_speed="belt speed", drive_torque=("force", "torque"), temperature="temperature", duration="time"
 )
 def simulate(
-    train: Drivetrain,
-    drag: AnyDrag,
+    train: Train,
+    drag: BeltDrag,
     *,
     drive_speed: float | Schedule | None = None,
     drive_torque: float | Schedule | None = None,
@@ -138,6 +138,8 @@ def simulate(
 
     Parameters
     ----------
+    train, drag
+        As for `stick_slip`.
     drive_speed
         Speed at the far end of the spring (Eqs. 12-16).
     drive_torque
@@ -175,6 +177,7 @@ def simulate(
     refuse_unknown("simulate", numerics, known, {"heat": "temperature=HeatBalance(...)"})
     samples = whole("samples", numerics.get("samples", SAMPLES), 2)
     steps = whole("most_steps", numerics.get("most_steps", MOST_STEPS))
+    train, drag, temperature = belt_of(train, drag, temperature, drive_speed=drive_speed)
     check_inputs(drag, drive_speed, drive_torque, temperature)
     kind, given = ("torque", drive_torque or 0.0) if drive_speed is None else ("speed", drive_speed)
     drive = Schedule.of(given)
@@ -312,7 +315,7 @@ def stick_slip(
     >>> cycle.kind, round(cycle.frequency, 5)
     ('stick_slip', 3.94031)
     """
-    train, drag, temperature = belt_of(train, drag, temperature)
+    train, drag, temperature = belt_of(train, drag, temperature, drive_speed=drive_speed)
     law = drag.law_at(temperature)
     state = start_state(train, law, Schedule.of(drive_speed), None, start, is_torque=False, nudged=True)
     steps = whole("most_steps", most_steps)

@@ -43,12 +43,12 @@ class Energy(Record):
     contact has heated the film by dissipated plus owed, less what the no-load torque took.
     """
 
-    work: float
-    dissipated: float
-    slipped: float
-    stored: float
+    work: Annotated[float, Means("done by the drive", "J")]
+    dissipated: Annotated[float, Means("work against drag", "J")]
+    slipped: Annotated[float, Means("lost where the roll slips on the belt", "J")]
+    stored: Annotated[float, Means("growth of kinetic and spring energy", "J")]
     owed: Annotated[float, Means("released by a contact that holds the belt, and not recovered")]
-    residual: float
+    residual: Annotated[float, Means("work less the other three, as a share of all energy turned over")]
 
 
 @dataclass(frozen=True)
@@ -93,7 +93,7 @@ class Trajectory(Result):
     stretch: Annotated[FloatArray, Means(unit="m")]
     spring_force: Annotated[FloatArray, Means(unit="N")]
     mode_index: NDArray[np.uint8]
-    slipping: NDArray[np.bool_]
+    slipping: Annotated[NDArray[np.bool_], Means("whether the roll slips on the belt")]
     events: tuple[Event, ...]
     energy: Energy
     steps: int

@@ -7,6 +7,7 @@ from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING
 
 from hersey.motion.parameters import MOST_STEPS
+from hersey.units import takes_si
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -14,6 +15,7 @@ if TYPE_CHECKING:
     from hersey.scale.local import LocalWorkers
 
 
+@takes_si()
 @dataclass(frozen=True)
 class Work:
     """How a sweep is computed.

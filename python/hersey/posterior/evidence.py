@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from hersey.units import takes_si
+
 
 @dataclass(frozen=True)
 class CycleFigures:
@@ -18,6 +20,7 @@ class CycleFigures:
     slope: tuple[float, float] | None  #: N/s while the belt is held
 
 
+@takes_si(temperature="temperature", drive_speed="belt speed", duration="time")
 @dataclass(frozen=True)
 class StickSlip:
     """A stretch that stuck and slipped; ``figures`` are None where sampling does not resolve the cycle."""
@@ -29,6 +32,7 @@ class StickSlip:
     source: str = ""
 
 
+@takes_si(temperature="temperature", drive_speed="belt speed", rise="time")
 @dataclass(frozen=True)
 class Start:
     """A start from rest that ended in sliding, or in stick-slip (``slid`` is False).
@@ -45,6 +49,7 @@ class Start:
     source: str = ""
 
 
+@takes_si(temperature="temperature", force="force")
 @dataclass(frozen=True)
 class BreakAway:
     """A stated or measured force that starts a belt at rest, with its relative standard error."""

@@ -21,7 +21,7 @@ from hersey.posterior.priors import CLOSURES, NUMBERS
 from hersey.result import Means, Record, Result, json_record
 from hersey.schema.warning import Warning
 from hersey.stability.operating_map.edges import GivenEdges
-from hersey.units import celsius
+from hersey.units import celsius, takes_si
 
 if TYPE_CHECKING:
     import polars as pl
@@ -145,11 +145,13 @@ class Posterior(Result):
         """Keep the edges of all draws at a temperature, which were computed before."""
         self._edges[kelvin, len(self.drives)] = edges
 
+    @takes_si(kelvin="temperature")
     def fold_interval(self, kelvin: float | None) -> tuple[float, float, float]:
         """Return the median of V* (m/s) and the ends of its 95 % interval at a temperature (K)."""
         low, middle, high = quantiles(self.edges(kelvin).fold, (0.025, 0.5, 0.975))
         return middle, low, high
 
+    @takes_si(kelvin="temperature")
     def safe_speed(self, kelvin: float | None) -> float:
         """Return the least drive speed (m/s) that is smooth from any start with 97.5 % probability."""
         return quantiles(self.edges(kelvin).fold, (SAFE,))[0]
@@ -191,7 +193,8 @@ class Posterior(Result):
         (turn, fold_, held) = table
         return GivenEdges(turn[0], fold_[0], held[0], turn[1:], fold_[1:], held[1:], NUMBERS)
 
-    def probability(self, kelvin: float | None, speed: float) -> PointProbability:
+    @takes_si(kelvin="temperature", speed="belt speed")
+    def probability(self, *, kelvin: float | None, speed: float) -> PointProbability:
         """Return the probability of each outcome at a temperature (K) and drive speed (m/s)."""
         edges = self.edges(kelvin)
         stalls = edges.stalls

@@ -25,6 +25,7 @@ from hersey.posterior.result import Convergence, Posterior, edges_at, quantiles
 from hersey.posterior.sampler import Moves, Population, sample
 from hersey.posterior.traces import Found, evidence_of_log, evidence_of_trace
 from hersey.schema.warning import Warning
+from hersey.units import takes_si
 
 #: Draws of a posterior, all populations together.
 DRAWS = 1000
@@ -65,6 +66,7 @@ class Sampling(TypedDict, total=False):
     progress: Progress | None
 
 
+@takes_si(temperature="temperature")
 def posterior(
     points: SteadyPoints,
     machine: Machine,

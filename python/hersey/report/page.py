@@ -23,6 +23,7 @@ from hersey.document.assembly import document_of
 from hersey.files.writing import write_atomically
 from hersey.report.glossary import meanings
 from hersey.study.log_and_machine import Study
+from hersey.units import takes_si
 
 #: Styles of all pages, and the pieces of their scripts, in the order in which they are one module.
 _STYLES = ("tokens.css", "page.css")
@@ -54,6 +55,7 @@ _TERMS = ("V*", "transition", "stick speed", "closure", "dwell")
 _DRAWN: Any = {"fit": {"cells"}, "simulation": True}
 
 
+@takes_si()
 def report(
     study: Study, path: str | Path = "report.html", *, command: str = "", overwrite: bool = False
 ) -> None:

@@ -12,7 +12,7 @@ from math import inf, pi, sqrt
 from typing import Annotated
 
 from hersey.errors import ParameterError
-from hersey.motion.belt import Drivetrain
+from hersey.motion.belt import BeltDrag, Drivetrain, Train, belt_of
 from hersey.motion.drag import AnyDrag
 from hersey.motion.schedule import Schedule
 from hersey.motion.simulation import StickSlipCycle, simulate, steady_start, stick_slip
@@ -62,7 +62,7 @@ class Disturbance(Record):
 
 @takes_si(from_speed="belt speed", to_speed="belt speed", temperature="temperature")
 def safe_step(
-    train: Drivetrain, drag: AnyDrag, *, from_speed: float, to_speed: float, temperature: float | None = None
+    train: Train, drag: BeltDrag, *, from_speed: float, to_speed: float, temperature: float | None = None
 ) -> SafeStep:
     """Return whether a sudden change of drive speed makes a sliding belt stick, and the shortest safe ramp.
 
@@ -82,6 +82,7 @@ def safe_step(
     >>> step.sticks, step.ramp_time < 0.1
     (True, True)
     """
+    train, drag, temperature = belt_of(train, drag, temperature, from_speed=from_speed, to_speed=to_speed)
     for name, speed in (("from_speed", from_speed), ("to_speed", to_speed)):
         if not 0 < speed < inf:
             raise ParameterError(f"{name} is {speed}: it must be greater than 0")
@@ -113,7 +114,7 @@ def safe_step(
 
 @takes_si(drive_speed="belt speed", temperature="temperature")
 def disturbance(
-    train: Drivetrain, drag: AnyDrag, *, drive_speed: float, temperature: float | None = None
+    train: Train, drag: BeltDrag, *, drive_speed: float, temperature: float | None = None
 ) -> Disturbance:
     """Return the largest kick and step that sliding at ``drive_speed`` survives.
 
@@ -130,6 +131,7 @@ def disturbance(
     >>> 1.2 < 1.2 + small.step < 2.5  # from 2.5 down to 1.2 at once is too much
     True
     """
+    train, drag, temperature = belt_of(train, drag, temperature, drive_speed=drive_speed)
     if not 0 < drive_speed < inf:
         raise ParameterError(f"drive_speed is {drive_speed}: it must be greater than 0")
     band = hysteresis(train, drag, temperature=temperature, sensitivity=False)

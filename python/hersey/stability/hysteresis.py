@@ -58,16 +58,23 @@ class HysteresisBand(Result):
     method: Annotated[str, Means("half laps, or simulation")]
     lower_accuracy: Annotated[float, Means("relative", open=True)]
     upper_accuracy: Annotated[float, Means("relative", open=True)]
-    deeper: bool
+    deeper: Annotated[
+        bool,
+        Means("whether the longest-lasting stick-slip is released at a force above that at the stick speed"),
+    ]
     speed_max: float | None
     laps: int
     sensitivity: Annotated[
         Mapping[str, float], Means("relative change of upper per relative change of each", open=True)
     ] = field(default_factory=dict)
-    lower_sensitivity: Annotated[Mapping[str, float], OPEN] = field(default_factory=dict)
+    lower_sensitivity: Annotated[
+        Mapping[str, float], Means("relative change of lower per relative change of each", open=True)
+    ] = field(default_factory=dict)
     interval: Annotated[tuple[float, float] | None, Means("of upper, 95 %", open=True)] = None
-    lower_interval: Annotated[tuple[float, float] | None, OPEN] = None
-    share_bistable: float | None = None
+    lower_interval: Annotated[tuple[float, float] | None, Means("of lower, 95 %", open=True)] = None
+    share_bistable: Annotated[
+        float | None, Means("share of the samples that have a band; null without samples")
+    ] = None
 
     @property
     def bistable(self) -> bool:

@@ -17,7 +17,7 @@ import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.errors import ParameterError, UnfinishedError
-from hersey.motion.belt import Drivetrain
+from hersey.motion.belt import BeltDrag, Drivetrain, Train, belt_of
 from hersey.motion.drag import AnyDrag
 from hersey.motion.heat import HeatBalance
 from hersey.motion.schedule import Schedule
@@ -50,8 +50,8 @@ _HELD = ("stuck", "microslip")
 
 @takes_si(target_speed="belt speed", force_limit="force", acceleration="acceleration", longest="time")
 def warm_up(
-    train: Drivetrain,
-    drag: AnyDrag,
+    train: Train,
+    drag: BeltDrag,
     heat: HeatBalance,
     *,
     target_speed: float,
@@ -107,6 +107,7 @@ def warm_up(
     _check(
         margin, target_speed=target_speed, force_limit=force_limit, acceleration=acceleration, longest=longest
     )
+    train, drag, _ = belt_of(train, drag, heat, target_speed=target_speed)
     rule = _Rule(train, drag, target_speed, force_limit * (1.0 - margin))
     motion = partial(_motion, train, drag, heat)
     resting = motion(0.0, longest)

@@ -27,6 +27,7 @@ from hersey.study.first_screen.result import DecisionPart
 from hersey.study.nip import film_part
 from hersey.study.simulation import simulation
 from hersey.study.torque_budget import torque_budget
+from hersey.units import takes_si
 from hersey.verdict.regime import regime
 from hersey.verdict.warnings import warnings_of
 
@@ -85,6 +86,7 @@ class Study(Findings, Result):
         return self.surface.chart()
 
 
+@takes_si()
 def study(
     points: SteadyPoints,
     machine: Machine | str | Path | None = None,

@@ -126,7 +126,7 @@ def _paper(mixed: MixedContact, speed: float, level: float) -> list[str]:
 
 def _rest(points: SteadyPoints, speed: FloatArray, kelvin: FloatArray) -> FloatArray:
     """What was subtracted as the no-load torque, N m."""
-    return np.zeros_like(speed) if points.rest is None else points.rest.torque(speed, kelvin)
+    return np.zeros_like(speed) if points.rest is None else points.rest.torque(speed, temperature=kelvin)
 
 
 def _at(mixed: MixedContact, speed: FloatArray, kelvin: FloatArray) -> MixedFilm:

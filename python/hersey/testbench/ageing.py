@@ -114,7 +114,7 @@ class AgedTruth(PhysicalTruth):
         """Return torque in N m at speeds (rad/s; none when standing) and temperatures (degC)."""
         w, level = np.broadcast_arrays(np.asarray(speed, dtype=float), np.asarray(temperature, dtype=float))
         moving = w != 0
-        torque = np.array(self.rest.torque(w, level + ZERO_CELSIUS))
+        torque = np.array(self.rest.torque(w, temperature=level + ZERO_CELSIUS))
         torque[moving] += np.sign(w[moving]) * self.contact_torque(np.abs(w[moving]), level[moving])
         return torque
 

@@ -34,7 +34,7 @@ class PhysicalTruth:
     def torque(self, speed: FloatArray, temperature: FloatArray) -> FloatArray:
         """Return torque in N m at speeds (rad/s; none when standing) and temperatures (degC)."""
         kelvin = np.asarray(temperature) + ZERO_CELSIUS
-        rest = self.rest.torque(speed, kelvin)
+        rest = self.rest.torque(speed, temperature=kelvin)
         if self.mixed is None:
             return rest
         return rest + np.sign(speed) * self.mixed.at(speed=np.abs(speed), temperature=kelvin).torque
@@ -101,7 +101,9 @@ class FullTruth(PhysicalTruth):
         kelvin = np.asarray(temperature) + ZERO_CELSIUS
         product = self.mixed.product(np.abs(speed), kelvin)
         force = self.contact_force(np.maximum(product, 1e-12), kelvin)
-        return np.asarray(self.rest.torque(speed, kelvin) + np.sign(speed) * force * self.mixed.lever)
+        return np.asarray(
+            self.rest.torque(speed, temperature=kelvin) + np.sign(speed) * force * self.mixed.lever
+        )
 
     def drag(self, temperature: float, roll_radius: float, stick_speed: float) -> DragTable:
         """Return the drag of the belt at a temperature in degC, radius in m and stick speed in m/s."""

@@ -19,7 +19,7 @@ from hersey.damping.trend import Trend, trend_of
 from hersey.lubrication.contact import Contact
 from hersey.lubrication.lubricant import Lubricant
 from hersey.result import Means, Record, Result
-from hersey.units import celsius, rpm
+from hersey.units import celsius, rpm, takes_si
 from hersey.verdict.contact_regimes import film_law, log_regimes
 from hersey.verdict.explanations import Explained, Explanation, Tried, explained
 from hersey.verdict.regimes import REGIMES, Hypothesis, RegimeRow, judged, listed, named_in_words
@@ -96,6 +96,7 @@ class Regime(Result):
         return pl.DataFrame(rows, schema={**schema, **dict.fromkeys(numbers, pl.Float64)}, orient="row")
 
 
+@takes_si(temperature="temperature")
 def regime(
     points: SteadyPoints,
     surface: DampingSurface,

@@ -60,7 +60,9 @@ def pointer(result: OperatingMap, frame: Frame) -> alt.Chart:
     middles = 0.5 * (columns[1:] + columns[:-1])
     centres = np.sqrt(speeds[1:] * speeds[:-1])
     across, up = (grid.ravel() for grid in np.meshgrid(middles, centres, indexing="ij"))
-    states = result.look_up(None if result.temperature is None else across + ZERO_CELSIUS, up)
+    states = result.look_up(
+        temperature=None if result.temperature is None else across + ZERO_CELSIUS, speed=up
+    )
     rows: list[Row] = []
     for number, (x, speed, state) in enumerate(zip(across.tolist(), up.tolist(), states, strict=True)):
         i, j = divmod(number, centres.size)

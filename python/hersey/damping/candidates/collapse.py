@@ -18,6 +18,7 @@ from hersey.arrays import FloatArray, IntArray
 from hersey.damping.candidates.observations import Observations
 from hersey.damping.distributions import ratio_above
 from hersey.errors import InsufficientDataError, ParameterError
+from hersey.units import takes_si
 
 #: Deviation of a group, relative, below which curves are one for every purpose of a drive.
 NEGLIGIBLE = 0.03
@@ -41,6 +42,7 @@ class HerseyCollapse:
     verdict: str
 
 
+@takes_si()
 def hersey_collapse(
     log_hersey: ArrayLike, log_friction: ArrayLike, groups: Sequence[object] | FloatArray | IntArray
 ) -> HerseyCollapse:

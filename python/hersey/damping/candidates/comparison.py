@@ -31,11 +31,13 @@ from hersey.damping.candidates.thermal import ARRHENIUS
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.dwells.reduced import require_points
 from hersey.errors import InsufficientDataError, ParameterError
+from hersey.units import takes_si
 
 #: AICc by which candidates differ at most when the data do not tell them apart.
 TIED = 2.0
 
 
+@takes_si()
 def compare_models(
     points: SteadyPoints | Observations,
     *,

@@ -8,11 +8,18 @@ from typing import Any
 import numpy as np
 
 from hersey.arrays import FloatArray, IntArray
-from hersey.damping.dwells import SAME_SPEED, SteadyPoints, distinct_speeds, groups_of_temperature
+from hersey.damping.dwells import (
+    SAME_SPEED,
+    SteadyPoints,
+    distinct_speeds,
+    groups_of_temperature,
+    held_for_few_rows,
+)
 from hersey.damping.dwells.constant import refuse_constant_torque
 from hersey.damping.dwells.misleading import lagging, one_direction, unlinked_runs
 from hersey.errors import InsufficientDataError
 from hersey.log.means import MeansTable
+from hersey.log.torque_log import TorqueLog
 from hersey.units import rpm
 
 #: Change of temperature from dwell to dwell, K, that ends a stay.
@@ -75,6 +82,8 @@ class Observations:
         speed, torque = np.abs(points.column("speed")), np.abs(points.column("torque"))
         if distinct_speeds(speed) < fewest_speeds:
             held = " and ".join(f"{v} rpm" for v in sorted({f"{rpm(w):.3g}" for w in speed}, key=float)[:2])
+            if isinstance(points.log, TorqueLog) and (few := held_for_few_rows(points.log)):
+                raise InsufficientDataError(few)
             raise InsufficientDataError(f"all dwells are at {held}. Record dwells at three or more speeds")
         if fewest_speeds > 1:
             refuse_constant_torque(points)

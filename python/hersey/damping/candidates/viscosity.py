@@ -15,6 +15,7 @@ from hersey.damping.candidates.observations import Inputs, Observations
 from hersey.damping.candidates.thermal import ARRHENIUS
 from hersey.damping.estimate import Estimate, estimate
 from hersey.errors import InsufficientDataError, ParameterError
+from hersey.units import takes_si
 
 
 @dataclass(frozen=True)
@@ -27,6 +28,7 @@ class ViscosityLaws:
     activation_energy: Estimate  #: J/mol, of the Arrhenius law, whether chosen or not
 
 
+@takes_si(kelvin="temperature", viscosity="viscosity")
 def viscosity_laws(kelvin: ArrayLike, viscosity: ArrayLike, *, relative_error: float = 0.0) -> ViscosityLaws:
     """Fit power laws, Arrhenius and VFT to a table of viscosities and choose one.
 

@@ -12,6 +12,7 @@ disturbances    spikes and ripples without which a dwell would be steady
 steadiness      whether a stretch is a steady dwell, and why not
 settling        where a dwell has settled, by itself and by what all show together
 judging         which rows of a stretch are a dwell, or why none are
+few_rows        speeds that are held for too few rows to be dwells
 nothing_steady  why a log has no dwell at all, and what to do
 zero            the zero of the torque over the log, from every standing stretch
 doubtful        what is doubtful before a fit: the tare, and what goes together with time
@@ -27,6 +28,7 @@ The settling at the start of a dwell is cut by the marginal standard error rule 
 (1997) 323): drop as many samples as makes the standard error of the rest least.
 """
 
+from hersey.damping.dwells.few_rows import held_for_few_rows
 from hersey.damping.dwells.groups import SAME_SPEED, distinct_speeds, groups_of_temperature
 from hersey.damping.dwells.noise import mean_and_error
 from hersey.damping.dwells.points import Rejection, SteadyPoints
@@ -38,6 +40,7 @@ __all__ = [
     "SteadyPoints",
     "distinct_speeds",
     "groups_of_temperature",
+    "held_for_few_rows",
     "mean_and_error",
     "steady_points",
 ]

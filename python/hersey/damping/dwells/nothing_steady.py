@@ -7,6 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from hersey.damping.dwells.few_rows import held_for_few_rows
 from hersey.damping.dwells.groups import MIN_SAMPLES, distinct_speeds
 from hersey.damping.dwells.judging import Asked
 from hersey.damping.dwells.points import Rejection
@@ -34,6 +35,8 @@ def nothing_steady(
     log: TorqueLog, rejected: tuple[Rejection, ...], asked: Asked, dwells_with: Callable[[float], int]
 ) -> str:
     """Return the message; ``dwells_with`` counts the dwells that another least duration, s, would give."""
+    if few := held_for_few_rows(log):
+        return few
     name = log.files[0].name + (f" and {len(log.files) - 1} more" if len(log.files) > 1 else "")
     reasons: dict[str, list[Reason]] = {}
     for r in rejected:
@@ -49,13 +52,24 @@ def _in_short(alike: list[Reason]) -> str:
     return str(alike[0]) if alike[0].kind == "opposite signs" else alike[0].label
 
 
+def too_brief(log: TorqueLog, min_dwell: float) -> str:
+    """Return that a log is over before a dwell, and what to do about its clock; or an empty text."""
+    lasted = sum(float(run.time[-1] - run.time[0]) for run in log.runs)
+    if lasted >= _TOO_BRIEF * min_dwell:
+        return ""
+    return f"{_held(min_dwell)}, but the whole log lasts only {lasted:.3g} s. {_other_clock(log)}"
+
+
+def _held(min_dwell: float) -> str:
+    return f"A dwell must hold one speed for at least {min_dwell:g} s"
+
+
 def _way_out(
     log: TorqueLog, rejected: tuple[Rejection, ...], asked: Asked, dwells_with: Callable[[float], int]
 ) -> str:
-    held = f"A dwell must hold one speed for at least {asked.min_dwell:g} s"
-    lasted = sum(float(run.time[-1] - run.time[0]) for run in log.runs)
-    if lasted < _TOO_BRIEF * asked.min_dwell:
-        return f"{held}, but the whole log lasts only {lasted:.3g} s. {_other_clock(log)}"
+    if brief := too_brief(log, asked.min_dwell):
+        return brief
+    held = _held(asked.min_dwell)
     if any(r.why.kind == "other rotation" for r in rejected):
         other = "reverse" if asked.rotation == "forward" else "forward"
         return f"The drive turns in the {other} direction. Use {ROTATION.to(other)}"
@@ -95,7 +109,11 @@ def _other_clock(log: TorqueLog) -> str:
         rarer = _RARER * log.runs[0].sampling_interval
         how = EVERY.to(f"{rarer:.3g} s", python=f"{rarer:.3g}")
         return f"If rows come less often, give the time between them, e.g. {how}"
-    return f"If the clock counts seconds, use {Setting('time', 'unit').to('s')}"
+    unit = Setting("time", "unit")
+    if all(c.unit == "s" for file in log.files for c in file.channels if c.role == "time"):
+        longer = f"{unit.to('min')}, {unit.to('h')} or {unit.to('d')}"
+        return f"If the clock counts minutes, hours or days, use {longer}"
+    return f"If the clock counts seconds, use {unit.to('s')}"
 
 
 def _runs_up_and_down(log: TorqueLog, rejected: tuple[Rejection, ...]) -> bool:

@@ -19,7 +19,7 @@ from hersey.log.means import MeanRow, MeansTable, read_means
 from hersey.log.torque_log import TorqueLog
 from hersey.result import Result, json_record
 from hersey.schema.warning import Warning
-from hersey.units import rpm
+from hersey.units import rpm, takes_si
 
 #: Loads closer than this share count as the same.
 SAME_LOAD = 0.03
@@ -138,6 +138,7 @@ class SteadyPoints(Result):
         return float(np.sqrt(np.mean(np.sum(self.tare_errors**2, axis=1))))
 
     @classmethod
+    @takes_si()
     def from_table(
         cls,
         table: Any,
@@ -220,7 +221,7 @@ class SteadyPoints(Result):
         if self.log.has_temperature and rest.reference_temperature is not None:
             kelvin = self.column("temperature")
         rest.refuse_beyond(speed, name)
-        taken, errors = rest.torque(speed, kelvin), rest.errors(speed, kelvin)
+        taken, errors = rest.torque(speed, temperature=kelvin), rest.errors(speed, temperature=kelvin)
         film = torque - taken
         unsure = np.sqrt(error**2 + np.sum(self.tare_errors**2, axis=1) + np.sum(errors**2, axis=1))
         worst = int(np.argmin(np.sign(speed) * film - _BEYOND * unsure))

@@ -9,7 +9,7 @@ from hersey.arrays import FloatArray
 from hersey.damping.dwells.groups import MIN_SAMPLES
 from hersey.damping.dwells.judging import Asked, Dwell, Stretch, judged
 from hersey.damping.dwells.noise import mean_and_error
-from hersey.damping.dwells.nothing_steady import nothing_steady
+from hersey.damping.dwells.nothing_steady import nothing_steady, too_brief
 from hersey.damping.dwells.points import Rejection, SteadyPoints
 from hersey.damping.dwells.relaxation import Relaxation, Trend, relaxation
 from hersey.damping.dwells.resolution import Resolution, repeats, rounding_error, step_of
@@ -20,6 +20,7 @@ from hersey.damping.dwells.shared_noise import Powers, SharedNoise, shared_noise
 from hersey.damping.dwells.steadiness import MAX_TEMPERATURE_DRIFT, drift_over, straightened
 from hersey.damping.dwells.zero import Zero, standing_stretches, starts_of
 from hersey.errors import TARE, InsufficientDataError, ParameterError
+from hersey.log.channels import MEANS
 from hersey.log.torque_log import Run, TorqueLog
 
 #: Rounds in which dwells are judged again by the noise of those kept, at the most.
@@ -58,7 +59,8 @@ def steady_points(
         raise ParameterError(f"min_dwell is {min_dwell:g} s: it must be greater than 0")
     if log.rows < MIN_SAMPLES:
         raise InsufficientDataError(
-            f"{log.files[0].name} has {log.rows} rows, but one dwell needs at least {MIN_SAMPLES}"
+            f"{log.files[0].name} has {log.rows} rows, but one dwell needs at least {MIN_SAMPLES}",
+            remedy=f"if each row is the mean of a dwell, use {MEANS.to()}",
         )
     return _Reduction(log, tare == "standing", Asked(min_dwell, rotation)).points()
 
@@ -78,6 +80,8 @@ class _Reduction:
         self.steps = [self._steps(i) for i in range(len(log.runs))]
         self.zero = self._zero(None)
         if subtracted and self.zero is None:
+            if brief := too_brief(log, asked.min_dwell):
+                raise InsufficientDataError(f"{log.files[0].name}: {brief}")
             raise InsufficientDataError(
                 f"the drive never stands still for 2 s, so there is no tare. Omit {TARE.to()}, or set "
                 'tare = "4 mN*m" under [torque] in hersey.toml'

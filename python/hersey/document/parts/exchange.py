@@ -21,7 +21,7 @@ class UnitVariablePart(Part):
 class TrialPart(Part):
     """What FMPy found in a unit: problems, and the greatest differences from the core, as shares."""
 
-    problems: list[str]
+    problems: list[str] = Field(description="in the words of FMPy; empty if it finds none")
     differences: dict[str, float | None] = Field(description="null if there is no number")
     events: int = Field(description="changes of mode in the run")
 

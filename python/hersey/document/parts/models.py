@@ -19,7 +19,9 @@ class CandidatePart(Part):
 
     key: str
     name: str
-    parameters: dict[str, float | None]
+    parameters: dict[str, float | None] = Field(
+        description="by name, in the coordinates of the fit; null if it has no finite value"
+    )
     not_identified: dict[str, str]
     aicc: float | None
     bic: float | None

@@ -144,7 +144,7 @@ def rests_of(dwells: pl.DataFrame, rests: Mapping[int, NoLoadTorque | None]) -> 
         if (rest := rests[runs[0]]) is not None:
             of = np.isin(dwells["run_id"].to_numpy(), runs)
             thermal = bool(np.isfinite(kelvin[of]).all())
-            taken[of] = rest.torque(speed[of], kelvin[of] if thermal else None)
+            taken[of] = rest.torque(speed[of], temperature=kelvin[of] if thermal else None)
     return taken
 
 

@@ -16,6 +16,7 @@ from hersey.life.campaign.checks import CampaignCheck, check
 from hersey.life.campaign.content import damaged, refuse_unsound_dwells, refuse_unsound_runs
 from hersey.life.campaign.entry import COLUMNS, Entry
 from hersey.life.campaign.store import PATIENCE, open_store, refuse_no_place, sqlite_errors, transaction
+from hersey.units import takes_si
 
 if TYPE_CHECKING:
     import polars as pl
@@ -70,6 +71,7 @@ class Campaign:
             Campaign.create(path).close()
 
     @classmethod
+    @takes_si(wait="time")
     def open(cls, path: str | Path, *, write: bool = True, wait: float = PATIENCE) -> Campaign:
         """Open an existing campaign, for reading only if ``write`` is false.
 

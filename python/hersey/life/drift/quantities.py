@@ -42,7 +42,7 @@ class Quantity(Record):
         bool,
         Means("whether the change is relative to the value when new, or a difference"),
     ]
-    where: str
+    where: Annotated[str, Means("of what, and at which speed and temperature, in words")]
     new: Annotated[float, OPEN]
     change: Interval
     units: tuple[Interval, ...]

@@ -75,8 +75,8 @@ class Change(Record):
     """
 
     name: str
-    grows: bool
-    torque: float
+    grows: Annotated[bool, Means("whether there is more of it with age, e.g. a thicker lubricant")]
+    torque: Annotated[float, Means("change up to the oldest run, at speed and temperature", "N m")]
     low: float
     high: float
     share: Annotated[float, Means("of torque when new")]
@@ -96,7 +96,10 @@ class Reading(Record):
     An empty set says that nothing moved beyond the errors.
     """
 
-    sets: tuple[tuple[Change, ...], ...]
+    sets: Annotated[
+        tuple[tuple[Change, ...], ...],
+        Means("sets of ageings that explain it equally well, the best first; an empty one: nothing moved"),
+    ]
 
     @property
     def sure(self) -> tuple[Change, ...]:

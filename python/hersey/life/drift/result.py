@@ -21,7 +21,7 @@ from hersey.life.drift.quantities import Quantity, quantities_of
 from hersey.life.drift.readings import Change, Reading, read
 from hersey.result import Means, Result
 from hersey.schema.warning import Warning
-from hersey.units import celsius, rpm
+from hersey.units import celsius, rpm, takes_si
 
 if TYPE_CHECKING:
     import polars as pl
@@ -167,6 +167,7 @@ def _evidence(change: Change) -> str:
 
 
 @one_thread()
+@takes_si()
 def fit_drift(runs: Campaign | pl.DataFrame) -> Drift:
     """Fit all runs of all specimens together and return what changed with age.
 

@@ -72,11 +72,11 @@ class FilmLife(Result):
     ]
     layers: Annotated[Estimates, Means("shape (units, ages)", "m")]
     needs: Annotated[tuple[FloatArray, ...], Means("flooded film at each point", "m", shape="(units, ages)")]
-    starves: tuple[AgesAtLimit, ...]
+    starves: Annotated[tuple[AgesAtLimit, ...], Means("ages at which the film starves, at each point")]
     law: Annotated[
         dict[str, Interval], Means("K in 1/(m^2 age), e and g in 1/age")
     ]  #: of the median specimen: K (1/(m^2 age)), e and g (1/age)
-    oil: tuple[OilLeft, ...]
+    oil: Annotated[tuple[OilLeft, ...], Means("in the layer of each specimen, at the first point")]
     track: float
     warnings: tuple[Warning, ...]
     _starvation: Indicator = field(repr=False)

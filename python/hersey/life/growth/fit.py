@@ -37,6 +37,7 @@ from hersey.life.growth.posterior import parameters_of, posterior, resampled
 from hersey.life.indicator import OwnAges
 from hersey.result import Means, Result
 from hersey.schema.warning import Warning
+from hersey.units import takes_si
 
 if TYPE_CHECKING:
     import polars as pl
@@ -266,6 +267,7 @@ class Growth(Result):
 
 
 @one_thread()
+@takes_si()
 def fit_growth(
     unit: Sequence[object],
     age: ArrayLike,

@@ -134,7 +134,9 @@ def at_states(
         at = surface.at(speed, temperature)
         thermal = bool(np.isfinite(dwells.temperature).all() and np.isfinite(temperature).all())
         if (which := (id(rest), thermal)) not in rests:
-            at_rest = 0.0 if rest is None else rest.torque(speed, temperature if thermal else None)
+            at_rest = (
+                0.0 if rest is None else rest.torque(speed, temperature=temperature if thermal else None)
+            )
             rests[which] = np.zeros(speed.shape) + at_rest
         no_load = rests[which]
         belt[place], belt_error[place] = at.torque, at.error

@@ -21,6 +21,7 @@ from hersey.life.indicators.load_cases import State, load_cases, point_states
 from hersey.life.indicators.run_dwells import CampaignRuns, read_runs_of
 from hersey.life.indicators.sticking import DRAWN_RUNS, folds, static_force, stick_speed_at, transitions
 from hersey.schema.warning import Warning
+from hersey.units import takes_si
 
 if TYPE_CHECKING:
     from hersey.life.campaign import Campaign
@@ -36,6 +37,7 @@ _Found = tuple[list[Indicator], list[Warning]]
 
 
 @one_thread()
+@takes_si()
 def indicators_of(campaign: Campaign, machine: Machine, *, signs: bool = True) -> Indicators:
     """Return the indicators of all failure modes whose limits the machine states.
 

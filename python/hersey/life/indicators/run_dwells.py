@@ -141,7 +141,7 @@ def _rest_of(of_run: IntArray, table: FloatArray, rests: dict[int, NoLoadTorque 
             continue
         of_rest = np.isin(of_run, numbers)
         for some, kelvin in ((of_rest & thermal, table[:, 1]), (of_rest & ~thermal, None)):
-            no_load[some] = rest.torque(table[some, 0], None if kelvin is None else kelvin[some])
+            no_load[some] = rest.torque(table[some, 0], temperature=None if kelvin is None else kelvin[some])
     return no_load
 
 

@@ -35,6 +35,7 @@ from hersey.life.time_to_failure.unsure import FAR, FEW, unsure
 from hersey.life.time_to_failure.way import FittedWay, Mode, fitted_way, last_ages
 from hersey.result import Means, Record, Result
 from hersey.schema.warning import Warning
+from hersey.units import takes_si
 
 if TYPE_CHECKING:
     import polars as pl
@@ -175,6 +176,7 @@ class TimeToFailure(Result):
 
 
 @one_thread()
+@takes_si()
 def time_to_failure(
     indicators: Indicators, *, seed: int = 0, progress: Callable[[int, int], None] | None = None
 ) -> TimeToFailure:

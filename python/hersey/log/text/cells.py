@@ -104,8 +104,12 @@ class CellReader:
             place = f"{self.name}, line {block.lines[row]}"
             if plain:
                 refuse_another_header(place, column, cells[row], self.layout.columns)
-            if self.strict or (plain and looks_numeric(cells[row])):
+            written = plain and looks_numeric(cells[row])
+            if self.strict or written:
                 raise UnreadableLogError(
-                    f"{place}, column '{column.name}': '{cells[row][:40]}' is not a {self.what(column)}"
+                    f"{place}, column '{column.name}': '{cells[row][:40]}' is not a {self.what(column)}",
+                    remedy="export numbers with one decimal mark and without thousands separators"
+                    if written
+                    else "",
                 )
         return values

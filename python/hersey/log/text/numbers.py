@@ -112,6 +112,13 @@ def style_of(cells: list[str]) -> NumberStyle:
     return plain
 
 
+def with_thousands(style: NumberStyle, cells: list[str]) -> NumberStyle:
+    """Return the style with the thousands mark that some cells it cannot read surely have, or as it is."""
+    telling = [cell for cell in cells if _THOUSANDS_SURELY.search(cell)]
+    marked = [s for s in _THOUSANDS if s.decimal_comma == style.decimal_comma]
+    return next((s for s in marked if telling and all(map(s.is_number, telling))), style)
+
+
 def looks_numeric(cell: str) -> bool:
     """Return whether a cell is a number in some style."""
     if len(cell) > LONGEST_NUMBER or not _LIKELY.fullmatch(cell):

@@ -1,4 +1,4 @@
-"""Times as text files write them: ISO and German dates, times of day, seconds since 1970, days of Excel."""
+"""Times as text files write them: dates, times of day, elapsed times, seconds since 1970, days of Excel."""
 
 from __future__ import annotations
 
@@ -10,12 +10,18 @@ import numpy as np
 import polars as pl
 
 from hersey.arrays import FloatArray
-from hersey.log.text.numbers import NumberStyle, is_missing
+from hersey.errors import Setting
+from hersey.log.text.numbers import NumberStyle, is_missing, with_thousands
 from hersey.schema.warning import Warning
 
 _CLOCK = r"[0-9]{1,2}:[0-9]{2}:[0-9]{2}([.,][0-9]{1,9})?"
 _HALF = r" ?[AaPp]\.?[Mm]\.?"
-_DAY = 86400.0
+_DAY, _HOUR = 86400.0, 3600.0
+#: Days, hours, minutes, seconds of a clock without a date, and thousandths of a second behind a colon.
+_PARTS = r"^(?:([0-9]+) days? )?(?:([0-9]+):)??([0-9]+):([0-9]{1,2}(?:\.[0-9]+)?)$"
+_THOUSANDTHS = r":([0-9]{3})$"
+#: The day of clocks without a date, ns since 1970.
+_START = int(datetime.datetime(2000, 1, 1, tzinfo=datetime.UTC).timestamp()) * 10**9
 #: Units of a count since 1970 by its size, between 2001 and 2049.
 _EPOCHS = ((1e9, "s"), (1e12, "ms"), (1e15, "us"), (1e18, "ns"))
 _EPOCH_NAME = re.compile(r"t|.*time.*|.*epoch.*|.*unix.*|zeit", re.IGNORECASE)
@@ -24,20 +30,26 @@ _DAYS_NAME = re.compile(r".*(date|datum|excel|serial).*", re.IGNORECASE)
 
 @dataclass(frozen=True)
 class StampStyle:
-    """One way to write a time: ``format`` reads it once its separators are those of ISO."""
+    """One way to write a time: ``format`` reads it once its separators are those of ISO.
+
+    Without a ``format`` it is a clock without a date; ``period``, s, is the time after which it starts anew.
+    """
 
     name: str
     pattern: str
-    format: str
+    format: str = ""
+    period: float = 0.0
 
     @property
     def is_time_of_day(self) -> bool:
         """Whether it lacks the day."""
-        return self.name.startswith("a time of day")
+        return self.period == _DAY
 
     def stamps(self, cells: pl.Series) -> pl.Series:
         """Return cells as time stamps in ns, null where one is missing or is none."""
         text = cells.str.strip_chars().str.replace(",", ".", literal=True)
+        if not self.format:
+            return _on_a_clock(text)
         if "%p" in self.format:  # 10:31:05 p.m. as 10:31:05 PM
             text = text.str.replace(r" ?([AaPp])\.?[Mm]\.?$", " ${1}M").str.to_uppercase()
         if self.name != "a German date":
@@ -62,14 +74,19 @@ _MONTH = (
     "(?i:jan(uary)?|feb(ruary)?|mar(ch)?|apr(il)?|may|june?|july?|aug(ust)?|sep(tember)?|oct(ober)?"
     "|nov(ember)?|dec(ember)?)"
 )
+#: A time such as 0:05, which could be hours and minutes too.
+_TWO_PARTS = "minutes and whole seconds"
 _NAMED = rf"[0-9]{{1,2}}[- ]{_MONTH}[- ][0-9]{{4}} "
 _STYLES = (
     StampStyle("a date with the month's name", _NAMED + _CLOCK, "%d-%b-%Y %H:%M:%S%.f"),
     StampStyle("an ISO date", _ISO + _CLOCK, "%Y-%m-%d %H:%M:%S%.f"),
     StampStyle("an ISO date", _ISO + _CLOCK + r"( ?Z| ?[+-][0-9]{2}:?[0-9]{2})", "%Y-%m-%d %H:%M:%S%.f%z"),
     StampStyle("a German date", r"[0-9]{1,2}\.[0-9]{1,2}\.[0-9]{4} " + _CLOCK, "%d.%m.%Y %H:%M:%S%.f"),
-    StampStyle("a time of day", _CLOCK, "%Y-%m-%d %H:%M:%S%.f"),
-    StampStyle("a time of day, AM and PM", _CLOCK + _HALF, "%Y-%m-%d %I:%M:%S%.f %p"),
+    StampStyle("a time of day", rf"{_CLOCK}|[0-9]{{1,2}}:[0-9]{{2}}:[0-9]{{2}}:[0-9]{{3}}", period=_DAY),
+    StampStyle("a time of day, AM and PM", _CLOCK + _HALF, "%Y-%m-%d %I:%M:%S%.f %p", _DAY),
+    StampStyle("days and a time", r"[0-9]+ days? " + _CLOCK),
+    StampStyle("minutes and seconds", r"[0-9]{1,3}:[0-9]{2}[.,][0-9]{1,9}", period=_HOUR),
+    StampStyle(_TWO_PARTS, r"[0-9]{1,3}:[0-9]{2}", period=_HOUR),
     StampStyle("an ISO date, AM and PM", _ISO + _CLOCK + _HALF, "%Y-%m-%d %I:%M:%S%.f %p"),
     StampStyle("a date, month first", _AMERICAN + _CLOCK, "%m-%d-%Y %H:%M:%S%.f"),
     StampStyle("a date, day first", _AMERICAN + _CLOCK, "%d-%m-%Y %H:%M:%S%.f"),
@@ -77,6 +94,16 @@ _STYLES = (
     StampStyle("a date, day first, AM and PM", _AMERICAN + _CLOCK + _HALF, "%d-%m-%Y %I:%M:%S%.f %p"),
 )
 _DAY_FIRST = re.compile(r"(1[3-9]|2[0-9]|3[01])/")
+
+
+def _on_a_clock(text: pl.Series) -> pl.Series:
+    """Times without a date, in words such as 1:02:03.5 or 2:03.5, as stamps of the first day of 2000."""
+    parts = text.str.replace(_THOUSANDTHS, ".$1").str.extract_groups(_PARTS).struct.unnest()
+    days, hours, minutes, seconds = (parts.to_series(i).cast(pl.Float64) for i in range(4))
+    sound = (seconds < 61.0) & (hours.is_null() | (minutes < 60.0))
+    total = days.fill_null(0.0) * _DAY + hours.fill_null(0.0) * _HOUR + minutes * 60.0 + seconds
+    since = pl.Series((total * 1e9).round().cast(pl.Int64)).set(~sound.fill_null(False), None)
+    return (since + _START).cast(pl.Datetime("ns"))
 
 
 def is_stamp(cell: str) -> bool:
@@ -116,7 +143,7 @@ class Stamps:
         if self.first is None and not gone.all():
             self.first = int(ticks[~gone][0])
         times = np.where(gone, np.nan, (ticks - (self.first or 0)) * 1e-9)
-        return self._past_midnight(times) if self.style.is_time_of_day else times
+        return self._past_its_period(times) if self.style.period else times
 
     def readable(self, cells: pl.Series) -> pl.Series:
         """Return for each cell of text whether it is a time stamp or stands for a missing one."""
@@ -125,31 +152,43 @@ class Stamps:
     def warning(self, column: str) -> Warning:
         """Return how the stamps of a column were read."""
         first = datetime.datetime(1970, 1, 1) + datetime.timedelta(microseconds=(self.first or 0) // 1000)
-        since = first.strftime("%H:%M:%S" if self.style.is_time_of_day else "%Y-%m-%d %H:%M:%S")
+        no_date = not self.style.format or self.style.is_time_of_day
+        since = first.strftime("%H:%M:%S" if no_date else "%Y-%m-%d %H:%M:%S")
+        unsure = self.style.name == _TWO_PARTS
         return Warning(
             "time stamps read",
             "'{column}' contains {style} and was read as seconds since {since}"
-            + (", with {midnights} {midnights:change|changes} of day" if self.midnights else ""),
+            + (", with {midnights} {midnights:change|changes} of {period}" if self.midnights else ""),
+            severity="watch" if unsure else "note",
+            remedy="if these are hours and minutes, export the column with seconds, e.g. 1:02:03, or give "
+            "the time between rows, e.g. {every:50 ms}"
+            if unsure
+            else "",
             column=column,
             style=self.style.name,
             since=since,
             midnights=self.midnights,
+            period="day" if self.style.is_time_of_day else "hour",
+            every=Setting("every"),
         )
 
-    def _past_midnight(self, times: FloatArray) -> FloatArray:
-        """A time of day that falls by more than half a day has passed midnight."""
+    def _past_its_period(self, times: FloatArray) -> FloatArray:
+        """A clock that falls by more than half its period has started anew."""
         known = np.flatnonzero(np.isfinite(times))
         if known.size:
             steps = np.diff(times[known], prepend=self._last)
-            nights = self.midnights + np.cumsum(steps < -_DAY / 2)
-            self._last, self.midnights = float(times[known[-1]]), int(nights[-1])
-            times[known] += _DAY * nights
+            midnights = self.midnights + np.cumsum(steps < -self.style.period / 2)
+            self._last, self.midnights = float(times[known[-1]]), int(midnights[-1])
+            times[known] += self.style.period * midnights
         return times
 
 
 def numbers_in(cells: pl.Series, written: NumberStyle | Stamps) -> tuple[FloatArray, pl.Series]:
     """Return cells of text as numbers, or times in s, and which of them are odd: these become NaN."""
     odd = ~written.readable(cells)
+    if isinstance(written, NumberStyle) and odd.any():  # thousands marks may first come far down a file
+        written = with_thousands(written, cells.filter(odd).str.strip_chars().to_list())
+        odd = ~written.readable(cells)
     values = written.values(cells.set(odd, ""))
     assert values is not None
     return values, odd

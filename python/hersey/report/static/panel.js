@@ -322,7 +322,7 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
   function inWords() {
     const parts = [`Drive speed ${speedText(setting.speed)}`, ...(hot ? [`temperature ${digits(setting.temperature - 273.15)} °C`] : []),
       `stiffness ${digits(setting.stiffness / 1e3)} N/mm`, `mass ${digits(setting.mass)} kg`,
-      `stick speed ${speedText(setting.stick_speed)}`, `closure ${setting.closure}`];
+      `stick speed ${speedText(setting.stick_speed)}${hot ? ` at ${digits(known.stick.temperature - 273.15)} °C` : ""}`, `closure ${setting.closure}`];
     return `${parts.join(", ")}.`;
   }
 

@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from hersey.arrays import FloatArray
-from hersey.damping.dwells.reduced import refuse_unfitted
 from hersey.damping.surface import DampingSurface
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.machine.limits import OperatingPoint
@@ -77,14 +76,14 @@ def operating_map(
     >>> surface = fit(read("examples/bench.csv").steady(tare="standing"))
     >>> machine = Machine(stiffness=11e3, mass=11.0, roll_radius=0.015, stick_speed=1.3e-3)
     >>> map_ = operating_map(surface, machine)
-    >>> [map_.state_at(180 + 273.15, v).state for v in (0.02, 0.045, 0.2)]
+    >>> [map_.state_at(temperature="180 degC", speed=v).state for v in (0.02, 0.045, 0.2)]
     ['stick_slip', 'bistable', 'smooth']
     """
-    _check(surface, machine, draws)
+    _check(surface, draws)
     sticking = {name: value for name, value in machine.belt.items() if name != "roll_radius"}
     first = surface.stick_speed_at(surface.reference_temperature, **sticking)
     train, radius, rule = machine.train, machine.roll_radius, machine.stick_speed_rule
-    drag = surface.drag(roll_radius=radius, stick_speed=first)
+    drag = replace(surface.drag(roll_radius=radius, stick_speed=first), measured=None)
     known = dict(machine.uncertainty)
     if "stick_speed" in known:  # stated with the stick speed, so at its temperature
         known["stick_speed"] = known["stick_speed"].times(first / machine.stick_speed)
@@ -97,15 +96,8 @@ def operating_map(
     return _drawn(surface, machine, drag, kelvin, edges, found, speeds)
 
 
-def _check(surface: DampingSurface, machine: Machine, draws: int) -> None:
+def _check(surface: DampingSurface, draws: int) -> None:
     """Refuse what no map can be made of."""
-    if not isinstance(surface, DampingSurface):
-        refuse_unfitted(surface, "hersey.operating_map(hersey.fit({points}), machine)", "a fitted surface")
-    if not isinstance(machine, Machine):
-        raise ParameterError(
-            "an operating map needs roll radius and stick speed. Give read_machine(...) or "
-            "Machine(...) instead of a train"
-        )
     if draws < 1:
         raise ParameterError(f"draws is {draws}: it must be at least 1")
     if surface.transition is None:
@@ -210,4 +202,6 @@ def torque_limit(
 
 def _placed(map_: OperatingMap, point: OperatingPoint) -> PlacedPoint:
     temperature = point.temperature if map_.drag.varies_with_temperature else None
-    return PlacedPoint(point.name, point.speed, point.temperature, map_.state_at(temperature, point.speed))
+    return PlacedPoint(
+        point.name, point.speed, point.temperature, map_.state_at(temperature=temperature, speed=point.speed)
+    )

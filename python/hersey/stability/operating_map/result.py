@@ -109,7 +109,7 @@ class OperatingMap(Result):
         return float(np.interp(kelvin, self.temperature, values))
 
     @takes_si(temperature="temperature", speed="belt speed")
-    def state_at(self, temperature: float | None, speed: float) -> MapState:
+    def state_at(self, *, temperature: float | None, speed: float) -> MapState:
         """Return the state at a temperature (K; None for an isothermal fit) and a drive speed (m/s).
 
         The bands are computed there, not interpolated.
@@ -119,15 +119,15 @@ class OperatingMap(Result):
         ParameterError
             If the law does not apply at the speed or temperature.
         """
-        return self.look_up(temperature, speed)[0]
+        return self.look_up(temperature=temperature, speed=speed)[0]
 
     @takes_si(temperature="temperature", speed="belt speed")
-    def states(self, temperature: ArrayLike | None, speed: ArrayLike) -> NDArray[np.str_]:
+    def states(self, *, temperature: ArrayLike | None, speed: ArrayLike) -> NDArray[np.str_]:
         """Return the name of the state for arrays of temperature (K) and speed (m/s), broadcast together."""
         shape = np.broadcast_shapes(
             np.shape(temperature if temperature is not None else 0.0), np.shape(speed)
         )
-        names = [state.state for state in self.look_up(temperature, speed)]
+        names = [state.state for state in self.look_up(temperature=temperature, speed=speed)]
         return np.array(names).reshape(shape)
 
     @takes_si(torque="torque")
@@ -172,7 +172,7 @@ class OperatingMap(Result):
         return _summary(self)
 
     @takes_si(temperature="temperature", speed="belt speed")
-    def look_up(self, temperature: ArrayLike | None, speed: ArrayLike) -> list[MapState]:
+    def look_up(self, *, temperature: ArrayLike | None, speed: ArrayLike) -> list[MapState]:
         """Return the states of arrays, broadcast together and flattened, as `state_at` does for one."""
         if (temperature is None) == self.drag.varies_with_temperature:
             reason = "the map depends on temperature. Give one, in K"

@@ -11,7 +11,7 @@ import numpy as np
 
 from hersey.errors import ParameterError
 from hersey.machine.limits import Limits
-from hersey.result import OPEN, Record
+from hersey.result import Means, Record
 from hersey.stability.plan.draws import Trials
 from hersey.stability.plan.grid import Room
 from hersey.stability.plan.probing import PROBES, least, slower
@@ -41,15 +41,27 @@ _BROKEN = {
 
 @dataclass(frozen=True)
 class Obstacle(Record):
-    """A limit that forbids every profile.
+    """A limit that forbids every profile."""
 
-    ``limit`` is its name, ``given`` its value (SI), ``needed`` one that would do if no other changed (None if
-    none alone would), ``text`` says it in words.
-    """
-
-    limit: str
-    given: Annotated[float, OPEN]
-    needed: float | None
+    limit: Annotated[
+        str,
+        Means(
+            "speed, acceleration, spring_force, motor_torque, grip, target_speed, several, uncertainty, "
+            "temperature or confidence"
+        ),
+    ]
+    given: Annotated[
+        float,
+        Means(
+            "its value, SI; null for several and uncertainty; for temperature what remained between two "
+            "iterations, K, or the share that works at its own temperatures",
+            open=True,
+        ),
+    ]
+    needed: Annotated[
+        float | None,
+        Means("value that would do if no other changed, SI, or null; for confidence the share that works"),
+    ]
     text: str
 
 

@@ -107,7 +107,7 @@ def plan_profile(
     """
     machine = train if isinstance(train, Machine) else None
     limits = Limits() if machine is None else machine.limits
-    train, drag, temperature = belt_of(train, drag, temperature)
+    train, drag, temperature = belt_of(train, drag, temperature, target_speed=target_speed)
     _check(drag, target_speed, limits, confidence, seed)
     reach = Reach.of(limits, None if machine is None else machine.roll_radius, train.grip)
     gripping, train = train, replace(train, grip=None)  # the grip is a limit of force here

@@ -179,7 +179,8 @@ class Plan(Result):
             lines += [f"- {number} of {self.draws} draws: {why}" for why, number in self.failures.items()]
         speeds = (self.transition_speed, self.fold_speed, self.stick_speed)
         bend, fold, stick = (f"{1e3 * speed:.4g} mm/s" for speed in speeds)
-        lines.append(f"nominal transition speed {bend}, V* {fold}, stick speed {stick}")
+        at = "" if self.temperature is None else f" at {celsius(self.temperature):.0f} degC"
+        lines.append(f"nominal transition speed {bend}, V* {fold}, stick speed {stick}{at}")
         return "\n".join([*lines, f"seed {self.seed}"])
 
     def headline(self) -> str:

@@ -223,7 +223,7 @@ def _not_started(
     else:
         what = f"let the roll grip more than {needed}: at {limit} it slips on a belt at rest"
     turn = figures(1e3 * edges.transition.high, up=True)
-    takes = map_.state_at(kelvin, edges.transition.high).torque
+    takes = map_.state_at(temperature=kelvin, speed=edges.transition.high).torque
     if takes <= edges.limit:
         otherwise = f"A belt that already slides keeps sliding above {turn} mm/s."
     else:

@@ -42,7 +42,7 @@ def point_decision(
     signal, words = _judged(found, verdict, edges_of(drawn, kelvin), map_, unit)
     if signal == "good" and not film_alone:
         signal, words = "watch", f"{words}, if all torque comes from the film"
-    if map_.state_at(kelvin, point.speed).extrapolated:
+    if map_.state_at(temperature=kelvin, speed=point.speed).extrapolated:
         signal, words = worst([signal, "watch"]), f"{words}; extrapolated"
     chances = verdict.probability
     return PointDecisionPart(
@@ -150,7 +150,7 @@ def _with_plan(found: PointBehaviour, verdict: Verdict) -> tuple[Signal, str]:
 
 def _beyond(map_: OperatingMap, found: PointBehaviour, unit: str) -> str:
     kelvin = found.point.temperature if map_.drag.varies_with_temperature else None
-    takes = map_.state_at(kelvin, found.point.speed).torque
+    takes = map_.state_at(temperature=kelvin, speed=found.point.speed).torque
     gives = "the motor gives" if map_.limited_by == "motor torque" else "the roll grips"
     return f"sliding takes {torque(takes, unit)}, {gives} {torque(map_.torque_limit or math.nan, unit)}"
 

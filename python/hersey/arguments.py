@@ -1,0 +1,405 @@
+"""What a user passes to a function: names and types, checked before anything is computed."""
+
+from __future__ import annotations
+
+import ast
+import inspect
+import os
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from numbers import Integral, Real
+from typing import Any
+
+from hersey.errors import ArgumentError, ParameterError, meant, printable
+
+#: How to get what an argument must be, by its class.
+_SOURCES = {
+    "TorqueLog": "hersey.read('bench.csv')",
+    "SteadyPoints": 'log.steady(tare="standing")',
+    "DampingSurface": "hersey.fit(points)",
+    "ModelComparison": "hersey.compare_models(points)",
+    "Machine": "hersey.read_machine('machine.toml')",
+    "Drivetrain": "machine.train",
+    "Drag": "surface.drag(**machine.belt)",
+    "Study": "hersey.study(points, machine)",
+    "Campaign": "hersey.Campaign.open('campaign.sqlite')",
+    "Indicators": "hersey.indicators_of(campaign, machine)",
+    "CycleRecord": "hersey.cycles(time, force, drive_speed='25 mm/s')",
+    "StickSlipCycle": "hersey.stick_slip(train, drag, drive_speed='25 mm/s')",
+    "RainflowCycles": "hersey.rainflow_cycles(signal)",
+    "SNCurve": "hersey.SNCurve('12 N*m', 1e6, 5.0)",
+    "Contact": "machine.contact",
+    "Lubricant": "machine.lubricant",
+    "MixedContact": "machine.mixed",
+    "NoLoadTorque": "hersey.no_load_torque(points)",
+    "HeatBalance": "hersey.HeatBalance(...)",
+    "Schedule": "hersey.Schedule(times, values)",
+}  # fmt: skip
+#: Classes of which a function says itself what is missing: it knows what was given in their place.
+_SAID_ELSEWHERE = ("SteadyPoints", "Study")
+#: Classes that no function of the package makes, or makes under no name of its own.
+_OTHERS = (
+    *("Asperities", "BoundaryFriction", "ElasticLayer", "ThickeningFluid", "ShearThinning", "Limits"),
+    *("Work", "SweepFolder", "CurveMixture", "LogMapping", "Sensors", "LifeTable", "GearTable", "DataFrame"),
+)
+#: Names in annotations that stand for classes, and the class that a base class is shown as.
+_ALIASES = {
+    "Train": ("Drivetrain", "Machine"),
+    "StatedMachine": ("Machine",),
+    "BeltDrag": ("AnyDrag", "FittedLaw"),
+    "PowerDrag": ("Drag", "DragTable"),
+    "Observations": ("Observations", "MeansTable"),
+    "SharedLoad": ("MixedContact",),
+}
+_SHOWN = {"AnyDrag": "Drag", "FittedLaw": "DampingSurface"}
+_SHOWN |= {"Observations": "SteadyPoints", "MeansTable": "SteadyPoints"}
+_CLASSES = {*_SOURCES, *_OTHERS, *_SHOWN, *(name for names in _ALIASES.values() for name in names)}
+#: Kinds of plain values, by the name in an annotation.
+_PLAIN = {"float": "number", "int": "whole", "bool": "switch", "str": "text", "Path": "path", "None": "none"}
+_COLLECTIONS = {"Mapping": "mapping", "dict": "mapping", "Sequence": "sequence", "tuple": "sequence"}
+_COLLECTIONS |= {"list": "sequence", "Callable": "function"}
+_PLAIN |= {"Share": "number", "Text": "text"}
+_ARRAYS = ("ArrayLike", "FloatArray", "IntArray", "NDArray")
+_IN_WORDS = {
+    "number": "a number",
+    "whole": "a whole number",
+    "numbers": "a number or an array of numbers",
+    "mapping": "a dictionary",
+    "sequence": "a list or a tuple",
+    "function": "a function",
+    "switch": "True or False",
+    "text": "text",
+    "path": "a path",
+}
+
+
+def _kinds_of(node: ast.expr) -> Iterator[str]:
+    """Kinds and class names that an annotation allows; ``anything`` for what is not checked."""
+    if isinstance(node, ast.BinOp):
+        yield from _kinds_of(node.left)
+        yield from _kinds_of(node.right)
+    elif isinstance(node, ast.Subscript):
+        base, inside = ast.unparse(node.value).split(".")[-1], node.slice
+        items = inside.elts if isinstance(inside, ast.Tuple) else [inside]
+        if base == "Annotated":
+            yield from _kinds_of(items[0])
+        elif base in _ARRAYS or (
+            base in ("tuple", "list", "Sequence")
+            and all(ast.unparse(item) in ("float", "int", "...") for item in items)
+        ):
+            yield "numbers"
+        else:
+            yield _COLLECTIONS.get(base, "anything")
+    else:
+        name = ast.unparse(node).split(".")[-1].strip("'\"")
+        if name in _ARRAYS:
+            yield "numbers"
+        elif name in _ALIASES or name in _CLASSES:
+            yield from _ALIASES.get(name, (name,))
+        else:
+            yield _PLAIN.get(name, "anything")
+
+
+@dataclass
+class _Argument:
+    """A parameter, and what it may be."""
+
+    name: str
+    kinds: tuple[str, ...]
+    required: bool
+    by_position: bool
+    passed: set[type] = field(default_factory=set)  #: types that need no further look
+
+    @cached_property
+    def classes(self) -> tuple[str, ...]:
+        """Names of the classes that it may be of."""
+        return tuple(kind for kind in self.kinds if kind in _CLASSES)
+
+    @cached_property
+    def wanted(self) -> str:
+        """What it may be, in words."""
+        known = [_IN_WORDS[kind] for kind in self.kinds if kind in _IN_WORDS]
+        return " or ".join([*map(_a, dict.fromkeys(_SHOWN.get(name, name) for name in self.classes)), *known])
+
+    def fits(self, value: Any) -> bool:
+        """Whether a value is of a type that the argument may be; of numbers, not yet their values."""
+        if "anything" in self.kinds or type(value) in self.passed:
+            return True
+        if value is None:
+            return "none" in self.kinds
+        if isinstance(value, bool) or type(value).__name__ == "bool":
+            return "switch" in self.kinds or "numbers" in self.kinds
+        if isinstance(value, str | os.PathLike):
+            return "path" in self.kinds or ("text" in self.kinds and isinstance(value, str))
+        fits = (
+            any(each.__name__ in self.classes for each in type(value).__mro__)
+            or ("mapping" in self.kinds and isinstance(value, Mapping))
+            or ("sequence" in self.kinds and hasattr(value, "__getitem__") and not isinstance(value, Mapping))
+            or ("function" in self.kinds and callable(value))
+            or ("whole" in self.kinds and isinstance(value, Integral))
+            or ("number" in self.kinds and isinstance(value, Real))
+        )
+        if fits:
+            self.passed.add(type(value))
+        return fits or (self.takes_numbers and not is_other(value))
+
+    def converts(self, value: Any) -> bool:
+        """Whether a value without units is to be looked at as numbers."""
+        return "anything" not in self.kinds and not isinstance(value, bool | str | os.PathLike)
+
+    @cached_property
+    def takes_numbers(self) -> bool:
+        """Whether numbers, arrays of them or quantities are among what it takes."""
+        return "numbers" in self.kinds or "number" in self.kinds
+
+
+class Door:
+    """The arguments of one function, checked as it is called.
+
+    ``quantities`` names those that are quantities; ``read`` brings one to SI.
+    """
+
+    def __init__(
+        self,
+        signature: inspect.Signature,
+        title: str,
+        quantities: Mapping[str, Any],
+        read: Callable[..., Any],
+    ) -> None:
+        """Take signature and name of the function, the kinds of its quantities, and what reads them."""
+        self.signature, self.title, self.quantities, self.read = signature, title, quantities, read
+
+    @cached_property
+    def arguments(self) -> dict[str, _Argument]:
+        """The parameters by name, in order; without those that collect others."""
+        found = {}
+        for name, each in self.signature.parameters.items():
+            if each.kind in (each.VAR_KEYWORD, each.VAR_POSITIONAL):
+                continue
+            kinds: tuple[str, ...] = ("anything",)
+            if isinstance(each.annotation, str) and name not in ("self", "cls"):
+                kinds = tuple(_kinds_of(ast.parse(each.annotation, mode="eval").body))
+            if each.default is None:
+                kinds = (*kinds, "none")
+            by_position = each.kind is not each.KEYWORD_ONLY
+            found[name] = _Argument(name, kinds, each.default is each.empty, by_position)
+        return found
+
+    @cached_property
+    def positions(self) -> tuple[str, ...]:
+        """Names of the arguments that may be given by position."""
+        return tuple(name for name, each in self.arguments.items() if each.by_position)
+
+    @cached_property
+    def required(self) -> frozenset[str]:
+        """Names of the arguments without a default."""
+        return frozenset(name for name, each in self.arguments.items() if each.required)
+
+    @cached_property
+    def open(self) -> bool:
+        """Whether the function takes other keywords."""
+        return any(each.kind is each.VAR_KEYWORD for each in self.signature.parameters.values())
+
+    def admit(self, given: tuple[Any, ...], named: dict[str, Any]) -> dict[str, Any]:
+        """Return all arguments by name, with quantities in SI.
+
+        Raises
+        ------
+        ArgumentError
+            If one is missing, unknown, given twice or of a wrong type; the message names it.
+        UnitError, ParameterError
+            If a quantity has no or a wrong unit, or is no number.
+        """
+        if len(given) > len(self.positions):
+            raise self._too_many(len(given))
+        values = dict(zip(self.positions, given, strict=False))
+        for name in named:
+            if name in values:
+                raise ArgumentError(f"{self.title} got {name} twice, by position and by name")
+            if name not in self.arguments and not self.open:
+                raise self._unknown(name)
+        values |= named
+        if not values.keys() >= self.required:
+            raise self._missing(
+                next(name for name in self.arguments if name in self.required - values.keys())
+            )
+        for name, value in values.items():
+            argument, kind, type_ = self.arguments.get(name), self.quantities.get(name), type(value)
+            plain = type_ is int or (type_ is float and value == value)
+            if plain and kind != "temperature" and (argument is None or argument.takes_numbers):
+                continue
+            if argument is not None and not (kind and isinstance(value, str)) and not argument.fits(value):
+                wrong = self._wrong(argument, value, values)
+                if wrong is None:
+                    return values
+                raise wrong
+            if value is None or (argument and type_ in argument.passed and not isinstance(value, Real)):
+                continue
+            if kind or (argument is not None and argument.takes_numbers and argument.converts(value)):
+                one = (
+                    argument is not None
+                    and "numbers" not in argument.kinds
+                    and "anything" not in argument.kinds
+                )
+                values[name] = self.read(name, kind, value, one=one)
+        return values
+
+    @property
+    def own(self) -> list[str]:
+        """The arguments that a user gives, without the object of a method."""
+        return [name for name in self.arguments if name not in ("self", "cls")]
+
+    def call(self, *shown: str) -> str:
+        """Return how the function is called: what it needs, and what else is to be shown."""
+        positions = [name for name in self.positions if name in self.own]
+        last = max((positions.index(n) for n in positions if n in self.required or n in shown), default=-1)
+        named = [n for n in self.own if n not in positions and (n in self.required or n in shown)]
+        public = self.title in getattr(sys.modules.get("hersey"), "__all__", ())
+        written = ", ".join([*positions[: last + 1], *(f"{name}=..." for name in named)])
+        return f"{'hersey.' * public}{self.title}({written})"
+
+    def _unknown(self, name: str) -> ArgumentError:
+        near = nearest_argument(name, self.own)
+        did = f"Did you mean {near}? " if near else ""
+        takes = f"{did}Its arguments are {', '.join(self.own)}" if self.own else "It takes none"
+        return ArgumentError(f"{self.title} has no argument '{printable(name)}'", remedy=takes)
+
+    def _missing(self, name: str) -> ArgumentError:
+        argument = self.arguments[name]
+        what = f", {argument.wanted}" if argument.classes else ""
+        return ArgumentError(
+            f"{self.title} needs the argument {name}{what}",
+            remedy=f"write {self.call()}{self._sources(name)}",
+        )
+
+    def _too_many(self, count: int) -> ArgumentError:
+        positions = [name for name in self.positions if name in self.own]
+        behind = [name for name in self.own if name not in positions]
+        most, given = len(positions), count - len(self.positions) + len(positions)
+        what = f"takes {most} argument{'s' * (most != 1)} by position, not {given}"
+        if not behind:
+            return ArgumentError(f"{self.title} {what}", remedy=f"write {self.call(*self.own)}")
+        if not most:
+            return ArgumentError(
+                f"{self.title} takes its arguments by name", remedy=f"write {self.call(*behind[:2])}"
+            )
+        shown = [name for name in behind if name in self.required] or behind[:2]
+        return ArgumentError(f"{self.title} {what}", remedy=f"give the others by name: {self.call(*shown)}")
+
+    def _wrong(self, argument: _Argument, value: Any, given: Mapping[str, Any]) -> ArgumentError | None:
+        """What is wrong with a value; None if the function says it better."""
+        what = f"{self.title}: {argument.name} is {described(value)}. It must be {argument.wanted}"
+        call = self.call(argument.name)
+        for name, other in given.items():
+            taker = self.arguments.get(name)
+            if taker and taker is not argument and argument.classes and argument.fits(other):
+                if taker.fits(value):
+                    remedy = f"swap {argument.name} and {name}: write {self.call(argument.name, name)} with"
+                    remedy += f" {argument.name} = {described(other)}, {name} = {described(value)}"
+                    return ArgumentError(what, remedy=remedy)
+                what += f", which was given as {name}"
+        if not argument.classes:
+            return ArgumentError(what)
+        if argument.classes[0] in _SAID_ELSEWHERE:
+            return None
+        return ArgumentError(what, remedy=f"write {call}{self._sources(argument.name, value)}")
+
+    def _sources(self, name: str, value: Any = None) -> str:
+        """How to get what an argument must be, from what was given in its place."""
+        made = dict.fromkeys(_SHOWN.get(each, each) for each in self.arguments[name].classes)
+        ways = [_SOURCES[each] for each in made if each in _SOURCES]
+        if type(value).__name__ == "TorqueLog":
+            ways = [way.replace("(points", f"({_SOURCES['SteadyPoints']}") for way in ways]
+        return f" with {name} = {' or '.join(ways)}" if ways else ""
+
+
+def nearest_argument(name: str, known: list[str]) -> str:
+    """Return the known argument that an unknown one is meant for, or an empty text.
+
+    Examples
+    --------
+    >>> nearest_argument("temp", ["train", "temperature"]), nearest_argument("speed", ["drive_speed"])
+    ('temperature', 'drive_speed')
+    """
+    parts = [each for each in known if len(name) > 2 and (name.lower() in each or each in name.lower())]
+    return parts[0] if len(parts) == 1 else meant(name, known)
+
+
+def is_other(value: Any) -> bool:
+    """Whether a value is an object that holds no numbers, such as a result or a function."""
+    return isinstance(value, Mapping | set) or callable(value) or hasattr(value, "__dataclass_fields__")
+
+
+def _a(name: str) -> str:
+    return name if name.endswith("s") else f"{'an' if name[0] in 'AEIOU' else 'a'} {name}"
+
+
+def described(value: Any) -> str:
+    """Return what a value is, in words."""
+    kind = type(value).__name__
+    if value is None or isinstance(value, bool):
+        return str(value)
+    if isinstance(value, str):
+        return f"the text '{printable(value[:40])}'"
+    if isinstance(value, Real):
+        return f"the number {value}"
+    if kind == "DataFrame":
+        columns = [str(name) for name in value.columns]
+        return f"a table with the columns {printable(', '.join(columns[:6]))}{', ...' * (len(columns) > 6)}"
+    if kind == "ndarray":
+        return f"an array of shape {value.shape}"
+    if callable(value) and hasattr(value, "__name__"):
+        return f"the {'class' if isinstance(value, type) else 'function'} {value.__name__}"
+    return _a({"dict": "dictionary"}.get(kind, kind))
+
+
+def numbers(name: str, value: Any, *, one: bool) -> Any:
+    """Return numbers of whatever type; an array unless they are already a number, a list or an array.
+
+    Raises
+    ------
+    ArgumentError
+        If they are no numbers, or more than the ``one`` that is needed.
+    ParameterError
+        If a single one is not a number, or some are masked.
+    """
+    if isinstance(value, Real) and not isinstance(value, bool):
+        if value != value:
+            raise ParameterError(f"{name} is NaN: it must be a number", quantity=name)
+        return value
+    import numpy as np
+
+    wanted = "one number" if one else "a number or an array of numbers"
+    if type(value).__name__ == "DataFrame":
+        example = printable(str(value.columns[0])) if len(value.columns) else "..."
+        raise ArgumentError(
+            f"{name} is {described(value)}. It must be {wanted}",
+            remedy=f"give one column, e.g. table['{example}']",
+        )
+    if hasattr(value, "magnitude"):
+        raise ArgumentError(
+            f"{name} is a quantity with a unit. It must be {wanted}", remedy="give its magnitude"
+        )
+    if is_other(value) or isinstance(value, str | bytes | bool):
+        raise ArgumentError(f"{name} is {described(value)}. It must be {wanted}")
+    if isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value):
+        masked = int(np.ma.getmaskarray(value).sum())
+        raise ParameterError(
+            f"{name} has {masked} masked value{'s' * (masked != 1)}. Drop them with {name}.compressed()",
+            quantity=name,
+        )
+    try:
+        array = np.asarray(value, dtype=float)
+    except (TypeError, ValueError):
+        raise ArgumentError(f"{name} is not {wanted}, but {described(value)}") from None
+    if np.asarray(value).dtype.kind in "mMc":
+        raise ArgumentError(f"{name} is {described(value)}. It must be {wanted}")
+    if one and array.size != 1:
+        raise ArgumentError(
+            f"{name} has {array.size} values. It must be one number", remedy="call once for each"
+        )
+    if one:
+        return numbers(name, float(array.reshape(())), one=True)
+    return value if isinstance(value, list | tuple | np.ndarray) else array

@@ -1,0 +1,75 @@
+"""Quantities at the belt, and what to write where one of another kind, or a range, is given."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from pydantic import ValidationInfo
+
+from hersey.errors import HerseyError, UnitError
+from hersey.files.toml import Quantity
+from hersey.machine.uncertainty import read_uncertainty
+from hersey.motion.parameters import OF_THE_BELT
+from hersey.units import KINDS, convert, parse
+
+#: Standard gravity, m/s^2.
+_GRAVITY = 9.80665
+#: For a kind: kinds given instead, what they are, the factor to SI, the power of the roll radius (m).
+_INSTEAD: dict[str, tuple[tuple[str, str, float, int], ...]] = {
+    "belt speed": (("speed", "a rotational speed, but the speed of the belt is needed", 1.0, 1),),
+    "stiffness": (("torsional stiffness", "a torsional stiffness, but that at the belt is needed", 1.0, -2),),
+    "mass": (
+        ("force", "a weight, but a mass is needed", 1 / _GRAVITY, 0),
+        ("moment of inertia", "a moment of inertia, but the mass at the belt is needed", 1.0, -2),
+    ),
+    "force": (
+        ("mass", "a mass, but a force is needed", _GRAVITY, 0),
+        ("torque", "a torque, but the force at the belt is needed", 1.0, -1),
+    ),
+    "torque": (("force", "a force, but the torque at the roll is needed", 1.0, 1),),
+}
+
+
+class AtBelt(Quantity):
+    """A quantity at the belt or the roll; the roll radius of [drivetrain] leads to it from another kind."""
+
+    def _with_unit(self, given: object, info: ValidationInfo[Any]) -> float:
+        try:
+            return super()._with_unit(given, info)
+        except UnitError:
+            meant = self._range(given, str(info.field_name)) or self._converted(given, info.context.document)
+            if isinstance(given, str) and meant:
+                raise UnitError(f"is {given}, {meant}") from None
+            raise
+
+    def _range(self, given: object, key: str) -> str:
+        """What to say of a range; nothing if it is none."""
+        if key not in OF_THE_BELT:
+            return ""
+        try:
+            limits = read_uncertainty(key, given).limits
+        except HerseyError:
+            return ""
+        if limits is None:
+            return ""
+        middle = self._written(math.sqrt(limits[0] * limits[1]))
+        return f'a range. Write one value here, e.g. "{middle}", and below [uncertainty]: {key} = "{given}"'
+
+    def _converted(self, given: object, document: Any) -> str:
+        """What to say of a quantity of another kind; nothing if none is known."""
+        for kind, what, factor, power in _INSTEAD.get(str(self.kind), ()):
+            try:
+                value = parse(kind, str(given))
+                if kind == "torsional stiffness" and "rad" not in str(given) and "deg" not in str(given):
+                    continue  # N*m, which is a slip of N/m too
+                radius = parse("length", str(document["drivetrain"]["roll_radius"])) if power else 1.0
+            except (UnitError, LookupError, TypeError):
+                continue
+            if value > 0 and radius > 0:
+                return f'{what}. Write "{self._written(value * factor * radius**power)}"'
+        return ""
+
+    def _written(self, value: float) -> str:
+        si, usual = KINDS[str(self.kind)]
+        return f"{convert(value, si, usual):.4g} {usual}"

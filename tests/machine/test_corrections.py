@@ -1,0 +1,196 @@
+"""What a machine file with a mistake is refused with: the line, and advice that works when it is followed."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from hersey.errors import HerseyError, PlausibilityWarning
+from hersey.files.toml import read_toml
+from hersey.machine import read_machine
+
+GOOD = """\
+# A machine.
+[drivetrain]
+stiffness = "11 N/mm"   # at the belt
+mass = "11 kg"
+roll_radius = "15 mm"
+stick_speed = "3 mm/s"
+
+[limits]
+roll_friction = 0.6
+nip_load = "300 N"
+
+[rest]
+torque = "20 mN*m"
+uncertainty = "10 %"
+
+[lubricant]
+model = "walther"
+viscosities = [["40 degC", "500 mm^2/s"], ["200 degC", "7.2 mm^2/s"]]
+density = "1.9 g/cm^3"
+
+[[points]]
+name = "full speed"
+speed = "200 mm/s"
+temperature = "180 degC"
+"""
+OIL = 'viscosities = [["40 degC", "500 mm^2/s"], ["200 degC", "7.2 mm^2/s"]]'
+SPEED = 'speed = "200 mm/s"'
+
+
+#: What an error says to write: a whole line, or the value of a key.
+LINE = re.compile(r"line (\d+).* Write: (.*?)(?: \(correct lines? .* too\))?$")
+VALUE = re.compile(r"line (\d+).* Write (?:e\.g\. )?(.*?)(?:, without quotes)?$")
+
+
+def refusal(path: Path) -> str:
+    """What is wrong with a machine file, or nothing."""
+    try:
+        read_machine(path)
+    except HerseyError as error:
+        return str(error)
+    return ""
+
+
+def follow(path: Path, most: int = 6) -> None:
+    """Replace lines as the errors say, until the file is read."""
+    for _ in range(most):
+        said = refusal(path)
+        if not said:
+            return
+        line, value = LINE.search(said), VALUE.search(said)
+        match = line or value
+        assert match, said
+        lines = path.read_text().split("\n")
+        number = int(match[1]) - 1
+        lines[number] = match[2] if line else f"{lines[number].partition('=')[0]}= {match[2]}"
+        path.write_text("\n".join(lines))
+    assert not refusal(path)
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ('"11 N/mm"', '"11,0 N/mm"'),
+        ('"11 N/mm"', "11 N/mm"),
+        ('"11 N/mm"', "11,0 N/mm"),
+        ('"11 N/mm"', "11"),
+        ('"11 N/mm"', "\u201e11 N/mm\u201c"),
+        ('"11 N/mm"', '"11 N/mm'),
+        ('"11 N/mm"', '11 N/mm"'),
+        ('"11 N/mm"', '"11" N/mm'),
+        ('"11 N/mm"', '"11 N/mm";'),
+        ('"11 N/mm"', '"~11 N/mm"'),
+        ('"11 N/mm"', '"11 000 N/m"'),
+        ('stiffness = "11 N/mm"', 'stiffness "11 N/mm"'),
+        ('stiffness = "11 N/mm"', "stiffness: 11 N/mm"),
+        ('stiffness = "11 N/mm"', 'stiffness == "11 N/mm"'),
+        ('stiffness = "11 N/mm"', "stiffness (N/mm) = 11"),
+        ('stiffness = "11 N/mm"', 'stiffness\u00a0= "11 N/mm"'),
+        ("# A machine.", "// A machine."),
+        ("[drivetrain]", "[drivetrain"),
+        ("[drivetrain]", "drivetrain:"),
+        ("[drivetrain]", "[drive train]"),
+        ("[[points]]", "[[points]"),
+        ("roll_friction = 0.6", "roll_friction = 0,6"),
+        ("roll_friction = 0.6", "roll_friction = .6"),
+        ("roll_friction = 0.6", "roll_friction = 60 %"),
+        ("roll_friction = 0.6", 'roll_friction = "0,6"'),
+        ('uncertainty = "10 %"', "uncertainty = 10 %"),
+        (OIL, OIL[:-1]),
+        (OIL, "viscosities = [[40 degC, 500 mm^2/s], [200 degC, 7.2 mm^2/s]]"),
+        ('"11 kg"', '"108 N"'),
+        ('"300 N"', '"30 kg"'),
+        (SPEED, 'speed = "127 rpm"'),
+    ],
+)
+def test_the_advice_works(old: str, new: str, tmp_path: Path) -> None:
+    path = tmp_path / "machine.toml"
+    path.write_text(GOOD.replace(old, new, 1))
+    with pytest.raises(HerseyError):
+        read_machine(path)
+    follow(path)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "stiffness", "mass", "radius"),
+    [
+        ('"11 N/mm"', "11,5 N/mm", 11500, 11, 0.015),
+        ('"11 kg"', '"108 N"', 11000, 11.01, 0.015),
+        ('"11 kg"', '"2e-4 kg*m^2"', 11000, 0.8889, 0.015),
+        ('"11 N/mm"', '"2.5 N*m/rad"', 11110, 11, 0.015),
+    ],
+)
+def test_the_corrected_value_is_the_one_meant(
+    old: str, new: str, stiffness: float, mass: float, radius: float, tmp_path: Path
+) -> None:
+    path = tmp_path / "machine.toml"
+    path.write_text(GOOD.replace(old, new, 1))
+    follow(path)
+    machine = read_machine(path)
+    assert (machine.stiffness, machine.mass, machine.roll_radius) == pytest.approx((stiffness, mass, radius))
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ('roll_radius = "15 mm"', 'roll_diameter = "30 mm"', 'line 5: .* roll_radius = "15 mm"'),
+        ('mass = "11 kg"', 'weight = "11 kg"', "line 4: .* 'mass'"),
+        ('mass = "11 kg"', 'mass = "11 kg"\nnip_load = "300 N"', r"line 5: .* \[limits\]"),
+        ("[drivetrain]\n", "", r"line 2: 'stiffness' is in no table. It belongs in \[drivetrain\]"),
+        ('mass = "11 kg"', 'mass = "11 kg"\nmass = "12 kg"', "line 5: the key 'mass' is already in line 4"),
+        ("[limits]", "[drivetrain]", r"line 8: the table \[drivetrain\] is already in line 2"),
+        ('"3 mm/s"', '"1 mm/s to 4 mm/s"', r'line 6: .* "2 mm/s".*\[uncertainty\]: stick_speed = "1 mm/s to'),
+        ('stick_speed = "3 mm/s"\n', "", 'line 2: .* Add e.g. stick_speed = "'),
+        (
+            'torque = "20 mN*m"\nuncertainty = "10 %"',
+            r'log = "C:\bench\new.csv"',
+            r"line 13: .*'C:\\bench\\new",
+        ),
+    ],
+)
+def test_the_line_and_the_way_out_are_named(old: str, new: str, said: str, tmp_path: Path) -> None:
+    path = tmp_path / "machine.toml"
+    path.write_text(GOOD.replace(old, new, 1))
+    with pytest.raises(HerseyError, match=said):
+        read_machine(path)
+
+
+@pytest.mark.parametrize("encoding", ["utf-16", "utf-8-sig"])
+@pytest.mark.parametrize("ends", ["\n", "\r\n", "\r"])
+def test_a_file_of_any_editor_is_read(encoding: str, ends: str, tmp_path: Path) -> None:
+    path = tmp_path / "machine.toml"
+    path.write_bytes(GOOD.replace("\n", ends).replace("degC", "°C").encode(encoding))
+    assert read_machine(path).points[0].temperature == pytest.approx(453.15)
+
+
+def test_a_character_of_another_encoding_is_named_with_its_line(tmp_path: Path) -> None:
+    path = tmp_path / "machine.toml"
+    path.write_bytes(GOOD.replace("180 degC", "180 °C").encode("latin-1"))
+    with pytest.raises(HerseyError, match="line 24: '°' is not in UTF-8"):
+        read_machine(path)
+
+
+def test_json_is_recognized(tmp_path: Path) -> None:
+    path = tmp_path / "machine.json"
+    path.write_text('{"drivetrain": {"stiffness": "11 N/mm"}}')
+    with pytest.raises(HerseyError, match=r'JSON.*\[drivetrain\].*stiffness = "11 N/mm"'):
+        read_toml(path)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "meant"),
+    [
+        ('"11 N/mm"', '"11 N/m"', 'stiffness = "11 N/mm"'),
+        ('"3 mm/s"', '"3 m/s"', 'stick_speed = "3 mm/s"'),
+        ('temperature = "180 degC"', 'temperature = "180 K"', 'temperature = "180 degC"'),
+    ],
+)
+def test_an_unusual_value_is_read_with_a_warning(old: str, new: str, meant: str, tmp_path: Path) -> None:
+    path = tmp_path / "machine.toml"
+    path.write_text(GOOD.replace(old, new, 1))
+    with pytest.warns(PlausibilityWarning, match=meant):
+        read_machine(path)

@@ -1,0 +1,192 @@
+"""Wrong calls of what is public: each is refused by an error that names the argument and what to type."""
+
+from __future__ import annotations
+
+import inspect
+import timeit
+import warnings
+from collections.abc import Callable, Iterator
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import hersey
+from hersey.errors import ArgumentError, ExtrapolationWarning, HerseyError, ParameterError
+from hersey.units import takes_si
+from tests.conftest import ROOT
+
+H: Any = hersey  # calls that no type checker allows
+TRAIN = hersey.Drivetrain(1000.0, 1.0)
+DRAG = hersey.Drag(50.0, 1.0, ehl_exponent=-0.7, mixed_exponent=-1.2, stick_speed=0.01)
+MACHINE = hersey.Machine(11e3, 11.0, roll_radius=0.015, stick_speed=3e-4)
+#: What no argument of a function takes, beside those that take anything.
+NOTHING = object()
+
+
+@cache
+def surface() -> hersey.DampingSurface:
+    return hersey.fit(hersey.read(ROOT / "examples" / "bench.csv").steady(tare="standing"))
+
+
+def checked() -> Iterator[tuple[str, Any]]:
+    """Public functions, and records that users make, which check their arguments."""
+    for name in hersey.__all__:
+        thing = getattr(hersey, name)
+        if (
+            (inspect.isfunction(thing) and name != "memory_limit")
+            or (inspect.isclass(thing) and "_check_fields" in getattr(thing.__init__, "__qualname__", ""))
+            or hasattr(thing.__init__, "__wrapped__")
+        ):
+            yield name, thing
+
+
+def test_no_function_takes_an_unknown_or_leaves_out_a_needed_argument() -> None:
+    functions = dict(checked())
+    assert len(functions) > 45
+    for name, function in functions.items():
+        signature = inspect.signature(function)
+        needed = [
+            p.name
+            for p in signature.parameters.values()
+            if p.default is p.empty and p.kind is not p.VAR_KEYWORD
+        ]
+        if not any(p.kind is p.VAR_KEYWORD for p in signature.parameters.values()):
+            with pytest.raises(ArgumentError, match=f"{name} has no argument 'zzz'. "):
+                function(**dict.fromkeys(needed), zzz=1)
+        if needed:
+            with pytest.raises(ArgumentError, match=f"{name} needs the argument {needed[0]}"):
+                function()
+
+
+def test_no_function_takes_a_value_of_a_wrong_type() -> None:
+    for name, function in checked():
+        for each in inspect.signature(function).parameters.values():
+            call = function if inspect.isfunction(function) else function.__init__
+            while "door" not in (held := inspect.getclosurevars(call).nonlocals):
+                call = call.__wrapped__
+            door = held["door"]
+            argument = door.arguments.get(each.name)
+            if argument is None or "anything" in argument.kinds:
+                continue
+            assert argument.wanted, (name, each.name)
+            for wrong in (hersey.Work(), {1, 2}, NOTHING):
+                accepted = argument.fits(wrong) and type(wrong).__name__ not in argument.classes
+                assert not accepted or (wrong is NOTHING and argument.takes_numbers), (name, each.name)
+
+
+TEMPERATURES: list[Callable[[Any], object]] = [
+    lambda t: surface().damping(speed=4.0, temperature=t),
+    lambda t: surface().drag(roll_radius=0.015, stick_speed=3e-4, temperature=t),
+    lambda t: surface().transition_speed(t),
+    lambda t: hersey.stick_slip(MACHINE, surface(), drive_speed=0.1, temperature=t),
+    lambda t: hersey.operating_map(surface(), MACHINE, temperatures=[t, 400.0]),
+    lambda t: hersey.OperatingPoint("hot", 0.1, t),
+    lambda t: hersey.BoundaryFriction(0.1, temperature=t),
+]
+
+
+@pytest.mark.parametrize("call", TEMPERATURES)
+def test_a_temperature_in_degrees_without_a_unit_is_refused(call: Callable[[Any], object]) -> None:
+    with pytest.raises(ParameterError, match=r"is 180 without a unit, .* Write '180 degC', or '180 K'"):
+        call(180)
+    with pytest.raises(ParameterError, match=r"Write '-5 degC'$"):
+        call(-5.0)
+
+
+def test_swapped_arguments_are_named() -> None:
+    for function, rest in (
+        (H.stick_slip, {"drive_speed": 0.1}),
+        (H.simulate, {"drive_speed": 0.1, "duration": 1.0}),
+        (H.disturbance, {"drive_speed": 0.1}),
+        (H.hysteresis, {}),
+    ):
+        with pytest.raises(TypeError, match="Swap train and drag: write hersey"):
+            function(surface(), MACHINE, temperature=400.0, **rest)
+    with pytest.raises(ParameterError, match="report needs a study"):
+        H.report(MACHINE, "page.html")
+    with pytest.raises(ParameterError, match="study needs steady points"):
+        H.study(MACHINE, surface())
+    with pytest.raises(TypeError, match=r"needs the argument b, SteadyPoints. Write hersey.compare\(a, b\)"):
+        H.compare(3)
+
+
+def test_a_near_name_is_proposed_and_all_are_listed() -> None:
+    with pytest.raises(
+        TypeError, match=r"Did you mean drive_speed\? Its arguments are train, drag, drive_speed"
+    ):
+        H.stick_slip(TRAIN, DRAG, speed=1.0)
+    with pytest.raises(TypeError, match=r"Did you mean temperature\?"):
+        H.film_thickness(None, None, speed=1.0, temp=400.0)
+
+
+@pytest.mark.parametrize(
+    ("speed", "says"),
+    [
+        ("25", "speed: '25' is not a number with a unit of speed. Write e.g. '25 rpm'"),
+        ("25 foo", "speed: unknown unit 'foo'"),
+        (
+            pd.DataFrame({"n": [1.0]}),
+            "speed is a table with the columns n.*Give one column, e.g. table\\['n'\\]",
+        ),
+        (np.ma.masked_array([1.0, 2.0], [True, False]), "speed has 1 masked value. Drop them"),
+        (float("nan"), "speed is NaN"),
+        (MACHINE, "speed is a Machine. It must be"),
+        (["1 rpm", "2 mm"], "speed: unit 'mm'"),
+    ],
+)
+def test_what_is_no_speed_is_named(speed: Any, says: str) -> None:
+    with pytest.raises(HerseyError, match=says):
+        surface().predict(speed=speed, temperature=420.0)
+    if not isinstance(speed, list):
+        with pytest.raises(
+            HerseyError, match=says.replace("of speed", "of belt speed").replace("25 rpm", "25 mm/s")
+        ):
+            hersey.stick_slip(TRAIN, DRAG, drive_speed=speed)
+
+
+def test_columns_of_numbers_or_texts_are_taken() -> None:
+    expected = surface().torque(speed=[4.0, 5.0], temperature=400.0)
+    for speed in (pd.Series([4.0, 5.0]), pd.Series(["4 rad/s", "5 rad/s"]), np.array(["4 rad/s", "5 rad/s"])):
+        np.testing.assert_allclose(surface().torque(speed=speed, temperature=400), expected, rtol=1e-12)
+    with pytest.raises(ArgumentError, match="drive_speed has 2 values"):
+        H.stick_slip(TRAIN, DRAG, drive_speed=[1.0, 2.0])
+
+
+def test_a_speed_or_a_temperature_outside_the_log_is_said_once() -> None:
+    drag = surface().drag(roll_radius=0.015, stick_speed=3e-4)
+    fixed: dict[str, Any] = {"temperature": 420.0}
+    far: list[tuple[str, Callable[[], object]]] = [
+        ("drive_speed is 2.5e", lambda: hersey.stick_slip(MACHINE, surface(), drive_speed=25, **fixed)),
+        ("drive_speed is 2.5e", lambda: hersey.stick_slip(TRAIN, drag, drive_speed=25, **fixed)),
+        ("drive_speed is 2.5e", lambda: hersey.simulate(TRAIN, drag, drive_speed=25, duration=0.01, **fixed)),
+        ("drive_speed is 2.5e", lambda: hersey.disturbance(MACHINE, surface(), drive_speed=25, **fixed)),
+        ("temperature is 250 degC", lambda: hersey.hysteresis(MACHINE, surface(), temperature="250 degC")),  # type: ignore[arg-type]
+        ("temperature is outside", lambda: surface().transition_torque(523.0)),
+        ("temperature is outside", lambda: surface().stick_speed_at(523.0, stick_speed=3e-4)),
+    ]
+    for says, call in far:
+        with pytest.warns(ExtrapolationWarning, match=says) as warned:
+            call()
+        assert [str(Path(each.filename).name) for each in warned] == ["test_wrong_calls.py"]
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        hersey.simulate(MACHINE, surface(), drive_speed=0.1, duration=0.01, **fixed)
+        hersey.operating_map(surface(), MACHINE, temperatures=[330.0, 480.0], draws=1)
+
+
+def test_two_numbers_that_could_be_swapped_are_given_by_name() -> None:
+    with pytest.raises(TypeError, match=r"Give the others by name: force\(speed, temperature=...\)"):
+        H.Drag.force(DRAG, 1.0, 400.0)
+
+
+def test_the_check_of_a_call_takes_microseconds() -> None:
+    @takes_si(speed="speed", temperature="temperature")
+    def nothing(law: object, *, speed: float, temperature: float | None = None) -> None:
+        del law, speed, temperature
+
+    runs = timeit.repeat(lambda: nothing(None, speed=1.0, temperature=400.0), number=200, repeat=20)
+    assert min(runs) / 200 < 50e-6
