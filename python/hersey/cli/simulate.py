@@ -13,7 +13,7 @@ from hersey.cli.outputs import may_draw, may_write
 from hersey.cli.printing import Printing
 from hersey.cli.progress import working
 from hersey.cli.quantities import target_of
-from hersey.cli.warming import beyond_the_log, heat_of, warming_drag
+from hersey.cli.warming import beyond_the_log, heat_of, refuse_below_zero, start_of, warming_drag
 from hersey.errors import ParameterError
 
 if TYPE_CHECKING:
@@ -235,6 +235,7 @@ def _warmed(belt: Belt, drive: _Drive, heat: _Heat) -> _Motion:
     speed = target_of(drive.drive_speed, machine, "--drive-speed")
     time = parse("time", drive.duration or _WARMING)
     surface = finished_fit(heat.fit_file, machine)
+    refuse_below_zero(surface, balance, start_of(belt.machine, heat.begin), heat.fit_file)
     train, drag = machine.train, warming_drag(surface, machine)
     asked: dict[str, Any] = {"duration": time, "start": drive.start, "check": drive.check}
     with working("simulating"):
