@@ -158,3 +158,35 @@ def test_assumed_numbers_are_printed_with_units(tmp_path: Path) -> None:
     whole = ["--mass", "1", "--transition-force", "50", "--transition-speed", "1", "--stick-speed", "0.01"]
     text = run("simulate", "--stiffness", "2000", *whole, "--drive-speed", "1", cwd=tmp_path).words
     assert "ozf" not in text
+
+
+def staircase(sign: int) -> str:
+    """A log of three speeds and two temperatures."""
+    rows = []
+    for i in range(6):
+        for j in range(60):
+            time = 6.0 * i + 0.1 * j
+            speed = (10, 30, 90)[i % 3]
+            torque = sign * (0.2 + 0.05 * (i % 3) + 1e-3 * (j % 2))
+            rows.append(f"{time:.1f},{torque},{speed},{100 + 20 * (i // 3)}")
+    return "\n".join(["time [s],torque [N*m],speed [rpm],temperature [degC]", *rows])
+
+
+@pytest.mark.parametrize(
+    "typed",
+    ["compare {0} {1}", "report {0} --against {1}", "report {1} --against {0}", "fit {0} {1} --each t.csv"],
+)
+def test_one_of_several_logs_takes_its_sign_from_a_mapping(typed: str, tmp_path: Path) -> None:
+    (tmp_path / "logs").mkdir()
+    for name, sign in (("a", 1), ("b", -1)):
+        (tmp_path / "logs" / f"{name}.csv").write_text(staircase(sign))
+    line = shlex.split(typed.format("logs/a.csv", "logs/b.csv"))
+    refused = run(*line, cwd=tmp_path)
+    assert refused.returncode in (1, 2)
+    file = re.search(r"write (sign = -1) under (\[torque\]) in (\S+) instead", refused.stderr)
+    assert file, refused.stderr
+    given = run(*line, "--torque-sign", "-1", cwd=tmp_path)
+    assert given.returncode in (1, 2)
+    assert "Omit --torque-sign -1. " in given.stderr
+    (tmp_path / file[3]).write_text(f"{file[2]}\n{file[1]}\n")
+    assert run(*line, cwd=tmp_path).returncode == 0

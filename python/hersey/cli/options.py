@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence, Set
+from collections.abc import Iterator, Sequence, Set
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -13,6 +14,7 @@ from hersey.cli.mistyped import retyped
 from hersey.cli.progress import bar, working
 from hersey.cli.quantities import amounts_in
 from hersey.cli.recipe_file import ROLES, read_recipe
+from hersey.cli.several import for_this_log_only
 from hersey.cli.terminal import note
 from hersey.errors import ChannelError, HerseyError, ParameterError, followed_by
 
@@ -198,11 +200,20 @@ class Reading:
         return points
 
     def points_of(self, paths: list[Path], machine: Machine | None = None) -> SteadyPoints:
-        """Read one of several logs and reduce it; errors begin with its name."""
+        """Read one of several logs and reduce it."""
+        with self.one_of_several(paths):
+            return self.points(paths, self.log(paths, machine), machine)
+
+    @contextmanager
+    def one_of_several(self, paths: list[Path]) -> Iterator[None]:
+        """Let errors begin with the name of the log, and end in how a setting is stated for it alone."""
         from hersey.damping.recipe import naming_logs
 
-        with naming_logs(paths):
-            return self.points(paths, self.log(paths, machine), machine)
+        try:
+            with naming_logs(paths):
+                yield
+        except HerseyError as error:
+            raise for_this_log_only(error, paths[0], self.recipe(paths)) from None
 
     def surface_and_posterior(
         self,

@@ -11,8 +11,8 @@ from hersey.damping.dwells.few_rows import held_for_few_rows
 from hersey.damping.dwells.groups import MIN_SAMPLES, distinct_speeds
 from hersey.damping.dwells.judging import Asked
 from hersey.damping.dwells.points import Rejection
-from hersey.damping.dwells.reasons import CAUSES, Reason, cause
-from hersey.errors import ROTATION, Setting
+from hersey.damping.dwells.reasons import CAUSES, Reason, cause, opposite_signs
+from hersey.errors import ROTATION, InsufficientDataError, Setting
 from hersey.log.channels import EVERY
 from hersey.log.torque_log import NO_CLOCK, Run, TorqueLog
 from hersey.units import rpm
@@ -33,16 +33,21 @@ _TOO_BRIEF, _RARER = 1.0, 50
 
 def nothing_steady(
     log: TorqueLog, rejected: tuple[Rejection, ...], asked: Asked, dwells_with: Callable[[float], int]
-) -> str:
-    """Return the message; ``dwells_with`` counts the dwells that another least duration, s, would give."""
+) -> InsufficientDataError:
+    """Return the error; ``dwells_with`` counts the dwells that another least duration, s, would give."""
     if few := held_for_few_rows(log):
-        return few
+        return InsufficientDataError(few)
     name = log.files[0].name + (f" and {len(log.files) - 1} more" if len(log.files) > 1 else "")
+    held = [r for r in rejected if r.is_dwell]
+    against = [r for r in held if r.why.kind == "opposite signs"]
+    if against and 2 * len(against) >= len(held):
+        return opposite_signs(f"{name}, {len(against)} of {len(held)} dwells")
     reasons: dict[str, list[Reason]] = {}
     for r in rejected:
         reasons.setdefault(r.why.label, []).append(r.why)
     listed = ", ".join(f"{len(alike)} x {_in_short(alike)}" for alike in reasons.values())
-    return f"{name}: no dwell found ({listed}). {_way_out(log, rejected, asked, dwells_with)}"
+    remedy = _way_out(log, rejected, asked, dwells_with)
+    return InsufficientDataError(f"{name}: no dwell found ({listed}). {remedy}")
 
 
 def _in_short(alike: list[Reason]) -> str:

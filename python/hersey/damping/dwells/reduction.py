@@ -103,7 +103,7 @@ class _Reduction:
         dwells = [o for o in outcomes if isinstance(o, Dwell)]
         rejected = tuple(o for o in outcomes if isinstance(o, Rejection))
         if not dwells:
-            raise InsufficientDataError(nothing_steady(self.log, rejected, self.asked, self._dwells_with))
+            raise nothing_steady(self.log, rejected, self.asked, self._dwells_with)
         return self._reduced(dwells, rejected, noise)
 
     def _dwells_with(self, min_dwell: float) -> int:
