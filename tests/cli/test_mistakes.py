@@ -313,7 +313,10 @@ MISTAKES: dict[str, Mistake] = {
         recorded,
     ),
     "steps too short for dwells": Mistake(
-        {"log.csv": table(rows(each=8))}, "fit log.csv", ("The speed never holds: ", "short steps"), recorded
+        {"log.csv": table(rows(each=8))},
+        "fit log.csv",
+        ("The speed changes in ", "Hold each speed for at least "),
+        recorded,
     ),
     "dwells shorter than is asked": Mistake(
         {"log.csv": table(rows(each=75, step=0.02))}, "fit log.csv", ("dwell too short", "at least 2 s")
