@@ -10,7 +10,16 @@ from typing import Any
 import numpy as np
 
 from hersey.arrays import FloatArray
-from hersey.errors import ISOTHERMAL, ChannelError, Setting, UnitError, WrongKindError, meant, printable
+from hersey.errors import (
+    ISOTHERMAL,
+    ChannelError,
+    ParameterError,
+    Setting,
+    UnitError,
+    WrongKindError,
+    meant,
+    printable,
+)
 from hersey.log.signals import apart, is_signal, per, says_how_much, way_out
 from hersey.log.text.column import Column
 from hersey.schema.warning import Warning
@@ -226,6 +235,22 @@ def refuse_two_roles(role: str, column: Column, chosen: Mapping[str, tuple[Colum
                 f"{file}: column '{column}' cannot be both {other} and {role}. Name the {role} column with "
                 f"{Setting(role, 'channel').to()}"
             )
+
+
+def refuse_two_clocks(columns: tuple[Column, ...], stated: Stated, file: str) -> None:
+    """Raise if the time between rows is stated beside a column of the time.
+
+    Raises
+    ------
+    ParameterError
+        It names the column.
+    """
+    clock = next((c for c in columns if is_called("time", c) and is_of_kind("time", c.unit)), None)
+    if stated.every is not None and clock is not None:
+        raise ParameterError(
+            f"{file}: column '{clock}' is a clock, but {EVERY.to()} gives the time between rows as well",
+            remedy=f"omit {EVERY.to()}, or rename the column if its times are wrong",
+        )
 
 
 def called(name: str, columns: tuple[Column, ...]) -> list[Column]:

@@ -52,7 +52,9 @@ def steady_points(
         If no dwell is found, or there is no standing stretch to tare with.
     """
     if tare not in ("none", "standing"):
-        raise ParameterError(f"tare '{tare}' is not known. Use none or standing")
+        known = f'write tare = "{tare}" under [torque] in hersey.toml beside the log'
+        offset = f". To subtract a known offset, {known}" if any(map(str.isdigit, tare)) else ""
+        raise ParameterError(f"tare '{tare}' is not known. Use none or standing{offset}")
     if rotation not in ("both", "forward", "reverse"):
         raise ParameterError(f"rotation '{rotation}' is not known. Use both, forward or reverse")
     if not 0 < min_dwell < float("inf"):
