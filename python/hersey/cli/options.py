@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 from hersey.cli.groups import argument, option
 from hersey.cli.mistyped import retyped
 from hersey.cli.progress import bar, working
-from hersey.cli.quantities import amounts_in
+from hersey.cli.quantities import amount_of, amounts_in
 from hersey.cli.recipe_file import ROLES, read_recipe
 from hersey.cli.several import for_this_log_only
 from hersey.cli.terminal import note
@@ -137,7 +137,6 @@ class Reading:
     def recipe(self, logs: Sequence[Path] = ()) -> Recipe:
         """Return how these logs become dwells."""
         from hersey.damping.recipe import Recipe
-        from hersey.units import parse
 
         amounts = {role: amounts_in(getattr(self, role)) for role in ("load", "radius")}
         names = {role: name for role in ROLES if (name := getattr(self, role)) and not amounts.get(role)}
@@ -145,7 +144,7 @@ class Reading:
         signs = {role: sign for role in ("torque", "speed") if (sign := getattr(self, f"{role}_sign")) != 1}
         given = {name: getattr(self, name) or None for name in ("mapping", "every", "no_load")}
         same: dict[str, Any] = {name: getattr(self, name) for name in _AS_GIVEN}
-        dwell = parse("time", self.min_dwell)
+        dwell = amount_of("time", self.min_dwell, "--min-dwell")
         own: dict[str, Any] = {"channels": names, "units": units, "signs": signs, "min_dwell": dwell}
         return Recipe(logs=tuple(logs), **(own | amounts | given | same))
 

@@ -11,7 +11,7 @@ from hersey.cli.options import FitFile, Force, Reading, SomeLogs, drawn
 from hersey.cli.outputs import may_write_table_and_figure
 from hersey.cli.printing import Printing, write_course
 from hersey.cli.progress import working
-from hersey.cli.quantities import share, target_of
+from hersey.cli.quantities import amount_of, share, target_of
 from hersey.cli.warming import beyond_the_log, heat_of, refuse_below_zero, start_of, warming_drag
 from hersey.errors import ParameterError
 
@@ -39,12 +39,10 @@ class _Course:
 
     def sought(self, machine: Machine) -> dict[str, float]:
         """Return target, margin and longest time in SI."""
-        from hersey.units import parse
-
         return {
             "target_speed": target_of(self.target, machine),
             "margin": share("--margin", self.margin),
-            "longest": parse("time", self.longest),
+            "longest": amount_of("time", self.longest, "--longest"),
         }
 
 
