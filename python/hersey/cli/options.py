@@ -73,7 +73,7 @@ def reduced(words: str, *flags: str, **more: Any) -> Any:
     return option(words, *flags, panel=REDUCED, **more)
 
 
-_TORQUE_UNIT = "Unit of torque; may have a factor, e.g. '9.84 mN*m / 100' for %."
+_TORQUE_UNIT = "Unit of torque; of a signal e.g. '35 mN*m/A', or '9.84 mN*m / 100' for %."
 _RADIUS = "Radius for a log of friction force and sliding speed: '25 mm' or its column."
 _LOAD = "Normal load: '50 N', '10 N, 20 N' for two runs, or its column."
 _MAPPING = "File with roles, units and corrections.  [default: hersey.toml beside the log]"
