@@ -74,6 +74,10 @@ MAPPING = Setting("mapping")
 ROTATION = Setting("rotation")
 
 
+#: The sign of the torque.
+SIGN = Setting("torque_sign", argument="signs")
+
+
 def turned(role: str) -> str:
     """Return the setting that flips the sign of torque or speed."""
     return Setting(f"{role}_sign", argument="signs").to("-1", python=f"{{'{role}': -1}}")

@@ -8,6 +8,7 @@ to its definitions.
 from __future__ import annotations
 
 import inspect
+import sys
 import math
 import re
 from collections.abc import Callable, Mapping
@@ -444,13 +445,13 @@ def argument(name: str, kind: Kind, value: Any, *, one: bool = False) -> Any:
 
 
 def _refuse_celsius(name: str, value: Any) -> None:
-    """Refuse plain numbers in K that can only have been meant in degC."""
+    """Refuse plain numbers in K that a user can only have meant in degC."""
     coldest = value
     if not isinstance(value, float | int):
         import numpy as np
 
         coldest = float(np.nanmin(value)) if np.size(value) and not np.all(np.isnan(value)) else _COLDEST
-    if coldest < _COLDEST:
+    if coldest < _COLDEST and not _called_from_inside():
         kelvin = f", or '{coldest:g} K' if that is meant" if coldest > 0 else ""
         raise ParameterError(
             f"{name} is {coldest:g} without a unit, which means {coldest:g} K ({celsius(coldest):.4g} degC)",
@@ -459,6 +460,14 @@ def _refuse_celsius(name: str, value: Any) -> None:
             unit="K",
             remedy=f"write '{coldest:g} degC'{kelvin}",
         )
+
+
+def _called_from_inside() -> bool:
+    """Whether the package itself called what checks its arguments here: its plain numbers are in K."""
+    frame = sys._getframe(1)
+    while frame.f_back is not None and frame.f_globals["__name__"] in (__name__, Door.__module__):
+        frame = frame.f_back
+    return str(frame.f_globals["__name__"]).startswith("hersey.")
 
 
 def takes_si(**kinds: Kind) -> Callable[[F], F]:

@@ -66,10 +66,10 @@ def test_what_does_not_go_with_a_table_is_refused(here: Path, words: tuple[str, 
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("speed (mm/s)\n1\n", "line 1: add a column 'force (N)'"),
-        ("speed (mm/s),force (N)\n", "has no rows: write speed and force in each row"),
-        ("speed (mm/s),force (N)\n1,2\n3,x\n", "line 3: 'x' is not a number"),
-        ("speed (mm/s),force (K)\n1,2\n", "column 'force (K)'"),
+        ("speed (mm/s)\n1\n", "'speed (mm/s),force (N)' in line 1"),
+        ("speed (mm/s),force (N)\n", "no rows"),
+        ("speed (mm/s),force (N)\n1,2\n3,x\n", "line 3, column 'force': 'x' is not a number"),
+        ("speed (mm/s),force (K)\n1,2\n", "column 'force [K]'"),
         ("speed (mm/s),force (N)\n3,2\n1,4\n", "bad.csv: "),
     ],
 )

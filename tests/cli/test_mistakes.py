@@ -158,7 +158,7 @@ def split_there(it: Refused) -> list[str]:
 
 def recorded(it: Refused) -> list[str]:
     """Record what the message asks for: dwells as long as it says, at as many speeds, or slower ones."""
-    lasts = re.search(r"hold one speed for at least ([\d.]+) s", it.message)
+    lasts = re.search(r"[Hh]old (?:one|each) speed for at least ([\d.]+) s", it.message)
     three = "at three or more speeds" in it.message
     of_other = re.search(
         r"csv covers ([\d.]+) to ([\d.]+) rpm.*Record one at speeds of the other", it.message
@@ -175,11 +175,9 @@ def recorded(it: Refused) -> list[str]:
     return it.arguments
 
 
-def swapped(it: Refused) -> list[str]:
-    """Swap the two files of a command."""
-    assert it.message.endswith("Did you swap the two files?")
-    files = [argument for argument in it.arguments if (it.folder / argument).is_file()]
-    return [{files[0]: files[1], files[1]: files[0]}.get(argument, argument) for argument in it.arguments]
+def line_typed(it: Refused) -> list[str]:
+    """Type the whole line of the message."""
+    return shlex.split(it.message.partition(" Type: hersey ")[2])
 
 
 def with_unit(it: Refused) -> list[str]:
@@ -313,7 +311,10 @@ MISTAKES: dict[str, Mistake] = {
         recorded,
     ),
     "steps too short for dwells": Mistake(
-        {"log.csv": table(rows(each=8))}, "fit log.csv", ("The speed never holds: ", "short steps"), recorded
+        {"log.csv": table(rows(each=8))},
+        "fit log.csv",
+        ("The speed changes in ", "Hold each speed for at least "),
+        recorded,
     ),
     "dwells shorter than is asked": Mistake(
         {"log.csv": table(rows(each=75, step=0.02))}, "fit log.csv", ("dwell too short", "at least 2 s")
@@ -439,8 +440,8 @@ MISTAKES: dict[str, Mistake] = {
     "machine and log swapped": Mistake(
         {**GOOD, "machine.toml": MACHINE},
         "report machine.toml --machine log.csv",
-        ("log.csv is not valid TOML", "looks like a log"),
-        swapped,
+        ("machine.toml is a machine file, not a log",),
+        line_typed,
     ),
     "a machine given as mapping": Mistake(
         {**GOOD, "machine.toml": MACHINE},

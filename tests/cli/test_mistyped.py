@@ -10,6 +10,7 @@ import pytest
 
 from hersey.cli.application import load
 from tests.cli.command import run
+from tests.conftest import ROOT
 
 
 def options(verb: str) -> set[str]:
@@ -67,6 +68,16 @@ def test_an_option_of_other_commands_is_omitted_with_its_value(tmp_path: Path) -
         ("a.csv report --machine m.toml", "report a.csv --machine m.toml"),
         ("m.toml report a.csv", "report a.csv --machine m.toml"),
         ("m.toml plan a.csv", "plan m.toml a.csv"),
+        ("film m.toml a.csv", "film m.toml --log a.csv"),
+        ("film a.csv m.toml --at '90 degC'", "film m.toml --log a.csv --at '90 degC'"),
+        ("plan a.csv m.toml --target '60 mm/s'", "plan m.toml a.csv --target '60 mm/s'"),
+        ("report m.toml a.csv -v", "report a.csv --machine m.toml -v"),
+        ("report m.toml --machine a.csv", "report a.csv --machine m.toml"),
+        ("inspect m.toml a.csv", "inspect a.csv"),
+        ("sweep s.toml m.toml", "sweep s.toml --machine m.toml"),
+        ("compare a.csv b.csv c.csv", "fit a.csv b.csv c.csv --each fits.csv"),
+        ("export simulink f.json m.toml", "export fmu f.json m.toml"),
+        ("life c.hersey m.toml", "life c.hersey --machine m.toml"),
         ("campaign a.csv --unit F1", "campaign add life.hersey a.csv --unit F1"),
         ("campaign l.hersey a.csv --unit F1", "campaign add l.hersey a.csv --unit F1"),
         ("campaign l.hersey", "campaign list l.hersey"),
@@ -158,3 +169,102 @@ def test_assumed_numbers_are_printed_with_units(tmp_path: Path) -> None:
     whole = ["--mass", "1", "--transition-force", "50", "--transition-speed", "1", "--stick-speed", "0.01"]
     text = run("simulate", "--stiffness", "2000", *whole, "--drive-speed", "1", cwd=tmp_path).words
     assert "ozf" not in text
+
+
+def staircase(sign: int) -> str:
+    """A log of three speeds and two temperatures."""
+    rows = []
+    for i in range(6):
+        for j in range(60):
+            time = 6.0 * i + 0.1 * j
+            speed = (10, 30, 90)[i % 3]
+            torque = sign * (0.2 + 0.05 * (i % 3) + 1e-3 * (j % 2))
+            rows.append(f"{time:.1f},{torque},{speed},{100 + 20 * (i // 3)}")
+    return "\n".join(["time [s],torque [N*m],speed [rpm],temperature [degC]", *rows])
+
+
+@pytest.mark.parametrize(
+    "typed",
+    ["compare {0} {1}", "report {0} --against {1}", "report {1} --against {0}", "fit {0} {1} --each t.csv"],
+)
+def test_one_of_several_logs_takes_its_sign_from_a_mapping(typed: str, tmp_path: Path) -> None:
+    (tmp_path / "logs").mkdir()
+    for name, sign in (("a", 1), ("b", -1)):
+        (tmp_path / "logs" / f"{name}.csv").write_text(staircase(sign))
+    line = shlex.split(typed.format("logs/a.csv", "logs/b.csv"))
+    refused = run(*line, cwd=tmp_path)
+    assert refused.returncode in (1, 2)
+    file = re.search(r"write (sign = -1) under (\[torque\]) in (\S+) instead", refused.stderr)
+    assert file, refused.stderr
+    given = run(*line, "--torque-sign", "-1", cwd=tmp_path)
+    assert given.returncode in (1, 2)
+    assert "Omit --torque-sign -1. " in given.stderr
+    (tmp_path / file[3]).write_text(f"{file[2]}\n{file[1]}\n")
+    assert run(*line, cwd=tmp_path).returncode == 0
+
+
+@pytest.mark.parametrize(
+    ("typed", "flag"),
+    [
+        ("plan m.toml a.csv --target 60", "--target"),
+        ("film m.toml --at 150", "--at"),
+        ("fit a.csv --min-dwell 2", "--min-dwell"),
+    ],
+)
+def test_a_number_without_a_unit_names_its_option(typed: str, flag: str, tmp_path: Path) -> None:
+    (tmp_path / "m.toml").write_bytes((ROOT / "examples" / "machine.toml").read_bytes())
+    (tmp_path / "no-load.csv").write_bytes((ROOT / "examples" / "no-load.csv").read_bytes())
+    done = run(*shlex.split(typed), cwd=tmp_path)
+    assert done.returncode == 2
+    assert done.stderr.startswith(f"hersey: {flag}: '")
+
+
+@pytest.mark.parametrize("typed", [r"logs\\a.csv", "logsa.csv"])
+def test_a_path_of_windows_is_written_with_slashes(typed: str, tmp_path: Path) -> None:
+    (tmp_path / "logs").mkdir()
+    (tmp_path / "logs" / "a.csv").write_text(staircase(1))
+    done = run("fit", typed.replace("\\\\", "\\"), cwd=tmp_path)
+    assert done.returncode == 2
+    assert done.stderr.endswith(" 'logs/a.csv'\n")
+
+
+def test_a_time_between_rows_beside_a_clock_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "a.csv").write_text(staircase(1))
+    done = run("fit", "a.csv", "--every", "2 ms", cwd=tmp_path)
+    assert done.returncode == 2
+    assert "column 'time [s]'" in done.stderr
+    assert "--every" in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("written", "meant"),
+    [
+        ("2 to 40 N/mm", '{ from = "2 N/mm", to = "40 N/mm", count = 10 }'),
+        ("2 N/mm, 4 N/mm", '["2 N/mm", "4 N/mm"]'),
+    ],
+)
+def test_a_range_or_a_list_in_words_is_shown_as_it_is_written(
+    written: str, meant: str, tmp_path: Path
+) -> None:
+    text = (ROOT / "examples" / "scenario.toml").read_text()
+    for value, code in ((f'"{written}"', 2), (meant, 0)):
+        lines = re.sub(r"(?m)^drive_speed = .*", 'drive_speed = "5 mm/s"', text)
+        lines = re.sub(r"(?m)^stiffness = .*", lambda _, v=value: f"stiffness = {v}", lines)
+        (tmp_path / "s.toml").write_text(lines)
+        done = run("sweep", "s.toml", cwd=tmp_path)
+        assert done.returncode == code
+        assert code == 0 or done.stderr.endswith(f" Write {meant}\n")
+
+
+def test_a_machine_file_is_no_scenario(tmp_path: Path) -> None:
+    done = run("sweep", ROOT / "examples" / "machine.toml", cwd=tmp_path)
+    assert done.returncode == 2
+    assert "--machine" in done.stderr
+
+
+@pytest.mark.parametrize("verb", ["hysteresis", "simulate"])
+def test_verbose_prints_the_conclusion_once(verb: str, tmp_path: Path) -> None:
+    usual, whole = (run(verb, *more, cwd=tmp_path).stdout for more in ([], ["-v"]))
+    first = usual.splitlines()[0]
+    assert first not in whole
+    assert whole.count("Assumed, as not given") == 1

@@ -34,14 +34,17 @@ def test_it_is_followed_to_its_end(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "told"),
     [
-        ("", r"line 1: add a column 'time \(s\)'"),
-        ("time (s)\n0\n", r"line 1: add a column 'speed \(mm/s\)'"),
-        ("time (s),speed\n0,0\n", r"line 1: add a column 'speed \(mm/s\)'"),
-        ("time (s),speed (rpm)\n0,0\n", r"column 'speed \(rpm\)': unit 'rpm' is not a unit of belt speed"),
-        ("time (s),speed (mm/s)\n", "has no rows"),
-        ("time (s),speed (mm/s)\n0,1\n1,x\n", "line 3: 'x' is not a number"),
-        ("time (s),speed (mm/s)\n0,1\n1\n", "line 3: '' is not a number"),
-        ("time (s),speed (mm/s)\n0,1\n1,nan\n", "a number is not finite"),
+        ("", r"'time \(s\),speed \(mm/s\)' in line 1"),
+        ("time (s)\n0\n", r"'time \(s\),speed \(mm/s\)' in line 1"),
+        ("0,1\n1,2\n", r"'time \(s\),speed \(mm/s\)' in line 1"),
+        ("time (s),n (rpm)\n0,0\n", r"no column is named speed.*'n \[rpm\]'.*'speed \(mm/s\)'"),
+        ("time (s),speed\n0,0\n", r"column 'speed' has no unit. Write 'speed \(mm/s\)'"),
+        ("time (s),speed (rpm)\n0,0\n", r"column 'speed \[rpm\]': unit 'rpm' is not a unit of belt speed"),
+        ("time (s),speed (mm/s),speed (m/s)\n0,0,0\n", "more than one column is named speed"),
+        ("time (s),speed (mm/s)\n", "no rows"),
+        ("time (s),speed (mm/s)\n0,1\n1,x\n", "line 3, column 'speed': 'x' is not a number"),
+        ("time (s),speed (mm/s)\n0,1\n1\n", "line 3, column 'speed': an empty cell"),
+        ("time (s),speed (mm/s)\n0,1\n1,nan\n", "line 3, column 'speed': 'nan'"),
         ("time (s),speed (mm/s)\n1,1\n0,1\n", "times must ascend"),
         ("time (s),speed (mm/s)\n0,1\n1,0\n", "the last must be greater than 0"),
         ("time (s),speed (mm/s)\n0,-1\n1,2\n", "speeds must not be negative"),
@@ -52,6 +55,15 @@ def test_what_is_wrong_is_named(tmp_path: Path, text: str, told: str) -> None:
     file.write_text(text)
     with pytest.raises(HerseyError, match=rf"^profile\.csv.*{told}"):
         read_profile(file)
+
+
+@pytest.mark.parametrize(
+    "text", ["time (s);speed (mm/s)\r\n0,0;5\r\n0,5;22,5\r\n", "time (s)\tspeed (mm/s)\n0\t5\n.5\t22.5\n"]
+)
+def test_it_is_read_as_a_spreadsheet_saves_it(tmp_path: Path, text: str) -> None:
+    (tmp_path / "profile.csv").write_text(text)
+    profile = read_profile(tmp_path / "profile.csv")
+    assert profile.at(0.5) == pytest.approx(0.0225)
 
 
 def test_one_speed_or_a_profile(tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 from pathlib import Path
 
@@ -103,3 +104,25 @@ def test_the_least_force_is_named() -> None:
     assert limits.force(0.015) == ("grip", 180.0)
     assert limits.force(0.02) == ("motor torque", pytest.approx(150.0))
     assert hersey.Limits().force(0.02) is None
+
+
+@pytest.mark.parametrize(
+    "typed",
+    [
+        [*TYPED[:-1], "-20 degC"],
+        [*HEATED, "--from", "-20 degC"],
+        ["plan", *TYPED[1:6], "--at", "-20 degC"],
+        ["plan", *TYPED[1:6], "--heat", "--from", "-20 degC"],
+    ],
+)
+def test_below_zero_a_fit_in_kelvin_is_asked_for(folder: Path, typed: list[str]) -> None:
+    done = run(*typed, cwd=folder)
+    assert done.returncode == 2
+    assert f"{typed[-2]} is -20 degC, " in done.stderr
+    assert "--temperature-scale K" in done.stderr
+
+
+def test_a_start_just_above_zero_is_not_refused_for_a_colder_trial(folder: Path) -> None:
+    done = run(*TYPED[:-1], "1 degC", "--json", cwd=folder)
+    assert done.returncode == 0, done.stderr
+    assert min(json.loads(done.stdout)["film_temperature"]) == pytest.approx(274.15)

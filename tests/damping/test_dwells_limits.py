@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import polars as pl
 import pytest
@@ -419,3 +421,17 @@ def test_a_group_of_temperatures_spans_six_kelvin() -> None:
 
 def test_a_revolution_a_minute() -> None:
     assert rpm(2 * np.pi) == pytest.approx(60.0)
+
+
+@pytest.mark.parametrize("min_dwell", [2.0, 0.5])
+def test_steps_that_are_too_short_at_this_rate_are_counted(min_dwell: float) -> None:
+    speed = np.repeat([10.0, 20.0, 40.0, 80.0] * 4, 80) * RPM
+    with pytest.raises(InsufficientDataError) as refused:
+        log_of(speed, np.ones(speed.size), dt=0.01).steady(min_dwell=min_dwell)
+    said = re.search(
+        r"in (\d+) steps .* lasts ([\d.]+) s.* more than ([\d.]+) s.* least ([\d.]+) s", str(refused.value)
+    )
+    assert said
+    assert said.groups() == ("16", "0.8", "1", "3" if min_dwell == 2.0 else "2")
+    speed = np.repeat([10.0, 20.0, 40.0, 80.0] * 4, round(100 * float(said[4]))) * RPM
+    assert len(log_of(speed, np.ones(speed.size), dt=0.01).steady(min_dwell=min_dwell)) == 16

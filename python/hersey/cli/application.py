@@ -10,6 +10,7 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperCommand, TyperGroup
 
+from hersey.cli.arranged import refuse_disorder
 from hersey.cli.groups import option
 from hersey.cli.interruption import INTERRUPTED
 from hersey.cli.mistyped import (
@@ -102,7 +103,13 @@ class Verb(TyperCommand):
 
     def make_context(self, info_name: Any, args: Any, parent: Any = None, **extra: Any) -> Any:
         """Return the context of the loaded command, which then runs instead of this one."""
-        return load(str(self.name)).make_context(info_name, args, parent, **extra)
+        command = load(str(self.name))
+        if hasattr(command, "commands") or extra.get("resilient_parsing"):
+            return command.make_context(info_name, args, parent, **extra)
+        typed = list(args)
+        context = command.make_context(info_name, args, parent, allow_extra_args=True, **extra)
+        refuse_disorder(context, typed)
+        return context
 
 
 class Verbs(TyperGroup):

@@ -1,18 +1,17 @@
-"""Columns of a small CSV whose headings name quantity and unit: a profile or a drag curve."""
+"""Columns of a small table whose headings name quantity and unit: a profile or a drag curve."""
 
 from __future__ import annotations
 
-import csv
-import io
-import re
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from hersey.errors import ParameterError, UnitError
+from hersey.errors import ParameterError, UnitError, UnreadableLogError, followed_by
 
 if TYPE_CHECKING:
+    from hersey.log.columns import OpenColumns
+    from hersey.log.text.column import Column
     from hersey.motion.drag import DragTable
     from hersey.motion.schedule import Schedule
 
@@ -26,7 +25,7 @@ def read_profile(file: Path) -> Schedule:
 
     Raises
     ------
-    ParameterError
+    HerseyError
         If a column is missing or has no unit, a row lacks a number, or times decrease.
     """
     from hersey.motion.schedule import Schedule
@@ -44,7 +43,7 @@ def read_drag_table(file: Path, **beside: Any) -> DragTable:
 
     Raises
     ------
-    ParameterError
+    HerseyError
         If a column is missing or has no unit, a row lacks a number, or the points are not a drag curve.
     """
     from hersey.motion.drag import DragTable
@@ -64,7 +63,7 @@ def _naming(file: Path) -> Iterator[None]:
 
 
 def read_columns(file: Path, wanted: Mapping[str, tuple[str, str]]) -> list[tuple[float, ...]]:
-    """Return columns of a CSV in SI, in the order wanted.
+    """Return columns of a table in SI, in the order wanted; it may be any file that a log may be.
 
     Parameters
     ----------
@@ -73,50 +72,42 @@ def read_columns(file: Path, wanted: Mapping[str, tuple[str, str]]) -> list[tupl
 
     Raises
     ------
-    ParameterError
-        If a column is missing or has no unit, or a row lacks a number.
+    HerseyError
+        If a column is missing or has no unit, or a row lacks a number; it names the file.
     """
-    from hersey.files.text import read_text
-
-    try:
-        rows = list(csv.reader(io.StringIO(read_text(file))))
-    except (UnicodeDecodeError, csv.Error) as error:
-        raise ParameterError(f"{file.name} is not a CSV file: {error}") from None
-    columns = dict(_columns(file, rows[0] if rows else [], wanted))
-    missing = [example for name, (_, example) in wanted.items() if name not in columns]
-    if missing:
-        raise ParameterError(f"{file.name}, line 1: add a column '{missing[0]}'")
-    numbers = [
-        [scale * _number(file, line, row, at) + offset for at, scale, offset in (columns[n] for n in wanted)]
-        for line, row in enumerate(rows[1:], start=2)
-        if any(cell.strip() for cell in row)
-    ]
-    if not numbers:
-        raise ParameterError(f"{file.name} has no rows: write {' and '.join(wanted)} in each row")
-    return list(zip(*numbers, strict=True))
-
-
-def _columns(
-    file: Path, heads: list[str], wanted: Mapping[str, tuple[str, str]]
-) -> Iterator[tuple[str, tuple[int, float, float]]]:
-    """Index of each column with scale and offset to SI, by name."""
+    from hersey.log.columns import open_columns
     from hersey.units import conversion
 
-    pattern = re.compile(rf"\s*({'|'.join(wanted)})\s*[(\[](.*)[)\]]\s*", re.IGNORECASE)
-    for at, head in enumerate(heads):
-        match = pattern.fullmatch(head)
-        if match is not None:
-            name = match[1].lower()
-            try:
-                line = conversion(wanted[name][0], match[2])
-            except UnitError as error:
-                raise UnitError(f"{file.name}, column '{head}': {error}") from None
-            yield name, (at, line.scale, line.offset)
+    heads = ",".join(example for _, example in wanted.values())
+    with ExitStack() as stack:
+        try:
+            opened = stack.enter_context(open_columns(file))
+        except UnreadableLogError as error:
+            error.remedy = followed_by(error.remedy, f"write '{heads}' in line 1, and a row for each point")
+            raise
+        if opened.headless:
+            raise ParameterError(f"{file.name} has no header: write '{heads}' in line 1")
+        chosen = [_column(opened, name, example) for name, (_, example) in wanted.items()]
+        numbers = opened.numbers(*chosen, complete=True)
+    out = []
+    for column, values, (kind, _) in zip(chosen, numbers, wanted.values(), strict=True):
+        try:
+            line = conversion(kind, column.unit)
+        except UnitError as error:
+            raise UnitError(f"{file.name}, column '{column}': {error}") from None
+        out.append(tuple(line.scale * value + line.offset for value in values.tolist()))
+    return out
 
 
-def _number(file: Path, line: int, row: list[str], at: int) -> float:
-    text = row[at].strip() if at < len(row) else ""
-    try:
-        return float(text)
-    except ValueError:
-        raise ParameterError(f"{file.name}, line {line}: '{text}' is not a number") from None
+def _column(opened: OpenColumns, name: str, example: str) -> Column:
+    named = [column for column in opened.columns if column.name.lower().startswith(name)]
+    there = ", ".join(f"'{column}'" for column in opened.columns)
+    if not named:
+        raise ParameterError(
+            f"{opened.file}: no column is named {name}. Columns: {there}. Call one '{example}'"
+        )
+    if len(named) > 1:
+        raise ParameterError(f"{opened.file}: more than one column is named {name}: {there}. Delete one")
+    if not named[0].unit:
+        raise UnitError(f"{opened.file}: column '{named[0]}' has no unit. Write '{example}' in the header")
+    return named[0]

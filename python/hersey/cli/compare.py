@@ -35,9 +35,7 @@ def compare(
         comparison = compared(of_a, of_b, names=(str(a), str(b)))
     if printing.json(comparison):
         return
-    printing.text(*_lines(comparison))
-    printing.details("", comparison.summary())
-    printing.warnings(*comparison.warnings)
+    printing.conclusion(lambda: _lines(comparison), comparison.summary(), *comparison.warnings)
 
 
 def _lines(found: LogComparison) -> list[str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -155,11 +156,11 @@ def cycles(
             continue
         if len(chosen) > 1:
             printing.text(*([""] if number != chosen[0] else []), f"Run {number + 1} of {len(runs)}")
-        printing.text(*_lines(record, drive, unit))
+        whole = [record.summary(unit), *([] if drive is None else ["", drive.summary(unit)])]
+        warned = (*record.warnings, *(() if drive is None else drive.warnings))
+        printing.conclusion(partial(_lines, record, drive, unit), "\n".join(whole), *warned)
         if record.kind == "steady_sliding" and given.quantity == "torque":
             printing.text(f"For the drag of steady sliding type: {retyped('report', str(file))}")
-        printing.details("", record.summary(unit), *([] if drive is None else ["", drive.summary(unit)]))
-        printing.warnings(*record.warnings, *(() if drive is None else drive.warnings))
         printing.files(figure)
 
 

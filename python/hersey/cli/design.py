@@ -16,6 +16,8 @@ _QUANTITY = "Narrow this quantity, e.g. 'transition speed' or 'c'.  [default: al
 _MACHINE = "Machine file: rank the measurements that would narrow its V*."
 _SPEEDS = "Speeds that can be run, e.g. '2 to 200 rpm'.  [default: those measured]"
 _TEMPERATURES = "Temperatures that can be run, e.g. '60 to 200 degC'.  [default: those measured]"
+#: Names of the safe speed, which is no parameter of a fit.
+_SAFE_SPEED = ("v*", "v", "vstar", "v_star", "safe speed")
 
 
 @grouped
@@ -47,6 +49,11 @@ def design(
         return
     if trace:
         raise ParameterError("--trace needs the machine file: add --machine TOML")
+
+    if quantity.strip().lower() in _SAFE_SPEED:
+        raise ParameterError(
+            f"{quantity} depends on the machine too: replace --quantity by --machine machine.toml"
+        )
 
     from hersey.damping.candidates import compare_models
     from hersey.damping.design import design as designed

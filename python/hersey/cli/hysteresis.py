@@ -58,11 +58,10 @@ def hysteresis(
             step = safe_step(train, law, from_speed=before, to_speed=after)
     if printing.json(band, disturbance=kick, step=step):
         return
-    printing.text(*_band(band, numbers))
+    printing.conclusion(lambda: _band(band, numbers), band.summary({**vars(train), **vars(law)}))
     printing.text(*([] if kick is None else [_survived(kick, numbers)]))
     printing.text(*([] if step is None else [_stepped(step, numbers)]))
     printing.text(*numbers.words)
-    printing.details("", band.summary({**vars(train), **vars(law)}))
 
 
 def _band(band: HysteresisBand, numbers: Amounts) -> list[str]:

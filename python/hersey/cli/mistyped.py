@@ -70,6 +70,8 @@ _SAME = (
 )
 #: Option that prints a result.
 _PRINTS = "--json"
+#: What takes the files of a subcommand.
+_TAKERS = {"fmu": "Simulink, Amesim, Modelica tools and others import an FMU."}
 #: Options of which the first names a file to write.
 _WRITING = _SAME[0]
 #: Parts of a name that do not say which option is meant.
@@ -126,7 +128,7 @@ def unknown_command(name: str, others: Sequence[str], commands: Commands) -> str
 
 def _behind(verb: str, file: str, others: Sequence[str], commands: Commands) -> list[str]:
     """The command with the file that was typed before it: a machine file is an option of most commands."""
-    if Path(file).suffix.lower() == _MACHINE and "machine" in _options(commands.load(verb)):
+    if Path(file).suffix.lower() == _MACHINE and "machine" in options_of(commands.load(verb)):
         return [verb, *others, "--machine", file]
     return [verb, file, *others]
 
@@ -138,7 +140,9 @@ def unknown_subcommand(verb: str, name: str, others: Sequence[str], known: Seque
     if near:
         return f"{said}. Did you mean: {retyped(verb, near, *others)}"
     if len(known) == 1:
-        return f"{said}. Type: {retyped(verb, known[0], name, *others)}"
+        is_file = bool(Path(name).suffix)
+        takers = "" if is_file else f" {_TAKERS[known[0]]}" if known[0] in _TAKERS else ""
+        return f"{said}.{takers} Type: {retyped(verb, known[0], *([name] * is_file), *others)}"
     names = [each for each in (name, *others) if not each.startswith("-")]
     campaigns = [each for each in names if Path(each).suffix.lower() == _CAMPAIGN]
     if any(Path(each).suffix.lower() in LOGS for each in names):
@@ -154,7 +158,7 @@ def unknown_subcommand(verb: str, name: str, others: Sequence[str], known: Seque
 
 def unknown_option(name: str, context: Any, commands: Commands) -> str:
     """Say what to type instead of an option that a command does not have."""
-    verb = _path(context)
+    verb = path_of(context)
     rest = sys.argv[1 + len(verb) :]
     at = next((i for i, each in enumerate(rest) if each.partition("=")[0].startswith(name)), len(rest))
     token, _, value = (rest[at] if at < len(rest) else name).partition("=")
@@ -163,7 +167,7 @@ def unknown_option(name: str, context: Any, commands: Commands) -> str:
     after = at + 1
     if not value and after < len(rest) and not rest[after].startswith("-"):
         value, after = rest[after], after + 1
-    word, options = _word(token), list(_options(context.command))
+    word, options = _word(token), list(options_of(context.command))
     said = f"hersey {' '.join(verb)} has no option {token}"
     argument = _argument(word, context.command)
     if argument:
@@ -171,9 +175,9 @@ def unknown_option(name: str, context: Any, commands: Commands) -> str:
         typed = [file, *others] if argument in _FIRST or word in _FIRST else [*others, file]
         return f"{said}: the file is an argument. Type: {retyped(*verb, *typed)}"
     near = _near(word, options, value)
-    having = [each for each in commands.names if word in _options(commands.load(each))]
+    having = [each for each in commands.names if word in options_of(commands.load(each))]
     if having and not near:
-        takes_value = _options(commands.load(having[0]))[word]
+        takes_value = options_of(commands.load(having[0]))[word]
         omitted = shlex.join([token, value] if takes_value and value else [token])
         listed = ", ".join(f"hersey {each}" for each in having[:_MOST])
         return f"{said}. Omit {omitted}. It is an option of {listed}"
@@ -196,8 +200,8 @@ def _before_the_command(token: str, rest: Sequence[str], verbs: Sequence[str]) -
     return f"hersey has no option {token}. {to_type}"
 
 
-def _path(context: Any) -> list[str]:
-    """The names of the command and its subcommand."""
+def path_of(context: Any) -> list[str]:
+    """Return the names of the command and its subcommand."""
     names: list[str] = []
     while context.parent is not None:
         names.insert(0, context.info_name)
@@ -214,8 +218,8 @@ def _word(token: str) -> str:
     return "-".join(parts)
 
 
-def _options(command: Any) -> dict[str, bool]:
-    """The long names of the options of a command, without dashes, and whether a value follows each."""
+def options_of(command: Any) -> dict[str, bool]:
+    """Return the long names of the options of a command, without dashes, and whether a value follows each."""
     return {
         name.removeprefix("--"): not getattr(each, "is_flag", False)
         for each in command.params
@@ -288,7 +292,13 @@ def missing(parameter: Any, context: Any) -> str:
         if parameter.opts[0].startswith("-")
         else parameter.metavar
     )
-    return f"{retyped(*_path(context))} needs {name}: {_help(parameter)}"
+    said = f"{retyped(*path_of(context))} needs {name}: {_help(parameter)}"
+    words = sys.argv[1:]
+    tomls = [each for each in words if Path(each).suffix.lower() == _MACHINE]
+    if "--machine" in parameter.opts and len(tomls) == 1:
+        rest = [each for each in words if each not in tomls]
+        return f"{said}. Type: {retyped(*rest, '--machine', *tomls)}"
+    return said
 
 
 def misused(name: str, commands: Commands) -> str:

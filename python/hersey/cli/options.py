@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence, Set
+from collections.abc import Iterator, Sequence, Set
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -11,8 +12,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 from hersey.cli.groups import argument, option
 from hersey.cli.mistyped import retyped
 from hersey.cli.progress import bar, working
-from hersey.cli.quantities import amounts_in
+from hersey.cli.quantities import amount_of, amounts_in
 from hersey.cli.recipe_file import ROLES, read_recipe
+from hersey.cli.several import for_this_log_only
 from hersey.cli.terminal import note
 from hersey.errors import ChannelError, HerseyError, ParameterError, followed_by
 
@@ -71,7 +73,7 @@ def reduced(words: str, *flags: str, **more: Any) -> Any:
     return option(words, *flags, panel=REDUCED, **more)
 
 
-_TORQUE_UNIT = "Unit of torque; may have a factor, e.g. '9.84 mN*m / 100' for %."
+_TORQUE_UNIT = "Unit of torque; of a signal e.g. '35 mN*m/A', or '9.84 mN*m / 100' for %."
 _RADIUS = "Radius for a log of friction force and sliding speed: '25 mm' or its column."
 _LOAD = "Normal load: '50 N', '10 N, 20 N' for two runs, or its column."
 _MAPPING = "File with roles, units and corrections.  [default: hersey.toml beside the log]"
@@ -135,7 +137,6 @@ class Reading:
     def recipe(self, logs: Sequence[Path] = ()) -> Recipe:
         """Return how these logs become dwells."""
         from hersey.damping.recipe import Recipe
-        from hersey.units import parse
 
         amounts = {role: amounts_in(getattr(self, role)) for role in ("load", "radius")}
         names = {role: name for role in ROLES if (name := getattr(self, role)) and not amounts.get(role)}
@@ -143,7 +144,7 @@ class Reading:
         signs = {role: sign for role in ("torque", "speed") if (sign := getattr(self, f"{role}_sign")) != 1}
         given = {name: getattr(self, name) or None for name in ("mapping", "every", "no_load")}
         same: dict[str, Any] = {name: getattr(self, name) for name in _AS_GIVEN}
-        dwell = parse("time", self.min_dwell)
+        dwell = amount_of("time", self.min_dwell, "--min-dwell")
         own: dict[str, Any] = {"channels": names, "units": units, "signs": signs, "min_dwell": dwell}
         return Recipe(logs=tuple(logs), **(own | amounts | given | same))
 
@@ -198,11 +199,20 @@ class Reading:
         return points
 
     def points_of(self, paths: list[Path], machine: Machine | None = None) -> SteadyPoints:
-        """Read one of several logs and reduce it; errors begin with its name."""
+        """Read one of several logs and reduce it."""
+        with self.one_of_several(paths):
+            return self.points(paths, self.log(paths, machine), machine)
+
+    @contextmanager
+    def one_of_several(self, paths: list[Path]) -> Iterator[None]:
+        """Let errors begin with the name of the log, and end in how a setting is stated for it alone."""
         from hersey.damping.recipe import naming_logs
 
-        with naming_logs(paths):
-            return self.points(paths, self.log(paths, machine), machine)
+        try:
+            with naming_logs(paths):
+                yield
+        except HerseyError as error:
+            raise for_this_log_only(error, paths[0], self.recipe(paths)) from None
 
     def surface_and_posterior(
         self,

@@ -12,7 +12,7 @@ from hersey.cli.outputs import may_write_table_and_figure
 from hersey.cli.printing import Printing, write_course
 from hersey.cli.progress import bar, working
 from hersey.cli.quantities import target_of, temperature_of
-from hersey.cli.warming import beyond_the_log, heat_of
+from hersey.cli.warming import beyond_the_log, heat_of, refuse_below_zero, start_of
 from hersey.errors import ParameterError, sentence
 
 if TYPE_CHECKING:
@@ -113,6 +113,9 @@ def plan(
     wanted = target_of(target, machine)
     temperature = film.temperature(machine, machine_file, reading.max_memory)
     surface, drawn_of_log = reading.surface_and_posterior(logs, fit_file, machine, trace, seed=proof.seed)
+    if temperature is not None and not isinstance(temperature, Schedule):
+        given = start_of(machine_file, film.start) if film.heat else "--at"
+        refuse_below_zero(surface, temperature, given, fit_file)
     if drawn_of_log is None:
         planned = _of_a_fit(surface, machine, wanted, temperature, proof)
     else:

@@ -74,6 +74,14 @@ class Printing(Quiet):
         if self.verbose:
             self.text(*lines)
 
+    def conclusion(self, lines: Callable[[], list[str]], whole: str, *found: Warning) -> None:
+        """Print lines and the warnings that need attention, or with --verbose a whole that has both."""
+        if self.verbose:
+            self.text(whole)
+        else:
+            self.text(*lines())
+            self.warnings(*found)
+
     def warnings(self, *found: Warning) -> None:
         """Print the warnings that need attention, the gravest first; with --verbose the notes too."""
         self.text(*(f"- {each.sentence}" for each in self.chosen(found)))
@@ -105,11 +113,7 @@ def write_course(
         if table.path is not None:
             table.write(found.table())
     if not printing.json(found):
-        if printing.verbose:  # it has the warnings too
-            printing.text(found.summary())
-        else:
-            printing.text(*lines())
-            printing.warnings(*found.warnings)
+        printing.conclusion(lines, found.summary(), *found.warnings)
         if found.found:
             printing.files(table.path, figure.path)
     if not found.found:

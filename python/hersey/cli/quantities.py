@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from hersey.errors import ParameterError, WrongKindError
+from hersey.errors import ParameterError, UnitError, WrongKindError
 
 if TYPE_CHECKING:
     from hersey.machine.machine import Machine
@@ -37,16 +39,16 @@ def range_of(kind: str, flag: str, text: str) -> tuple[float, float] | None:
     if match is None:
         raise ParameterError(f"{flag} '{text}' is not a range: write e.g. '2 to 200 rpm' or '60 to 200 degC'")
     low, high, unit = match.groups()
-    return parse(kind, f"{low} {unit}"), parse(kind, f"{high} {unit}")
+    with _of(flag):
+        return parse(kind, f"{low} {unit}"), parse(kind, f"{high} {unit}")
 
 
 def temperature_of(text: str, flag: str = "--at") -> float | None:
     """Return the temperature that ``--at``, or another flag, names, K; None if it is not given."""
-    from hersey.units import parse
-
     if not text:
         return None
-    return _positive(parse("temperature", text), f"{flag} is {text}: it must be above absolute zero")
+    kelvin = amount_of("temperature", text, flag)
+    return _positive(kelvin, f"{flag} is {text}: it must be above absolute zero")
 
 
 def target_of(text: str, machine: Machine, flag: str = "--target") -> float:
@@ -55,18 +57,34 @@ def target_of(text: str, machine: Machine, flag: str = "--target") -> float:
 
     if not text:
         raise ParameterError("the target speed is missing: add --target '60 mm/s'")
-    try:
-        target = parse("belt speed", text)
-    except WrongKindError:
-        target = parse("speed", text) * machine.roll_radius
+    with _of(flag):
+        try:
+            target = parse("belt speed", text)
+        except WrongKindError:
+            target = parse("speed", text) * machine.roll_radius
     return _positive(target, f"{flag} is {text}: it must be greater than 0")
 
 
 def belt_speed_of(text: str, flag: str, kind: str = "belt speed") -> float:
     """Return a speed of the belt, or of another kind."""
+    return _positive(amount_of(kind, text, flag), f"{flag} is {text}: it must be greater than 0")
+
+
+def amount_of(kind: str, text: str, flag: str) -> float:
+    """Return an amount of a kind that an option names, SI."""
     from hersey.units import parse
 
-    return _positive(parse(kind, text), f"{flag} is {text}: it must be greater than 0")
+    with _of(flag):
+        return parse(kind, text)
+
+
+@contextmanager
+def _of(flag: str) -> Iterator[None]:
+    """Begin what is wrong with a value with its option."""
+    try:
+        yield
+    except UnitError as error:
+        raise error.within(flag) from None
 
 
 def _positive(value: float, otherwise: str) -> float:

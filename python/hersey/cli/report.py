@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -110,12 +111,15 @@ def _studied(
     from hersey.study import study
 
     machine = None if machine_file is None else read_machine(machine_file)
-    log = reading.log(logs, machine)
+    alone = reading.one_of_several if against else lambda _: nullcontext()
+    with alone(logs):
+        log = reading.log(logs, machine)
     other = reading.points_of(against, machine) if against else None
     traces = [reading.trace(path, machine) for path in trace or []]
     with steps() as step:
         step("finding the dwells")
-        points = reading.points(logs, log, machine)
+        with alone(logs):
+            points = reading.points(logs, log, machine)
         return study(
             points,
             machine,

@@ -12,8 +12,8 @@ from hersey.cli.options import FitFile, Force, Start, drawn, finished_fit
 from hersey.cli.outputs import may_draw, may_write
 from hersey.cli.printing import Printing
 from hersey.cli.progress import working
-from hersey.cli.quantities import target_of
-from hersey.cli.warming import beyond_the_log, heat_of, warming_drag
+from hersey.cli.quantities import amount_of, target_of
+from hersey.cli.warming import beyond_the_log, heat_of, refuse_below_zero, start_of, warming_drag
 from hersey.errors import ParameterError
 
 if TYPE_CHECKING:
@@ -83,13 +83,18 @@ _BESIDE = ("energy", "check", "motor", "warming")
 
 
 class _Motion(NamedTuple):
-    """A simulated motion, what it settles to, the other fields of the JSON, and the text to print."""
+    """A simulated motion, what it settles to, the other fields of the JSON, and the text to print.
+
+    ``whole`` says all of what it settles to and of the motion; ``after`` is said of both.
+    """
 
     run: Trajectory | None
     cycle: StickSlipCycle
     beside: dict[str, Any]
-    lines: list[str]
-    details: list[str]
+    before: list[str]
+    settled: list[str]
+    whole: str
+    after: list[str]
 
 
 @grouped
@@ -121,8 +126,9 @@ def simulate(
         drawing.draw(found.run)
     if printing.json(found.cycle, **dict.fromkeys(_BESIDE) | found.beside):
         return
-    printing.text(*found.lines)
-    printing.details("", *found.details)
+    printing.text(*found.before)
+    printing.conclusion(lambda: found.settled, found.whole)
+    printing.text(*found.after)
     printing.files(csv, figure)
 
 
@@ -149,8 +155,9 @@ def _settled(belt: Belt, drive: _Drive, written: bool) -> _Motion:
     before = [] if course is None else [f"After {numbers.shown(time, 'time')} of the profile:"]
     beside = {} if run is None else {"energy": run.energy, "check": run.check, "motor": motor}
     lines = [] if run is None else _of_run(run, motor, time, numbers)
-    details = [cycle.summary(), *([] if run is None else [run.summary()])]
-    return _Motion(run, cycle, beside, [*before, *_cycle(cycle, numbers), *lines, *numbers.words], details)
+    whole = "\n".join([cycle.summary(), *([] if run is None else [run.summary()])])
+    after = [*lines, *numbers.words]
+    return _Motion(run, cycle, beside, before, _cycle(cycle, numbers), whole, after)
 
 
 def _cycle(cycle: StickSlipCycle, numbers: Amounts) -> list[str]:
@@ -219,7 +226,7 @@ def _warmed(belt: Belt, drive: _Drive, heat: _Heat) -> _Motion:
     from hersey.machine.machine import read_machine
     from hersey.motion.simulation import simulate as moved
     from hersey.motion.simulation import stick_slip
-    from hersey.units import celsius, parse
+    from hersey.units import celsius
 
     if belt.machine is None or heat.fit_file is None:
         raise ParameterError(
@@ -234,8 +241,9 @@ def _warmed(belt: Belt, drive: _Drive, heat: _Heat) -> _Motion:
     machine = read_machine(belt.machine)
     balance = heat_of(machine, belt.machine, heat.begin)
     speed = target_of(drive.drive_speed, machine, "--drive-speed")
-    time = parse("time", drive.duration or _WARMING)
+    time = amount_of("time", drive.duration or _WARMING, "--duration")
     surface = finished_fit(heat.fit_file, machine)
+    refuse_below_zero(surface, balance, start_of(belt.machine, heat.begin), heat.fit_file)
     train, drag = machine.train, warming_drag(surface, machine)
     asked: dict[str, Any] = {"duration": time, "start": drive.start, "check": drive.check}
     with working("simulating"):
@@ -249,6 +257,7 @@ def _warmed(belt: Belt, drive: _Drive, heat: _Heat) -> _Motion:
         f"In {three(time, 's')} the film heats from {celsius(film[0]):.0f} to {celsius(last):.0f} °C. Then:"
     )
     beyond = [f"- {each.sentence}" for each in beyond_the_log(surface, film)]
-    lines = [warmed, *_cycle(cycle, numbers), *_of_run(run, None, time, numbers), *beyond]
+    after = [*_of_run(run, None, time, numbers), *beyond]
     beside = {"energy": run.energy, "check": run.check, "warming": run}
-    return _Motion(run, cycle, beside, lines, [cycle.summary(), run.summary()])
+    whole = "\n".join([cycle.summary(), run.summary()])
+    return _Motion(run, cycle, beside, [warmed], _cycle(cycle, numbers), whole, after)

@@ -19,6 +19,15 @@ if TYPE_CHECKING:
     from hersey.schema.warning import Warning
 
 
+#: The option that names the temperature at the start.
+FROM = "--from"
+
+
+def start_of(file: Path, start: str) -> str:
+    """Return where the temperature at the start comes from."""
+    return FROM if start else f"{file.name}: [heat]: the temperature at the start"
+
+
 def heat_of(machine: Machine, file: Path, start: str) -> HeatBalance:
     """Return the heat balance of a machine, starting at the temperature of ``--from`` or of its file."""
     if machine.heat is None:
@@ -26,10 +35,29 @@ def heat_of(machine: Machine, file: Path, start: str) -> HeatBalance:
             f"{file.name} has no heat balance: add [heat] with film_capacity, roll_capacity, exchange, "
             "surroundings and heater_power"
         )
-    kelvin = temperature_of(start, "--from")
+    kelvin = temperature_of(start, FROM)
     if kelvin is None:
         return machine.heat
     return replace(machine.heat, film_temperature=kelvin, roll_temperature=kelvin)
+
+
+def refuse_below_zero(
+    surface: DampingSurface, start: float | HeatBalance, given: str, fit_file: Path | None
+) -> None:
+    """Refuse a temperature at the start at which the law of temperature of a fit has no value.
+
+    ``given`` is where it comes from.
+    """
+    from hersey.units import celsius
+
+    coldest = start if isinstance(start, float) else min(start.film_temperature, start.roll_temperature)
+    if surface.b is None or coldest > surface.temperature_zero:
+        return
+    how = "--temperature-scale K"
+    raise ParameterError(
+        f"{given} is {celsius(coldest):.4g} degC, but a fit B = a T^b in degC holds only above 0 degC. "
+        + (f"Add {how}" if fit_file is None else f"Save the fit again, with {how} added to hersey fit")
+    )
 
 
 def warming_drag(surface: DampingSurface, machine: Machine) -> Drag:

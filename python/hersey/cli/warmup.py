@@ -11,8 +11,8 @@ from hersey.cli.options import FitFile, Force, Reading, SomeLogs, drawn
 from hersey.cli.outputs import may_write_table_and_figure
 from hersey.cli.printing import Printing, write_course
 from hersey.cli.progress import working
-from hersey.cli.quantities import share, target_of
-from hersey.cli.warming import beyond_the_log, heat_of, warming_drag
+from hersey.cli.quantities import amount_of, share, target_of
+from hersey.cli.warming import beyond_the_log, heat_of, refuse_below_zero, start_of, warming_drag
 from hersey.errors import ParameterError
 
 if TYPE_CHECKING:
@@ -39,12 +39,10 @@ class _Course:
 
     def sought(self, machine: Machine) -> dict[str, float]:
         """Return target, margin and longest time in SI."""
-        from hersey.units import parse
-
         return {
             "target_speed": target_of(self.target, machine),
             "margin": share("--margin", self.margin),
-            "longest": parse("time", self.longest),
+            "longest": amount_of("time", self.longest, "--longest"),
         }
 
 
@@ -79,6 +77,7 @@ def warmup(
     sought, heat = course.sought(machine), heat_of(machine, machine_file, course.start)
     weakest, limits = _limits(machine, machine_file.name)
     surface = reading.surface(logs, fit_file, machine)
+    refuse_below_zero(surface, heat, start_of(machine_file, course.start), fit_file)
     with working("warming up"):
         warm = warm_up(machine.train, warming_drag(surface, machine), heat, **sought, **limits)
     limit = Warning("force limit", "the limit is that of the {limit}", limit=weakest)

@@ -19,7 +19,7 @@ from pydantic import ValidationInfo
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.no_load import no_load_torque
 from hersey.damping.no_load_torque import NoLoadTorque
-from hersey.errors import TARE, HerseyError, ParameterError, Setting
+from hersey.errors import SIGN, TARE, HerseyError, InsufficientDataError, ParameterError, Setting, turned
 from hersey.files.toml import Quantity, Table, quoted, read_tables
 from hersey.log import TorqueLog
 from hersey.log.mapping import LogMapping, mapping_of, read_with_mapping
@@ -176,7 +176,13 @@ class Recipe:
             If there is no dwell, or a setting is wrong or given twice.
         """
         rest = self.rest(None if drive is None else drive.rest)
-        points = replace(self._dwells(log), recipe=self)
+        try:
+            points = replace(self._dwells(log), recipe=self)
+        except InsufficientDataError as error:
+            flipped = [turned(role) for role, sign in self.signs.items() if sign == -1]
+            if error.setting == SIGN and len(flipped) == 1:
+                error.remedy = f"omit {flipped[0]}"
+            raise
         return points if rest is None else points.without(rest)
 
     def points(self, drive: KnownDrive | None = None, *, progress: Progress | None = None) -> SteadyPoints:

@@ -171,11 +171,28 @@ def open_file(path: Path) -> Iterator[BinaryIO]:
 
 def _near(path: Path) -> str:
     """The file beside a missing one that was probably meant, or nothing."""
+    if slashed := _slashed(path):
+        return f". Write / between folders: '{printable(slashed)}'"
     try:
         near = meant(path.name, [each.name for each in path.parent.iterdir() if each.is_file()])
     except (OSError, ValueError):
         return ""
     return f". Did you mean '{printable(str(path.with_name(near)))}'?" if near else ""
+
+
+def _slashed(path: Path) -> str:
+    r"""The file that was meant by a name with ``\`` between folders, which a shell may have removed."""
+    name = str(path)
+    if "\\" in name:
+        return slashed if os.path.isfile(slashed := name.replace("\\", "/")) else ""  # noqa: PTH113
+    try:
+        folders = [
+            each for each in path.parent.iterdir() if path.name.startswith(each.name) and each.is_dir()
+        ]
+        inside = [each / path.name.removeprefix(each.name) for each in folders]
+        return next((str(file) if file.is_file() else _slashed(file) for file in inside), "")
+    except (OSError, ValueError):
+        return ""
 
 
 def _one_in(folder: Path) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
@@ -30,6 +31,8 @@ from hersey.units import takes_si
 if TYPE_CHECKING:
     import polars as pl
 
+#: Name of a column without one.
+_NUMBERED = re.compile(r"#[0-9]+")
 #: More files than this are shown without the tables of their channels.
 _TABLES = 3
 
@@ -132,7 +135,10 @@ class Inspection(Result):
         bare = [
             file.name
             for file in self.files
-            if file.channels and "torque" in file.without and file.lacking["torque"].absent
+            if file.channels
+            and "torque" in file.without
+            and file.lacking["torque"].absent
+            and not all(_NUMBERED.fullmatch(channel.name) for channel in file.channels)
         ]
         if not bare:
             return self.problem

@@ -19,6 +19,7 @@ from hersey.log.channels import (
     find_channel,
     is_dead,
     no_channel,
+    refuse_two_clocks,
     refuse_two_roles,
     role_conversion,
 )
@@ -80,6 +81,7 @@ class Assembly:
                 self.chosen[role] = self._channel(role)
         torque = self.chosen["torque"][0]
         near = tuple(c for c in self.columns if c.group == torque.group)
+        refuse_two_clocks(near, self.stated, self.source.name)
         self.chosen |= beside(near, self.choices, self.stated, self.chosen, self.source.name)
         self._unused = unused(near, self.chosen, self.stated)
         self.parts = {role: self._part(role) for role in self.chosen}

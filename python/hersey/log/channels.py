@@ -4,13 +4,23 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from hersey.arrays import FloatArray
-from hersey.errors import ISOTHERMAL, ChannelError, Setting, UnitError, WrongKindError, meant, printable
+from hersey.errors import (
+    ISOTHERMAL,
+    ChannelError,
+    ParameterError,
+    Setting,
+    UnitError,
+    WrongKindError,
+    meant,
+    printable,
+)
+from hersey.log.signals import apart, is_signal, per, says_how_much, way_out
 from hersey.log.text.column import Column
 from hersey.schema.warning import Warning
 from hersey.units import KINDS, Conversion, conversion, nearest_unit
@@ -49,8 +59,6 @@ _FRICTION = {
 }
 #: What has the unit of a speed of rotation and is none.
 _OSCILLATION = re.compile(r"frequen[cz]|oscillat|oszillat", re.IGNORECASE)
-#: What a current stands for in a motor of 35 mN m/A, as an example.
-_AMPERES = {"A": "35 mN*m", "mA": "0.035 mN*m"}
 #: As many numbers, all the same, make a dead channel.
 _TELLING = 20
 #: A clock of a part of a run, beside which that of the whole run counts.
@@ -171,17 +179,19 @@ def constant_channel(column: Column) -> Warning:
 def role_conversion(role: str, unit: str) -> tuple[str, Conversion]:
     """Return the kind of what a column of a role holds, and its conversion to SI.
 
+    ``unit`` may be that of one of a signal, as ``0.2 N*m/A``.
+
     Raises
     ------
     UnitError
         If the unit is unknown, or of no kind that the role can have.
     """
-    text = "1" if unit in ("-", "\u2013") else unit
+    text = "1" if unit in ("-", "\u2013") else apart(unit)[0]
     for kind in ROLE_KINDS[role]:
         if kind == "friction coefficient" and text != "1":  # % of a torque is none
             continue
         try:
-            return kind, conversion(kind, text)
+            return kind, replace(conversion(kind, text), unit=unit)
         except WrongKindError:
             continue
     return ROLE_KINDS[role][0], conversion(ROLE_KINDS[role][0], unit)
@@ -193,10 +203,10 @@ def no_channel(role: str, columns: tuple[Column, ...], file: str) -> ChannelErro
     way_out = f"name it with {channel.to()}"
     if role == "torque" and any(is_of_kind("force", c.unit) for c in columns):
         way_out += f" (or a friction force, with {Setting('radius').to()} for the radius at which it acts)"
-    elif role == "torque" and (current := next((c for c in columns if c.unit in _AMPERES), None)):
+    elif role == "torque" and (current := next((c for c in columns if _is_current(c)), None)):
         way_out = (
             f"if '{current.path}' is the motor current, use {channel.to(current.path)} and give the "
-            f"torque per {current.unit} as {Setting(role, 'unit').to(_AMPERES[current.unit])}"
+            f"torque per A, e.g. {Setting(role, 'unit').to('35 mN*m/A')}"
         )
     elif role == "time":
         way_out += f", or give the time between rows with {EVERY.to('2 ms', python='0.002')}"
@@ -205,6 +215,10 @@ def no_channel(role: str, columns: tuple[Column, ...], file: str) -> ChannelErro
         way_out += f", or use {ISOTHERMAL.to()} to exclude temperature"
     said = f"{file}: no {role} column found. Columns: {_listed(columns)}"
     return ChannelError(said, remedy=way_out, setting=channel)
+
+
+def _is_current(column: Column) -> bool:
+    return is_signal(column.unit) and column.unit.endswith("A")
 
 
 def refuse_two_roles(role: str, column: Column, chosen: Mapping[str, tuple[Column, Any]], file: str) -> None:
@@ -221,6 +235,22 @@ def refuse_two_roles(role: str, column: Column, chosen: Mapping[str, tuple[Colum
                 f"{file}: column '{column}' cannot be both {other} and {role}. Name the {role} column with "
                 f"{Setting(role, 'channel').to()}"
             )
+
+
+def refuse_two_clocks(columns: tuple[Column, ...], stated: Stated, file: str) -> None:
+    """Raise if the time between rows is stated beside a column of the time.
+
+    Raises
+    ------
+    ParameterError
+        It names the column.
+    """
+    clock = next((c for c in columns if is_called("time", c) and is_of_kind("time", c.unit)), None)
+    if stated.every is not None and clock is not None:
+        raise ParameterError(
+            f"{file}: column '{clock}' is a clock, but {EVERY.to()} gives the time between rows as well",
+            remedy=f"omit {EVERY.to()}, or rename the column if its times are wrong",
+        )
 
 
 def called(name: str, columns: tuple[Column, ...]) -> list[Column]:
@@ -352,13 +382,33 @@ def _with_unit(
             setting=Setting(role, "unit"),
         )
     try:
-        return column, role_conversion(role, unit)[1]
+        line = role_conversion(role, unit)[1]
     except UnitError as error:
         swapped = _swapped(role, column, unit, columns)
         raise UnitError(
             f"{file}: column '{column.path}': {error.reason}{swapped[0]}",
             columns=(column.index,),
-            remedy=swapped[1] or _right_unit(role, unit),
+            remedy=swapped[1] or _right_unit(role, column.unit if is_signal(column.unit) else unit),
+            setting=Setting(role, "unit"),
+        ) from None
+    return column, replace(line, scale=line.scale * _signal_in(role, column, unit, file))
+
+
+def _signal_in(role: str, column: Column, unit: str, file: str) -> float:
+    """How many of the signal that the unit is for, if it is for any, one in the column is."""
+    try:
+        if is_signal(column.unit) and not says_how_much(unit):
+            raise ValueError(unit)
+        return per(unit, column.unit)
+    except ValueError:
+        raise UnitError(
+            f"{file}: column '{column.path}' is in {column.unit}, but the unit given for it is '{unit}'",
+            columns=(column.index,),
+            remedy=(
+                way_out(role, column.unit)
+                if is_signal(column.unit)
+                else f"omit it, or write the unit of the column as {apart(unit)[1]} in the header"
+            ),
             setting=Setting(role, "unit"),
         ) from None
 
@@ -376,12 +426,9 @@ def _swapped(role: str, column: Column, unit: str, columns: tuple[Column, ...]) 
 def _right_unit(role: str, unit: str) -> str:
     """What to do where a column has a unit that its role cannot have."""
     setting = Setting(role, "unit")
-    if role == "torque" and unit.strip() in ("%", "percent"):
-        return f"use {setting.to('9.84 mN*m / 100')}, with your value of the torque at 100 %"
+    if is_signal(unit) and role != "time":
+        return way_out(role, unit)
     if role == "speed" and unit.strip() in ("Hz", "1/s"):
         return f"if it means revolutions, use {setting.to('rev/s')}"
-    if role == "torque" and unit in _AMPERES:
-        example = setting.to(_AMPERES[unit])
-        return f"if it is the motor current, give the torque per {unit}, e.g. {example}"
     kind = ROLE_KINDS[role][0]
     return f"use {setting.to(nearest_unit(kind, unit) or KINDS[kind][1])}, or correct the header"

@@ -82,7 +82,8 @@ class LogMapping(_Roles):
         """Unit by role, where one is stated, as `hersey.read` takes it; amperes stand in the place of N m."""
         stated = {role: unit for role in _ALL_ROLES if (unit := getattr(self, role).unit)}
         if self.torque.motor_constant is not None:
-            stated["torque"] = f"{_ampere(self.torque.unit):.12g} N*m"
+            unit = self.torque.unit
+            stated["torque"] = f"{_ampere(unit):.12g} N*m" if unit else "1 N*m/A"
         return stated
 
     @property

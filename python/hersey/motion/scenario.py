@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass as plain_dataclass
 from dataclasses import field, replace
@@ -13,7 +14,7 @@ from pydantic import StrictBool, ValidationInfo
 from pydantic.dataclasses import dataclass
 
 from hersey.arrays import FloatArray
-from hersey.errors import ParameterError
+from hersey.errors import ParameterError, Setting, printable
 from hersey.files.toml import Quantity, Table, naming, read_tables, read_toml
 from hersey.motion.belt import Drivetrain
 from hersey.motion.drag import Drag
@@ -99,6 +100,14 @@ class Scenario:
         return Drivetrain(first["stiffness"], first["mass"], grip=self.grip), drag, varied
 
 
+#: A range as it is written in words, and the longest text that is looked at.
+_NUMBER = r"[-+]?[0-9]+(?:\.[0-9]+)?(?:[eE][-+]?[0-9]+)?"
+_RANGE = re.compile(
+    rf"\s*({_NUMBER})(?:\s*(\S*?)\s+to\s+|\s*(?:\.\.\.?|[-\u2013:])\s*)({_NUMBER})\s*(.*?)\s*"
+)
+_LONGEST = 100
+
+
 class _Values(Quantity):
     """A value, a list of them, or a table ``{from, to, count}``."""
 
@@ -108,6 +117,8 @@ class _Values(Quantity):
             return self._between(given, info)
         if given == []:
             raise ParameterError("is empty")
+        if isinstance(given, str) and (meant := _several(given)):
+            raise ParameterError(f"is '{given}', not one value. Write {meant}")
         many = given if isinstance(given, list) else [given]
         return np.array([super(_Values, self).checked(value, info) for value in many])
 
@@ -130,6 +141,25 @@ class _Values(Quantity):
             raise ParameterError("needs two values of the same sign, neither of them zero, for log spacing")
         spaced = np.geomspace if spacing == "log" else np.linspace
         return np.asarray(spaced(ends[0], ends[1], count), dtype=float)
+
+
+def _several(text: str) -> str:
+    """How a range or a list in one text is written, or nothing."""
+    if len(text) > _LONGEST:
+        return ""
+    if match := _RANGE.fullmatch(text):
+        low, first, high, unit = match.groups()
+        ends = [f"{low} {first or unit}".strip(), f"{high} {unit}".strip()]
+        low, high = ends if not unit else (f'"{each}"' for each in ends)
+        return f"{{ from = {low}, to = {high}, count = 10 }}"
+    parts = [part.strip() for part in re.split(r"[,;]\s+", text)]
+    if len(parts) < 2:
+        return ""
+    unit = parts[-1].lstrip("+-.0123456789eE").strip()
+    quote = '"' if unit else ""
+    units = ["" if re.search(r"[A-Za-z]", part) else f" {unit}" for part in parts[:-1]] + [""]
+    listed = [f"{quote}{part}{own}".rstrip() + quote for part, own in zip(parts, units, strict=True)]
+    return f"[{', '.join(listed)}]"
 
 
 _Force = Annotated[Any, _Values("force")]
@@ -221,7 +251,14 @@ def read_scenario(
         Each names the file and the key.
     """
     path = Path(path)
-    plain = _is_plain(read_toml(path).get("options"))
+    document = read_toml(path)
+    if "drivetrain" in document:
+        raise ParameterError(
+            f"{path.name} is a machine file ([drivetrain]), not a scenario",
+            remedy="name a scenario, e.g. the scenario.toml that 'hersey examples' writes, and give the "
+            f"machine file as {Setting('machine').to(printable(str(path)))}",
+        )
+    plain = _is_plain(document.get("options"))
     if stated is not None and plain:
         raise ParameterError(
             f"{path.name}: {stated_in} is in SI. Write values with their units, and delete units = "

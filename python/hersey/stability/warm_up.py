@@ -204,9 +204,10 @@ class _Rule:
 
     def __init__(self, train: Drivetrain, drag: AnyDrag, target: float, limit: float) -> None:
         self.train, self.drag, self.target, self.limit = train, drag, target, limit
-        self._transition = _Between(self._transition_at, _STEP)
-        self._allowed = _Between(self._allowed_at, _STEP)
-        self._fold = _Between(self._fold_at, _FOLD_STEP)
+        zero = drag.temperature_zero
+        self._transition = _Between(self._transition_at, _STEP, zero)
+        self._allowed = _Between(self._allowed_at, _STEP, zero)
+        self._fold = _Between(self._fold_at, _FOLD_STEP, zero)
 
     def allowed(self, film: FloatArray) -> FloatArray:
         """The target, or the greatest speed below it that keeps the limit; 0 if none slides so."""
@@ -241,14 +242,19 @@ class _Rule:
 
 
 class _Between:
-    """A function of temperature, computed at whole steps where it is asked for, straight lines between."""
+    """A function of temperature, computed at whole steps where it is asked for, straight lines between.
 
-    def __init__(self, function: Callable[[float], float], step: float) -> None:
-        self._function, self._step = function, step
+    It has no value at ``zero`` and below, so the first step above it has no line.
+    """
+
+    def __init__(self, function: Callable[[float], float], step: float, zero: float) -> None:
+        self._function, self._step, self._zero = function, step, zero
         self._known: dict[int, float] = {}
 
     def __call__(self, kelvin: float) -> float:
         below = math.floor(kelvin / self._step)
+        if below * self._step <= self._zero:
+            return self._function(kelvin)
         low, high = self._at(below), self._at(below + 1)
         share = kelvin / self._step - below
         return low + share * (high - low) if share > 0 and math.isfinite(low + high) else low

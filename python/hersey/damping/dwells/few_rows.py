@@ -10,17 +10,21 @@ from hersey.log.torque_log import STANDING, Run, TorqueLog
 
 #: Rows of a held speed at the least, and how many such speeds make a log of them.
 _FEWEST_ROWS, _FEWEST = 3, 3
+#: Median change from row to row, as share of the mean one, below which the speed changes in steps.
+_FEW = 0.2
 #: A speed is held if it lasts, s.
-_LASTS = 5 * BLOCK_DURATION
+LASTS = 5 * BLOCK_DURATION
 
 
 def held_for_few_rows(log: TorqueLog) -> str:
     """Return that most speeds of a log are held for too few rows, and what to do; empty if they are not."""
     interval = float(np.median([run.sampling_interval for run in log.runs]))
-    if interval * MIN_SAMPLES <= _LASTS:
+    if interval * MIN_SAMPLES <= LASTS:
         return ""
-    lengths = [length for run in log.runs for length in _held(run) if length * interval >= _LASTS]
+    lengths = [length for run in log.runs for length in rows_held(run) if length * interval >= LASTS]
     few = [length for length in lengths if length < MIN_SAMPLES]
+    if not any(map(changes_in_steps, log.runs)):
+        return ""
     if len(few) < _FEWEST or 2 * len(few) < len(lengths):
         return ""
     typical = float(np.median(few))
@@ -32,8 +36,14 @@ def held_for_few_rows(log: TorqueLog) -> str:
     )
 
 
-def _held(run: Run) -> list[int]:
-    """How many rows each speed is held, for those that are held."""
+def changes_in_steps(run: Run) -> bool:
+    """Return whether the speed of a run changes at a few places, and not all the time."""
+    changes = np.abs(np.diff(run.speed))
+    return float(np.median(changes)) < _FEW * float(np.mean(changes))
+
+
+def rows_held(run: Run) -> list[int]:
+    """Return for how many rows each speed is held, for those that are held."""
     lengths = []
     start = 0
     for row in range(1, run.speed.size + 1):

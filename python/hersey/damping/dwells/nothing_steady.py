@@ -7,12 +7,12 @@ from collections.abc import Callable
 
 import numpy as np
 
-from hersey.damping.dwells.few_rows import held_for_few_rows
+from hersey.damping.dwells.few_rows import LASTS, changes_in_steps, held_for_few_rows, rows_held
 from hersey.damping.dwells.groups import MIN_SAMPLES, distinct_speeds
 from hersey.damping.dwells.judging import Asked
 from hersey.damping.dwells.points import Rejection
-from hersey.damping.dwells.reasons import CAUSES, Reason, remedies, sizes
-from hersey.errors import ROTATION, Setting, turned
+from hersey.damping.dwells.reasons import CAUSES, Reason, opposite_signs, remedies, sizes
+from hersey.errors import ROTATION, InsufficientDataError, Setting, turned
 from hersey.log.channels import EVERY
 from hersey.log.torque_log import NO_CLOCK, Run, TorqueLog
 from hersey.units import rpm
@@ -23,8 +23,6 @@ WORTH_IT = 3
 RUNNING = 0.7
 #: Blocks into which a run is cut to count its ramps, at the most, and share of its span that is a turn.
 _BLOCKS, _TURN = 60, 0.1
-#: Median change from row to row, as share of the mean one, below which the speed changes in steps.
-_FEW = 0.2
 #: Share of the rows of a drive that turns, beyond which it holds a speed throughout.
 _HELD = 0.9
 #: A log shorter than so many dwells has a clock in another unit, or rows less often: so many times, say.
@@ -33,17 +31,21 @@ _TOO_BRIEF, _RARER = 1.0, 50
 
 def nothing_steady(
     log: TorqueLog, rejected: tuple[Rejection, ...], asked: Asked, dwells_with: Callable[[float], int]
-) -> str:
-    """Return the message; ``dwells_with`` counts the dwells that another least duration, s, would give."""
+) -> InsufficientDataError:
+    """Return the error; ``dwells_with`` counts the dwells that another least duration, s, would give."""
     if few := held_for_few_rows(log):
-        return few
+        return InsufficientDataError(few)
     name = log.files[0].name + (f" and {len(log.files) - 1} more" if len(log.files) > 1 else "")
+    held = [r for r in rejected if r.is_dwell]
+    against = [r for r in held if r.why.kind == "opposite signs"]
+    if against and 2 * len(against) >= len(held):
+        return opposite_signs(f"{name}, {len(against)} of {len(held)} dwells")
     reasons: dict[str, list[Reason]] = {}
     for r in rejected:
         reasons.setdefault(r.why.label, []).append(r.why)
     listed = ", ".join(f"{len(alike)} x {_in_short(alike)}" for alike in reasons.values())
     ways = [*(_remedy(alike) for alike in reasons.values()), _way_out(log, rejected, asked, dwells_with)]
-    return f"{name}: no dwell found ({listed}). {'. '.join(filter(None, ways))}"
+    return InsufficientDataError(f"{name}: no dwell found ({listed}). {'. '.join(filter(None, ways))}")
 
 
 def _in_short(alike: list[Reason]) -> str:
@@ -85,10 +87,11 @@ def _way_out(
     short = [(r.why.lasts, r.why.rows) for r in rejected if r.why.kind == "too short"]
     if _runs_up_and_down(log, rejected):
         slow, fast = (rpm(float(f([f(np.abs(run.speed)) for run in log.runs]))) for f in (np.min, np.max))
+        span = f"between {slow:.3g} and {fast:.3g} rpm"
+        if steps := _short_steps(log, asked.min_dwell, span):
+            return steps
         count = sum(map(_ramps, log.runs))
-        kind = "short step" if all(map(_steps, log.runs)) else "ramp"
-        ramps = f"{count} {kind}{'s' if count > 1 else ''} between {slow:.3g} and {fast:.3g} rpm"
-        return f"The speed never holds: {ramps}. {held}"
+        return f"The speed never holds: {count} ramp{'s' if count > 1 else ''} {span}. {held}"
     enough = sorted({math.floor(10 * s - 0.5) / 10 for s, rows in short if rows >= MIN_SAMPLES and s > 0.2})
     for shorter in enough:
         if (count := dwells_with(shorter)) >= WORTH_IT:
@@ -142,10 +145,17 @@ def _trend(run: Run, stretch: Rejection) -> float:
     return float(np.corrcoef(time, speed)[0, 1])
 
 
-def _steps(run: Run) -> bool:
-    """Whether the speed of a run changes at a few places, and not all the time."""
-    changes = np.abs(np.diff(run.speed))
-    return float(np.median(changes)) < _FEW * float(np.mean(changes))
+def _short_steps(log: TorqueLog, min_dwell: float, span: str) -> str:
+    """What to say of steps too short to be found, whatever the least duration; nothing of other logs."""
+    lasting = [rows * run.sampling_interval for run in log.runs for rows in rows_held(run)]
+    if not lasting or not all(map(changes_in_steps, log.runs)):
+        return ""
+    shortest = max(LASTS, MIN_SAMPLES * float(np.median([run.sampling_interval for run in log.runs])))
+    return (
+        f"The speed changes in {len(lasting)} steps {span}, of which the longest lasts {max(lasting):.2g} s. "
+        f"At this rate a dwell must last more than {shortest:.2g} s to be found. "
+        f"Hold each speed for at least {2.0 * max(shortest, 0.75 * min_dwell):.2g} s"
+    )
 
 
 def _ramps(run: Run) -> int:

@@ -10,7 +10,7 @@ import numpy as np
 import polars as pl
 
 from hersey.arrays import FloatArray
-from hersey.damping.dwells.reasons import NO_DWELL, Reason, joined
+from hersey.damping.dwells.reasons import NO_DWELL, Reason, joined, opposite_signs
 from hersey.damping.dwells.relaxation import Relaxation
 from hersey.damping.dwells.resolution import Resolution
 from hersey.damping.no_load_torque import NoLoadTorque
@@ -184,6 +184,8 @@ class SteadyPoints(Result):
                 table, channels=channels, units=units, isothermal=isothermal, radius=radius, load=load
             )
         dwells, rejected = _stated(table, rotation)
+        if not dwells and {r.why.kind for r in rejected if r.is_dwell} == {"opposite signs"}:
+            raise opposite_signs(f"{table.files[0].name}: no row can be used")
         if not dwells:
             raise InsufficientDataError(f"{table.files[0].name}: no row can be used: {rejected[0].reason}")
         kinds = dict.fromkeys(("temperature", "temperature_error", "load"), pl.Float64)

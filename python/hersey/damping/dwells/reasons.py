@@ -7,7 +7,7 @@ from statistics import median
 from typing import Literal
 
 from hersey.damping.dwells.groups import MIN_SAMPLES
-from hersey.errors import turned
+from hersey.errors import SIGN, InsufficientDataError, turned
 
 Kind = Literal[
     "changing", "standing", "other rotation", "too short", "zero torque", "speed not held", "stick-slip",
@@ -126,6 +126,12 @@ class Reason:
         if self.seen_as != "swing" and self.lasts < enough:
             return f"hold each speed for at least {enough:.0f} s to average it out"
         return "find the part that turns at this frequency, and true it"
+
+
+def opposite_signs(where: str) -> InsufficientDataError:
+    """Return the error of torque and speed that have opposite signs."""
+    said = f"{where}: {LABELS['opposite signs']}"
+    return InsufficientDataError(said, remedy=f"flip one with {turned('torque')}", setting=SIGN)
 
 
 def joined(reasons: list[Reason]) -> str:

@@ -52,7 +52,9 @@ def steady_points(
         If no dwell is found, or there is no standing stretch to tare with.
     """
     if tare not in ("none", "standing"):
-        raise ParameterError(f"tare '{tare}' is not known. Use none or standing")
+        known = f'write tare = "{tare}" under [torque] in hersey.toml beside the log'
+        offset = f". To subtract a known offset, {known}" if any(map(str.isdigit, tare)) else ""
+        raise ParameterError(f"tare '{tare}' is not known. Use none or standing{offset}")
     if rotation not in ("both", "forward", "reverse"):
         raise ParameterError(f"rotation '{rotation}' is not known. Use both, forward or reverse")
     if not 0 < min_dwell < float("inf"):
@@ -103,7 +105,7 @@ class _Reduction:
         dwells = [o for o in outcomes if isinstance(o, Dwell)]
         rejected = tuple(o for o in outcomes if isinstance(o, Rejection))
         if not dwells:
-            raise InsufficientDataError(nothing_steady(self.log, rejected, self.asked, self._dwells_with))
+            raise nothing_steady(self.log, rejected, self.asked, self._dwells_with)
         return self._reduced(dwells, rejected, noise)
 
     def _dwells_with(self, min_dwell: float) -> int:

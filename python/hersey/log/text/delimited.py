@@ -14,7 +14,15 @@ from hersey.arrays import BoolArray, FloatArray, IntArray
 from hersey.errors import Setting, UnreadableLogError, printable
 from hersey.files.reading import OpenFile, appended
 from hersey.log.believed import in_si
-from hersey.log.channels import Stated, constant_channel, find_channel, is_dead, no_channel, refuse_two_roles
+from hersey.log.channels import (
+    Stated,
+    constant_channel,
+    find_channel,
+    is_dead,
+    no_channel,
+    refuse_two_clocks,
+    refuse_two_roles,
+)
 from hersey.log.friction import beside, computed, in_rotation, slow_roles, unused
 from hersey.log.impossible import Impossible, Reading, impossible_rows
 from hersey.log.rows import LeftOut, runs_with_records
@@ -179,6 +187,7 @@ def _channels(
     choices, used = wanted.choices, wanted.roles
     if layout.headless and not all(choices[role].name for role in used):
         raise UnreadableLogError(_by_number(layout, [role for role in used if not choices[role].name], used))
+    refuse_two_clocks(layout.named, wanted.stated, name)
     chosen: dict[str, tuple[Column, Conversion]] = {}
     for role in sorted(used, key=lambda r: r != "torque"):  # without it the rest is of no use
         channel = find_channel(role, layout.named, choices[role], name, dead)

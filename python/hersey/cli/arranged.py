@@ -1,0 +1,125 @@
+"""Files typed in each other's place, or without the option that they need: the whole line to type instead."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+from hersey.cli.mistyped import LOGS, options_of, path_of, retyped
+from hersey.errors import HerseyError
+
+_TOML = ".toml"
+#: Arguments that name a log, and arguments that name a TOML file.
+_OF_LOGS = frozenset(["LOG", "A", "B", "TRACE"])
+_OF_A_MACHINE = "MACHINE"
+#: Tables of a mapping.
+_ROLES = frozenset(["time", "torque", "speed", "temperature", "load", "radius"])
+#: The option for a TOML file of a kind, and what it is.
+_KINDS = {"machine": "a machine file", "recipe": "a recipe", "mapping": "a mapping"}
+
+
+def refuse_disorder(context: Any, words: Sequence[str]) -> None:
+    """Fail with the line to type if files are in the wrong place, or if there are too many.
+
+    ``words`` are what was typed behind the command.
+    """
+    command, verb = context.command, path_of(context)
+    slots = [each.metavar for each in command.params if not each.opts[0].startswith("-")]
+    files, others = _parted(words, command)
+    tomls = [each for each in files if _ends(each, {_TOML})]
+    logs = [each for each in files if _ends(each, LOGS)]
+    if slots and slots[0] == _OF_A_MACHINE and len(files) == len(tomls) + len(logs):
+        wrong = files and (files[0] in logs or (context.args and "log" in options_of(command)))
+        if wrong and len(tomls) <= 1:
+            placed = logs if len(slots) > 1 else [word for log in logs for word in ("--log", log)]
+            machine = tomls[0] if tomls else "machine.toml"
+            which = "The machine file comes first" if files[0] in logs else "A log needs --log"
+            context.fail(f"{which}. Type: {retyped(*verb, machine, *placed, *others)}")
+    elif slots and slots[0] in _OF_LOGS and tomls:
+        context.fail(_without(tomls[0], [each for each in files if each != tomls[0]], others, command, verb))
+    if context.args:
+        context.fail(_superfluous(context.args, files, others, slots, command, verb))
+
+
+def _without(toml: str, files: list[str], others: list[str], command: Any, verb: list[str]) -> str:
+    """What to type instead of a TOML file among the logs."""
+    kind = _kind(toml)
+    if kind not in options_of(command):
+        line = retyped(*verb, *(files or ["LOG"]), *others)
+        return f"{toml} is {_KINDS[kind]}, not a log. Omit it: {line}"
+    flag = f"--{kind}"
+    named = next((i for i, word in enumerate(others) if word.split("=")[0] == flag), -1)
+    if named >= 0:  # whose value is the log, or another file of that kind
+        value = 1 if others[named] == flag else 0
+        files = files or [others[named + value].removeprefix(f"{flag}=")]
+        others = others[:named] + others[named + value + 1 :]
+    files = files or ([] if kind == "recipe" else ["LOG"])
+    return f"{toml} is {_KINDS[kind]}, not a log. Type: {retyped(*verb, *files, flag, toml, *others)}"
+
+
+def _kind(toml: str) -> str:
+    """What a TOML file is, by its tables."""
+    from hersey.files.toml import read_toml
+
+    tables: set[str] = set()
+    with suppress(HerseyError, OSError):
+        tables = set(read_toml(Path(toml)))
+    if "drivetrain" in tables:
+        return "machine"
+    return "recipe" if "logs" in tables else "mapping" if tables & _ROLES else "machine"
+
+
+def _superfluous(
+    extra: list[str], files: list[str], others: list[str], slots: list[str], command: Any, verb: list[str]
+) -> str:
+    """What to type instead of words beyond the arguments of a command."""
+    kept = [each for each in files if each not in extra]
+    options = options_of(command)
+    takes = f"takes {' and '.join(slots)}, not '{extra[0]}' too" if slots else f"takes no '{extra[0]}'"
+    said = f"hersey {' '.join(verb)} {takes}"
+    if len(extra) == 1:
+        flag = next(
+            (
+                name
+                for name, endings in (("machine", {_TOML}), ("log", LOGS), ("out", {"", *LOGS, ".html"}))
+                if name in options and _ends(extra[0], endings)
+            ),
+            "",
+        )
+        if flag:
+            return f"{said}. Type: {retyped(*verb, *kept, f'--{flag}', extra[0], *others)}"
+    if slots == ["A", "B"]:
+        each = retyped("fit", *files, *others, "--each", "fits.csv")
+        return f"{said}. Compare two logs at a time, or fit each: {each}"
+    return f"{said}. Type: {retyped(*verb, *kept, *others)}"
+
+
+def _ends(file: str, endings: set[str] | frozenset[str]) -> bool:
+    return Path(file).suffix.lower() in endings
+
+
+def _parted(words: Sequence[str], command: Any) -> tuple[list[str], list[str]]:
+    """The arguments of a command, and its options with their values, each as typed."""
+    takes_value = {
+        name: not getattr(each, "is_flag", False)
+        for each in command.params
+        for name in each.opts
+        if name.startswith("-")
+    }
+    arguments: list[str] = []
+    options: list[str] = []
+    left = list(words)
+    while left:
+        word = left.pop(0)
+        if word == "--":
+            arguments += left
+            break
+        if not word.startswith("-") or word == "-":
+            arguments.append(word)
+            continue
+        options.append(word)
+        if "=" not in word and takes_value.get(word, False) and left:
+            options.append(left.pop(0))
+    return arguments, options

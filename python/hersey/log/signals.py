@@ -1,0 +1,73 @@
+"""Columns that hold a signal, in A, V or percent, and units that say how much one of it stands for."""
+
+from __future__ import annotations
+
+import re
+
+from hersey.errors import Setting
+
+_SIGNAL = r"([mµμu]?)([AV])|()(%)"
+_ALONE = re.compile(_SIGNAL)
+_PER = re.compile(rf"(.*\S)\s*/\s*(?:{_SIGNAL})")
+_PREFIXES = {"": 1.0, "m": 1e-3, "µ": 1e-6, "μ": 1e-6, "u": 1e-6}
+#: What one of a signal, or 100 %, may stand for, as an example.
+_EXAMPLES = {
+    "torque": {"A": "35 mN*m/A", "V": "2 N*m/V", "%": "9.84 mN*m / 100"},
+    "speed": {"A": "100 rpm/A", "V": "100 rpm/V", "%": "3000 rpm / 100"},
+    "temperature": {"A": "10 degC/A", "V": "20 degC/V", "%": "200 degC / 100"},
+    "load": {"A": "50 N/A", "V": "50 N/V", "%": "100 N / 100"},
+    "radius": {"A": "10 mm/A", "V": "10 mm/V", "%": "25 mm / 100"},
+}
+
+
+def apart(unit: str) -> tuple[str, str]:
+    """Return a unit such as ``0.2 N*m/A`` as the unit of one ampere, and A; any other as it is, and nothing.
+
+    Examples
+    --------
+    >>> apart("0.2 N*m/A"), apart("N*m")
+    (('0.2 N*m', 'A'), ('N*m', ''))
+    """
+    match = _PER.fullmatch(unit.strip())
+    return (match[1], unit.strip()[match.end(1) :].lstrip(" /")) if match else (unit, "")
+
+
+def is_signal(unit: str) -> bool:
+    """Return whether a unit is that of a signal."""
+    return _ALONE.fullmatch(unit.strip()) is not None
+
+
+def per(given: str, header: str) -> float:
+    """Return how many of the signal that a unit names one in the column is; 1 if either names none.
+
+    Raises
+    ------
+    ValueError
+        If the column holds something else.
+    """
+    wanted = apart(given)[1]
+    if not wanted or not header:
+        return 1.0
+    one, other = (_ALONE.fullmatch(each.strip()) for each in (wanted, header))
+    if one is None or other is None or _kind(one.group()) != _kind(other.group()):
+        raise ValueError(header)
+    return _PREFIXES[other[1] or ""] / _PREFIXES[one[1] or ""]
+
+
+def says_how_much(given: str) -> bool:
+    """Return whether a unit holds a number, or names the signal of which it is one."""
+    return bool(re.search(r"\d", given) or apart(given)[1])
+
+
+def way_out(role: str, header: str) -> str:
+    """Return what to type for a column of a signal."""
+    kind = _kind(header)
+    typed = Setting(role, "unit").to(_EXAMPLES[role][kind])
+    if kind == "%":
+        return f"use {typed}, with your value of the {role} at 100 %"
+    condition = "if it is the motor current, " if kind == "A" and role == "torque" else ""
+    return f"{condition}give the {role} per {kind}, e.g. {typed}"
+
+
+def _kind(signal: str) -> str:
+    return signal.strip()[-1]

@@ -1,0 +1,92 @@
+"""Columns of a current, a voltage or a percentage: what one of it stands for must be said."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+import hersey
+from hersey.errors import UnitError
+from hersey.log.mapping import read_with_mapping
+
+
+def log(folder: Path, torque: str, speed: str = "speed [rpm]") -> Path:
+    rows = [f"{0.1 * i:.1f},{2 + 0.001 * (i % 3)},30,50" for i in range(100)]
+    file = folder / "log.csv"
+    file.write_text("\n".join([f"time [s],{torque},{speed},temperature [degC]", *rows]))
+    return file
+
+
+def mean_torque(log: hersey.TorqueLog) -> float:
+    return float(log.runs[0].torque.mean())
+
+
+@pytest.mark.parametrize(
+    ("torque", "unit", "newton_metres"),
+    [
+        ("torque [A]", "0.2 N*m/A", 0.4),
+        ("torque [A]", "200 mNm / A", 0.4),
+        ("torque [A]", "0.2 N*m", 0.4),
+        ("torque [mA]", "0.2 N*m/A", 0.4e-3),
+        ("torque [A]", "0.2 N*m/mA", 400.0),
+        ("torque [V]", "5 N*m/V", 10.0),
+        ("torque [%]", "5 N*m/%", 10.0),
+        ("torque", "5 N*m/V", 10.0),
+    ],
+)
+def test_the_torque_of_one_ampere_or_volt_is_a_unit(
+    torque: str, unit: str, newton_metres: float, tmp_path: Path
+) -> None:
+    read = hersey.read(log(tmp_path, torque), units={"torque": unit})
+    assert mean_torque(read) == pytest.approx(newton_metres, rel=1e-3)
+
+
+def test_a_tachometer_has_a_unit_as_well(tmp_path: Path) -> None:
+    file = log(tmp_path, "torque [N*m]", "speed [V]")
+    read = hersey.read(file, units={"speed": "100 rpm/V"})
+    assert float(read.runs[0].speed.mean()) == pytest.approx(3000 * 2 * 3.14159265 / 60)
+
+
+@pytest.mark.parametrize(
+    ("torque", "unit", "advice"),
+    [
+        ("torque [A]", "N*m", "35 mN*m/A"),
+        ("torque [V]", "N*m", "2 N*m/V"),
+        ("torque [V]", "0.2 N*m/A", "2 N*m/V"),
+        ("torque [V]", "", "2 N*m/V"),
+        ("torque [%]", "N*m", "9.84 mN*m / 100"),
+        ("torque [A]", "0.2 nonsense/A", "35 mN*m/A"),
+        ("torque [N*m]", "0.2 N*m/A", ""),
+    ],
+)
+def test_a_signal_is_not_taken_for_a_torque(torque: str, unit: str, advice: str, tmp_path: Path) -> None:
+    file = log(tmp_path, torque)
+    with pytest.raises(UnitError) as refused:
+        hersey.read(file, units={"torque": unit} if unit else {})
+    assert refused.value.columns == (1,)
+    assert advice in refused.value.remedy
+    if advice:
+        assert mean_torque(hersey.read(file, units={"torque": advice})) > 0
+
+
+@pytest.mark.parametrize(("torque", "newton_metres"), [("torque [A]", 0.4), ("torque [mA]", 0.4e-3)])
+def test_a_motor_constant_heeds_the_unit_of_the_column(
+    torque: str, newton_metres: float, tmp_path: Path
+) -> None:
+    file = log(tmp_path, torque)
+    (tmp_path / "hersey.toml").write_text('[torque]\nmotor_constant = "0.2 N*m/A"\n')
+    assert mean_torque(read_with_mapping(file).log) == pytest.approx(newton_metres, rel=1e-3)
+
+
+def test_a_motor_constant_is_not_for_a_voltage(tmp_path: Path) -> None:
+    file = log(tmp_path, "torque [V]")
+    (tmp_path / "hersey.toml").write_text('[torque]\nmotor_constant = "0.2 N*m/A"\n')
+    with pytest.raises(UnitError):
+        read_with_mapping(file)
+
+
+def test_a_mapping_may_give_the_torque_of_a_volt(tmp_path: Path) -> None:
+    file = log(tmp_path, "torque [V]")
+    (tmp_path / "hersey.toml").write_text('[torque]\nunit = "5 N*m/V"\n')
+    assert mean_torque(read_with_mapping(file).log) == pytest.approx(10.0, rel=1e-3)
