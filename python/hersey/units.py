@@ -8,9 +8,9 @@ to its definitions.
 from __future__ import annotations
 
 import inspect
-import sys
 import math
 import re
+import sys
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
