@@ -411,3 +411,16 @@ def test_a_group_of_temperatures_spans_six_kelvin() -> None:
 
 def test_a_revolution_a_minute() -> None:
     assert rpm(2 * np.pi) == pytest.approx(60.0)
+
+
+@pytest.mark.parametrize("tare", ["none", "standing"])
+def test_a_clock_in_minutes_is_asked_about(tare: str) -> None:
+    """A minute at each speed is read as a second: too short for a dwell, and for the zero."""
+    speed = dwells(0, 10, 20, 40, 80, seconds=60.0)
+    torque = 0.1 * (speed > 0) + 0.001 * np.random.default_rng(1).standard_normal(speed.size)
+    assert len(log_of(speed, torque).steady(tare=tare)) == 4
+    with pytest.raises(InsufficientDataError, match=r"minutes.*units=\{'time': 'min'\}: 4 dwells"):
+        log_of(speed, torque, dt=0.02 / 60.0).steady(tare=tare)
+    with pytest.raises(InsufficientDataError) as refused:
+        log_of(speed, torque, dt=0.02 / 60e3).steady(tare=tare)
+    assert "4 dwells" not in str(refused.value)

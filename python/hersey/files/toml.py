@@ -223,7 +223,8 @@ def _read(path: Path, kind: Any) -> tuple[dict[str, Any], str]:
         text = read_text(path, most=_MOST_BYTES)
         if "\0" in text:
             raise ParameterError(f"{path.name} {_NO_TEXT}")
-        _refuse_long_keys(text)
+        with naming(path.name):
+            _refuse_long_keys(text)
         document = tomllib.loads(text)
     except HerseyError:
         raise
@@ -274,7 +275,7 @@ def _refuse_long_keys(text: str) -> None:
         elif part[0][0] in ",=\n\r{}[]#":
             dots = 0
         if dots > _MOST_DOTS:
-            raise ValueError(f"a key has more than {_MOST_DOTS} dots")
+            raise ParameterError(f"is not valid TOML: a key has more than {_MOST_DOTS} dots")
 
 
 def _refuse_large(document: dict[str, Any]) -> None:

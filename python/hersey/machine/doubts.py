@@ -42,16 +42,16 @@ def doubts(
             "stiffness {stiffness:.4g} N/m and mass {mass:.4g} kg give a natural frequency of "
             "{frequency:.2g} Hz; usual are {slowest:g} to {fastest:g} Hz"
         )
-        meant = (
-            'stiffness = "{stiffness:.4g} N/mm" or mass = "{mass:.4g} g"'
-            if frequency < _SLOWEST
-            else 'mass = "{grams:.4g} kg" or stiffness = "{per_mm:.4g} N/m"'
-        )
         yield Warning(
             "natural frequency",
             words,
             severity="watch",
-            remedy=f"Check both units. Was this meant: {meant}?",
+            remedy="Check both units. Was this meant: "
+            + (
+                'stiffness = "{stiffness:.4g} N/mm" or mass = "{mass:.4g} g"?'
+                if frequency < _SLOWEST
+                else 'mass = "{grams:.4g} kg" or stiffness = "{per_mm:.4g} N/m"?'
+            ),
             stiffness=stiffness,
             mass=mass,
             frequency=frequency,

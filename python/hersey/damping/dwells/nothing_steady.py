@@ -12,7 +12,7 @@ from hersey.damping.dwells.groups import MIN_SAMPLES, distinct_speeds
 from hersey.damping.dwells.judging import Asked
 from hersey.damping.dwells.points import Rejection
 from hersey.damping.dwells.reasons import CAUSES, Reason, cause
-from hersey.errors import ROTATION, Setting
+from hersey.errors import ROTATION, Setting, followed_by
 from hersey.log.channels import EVERY
 from hersey.log.torque_log import NO_CLOCK, Run, TorqueLog
 from hersey.units import rpm
@@ -32,9 +32,21 @@ _TOO_BRIEF, _RARER = 1.0, 50
 
 
 def nothing_steady(
-    log: TorqueLog, rejected: tuple[Rejection, ...], asked: Asked, dwells_with: Callable[[float], int]
+    log: TorqueLog,
+    rejected: tuple[Rejection, ...],
+    asked: Asked,
+    dwells_with: Callable[[float], int],
+    other_clock: Callable[[], str],
 ) -> str:
-    """Return the message; ``dwells_with`` counts the dwells that another least duration, s, would give."""
+    """Return the message.
+
+    Parameters
+    ----------
+    dwells_with
+        Counts the dwells that another least duration, s, would give.
+    other_clock
+        Says which unit of time would give dwells, or nothing.
+    """
     if few := held_for_few_rows(log):
         return few
     name = log.files[0].name + (f" and {len(log.files) - 1} more" if len(log.files) > 1 else "")
@@ -42,7 +54,8 @@ def nothing_steady(
     for r in rejected:
         reasons.setdefault(r.why.label, []).append(r.why)
     listed = ", ".join(f"{len(alike)} x {_in_short(alike)}" for alike in reasons.values())
-    return f"{name}: no dwell found ({listed}). {_way_out(log, rejected, asked, dwells_with)}"
+    way_out = _way_out(log, rejected, asked, dwells_with, other_clock)
+    return f"{name}: no dwell found ({listed}). {way_out}"
 
 
 def _in_short(alike: list[Reason]) -> str:
@@ -65,7 +78,11 @@ def _held(min_dwell: float) -> str:
 
 
 def _way_out(
-    log: TorqueLog, rejected: tuple[Rejection, ...], asked: Asked, dwells_with: Callable[[float], int]
+    log: TorqueLog,
+    rejected: tuple[Rejection, ...],
+    asked: Asked,
+    dwells_with: Callable[[float], int],
+    other_clock: Callable[[], str],
 ) -> str:
     if brief := too_brief(log, asked.min_dwell):
         return brief
@@ -79,7 +96,7 @@ def _way_out(
         count = sum(map(_ramps, log.runs))
         kind = "short step" if all(map(_steps, log.runs)) else "ramp"
         ramps = f"{count} {kind}{'s' if count > 1 else ''} between {slow:.3g} and {fast:.3g} rpm"
-        return f"The speed never holds: {ramps}. {held}"
+        return followed_by(f"The speed never holds: {ramps}. {held}", other_clock())
     enough = sorted({math.floor(10 * s - 0.5) / 10 for s, rows in short if rows >= MIN_SAMPLES and s > 0.2})
     for shorter in enough:
         if (count := dwells_with(shorter)) >= WORTH_IT:
@@ -90,7 +107,7 @@ def _way_out(
             f"The speed is always {rpm(speed):.3g} rpm. Record dwells at three or more speeds, or "
             f"name another column with {Setting('speed', 'channel').to()}"
         )
-    return held
+    return followed_by(held, other_clock())
 
 
 def _only_speed(rejected: tuple[Rejection, ...]) -> float | None:
@@ -103,6 +120,12 @@ def _only_speed(rejected: tuple[Rejection, ...]) -> float | None:
     return float(np.mean(speeds))
 
 
+def in_seconds(log: TorqueLog) -> bool:
+    """Return whether the time of a log was read in seconds."""
+    clocks = [channel for file in log.files for channel in file.channels if channel.role == "time"]
+    return all(clock.unit == "s" and clock.name != NO_CLOCK for clock in clocks)
+
+
 def _other_clock(log: TorqueLog) -> str:
     """What to say of the clock of a log that is over before a dwell."""
     if any(c.name == NO_CLOCK for file in log.files for c in file.channels):
@@ -110,7 +133,7 @@ def _other_clock(log: TorqueLog) -> str:
         how = EVERY.to(f"{rarer:.3g} s", python=f"{rarer:.3g}")
         return f"If rows come less often, give the time between them, e.g. {how}"
     unit = Setting("time", "unit")
-    if all(c.unit == "s" for file in log.files for c in file.channels if c.role == "time"):
+    if in_seconds(log):
         longer = f"{unit.to('min')}, {unit.to('h')} or {unit.to('d')}"
         return f"If the clock counts minutes, hours or days, use {longer}"
     return f"If the clock counts seconds, use {unit.to('s')}"
