@@ -43,7 +43,7 @@ _USUAL_SPEED = 0.1
 
 
 #: What a file is that has such a key, and where it belongs.
-_OTHER_FILES = {"parameters": ("scenario", "hersey sweep"), "logs": ("recipe", "hersey fit --recipe")}
+_OTHER_FILES = {"parameters": ("scenario", "hersey sweep"), "logs": ("recipe", "hersey fit")}
 #: Kinds of the units in which the numbers of a machine may be given.
 _KINDS = {
     "stiffness": "stiffness",
