@@ -97,10 +97,13 @@ class Result(Record):
         return f"<{line if len(line) <= LINE else line[: LINE - 1] + '…'}>"
 
     def _repr_html_(self) -> str:
-        """Return summary and chart for a notebook; nothing is loaded from elsewhere."""
+        """Return summary and chart, if it has one, for a notebook; nothing is loaded from elsewhere."""
+        from hersey.charts import has_chart
         from hersey.charts.render import picture
 
         text = f"<pre>{html.escape(self.summary())}</pre>"
+        if type(self).chart is Result.chart and not has_chart(type(self)):
+            return text
         try:
             return text + picture(self.chart(), ".svg").decode()
         except MissingFileError as error:  # of the package that draws

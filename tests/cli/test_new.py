@@ -96,7 +96,7 @@ def test_what_the_answers_do_not_fit_is_said_at_once(folder: Path) -> None:
     oil = ["", "40 degC: 400 mm^2/s, 100 degC: 40 mm^2/s"]
     done = run("new", "--all", cwd=folder, answers=lines(*machine, *oil))
     assert (done.returncode, done.stdout) == (2, "")
-    assert "a kinematic viscosity. Add 'density'" in done.stderr
+    assert "a kinematic viscosity. Add e.g. density" in done.stderr
 
 
 def test_files_that_are_there_are_not_replaced_unasked(folder: Path) -> None:

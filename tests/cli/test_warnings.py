@@ -155,3 +155,14 @@ def _drifts(document: Any) -> list[str]:
     return [
         each for each in document["verdict"] if re.search("no single exponent holds", each, re.IGNORECASE)
     ]
+
+
+def test_a_doubtful_unit_comes_before_the_result(folder: Path) -> None:
+    path = folder / "hot.csv"
+    path.write_text(
+        (folder / "falling.csv").read_text().replace(",100\n", ",212\n").replace(",150\n", ",600\n")
+    )
+    done = run("fit", path.name, cwd=folder)
+    assert done.stderr.startswith("hersey: warning: ")
+    assert "--temperature-unit 'degF'" in " ".join(done.stderr.split())
+    assert run("fit", "falling.csv", cwd=folder).stderr == ""

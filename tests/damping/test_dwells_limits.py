@@ -364,9 +364,9 @@ def test_reasons_are_counted_where_nothing_is_steady() -> None:
 
 def test_a_list_of_reasons_holds_no_instruction() -> None:
     with pytest.raises(InsufficientDataError) as caught:
-        log_of(dwells(30, 60, 45), -np.ones(1500)).steady()
+        log_of(dwells(30, 60, 45), np.concatenate([-np.ones(500), np.zeros(1000)])).steady()
     listed, instructions = str(caught.value).split("). ", 1)
-    assert listed.endswith("(3 x torque and speed have opposite signs")
+    assert listed.endswith("(1 x torque and speed have opposite signs, 2 x torque is zero")
     assert instructions.startswith("Flip torque or speed with ")
 
 
@@ -435,3 +435,16 @@ def test_steps_that_are_too_short_at_this_rate_are_counted(min_dwell: float) -> 
     assert said.groups() == ("16", "0.8", "1", "3" if min_dwell == 2.0 else "2")
     speed = np.repeat([10.0, 20.0, 40.0, 80.0] * 4, round(100 * float(said[4]))) * RPM
     assert len(log_of(speed, np.ones(speed.size), dt=0.01).steady(min_dwell=min_dwell)) == 16
+
+
+@pytest.mark.parametrize("tare", ["none", "standing"])
+def test_a_clock_in_minutes_is_asked_about(tare: str) -> None:
+    """A minute at each speed is read as a second: too short for a dwell, and for the zero."""
+    speed = dwells(0, 10, 20, 40, 80, seconds=60.0)
+    torque = 0.1 * (speed > 0) + 0.001 * np.random.default_rng(1).standard_normal(speed.size)
+    assert len(log_of(speed, torque).steady(tare=tare)) == 4
+    with pytest.raises(InsufficientDataError, match=r"minutes.*units=\{'time': 'min'\}: 4 dwells"):
+        log_of(speed, torque, dt=0.02 / 60.0).steady(tare=tare)
+    with pytest.raises(InsufficientDataError) as refused:
+        log_of(speed, torque, dt=0.02 / 60e3).steady(tare=tare)
+    assert "4 dwells" not in str(refused.value)

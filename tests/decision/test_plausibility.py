@@ -87,3 +87,16 @@ def test_the_first_screen_asks_and_concludes_nothing(bench_csv: Path, machine: h
     assert said.otherwise.endswith("Until then, nothing is concluded.")
     assert {point.words for point in said.points} == {"not judged until the question is answered"}
     assert said.safe_speed is None
+
+
+def test_doubts_about_the_machine_are_warnings_of_the_study(
+    points: hersey.SteadyPoints, machine: hersey.Machine
+) -> None:
+    alone = study(points)
+    for stiffness, kinds in ((machine.stiffness, []), (1.1, ["natural frequency"])):
+        soft = replace(machine, stiffness=stiffness)
+        assert [warning.kind for warning in soft.warnings] == kinds
+        with_machine = replace(alone, machine=soft, machine_file=Path("soft.toml"))
+        found = [warning for warning in with_machine.warnings if warning.where == "soft.toml"]
+        assert [warning.kind for warning in found] == kinds
+    assert found[0].number("frequency") == pytest.approx((1.1 / machine.mass) ** 0.5 / (2.0 * np.pi))

@@ -352,7 +352,7 @@ def test_the_mapping_is_proposed_once_and_never_replaced(bench_csv: Path, tmp_pa
     kept.write_text("[torque]\ntar = 1\n")
     wrong = run("inspect", "log.csv", cwd=tmp_path)
     assert wrong.returncode == 2
-    assert f"{FILE_NAME}: [torque] has an unknown key 'tar'" in wrong.stderr
+    assert f"{FILE_NAME}, line 2: [torque] has an unknown key 'tar'" in wrong.stderr
 
 
 def test_what_is_no_log_is_refused(tmp_path: Path) -> None:

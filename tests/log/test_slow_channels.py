@@ -138,3 +138,14 @@ def test_both_values_beside_a_long_gap_are_kept() -> None:
     expected = np.where((time > 20.0) & (time < 60.0), np.nan, 300.0 + time)
     np.testing.assert_allclose(filled, expected, rtol=1e-14)
     assert (channel.in_gaps, channel.outside) == (39, 0)
+
+
+@pytest.mark.parametrize("text", [True, False])
+def test_an_empty_temperature_can_be_done_without(text: bool, tmp_path: Path) -> None:
+    frame = table(**{"Temp [degC]": pl.Series([None] * TIME.size, dtype=pl.Float64)})
+    path = tmp_path / "log.csv"
+    frame.write_csv(path)
+    source = path if text else frame
+    with pytest.raises(UnreadableLogError, match="isothermal=True"):
+        hersey.read(source)
+    assert not hersey.read(source, isothermal=True).has_temperature

@@ -39,6 +39,14 @@ temperature = "180 degC"
 """
 OIL = 'viscosities = [["40 degC", "500 mm^2/s"], ["200 degC", "7.2 mm^2/s"]]'
 SPEED = 'speed = "200 mm/s"'
+RUBBER = '[contact]\nmodulus = "65 MPa"\nrubber_thickness = "3 mm"\npoisson_ratio = 0.48\nlength = "220 mm"'
+POINT = """\
+[points]
+name = "slow"
+speed = "20 mm/s"
+temperature = "180 degC"
+
+"""
 
 
 #: What an error says to write: a whole line, or the value of a key.
@@ -100,7 +108,12 @@ def follow(path: Path, most: int = 6) -> None:
         ("roll_friction = 0.6", "roll_friction = 60 %"),
         ("roll_friction = 0.6", 'roll_friction = "0,6"'),
         ('uncertainty = "10 %"', "uncertainty = 10 %"),
+        ('"11 N/mm"', "11 [N/mm]"),
+        ('"11 N/mm"', "11 (N/mm)"),
         (OIL, OIL[:-1]),
+        (OIL, 'viscosities = [["500 mm^2/s", "40 degC"], ["7.2 mm^2/s", "200 degC"]]'),
+        (OIL, 'viscosities = [["40 degC", "7.2 mm^2/s"], ["200 degC", "500 mm^2/s"]]'),
+        (OIL, 'viscosities = [["200 degC", "0.5 Pa*s"], ["40 degC", "7.2 mPa*s"]]'),
         (OIL, "viscosities = [[40 degC, 500 mm^2/s], [200 degC, 7.2 mm^2/s]]"),
         ('"11 kg"', '"108 N"'),
         ('"300 N"', '"30 kg"'),
@@ -146,6 +159,26 @@ def test_the_corrected_value_is_the_one_meant(
         ('"3 mm/s"', '"1 mm/s to 4 mm/s"', r'line 6: .* "2 mm/s".*\[uncertainty\]: stick_speed = "1 mm/s to'),
         ('stick_speed = "3 mm/s"\n', "", 'line 2: .* Add e.g. stick_speed = "'),
         (
+            '"11 N/mm"',
+            '"11 ± 1 N/mm"',
+            r'line 3: .* "11 N/mm" .*\[uncertainty\]: stiffness = "10 N/mm to 12 N/mm"',
+        ),
+        ('"11 kg"', '"11 kg +/- 10 %"', r'line 4: .* "11 kg" .*\[uncertainty\]: mass = "± 10 %"'),
+        ("roll_friction = 0.6", "roll_friction = 60", "line 9: .* write 0.6$"),
+        (
+            OIL,
+            'viscosity_40 = "500 cSt"\nviscosity_200 = "7.2 cSt"',
+            r'these 2 lines: viscosities = \[\["40 degC", "500 cSt"\], \["200 degC", "7.2 cSt"\]\]$',
+        ),
+        (OIL, 'kv40 = "500 cSt"', r'that line: viscosities = \[\["40 degC", "500 cSt"\]\]$'),
+        (OIL, OIL.replace(', ["200 degC", "7.2 mm^2/s"]', ""), r"line 16: .* needs 2 pairs .* has 1\. Add 1"),
+        (
+            "[[points]]",
+            POINT * 2,
+            r"line 26: the table \[points\] is already in line 21.* \[\[points\]\] in both",
+        ),
+        ("[lubricant]", '[contact]\nmodulus = "65 Shore A"\n[lubricant]', "line 17: .* shore_a = 65 "),
+        (
             'torque = "20 mN*m"\nuncertainty = "10 %"',
             r'log = "C:\bench\new.csv"',
             r"line 13: .*'C:\\bench\\new",
@@ -187,6 +220,7 @@ def test_json_is_recognized(tmp_path: Path) -> None:
         ('"11 N/mm"', '"11 N/m"', 'stiffness = "11 N/mm"'),
         ('"3 mm/s"', '"3 m/s"', 'stick_speed = "3 mm/s"'),
         ('temperature = "180 degC"', 'temperature = "180 K"', 'temperature = "180 degC"'),
+        ("[lubricant]", f"{RUBBER}\n[lubricant]", "shore_a = 65"),
     ],
 )
 def test_an_unusual_value_is_read_with_a_warning(old: str, new: str, meant: str, tmp_path: Path) -> None:

@@ -84,6 +84,17 @@ CHARTS = {
 }
 
 
+def has_chart(kind: type) -> bool:
+    """Return whether `chart_of` draws results of a type."""
+    return _place(kind) is not None
+
+
+def _place(kind: type) -> tuple[str, str] | None:
+    """Module and function that draw results of a type."""
+    names = [each.__name__ for each in kind.__mro__]
+    return next((CHARTS[name] for name in names if name in CHARTS), None)
+
+
 def chart_of(result: object, **choices: Any) -> Chart:
     """Return the chart of a result; its module is loaded when it is first drawn.
 
@@ -99,8 +110,7 @@ def chart_of(result: object, **choices: Any) -> Chart:
     ParameterError
         If such a thing has no chart.
     """
-    names = [kind.__name__ for kind in type(result).__mro__]
-    place = next((CHARTS[name] for name in names if name in CHARTS), None)
+    place = _place(type(result))
     if place is None:
         raise ParameterError(
             f"there is no chart of an object of type {type(result).__name__}: {', '.join(CHARTS)} have one"

@@ -156,8 +156,9 @@ class Reading:
         return named
 
     def log(self, paths: list[Path], machine: Machine | None = None) -> TorqueLog | MeansTable:
-        """Read the files as one log, or as tables of means; print which rows were dropped."""
+        """Read the files as one log, or as tables of means; print dropped rows and doubtful units."""
         from hersey.log import memory_limit
+        from hersey.log.doubtful import doubtful_units
 
         recipe = self.recipe(paths)
         try:
@@ -170,6 +171,7 @@ class Reading:
         for file in log.files:
             if file.missing_rows:
                 note(*(str(each.within(file.name)) for each in file.warnings))
+        note(*(f"hersey: warning: {each.sentence}" for each in doubtful_units(log)))
         stated = set() if machine is None else set(machine.sensors.stated)
         for role in sorted(stated and stated & set(recipe.chosen.sensors.stated)):
             note(f"The sensor errors of {role} come from the mapping, {_NOT_OF_FILE}.")

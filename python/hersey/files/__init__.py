@@ -1,12 +1,13 @@
 """Files as a command is given them, and as it leaves them.
 
-========  =================================================================
-patterns  the files that names and patterns stand for
-reading   a file that may change while it is read
-text      opening a text file, and values of it in messages
-tables    tables as files, of which a spreadsheet runs no text
-toml      a TOML file into tables: what each value is, and what is believed
-writing   writing whole or not at all
-shipped   the examples that a wheel carries, copied into a new folder
-========  =================================================================
+==========  =================================================================
+patterns    the files that names and patterns stand for
+reading     a file that may change while it is read
+text        opening a text file, and values of it in messages
+tables      tables as files, of which a spreadsheet runs no text
+toml        a TOML file into tables: what each value is, and what is believed
+toml_lines  which line of a TOML file holds a key, and what a wrong one should be
+writing     writing whole or not at all
+shipped     the examples that a wheel carries, copied into a new folder
+==========  =================================================================
 """

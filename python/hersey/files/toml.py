@@ -42,6 +42,9 @@ Tables = TypeVar("Tables")
 _GOES_ON = re.compile(r"(is|has|holds|lacks|needs) |\.")
 #: No value of a file comes near this.
 _LARGEST = 1e300
+#: Numbers without a unit that may be at most this are ratios, which people also write in percent; percentages
+#: of less are not supposed.
+_LARGEST_RATIO, _LEAST_PERCENT = 10.0, 2.0
 _SHARE = re.compile(r"(?:±|\+/-)?\s*([0-9]+(?:\.[0-9]*)?)\s*%")
 #: Bytes of a file, characters of a text, dots of a key, and tables within tables at the most.
 _MOST_BYTES, _LONGEST_TEXT, _MOST_DOTS, _DEEPEST = 4_000_000, 1000, 20, 20
@@ -99,7 +102,11 @@ class Quantity:
             raise ParameterError(f"is {_written(given)}: it must be greater than 0{such}")
         if not self.low <= value <= self.high:
             believed = f"{self.low:g} to {self.high:g} {self.unit}".rstrip()
-            raise ParameterError(f"is {_written(given)}: it must be within {believed}")
+            percent = (
+                self.kind is None and value >= _LEAST_PERCENT and value / 100 <= self.high <= _LARGEST_RATIO
+            )
+            such = f". If it is in percent, write {value / 100:.6g}" if percent else ""
+            raise ParameterError(f"is {_written(given)}: it must be within {believed}{such}")
         return value
 
     @property
@@ -174,6 +181,11 @@ class Table:
 
     called: ClassVar[Mapping[str, str]] = {}
 
+    @classmethod
+    def instead(cls, _table: Mapping[str, Any], _key: str, /) -> str:
+        """Return what to write in place of an unknown key, if the values of the table tell; else nothing."""
+        return ""
+
     @model_validator(mode="before")
     @classmethod
     def _known(cls, table: Any) -> Any:
@@ -185,13 +197,14 @@ class Table:
                 "known": list(known),
                 "given": table[unknown[0]],
                 "called": cls.called,
+                "instead": cls.instead(table, unknown[0]),
             }
             raise PydanticCustomError("unknown", "{key}", about)
         return table
 
 
-def read_toml(path: str | Path) -> dict[str, Any]:
-    """Return the document.
+def read_toml(path: str | Path, kind: Any = None) -> dict[str, Any]:
+    """Return the document; ``kind`` holds its tables, if they are known.
 
     Raises
     ------
@@ -200,24 +213,25 @@ def read_toml(path: str | Path) -> dict[str, Any]:
     ParameterError
         If it is not TOML.
     """
-    return _read(Path(path))[0]
+    return _read(Path(path), kind)[0]
 
 
-def _read(path: Path) -> tuple[dict[str, Any], str]:
+def _read(path: Path, kind: Any) -> tuple[dict[str, Any], str]:
     """The document of a file, and its text."""
     text = ""
     try:
         text = read_text(path, most=_MOST_BYTES)
         if "\0" in text:
             raise ParameterError(f"{path.name} {_NO_TEXT}")
-        _refuse_long_keys(text)
+        with naming(path.name):
+            _refuse_long_keys(text)
         document = tomllib.loads(text)
     except HerseyError:
         raise
     except UnicodeDecodeError as error:
-        raise ParameterError(f"{path.name} {_not_utf8(error)}") from None
+        raise ParameterError(f"{path.name}{_not_utf8(error)}") from None
     except (ValueError, RecursionError) as error:  # a number of thousands of digits is no TOMLDecodeError
-        raise ParameterError(f"{path.name} is not valid TOML: {_no_toml(path, text, error)}") from None
+        raise ParameterError(f"{path.name} is not valid TOML: {_no_toml(path, text, error, kind)}") from None
     with naming(path.name):
         _refuse_large(document)
     return document, text
@@ -227,15 +241,15 @@ def _not_utf8(error: UnicodeDecodeError) -> str:
     """Where a file is not UTF-8, and the character that was probably meant."""
     whole: bytes = error.object
     if b"\0" in whole[:1000]:
-        return _NO_TEXT
+        return f" {_NO_TEXT}"
     line, char = (
         whole.count(b"\n", 0, error.start) + 1,
         whole[error.start : error.start + 1].decode("cp1252", "replace"),
     )
-    return f"line {line}: '{char}' is not in UTF-8. Save the file as plain text, encoding UTF-8"
+    return f", line {line}: '{char}' is not in UTF-8. Save the file as plain text, encoding UTF-8"
 
 
-def _no_toml(path: Path, text: str, error: Exception) -> str:
+def _no_toml(path: Path, text: str, error: Exception, kind: Any) -> str:
     """Where and why a text is no TOML, with the corrected line if one is known."""
     first = text.lstrip().partition("\n")[0]
     if path.suffix != ".toml" and first[:1] != "{" and any(mark in first for mark in ",;\t"):
@@ -243,7 +257,12 @@ def _no_toml(path: Path, text: str, error: Exception) -> str:
             f"{error}. It looks like a log, but a machine file or a mapping (TOML) is needed here. Did you "
             "swap the two files?"
         )
-    return (explain(text, error) if isinstance(error, ValueError) else "") or str(error)
+    lists = {
+        name
+        for name, field in getattr(kind, "__pydantic_fields__", {}).items()
+        if any(listed for _, listed in _tables_in(field.annotation))
+    }
+    return (explain(text, error, lists) if isinstance(error, ValueError) else "") or str(error)
 
 
 def _refuse_long_keys(text: str) -> None:
@@ -256,7 +275,7 @@ def _refuse_long_keys(text: str) -> None:
         elif part[0][0] in ",=\n\r{}[]#":
             dots = 0
         if dots > _MOST_DOTS:
-            raise ValueError(f"a key has more than {_MOST_DOTS} dots")
+            raise ParameterError(f"is not valid TOML: a key has more than {_MOST_DOTS} dots")
 
 
 def _refuse_large(document: dict[str, Any]) -> None:
@@ -294,7 +313,7 @@ def read_tables(path: str | Path, kind: type[Tables], *, plain: bool = False) ->
         Each names the file and the key, and says the way out.
     """
     path = Path(path)
-    document, text = _read(path)
+    document, text = _read(path, kind)
     _refuse_escapes(path.name, document, text)
     try:
         return TypeAdapter(kind).validate_python(document, context=Reading(path, plain, document))
@@ -417,6 +436,8 @@ def _unknown(loc: tuple[str | int, ...], about: Mapping[str, Any], file: Any) ->
     if loc:
         all_known = f" Known keys: {', '.join(known)}"
         begins = f"{_place(loc, {})} has an unknown key '{key}'."
+        if about["instead"]:
+            return f"{begins} {about['instead']}"
         if key in about["called"]:
             return f"{begins} Did you mean '{about['called'][key]}'?{all_known}"
         radius = next((name for name in known if "radius" in name), "") if "diameter" in key else ""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import re
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from typing import NamedTuple
 
 #: Characters of a text and of a line in which corrections are tried; lines that a message names, and mistakes
@@ -20,6 +20,8 @@ _HEADER = re.compile(r"\s*(\[\[?)\s*([A-Za-z0-9_.\"' -]+?)\s*\]\]?\s*(?:#.*)?")
 _BEGUN = re.compile(rf"\s*({_KEY}|\"[^\"]*\")\s*=")
 _TABLE = re.compile(r"(\[{0,2})\s*([A-Za-z_][\w. -]*?)\s*(\]{0,2})\s*:?")
 _TWO = re.compile(rf"(\"[^\"]*\"|'[^']*'|[^\"'\s,;]+)[\s,;]+({_KEY}\s*=.*)")
+#: A number and its unit in brackets.
+_BRACKETED = re.compile(r"\"?([-+]?\d[\d.,]*)\"?\s*[\[(]\s*([^\])\"]+?)\s*[\])]\"?")
 #: Where the parser of Python 3.11 to 3.13 names the place; later ones have it as a number.
 _PLACE = re.compile(r"\(at line (\d+), column (\d+)\)")
 #: Quotes and spaces of word processors and web pages, with those of TOML.
@@ -71,16 +73,17 @@ def place_of(text: str, error: ValueError) -> int:
     return int(line)
 
 
-def explain(text: str, error: ValueError) -> str:
+def explain(text: str, error: ValueError, lists: Collection[str] = ()) -> str:
     """Return where a text is not TOML, what is wrong and the corrected line; empty if none is known.
 
-    A correction is proposed only if the parser gets beyond that line with it.
+    ``lists`` names the tables of which there may be many. A correction is proposed only if the parser gets
+    beyond that line with it.
     """
     if len(text) > _MOST:
         return ""
     if hint := _other_language(text):
         return hint
-    if hint := _twice(text, place_of(text, error)):
+    if hint := _twice(text, place_of(text, error), lists):
         return hint
     found: list[tuple[int, Correction]] = []
     mistake: ValueError | None = error
@@ -127,7 +130,7 @@ def _mistake(text: str) -> ValueError | None:
     return None
 
 
-def _twice(text: str, at: int) -> str:
+def _twice(text: str, at: int, lists: Collection[str]) -> str:
     """What to say of a table or a key that was stated above already."""
     lines = text.split("\n")
     line = lines[at - 1] if at <= len(lines) else ""
@@ -139,6 +142,11 @@ def _twice(text: str, at: int) -> str:
                 if same[1] != header[1]:
                     wrong = number if header[1] == "[[" else at
                     return f"line {wrong}: the table '{name}' is repeated. Write: [[{name}]]"
+                if name in lists:
+                    return (
+                        f"line {at}: the table [{name}] is already in line {number}. There may be many, so "
+                        f"write [[{name}]] in both lines"
+                    )
                 return (
                     f"line {at}: the table [{name}] is already in line {number}. "
                     f"Move its keys there and delete line {at}"
@@ -242,6 +250,9 @@ def _values(written: str, unit: str) -> Iterator[tuple[str, str]]:
         yield "a number has digits before and after its point", str(float(value))
     if value.lower() in ("true", "false", "yes", "no", "on", "off"):
         yield "write true or false", "true" if value.lower() in ("true", "yes", "on") else "false"
+    if measured := _BRACKETED.fullmatch(value):
+        yield "value and unit are one text in quotes", f'"{_point(measured[1])} {measured[2]}"'
+        return
     if "[" in value or "]" in value:
         closed = value + "]" * (value.count("[") - value.count("]"))
         opened = "[" * (value.count("]") - value.count("[")) + closed

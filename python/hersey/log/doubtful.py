@@ -39,15 +39,20 @@ def doubtful_units(log: TorqueLog | MeansTable) -> list[Warning]:
     hottest = max((float(np.quantile(each, _MOST)) for each in temperatures), default=0.0)
     if celsius(hottest) > TOO_HOT:
         coldest = min(float(np.quantile(each, 1.0 - _MOST)) for each in temperatures)
-        likely = _likely_units(log, coldest, hottest)
+        first, second, *_ = (*_likely_units(log, coldest, hottest), None, None)
         out.append(
             Warning(
                 "unit of temperature doubtful",
                 "temperature reaches {temperature:.0f degC}, more than a lubricant withstands",
                 severity="watch",
-                remedy="; ".join(f"if the numbers are in {unit}, use {{how:{unit}}}" for unit in likely)
-                or "check the column and its unit",
+                remedy="if the numbers are in {first}, use {how:{first}}; if in {second}, use {how:{second}}"
+                if second
+                else "if the numbers are in {first}, use {how:{first}}"
+                if first
+                else "check the column and its unit",
                 temperature=hottest,
+                first=first,
+                second=second,
                 how=Setting("temperature", "unit"),
             )
         )

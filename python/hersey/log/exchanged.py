@@ -145,8 +145,8 @@ def _exchanged(run: Run) -> dict[str, str]:
         if found := _with_temperature(hot, **moves):
             return found
     closer = moves["torque"].stairs and moves["speed"].unrest > _CLOSER * moves["torque"].unrest
-    wider = _range(torque, speed) > _range(speed, torque)
-    return dict(_TWO) if (closer and wider) or _of_few_drives(np.abs(run.torque), np.abs(run.speed)) else {}
+    wider = closer and _range(torque, speed) > _range(speed, torque)
+    return dict(_TWO) if wider or _of_few_drives(np.abs(run.torque), np.abs(run.speed)) else {}
 
 
 def _of_few_drives(torque: FloatArray, speed: FloatArray) -> bool:

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from hersey.arrays import BoolArray, FloatArray, IntArray
-from hersey.errors import DROP_MISSING, Setting, UnreadableLogError
+from hersey.errors import DROP_MISSING, ISOTHERMAL, Setting, UnreadableLogError
 from hersey.log.slow_channels import LONGEST_INTERVAL, SlowChannel, is_slow
 from hersey.log.torque_log import LogFile, Run
 from hersey.schema.warning import Warning
@@ -41,8 +41,10 @@ class LeftOut:
         self.out_of_order += rows if out_of_order else 0
         self.words += itertools.islice(words, max(0, _LISTED - len(self.words)))
 
-    def refuse_many(self, file: str, rows: int, *, allowed: bool) -> None:
+    def refuse_many(self, file: str, rows: int, *, allowed: bool, without: str = "") -> None:
         """Raise unless few rows of a file, of ``rows`` in all, are left out, or that is ``allowed``.
+
+        ``without`` says how to do without the channel that most of them lack, if that is possible.
 
         Raises
         ------
@@ -53,7 +55,8 @@ class LeftOut:
         if not self.rows or (allowed and not most) or self.rows <= max(1.0, FEW * rows):
             return
         how_many = f" (the first of {self.rows} such rows, of {rows})" if self.rows > 1 else ""
-        way_out = "too few rows remain. Name another column, or correct the file" if most else _way_out()
+        few = f"too few rows remain. {f'{without}. Otherwise n' if without else 'N'}ame another column, or "
+        way_out = f"{few}correct the file" if most else _way_out()
         raise UnreadableLogError(
             f"{file}, {self.words[0]}{how_many}",
             remedy=way_out,
@@ -170,7 +173,9 @@ def runs_with_records(
         place = _among(place, np.flatnonzero(~gone))
     time = arrays["time"]
     parts = runs_of(time, arrays.pop("run", None), file.name, place, left_out)
-    left_out.refuse_many(file.name, rows, allowed=drop_missing)
+    cold = lacking.get("temperature", LeftOut()).rows
+    without = f"If the log has no temperature, use {ISOTHERMAL.to()}" if 2 * cold > rows else ""
+    left_out.refuse_many(file.name, rows, allowed=drop_missing, without=without)
     if time.size < 2:
         raise UnreadableLogError(
             f"{file.name} has only {time.size} row(s) with a number in every required column"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from typing import Any
 
 from pydantic import ValidationInfo
@@ -31,6 +32,12 @@ _INSTEAD: dict[str, tuple[tuple[str, str, float, int], ...]] = {
 }
 
 
+#: A value with its uncertainty, as 11 ± 1 N/mm, 11 N/mm +/- 1 N/mm or 11 N/mm ± 10 %.
+_PLUS_MINUS = re.compile(
+    r"\s*(?P<value>\d+(?:\.\d+)?)\s*(?P<first>[^\d±+].*?)?\s*(?:±|\+/?-)\s*(?P<by>\d+(?:\.\d+)?)\s*(?P<unit>\D.*)?"
+)
+
+
 class AtBelt(Quantity):
     """A quantity at the belt or the roll; the roll radius of [drivetrain] leads to it from another kind."""
 
@@ -38,7 +45,12 @@ class AtBelt(Quantity):
         try:
             return super()._with_unit(given, info)
         except UnitError:
-            meant = self._range(given, str(info.field_name)) or self._converted(given, info.context.document)
+            key = str(info.field_name)
+            meant = (
+                self._range(given, key)
+                or self._known_to(given, key)
+                or self._converted(given, info.context.document)
+            )
             if isinstance(given, str) and meant:
                 raise UnitError(f"is {given}, {meant}") from None
             raise
@@ -55,6 +67,28 @@ class AtBelt(Quantity):
             return ""
         middle = self._written(math.sqrt(limits[0] * limits[1]))
         return f'a range. Write one value here, e.g. "{middle}", and below [uncertainty]: {key} = "{given}"'
+
+    def _known_to(self, given: object, key: str) -> str:
+        """What to say of a value with its uncertainty behind a sign such as ±; nothing if it is none."""
+        match = _PLUS_MINUS.fullmatch(str(given)) if key in OF_THE_BELT else None
+        if match is None:
+            return ""
+        unit = (match["first"] or match["unit"] or "").strip()
+        value, by = float(match["value"]), float(match["by"])
+        known = (
+            f"± {match['by']} %"
+            if unit != match["unit"] and match["unit"] == "%"
+            else (f"{value - by:.6g} {unit} to {value + by:.6g} {unit}")
+        )
+        try:
+            parse(str(self.kind), f"{value} {unit}")
+            read_uncertainty(key, known)
+        except HerseyError:
+            return ""
+        return (
+            f'a value with its uncertainty. Write "{match["value"]} {unit}" here, and below [uncertainty]: '
+            f'{key} = "{known}"'
+        )
 
     def _converted(self, given: object, document: Any) -> str:
         """What to say of a quantity of another kind; nothing if none is known."""

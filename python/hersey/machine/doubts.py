@@ -6,15 +6,25 @@ import math
 from collections.abc import Iterator
 
 from hersey.machine.limits import OperatingPoint
+from hersey.schema.warning import Warning
 from hersey.units import celsius
 
 #: Natural frequencies of a belt on its drive, Hz, and the coldest temperature, K, that need no question.
 _SLOWEST, _FASTEST, _COLDEST = 0.5, 500.0, 250.0
+#: Greatest modulus of a rubber that needs no question, Pa: Shore A 80 is 9 MPa.
+_HARD_RUBBER = 3e7
+#: Hardnesses, Shore A, that the formula of the modulus covers.
+_SHORE_A = (20.0, 80.0)
 
 
 def doubts(
-    stiffness: float, mass: float, stick_speed: float, points: tuple[OperatingPoint, ...]
-) -> Iterator[str]:
+    *,
+    stiffness: float,
+    mass: float,
+    stick_speed: float,
+    points: tuple[OperatingPoint, ...],
+    modulus: float | None,
+) -> Iterator[Warning]:
     """Yield what is unusual, and the value that was probably meant.
 
     Parameters
@@ -23,31 +33,63 @@ def doubts(
         N/m, kg and m/s, at the belt.
     points
         Operating points.
+    modulus
+        Young's modulus of the rubber, Pa, if it is stated.
     """
     frequency = math.sqrt(stiffness / mass) / (2 * math.pi)
     if not _SLOWEST <= frequency <= _FASTEST:
-        slow = frequency < _SLOWEST
-        meant = (
-            f'stiffness = "{stiffness:.4g} N/mm" or mass = "{mass:.4g} g"'
-            if slow
-            else f'mass = "{1e3 * mass:.4g} kg" or stiffness = "{stiffness / 1e3:.4g} N/m"'
+        words = (
+            "stiffness {stiffness:.4g} N/m and mass {mass:.4g} kg give a natural frequency of "
+            "{frequency:.2g} Hz; usual are {slowest:g} to {fastest:g} Hz"
         )
-        yield (
-            f"stiffness {stiffness:.4g} N/m and mass {mass:.4g} kg give a natural frequency of "
-            f"{frequency:.2g} Hz; usual are {_SLOWEST:g} to {_FASTEST:g} Hz. Check both units. "
-            f"Was this meant: {meant}?"
+        yield Warning(
+            "natural frequency",
+            words,
+            severity="watch",
+            remedy="Check both units. Was this meant: "
+            + (
+                'stiffness = "{stiffness:.4g} N/mm" or mass = "{mass:.4g} g"?'
+                if frequency < _SLOWEST
+                else 'mass = "{grams:.4g} kg" or stiffness = "{per_mm:.4g} N/m"?'
+            ),
+            stiffness=stiffness,
+            mass=mass,
+            frequency=frequency,
+            slowest=_SLOWEST,
+            fastest=_FASTEST,
+            grams=1e3 * mass,
+            per_mm=stiffness / 1e3,
         )
     slowest = min((point.speed for point in points), default=math.inf)
     if stick_speed >= slowest:
-        yield (
-            f"stick_speed {1e3 * stick_speed:.4g} mm/s is not below the slowest operating point, "
-            f"{1e3 * slowest:.4g} mm/s. Check its unit. Was this meant: "
-            f'stick_speed = "{stick_speed:.4g} mm/s"?'
+        yield Warning(
+            "stick speed above the operating points",
+            "stick_speed {stick_speed:.4g mm/s} is not below the slowest operating point, {slowest:.4g mm/s}",
+            severity="watch",
+            remedy='Check its unit. Was this meant: stick_speed = "{stick_speed:.4g} mm/s"?',
+            stick_speed=stick_speed,
+            slowest=slowest,
         )
     for point in points:
         if point.temperature < _COLDEST:
-            kelvin = point.temperature
-            yield (
-                f"the temperature of operating point '{point.name}', {kelvin:.4g} K, is "
-                f'{celsius(kelvin):.4g} degC. Was this meant: temperature = "{kelvin:.4g} degC"?'
+            yield Warning(
+                "cold operating point",
+                "the temperature of operating point '{name}', {temperature:.4g} K, is {celsius:.4g} degC",
+                severity="watch",
+                remedy='Was this meant: temperature = "{temperature:.4g} degC"?',
+                name=point.name,
+                temperature=point.temperature,
+                celsius=float(celsius(point.temperature)),
             )
+    if modulus is not None and modulus > _HARD_RUBBER:
+        shore = _SHORE_A[0] <= modulus / 1e6 <= _SHORE_A[1]
+        yield Warning(
+            "modulus of the rubber",
+            "[contact] modulus {megapascal:.4g} MPa is far above that of a rubber, 0.5 to 10 MPa",
+            severity="watch",
+            remedy="If it is the hardness, write shore_a = {megapascal:.4g} instead of modulus"
+            if shore
+            else "Check its unit, or state the hardness instead, e.g. shore_a = 60",
+            modulus=modulus,
+            megapascal=modulus / 1e6,
+        )

@@ -35,6 +35,7 @@ from hersey.machine.sharing import NEEDED, AsperitiesTable, BoundaryTable
 from hersey.machine.uncertainty import Uncertainty, read_uncertainty
 from hersey.motion.belt import Drivetrain
 from hersey.motion.heat import HeatBalance
+from hersey.schema.warning import Warning
 from hersey.units import takes_si
 
 #: Belt speed (m/s) whose film says which law holds, where the machine states no points.
@@ -42,7 +43,7 @@ _USUAL_SPEED = 0.1
 
 
 #: What a file is that has such a key, and where it belongs.
-_OTHER_FILES = {"parameters": ("scenario", "hersey sweep"), "logs": ("recipe", "hersey fit --recipe")}
+_OTHER_FILES = {"parameters": ("scenario", "hersey sweep"), "logs": ("recipe", "hersey fit")}
 #: Kinds of the units in which the numbers of a machine may be given.
 _KINDS = {
     "stiffness": "stiffness",
@@ -97,6 +98,19 @@ class Machine:
         return (
             f"Machine(roll radius {1e3 * self.roll_radius:.4g} mm, stiffness {stiffness}, "
             f"mass {self.mass:.4g} kg, {count or 'no'} operating point{'' if count == 1 else 's'})"
+        )
+
+    @property
+    def warnings(self) -> tuple[Warning, ...]:
+        """What is possible, but so unusual that a unit is probably wrong."""
+        return tuple(
+            doubts(
+                stiffness=self.stiffness,
+                mass=self.mass,
+                stick_speed=self.stick_speed,
+                points=self.points,
+                modulus=None if self.contact is None else self.contact.modulus,
+            )
         )
 
     @property
@@ -255,7 +269,7 @@ def read_machine(path: str | Path) -> Machine:
         Each names the file and the key.
     """
     path = Path(path)
-    document = read_toml(path)
+    document = read_toml(path, _MachineFile)
     if "drivetrain" not in document:
         _refuse_another(path, document)
     tables = read_tables(path, _MachineFile)
@@ -287,8 +301,8 @@ def read_machine(path: str | Path) -> Machine:
         static_friction=None if tables.boundary is None else tables.boundary.static_friction,
         life=tables.life,
     )
+    for doubt in machine.warnings:
+        warnings.warn(PlausibilityWarning(f"{printable(path.name)}: {doubt.text}"), stacklevel=2)
     with naming(path.name):
         _ = machine.mixed  # what it lacks is said here, with the file
-    for doubt in doubts(machine.stiffness, machine.mass, machine.stick_speed, machine.points):
-        warnings.warn(PlausibilityWarning(f"{printable(path.name)}: {doubt}"), stacklevel=2)
     return machine

@@ -2,21 +2,55 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import json
+import re
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from itertools import pairwise
 from typing import Annotated, Any, ClassVar
 
 from pydantic import BeforeValidator, ValidationInfo
 from pydantic.dataclasses import dataclass
 
-from hersey.errors import ParameterError, WrongKindError
+from hersey.errors import ParameterError, UnitError, WrongKindError
 from hersey.files.toml import Quantity, Share, Table
 from hersey.lubrication.contact import Contact, shore_a_modulus
-from hersey.lubrication.lubricant import EXAMPLES, Lubricant, ShearThinning
+from hersey.lubrication.lubricant import EXAMPLES, MODELS, Lubricant, ShearThinning
 from hersey.machine.at_belt import AtBelt
+from hersey.units import parse
 
 #: Where a coefficient that holds for all temperatures is noted, K.
 _ANY = "298.15 K"
+#: Temperatures of a lubricant, K.
+_COLDEST, _HOTTEST = 150.0, 1000.0
+#: Kinds of what stands behind a temperature in the pairs of a lubricant.
+_VISCOSITIES = ("viscosity", "kinematic viscosity", "pressure-viscosity coefficient")
+
+
+#: A hardness, in either order of number and scale: 65 Shore A, ShA 65.
+_HARDNESS = re.compile(
+    r"(?:sh(?:ore)?[- ]?([ad])\D*)?(\d+(?:\.\d+)?)\s*(?:°\s*)?(?:sh(?:ore)?[- ]?([ad]))?", re.I
+)
+#: Keys of a viscosity that hold its temperature, degC: viscosity_40, kv100, nu_40C.
+_AT = re.compile(r"(?:(?:kinematic_|dynamic_)?viscosity|kv|nu|eta|mu|v)_?(?:at_)?(\d{2,3})_?(?:deg)?c?", re.I)
+#: A viscosity index says how viscosity falls, but at one temperature it must be known.
+_INDEX = re.compile(r"vi|viscosity_?index", re.I)
+_EXAMPLES = [["40 degC", "400 mm^2/s"], ["100 degC", "40 mm^2/s"], ["150 degC", "14 mm^2/s"]]
+
+
+class _Modulus(Quantity):
+    """A modulus, which people also state by its hardness."""
+
+    def _with_unit(self, given: object, info: ValidationInfo[Any]) -> float:
+        match = _HARDNESS.fullmatch(given.strip()) if isinstance(given, str) and len(given) < 40 else None
+        scale = (match[1] or match[3] or "").lower() if match else ""
+        if match and scale == "a":
+            raise UnitError(f"is {given}, a hardness. Write shore_a = {match[2]} instead of this line")
+        if match and scale == "d":
+            raise UnitError(
+                f'is {given}, a hardness of another scale. Write the modulus, e.g. "{self.example}"'
+            )
+        return super()._with_unit(given, info)
 
 
 @dataclass(frozen=True)
@@ -33,9 +67,9 @@ class ContactTable(Table):
     roll_radius: Annotated[float, Quantity("length", 1e-4, 10.0)] | None = None
     #: Thickness of the rubber on the roll.
     rubber_thickness: Annotated[float, Quantity("length", 1e-5, 1.0)] | None = None
-    modulus: Annotated[float, Quantity("pressure", 1e4, 1e12)] | None = None
+    modulus: Annotated[float, _Modulus("pressure", 1e4, 1e12, "0.65 MPa")] | None = None
     #: Hardness of the rubber, Shore A, instead of modulus.
-    shore_a: Annotated[float, Quantity(None, 20.0, 80.0)] | None = None
+    shore_a: Annotated[float, Quantity(None, 20.0, 80.0, "60")] | None = None
     poisson_ratio: Annotated[float, Quantity(None, 1e-9, 0.5)] | None = None
     #: Length of the nip, along the roll.
     length: Annotated[float, Quantity("length", 1e-4, 100.0)] | None = None
@@ -86,29 +120,89 @@ class _Viscosity(Quantity):
         if info.context is None:
             return kinematic
         if info.data.get("density") is None:
-            raise ParameterError(f"is {given}, a kinematic viscosity. Add 'density'")
+            raise ParameterError(f'is {given}, a kinematic viscosity. Add e.g. density = "0.9 g/cm^3"')
         return kinematic * float(info.data["density"])
 
 
-def _pairs(given: object) -> object:
-    """One coefficient is that of all temperatures."""
+def _pairs(given: object) -> list[list[Any]]:
+    """Pairs of a list, the temperature first."""
     if not isinstance(given, list) or not all(isinstance(row, list) and len(row) == 2 for row in given):
-        example = '[["40 degC", "400 mm^2/s"], ["100 degC", "40 mm^2/s"]]'
-        raise ParameterError(f"is not a list of pairs. Write e.g. {example}")
+        raise ParameterError(f"is not a list of pairs. Write e.g. {_written(_EXAMPLES[:2])}")
+    if given and all(_is(first, *_VISCOSITIES) and _is(second, "temperature") for first, second in given):
+        turned = [[second, first] for first, second in given]
+        raise ParameterError(f"has the temperature behind. Write {_written(turned)}")
     return given
+
+
+def _is(text: object, *kinds: str) -> bool:
+    """Whether a text is a quantity of one of several kinds."""
+    return any(_value(text, kind) is not None for kind in kinds)
+
+
+def _value(text: object, kind: str) -> float | None:
+    try:
+        return parse(kind, text) if isinstance(text, str) else None
+    except UnitError:
+        return None
+
+
+def _falling(given: object) -> object:
+    """Pairs of which the viscosity falls with temperature, as far as their units compare."""
+    pairs = _pairs(given)
+    for kind in ("viscosity", "kinematic viscosity"):
+        known = [
+            (kelvin, value, pair)
+            for pair in pairs
+            if _COLDEST <= (kelvin := _value(pair[0], "temperature") or 0.0) <= _HOTTEST
+            and (value := _value(pair[1], kind) or 0.0) > 0
+        ]
+        for (cold, thick, first), (hot, thin, second) in pairwise(sorted(known, key=lambda each: each[0])):
+            if hot > cold and thin >= thick:
+                fixed = [[first[0], second[1]], [second[0], first[1]]]
+                fixed += [pair for pair in pairs if pair not in (first, second)]
+                raise ParameterError(
+                    f"{second[1]} at {second[0]} is not less than {first[1]} at {first[0]}, but viscosity "
+                    "falls with temperature. Were the two exchanged? Write "
+                    f"{_written(sorted(fixed, key=_kelvin))}"
+                )
+    return pairs
+
+
+def _written(pairs: Sequence[Sequence[Any]]) -> str:
+    """Pairs as TOML writes them."""
+    return json.dumps(pairs, ensure_ascii=False)
+
+
+def _kelvin(pair: Sequence[Any]) -> float:
+    return _value(pair[0], "temperature") or 0.0
 
 
 def _or_one(given: object) -> object:
     return _pairs([[_ANY, given]] if isinstance(given, str) else given)
 
 
-_Temperature = Annotated[float, Quantity("temperature", 150.0, 1000.0)]
+_Temperature = Annotated[float, Quantity("temperature", _COLDEST, _HOTTEST)]
 _Alpha = Annotated[float, Quantity("pressure-viscosity coefficient", 1e-12, 1e-6)]
 
 
 @dataclass(frozen=True)
 class LubricantTable(Table):
     """The lubricant as a machine file states it: one of the examples, or points of a data sheet."""
+
+    @classmethod
+    def instead(cls, table: Mapping[str, Any], key: str, /) -> str:
+        """Return the pairs that keys with a temperature in their names stand for."""
+        if _INDEX.fullmatch(key):
+            pairs = _written(_EXAMPLES[:2])
+            return f"Write the viscosity at two temperatures instead, e.g. viscosities = {pairs}"
+        stated = sorted((int(m[1]), value) for name, value in table.items() if (m := _AT.fullmatch(name)))
+        if not _AT.fullmatch(key):
+            return ""
+        found = [
+            [f"{at} degC", value if isinstance(value, str) else f"{value} mm^2/s"] for at, value in stated
+        ]
+        lines = "that line" if len(found) == 1 else f"these {len(found)} lines"
+        return f"Write instead of {lines}: viscosities = {_written(found)}"
 
     #: Name of an oil with published values, instead of model and viscosities.
     example: str = ""
@@ -125,7 +219,7 @@ class LubricantTable(Table):
     viscosities: (
         Annotated[
             tuple[tuple[_Temperature, Annotated[float, _Viscosity("viscosity", 1e-6, 1e9)]], ...],
-            BeforeValidator(_pairs),
+            BeforeValidator(_falling),
         ]
         | None
     ) = None
@@ -150,6 +244,14 @@ class LubricantTable(Table):
         ParameterError
             If something is missing or does not fit the rest.
         """
+        count = MODELS.get(self.model, 0)
+        if self.viscosities is not None and count and len(self.viscosities) != count:
+            known = len(self.viscosities)
+            raise ParameterError(
+                f"model '{self.model}' needs {count} pairs of temperature and viscosity, but viscosities has "
+                f"{known}. {'Add' if known < count else 'Delete'} {abs(count - known)}, in one list, e.g. "
+                f"{_written(_EXAMPLES[:count])}"
+            )
         lubricant = self._of_example() if self.example else self._through_points()
         return replace(
             lubricant, thinning=self._thinning(), conductivity=self.conductivity, uncertainty=self.uncertainty

@@ -51,8 +51,10 @@ class Study(Findings, Result):
 
     @cached_property
     def warnings(self) -> tuple[Warning, ...]:
-        """What is doubtful of dwells and fit."""
-        return warnings_of(self.points, self.surface)
+        """What is doubtful of the machine, of dwells and fit."""
+        file = "machine" if self.machine_file is None else self.machine_file.name
+        of_machine = () if self.machine is None else self.machine.warnings
+        return (*(each.within(file) for each in of_machine), *warnings_of(self.points, self.surface))
 
     @property
     def verdict(self) -> list[str]:

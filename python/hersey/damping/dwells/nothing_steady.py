@@ -12,7 +12,7 @@ from hersey.damping.dwells.groups import MIN_SAMPLES, distinct_speeds
 from hersey.damping.dwells.judging import Asked
 from hersey.damping.dwells.points import Rejection
 from hersey.damping.dwells.reasons import CAUSES, Reason, opposite_signs, remedies, sizes
-from hersey.errors import ROTATION, InsufficientDataError, Setting, turned
+from hersey.errors import ROTATION, InsufficientDataError, Setting, followed_by, turned
 from hersey.log.channels import EVERY
 from hersey.log.torque_log import NO_CLOCK, Run, TorqueLog
 from hersey.units import rpm
@@ -30,9 +30,21 @@ _TOO_BRIEF, _RARER = 1.0, 50
 
 
 def nothing_steady(
-    log: TorqueLog, rejected: tuple[Rejection, ...], asked: Asked, dwells_with: Callable[[float], int]
+    log: TorqueLog,
+    rejected: tuple[Rejection, ...],
+    asked: Asked,
+    dwells_with: Callable[[float], int],
+    other_clock: Callable[[], str],
 ) -> InsufficientDataError:
-    """Return the error; ``dwells_with`` counts the dwells that another least duration, s, would give."""
+    """Return the error.
+
+    Parameters
+    ----------
+    dwells_with
+        Counts the dwells that another least duration, s, would give.
+    other_clock
+        Says which unit of time would give dwells, or nothing.
+    """
     if few := held_for_few_rows(log):
         return InsufficientDataError(few)
     name = log.files[0].name + (f" and {len(log.files) - 1} more" if len(log.files) > 1 else "")
@@ -44,7 +56,8 @@ def nothing_steady(
     for r in rejected:
         reasons.setdefault(r.why.label, []).append(r.why)
     listed = ", ".join(f"{len(alike)} x {_in_short(alike)}" for alike in reasons.values())
-    ways = [*(_remedy(alike) for alike in reasons.values()), _way_out(log, rejected, asked, dwells_with)]
+    way_out = _way_out(log, rejected, asked, dwells_with, other_clock)
+    ways = [*(_remedy(alike) for alike in reasons.values()), way_out]
     return InsufficientDataError(f"{name}: no dwell found ({listed}). {'. '.join(filter(None, ways))}")
 
 
@@ -76,7 +89,11 @@ def _held(min_dwell: float) -> str:
 
 
 def _way_out(
-    log: TorqueLog, rejected: tuple[Rejection, ...], asked: Asked, dwells_with: Callable[[float], int]
+    log: TorqueLog,
+    rejected: tuple[Rejection, ...],
+    asked: Asked,
+    dwells_with: Callable[[float], int],
+    other_clock: Callable[[], str],
 ) -> str:
     if brief := too_brief(log, asked.min_dwell):
         return brief
@@ -89,9 +106,10 @@ def _way_out(
         slow, fast = (rpm(float(f([f(np.abs(run.speed)) for run in log.runs]))) for f in (np.min, np.max))
         span = f"between {slow:.3g} and {fast:.3g} rpm"
         if steps := _short_steps(log, asked.min_dwell, span):
-            return steps
+            return followed_by(steps, other_clock())
         count = sum(map(_ramps, log.runs))
-        return f"The speed never holds: {count} ramp{'s' if count > 1 else ''} {span}. {held}"
+        ramps = f"{count} ramp{'s' if count > 1 else ''} {span}"
+        return followed_by(f"The speed never holds: {ramps}. {held}", other_clock())
     enough = sorted({math.floor(10 * s - 0.5) / 10 for s, rows in short if rows >= MIN_SAMPLES and s > 0.2})
     for shorter in enough:
         if (count := dwells_with(shorter)) >= WORTH_IT:
@@ -102,7 +120,7 @@ def _way_out(
             f"The speed is always {rpm(speed):.3g} rpm. Record dwells at three or more speeds, or "
             f"name another column with {Setting('speed', 'channel').to()}"
         )
-    return held
+    return followed_by(held, other_clock())
 
 
 def _only_speed(rejected: tuple[Rejection, ...]) -> float | None:
@@ -115,6 +133,12 @@ def _only_speed(rejected: tuple[Rejection, ...]) -> float | None:
     return float(np.mean(speeds))
 
 
+def in_seconds(log: TorqueLog) -> bool:
+    """Return whether the time of a log was read in seconds."""
+    clocks = [channel for file in log.files for channel in file.channels if channel.role == "time"]
+    return all(clock.unit == "s" and clock.name != NO_CLOCK for clock in clocks)
+
+
 def _other_clock(log: TorqueLog) -> str:
     """What to say of the clock of a log that is over before a dwell."""
     if any(c.name == NO_CLOCK for file in log.files for c in file.channels):
@@ -122,7 +146,7 @@ def _other_clock(log: TorqueLog) -> str:
         how = EVERY.to(f"{rarer:.3g} s", python=f"{rarer:.3g}")
         return f"If rows come less often, give the time between them, e.g. {how}"
     unit = Setting("time", "unit")
-    if all(c.unit == "s" for file in log.files for c in file.channels if c.role == "time"):
+    if in_seconds(log):
         longer = f"{unit.to('min')}, {unit.to('h')} or {unit.to('d')}"
         return f"If the clock counts minutes, hours or days, use {longer}"
     return f"If the clock counts seconds, use {unit.to('s')}"

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import polars as pl
 
@@ -9,7 +11,7 @@ from hersey.arrays import FloatArray
 from hersey.damping.dwells.groups import MIN_SAMPLES
 from hersey.damping.dwells.judging import Asked, Dwell, Stretch, judged
 from hersey.damping.dwells.noise import mean_and_error
-from hersey.damping.dwells.nothing_steady import nothing_steady, too_brief
+from hersey.damping.dwells.nothing_steady import WORTH_IT, in_seconds, nothing_steady, too_brief
 from hersey.damping.dwells.points import Rejection, SteadyPoints
 from hersey.damping.dwells.relaxation import Relaxation, Trend, relaxation
 from hersey.damping.dwells.resolution import Resolution, repeats, rounding_error, step_of
@@ -19,12 +21,15 @@ from hersey.damping.dwells.settling import common_settling
 from hersey.damping.dwells.shared_noise import Powers, SharedNoise, shared_noise
 from hersey.damping.dwells.steadiness import MAX_TEMPERATURE_DRIFT, drift_over, straightened
 from hersey.damping.dwells.zero import Zero, standing_stretches, starts_of
-from hersey.errors import TARE, InsufficientDataError, ParameterError
+from hersey.errors import TARE, InsufficientDataError, ParameterError, Setting
 from hersey.log.channels import MEANS
 from hersey.log.torque_log import Run, TorqueLog
 
 #: Rounds in which dwells are judged again by the noise of those kept, at the most.
 ROUNDS = 3
+#: Clocks that a log may have instead of one in seconds: seconds, unit and name of one count.
+Clocks = tuple[tuple[float, str, str], ...]
+LONGER_CLOCKS: Clocks = ((60.0, "min", "minutes"), (3600.0, "h", "hours"))
 #: A drive that turned slower than this share of the speed that follows counts as standing.
 STANDS = 1e-3
 #: Speed that swings by more than this share (standard deviation) is not judged as noise of the encoder alone.
@@ -73,8 +78,10 @@ class _Reduction:
     What is steady is judged first by each dwell's own noise, then by what all of them show.
     """
 
-    def __init__(self, log: TorqueLog, subtracted: bool, asked: Asked) -> None:
-        self.log, self.subtracted, self.asked = log, subtracted, asked
+    def __init__(
+        self, log: TorqueLog, subtracted: bool, asked: Asked, clocks: Clocks = LONGER_CLOCKS
+    ) -> None:
+        self.log, self.subtracted, self.asked, self.clocks = log, subtracted, asked, clocks
         self.starts = starts_of(log.runs)
         self.segments = [joined_over_turns(run, segments_of(run)) for run in log.runs]
         self.stretches = [s for i in range(len(log.runs)) for s in _in_order(i, self.segments[i])]
@@ -84,8 +91,9 @@ class _Reduction:
         if subtracted and self.zero is None:
             if brief := too_brief(log, asked.min_dwell):
                 raise InsufficientDataError(f"{log.files[0].name}: {brief}")
+            first = f"{other} Otherwise omit" if (other := self._other_clock()) else "Omit"
             raise InsufficientDataError(
-                f"the drive never stands still for 2 s, so there is no tare. Omit {TARE.to()}, or set "
+                f"the drive never stands still for 2 s, so there is no tare. {first} {TARE.to()}, or set "
                 'tare = "4 mN*m" under [torque] in hersey.toml'
             )
 
@@ -105,8 +113,24 @@ class _Reduction:
         dwells = [o for o in outcomes if isinstance(o, Dwell)]
         rejected = tuple(o for o in outcomes if isinstance(o, Rejection))
         if not dwells:
-            raise nothing_steady(self.log, rejected, self.asked, self._dwells_with)
+            others = self._dwells_with, self._other_clock
+            raise nothing_steady(self.log, rejected, self.asked, *others)
         return self._reduced(dwells, rejected, noise)
+
+    def _other_clock(self) -> str:
+        """What to say if dwells were found had the clock counted minutes or hours; else nothing."""
+        if not in_seconds(self.log):
+            return ""
+        for seconds, unit, name in self.clocks:
+            runs = tuple(replace(run, time=seconds * run.time) for run in self.log.runs)
+            try:
+                found = _Reduction(replace(self.log, runs=runs), self.subtracted, self.asked, ()).points()
+            except InsufficientDataError:
+                continue
+            if len(found) >= WORTH_IT:
+                how = Setting("time", "unit").to(unit)
+                return f"If the clock counts {name}, use {how}: {len(found)} dwells are found then."
+        return ""
 
     def _dwells_with(self, min_dwell: float) -> int:
         """How many dwells there were if they might be shorter."""
