@@ -105,7 +105,7 @@ def test_words_follow_what_the_dwells_show(
     assert found.instruction.startswith(said)
     assert found.signal == "watch"
     if not rises and not falls:
-        assert found.instruction.endswith("torque varies about its mean by up to 1.3 %")
+        assert found.instruction.endswith("torque varies about its mean by up to 1.3 %.")
         level = replace(straight, c=replace(straight.c, low=-1.2, high=-0.5))
         known = Findings(points=points, surface=level, regime=seen)
         assert of_log(known, Trend(False, False, 2.0, 0.013)).instruction.endswith(
@@ -141,12 +141,12 @@ def test_warnings_of_the_log(points: hersey.SteadyPoints, surface: DampingSurfac
     assert not {*titles, "Points scatter 6 % about the fit"} & calm.keys()
     noisy = replace(surface, statistics=replace(surface.statistics, scatter=0.06))
     shown = told(fit=noisy, named="soft EHL")
-    assert shown["Points scatter 6 % about the fit"].startswith("more than sensor noise explains.")
+    assert shown["Points scatter 6 % about the fit"].startswith("More than sensor noise explains.")
     unnamed = replace(seen, named=None, why_unnamed="two explain it")
     known = Findings(points=points, surface=surface, regime=unnamed)
     [flag] = [f for f in flags(known) if f.where == "regime"]
     assert flag.title == "The lubrication regime is not determined"
-    assert flag.text.startswith("two explain it. A no-load torque brings the exponent closer to -1.")
+    assert flag.text.startswith("Two explain it. A no-load torque brings the exponent closer to -1.")
     assert surface.transition is not None
     by_itself = replace(surface, transition=replace(surface.transition, freed=24.0))
     freed = "The transition is not at a fixed Hersey number"

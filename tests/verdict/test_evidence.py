@@ -419,7 +419,7 @@ def test_what_does_not_fit_is_ranked(machine: Machine, measured: MeasuredFilm) -
     sizes = [each.number("off") for each in found if each.severity != "note"]
     assert len(sizes) >= 3
     assert sizes == sorted(sizes, reverse=True)
-    assert found[0].text.startswith("measured torque is 58 times")
+    assert found[0].text.startswith("Measured torque is 58 times")
     assert found[0].number("off") == pytest.approx(58 / 3)
     assert found[0].severity == "act"
     by_kind = {each.kind: each for each in found}
