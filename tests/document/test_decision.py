@@ -354,7 +354,7 @@ def test_how_the_belt_stops_is_said_where_it_moves_v_star(decide: Decide, found:
     said = decide(replace(open_, points=()))
     [flag] = [flag for flag in said.flags if "comes to rest" in flag.title]
     assert flag.title == "The safe speed depends on how the belt comes to rest"
-    assert flag.text.endswith("(50 %, V* 200 mm/s)")
+    assert flag.text.endswith("(50 %, V* 200 mm/s).")
     assert (flag.number("retained"), flag.number("stiction")) == (0.06, 0.2)
     # where the evidence decides, or both are nearly the same, nothing is said
     same = with_draws(open_, fold=np.where(closure == 0, 0.06, 0.065))

@@ -79,9 +79,9 @@ def test_warnings_of_the_machine(decide: Decide, found: Behaviour, map_: Operati
     far = tuple(replace(p, at=replace(p.at, extrapolated=p.name == "crawl")) for p in map_.points)
     titles = {f.title: f.text for f in decide(replace(found, points=(), map=replace(bare, points=far))).flags}
     assert titles["Operating points are extrapolated"].startswith(
-        "the dwells do not reach crawl: they range from "
+        "The dwells do not reach crawl: they range from "
     )
-    assert titles["The roll may slip at the start"].startswith("the grip of the roll is not stated")
+    assert titles["The roll may slip at the start"].startswith("The grip of the roll is not stated")
     gripping = replace(map_, train=replace(map_.train, grip=1e6))
     assert "The roll may slip at the start" not in {
         flag.title for flag in decide(replace(found, points=(), map=gripping)).flags
@@ -105,7 +105,7 @@ def test_words_follow_what_the_dwells_show(
     assert found.instruction.startswith(said)
     assert found.signal == "watch"
     if not rises and not falls:
-        assert found.instruction.endswith("torque varies about its mean by up to 1.3 %.")
+        assert found.instruction.endswith("torque varies about its mean by up to 1.3 %")
         level = replace(straight, c=replace(straight.c, low=-1.2, high=-0.5))
         known = Findings(points=points, surface=level, regime=seen)
         assert of_log(known, Trend(False, False, 2.0, 0.013)).instruction.endswith(
@@ -156,12 +156,12 @@ def test_warnings_of_the_log(points: hersey.SteadyPoints, surface: DampingSurfac
     loaded = replace(points, table=points.table.with_columns(load=pl.Series(loads)))
     assert (
         told(dwells=loaded, named="soft EHL")["The load varies"]
-        == "it ranges from 10 to 20 N. Fit each load separately"
+        == "It ranges from 10 to 20 N. Fit each load separately."
     )
     fast = points.table.filter(pl.col("speed").abs() > 1.2 * surface.transition_speed(HOT + 30.0))
     few = replace(points, table=pl.concat([points.table.filter(pl.col("speed").abs() < 0.6).head(2), fast]))
     text = told(dwells=few, named="soft EHL")["Few dwells support the falling branch"]
-    assert text == f"only 1 of {len(few)} dwells lie below the transition. Measure slower dwells"
+    assert text == f"Only 1 of {len(few)} dwells lie below the transition. Measure slower dwells."
 
 
 @pytest.mark.parametrize(
