@@ -11,12 +11,13 @@ import re
 _NUMBER = r"[+\-\u2212]?\d[\d\u202f]*(?:\.\d+)?(?:e[+\-\u2212]?\d+|·10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)?"
 _BASE = r"[kMmµun]?(?:N|m|s|h|K|W|J|g|Hz|Pa|V|A|mol)(?:\^?[23²³])?"
 _UNIT = (
-    rf"(?:%|°C|degC|(?:min|days?|rpm|rad/s|times|pages?)\b|{_BASE}(?:(?:[·*/]|\s(?=[ms]\b)){_BASE})*(?:/rad|/page)?)"
+    rf"(?:%(?:/K)?|°C|degC|(?:min|days?|rpm|rad/s|times|pages?)\b|{_BASE}(?:(?:[·*/]|\s(?=[ms]\b)){_BASE})*(?:/rad|/page)?)"
     r"(?![\w/])"
 )
 #: A number with its unit, those before it in a range, list or interval, and its interval behind it.
 _BETWEEN = r"\s*(?:,|\bto(?: about)?\b|\band\b|\bor\b|\bof\b|\u2013|±|\+/-|\[|\])\s*"
 _MEASURED = re.compile(
+    rf"{_NUMBER} \+/- .*sensors \+/- {_NUMBER}\s+{_UNIT}|"
     rf"{_NUMBER}(?:{_BETWEEN}{_NUMBER})*\]?\s?{_UNIT}(?:\s*\[[^\]]*\])?(?:\s*\(sensors [^)]*\))?"
 )
 #: What is counted, behind its number.
