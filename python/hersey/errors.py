@@ -298,11 +298,15 @@ def followed_by(text: str, remedy: str) -> str:
 def sentence(text: str, *, named: bool = False) -> str:
     """Return a clause as a sentence; a name that it begins with, as of a file or a key, stays as it is.
 
+    An empty text stays empty, and a sentence stays as it is.
+
     Examples
     --------
     >>> sentence("the belt sticks"), sentence("bench.csv is cut off"), sentence("is it?")
     ('The belt sticks.', 'bench.csv is cut off.', 'Is it?')
     """
+    if not text:
+        return ""
     named = named or any(sign in text.split(" ", 1)[0].rstrip(":.") for sign in "_.")
     first = text if named else f"{text[:1].upper()}{text[1:]}"
     return first if first.endswith(_ENDS) else f"{first}."

@@ -325,6 +325,7 @@ def test_the_next_measurement_has_its_reason_one_click_away(
     measurement = MeasurementPart(kind="starts", text=text, temperature=453.15, speeds=[0.11], left=0.5)
     known = {
         "measurement": measurement,
+        "next": measurement.text,
         "fold": Edge(0.1, 0.05, 0.2),
         "closures": {"retained": 0.7, "stiction": 0.29, "stribeck": 0.01},
     }

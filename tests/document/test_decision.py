@@ -40,12 +40,12 @@ def test_the_first_sentence_is_about_the_users_points(decide: Decide, found: Beh
     said = decide(found)
     assert said.instruction == (
         "20 mm/s sticks from any start. 45 mm/s needs the start-up profile. "
-        "100 mm/s and 360 mm/s run smoothly"
+        "100 mm/s and 360 mm/s run smoothly."
     )
     _, low, high = found.posterior.fold_interval(HOT)
     ends = f"[{figures(1e3 * low, up=False)}, {figures(1e3 * high, up=True)}]"
     assert said.interval.startswith("V*, above which stick-slip cannot last at 180 °C, is ")
-    assert said.interval.endswith(f"{ends} (95 %)")
+    assert said.interval.endswith(f"{ends} (95 %).")
     safe = figures(1e3 * found.posterior.safe_speed(HOT), up=True)
     assert said.otherwise.startswith(f"The belt slides from any start above {safe} mm/s.")
     below, turn, above = np.quantile(found.posterior.edges(HOT).transition, (0.025, 0.5, 0.975))
@@ -55,6 +55,7 @@ def test_the_first_sentence_is_about_the_users_points(decide: Decide, found: Beh
     assert said.fold is not None
     assert (said.fold.low, said.fold.high) == (low, high)
     assert said.temperature == HOT
+    assert said.next.endswith(".")
     assert sum(said.closures.values()) == pytest.approx(1.0)
 
 
@@ -111,7 +112,7 @@ def test_a_plan_that_is_impossible_is_something_to_act_on(decide: Decide, found:
         said.points[0].words == "sticks from rest (99 %), smooth once it slides: "
         "no start-up profile within the limits works"
     )
-    assert said.instruction == "45 mm/s sticks from rest, and is smooth once it slides"
+    assert said.instruction == "45 mm/s sticks from rest, and is smooth once it slides."
     assert said.flags[0].title == "No start for thick paper"
     assert said.flags[0].where == "plan"
 
@@ -128,7 +129,7 @@ def test_a_point_that_may_lie_below_the_transition_is_not_blamed_on_a_limit(
     said = decide(replace(moved, points=(point,)))
     assert said.points[0].verdict == "unknown"
     assert said.points[0].words == "may stick: with 50 % probability it is below the transition"
-    assert said.instruction == "45 mm/s may stick"
+    assert said.instruction == "45 mm/s may stick."
     assert said.flags[0].title == "No start-up profile for thick paper"
 
 
@@ -136,7 +137,7 @@ def test_v_star_without_an_upper_end_gives_no_speed(decide: Decide, found: Behav
     far = with_draws(found, fold=1e3)
     said = decide(replace(far, points=()))
     assert said.instruction.startswith("At 180 °C do not rely on a start from rest")
-    assert said.interval.endswith("no upper end can be determined")
+    assert said.interval.endswith("no upper end can be determined.")
     assert said.safe_speed is said.fold is None
 
 
@@ -199,7 +200,7 @@ def test_without_a_machine_it_speaks_of_the_roll(log: hersey.TorqueLog, tmp_path
     assert not any("paper" in str(warning) for warning in document.warnings)
     high = fit(points).transition_estimate(fit(points).temperature_range[1]).high  # type: ignore[index]
     assert f"Keep the roll above {figures(high * 60 / math.tau, up=True)} rpm" in said.otherwise
-    assert said.instruction.endswith("The safe speed is not yet known")
+    assert said.instruction.endswith("The safe speed is not yet known.")
     file = tmp_path / "machine.toml"
     file.write_text("\n".join(part.lines for part in said.missing if part.file == "machine.toml"))
     assert read_machine(file).points  # the lines are ready to copy
@@ -353,7 +354,7 @@ def test_how_the_belt_stops_is_said_where_it_moves_v_star(decide: Decide, found:
     said = decide(replace(open_, points=()))
     [flag] = [flag for flag in said.flags if "comes to rest" in flag.title]
     assert flag.title == "The safe speed depends on how the belt comes to rest"
-    assert flag.text.endswith("(50 %, V* 200 mm/s)")
+    assert flag.text.endswith("(50 %, V* 200 mm/s).")
     assert (flag.number("retained"), flag.number("stiction")) == (0.06, 0.2)
     # where the evidence decides, or both are nearly the same, nothing is said
     same = with_draws(open_, fold=np.where(closure == 0, 0.06, 0.065))
@@ -471,7 +472,7 @@ def test_what_of_the_nip_cannot_be_is_a_warning(decide: Decide, found: Behaviour
     film = document.film.model_copy(update={"warnings": [off], "contradicted": False})
     shown = [flag for flag in decide(found, film=film).flags if flag.where == "regime"]
     assert [(flag.title, flag.text) for flag in shown] == [
-        ("Nip and log disagree", "friction coefficient 0.5 is no film")
+        ("Nip and log disagree", "Friction coefficient 0.5 is no film.")
     ]
     mild = film.model_copy(update={"warnings": [Warning("friction above a film", "", off=1.7)]})
     assert "Nip and log disagree" not in {flag.title for flag in decide(found, film=mild).flags}

@@ -79,9 +79,9 @@ def test_warnings_of_the_machine(decide: Decide, found: Behaviour, map_: Operati
     far = tuple(replace(p, at=replace(p.at, extrapolated=p.name == "crawl")) for p in map_.points)
     titles = {f.title: f.text for f in decide(replace(found, points=(), map=replace(bare, points=far))).flags}
     assert titles["Operating points are extrapolated"].startswith(
-        "the dwells do not reach crawl: they range from "
+        "The dwells do not reach crawl: they range from "
     )
-    assert titles["The roll may slip at the start"].startswith("the grip of the roll is not stated")
+    assert titles["The roll may slip at the start"].startswith("The grip of the roll is not stated")
     gripping = replace(map_, train=replace(map_.train, grip=1e6))
     assert "The roll may slip at the start" not in {
         flag.title for flag in decide(replace(found, points=(), map=gripping)).flags
@@ -141,12 +141,12 @@ def test_warnings_of_the_log(points: hersey.SteadyPoints, surface: DampingSurfac
     assert not {*titles, "Points scatter 6 % about the fit"} & calm.keys()
     noisy = replace(surface, statistics=replace(surface.statistics, scatter=0.06))
     shown = told(fit=noisy, named="soft EHL")
-    assert shown["Points scatter 6 % about the fit"].startswith("more than sensor noise explains.")
+    assert shown["Points scatter 6 % about the fit"].startswith("More than sensor noise explains.")
     unnamed = replace(seen, named=None, why_unnamed="two explain it")
     known = Findings(points=points, surface=surface, regime=unnamed)
     [flag] = [f for f in flags(known) if f.where == "regime"]
     assert flag.title == "The lubrication regime is not determined"
-    assert flag.text.startswith("two explain it. A no-load torque brings the exponent closer to -1.")
+    assert flag.text.startswith("Two explain it. A no-load torque brings the exponent closer to -1.")
     assert surface.transition is not None
     by_itself = replace(surface, transition=replace(surface.transition, freed=24.0))
     freed = "The transition is not at a fixed Hersey number"
@@ -156,12 +156,12 @@ def test_warnings_of_the_log(points: hersey.SteadyPoints, surface: DampingSurfac
     loaded = replace(points, table=points.table.with_columns(load=pl.Series(loads)))
     assert (
         told(dwells=loaded, named="soft EHL")["The load varies"]
-        == "it ranges from 10 to 20 N. Fit each load separately"
+        == "It ranges from 10 to 20 N. Fit each load separately."
     )
     fast = points.table.filter(pl.col("speed").abs() > 1.2 * surface.transition_speed(HOT + 30.0))
     few = replace(points, table=pl.concat([points.table.filter(pl.col("speed").abs() < 0.6).head(2), fast]))
     text = told(dwells=few, named="soft EHL")["Few dwells support the falling branch"]
-    assert text == f"only 1 of {len(few)} dwells lie below the transition. Measure slower dwells"
+    assert text == f"Only 1 of {len(few)} dwells lie below the transition. Measure slower dwells."
 
 
 @pytest.mark.parametrize(

@@ -103,7 +103,7 @@ def test_missing_samples_are_counted_and_said() -> None:
     sentence = "13 samples are missing; cycles that a gap hides in part are not used"
     assert of_kind(record, "samples missing").values == {"count": 13}
     assert f"- {sentence}" in record.summary().splitlines()
-    assert sentence in [each["text"] for each in record.to_dict()["warnings"]]
+    assert f"{sentence}." in [each["text"] for each in record.to_dict()["warnings"]]
     assert cycles(time, force).warnings == ()
 
 

@@ -137,7 +137,7 @@ def test_what_the_machine_does_not_state_is_said(campaign: Campaign) -> None:
         'continuous_torque = "0.5 N*m" to [life]',
         'energy = "10 J" to [life]',
     ):
-        assert sum(f"add {lacks}" in each.text for each in found.warnings if each.kind == NOT_JUDGED) == 1
+        assert sum(f"Add {lacks}" in each.text for each in found.warnings if each.kind == NOT_JUDGED) == 1
     assert found.warnings[0].values == {"table": "limits", "keys": 'motor_torque = "1 N*m"'}
 
 

@@ -28,7 +28,7 @@ class Warned(Record):
 def test_words_show_numbers_in_the_units_of_people() -> None:
     words = "{speed:.3g rpm}, {cold:.0f degC}, {film:.2g um}, {share:.1%}, {one:row|rows}, {two:row|rows}"
     warning = Warning("all", words, speed=3.141592653589793, cold=273.15, film=2e-7, share=0.5, one=1, two=2)
-    assert warning.text == "30 rpm, 0 degC, 0.2 um, 50.0%, row, rows"
+    assert warning.text == "30 rpm, 0 degC, 0.2 um, 50.0%, row, rows."
     assert warning.values["speed"] == 3.141592653589793
 
 
@@ -53,7 +53,7 @@ def test_a_sentence_names_what_it_concerns() -> None:
 
 def test_what_a_file_says_is_no_template_and_shows_its_signs() -> None:
     warning = Warning("name", "'{column}' says nothing", column="{0.__class__}\x1b[2J")
-    assert warning.text == r"'{0.__class__}\x1b[2J' says nothing"
+    assert warning.text == r"'{0.__class__}\x1b[2J' says nothing."
 
 
 def test_json_holds_kind_numbers_and_words() -> None:
@@ -76,7 +76,7 @@ def test_json_holds_kind_numbers_and_words() -> None:
                 "where": "nip",
                 "values": {"part": "nip", "film": 1e-7, "far": None},
                 "title": "The nip is thin",
-                "text": "1e-07 m",
+                "text": "1e-07 m.",
             }
         ]
     }
@@ -147,7 +147,7 @@ def test_one_that_was_kept_is_shown_as_it_was() -> None:
 def test_under_a_title_it_still_names_what_it_concerns() -> None:
     unused = Warning("not used", "it contradicts {count} dwells", where="start.csv", count=3)
     flag = unused.titled("A recording was not used", section="band")
-    assert (flag.where, flag.text) == ("band", "start.csv: it contradicts 3 dwells")
+    assert (flag.where, flag.text) == ("band", "start.csv: it contradicts 3 dwells.")
     assert unused.titled("", section="band").values["count"] == 3
 
 
@@ -155,7 +155,7 @@ def test_what_was_kept_brings_numbers_and_texts_alone() -> None:
     values = {"count": 3, "inside": [1], "severity": "act", "name": "x", "nothing": None}
     kept = Warning.said("cut", "a {b}", title="", severity="note", where="a\x1b[2J", values=values)
     assert kept.values == {"count": 3, "name": "x", "nothing": None}
-    assert (kept.severity, kept.where, kept.text) == ("note", r"a\x1b[2J", "a {b}")
+    assert (kept.severity, kept.where, kept.text) == ("note", r"a\x1b[2J", "A {b}.")
 
 
 def test_one_kind_has_one_set_of_values() -> None:

@@ -344,10 +344,11 @@ def test_reach_of_a_drive() -> None:
     assert (Reach.of(gripped, 0.02).force, Reach.of(gripped, 0.02, 50.0).force) == (pytest.approx(60.0), 50.0)
     assert Reach.of(gripped, 0.02).broken == "the roll slips on the belt"
     assert _obstacle("motor_torque", 2.0, 5.3821, held=True).text == (
-        "the motor torque of 2 N m cannot start this belt; 5.39 N m is needed"
+        "The motor torque of 2 N m cannot start this belt; 5.39 N m is needed."
     )
     assert (
-        _obstacle("grip", 180.0, 434.0).text == "the roll grip is limited to 180 N, but 434 N would be enough"
+        _obstacle("grip", 180.0, 434.0).text
+        == "The roll grip is limited to 180 N, but 434 N would be enough."
     )
     free = Reach.of(Limits(), None)
     assert (free.speed, free.acceleration, free.force, free.uses(shape, 80.0)) == (
@@ -499,8 +500,8 @@ def test_what_forbids_a_plan_in_numbers() -> None:
     assert (slow.obstacles[0].given, slow.obstacles[0].needed) == (1.5, 1.9)
     low = hersey.plan_profile(TRAIN, DRAG, target_speed=0.9)
     assert low.obstacles[0].text == (
-        "the target speed 900 mm/s is not above the transition speed 1.001 m/s, so steady sliding is "
-        "unstable there; choose a higher target"
+        "The target speed 900 mm/s is not above the transition speed 1.001 m/s, so steady sliding is "
+        "unstable there; choose a higher target."
     )
     assert low.obstacles[0].needed == pytest.approx(1.02, abs=0.005)
     assert (low.obstacles[0].limit, low.obstacles[0].given) == ("target_speed", 0.9)

@@ -216,7 +216,7 @@ def test_the_verdict_in_whole_sentences(says: Verdict, log_says: Regime) -> None
     sentences = (
         "By the regime chart this contact is isoviscous-elastic, and damping should vary as "
         f"speed^{says.expected:.2f}; measured: {says.exponent}. "
-        f"A numerical solution for this roll gives {says.solved:.2f}. ",
+        f"A numerical solution for this roll gives the exponent {says.solved:.2f}. ",
         "From the log alone no regime can be named",
         " Eq. 5 of the paper (Dowson-Higginson) does not apply to this contact. "
         f"The exponent of damping in temperature (K) is {says.thermal}; the film of this lubricant predicts "
@@ -419,7 +419,7 @@ def test_what_does_not_fit_is_ranked(machine: Machine, measured: MeasuredFilm) -
     sizes = [each.number("off") for each in found if each.severity != "note"]
     assert len(sizes) >= 3
     assert sizes == sorted(sizes, reverse=True)
-    assert found[0].text.startswith("measured torque is 58 times")
+    assert found[0].text.startswith("Measured torque is 58 times")
     assert found[0].number("off") == pytest.approx(58 / 3)
     assert found[0].severity == "act"
     by_kind = {each.kind: each for each in found}

@@ -13,7 +13,7 @@ from hersey.cli.printing import Printing, write_course
 from hersey.cli.progress import bar, working
 from hersey.cli.quantities import target_of, temperature_of
 from hersey.cli.warming import beyond_the_log, heat_of, refuse_below_zero, start_of
-from hersey.errors import ParameterError, sentence
+from hersey.errors import ParameterError
 
 if TYPE_CHECKING:
     from hersey.damping.surface import DampingSurface
@@ -136,7 +136,7 @@ def _lines(planned: Plan) -> list[str]:
     if not planned.found:
         return [
             "No profile ends in steady sliding.",
-            *(f"- {sentence(each.text)}" for each in planned.obstacles),
+            *(f"- {each.text}" for each in planned.obstacles),
         ]
     lines = [_verdict(planned)]
     rows = [(four(time), four(1e3 * speed)) for time, speed in planned.rows()]

@@ -84,7 +84,7 @@ def _print(found: Study, printing: Printing) -> None:
     if found.comparison is not None:
         printing.text(f"Compared with {found.comparison.names[0]}: {found.comparison.verdict}")
     flags = [flag for flag in decision.flags if flag.where != _COMPARED]
-    printing.text(*(f"- {flag.title}: {sentence(flag.text)}" for flag in printing.chosen(flags)))
+    printing.text(*(f"- {flag.title}: {flag.text}" for flag in printing.chosen(flags)))
     if printing.verbose:
         said = {flag.text for flag in flags}
         printing.warnings(*(each for each in found.warnings if not {each.text, str(each)} & said))
@@ -92,11 +92,9 @@ def _print(found: Study, printing: Printing) -> None:
 
 
 def _decision(decision: DecisionPart) -> list[str]:
-    """The instruction, the interval behind it, and what to measure next, as sentences."""
-    said = (decision.instruction, decision.interval, decision.otherwise)
-    lines = [sentence(text) for text in said if text]
-    lines = [lines[0], " ".join(lines[1:])]
-    return [*filter(None, lines), *([sentence(decision.measurement.text)] if decision.measurement else [])]
+    """The instruction, the interval behind it, and what to do next."""
+    behind = " ".join(filter(None, (decision.interval, decision.otherwise)))
+    return [*filter(None, (decision.instruction, behind, decision.next))]
 
 
 def _studied(

@@ -161,8 +161,8 @@ def _section(
         "name": name,
         "title": title,
         "charts": list(charts),
-        "text": list(text),
-        "lines": list(lines),
+        "text": [sentence(each) for each in text],
+        "lines": [sentence(each.removeprefix("- ")) for each in lines],
         "warnings": _stated(warnings),
         "tables": list(tables),
     }

@@ -20,6 +20,7 @@ from hersey.charts.style import Chart
 from hersey.damping.dwells.reduced import refuse_unfitted
 from hersey.document.analysis import Analysis
 from hersey.document.assembly import document_of
+from hersey.errors import sentence
 from hersey.files.writing import write_atomically
 from hersey.report.glossary import meanings
 from hersey.study.log_and_machine import Study
@@ -116,7 +117,7 @@ def drawn(
     """
     data: dict[str, object] = {
         "document": document,
-        "charts": {key: specification_of(chart) for key, chart in charts.items()},
+        "charts": {key: _with_sentences(specification_of(chart)) for key, chart in charts.items()},
     }
     more = {"physics": physics, "glossary": glossary}
     data |= {name: content for name, content in more.items() if content is not None}
@@ -128,6 +129,16 @@ def drawn(
         script=_static((*_SHARED, *(name for name in pieces if name.endswith(".js")))),
         computes=physics is not None,
     )
+
+
+def _with_sentences(chart: dict[str, Any]) -> dict[str, Any]:
+    """The specification of a chart, the lines below its title as sentences."""
+    title = chart.get("title")
+    if not isinstance(title, dict) or "subtitle" not in title:
+        return chart
+    lines = title["subtitle"]
+    finished = [sentence(each) for each in ([lines] if isinstance(lines, str) else lines)]
+    return chart | {"title": title | {"subtitle": finished}}
 
 
 def _static(names: tuple[str, ...]) -> str:

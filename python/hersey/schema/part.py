@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict
+from pydantic import AfterValidator, BaseModel, ConfigDict
+
+from hersey.errors import sentence
 
 SCHEMA_VERSION: Literal["2"] = "2"
 
 #: Numbers of shape (n,), and such of which one may be infinite or missing.
 Numbers = list[float]
 Holed = list[float | None]
+#: Text that pages and terminal show as it is: whole sentences, or empty.
+Sentences = Annotated[str, AfterValidator(sentence)]
 
 
 class Part(BaseModel):

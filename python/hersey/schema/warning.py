@@ -164,8 +164,8 @@ class Warning(Record):
 
     @property
     def text(self) -> Annotated[str, Means("what is wrong, and what to do")]:
-        """What is wrong and what to do, in the words of the way in."""
-        return followed_by(self._shown(self.words), self._shown(self.remedy))
+        """What is wrong and what to do, as sentences in the words of the way in."""
+        return sentence(self._clause)
 
     @property
     def sentence(self) -> str:
@@ -178,12 +178,16 @@ class Warning(Record):
         own = {"kind": self.kind, "severity": self.severity, "where": self.where, "values": values}
         return json_record({**own, "title": self.title, "text": self.text})
 
+    @property
+    def _clause(self) -> str:
+        return followed_by(self._shown(self.words), self._shown(self.remedy))
+
     def _shown(self, words: str) -> str:
         return printable(_words.vformat(words, (), self.values))
 
     def __str__(self) -> str:
         """Return what it concerns, what is wrong and what to do."""
-        return ": ".join(part for part in (self.where, self.title, self.text) if part)
+        return ": ".join(part for part in (self.where, self.title, self._clause) if part)
 
     def __hash__(self) -> int:
         """Return a hash of what is shown."""

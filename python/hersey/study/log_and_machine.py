@@ -65,9 +65,8 @@ class Study(Findings, Result):
     def summary(self) -> str:
         """Return decision, comparison, verdict, warnings and fit, as text."""
         decision = self.decision
-        said = (decision.instruction, decision.interval[:1].upper() + decision.interval[1:])
-        lines = [f"{'. '.join(filter(None, said))}. {decision.otherwise}"]
-        lines += [f"{decision.measurement.text}."] if decision.measurement is not None else []
+        said = (decision.instruction, decision.interval, decision.otherwise)
+        lines = [*filter(None, (" ".join(filter(None, said)), decision.next))]
         lines += [f"{point.name}: {point.words}" for point in decision.points]
         if self.comparison is not None:
             lines.append(f"Compared with {self.comparison.names[0]}: {self.comparison.verdict}")

@@ -166,7 +166,7 @@ def _text(
         f"speed^{expected:.2f}; measured: {c}."
     ]
     if solved is not None:
-        lines.append(f"A numerical solution for this roll gives {solved:.2f}.")
+        lines.append(f"A numerical solution for this roll gives the exponent {solved:.2f}.")
     if seen.named is None:
         lines.append("From the log alone no regime can be named.")
     elif excluded is None:

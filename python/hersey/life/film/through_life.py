@@ -123,7 +123,8 @@ class FilmLife(Result):
         )
         lines += [f"  {_volumes(each)}" for each in self.oil]
         lines.append(
-            f"fitted law dh/dt = -K h^3/2 - e h with viscosity exp(g t), median specimen, per {unit}: "
+            f"fitted law dh/dt = -K h^3/2 - e h with viscosity exp(g t), median specimen, K in "
+            f"1/(m^2 {unit}), e and g in 1/{unit}: "
             + ", ".join(f"{name} {each}" for name, each in self.law.items())
         )
         return "\n".join([*lines, *(f"- {each}" for each in self.warnings)])

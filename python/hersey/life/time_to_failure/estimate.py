@@ -128,7 +128,7 @@ class TimeToFailure(Result):
                 f"{'; '.join(far)}"
             )
         lines += [
-            f"{each.where} is not judged: {each.text}" if each.kind == NOT_JUDGED else f"- {each}"
+            f"{each.where} is not judged. {each.text}" if each.kind == NOT_JUDGED else f"- {each}"
             for each in self.warnings
         ]
         return "\n".join([*lines, *(f"next: {each}" for each in self.advice)])

@@ -116,12 +116,12 @@ async function chart(parent, name, { heading = null, level = "h3", note = null, 
   }
   for (const inner of drawing.children) inner.setAttribute("aria-hidden", "true");
   drawing.setAttribute("role", "img");
-  drawing.setAttribute("aria-label", [label, says, ...notes].filter(Boolean).join(". "));
-  for (const text of notes) add(figure, "p", sentence(text), "note");
+  drawing.setAttribute("aria-label", [`${label}.`, says, ...notes].filter(Boolean).join(" "));
+  for (const text of notes) add(figure, "p", pretty(text), "note");
   if (behind) {
     fold(figure, "Data", (all) => {
       toggles(all, specification, view);
-      if (note !== null) for (const text of lines(title.subtitle)) if (!notes.includes(text)) add(all, "p", sentence(text), "note");
+      if (note !== null) for (const text of lines(title.subtitle)) if (!notes.includes(text)) add(all, "p", pretty(text), "note");
       numbersOf(specification).forEach(({ heads, rows, numeric }, i) => table(all, heads, rows, numeric, { name: `${name}${i ? `-${i + 1}` : ""}`, label: words }));
       const foot = add(all, "div", "", "foot");
       for (const kind of ["svg", "png"]) button(foot, `Save ${kind.toUpperCase()}`, () => pictureOf(specification, name, kind));

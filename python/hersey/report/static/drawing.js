@@ -17,18 +17,8 @@ function pretty(text) {
   return text.replaceAll(" degC", " °C").replace(/(\d) (?=%|°C)/g, "$1\u00a0").replaceAll("+/-", "±").replace(/(^|[\s[(,±])-(?=\d)/g, "$1−").replace(/(?<=[a-z])\^2\b/g, "²")
     .replace(/\b(mN|N) m\b/g, "$1·m").replace(/(\d)e-0*(\d+)\b/g, (_, first, power) => `${first}·10⁻${[...power].map((each) => "⁰¹²³⁴⁵⁶⁷⁸⁹"[each]).join("")}`);
 }
-// The same as a sentence of its own.
-const stopped = (text) => pretty(text).replace(/[^.!?:]$/, "$&.");
-function sentence(text) {
-  const set = stopped(text);
-  return `${set.slice(0, 1).toUpperCase()}${set.slice(1)}`;
-}
-
-// A warning as a sentence; the name of what it concerns is kept as it is.
-function warned(each) {
-  const said = [each.title, each.text].filter(Boolean).join(": ");
-  return each.where ? `${each.where}: ${stopped(said)}` : sentence(said);
-}
+// A warning: what it concerns, its title and its text.
+const warned = (each) => pretty([each.where, each.title, each.text].filter(Boolean).join(": "));
 
 function add(parent, tag, text = "", className = "") {
   const element = document.createElement(tag);

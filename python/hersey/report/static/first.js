@@ -44,13 +44,13 @@ function decision() {
   sign.append(largeSign(kind));
   add(sign, "span", SIGNALS[kind]);
   const words = add(box, "div");
-  const lead = add(words, "p", pretty((told?.instruction ?? data.verdict[0] ?? "").replace(/\.?$/, ".")), "lead");
+  const lead = add(words, "p", pretty(told?.instruction ?? data.verdict[0] ?? ""), "lead");
   const more = told?.otherwise || told?.interval ? add(words, "p", pretty(told.otherwise ?? ""), "more") : null;
   if (told?.interval) {
     more.append(" ");
-    add(more, "span", sentence(told.interval), "interval");
+    add(more, "span", pretty(told.interval), "interval");
   }
-  if (told?.measurement) nextMeasurement(words, told);
+  if (told?.next) nextStep(words, told);
   if (lead.textContent.length + 0.6 * (told?.otherwise.length ?? 0) > 210) row.classList.add("tight");
   if (told?.points.length) points(row, told.points);
   else row.style.gridTemplateColumns = "minmax(0, 1fr)";
@@ -62,17 +62,18 @@ function decision() {
       const title = add(item, "b", "", flag.severity);
       title.append(signal(flag.severity));
       add(title, "span", `${SIGNALS[flag.severity]}: `, "sr-only");
-      title.append(sentence(flag.title));
-      item.append(` ${sentence(flag.text)} `);
+      title.append(`${pretty(flag.title)}.`);
+      item.append(` ${pretty(flag.text)} `);
       item.dataset.section = sectionOf(flag.where);
     }
   }
 }
-// The measurement that helps most, with its reason in a fold beside it.
+// What to do next; the reason of a measurement stands in a fold beside it.
 const CLOSURE_WORDS = { retained: "comes to rest gradually", stiction: "stops abruptly", stribeck: "follows a Stribeck curve", lugre: "follows the LuGre model" };
-function nextMeasurement(words, { measurement, fold: safe, closures }) {
+function nextStep(words, { next, measurement, fold: safe, closures }) {
   const line = add(words, "div", "", "next");
-  add(line, "p", sentence(measurement.text));
+  add(line, "p", pretty(next));
+  if (!measurement) return;
   const why = fold(line, "Why this one");
   const reasons = [];
   if (safe?.low != null && safe.high != null) {
@@ -156,9 +157,8 @@ function missing(panel) {
     return;
   }
   all.forEach((each, i) => {
-    const words = sentence(each.purpose);
     const place = i ? fold(panel, `${each.file}: ${each.purpose}`) : add(panel, "div");
-    if (!i) add(place, "p", words);
+    if (!i) add(place, "p", `With these lines the report shows ${each.purpose}.`);
     const head = add(place, "div", "", "cap");
     head.style.marginTop = "6px";
     add(head, "b", `Add to ${each.file}`);

@@ -1,7 +1,6 @@
 // The page of a life test: which specimens need attention and what to do, beside it the ages with other limits, then
 // the evidence section by section.
 
-const plain = (text) => sentence(text.replace(/^- /, ""));
 function list(parent, lines, className = "") {
   if (!lines.length) return;
   const items = add(parent, "ul", "", className);
@@ -11,12 +10,12 @@ async function section(parent, each, title = each.title) {
   const element = add(parent, "section", "", "part");
   element.id = each.name;
   if (title) add(element, "h2", title);
-  for (const text of each.text) add(element, "p", plain(text));
+  for (const text of each.text) add(element, "p", pretty(text));
   for (const name of each.charts) await chart(element, name, title ? {} : { level: "h2" });
   for (const { title: of, heads, rows, numeric } of each.tables) {
     table(of ? fold(element, of) : element, heads, rows, numeric, { name: `${each.name}${of ? "-each" : ""}`, label: of || title });
   }
-  const words = [...each.lines.map(plain), ...each.warnings.map(warned)];
+  const words = [...each.lines.map(pretty), ...each.warnings.map(warned)];
   if (words.length) list(words.length > 4 ? fold(element, `Details (${words.length})`) : element, words, "soft");
 }
 // What needs attention, and what to measure next.

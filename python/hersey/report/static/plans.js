@@ -27,7 +27,7 @@ async function planSection(parent) {
   for (const point of all.filter((p) => !p.plan)) {
     const line = add(part, "p", "", "text"), name = add(line, "b", pointName(point));
     name.prepend(signal(point.signal));
-    line.append(`: ${point.reason ? stopped(point.reason) : point.signal === "good" ? "no profile needed." : stopped(point.words)}`);
+    line.append(`: ${pretty(point.reason || (point.signal === "good" ? "no profile needed" : point.words))}`);
   }
 }
 const unplanned = (all) => all.every((point) => point.signal === "good") ? "No operating point needs a start-up profile." : "No start-up profile was found.";

@@ -16,7 +16,7 @@ function verdicts({ map, points, limit, motor, questions }) {
   };
   function reported({ speed, temperature }) {
     const own = points.find((p) => Math.abs(p.speed / speed - 1) < 1e-6 && (!map.temperature || Math.abs(p.temperature - temperature) < 1e-6));
-    if (own) return { signal: own.signal, words: own.verdict === "depends" && own.plan?.rows.length ? "needs the start-up profile" : own.words, own: true };
+    if (own) return { signal: own.signal, words: own.brief || own.words, own: true };
     if (map.speed_limit !== null && speed > map.speed_limit * (1 + 1e-9)) {
       return { signal: "act", words: `above the drive limit, ${digits(1e3 * map.speed_limit)} mm/s` };
     }

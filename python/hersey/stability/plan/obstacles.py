@@ -9,7 +9,7 @@ from typing import Annotated
 
 import numpy as np
 
-from hersey.errors import ParameterError
+from hersey.errors import ParameterError, sentence
 from hersey.machine.limits import Limits
 from hersey.result import Means, Record
 from hersey.stability.plan.draws import Trials
@@ -63,6 +63,10 @@ class Obstacle(Record):
         Means("value that would do if no other changed, SI, or null; for confidence the share that works"),
     ]
     text: str
+
+    def __post_init__(self) -> None:
+        """Finish the text as sentences."""
+        object.__setattr__(self, "text", sentence(self.text))
 
 
 @dataclass(frozen=True)

@@ -124,7 +124,7 @@ class Plan(Result):
     def verdict(self) -> str:
         """Return the decision in a sentence or two."""
         if not self.found:
-            return "No profile ends in steady sliding: " + "; ".join(o.text for o in self.obstacles) + "."
+            return " ".join(["No profile ends in steady sliding.", *(o.text for o in self.obstacles)])
         up = f"in {self.rise:.4g} s" if self.rise > 0 else "at once"
         if self.kind == "direct":
             way = f"Accelerate directly to {speed_text(self.target_speed)} {up}"

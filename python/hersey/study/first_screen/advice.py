@@ -2,19 +2,62 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 from hersey.decision.behaviour import Behaviour
-from hersey.decision.edges import Edge
-from hersey.decision.measurement import WORTH, Measurement
+from hersey.decision.edges import Edge, Edges, edges_of
+from hersey.decision.measurement import NARROW, WORTH, Measurement
 from hersey.posterior import Posterior
-from hersey.study.first_screen.result import DesignPart, MeasurementPart
-from hersey.study.first_screen.words import at, between, listed, mm
+from hersey.study.first_screen.result import DesignPart, MeasurementPart, PointDecisionPart
+from hersey.study.first_screen.words import at, between, figures, listed, mm
+
+#: Ratio of the ends of V* up to which it counts as known: `NARROW`, and what few draws leave unsure of it.
+_KNOWN = 1.1 * NARROW
 
 
 def advised(found: Behaviour) -> MeasurementPart | None:
     """Return the measurement that narrows V* most; None where V* is known well enough."""
     return None if found.measurement is None else _part(found.measurement)
+
+
+def next_step(found: Behaviour, points: Sequence[PointDecisionPart]) -> str:
+    """Return what to do next: the measurement that narrows V* most, else what the operating points need.
+
+    Empty where the instruction itself says it: torque may still fall at the fastest dwell, or nothing starts.
+    """
+    edges = edges_of(found.posterior, found.temperature)
+    if found.measurement is not None:
+        return _part(found.measurement).text
+    if not edges.turns or edges.starts is False:
+        return ""
+    done = "No single measurement would narrow V* much."
+    if (ratio := _ratio(edges.fold)) <= _KNOWN:
+        done = f"V* is known {_within_ratio(ratio)}; no further measurement is needed."
+    todo = _of_points(edges, points)
+    return f"Next: {todo}. {done}" if todo else done
+
+
+def _of_points(edges: Edges, points: Sequence[PointDecisionPart]) -> str:
+    """What the operating points need, the gravest first; empty if nothing."""
+    if edges.starts is None:
+        return "record the torque that starts the belt from rest, since the drive may not start it"
+    if not points:
+        return "add your operating points to the machine file"
+    slow = [p.name for p in points if p.verdict in ("sticks", "depends", "unknown") and p.signal == "act"]
+    if slow and edges.safe <= edges.greatest and math.isfinite(edges.safe):
+        return f"run {listed(slow)} above {figures(1e3 * edges.safe, up=True)} mm/s"
+    if beyond := [p.name for p in points if p.signal == "act"]:
+        return f"change the speed of {listed(beyond)}, or the limits of the drive"
+    planned = [p.name for p in points if p.signal != "good" and p.plan is not None and p.plan.found]
+    if planned:
+        profile = "its start-up profile" if len(planned) == 1 else "their start-up profiles"
+        return f"start {listed(planned)} with {profile}, and check that the belt slides"
+    return ""
+
+
+def _ratio(fold: Edge) -> float:
+    return fold.high / fold.low if fold.low > 0.0 else math.inf
 
 
 def _part(measurement: Measurement) -> MeasurementPart:
@@ -67,8 +110,12 @@ def _action(best: Measurement) -> str:
 
 
 def _within(best: Measurement) -> str:
-    share = 100.0 * (best.factor**0.5 - 1.0)
-    return f"within about {max(share, 1.0):.0f} %"
+    return _within_ratio(best.factor)
+
+
+def _within_ratio(ratio: float) -> str:
+    """Half the width of an interval whose ends have a ratio, in per cent."""
+    return f"within about {max(100.0 * (ratio**0.5 - 1.0), 1.0):.0f} %"
 
 
 def _capital(text: str) -> str:

@@ -11,7 +11,7 @@ from hersey.decision.behaviour import Behaviour
 from hersey.decision.edges import edges_of
 from hersey.decision.plausibility import asked
 from hersey.study.findings import Findings
-from hersey.study.first_screen.advice import advised
+from hersey.study.first_screen.advice import advised, next_step
 from hersey.study.first_screen.flags import few_slow_dwells, flags
 from hersey.study.first_screen.instruction import of_log, of_machine
 from hersey.study.first_screen.missing import missing
@@ -52,6 +52,7 @@ def decision(known: Findings) -> DecisionPart:
         interval=said.interval,
         otherwise=said.otherwise,
         **_speeds(known.behaviour),
+        next="" if known.behaviour is None or map_ is None else next_step(known.behaviour, of_points),
         points=of_points,
         flags=against,
         missing=missing(known),

@@ -294,7 +294,7 @@ def _plans(found: Behaviour) -> Iterator[Warning]:
                 title="No start-up profile for {point}" if below else "No start for {point}",
                 where="plan",
                 point=each.point.name,
-                why="; ".join(obstacle.text for obstacle in each.plan.obstacles),
+                why=" ".join(obstacle.text for obstacle in each.plan.obstacles),
             )
 
 

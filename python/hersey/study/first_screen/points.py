@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -25,6 +26,19 @@ _SAMPLES = 600
 _ORDER: tuple[Signal, ...] = ("good", "watch", "act")
 
 
+class _Said(NamedTuple):
+    """What is said of a point: the verdict, its numbers and reason, and what qualifies it."""
+
+    signal: Signal
+    brief: str
+    why: str = ""
+    but: str = ""
+
+    def qualified(self, but: str) -> _Said:
+        """Return the same, which is no longer good, with a qualification."""
+        return self._replace(signal=worst([self.signal, "watch"]), but=f"{self.but}{but}")
+
+
 def worst(signals: list[Signal]) -> Signal:
     """Return the gravest signal; good where there is none."""
     return max(signals, key=_ORDER.index, default="good")
@@ -39,18 +53,19 @@ def point_decision(
     """
     point, verdict = found.point, found.verdict
     kelvin = point.temperature if map_.drag.varies_with_temperature else None
-    signal, words = _judged(found, verdict, edges_of(drawn, kelvin), map_, unit)
-    if signal == "good" and not film_alone:
-        signal, words = "watch", f"{words}, if all torque comes from the film"
+    said = _judged(found, verdict, edges_of(drawn, kelvin), map_, unit)
+    if said.signal == "good" and not film_alone:
+        said = said.qualified(", if all torque comes from the film")
     if map_.state_at(temperature=kelvin, speed=point.speed).extrapolated:
-        signal, words = worst([signal, "watch"]), f"{words}; extrapolated"
+        said = said.qualified("; extrapolated")
     chances = verdict.probability
     return PointDecisionPart(
         name=point.name,
         speed=point.speed,
         temperature=point.temperature,
-        signal=signal,
-        words=words,
+        signal=said.signal,
+        words=f"{said.brief}{said.why}{said.but}",
+        brief=f"{said.brief}{said.but}",
         verdict=verdict.kind,
         smooth=chances.smooth,
         from_above=chances.from_above,
@@ -100,46 +115,47 @@ def points_of_log(surface: DampingSurface, machine: Machine, *, rises: bool) -> 
     return out
 
 
-def _judged(
-    found: PointBehaviour, verdict: Verdict, edges: Edges, map_: OperatingMap, unit: str
-) -> tuple[Signal, str]:
+def _judged(found: PointBehaviour, verdict: Verdict, edges: Edges, map_: OperatingMap, unit: str) -> _Said:
     chances, kind = verdict.probability, verdict.kind
     held = edges.holding
     needs = starting(held.low, held.value, held.high, edges.limit, map_.limited_by, unit)
     if kind == "too fast":
-        return "act", f"exceeds the maximum speed of the drive, {mm(map_.speed_limit or math.nan)} mm/s"
+        limit = f"{mm(map_.speed_limit or math.nan)} mm/s"
+        return _Said("act", f"exceeds the maximum speed of the drive, {limit}")
     if kind == "not started":
-        return "act", f"does not start: {needs}"
+        return _Said("act", "does not start", f": {needs}")
     if kind == "stalls":
-        return "act", f"stalls: {_beyond(map_, found, unit)}"
+        return _Said("act", "stalls", f": {_beyond(map_, found, unit)}")
     if kind == "sticks":
-        turn = edges.transition
-        if not edges.turns:
-            return "act", f"sticks from any start ({per_cent(chances.sticks)}): torque falls at this speed"
-        lowest = between("the transition is", turn.value, turn.low, turn.high)
-        return "act", f"sticks from any start ({per_cent(chances.sticks)}): {lowest}"
+        turn, why = edges.transition, "torque falls at this speed"
+        if edges.turns:
+            why = between("the transition is", turn.value, turn.low, turn.high)
+        return _Said("act", "sticks from any start", f" ({per_cent(chances.sticks)}): {why}")
     if kind == "smooth":
-        return "good", f"smooth from any start (sticks: {per_cent(verdict.sticks_from_rest)})"
+        return _Said("good", "smooth from any start", f" (sticks: {per_cent(verdict.sticks_from_rest)})")
     if chances.unknown > 1.0 - SAFE:
-        return "watch", "cannot be judged: torque may still fall at the fastest dwell"
+        return _Said("watch", "cannot be judged", ": torque may still fall at the fastest dwell")
     if verdict.starts < 1.0 and edges.starts is None:
         chance = f"may not start ({per_cent(1.0 - verdict.starts)})"
-        return "watch", f"{chance} or may stick ({per_cent(verdict.sticks_from_rest)}): {needs}"
+        return _Said("watch", f"{chance} or may stick ({per_cent(verdict.sticks_from_rest)})", f": {needs}")
     return _with_plan(found, verdict)
 
 
-def _with_plan(found: PointBehaviour, verdict: Verdict) -> tuple[Signal, str]:
+def _with_plan(found: PointBehaviour, verdict: Verdict) -> _Said:
     """What is said where the way to the point decides, or where that is not sure."""
     plan, sticks = found.plan, per_cent(verdict.sticks_from_rest)
     if plan is not None and plan.found:
         slides = per_cent(plan.share)
-        return "watch", f"needs the start-up profile: sticks without it ({sticks}), slides with it ({slides})"
+        why = f": sticks without it ({sticks}), slides with it ({slides})"
+        return _Said("watch", "needs the start-up profile", why)
     if plan is not None and any(each.limit == "target_speed" for each in plan.obstacles):
         below = per_cent(verdict.probability.sticks)
-        return "act", f"may stick: with {below} probability it is below the transition"
+        return _Said("act", "may stick", f": with {below} probability it is below the transition")
     once = ", smooth once it slides" if verdict.kind == "depends" else ""
-    why = f"{'sticks' if verdict.sticks_from_rest >= SAFE else 'may stick'} from rest ({sticks}){once}"
-    return ("watch", why) if plan is None else ("act", f"{why}: no start-up profile within the limits works")
+    brief = f"{'sticks' if verdict.sticks_from_rest >= SAFE else 'may stick'} from rest ({sticks}){once}"
+    if plan is None:
+        return _Said("watch", brief)
+    return _Said("act", brief, ": no start-up profile within the limits works")
 
 
 def _beyond(map_: OperatingMap, found: PointBehaviour, unit: str) -> str:

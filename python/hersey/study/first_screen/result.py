@@ -8,7 +8,7 @@ from pydantic import Field
 
 from hersey.damping.design import TestDesign
 from hersey.decision.edges import Edge
-from hersey.schema.part import Numbers, Part
+from hersey.schema.part import Numbers, Part, Sentences
 from hersey.schema.record import part_of
 from hersey.schema.warning import Warning
 from hersey.stability.disturbance import Disturbance, SafeStep
@@ -35,6 +35,7 @@ class PointDecisionPart(Part):
     temperature: float
     signal: Signal
     words: str = Field(description="e.g. 'smooth from any start (sticks: under 1 %)'")
+    brief: str = Field(default="", description="the verdict in a few words, e.g. 'smooth from any start'")
     verdict: Literal["smooth", "depends", "sticks", "not started", "stalls", "too fast", "unknown"] = Field(
         default="unknown", description="'smooth' is from any start; 'depends' on how the speed is reached"
     )
@@ -49,7 +50,7 @@ class PointDecisionPart(Part):
     motion: StartPart | None = Field(
         default=None, description="motion under the profile, with nominal parameters"
     )
-    reason: str = Field(default="", description="why a profile or a number is missing")
+    reason: Sentences = Field(default="", description="why a profile or a number is missing")
 
 
 class MissingPart(Part):
@@ -64,7 +65,7 @@ class MeasurementPart(Part):
     """The measurement that would narrow V* most."""
 
     kind: Literal["starts", "break-away", "stick-slip", "dwell"]
-    text: str = Field(description="what to do, and what it would bring, in one sentence")
+    text: Sentences = Field(description="what to do, and what it would bring")
     temperature: float | None = Field(description="K")
     speeds: Numbers = Field(description="m/s, of starts, of a dwell or of a stretch of stick-slip")
     left: float = Field(
@@ -76,9 +77,12 @@ class DecisionPart(Part):
     """The first screen of the report."""
 
     signal: Signal
-    instruction: str = Field(description="one imperative sentence, on the safe side")
-    interval: str = Field(description="estimate and 95 % interval behind the instruction; may be empty")
-    otherwise: str = Field(description="what happens otherwise")
+    instruction: Sentences = Field(description="one imperative sentence, on the safe side")
+    interval: Sentences = Field(description="estimate and 95 % interval behind the instruction; may be empty")
+    otherwise: Sentences = Field(description="what happens otherwise")
+    next: Sentences = Field(
+        default="", description="what to do next; empty where the instruction or ``otherwise`` says it"
+    )
     temperature: float | None = Field(default=None, description="K, at which the safe speed and V* hold")
     safe_speed: float | None = Field(
         default=None, description="m/s; above it the belt is smooth from any start with 97.5 % probability"
