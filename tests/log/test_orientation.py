@@ -111,6 +111,13 @@ def test_a_long_table_sorted_by_channel_in_another_order_is_refused(tmp_path: Pa
         hersey.read(path)
 
 
+def test_a_long_table_of_more_words_than_numbers_is_refused(tmp_path: Path) -> None:
+    rows = [f"{stamp};{name};{value};Good" for name, stamp, value, _ in long_rows(["FT-1", "ST-2", "TT-3"])]
+    path = written(tmp_path, "\n".join(["Timestamp;Tag;Val;Quality", *rows]))
+    with pytest.raises(UnreadableLogError, match=r"column 'Tag' names the channel.*FT-1, ST-2, TT-3"):
+        hersey.read(path)
+
+
 def test_sheets_of_a_workbook_that_are_turned_say_so(tmp_path: Path) -> None:
     pytest.importorskip("fastexcel")
     long = [["VarName", "TimeString", "VarValue", "Ok"], *long_rows(["Torque", "Speed", "Temp"])]
@@ -169,6 +176,13 @@ def test_a_web_page_is_called_so(head: str, name: str, kind: str, ending: str, t
             call(path)
         assert ("rename it" in caught.value.remedy) == bool(ending)
         assert ending in caught.value.remedy
+
+
+def test_a_page_without_a_table_is_to_be_downloaded_again(tmp_path: Path) -> None:
+    path = written(tmp_path, "<!DOCTYPE html><html><body><form>Login</form></body></html>")
+    with pytest.raises(UnreadableLogError, match="without a table") as caught:
+        hersey.read(path)
+    assert "Excel" not in caught.value.remedy
 
 
 def test_a_spreadsheet_in_xml_and_a_page_in_utf_16_are_called_so(tmp_path: Path) -> None:

@@ -41,6 +41,7 @@ FILES = {
 }
 #: Bytes of the start that are looked at.
 _LOOKED_AT = 512
+_LOOKED_AT_IN_A_PAGE = 1 << 20
 #: First bytes of a format, which outrank the suffix.
 _STARTS = (
     (b"TDSm", "tdms"),
@@ -101,6 +102,12 @@ def _refuse_markup(path: Path, text: str) -> None:
     if not (match := _MARKUP.match(text)):
         return
     what, ending = ("a web page (HTML)", ".html") if match["page"] else ("an XML file", ".xml")
+    with open_file(path) as file:
+        if match["page"] and b"<table" not in file.read(_LOOKED_AT_IN_A_PAGE).replace(b"\0", b"").lower():
+            raise UnreadableLogError(
+                f"{path.name} is a web page (HTML) without a table, e.g. of a login or an error",
+                remedy="open it in a browser to see which, and download the log again",
+            )
     suffix = path.suffix.lower()
     renamed = "" if suffix in (".xls", ending) else f"rename it to end in {ending}, "
     raise UnreadableLogError(

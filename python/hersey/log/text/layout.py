@@ -5,6 +5,7 @@ from __future__ import annotations
 import codecs
 import itertools
 import re
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
@@ -150,12 +151,24 @@ def _table(numbered: list[Numbered], separators: str, name: str) -> NumberRows:
             table = blanks
     refuse_columns(name, table.width)
     if table.score == 0:
+        for each in separators:
+            _refuse_long_words(numbered, each, name)
         raise UnreadableLogError(
             f"{name} has a header but no rows of numbers"
             if any(len(split(numbered[-1][1], each)) > 1 for each in SEPARATORS)
             else f"{name} has no table of numbers with at least two columns{_of_another_kind(name)}"
         )
     return table
+
+
+def _refuse_long_words(numbered: list[Numbered], separator: str, name: str) -> None:
+    """Raise if rows of words and few numbers are those of a long table."""
+    rows = [split(line, separator) for _, line in numbered]
+    width = Counter(map(len, rows)).most_common(1)[0][0]
+    header, *rows = [row for row in rows if len(row) == width]
+    columns, stamps = _with_stamps(tuple(Column(i, cell, "") for i, cell in enumerate(header)), rows)
+    texts = {i for i in range(width) if i not in stamps and _holds_words(rows, i)}
+    refuse_long(name, columns, texts, stamps, rows)
 
 
 def encoding_of(start: bytes, name: str) -> str:

@@ -16,7 +16,7 @@ from hersey.log.text.stamps import is_stamp
 _LEAST, _WIDTH_OF_EXCEL = 20, 16384
 #: Names of channels in one column at the most, names shown, and rows looked at.
 _MOST, _SHOWN, _ROWS = 200, 8, 1000
-_VALUE = re.compile(r".*(value|wert|valeur|valor|reading).*", re.IGNORECASE)
+_VALUE = re.compile(r".*(value|wert|valeur|valor|reading).*|val", re.IGNORECASE)
 
 
 def refuse_transposed(place: str, lines: list[str], separators: str, *, whole: bool = True) -> None:
@@ -71,7 +71,10 @@ def refuse_long(
     if not texts or _has_torque(numeric):
         return
     clocks = [c for c in numeric if c.index in stamps] or [c for c in numeric if is_called("time", c)]
-    values = [c for c in numeric if c.index not in stamps and _VALUE.fullmatch(c.name)]
+    others = [column for column in numeric if column not in clocks]
+    if not clocks or not others:
+        return
+    values = [column for column in others if _VALUE.fullmatch(column.name)]
     for column in columns:
         if column.index not in texts:
             continue
@@ -82,13 +85,14 @@ def refuse_long(
         roles = {role for role in ROLES[1:] for name in names if _names(role, name)}
         cycles = any(_in_cycles(words, [row[c.index] for row in rows[:_ROWS]], len(names)) for c in clocks)
         if len(roles) > 1 or (roles and values) or cycles:
-            time = f"'{clocks[0].name}'" if clocks else "the time"
-            value = f"'{values[0].name}'" if values else "the values"
+            listed = _listed(names) if len(names) > 1 else f"first {names[0][:60]}"
+            value = f"'{values[0].name}'" if values else "the column of values"
             raise UnreadableLogError(
                 f"{place} is a long table: column '{column.name}' names the channel of each row "
-                f"({_listed(names)}). A log needs one column per channel and one row per time",
-                remedy=f"export it that way, or insert a PivotTable in Excel: {time} as rows (not grouped), "
-                f"'{column.name}' as columns, the average of {value} as values",
+                f"({listed}). A log needs one column per channel and one row per time",
+                remedy="export it that way, or insert a PivotTable in Excel: "
+                f"'{clocks[0].name}' as rows (not grouped), '{column.name}' as columns, "
+                f"the average of {value} as values",
             )
 
 
