@@ -50,6 +50,8 @@ def open_excel(file: BinaryIO, _name: str) -> Iterator[Recording]:
             tables[title] = (cells, _layout(cells, f"sheet '{title}'"))
         except HerseyError as error:
             others.append(str(error))
+            if error.remedy:  # its table has to be turned
+                recording.nothing = recording.nothing or str(error)
     signals: list[Signal] = []
     columns: list[Cells] = []
     for title, (cells, layout) in tables.items():

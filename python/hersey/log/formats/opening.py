@@ -276,7 +276,7 @@ class _Reader:
             return self._too_large()
         if kind == "NotStarted":
             return self._not_started(message)
-        reason = _plain(message).partition("\n")[0][:160] or kind
+        reason = _plain(message.partition("\n")[0])[:160] or kind
         return UnreadableLogError(
             f"{self.file.path.name} cannot be read as {called(self.kind)}. It is damaged, cut off or in "
             f"another format ({reason})"

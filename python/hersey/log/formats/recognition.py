@@ -41,6 +41,7 @@ FILES = {
 }
 #: Bytes of the start that are looked at.
 _LOOKED_AT = 512
+_LOOKED_AT_IN_A_PAGE = 1 << 20
 #: First bytes of a format, which outrank the suffix.
 _STARTS = (
     (b"TDSm", "tdms"),
@@ -58,6 +59,14 @@ _STARTS = (
 _ARCHIVE = b"PK\x03\x04"
 _NAME_LENGTH, _NAME = slice(26, 28), 30
 _MEMBERS = re.compile(rb"(?P<numpy_arrays>.*\.npy)|(?P<excel>\[Content_Types\]\.xml|(_rels|docProps|xl)/.*)")
+#: How a page of a browser starts, and a spreadsheet written as XML: both pass for workbooks with Excel.
+_MARKUP = re.compile(
+    r"(?P<page>\s*(<!--.{0,300}?-->)?\s*<(!doctype html|html|head|body|meta|table)\b)|(?P<xml>\s*<\?xml\b)",
+    re.IGNORECASE | re.DOTALL,
+)
+#: Text that lines of cells have and no workbook has.
+_TEXT = re.compile(r"[^\x00-\x08\x0e-\x1f]*[\t;,][^\x00-\x08\x0e-\x1f]*")
+_UTF_16 = (b"\xff\xfe", b"\xfe\xff")
 
 
 def format_of(path: Path) -> str | None:
@@ -79,9 +88,32 @@ def format_of(path: Path) -> str | None:
     if start.startswith(_ARCHIVE):
         kind = _of_archive(path, start, kind)
     kind = next((kind for magic, kind in _STARTS if start.startswith(magic)), kind)
+    if kind in (None, "excel"):
+        text = start.decode("utf-16" if start.startswith(_UTF_16) else "latin-1", errors="ignore")
+        _refuse_markup(path, text)
+        kind = None if _TEXT.fullmatch(text) else kind
     if kind is None:
         refuse_after_fork()  # text goes through polars, here
     return kind
+
+
+def _refuse_markup(path: Path, text: str) -> None:
+    """Raise if a text is a page of a browser or XML."""
+    if not (match := _MARKUP.match(text)):
+        return
+    what, ending = ("a web page (HTML)", ".html") if match["page"] else ("an XML file", ".xml")
+    with open_file(path) as file:
+        if match["page"] and b"<table" not in file.read(_LOOKED_AT_IN_A_PAGE).replace(b"\0", b"").lower():
+            raise UnreadableLogError(
+                f"{path.name} is a web page (HTML) without a table, e.g. of a login or an error",
+                remedy="open it in a browser to see which, and download the log again",
+            )
+    suffix = path.suffix.lower()
+    renamed = "" if suffix in (".xls", ending) else f"rename it to end in {ending}, "
+    raise UnreadableLogError(
+        f"{path.name} is {what}, not a {'workbook' if suffix in READERS else 'table of numbers'}",
+        remedy=f"{renamed}open it in Excel and save it as .xlsx or .csv",
+    )
 
 
 def _of_archive(path: Path, start: bytes, kind: str | None) -> str:

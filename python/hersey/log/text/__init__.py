@@ -6,6 +6,7 @@ stamps           how it writes times
 column           a column: name and unit
 separators       what stands between cells, and the rows of numbers that it makes
 header           names and units of the columns, from the lines above
+orientation      tables whose channels are not columns, which are refused
 layout           where the table starts, and what its columns are
 footer           where it ends
 repeated_header  a header that stands again among the rows

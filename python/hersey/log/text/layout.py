@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 import codecs
+import itertools
+import re
+from collections import Counter
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -11,12 +15,15 @@ from hersey.errors import MAPPING, Setting, UnreadableLogError
 from hersey.log.text.column import Column, refuse_columns
 from hersey.log.text.header import Numbered, columns_of
 from hersey.log.text.numbers import NumberStyle, is_missing, looks_numeric, style_of
+from hersey.log.text.orientation import refuse_long, refuse_transposed
 from hersey.log.text.separators import BLANKS, SEPARATORS, NumberRows, number_rows, split
 from hersey.log.text.stamps import StampStyle, clock_without_unit, counted_since, stamp_style
 from hersey.schema.warning import Warning
 
 #: Bytes looked at; preambles of data loggers are far shorter.
 SNIFFED = 1 << 17
+#: Lines that a quoted cell of a header has at the most.
+_LINES_OF_A_CELL = 10
 _COMMENTS = ("#", "~", "//")
 _NOT_CP1252 = (b"\x81", b"\x8d", b"\x8f", b"\x90", b"\x9d")
 
@@ -61,13 +68,14 @@ def find_layout(start: bytes, name: str, *, separators: str = SEPARATORS) -> Lay
         If the bytes are no text, or hold no header followed by rows of numbers.
     """
     encoding = encoding_of(start, name)
-    lines = _lines(start, encoding, name)
+    lines = _lines(start, encoding, name, separators)
     comment = next((c for c in _COMMENTS if any(line.startswith(c) for line in lines)), "#")
     numbered = [
         (number, line)
-        for number, line in enumerate(lines, start=1)
+        for number, line in _joined(lines, comment, separators)
         if line.strip() and not line.lstrip().startswith(comment)
     ]
+    refuse_transposed(name, [line for _, line in numbered], separators)
     table = _table(numbered, separators, name)
     rows = [split(line, table.separator) for _, line in numbered[table.first :]]
     rows = [row for row in rows if len(row) == table.width]
@@ -76,6 +84,7 @@ def find_layout(start: bytes, name: str, *, separators: str = SEPARATORS) -> Lay
     style = style_of([cell for row in rows for cell in row])
     columns, warnings = _with_epochs(columns, rows, style)
     texts = frozenset(c.index for c in columns if c.index not in stamps and _holds_words(rows, c.index))
+    refuse_long(name, columns, texts, stamps, rows)
     first_line = numbered[table.first][0]
     comments = tuple(li.strip("# ~/")[:200] for li in lines[: first_line - 1] if li.startswith(comment))
     return Layout(
@@ -93,7 +102,7 @@ def find_layout(start: bytes, name: str, *, separators: str = SEPARATORS) -> Lay
     )
 
 
-def _lines(start: bytes, encoding: str, name: str) -> list[str]:
+def _lines(start: bytes, encoding: str, name: str, separators: str) -> list[str]:
     """The lines of the text that are whole."""
     text = start.decode(encoding, errors="replace")
     if "\r" in text and "\n" not in text:
@@ -102,12 +111,33 @@ def _lines(start: bytes, encoding: str, name: str) -> list[str]:
         )
     lines = [line.rstrip("\r") for line in text.split("\n")]
     if len(start) >= SNIFFED:
-        lines = lines[:-1]
+        cut, lines = lines[-1], lines[:-1]
         if not any(line.strip() for line in lines):
+            for separator in separators:  # the last cell may be cut off
+                refuse_transposed(name, [cut.rpartition(separator)[0]], separator, whole=False)
             raise UnreadableLogError(
                 f"{name} is not a table: its first line has more than {SNIFFED} characters"
             )
     return lines
+
+
+def _joined(lines: list[str], comment: str, separators: str) -> Iterator[tuple[int, str]]:
+    """Lines with the number of each; line ends within a quoted cell become blanks.
+
+    A quote that opens no cell, or none that ends soon, is one of text.
+    """
+    opening = re.compile(rf'(^|[{re.escape(separators)}])\s*"')
+    number = 0
+    while number < len(lines):
+        cell, count = [lines[number]], 1
+        if cell[0].count('"') % 2 and opening.search(cell[0]) and not cell[0].lstrip().startswith(comment):
+            ahead = lines[number + 1 : number + _LINES_OF_A_CELL]
+            parities = itertools.accumulate((line.count('"') for line in ahead), initial=1)
+            whole = next((n for n, quotes in enumerate(parities) if quotes % 2 == 0), 0)
+            cell += ahead[:whole]
+            count += whole
+        yield number + 1, " ".join(cell)
+        number += count
 
 
 def _table(numbered: list[Numbered], separators: str, name: str) -> NumberRows:
@@ -121,12 +151,24 @@ def _table(numbered: list[Numbered], separators: str, name: str) -> NumberRows:
             table = blanks
     refuse_columns(name, table.width)
     if table.score == 0:
+        for each in separators:
+            _refuse_long_words(numbered, each, name)
         raise UnreadableLogError(
             f"{name} has a header but no rows of numbers"
             if any(len(split(numbered[-1][1], each)) > 1 for each in SEPARATORS)
             else f"{name} has no table of numbers with at least two columns{_of_another_kind(name)}"
         )
     return table
+
+
+def _refuse_long_words(numbered: list[Numbered], separator: str, name: str) -> None:
+    """Raise if rows of words and few numbers are those of a long table."""
+    rows = [split(line, separator) for _, line in numbered]
+    width = Counter(map(len, rows)).most_common(1)[0][0]
+    header, *rows = [row for row in rows if len(row) == width]
+    columns, stamps = _with_stamps(tuple(Column(i, cell, "") for i, cell in enumerate(header)), rows)
+    texts = {i for i in range(width) if i not in stamps and _holds_words(rows, i)}
+    refuse_long(name, columns, texts, stamps, rows)
 
 
 def encoding_of(start: bytes, name: str) -> str:
