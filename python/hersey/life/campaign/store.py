@@ -7,13 +7,14 @@ one transaction: a file that was left half-made is empty, and the next writer ma
 from __future__ import annotations
 
 import os
+import shlex
 import sqlite3
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from hersey.errors import HerseyError, MissingFileError, OutputError, ParameterError
+from hersey.errors import HerseyError, MissingFileError, OutputError, ParameterError, way_in
 from hersey.files.writing import refuse_without_folder
 from hersey.life.campaign.content import damaged, refuse_damage, refuse_other_tables
 from hersey.life.campaign.entry import COLUMNS
@@ -105,10 +106,10 @@ def refuse_no_place(path: Path, create: bool) -> None:
             raise ParameterError(f"{path} is not a file. Name a campaign file, e.g. life{SUFFIX}")
         return
     if not create:
-        raise MissingFileError(
-            f"{path} does not exist. Create it with: hersey campaign add {path.name} LOG --unit F12 "
-            "--age '310 h'"
-        )
+        made = f"hersey.Campaign.create({str(path)!r})"
+        if way_in() == "terminal":
+            made = f"hersey campaign add {shlex.quote(path.name)} LOG"
+        raise MissingFileError(f"{path} does not exist", remedy=f"create it with: {made}")
     if path.suffix != SUFFIX:
         raise ParameterError(
             f"{path} is not a campaign name. Give the campaign first, with a name that ends in "
