@@ -76,11 +76,11 @@ def read_columns(file: Path, wanted: Mapping[str, tuple[str, str]]) -> list[tupl
     ParameterError
         If a column is missing or has no unit, or a row lacks a number.
     """
-    from hersey.files.text import read_text
+    from hersey.files.text import read_table_text
 
     try:
-        rows = list(csv.reader(io.StringIO(read_text(file))))
-    except (UnicodeDecodeError, csv.Error) as error:
+        rows = list(csv.reader(io.StringIO(read_table_text(file))))
+    except csv.Error as error:
         raise ParameterError(f"{file.name} is not a CSV file: {error}") from None
     columns = dict(_columns(file, rows[0] if rows else [], wanted))
     missing = [example for name, (_, example) in wanted.items() if name not in columns]
