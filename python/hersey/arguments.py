@@ -5,12 +5,13 @@ from __future__ import annotations
 import ast
 import inspect
 import os
+import re
 import sys
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
-from functools import cached_property
+from dataclasses import FrozenInstanceError, dataclass, field, fields
+from functools import cached_property, wraps
 from numbers import Integral, Real
-from typing import Any
+from typing import Any, cast
 
 from hersey.errors import ArgumentError, ParameterError, meant, printable
 
@@ -73,6 +74,8 @@ _IN_WORDS = {
     "text": "text",
     "path": "a path",
 }
+#: Characters of a value that an example call shows.
+_SHORT = 60
 
 
 def _kinds_of(node: ast.expr) -> Iterator[str]:
@@ -313,6 +316,36 @@ class Door:
         if type(value).__name__ == "TorqueLog":
             ways = [way.replace("(points", f"({_SOURCES['SteadyPoints']}") for way in ways]
         return f" with {name} = {' or '.join(ways)}" if ways else ""
+
+
+def explaining(refuse: Callable[[Any, str, Any], None]) -> Callable[[Any, str, Any], None]:
+    """Return what a frozen data class refuses assignments by, with how to get a changed record."""
+    if hasattr(refuse, "__wrapped__"):
+        return refuse
+
+    @wraps(refuse)
+    def explained(self: Any, name: str, value: Any) -> None:
+        try:
+            refuse(self, name, value)
+        except FrozenInstanceError:
+            raise FrozenInstanceError(_of_frozen(type(self), name, value)) from None
+
+    return explained
+
+
+def _of_frozen(record: type, name: str, value: Any) -> str:
+    """That a record cannot be changed, and the call that makes another one."""
+    known = [each.name for each in fields(cast("Any", record)) if each.init]
+    if name not in known:
+        near = nearest_argument(name, known)
+        did = f"Did you mean {near}?" if near else f"Its fields are {', '.join(known)}"
+        return f"{record.__name__} has no field '{printable(name)}' to set. {did}"
+    variable = re.sub(r"(?<=[a-z])(?=[A-Z])", "_", record.__name__).lower()
+    new = repr(value) if isinstance(value, str | Real) and len(repr(value)) <= _SHORT else "..."
+    return (
+        f"{record.__name__} cannot be changed. Make another one: "
+        f"{variable} = dataclasses.replace({variable}, {name}={new})"
+    )
 
 
 def nearest_argument(name: str, known: list[str]) -> str:
