@@ -105,6 +105,12 @@ def _kinds_of(node: ast.expr) -> Iterator[str]:
             yield _PLAIN.get(name, "anything")
 
 
+class Words(tuple[str, ...]):
+    """The words that an argument can be, named in `takes_si` where the kind of a quantity would be."""
+
+    __slots__ = ()
+
+
 @dataclass
 class _Argument:
     """A parameter, and what it may be."""
@@ -113,6 +119,7 @@ class _Argument:
     kinds: tuple[str, ...]
     required: bool
     by_position: bool
+    words: tuple[str, ...] = ()  #: all that a text may be, if they are few
     passed: set[type] = field(default_factory=set)  #: types that need no further look
 
     @cached_property
@@ -123,7 +130,8 @@ class _Argument:
     @cached_property
     def wanted(self) -> str:
         """What it may be, in words."""
-        known = [_IN_WORDS[kind] for kind in self.kinds if kind in _IN_WORDS]
+        in_words = _IN_WORDS | ({"text": " or ".join(map(repr, self.words))} if self.words else {})
+        known = [in_words[kind] for kind in self.kinds if kind in in_words]
         return " or ".join([*map(_a, dict.fromkeys(_SHOWN.get(name, name) for name in self.classes)), *known])
 
     def fits(self, value: Any) -> bool:
@@ -161,7 +169,7 @@ class _Argument:
 class Door:
     """The arguments of one function, checked as it is called.
 
-    ``quantities`` names those that are quantities; ``read`` brings one to SI.
+    ``quantities`` names those that are quantities, or one of a few `Words`; ``read`` brings one to SI.
     """
 
     def __init__(
@@ -172,7 +180,9 @@ class Door:
         read: Callable[..., Any],
     ) -> None:
         """Take signature and name of the function, the kinds of its quantities, and what reads them."""
-        self.signature, self.title, self.quantities, self.read = signature, title, quantities, read
+        self.signature, self.title, self.read = signature, title, read
+        self.words = {name: each for name, each in quantities.items() if isinstance(each, Words)}
+        self.quantities = {name: each for name, each in quantities.items() if name not in self.words}
 
     @cached_property
     def arguments(self) -> dict[str, _Argument]:
@@ -187,7 +197,8 @@ class Door:
             if each.default is None:
                 kinds = (*kinds, "none")
             by_position = each.kind is not each.KEYWORD_ONLY
-            found[name] = _Argument(name, kinds, each.default is each.empty, by_position)
+            required, words = each.default is each.empty, self.words.get(name, ())
+            found[name] = _Argument(name, kinds, required, by_position, words)
         return found
 
     @cached_property

@@ -16,7 +16,7 @@ from fractions import Fraction
 from functools import cache, lru_cache, wraps
 from typing import TYPE_CHECKING, Any, TypeVar, cast
 
-from hersey.arguments import Door, explaining, numbers
+from hersey.arguments import Door, Words, explaining, numbers
 from hersey.errors import ParameterError, UnitError, WrongKindError
 
 if TYPE_CHECKING:
@@ -475,7 +475,7 @@ def _refuse_celsius(name: str, value: Any) -> None:
         )
 
 
-def takes_si(**kinds: Kind) -> Callable[[F], F]:
+def takes_si(**kinds: Kind | Words) -> Callable[[F], F]:
     """Check what a function or a record is called with; take the arguments named as `argument` does.
 
     Names and types follow from the signature (`hersey.arguments`). Quantities, each of its kind, may be
@@ -500,7 +500,7 @@ def takes_si(**kinds: Kind) -> Callable[[F], F]:
     return decorate
 
 
-def _check_fields(record: Any, kinds: Mapping[str, Kind]) -> None:
+def _check_fields(record: Any, kinds: Mapping[str, Kind | Words]) -> None:
     """Let a record check the fields that it is made with."""
     door, made = Door(inspect.signature(record), record.__name__, kinds, _read), record.__init__
 
