@@ -307,3 +307,19 @@ def test_every_unit_that_is_proposed_can_be_read() -> None:
     for kind, usual in units._USUAL.items():
         for unit in usual.split():
             assert conversion(kind, unit).scale > 0
+
+
+@pytest.mark.parametrize(
+    ("kind", "text", "said"),
+    [
+        ("heat capacity", "1.5 kJ/(kg K)", "specific heat.*multiply by the mass"),
+        ("thermal conductance", "10 W/m^2/K", "heat transfer coefficient.*multiply by the area"),
+        ("power", "5 kW/m^2", "heat flux.*multiply by the area"),
+        ("power", "5 N*m", "not a unit of power"),
+    ],
+)
+def test_a_specific_quantity_is_named_with_what_it_must_be_multiplied_by(
+    kind: str, text: str, said: str
+) -> None:
+    with pytest.raises(WrongKindError, match=f"(?i){said}"):
+        parse(kind, text)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import inspect
 import timeit
 import warnings
@@ -16,20 +17,31 @@ import pytest
 
 import hersey
 from hersey.errors import ArgumentError, ExtrapolationWarning, HerseyError, ParameterError
-from hersey.units import takes_si
+from hersey.schema.record import Record
+from hersey.units import parse, takes_si
 from tests.conftest import ROOT
 
 H: Any = hersey  # calls that no type checker allows
 TRAIN = hersey.Drivetrain(1000.0, 1.0)
 DRAG = hersey.Drag(50.0, 1.0, ehl_exponent=-0.7, mixed_exponent=-1.2, stick_speed=0.01)
 MACHINE = hersey.Machine(11e3, 11.0, roll_radius=0.015, stick_speed=3e-4)
+CONTACT = hersey.Contact(
+    roll_radius=15e-3, rubber_thickness=3.5e-3, modulus=1e6, poisson_ratio=0.48, length=0.22, load=250.0
+)
+#: Kinds of the fields that are set below.
+KINDS_OF = {"stiffness": "stiffness", "mass": "mass", "transition_speed": "belt speed", "nip_load": "force"}
 #: What no argument of a function takes, beside those that take anything.
 NOTHING = object()
 
 
 @cache
+def log_points() -> hersey.SteadyPoints:
+    return hersey.read(ROOT / "examples" / "bench.csv").steady(tare="standing")
+
+
+@cache
 def surface() -> hersey.DampingSurface:
-    return hersey.fit(hersey.read(ROOT / "examples" / "bench.csv").steady(tare="standing"))
+    return hersey.fit(log_points())
 
 
 def checked() -> Iterator[tuple[str, Any]]:
@@ -190,3 +202,60 @@ def test_the_check_of_a_call_takes_microseconds() -> None:
 
     runs = timeit.repeat(lambda: nothing(None, speed=1.0, temperature=400.0), number=200, repeat=20)
     assert min(runs) / 200 < 50e-6
+
+
+@pytest.mark.parametrize("path", ["C:\temp\new.csv", "C:\temp\n*.csv"])
+def test_a_path_whose_backslashes_python_took_as_escapes_is_shown_as_it_was_meant(path: str) -> None:
+    with pytest.raises(hersey.errors.MissingFileError) as refused:
+        hersey.read(path)
+    meant = path.replace("\t", r"\t").replace("\n", r"\n")
+    assert f'r"{meant}"' in refused.value.remedy
+    assert meant in refused.value.reason
+
+
+@pytest.mark.parametrize(
+    ("record", "name", "value"),
+    [
+        (MACHINE, "stiffness", "12 N/mm"),
+        (TRAIN, "mass", "2 kg"),
+        (DRAG, "transition_speed", "30 mm/s"),
+        (hersey.Limits(), "nip_load", "300 N"),
+    ],
+)
+def test_a_record_that_is_set_names_the_call_that_makes_another_one(
+    record: Any, name: str, value: str
+) -> None:
+    with pytest.raises(dataclasses.FrozenInstanceError) as refused:
+        setattr(record, name, value)
+    call = str(refused.value).split(" = ")[-1]
+    variable = call.split("(")[1].split(",")[0]
+    made = eval(call, {"dataclasses": dataclasses, variable: record})  # as it is printed
+    assert getattr(made, name) == pytest.approx(parse(KINDS_OF[name], value))
+    with pytest.raises(dataclasses.FrozenInstanceError, match="has no field 'zzz'"):
+        record.zzz = 1
+
+
+def test_every_public_frozen_record_says_how_to_get_another_one() -> None:
+    for name in hersey.__all__:
+        record = getattr(hersey, name)
+        if inspect.isclass(record) and issubclass(record, Record) and dataclasses.is_dataclass(record):
+            assert hasattr(record.__setattr__, "__wrapped__"), name
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda: H.fit(temperature_scale=1, points=log_points()), ("degC", "K")),
+        (lambda: H.nip_width(CONTACT, rule=1), ("layer", "hertz", "paper")),
+        (lambda: dataclasses.replace(DRAG, closure=H), ("retained", "stiction", "stribeck", "lugre")),
+        (lambda: surface().drag(roll_radius=0.015, stick_speed=1e-3, stick_speed_rule=1), ("fixed",)),
+        (lambda: H.TorqueLog.steady(None, tare=True), ("none", "standing")),
+        (lambda: H.TorqueLog.steady(None, rotation=1), ("both", "forward", "reverse")),
+        (lambda: H.export_fmu("a.fmu", TRAIN, DRAG, drive_speed=1.0, fmi=3.0), ("3.0", "2.0")),
+    ],
+)
+def test_an_argument_with_few_words_lists_them(call: Callable[[], Any], words: tuple[str, ...]) -> None:
+    with pytest.raises(ArgumentError) as refused:
+        call()
+    for word in words:
+        assert f"'{word}'" in refused.value.reason

@@ -5,12 +5,13 @@ from __future__ import annotations
 import ast
 import inspect
 import os
+import re
 import sys
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
-from functools import cached_property
+from dataclasses import FrozenInstanceError, dataclass, field, fields
+from functools import cached_property, wraps
 from numbers import Integral, Real
-from typing import Any
+from typing import Any, cast
 
 from hersey.errors import ArgumentError, ParameterError, meant, printable
 
@@ -73,6 +74,8 @@ _IN_WORDS = {
     "text": "text",
     "path": "a path",
 }
+#: Characters of a value that an example call shows.
+_SHORT = 60
 
 
 def _kinds_of(node: ast.expr) -> Iterator[str]:
@@ -102,6 +105,12 @@ def _kinds_of(node: ast.expr) -> Iterator[str]:
             yield _PLAIN.get(name, "anything")
 
 
+class Words(tuple[str, ...]):
+    """The words that an argument can be, named in `takes_si` where the kind of a quantity would be."""
+
+    __slots__ = ()
+
+
 @dataclass
 class _Argument:
     """A parameter, and what it may be."""
@@ -110,6 +119,7 @@ class _Argument:
     kinds: tuple[str, ...]
     required: bool
     by_position: bool
+    words: tuple[str, ...] = ()  #: all that a text may be, if they are few
     passed: set[type] = field(default_factory=set)  #: types that need no further look
 
     @cached_property
@@ -120,7 +130,8 @@ class _Argument:
     @cached_property
     def wanted(self) -> str:
         """What it may be, in words."""
-        known = [_IN_WORDS[kind] for kind in self.kinds if kind in _IN_WORDS]
+        in_words = _IN_WORDS | ({"text": " or ".join(map(repr, self.words))} if self.words else {})
+        known = [in_words[kind] for kind in self.kinds if kind in in_words]
         return " or ".join([*map(_a, dict.fromkeys(_SHOWN.get(name, name) for name in self.classes)), *known])
 
     def fits(self, value: Any) -> bool:
@@ -158,7 +169,7 @@ class _Argument:
 class Door:
     """The arguments of one function, checked as it is called.
 
-    ``quantities`` names those that are quantities; ``read`` brings one to SI.
+    ``quantities`` names those that are quantities, or one of a few `Words`; ``read`` brings one to SI.
     """
 
     def __init__(
@@ -169,7 +180,9 @@ class Door:
         read: Callable[..., Any],
     ) -> None:
         """Take signature and name of the function, the kinds of its quantities, and what reads them."""
-        self.signature, self.title, self.quantities, self.read = signature, title, quantities, read
+        self.signature, self.title, self.read = signature, title, read
+        self.words = {name: each for name, each in quantities.items() if isinstance(each, Words)}
+        self.quantities = {name: each for name, each in quantities.items() if name not in self.words}
 
     @cached_property
     def arguments(self) -> dict[str, _Argument]:
@@ -184,7 +197,8 @@ class Door:
             if each.default is None:
                 kinds = (*kinds, "none")
             by_position = each.kind is not each.KEYWORD_ONLY
-            found[name] = _Argument(name, kinds, each.default is each.empty, by_position)
+            required, words = each.default is each.empty, self.words.get(name, ())
+            found[name] = _Argument(name, kinds, required, by_position, words)
         return found
 
     @cached_property
@@ -313,6 +327,36 @@ class Door:
         if type(value).__name__ == "TorqueLog":
             ways = [way.replace("(points", f"({_SOURCES['SteadyPoints']}") for way in ways]
         return f" with {name} = {' or '.join(ways)}" if ways else ""
+
+
+def explaining(refuse: Callable[[Any, str, Any], None]) -> Callable[[Any, str, Any], None]:
+    """Return what a frozen data class refuses assignments by, with how to get a changed record."""
+    if hasattr(refuse, "__wrapped__"):
+        return refuse
+
+    @wraps(refuse)
+    def explained(self: Any, name: str, value: Any) -> None:
+        try:
+            refuse(self, name, value)
+        except FrozenInstanceError:
+            raise FrozenInstanceError(_of_frozen(type(self), name, value)) from None
+
+    return explained
+
+
+def _of_frozen(record: type, name: str, value: Any) -> str:
+    """That a record cannot be changed, and the call that makes another one."""
+    known = [each.name for each in fields(cast("Any", record)) if each.init]
+    if name not in known:
+        near = nearest_argument(name, known)
+        did = f"Did you mean {near}?" if near else f"Its fields are {', '.join(known)}"
+        return f"{record.__name__} has no field '{printable(name)}' to set. {did}"
+    variable = re.sub(r"(?<=[a-z])(?=[A-Z])", "_", record.__name__).lower()
+    new = repr(value) if isinstance(value, str | Real) and len(repr(value)) <= _SHORT else "..."
+    return (
+        f"{record.__name__} cannot be changed. Make another one: "
+        f"{variable} = dataclasses.replace({variable}, {name}={new})"
+    )
 
 
 def nearest_argument(name: str, known: list[str]) -> str:

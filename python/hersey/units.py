@@ -17,7 +17,7 @@ from fractions import Fraction
 from functools import cache, lru_cache, wraps
 from typing import TYPE_CHECKING, Any, TypeVar, cast
 
-from hersey.arguments import Door, numbers
+from hersey.arguments import Door, Words, explaining, numbers
 from hersey.errors import ParameterError, UnitError, WrongKindError
 
 if TYPE_CHECKING:
@@ -86,6 +86,16 @@ _QUANTITIES: dict[str, tuple[str, str, str]] = {
 #: SI unit and an example of each kind.
 KINDS = {kind: (si, example) for kind, (si, example, _) in _QUANTITIES.items()}
 _USUAL = {kind: usual for kind, (_, _, usual) in _QUANTITIES.items()}
+#: Of kinds that are mistaken for another: SI unit of the other, what it is, and how to get from it.
+_MISTAKEN = {
+    "heat capacity": (("J/kg/K", "specific heat", "multiply by the mass: 1500 J/kg/K x 0.1 kg = '150 J/K'"),),
+    "thermal conductance": (
+        ("W/m^2/K", "heat transfer coefficient", "multiply by the area: 10 W/m^2/K x 0.05 m^2 = '0.5 W/K'"),
+        ("W/m/K", "thermal conductivity", "multiply by area / thickness: 0.2 W/m/K x 0.5 m = '0.1 W/K'"),
+        ("K/W", "thermal resistance", "write its inverse: 1 / 2 K/W = '0.5 W/K'"),
+    ),
+    "power": (("W/m^2", "heat flux", "multiply by the area: 18000 W/m^2 x 0.05 m^2 = '900 W'"),),
+}  # fmt: skip
 #: How alike (`difflib`) a usual unit must be to an unknown one, and to one of another kind, to be proposed.
 _ALIKE, _ALIKE_OF_ANOTHER_KIND = 0.6, 0.8
 
@@ -196,7 +206,7 @@ def conversion(kind: str, unit: str) -> Conversion:
     if line and standard and line[2] == standard[2]:
         scale, zero = line[:2]
     elif line and standard and line[2][:-1] != standard[2][:-1]:
-        raise _wrong_kind(kind, unit)
+        raise _wrong_kind(kind, unit, text)
     else:  # a unit beside the table, or one that differs by an angle, which need not matter
         scale, zero = _from_registry(kind, text, unit)
     if not 1e-15 < abs(factor * scale) < 1e15:
@@ -244,7 +254,7 @@ def _from_registry(kind: str, text: str, unit: str) -> tuple[float, float]:
                 "unit '%' of a torque needs the torque at 100 %",
                 remedy="write it as '9.84 mN*m / 100', with your value",
             )
-        raise _wrong_kind(kind, unit)
+        raise _wrong_kind(kind, unit, text)
     if "delta_" in names:
         raise UnitError(f"unit '{unit}' is a temperature difference. Write degC or K")
     zero, far = (float(registry.Quantity(x, parsed).to(si).magnitude) for x in (0.0, 1e6))
@@ -260,7 +270,11 @@ def _parsed(text: str) -> Any:
         return None
 
 
-def _wrong_kind(kind: str, unit: str) -> WrongKindError:
+def _wrong_kind(kind: str, unit: str, text: str) -> WrongKindError:
+    parsed = _parsed(text) if kind in _MISTAKEN else None
+    for si, what, how in _MISTAKEN.get(kind, ()):
+        if parsed is not None and parsed.dimensionality == registry.parse_units(si).dimensionality:
+            return WrongKindError(f"unit '{unit}' is that of a {what}, not of a {kind}", remedy=how)
     meant = _meant(kind, unit, _ALIKE_OF_ANOTHER_KIND)
     return WrongKindError(f"unit '{unit}' is not a unit of {kind}", remedy=meant)
 
@@ -470,7 +484,7 @@ def _called_from_inside() -> bool:
     return str(frame.f_globals["__name__"]).startswith("hersey.")
 
 
-def takes_si(**kinds: Kind) -> Callable[[F], F]:
+def takes_si(**kinds: Kind | Words) -> Callable[[F], F]:
     """Check what a function or a record is called with; take the arguments named as `argument` does.
 
     Names and types follow from the signature (`hersey.arguments`). Quantities, each of its kind, may be
@@ -495,7 +509,7 @@ def takes_si(**kinds: Kind) -> Callable[[F], F]:
     return decorate
 
 
-def _check_fields(record: Any, kinds: Mapping[str, Kind]) -> None:
+def _check_fields(record: Any, kinds: Mapping[str, Kind | Words]) -> None:
     """Let a record check the fields that it is made with."""
     door, made = Door(inspect.signature(record), record.__name__, kinds, _read), record.__init__
 
@@ -504,6 +518,8 @@ def _check_fields(record: Any, kinds: Mapping[str, Kind]) -> None:
         made(self, **door.admit(args, kwargs))
 
     record.__init__ = called
+    if record.__dataclass_params__.frozen:
+        record.__setattr__ = explaining(record.__setattr__)
 
 
 def _read(name: str, kind: Kind | None, value: Any, *, one: bool) -> Any:

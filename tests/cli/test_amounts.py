@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 import json
+import math
 import shlex
 from pathlib import Path
 from typing import Any
@@ -164,3 +165,18 @@ def test_a_machine_brings_grip_motor_and_rest(tmp_path: Path) -> None:
         assert done.startswith(f"1 set of parameters {kind} 1 (100 %)")
         assert "The no-load torque is added to the drag: 1.33 N + 0 N·s/m times speed" in done
         assert ("The roll can pull the belt with up to 18 N" in done) == (file == "weak.toml")
+
+
+def test_a_drive_speed_may_be_that_of_the_roll_where_the_machine_states_its_radius(tmp_path: Path) -> None:
+    (tmp_path / "machine.toml").write_text(
+        '[drivetrain]\nstiffness = "11 N/mm"\nmass = "11 kg"\nroll_radius = "15 mm"\nstick_speed = "1 mm/s"\n'
+    )
+    belt = ["--transition-force", "14 N", "--transition-speed", "25 mm/s"]
+    step = ["--from-speed", "120 rpm", "--to-speed", "40 rpm"]
+    done = run("hysteresis", *belt, *step, "--machine", "machine.toml", "--json", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    found = json.loads(done.stdout)["step"]
+    assert found["from_speed"] == pytest.approx(120 * math.tau / 60 * 0.015)
+    assert found["to_speed"] == pytest.approx(40 * math.tau / 60 * 0.015)
+    done = run("hysteresis", *belt, *step, cwd=tmp_path)
+    assert (done.returncode, "--machine" in done.stderr) == (2, True)

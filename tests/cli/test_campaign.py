@@ -113,6 +113,19 @@ def test_a_table_with_a_mistake_is_refused_whole(folder: Path, table: str, said:
     assert not (folder / "life.hersey").exists()
 
 
+def test_a_table_may_be_in_the_encodings_of_a_log(folder: Path) -> None:
+    (folder / "runs.csv").write_bytes("log;unit;age;Prüfstand\n0.csv;F1;0 h;für 2\n".encode("cp1252"))
+    assert typed(folder, "add", "life.hersey", "--table", "runs.csv").returncode == 0
+    (folder / "runs.csv").write_bytes("Datei;unit;age;Prüfstand\n".encode("cp1252"))
+    done = typed(folder, "add", "other.hersey", "--table", "runs.csv")
+    assert done.returncode == 2
+    for said in ("'Datei', 'unit', 'age', 'Prüfstand'", "'log;unit;age [pages]'"):
+        assert said in done.stderr
+    (folder / "runs.csv").write_bytes(b"PK\3\4\0\0\0\1\0\0\7")
+    done = typed(folder, "add", "other.hersey", "--table", "runs.csv")
+    assert (done.returncode, "Save the table as CSV" in done.stderr) == (2, True)
+
+
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [

@@ -164,6 +164,20 @@ def test_in_a_terminal_a_wrong_answer_is_asked_again_and_ctrl_c_leaves_nothing(f
     assert [path.name for path in folder.iterdir()] == ["log.csv"]
 
 
+def test_an_unknown_unit_is_asked_for_with_the_likely_one_as_proposal(folder: Path) -> None:
+    content = text(staircase()).decode()
+    header = "Time [s],M (kg-cm),Speed [rpm],Temperature [degC]"
+    (folder / "log.csv").write_text("\n".join([header, *content.splitlines()[1:]]) + "\n")
+    done = run("new", "log.csv", cwd=folder, answers=lines("M", *CHANNELS[1:], ""))
+    assert done.returncode == 0, done.stderr
+    assert "[kgf*cm]" in done.stderr
+    assert "--torque-unit" not in done.stderr
+    assert read_mapping(folder / "hersey.toml").units["torque"] == "kgf*cm"
+    (folder / "hersey.toml").unlink()
+    done = run("new", "log.csv", cwd=folder, answers=lines("N"))
+    assert (done.returncode, "'N' (torque)" in done.stderr, "--" in done.stderr) == (2, True, False)
+
+
 #: What a person who knows the test stand writes into each line, by role and field.
 KNOWN = {
     "torque": {"channel": "a1", "unit": "mN*m"},

@@ -31,6 +31,11 @@ def test_it_is_followed_to_its_end(tmp_path: Path) -> None:
     assert answer["frequency"] == pytest.approx(settled.frequency)
 
 
+def test_a_remark_in_windows_1252_does_no_harm(tmp_path: Path) -> None:
+    (tmp_path / "profile.csv").write_bytes("time (s),speed (m/s),für\n0,0,ü\n1,2,ü\n".encode("cp1252"))
+    assert read_profile(tmp_path / "profile.csv").values == pytest.approx([0.0, 2.0])
+
+
 @pytest.mark.parametrize(
     ("text", "told"),
     [

@@ -54,6 +54,7 @@ def look(path: Path) -> dict[str, Any]:
             for shown, name, channel in zip(report.channels, names, log.channels, strict=True)
         ],
         "without": {role: why.text for role, why in without.items()},
+        "reasons": {role: why.reason or why.text for role, why in without.items()},
         "claims": {role: _claims(role, log, names, why) for role, why in without.items()},
         "problem": {} if without or means else _problem(path),
         "found": found,

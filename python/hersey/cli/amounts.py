@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from hersey.cli.figures import three
-from hersey.errors import ParameterError, UnitError
+from hersey.errors import HerseyError, ParameterError, UnitError
 
 if TYPE_CHECKING:
     from hersey.machine.machine import Machine
@@ -61,6 +61,8 @@ _OF_THE_PAPER = {
 }
 _BARE = "Results are in the units of the numbers given."
 _PAPER_UNITS = "Numbers are in inches, ounces of force (ozf) and seconds, as in the paper"
+#: Speeds of the drive, which may be given as those of the roll.
+_OF_A_DRIVE = ("drive_speed", "from_speed", "to_speed")
 #: Numbers of a belt that a machine file states.
 _OF_A_MACHINE = ("stiffness", "mass", "stick_speed")
 #: What a number that no machine file states means.
@@ -114,6 +116,8 @@ def amounts(
         If a number cannot be read, lacks a unit or is missing.
     """
     texts = {name: text for name, text in given.items() if text is not None}
+    if machine_file is not None:
+        texts = {name: _at_the_belt(name, text, machine_file) for name, text in texts.items()}
     bare = {name: _bare(text) for name, text in texts.items()}
     has_unit = [name for name in texts if bare[name] is None]
     of_any = [name for name in texts if bare[name] is not None and _KINDS[name][0] != "time"]
@@ -148,6 +152,26 @@ def of_a_machine(file: Path) -> dict[str, float]:
     return stated
 
 
+def _at_the_belt(name: str, text: str, machine_file: Path) -> str:
+    """A speed of the roll, such as '40 rpm', as that of the belt by the roll radius; else the text."""
+    from hersey.cli.quantities import target_of
+    from hersey.machine.machine import read_machine
+
+    if not _of_the_roll(name, text):
+        return text
+    return f"{target_of(text, read_machine(machine_file), _flag(name))!r} m/s"
+
+
+def _of_the_roll(name: str, text: str) -> bool:
+    """Whether a number is a speed of the drive, given as that of the roll."""
+    from hersey.units import parse
+
+    try:
+        return name in _OF_A_DRIVE and parse("speed", text) is not None
+    except HerseyError:
+        return False
+
+
 def _bare(text: str) -> float | None:
     """A number without a unit, or None; any other text is refused when it is parsed."""
     try:
@@ -160,6 +184,11 @@ def _parsed(name: str, text: str) -> float:
     from hersey.units import parse
 
     kind, example = _KINDS[name]
+    if _of_the_roll(name, text):  # without a machine file, for with one it is at the belt by now
+        raise UnitError(
+            f"{_flag(name)} '{text}' is a speed of the roll, but the speed of the belt is needed",
+            remedy=f"name a machine file with --machine, for its roll radius, or write e.g. '{example}'",
+        )
     if not any(c.isdigit() for c in text):
         raise ParameterError(f"{_flag(name)} is '{text}': write a number with its unit, e.g. '{example}'")
     try:

@@ -12,7 +12,7 @@ from hersey.cli.groups import argument, option
 from hersey.cli.options import Force
 from hersey.cli.outputs import may_write
 from hersey.cli.terminal import say
-from hersey.errors import HerseyError, ParameterError
+from hersey.errors import HerseyError, ParameterError, WrongKindError
 
 if TYPE_CHECKING:
     from hersey.cli.asking import Asking
@@ -125,8 +125,7 @@ def _mapping(log: Path, asking: Asking) -> tuple[str, list[str]]:
     for role in _ROLES:
         claims = seen["claims"].get(role, [])
         proposed = seen["found"].get(role, "") or (claims[0] if len(claims) == 1 else "")
-        why = seen["without"].get(role, "")
-        if why:
+        if why := seen["reasons"].get(role, ""):
             say(f"  {why}", file=sys.stderr)
         given = _channel(role, proposed, columns, units, log.name, asking)
         answers |= given
@@ -143,12 +142,16 @@ def _channel(
     role: str, proposed: str, columns: tuple[Column, ...], units: Mapping[str, str], file: str, asking: Asking
 ) -> dict[str, str]:
     """Channel of a role and its unit, as answered; nothing without a channel."""
+    from hersey.errors import ChannelError, meant
     from hersey.log.channels import ChannelChoice, find_channel, role_conversion
     from hersey.units import KINDS
 
     def named(text: str) -> str:
-        choice = ChannelChoice(text, units.get(text) or KINDS[role][1])
-        found = find_channel(role, columns, choice, file)
+        try:
+            found = find_channel(role, columns, ChannelChoice(text, KINDS[role][1]), file)
+        except ChannelError as error:
+            near = meant(text, [column.path for column in columns])
+            raise ChannelError(error.reason, remedy=f"did you mean {near}?" if near else "") from None
         return text if found is None or text in units else found[0].path
 
     def unit(text: str) -> str:
@@ -157,20 +160,27 @@ def _channel(
 
     name = asking.ask(f"channel of the {role}", named, proposed=proposed)
     written = units.get(name or "", "")
-    of = asking.ask(f"unit of the {role}", unit, proposed=written if _is_of(role, written) else "")
+    likely = _likely(role, written)
+    words = f"the log has '{written}'" if likely != written else ""
+    if asking.by_hand and not name:
+        return {}
+    of = asking.ask(f"unit of the {role}", unit, words=words, proposed=likely)
     given = {f"{role}.channel": name, f"{role}.unit": of if name else None}
     return {key: text for key, text in given.items() if text}
 
 
-def _is_of(role: str, unit: str) -> bool:
-    """Whether a unit measures what a role is."""
+def _likely(role: str, written: str) -> str:
+    """The unit of a role that a log has, or that one it cannot have was probably meant for."""
     from hersey.log.channels import role_conversion
+    from hersey.units import nearest_unit
 
     try:
-        role_conversion(role, unit)
+        role_conversion(role, written)
+    except WrongKindError:
+        return ""
     except HerseyError:
-        return False
-    return True
+        return nearest_unit(role, written) if written else ""
+    return written
 
 
 def _machine(asked: list[Question], asking: Asking, path: Path) -> str:

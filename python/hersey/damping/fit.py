@@ -7,6 +7,7 @@ from functools import partial
 
 import numpy as np
 
+from hersey.arguments import Words
 from hersey.arrays import FloatArray
 from hersey.damping.branches import Transition, fit_branches, transition, why_no_transition
 from hersey.damping.candidates.branched import ONE, Law
@@ -33,7 +34,7 @@ NO_OIL_FLOWS = 193.15
 _ROUNDS = 12
 
 
-@takes_si()
+@takes_si(temperature_scale=Words(("degC", "K")))
 def fit(points: SteadyPoints, *, temperature_scale: str = "degC") -> DampingSurface:
     """Fit the damping surface to steady points.
 

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from hersey.arguments import Words
 from hersey.arrays import FloatArray, refuse_unknown
 from hersey.damping.candidates.branched import LEAST_POWER, transition_exponent
 from hersey.damping.distributions import square_quantile
@@ -33,6 +34,7 @@ if TYPE_CHECKING:
 
 #: How a stick speed goes with temperature: as the transition speed does, or not at all.
 WITH_TRANSITION, FIXED = "with transition", "fixed"
+STICK_SPEED_RULES = Words((WITH_TRANSITION, FIXED))
 #: Numbers of a law with temperature whose transition is at one Hersey number.
 _HELD = 5
 
@@ -132,7 +134,12 @@ class DampingSurface(FittedLaw):
         )
         return float(np.exp(self._law.predict(self._with_torque(values), inputs))[0])
 
-    @takes_si(temperature="temperature", stick_speed_temperature="temperature", stick_speed="belt speed")
+    @takes_si(
+        temperature="temperature",
+        stick_speed_temperature="temperature",
+        stick_speed="belt speed",
+        stick_speed_rule=STICK_SPEED_RULES,
+    )
     def stick_speed_at(
         self,
         temperature: float | None,
@@ -161,7 +168,7 @@ class DampingSurface(FittedLaw):
         stick_speed_temperature: float | None = None,
         stick_speed_rule: str = WITH_TRANSITION,
     ) -> float:
-        if stick_speed_rule not in (WITH_TRANSITION, FIXED):
+        if stick_speed_rule not in STICK_SPEED_RULES:
             raise ParameterError(
                 f"stick_speed_rule '{stick_speed_rule}' is not known. Use '{WITH_TRANSITION}' or '{FIXED}'"
             )
@@ -175,6 +182,7 @@ class DampingSurface(FittedLaw):
         stick_speed="belt speed",
         temperature="temperature",
         stick_speed_temperature="temperature",
+        stick_speed_rule=STICK_SPEED_RULES,
     )
     def drag(
         self,

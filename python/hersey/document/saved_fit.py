@@ -22,7 +22,7 @@ from hersey.damping.surface import DampingSurface
 from hersey.document.consistency import faults_of_fit
 from hersey.document.parts.fit import FitPart
 from hersey.document.parts.log import InputFile, Point
-from hersey.errors import ParameterError, way_in
+from hersey.errors import HerseyError, ParameterError, way_in
 from hersey.files.text import read_text
 from hersey.schema.part import Interval
 from hersey.schema.warning import Warning
@@ -61,6 +61,8 @@ def read_fit(path: str | Path) -> DampingSurface:
             raise _broken(path, "document", f"not valid JSON ({first['ctx']['error']})") from None
         place = ".".join(str(part) for part in first["loc"]) or "document"
         raise _broken(path, place, first["msg"]) from None
+    except HerseyError:
+        raise
     except (ValueError, RecursionError) as error:
         raise _broken(path, "document", f"not valid JSON ({error})") from None
     with np.errstate(all="ignore"):  # what overflows is refused

@@ -13,6 +13,7 @@ from types import MappingProxyType
 from typing import Any
 
 from hersey import _core
+from hersey.arguments import Words
 from hersey.damping.fitted_law import FittedLaw
 from hersey.errors import ParameterError, printable
 from hersey.exchange.description import Model, description
@@ -94,7 +95,15 @@ class ExportedUnit:
         )
 
 
-@takes_si(drive_speed="belt speed", drive_torque="torque", temperature="temperature", roll_radius="length")
+@takes_si(
+    drive_speed="belt speed",
+    drive_torque="torque",
+    temperature="temperature",
+    roll_radius="length",
+    drive=Words(DRIVES),
+    port=Words(PORTS),
+    fmi=Words(VERSIONS),
+)
 def export_fmu(
     out: str | Path,
     train: Drivetrain,

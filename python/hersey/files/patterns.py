@@ -8,6 +8,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from hersey.errors import MissingFileError, ParameterError
+from hersey.files.reading import missing
 
 
 def files_of(patterns: str | Path | Iterable[str | Path]) -> list[Path]:
@@ -50,5 +51,5 @@ def _matched(name: str | Path) -> list[Path]:
             once.setdefault(os.path.realpath(path), path)
     files = list(once.values())
     if not files:
-        raise MissingFileError(f"no file matches {text}. Check the folder and the file extension")
+        raise missing(text, "no file matches {}", "check the folder and the file extension")
     return [Path(path) for path in files]

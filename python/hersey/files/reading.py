@@ -14,9 +14,11 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import BinaryIO
 
-from hersey.errors import HerseyError, MissingFileError, UnreadableLogError, meant, printable
+from hersey.errors import HerseyError, MissingFileError, UnreadableLogError, meant, printable, way_in
 from hersey.schema.warning import Warning
 
+#: Escapes of Python that a path with backslashes can hold by mistake.
+_ESCAPES = {"\a": r"\a", "\b": r"\b", "\f": r"\f", "\n": r"\n", "\r": r"\r", "\t": r"\t", "\v": r"\v"}
 _WAY_OUT = "Wait until the logger has closed it, or copy it first"
 _CHUNK = 1 << 20
 #: Endings of files of which one is named where a folder was given.
@@ -164,9 +166,21 @@ def open_file(path: Path) -> Iterator[BinaryIO]:
     except HerseyError:
         raise
     except FileNotFoundError:
-        raise MissingFileError(f"File not found: {path}{_near(path)}") from None
+        raise missing(str(path), "File not found: {}", _near(path)) from None
     except OSError as error:
         raise MissingFileError(f"{path} cannot be read: {error.strerror}") from None
+
+
+def missing(path: str, words: str, remedy: str) -> MissingFileError:
+    """Return the error about a path in words; its remedy differs if Python took signs of it as escapes."""
+    written = "".join(_ESCAPES.get(char, char) for char in path)
+    if written == path or way_in() != "python":
+        return MissingFileError(words.format(path), remedy=remedy)
+    found = " and ".join(dict.fromkeys(_ESCAPES[char] for char in path if char in _ESCAPES))
+    return MissingFileError(
+        words.format(written),
+        remedy=f'Python reads {found} in a text as other characters. Write r"{written}"',
+    )
 
 
 def _near(path: Path) -> str:
@@ -177,7 +191,7 @@ def _near(path: Path) -> str:
         near = meant(path.name, [each.name for each in path.parent.iterdir() if each.is_file()])
     except (OSError, ValueError):
         return ""
-    return f". Did you mean '{printable(str(path.with_name(near)))}'?" if near else ""
+    return f"did you mean '{printable(str(path.with_name(near)))}'?" if near else ""
 
 
 def _slashed(path: Path) -> str:

@@ -32,7 +32,7 @@ from pydantic.dataclasses import dataclass
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from hersey.errors import HerseyError, ParameterError, Setting, UnitError, meant
-from hersey.files.text import read_text, shown
+from hersey.files.text import NO_TEXT, read_text, shown
 from hersey.files.toml_lines import explain, line_of
 from hersey.units import KINDS, parse
 
@@ -65,7 +65,6 @@ _WAY_OUT = {
     "bool_type": "Write true or false",
     "literal_error": "Write {expected}",
 }
-_NO_TEXT = "is not plain text in UTF-8. Save it with a text editor as plain text, encoding UTF-8"
 
 
 class Reading(NamedTuple):
@@ -222,31 +221,17 @@ def _read(path: Path, kind: Any) -> tuple[dict[str, Any], str]:
     try:
         text = read_text(path, most=_MOST_BYTES)
         if "\0" in text:
-            raise ParameterError(f"{path.name} {_NO_TEXT}")
+            raise ParameterError(f"{path.name} {NO_TEXT}")
         with naming(path.name):
             _refuse_long_keys(text)
         document = tomllib.loads(text)
     except HerseyError:
         raise
-    except UnicodeDecodeError as error:
-        raise ParameterError(f"{path.name}{_not_utf8(error)}") from None
     except (ValueError, RecursionError) as error:  # a number of thousands of digits is no TOMLDecodeError
         raise ParameterError(f"{path.name} is not valid TOML: {_no_toml(path, text, error, kind)}") from None
     with naming(path.name):
         _refuse_large(document)
     return document, text
-
-
-def _not_utf8(error: UnicodeDecodeError) -> str:
-    """Where a file is not UTF-8, and the character that was probably meant."""
-    whole: bytes = error.object
-    if b"\0" in whole[:1000]:
-        return f" {_NO_TEXT}"
-    line, char = (
-        whole.count(b"\n", 0, error.start) + 1,
-        whole[error.start : error.start + 1].decode("cp1252", "replace"),
-    )
-    return f", line {line}: '{char}' is not in UTF-8. Save the file as plain text, encoding UTF-8"
 
 
 def _no_toml(path: Path, text: str, error: Exception, kind: Any) -> str:

@@ -9,6 +9,7 @@ from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, TypedDict, Unpack
 
+from hersey.arguments import Words
 from hersey.arrays import refuse_unknown
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.dwells.doubtful import doubtful_order, doubtful_tare
@@ -23,7 +24,7 @@ from hersey.log.corrections import Corrected
 from hersey.log.doubtful import doubtful_units
 from hersey.log.mapping import LogMapping, as_stated, mapping_of, read_with_mapping, without_what_is_said
 from hersey.log.means import MeansTable, read_means
-from hersey.log.torque_log import Correction, LogFile, TorqueLog
+from hersey.log.torque_log import ROTATIONS, TARES, Correction, LogFile, TorqueLog
 from hersey.result import Means, Result
 from hersey.schema.warning import Warning
 from hersey.units import takes_si
@@ -163,7 +164,15 @@ class Inspection(Result):
         return tuple(found)
 
 
-@takes_si(min_dwell="time", every="time", radius="length", load="force")
+@takes_si(
+    min_dwell="time",
+    every="time",
+    radius="length",
+    load="force",
+    tare=TARES,
+    rotation=ROTATIONS,
+    temperature_scale=Words(("degC", "K")),
+)
 def inspect(
     paths: str | Path | Sequence[str | Path],
     *,

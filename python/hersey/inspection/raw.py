@@ -95,11 +95,15 @@ def raw_channels(path: str | Path) -> RawLog:
 
 @dataclass(frozen=True)
 class Lacking:
-    """Why no column plays a role; ``columns`` are the indices of those that come near, none if none does."""
+    """Why no column plays a role; ``columns`` are the indices of those that come near, none if none does.
+
+    ``reason`` is the text without what to do.
+    """
 
     text: str
     columns: tuple[int, ...] = ()
     absent: bool = False  #: whether no column of the file comes near
+    reason: str = ""
 
     def __str__(self) -> str:
         """Return why."""
@@ -139,7 +143,8 @@ def roles_of(
 
 def _lacking(error: HerseyError, log: RawLog) -> Lacking:
     columns = error.columns if isinstance(error, ChannelError | UnitError) else ()
-    return Lacking(str(error).removeprefix(f"{log.name}: "), columns)
+    text, reason = (each.removeprefix(f"{log.name}: ") for each in (str(error), error.reason))
+    return Lacking(text, columns, reason=reason)
 
 
 def _of_text(path: Path) -> RawLog:

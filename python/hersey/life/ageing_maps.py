@@ -222,9 +222,10 @@ def _chosen(found: TimeToFailure, unit: str) -> SpecimenEnd:
         for each in found.units:
             if each.unit == unit:
                 return each
-        near = meant(unit, [each.unit for each in found.units])
-        way = f"Did you mean '{near}'?" if near else "'hersey campaign list' shows them"
-        raise ParameterError(f"the campaign has no specimen '{unit}'. {way}")
+        known = [each.unit for each in found.units]
+        near = meant(unit, known)
+        way = f"did you mean '{near}'?" if near else f"its specimens are {', '.join(known)}"
+        raise ParameterError(f"the campaign has no specimen '{unit}'", remedy=way)
     coming = [each for each in found.units if each.age.passed <= 0.5]
     return min(coming or found.units, key=lambda each: each.age.age.value)
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 
+from hersey.arguments import Words
 from hersey.arrays import FloatArray
 from hersey.log.impossible import Impossible
 from hersey.log.sensors import Sensors
@@ -28,6 +29,8 @@ NO_CLOCK = "number of the row"
 LARGEST = 1e12
 #: Slower than this, rad/s (a fiftieth of a revolution a minute), the drive stands.
 STANDING = 0.002
+#: What is subtracted from torque, and the directions whose dwells are used.
+TARES, ROTATIONS = Words(("none", "standing")), Words(("both", "forward", "reverse"))
 
 
 @dataclass(frozen=True)
@@ -175,7 +178,7 @@ class TorqueLog(Result):
 
         return pl.concat([_run_frame(index, run) for index, run in enumerate(self.runs)], how="diagonal")
 
-    @takes_si(min_dwell="time")
+    @takes_si(min_dwell="time", tare=TARES, rotation=ROTATIONS)
     def steady(self, *, min_dwell: float = 2.0, tare: str = "none", rotation: str = "both") -> SteadyPoints:
         """Reduce the log to its steady points: see `hersey.damping.dwells.steady_points`."""
         from hersey.damping.dwells import steady_points

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from hersey import _core
+from hersey.arguments import Words
 from hersey.arrays import FloatArray, pointwise
 from hersey.errors import ParameterError
 from hersey.lubrication import paper
@@ -183,7 +184,7 @@ class Contact(Record):
         return replace(self, load=load)
 
 
-@takes_si(load="force")
+@takes_si(load="force", rule=Words(RULES))
 def nip_width(contact: Contact, *, load: ArrayLike | None = None, rule: str = "layer") -> FloatArray:
     """Return the width of the nip, m.
 

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hersey import _core
+from hersey.arguments import Words
 from hersey.arrays import FloatArray, pointwise
 from hersey.errors import ParameterError
 from hersey.lubrication import paper
@@ -210,7 +211,7 @@ def _correction(answer: _core.Correction) -> Correction:
     return Correction(answer.factor, answer.valid)
 
 
-@takes_si(speed="speed", temperature="temperature", supply="length")
+@takes_si(speed="speed", temperature="temperature", supply="length", law=Words(LAWS))
 def drag_torque(
     contact: Contact,
     lubricant: Lubricant,

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hersey import _core
+from hersey.arguments import Words
 from hersey.arrays import FloatArray, pointwise
 from hersey.errors import ParameterError
 from hersey.lubrication.asperities import Asperities, BoundaryFriction
@@ -318,7 +319,7 @@ def _check_carry(asperities: Asperities, pressure: float) -> None:
         )
 
 
-@takes_si(speed="speed", temperature="temperature")
+@takes_si(speed="speed", temperature="temperature", regime=Words(("governing", *REGIMES)))
 def mixed_contact(
     contact: Contact,
     lubricant: Lubricant,

@@ -11,13 +11,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from hersey import _core
+from hersey.arguments import Words
 from hersey.arrays import FloatArray
 from hersey.errors import ExtrapolationWarning, ParameterError
 from hersey.result import Means, Record
 from hersey.units import celsius, takes_si
 
 #: What the belt does near zero speed; see docs/theory/closures.md.
-CLOSURES = tuple(_core.CLOSURES)
+CLOSURES = Words(_core.CLOSURES)
 #: A value of the wire form.
 Wire = str | float | Sequence[float]
 #: What every law takes besides its shape.
@@ -234,6 +235,7 @@ _TEMPERATURES = dict.fromkeys(("reference_temperature", "temperature_zero"), "te
     transition_force="force",
     transition_speed="belt speed",
     static_growth_time="time",
+    closure=CLOSURES,
     **KINDS,
     **_TEMPERATURES,
 )
@@ -322,7 +324,7 @@ class Drag(PowersOfTemperature):
         return [np.full(sets, np.nan if value is None else float(value)) for value in values]
 
 
-@takes_si(speeds="belt speed", forces="force", **KINDS, **_TEMPERATURES)
+@takes_si(speeds="belt speed", forces="force", closure=CLOSURES, **KINDS, **_TEMPERATURES)
 @dataclass(frozen=True)
 class DragTable(PowersOfTemperature):
     """Drag through measured points, joined by straight lines in logarithmic scales.

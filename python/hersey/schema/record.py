@@ -18,6 +18,8 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, NamedTuple, Union, g
 
 import numpy as np
 
+from hersey.arguments import explaining
+
 #: Items of JSON by the kind of an array.
 _ITEMS: dict[str, Any] = {"f": float, "i": int, "u": int, "b": bool, "U": str}
 
@@ -45,7 +47,14 @@ class Means(NamedTuple):
 OPEN = Means(open=True)
 
 
-class Record:
+class _Explained(type):
+    """The class of records: one that is made frozen says how to get a changed one."""
+
+    def __setattr__(cls, name: str, value: Any) -> None:
+        super().__setattr__(name, explaining(value) if name == "__setattr__" else value)
+
+
+class Record(metaclass=_Explained):
     """A frozen data class that describes itself: JSON, schema and documentation follow from its fields.
 
     ``also_stated`` names properties and methods (without arguments) that JSON holds too, ``not_stated``

@@ -9,6 +9,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from hersey.arguments import Words
 from hersey.damping.compare import LogComparison, compare
 from hersey.damping.curves import CurveMixture, fit_curves
 from hersey.damping.dwells import SteadyPoints
@@ -87,7 +88,7 @@ class Study(Findings, Result):
         return self.surface.chart()
 
 
-@takes_si()
+@takes_si(temperature_scale=Words(("degC", "K")))
 def study(
     points: SteadyPoints,
     machine: Machine | str | Path | None = None,

@@ -23,7 +23,7 @@ from hersey.damping.dwells.steadiness import MAX_TEMPERATURE_DRIFT, drift_over, 
 from hersey.damping.dwells.zero import Zero, standing_stretches, starts_of
 from hersey.errors import TARE, InsufficientDataError, ParameterError, Setting
 from hersey.log.channels import MEANS
-from hersey.log.torque_log import Run, TorqueLog
+from hersey.log.torque_log import ROTATIONS, TARES, Run, TorqueLog
 
 #: Rounds in which dwells are judged again by the noise of those kept, at the most.
 ROUNDS = 3
@@ -56,11 +56,11 @@ def steady_points(
     InsufficientDataError
         If no dwell is found, or there is no standing stretch to tare with.
     """
-    if tare not in ("none", "standing"):
+    if tare not in TARES:
         known = f'write tare = "{tare}" under [torque] in hersey.toml beside the log'
         offset = f". To subtract a known offset, {known}" if any(map(str.isdigit, tare)) else ""
         raise ParameterError(f"tare '{tare}' is not known. Use none or standing{offset}")
-    if rotation not in ("both", "forward", "reverse"):
+    if rotation not in ROTATIONS:
         raise ParameterError(f"rotation '{rotation}' is not known. Use both, forward or reverse")
     if not 0 < min_dwell < float("inf"):
         raise ParameterError(f"min_dwell is {min_dwell:g} s: it must be greater than 0")

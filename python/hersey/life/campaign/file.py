@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 import sqlite3
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
@@ -9,7 +10,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
-from hersey.errors import OutputError, ParameterError, meant
+from hersey.errors import OutputError, ParameterError, meant, way_in
 from hersey.life.age import Age
 from hersey.life.campaign.adding import Added, add_entry, age_unit, is_there, lies_at
 from hersey.life.campaign.checks import CampaignCheck, check
@@ -196,8 +197,15 @@ class Campaign:
     def _no_unit(self, unit: str) -> ParameterError:
         known = [row[0] for row in self._database.execute("SELECT DISTINCT unit FROM runs ORDER BY unit")]
         near = meant(unit, known)
-        way = f"Did you mean '{near}'?" if near else "'hersey campaign list' shows them"
-        return ParameterError(f"{self.path.name} has no specimen '{unit}'. {way}")
+        way = f"did you mean '{near}'?" if near else self._lists_runs
+        return ParameterError(f"{self.path.name} has no specimen '{unit}'", remedy=way)
+
+    @property
+    def _lists_runs(self) -> str:
+        """What shows the specimens and runs."""
+        terminal = way_in() == "terminal"
+        way = f"hersey campaign list {shlex.quote(str(self.path))}" if terminal else "campaign.runs()"
+        return f"list them with: {way}"
 
     def points(self, run: int) -> SteadyPoints:
         """Return the steady points of a run as they were added; rows of the log are not kept.
@@ -275,7 +283,7 @@ class Campaign:
         with sqlite_errors(self.path):
             row = self._database.execute(f"SELECT {column} FROM runs WHERE id = ?", (run,)).fetchone()
         if row is None:
-            raise ParameterError(f"{self.path.name} has no run {run}. 'hersey campaign list' shows them")
+            raise ParameterError(f"{self.path.name} has no run {run}", remedy=self._lists_runs)
         return row[0]
 
     def dwells(self) -> pl.DataFrame:

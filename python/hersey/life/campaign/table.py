@@ -11,7 +11,7 @@ from pathlib import Path
 
 from hersey.errors import ChannelError, HerseyError, ParameterError, UnreadableLogError
 from hersey.files.tables import text_of
-from hersey.files.text import read_text
+from hersey.files.text import read_table_text
 from hersey.life.age import Age
 
 _HEADING = re.compile(r"\s*(.*?)\s*(?:[\[(]\s*(.*?)\s*[\])])?\s*")
@@ -39,18 +39,22 @@ def read_runs(path: str | Path) -> list[RunToAdd]:
         If a column or a cell is missing or says no age, naming file, line and column.
     """
     path = Path(path)
-    lines = read_text(path).removeprefix("\ufeff").splitlines()
-    head = lines[0] if lines else ""
-    separator = max(",;\t", key=head.count)
-    rows = list(csv.reader(lines, delimiter=separator))
-    headings = [_HEADING.fullmatch(cell) for cell in (rows[0] if rows else [])]
+    lines = read_table_text(path).split("\n")
+    separator = max(",;\t", key=lines[0].count)
+    try:
+        rows = list(csv.reader(lines, delimiter=separator))
+    except csv.Error as error:
+        raise UnreadableLogError(f"{path.name} is not a table: {error}") from None
+    headings = [_HEADING.fullmatch(cell) for cell in rows[0]]
     names = [match[1].casefold() if match else "" for match in headings]
     for name in _NEEDED:
         if names.count(name) != 1:
             what = "there is no column" if name not in names else "there is more than one column"
+            listed = ", ".join(f"'{cell.strip()}'" for cell in rows[0] if cell.strip())
+            example = separator.join(("log", "unit", "age [pages]")).replace("\t", "<Tab>")
             raise ChannelError(
-                f"{path.name}: {what} '{name}'. The first line must name log, unit (the specimen) and "
-                "age, e.g. 'log,unit,age [pages]'"
+                f"{path.name}: {what} '{name}'. {f'Columns: {listed}' if listed else 'Line 1 is empty'}",
+                remedy=f"line 1 must name log, unit (the specimen) and age, e.g. '{example}'",
             )
     at = {name: names.index(name) for name in _NEEDED}
     heading = headings[at["age"]]

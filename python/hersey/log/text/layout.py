@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import codecs
 import itertools
 import re
 from collections import Counter
@@ -12,6 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hersey.errors import MAPPING, Setting, UnreadableLogError
+from hersey.files import text as text_files
 from hersey.log.text.column import Column, refuse_columns
 from hersey.log.text.header import Numbered, columns_of
 from hersey.log.text.numbers import NumberStyle, is_missing, looks_numeric, style_of
@@ -25,7 +25,6 @@ SNIFFED = 1 << 17
 #: Lines that a quoted cell of a header has at the most.
 _LINES_OF_A_CELL = 10
 _COMMENTS = ("#", "~", "//")
-_NOT_CP1252 = (b"\x81", b"\x8d", b"\x8f", b"\x90", b"\x9d")
 
 
 @dataclass(frozen=True)
@@ -179,20 +178,12 @@ def encoding_of(start: bytes, name: str) -> str:
     UnreadableLogError
         If the bytes are no text.
     """
-    if start.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
-        return "utf-16"
-    if b"\0" in start:
-        odd, even = start[1::2].count(0), start[::2].count(0)
-        if max(odd, even) > 0.4 * len(start) and not min(odd, even):  # every other byte of plain text
-            return "utf-16-le" if odd else "utf-16-be"
+    encoding = text_files.encoding_of(start)
+    if not encoding:
         raise UnreadableLogError(
             f"{name} is a binary file of an unknown format. Export the channels as text (CSV)"
         )
-    try:
-        codecs.getincrementaldecoder("utf-8")().decode(start)
-    except UnicodeDecodeError:
-        return "cp1252" if not any(code in start for code in _NOT_CP1252) else "latin-1"
-    return "utf-8-sig"
+    return encoding
 
 
 def _with_stamps(
