@@ -246,7 +246,7 @@ MACHINES: dict[str, tuple[dict[str, Any], str, str]] = {
     "a value of another kind": (
         {"answers": {"drivetrain.mass": "11 N"}},
         "field:drivetrain.mass",
-        "'N' is not a unit of mass",
+        'mass is 11 N, a weight, but a mass is needed. Write "1.122 kg"',
     ),
     "a word": ({"answers": {"limits.roll_friction": "low"}}, "field:limits.roll_friction", "not a number"),
     "a negative value": (
@@ -493,7 +493,7 @@ def test_a_recipe_that_is_dropped_sets_the_options(tmp_path: Path) -> None:
         ('load = "50 N"\ntare = "none"\n', "no control for load of this recipe"),
         ('tare = "halting"\n', "tare is 'halting': write none or standing"),
         ("tare = 3\n", "tare is 3"),
-        ('logs = ["a.csv"]\ntara = "none"\n', "Did you mean [tare]"),
+        ('logs = ["a.csv"]\ntara = "none"\n', "Did you mean 'tare'?"),
     ],
 )
 def test_a_recipe_that_the_page_cannot_hold_is_refused(text: str, said: str, tmp_path: Path) -> None:

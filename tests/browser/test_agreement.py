@@ -179,10 +179,8 @@ def test_the_page_says_the_same(
             if page.locator(f"#try-{name}").count():
                 page.fill(f"#try-{name}", f"{value:.6g}")
                 page.press(f"#try-{name}", "Enter")
-        planned = (
-            point.verdict == "depends" and point.plan is not None and point.plan.found
-        )  # the list has the probabilities
-        said = f"{SIGNALS[point.signal]} {'needs the start-up profile' if planned else point.words}"
+        assert point.words.startswith(point.brief[:8])  # the list has the probabilities and the reason
+        said = f"{SIGNALS[point.signal]} {point.brief}"
         expect(page.locator(".verdict-line")).to_contain_text(said, timeout=30_000)
     assert opened.errors == []
 

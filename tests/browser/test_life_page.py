@@ -37,7 +37,7 @@ def test_it_says_what_ends_the_units(opened: Opened) -> None:
     assert opened.page.inner_text("#command") == "hersey life <life.hersey>"
     titles = opened.page.locator(".part > h2").all_inner_texts()
     assert titles[:2] == ["Specimens, most urgent first", "Time to failure"]
-    assert titles[-1] == "How to reproduce this report"
+    assert titles[-1] == "Reproduce this report"
     for name in ("ends", "growth_1", "maps", "film", "drift", "population"):
         assert opened.page.locator(f"#chart-{name} svg.marks").count() == 1
     assert opened.page.locator("#ages tr:first-child td").all_inner_texts()[:2] == ["Running", "U1"]

@@ -66,7 +66,7 @@ def test_spreads_as_people_write_them(parameter: str, text: str, expected: Uncer
         (
             "mass",
             "2 kg to 1 kg",
-            "range 2 to 1: give the lower end first, and both ends on the same side of 0",
+            "begins with its upper end. Write '1 kg to 2 kg'",
         ),
         ("mass", "1 kg to 1 kg", "give the lower end first"),
         ("ehl_exponent", "-0.5 to 0.5", "both ends on the same side of 0"),

@@ -15,7 +15,7 @@ def test_a_room_that_was_imported_calls_its_verb(room: str) -> None:
     """The package hides the function of its name, e.g. after ``import hersey.study``."""
     code = f"import hersey.{room}, sys; sys.modules['hersey.{room}']()"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
-    assert f"TypeError: {room}() missing" in done.stderr
+    assert f"hersey.errors.ArgumentError: {room} needs the argument" in done.stderr
 
 
 def test_a_room_that_can_be_called_loads_no_more() -> None:

@@ -357,7 +357,7 @@ def test_a_transition_is_drawn_as_wide_as_its_interval(surface: DampingSurface) 
         ({"seed": -1}, "seed is -1"),
         ({"temperature": None}, "depends on temperature"),
         ({"temperature": 250.0}, "above 0 degC"),
-        ({"temperature": float("nan")}, "above 0 degC"),
+        ({"temperature": float("nan")}, "temperature is NaN"),
         ({"stick_speed": 1.0}, "stick_speed"),
         ({"roll_radius": -1.0}, "transition"),
     ],
@@ -373,10 +373,10 @@ def test_bad_draws_are_refused(surface: DampingSurface, arguments: dict[str, Any
     [
         ({"temperatures": [400.0]}, "at least two"),
         ({"temperatures": [400.0, 390.0]}, "ascend"),
-        ({"temperatures": [200.0, 390.0]}, "above 0 degC"),
+        ({"temperatures": [260.0, 390.0]}, "above 0 degC"),
         ({"speeds": [0.0, 1.0]}, "above 0 and in ascending order"),
         ({"speeds": [0.2, 0.1]}, "ascend"),
-        ({"speeds": {"fast": 1.0}}, "speeds is not a number"),
+        ({"speeds": {"fast": 1.0}}, "speeds is a dictionary"),
         ({"points": [OperatingPoint("freezer", 0.1, 255.0)]}, "255 K"),
         ({"stick_speed": 1.0}, "stick_speed"),
     ],
@@ -564,7 +564,7 @@ def test_what_is_no_fit_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "fit.json"
     for text in ("", "{", "[]", "{}", '"fit"', "[" * 100_000, "time,torque\n1,2\n"):
         path.write_text(text)
-        with pytest.raises(ParameterError, match=r"^fit\.json: "):
+        with pytest.raises(ParameterError, match=r"^fit\.json(: | is )"):
             read_fit(path)
     path.write_bytes(b"\xff\xfe\x00")
     with pytest.raises(ParameterError, match=r"^fit\.json: "):

@@ -87,7 +87,7 @@ def test_the_same_seed_gives_the_same_plan() -> None:
             Limits(speed=1.5),
             1.9,
             "speed",
-            "the drive speed is limited to 1.5 m/s, but 1.9 m/s would be enough",
+            "The drive speed is limited to 1.5 m/s, but 1.9 m/s would be enough",
         ),
         (WIDE, 0.9, "target_speed", "not above the transition speed 1.001 m/s"),
         (
@@ -141,7 +141,7 @@ def test_a_roll_that_cannot_start_the_belt_has_no_plan() -> None:
     enough = refused.obstacles[0].needed
     assert enough is not None
     assert enough > FUSER_DRAG.holding_force > 180.0
-    assert f"the roll grip of 180 N cannot start this belt; {enough:g} N is needed" in refused.verdict()
+    assert f"The roll grip of 180 N cannot start this belt; {enough:g} N is needed" in refused.verdict()
     assert hersey.stick_slip(replace(FUSER, grip=180.0), FUSER_DRAG, drive_speed=0.045).kind == "stalled"
 
 
@@ -201,7 +201,7 @@ def test_motor_torque_is_a_limit_at_the_roll() -> None:
     ("changed", "words"),
     [
         ({"target_speed": -1.0}, "target_speed is -1"),
-        ({"target_speed": math.nan}, "target_speed is nan"),
+        ({"target_speed": math.nan}, "target_speed is NaN"),
         ({"confidence": 1.0}, "confidence is 1.0"),
         ({"seed": -1}, "seed is -1"),
         ({"uncertainty": {"colour": Uncertainty(share=0.1)}}, "unknown parameter 'colour'"),

@@ -248,8 +248,7 @@ def _drifting(rise: float, p_value: float, count: int) -> Warning:
 def _seen_once() -> Warning:
     return Warning(
         "one standing stretch",
-        "the drive stood still only once, so drift of the torque zero, which would bias the "
-        "exponents, cannot be checked. Record another standstill at the end, or better, every few "
-        "dwells",
+        "the drive stood still only once, so drift of the torque zero cannot be checked. Record "
+        "another standstill at the end, or better, every few dwells",
         severity="watch",
     )

@@ -16,7 +16,7 @@ async function bandSection(parent) {
       p.name, p.disturbance.kick === null ? "any" : perSecond(p.disturbance.kick), p.disturbance.step === null ? "any" : perSecond(p.disturbance.step)]), [1, 2], { label: "Disturbances that sliding survives" });
   }
   if (steps.length) {
-    add(right, "h3", "Sudden steps between points");
+    add(right, "h3", "Steps between points");
     table(right, ["Step, mm/s", "To", "Slowest, mm/s", "Result"], steps.map((s) => [
       `${perSecond(s.from_speed)} to ${perSecond(s.to_speed)}`, s.to.name, perSecond(s.slowest),
       s.sticks ? judged("act", s.ramp_time === null ? "sticks on any ramp" : `sticks; use a ramp ≥ ${rampOf(s)}`) : judged("good", "smooth")]),
@@ -35,7 +35,7 @@ const rampOf = (step) => step.ramp_time >= 1 ? `${digits(step.ramp_time, 2)} s` 
 function bandFinding(withstand, steps) {
   const parts = [];
   const weak = withstand.filter((p) => p.disturbance.kick !== null || p.disturbance.step !== null).sort((a, b) => (a.disturbance.kick ?? 9) - (b.disturbance.kick ?? 9))[0];
-  if (weak) {
+  if (weak && !steps.length) { // the tables and the panel have it
     parts.push(`At ${perSecond(weak.speed)} mm/s, sliding survives a sudden speed change of ${perSecond(Math.min(weak.disturbance.kick ?? Infinity, weak.disturbance.step ?? Infinity))} mm/s`);
   }
   const bad = steps.find((s) => s.sticks);

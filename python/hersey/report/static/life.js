@@ -70,7 +70,7 @@ async function main() {
   for (const each of others) await section(report, each);
   const last = add(report, "section", "", "part");
   last.id = "reproduce";
-  add(last, "h2", "How to reproduce this report");
+  add(last, "h2", "Reproduce this report");
   add(last, "pre", data.command).id = "command";
   const all = fold(last, `${data.runs.length} ${data.runs.length === 1 ? "log" : "logs"} and their hashes`);
   add(all, "pre", data.runs.map((run) => `sha256 ${run.sha256}  ${run.log}`).join("\n"));

@@ -26,7 +26,7 @@ function reproduce(parent) {
   const inputs = [...data.files, ...(data.against ?? []), ...(data.machine ? [data.machine] : []), ...(rest?.sha256 ?? []).map((sha256) => ({ name: rest.source, sha256 }))];
   const seed = data.decision?.points.find((p) => p.plan)?.plan.seed;
   const files = plural(inputs.length, "file");
-  const part = section(parent, "reproduce", "How to reproduce this report",
+  const part = section(parent, "reproduce", "Reproduce this report",
     `${data.command ? `Run this command on ${files}` : `The report was made from ${files}`}${seed === undefined ? "" : ` (random seed ${seed})`}.`);
   if (data.command) add(part, "pre", data.command).id = "command";
   const foot = add(part, "div", "", "foot");

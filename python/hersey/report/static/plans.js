@@ -25,7 +25,7 @@ async function planSection(parent) {
     i += 1;
   }
   for (const point of all.filter((p) => !p.plan)) {
-    const line = add(part, "p", "", "text"), name = add(line, "b", pointName(point));
+    const line = add(part, "p", "", "text"), name = add(line, "b", capital(point.name));
     name.prepend(signal(point.signal));
     line.append(`: ${pretty(point.reason || (point.signal === "good" ? "no profile needed" : point.words))}`);
   }

@@ -49,7 +49,7 @@ async function torqueSection(parent) {
   await chart(columns, "damping", { heading: "Damping = torque / speed", note: data.map ? "" : "Dashed: constant torque (slope −1).", says: finding });
   if (!data.map) await chart(columns, "residuals");
   if (data.map) add(part, "p", `${torqueNote()} Dashed: constant torque.`, "note");
-  const all = fold(part, `Models, exponents, statistics and ${data.points.length === 1 ? "the dwell" : `all ${data.points.length} dwells`}`, async (inside) => {
+  const all = fold(part, `Models, statistics and ${data.points.length === 1 ? "the dwell" : `all ${data.points.length} dwells`}`, async (inside) => {
     add(inside, "p", `Drag curves: ${curveNames()}.`, "text");
     exponents(inside);
     add(inside, "pre", data.fit.summary).id = "summary";
