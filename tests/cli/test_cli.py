@@ -65,10 +65,10 @@ def test_the_example_in_the_help_works_as_typed(
 def test_report_prints_verdict_and_path(bench_csv: Path, tmp_path: Path) -> None:
     result = run("report", bench_csv, "--out", "page.html", cwd=tmp_path)
     assert result.returncode == 0
-    assert "Dowson-Higginson" not in result.stdout
+    assert "AICc" not in result.stdout
     assert result.stdout.endswith("\npage.html\n")
     verbose = run("report", bench_csv, "--out", "page.html", "--force", "-v", cwd=tmp_path)
-    assert "Dowson-Higginson" in verbose.stdout
+    assert "AICc" in verbose.stdout
     assert (tmp_path / "page.html").exists()
 
 

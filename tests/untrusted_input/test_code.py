@@ -316,7 +316,7 @@ def test_what_a_sign_was_read_as_is_warned_of(tmp_path: Path) -> None:
     kind = "sign in a formula read as a power"
     (power,) = [each for each in hersey.read(tmp_path / "log.mf4").files[0].warnings if each.kind == kind]
     assert (power.values["channel"], power.values["formula"]) == ("Torque", "X^2")
-    assert str(power) == "'Torque': '^' in its formula 'X^2' was read as a power"
+    assert str(power) == "'Torque': '^' in its formula 'X^2' was read as a power."
 
 
 SOUND: dict[str, Callable[[float], float]] = {

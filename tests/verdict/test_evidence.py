@@ -456,7 +456,7 @@ def test_a_transition_is_off_by_the_interval_of_the_log(machine: Machine, measur
 
     assert turn([1.05, 0.95], [0.9, 0.9], [1.1, 1.1]) == []
     [one] = turn([1.05, 1.21], [0.9, 0.9], [1.1, 1.1])
-    assert "at 180 degC" in one.text
+    assert "At 180 degC" in one.text
     assert one.number("off") == pytest.approx(2.0)
     [slow] = turn([0.81, 1.0], [0.9, 0.9], [1.2, 1.2])
     assert slow.number("off") == pytest.approx(2.0)

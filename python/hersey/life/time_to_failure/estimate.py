@@ -104,8 +104,8 @@ class TimeToFailure(Result):
 
     def summary(self) -> str:
         """Return specimens, population, what is unknown and what to measure next as text."""
-        unit = f" {self.age_unit}" if self.age_unit else ""
-        lines = [self.headline(), f"age of first failure{unit and f' ({unit.strip()})'}, with 90 % intervals"]
+        of_unit = f" ({self.age_unit})" if self.age_unit else ""
+        lines = [self.headline(), f"age of first failure{of_unit}, with 90 % intervals"]
         lines += [f"  {each}" for each in self.units[:_SHOWN]]
         if len(self.units) > _SHOWN:
             lines.append(f"  and {len(self.units) - _SHOWN} more specimens")
@@ -114,7 +114,7 @@ class TimeToFailure(Result):
         shares = ", ".join(f"{name} {each.value:.0%}" for name, each in ordered if each.value >= 0.005)
         lines += [
             f"share of new specimens that fail by each mode: {shares}",
-            "age at which half of new specimens reach each limit, if it were the only one",
+            f"age{of_unit} at which half of new specimens reach each limit, if it were the only one",
         ]
         soon = FAR * max(each.age.last for each in self.units)
         far = [mode.name for mode in self.modes if mode.ages.b50.age.low > soon]

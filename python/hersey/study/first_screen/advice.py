@@ -33,7 +33,7 @@ def next_step(found: Behaviour, points: Sequence[PointDecisionPart]) -> str:
         return ""
     done = "No single measurement would narrow V* much."
     if (ratio := _ratio(edges.fold)) <= _KNOWN:
-        done = f"V* is known {_within_ratio(ratio)}; no measurement is needed."
+        done = f"V* is known {_within_ratio(ratio)}."
     todo = _of_points(edges, points)
     return f"Next: {todo}. {done}" if todo else done
 
