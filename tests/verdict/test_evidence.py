@@ -462,7 +462,7 @@ def test_a_transition_is_off_by_the_interval_of_the_log(machine: Machine, measur
     assert slow.number("off") == pytest.approx(2.0)
     assert turn([9.0, 9.0], [0.0, 0.1], [np.inf, np.inf]) == []  # not told
     [none] = turn([np.nan, 1.0], [0.9, 0.9], [1.1, 1.1])
-    assert "at 90 degC the contact model has no torque minimum" in none.text
+    assert "At 90 degC the contact model has no torque minimum" in none.text
 
 
 def test_a_machine_without_its_tables(machine: Machine, contact: Contact, oil: Lubricant) -> None:
