@@ -271,7 +271,7 @@ def test_a_fit_takes_off_the_rest_that_the_machine_states(typed: Typed, folder: 
     (folder / "resting.toml").write_text(text)
     refused = typed(*HOT, machine="resting.toml")
     assert "was fitted to the whole torque" in refused.stderr
-    assert "write the fit again with hersey fit LOG --machine TOML --json, or delete [rest]" in refused.stderr
+    assert "Write the fit again with hersey fit LOG --machine TOML --json, or delete [rest]" in refused.stderr
     told = json.loads((folder / "fit.json").read_text())["command"].split()
     fit = run("fit", told[2], "--tare", "standing", "--machine", "resting.toml", "--json", cwd=folder)
     (folder / "film.json").write_text(fit.stdout)

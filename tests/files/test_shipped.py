@@ -83,4 +83,4 @@ def test_the_command_says_what_to_type_next(tmp_path: Path) -> None:
     assert done.stderr == "hersey: my examples already exists. Name a new folder\n"
     done = run("examples", "no/where", cwd=tmp_path)
     assert done.returncode == 2
-    assert done.stderr.startswith("hersey: no/where cannot be written: ")
+    assert done.stderr.startswith("hersey: no/where: there is no directory no. Make it first: mkdir -p no")

@@ -132,7 +132,7 @@ def test_bad_traces_are_refused() -> None:
         cycles(np.concatenate([times, times + 1e4]), np.tile(times, 2))
     with pytest.raises(ParameterError, match="least_drop is -1"):
         cycles(times, times, least_drop=-1)
-    with pytest.raises(ParameterError, match="drive_speed is nan"):
+    with pytest.raises(ParameterError, match="drive_speed is NaN"):
         cycles(times, times, drive_speed=float("nan"))
 
 

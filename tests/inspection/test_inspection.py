@@ -369,7 +369,7 @@ def test_a_word_that_inspect_does_not_know_is_named(root: Path) -> None:
         ParameterError, match=r"inspect has no argument 'isotermal'. Did you mean isothermal\?"
     ):
         inspect(root / "examples" / "bench.csv", isotermal=True)  # type: ignore[call-arg]
-    given = {"every": "20 ms", "radius": "15 mm"}
+    given = {"radius": "15 mm"}
     with pytest.raises(UnitError, match="every: "):
         inspect(root / "examples" / "bench.csv", every="20 mm")  # type: ignore[arg-type]
     assert inspect(root / "examples" / "bench.csv", **given).support is not None  # type: ignore[arg-type]

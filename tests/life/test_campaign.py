@@ -314,7 +314,7 @@ def test_what_is_no_campaign_is_refused_and_left_as_it_is(tmp_path: Path, run_cs
             with pytest.raises(ParameterError, match=r"is not a campaign file. Name a file"):
                 way(path)
         assert path.read_bytes() == before
-    with pytest.raises(MissingFileError, match="hersey campaign add"):
+    with pytest.raises(MissingFileError, match=r"Create it with: hersey.Campaign.create\("):
         Campaign.open(tmp_path / "none.hersey")
     with pytest.raises(ParameterError, match="is not a file"):
         Campaign.create(tmp_path)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import inspect
 from dataclasses import replace
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -256,7 +255,7 @@ def test_given_numbers_of_the_law_are_kept() -> None:
 def test_what_the_dwells_do_not_tell_is_said(kept: pl.Expr, said: str) -> None:
     whole = shipped.campaign(2)
     runs, dwells = whole.runs(), whole.dwells().filter(kept)
-    some = SimpleNamespace(path=whole.path, age_unit="pages", runs=lambda: runs, dwells=lambda: dwells)
+    some = shipped.Campaign(path=whole.path, age_unit="pages", runs=lambda: runs, dwells=lambda: dwells)
     with pytest.raises(InsufficientDataError, match=said):
         film_life(some, shipped.machine())  # type: ignore[arg-type]
 
@@ -265,7 +264,7 @@ def test_a_film_that_is_not_that_of_the_file_is_not_told() -> None:
     whole = shipped.campaign(1)
     runs, dwells = whole.runs(), whole.dwells()
     slow = dwells.with_columns(pl.col("torque (N m)") * (1.0 + 5.0 * (pl.col("speed (rad/s)") > 5.0)))
-    some = SimpleNamespace(path=whole.path, age_unit="pages", runs=lambda: runs, dwells=lambda: slow)
+    some = shipped.Campaign(path=whole.path, age_unit="pages", runs=lambda: runs, dwells=lambda: slow)
     with pytest.raises(InsufficientDataError, match="differ from the machine file"):
         film_life(some, shipped.machine())  # type: ignore[arg-type]
 

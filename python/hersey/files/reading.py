@@ -12,10 +12,12 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import BinaryIO
+from typing import TYPE_CHECKING, BinaryIO
 
 from hersey.errors import HerseyError, MissingFileError, UnreadableLogError, meant, printable, way_in
-from hersey.schema.warning import Warning
+
+if TYPE_CHECKING:
+    from hersey.schema.warning import Warning
 
 #: Escapes of Python that a path with backslashes can hold by mistake.
 _ESCAPES = {"\a": r"\a", "\b": r"\b", "\f": r"\f", "\n": r"\n", "\r": r"\r", "\t": r"\t", "\v": r"\v"}
@@ -89,6 +91,8 @@ class OpenFile:
         UnreadableLogError
             If its first ``size`` bytes, or the file behind the path, are no longer the same.
         """
+        from hersey.schema.warning import Warning  # which loads NumPy
+
         self.refuse_loss()
         grown, now = self._has_grown(), os.fstat(self.file.fileno()).st_size
         if grown or self._is_young():
