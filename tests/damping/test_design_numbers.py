@@ -179,7 +179,7 @@ def test_the_ranges_that_can_be_run(straight: ModelComparison, isothermal: Model
     for bad in ((0.0, 5.0), (5.0, 5.0)):
         with pytest.raises(ParameterError, match=f"speeds are {bad[0]:g} to 5 rad/s: both must be above 0"):
             design(straight, speeds=bad)
-        with pytest.raises(ParameterError, match=f"temperatures are {bad[0]:g} to 5 K: both must be above 0"):
+        with pytest.raises(ParameterError, match=f"temperatures is {bad[0]:g} without a unit"):
             design(straight, temperatures=bad)
 
 

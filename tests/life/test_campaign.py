@@ -320,7 +320,7 @@ def test_what_is_no_campaign_is_refused_and_left_as_it_is(tmp_path: Path, run_cs
         Campaign.create(tmp_path)
     with pytest.raises(ParameterError, match=r"ends in \.hersey"):
         Campaign.create(tmp_path / "life.csv")
-    with pytest.raises(OutputError, match="does not exist"):
+    with pytest.raises(OutputError, match=r"there is no directory .*Make it first"):
         Campaign.create(tmp_path / "none" / "life.hersey")
 
 

@@ -41,7 +41,7 @@ def test_a_warning_comes_back_with_kind_numbers_and_words() -> None:
     assert again.to_dict() == warning.to_dict()
     assert again.values["speed"] == 0.1 + 0.2
     assert type(again.values["count"]) is int
-    assert str(again) == "bench.csv: 3 late: rows of '{speed.real}' at 2.86 rpm. Set rotation"
+    assert str(again) == "bench.csv: 3 late: Rows of '{speed.real}' at 2.86 rpm. Set rotation."
     assert kept(again) == kept(warning)
 
 

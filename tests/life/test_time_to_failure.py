@@ -106,8 +106,8 @@ def test_what_cannot_be_judged_keeps_its_reason() -> None:
     assert str(stated) == "heat: no table [motor]"
     assert grip.where == "grip"
     assert str(grip.values["reason"]).startswith("no specimen was measured at two ages")
-    assert "\nheat is not judged: no table [motor]\n" in told().summary()
-    with pytest.raises(InsufficientDataError, match="grip: no run shows it"):
+    assert "\nheat is not judged. No table [motor].\n" in told().summary()
+    with pytest.raises(InsufficientDataError, match="grip: No run shows it"):
         time_to_failure(of(indicator("grip", np.full(AGE.size, np.nan), 2.0)))
 
 

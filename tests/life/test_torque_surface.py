@@ -69,7 +69,7 @@ def test_the_cold_corner_of_an_old_unit_where_it_stalls() -> None:
     assert runs[old].speed.size < runs[0].speed.size
     at, where = TorqueSurface(runs[old], kernel), (CORNERS[0][:1], CORNERS[1][:1] + ZERO_CELSIUS)
     found = at.at(*where)
-    rest = truths[old].rest.torque(*where)
+    rest = truths[old].rest.torque(where[0], temperature=where[1])
     assert found.torque + rest == pytest.approx(truths[old].torque(CORNERS[0][:1], CORNERS[1][:1]), rel=0.06)
     assert found.outside.tolist() == [True]
     assert found.factor == pytest.approx([1.34], abs=0.01)

@@ -77,7 +77,7 @@ def test_one_bad_cell_costs_its_row(bad: object, tmp_path: Path) -> None:
     if bad == "OVERFLOW":
         odd = log.files[0].warnings[0]
         assert (odd.kind, odd.values["row"], odd.values["cell"]) == ("cell that is no number", 44, bad)
-        assert str(odd) == "row 44, column 'Torque': 'OVERFLOW' is not a number"
+        assert str(odd) == "Row 44, column 'Torque': 'OVERFLOW' is not a number."
 
 
 def test_rows_count_from_the_first_of_the_sheet_and_a_summary_is_none(tmp_path: Path) -> None:
@@ -90,7 +90,7 @@ def test_rows_count_from_the_first_of_the_sheet_and_a_summary_is_none(tmp_path: 
     below, *others = log.files[0].warnings
     assert (below.kind, below.values["lines"]) == ("lines below the table", 5)
     assert str(below).startswith("5 rows below the table were skipped: 'Mean")
-    assert "row 44, column 'Torque': 'OVERFLOW' is not a number" in map(str, others)
+    assert "Row 44, column 'Torque': 'OVERFLOW' is not a number." in map(str, others)
 
 
 def test_dates_of_a_sheet_are_times(tmp_path: Path) -> None:

@@ -540,7 +540,7 @@ def test_lvm_by_labview() -> None:
         6,
         2000,
     )
-    assert str(missing) == "segment 1 of 3 has 6 samples instead of 2000"
+    assert str(missing) == "Segment 1 of 3 has 6 samples instead of 2000."
     np.testing.assert_allclose(
         values["fx_N"][:6], [0.211219, 0.212512, 0.209925, 0.213159, 0.208631, 0.206690]
     )

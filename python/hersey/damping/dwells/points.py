@@ -138,7 +138,7 @@ class SteadyPoints(Result):
         return float(np.sqrt(np.mean(np.sum(self.tare_errors**2, axis=1))))
 
     @classmethod
-    @takes_si()
+    @takes_si(radius="length", load="force")
     def from_table(
         cls,
         table: Any,
