@@ -49,3 +49,27 @@ def test_times_are_converted_and_other_words_are_not() -> None:
     for one, other in (("5 pages", "h"), ("5 h", "pages"), ("5 pages", "prints"), ("5 cycles", "pages")):
         with pytest.raises(UnitError, match=f"Give it in {other}"):
             Age.parse(one).as_unit(other)
+
+
+@pytest.mark.parametrize(
+    ("text", "ways"),
+    [
+        ("120.000 pages", ("120000 pages", "120 pages")),
+        ("35.500 cycles", ("35500 cycles", "35.5 cycles")),
+        ("1.125 kpages", ("1125 kpages", "1.1250 kpages")),
+    ],
+)
+def test_a_point_that_may_stand_between_thousands_is_asked_about(text: str, ways: tuple[str, str]) -> None:
+    with pytest.raises(ParameterError, match=f"Write '{ways[0]}' or '{ways[1]}'"):
+        Age.parse(text)
+    assert [Age.parse(way).value for way in ways] == [float(way.split()[0]) for way in ways]
+
+
+def test_what_reads_in_one_way_is_read() -> None:
+    for text, value in (
+        ("0.125 kpages", 0.125),
+        ("1.5 kpages", 1.5),
+        ("1.125 h", 1.125),
+        ("1234.125 pages", 1234.125),
+    ):
+        assert Age.parse(text).value == value

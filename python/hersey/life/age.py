@@ -11,6 +11,8 @@ from hersey.units import conversion
 
 _AGE = re.compile(r"\s*([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?)\s*(.*?)\s*", re.DOTALL)
 _WORD = re.compile(r"[^\W\d_][\w-]{0,39}")
+#: A number whose point may stand between thousands, as in German.
+_THOUSANDS = re.compile(r"[1-9][0-9]{0,2}\.[0-9]{3}")
 _WAY_OUT = "Write a number and what it counts, e.g. '120000 pages', '310 h' or '2e6 cycles'"
 
 
@@ -55,7 +57,15 @@ class Age:
             )
         if not (match[2] or unit):
             raise UnitError(f"age '{text[:40]}' has no unit. {_WAY_OUT}")
-        return cls(float(match[1]), match[2] or unit)
+        counted = match[2] or unit
+        if _THOUSANDS.fullmatch(match[1]) and _seconds(counted) is None:
+            decimal = f"{float(match[1]):g}"
+            decimal += "0" if decimal == match[1] else ""
+            raise ParameterError(
+                f"age '{match[1]} {counted}' can be read in two ways. Write "
+                f"'{match[1].replace('.', '')} {counted}' or '{decimal} {counted}'"
+            )
+        return cls(float(match[1]), counted)
 
     def as_unit(self, unit: str) -> Age:
         """Return the same age in another unit: times are converted, other words must be the same.
