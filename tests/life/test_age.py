@@ -70,6 +70,7 @@ def test_what_reads_in_one_way_is_read() -> None:
         ("0.125 kpages", 0.125),
         ("1.5 kpages", 1.5),
         ("1.125 h", 1.125),
+        ("1.250 km", 1.25),
         ("1234.125 pages", 1234.125),
     ):
         assert Age.parse(text).value == value

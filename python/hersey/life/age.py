@@ -58,7 +58,7 @@ class Age:
         if not (match[2] or unit):
             raise UnitError(f"age '{text[:40]}' has no unit. {_WAY_OUT}")
         counted = match[2] or unit
-        if _THOUSANDS.fullmatch(match[1]) and _seconds(counted) is None:
+        if _THOUSANDS.fullmatch(match[1]) and not _is_measured(counted):
             decimal = f"{float(match[1]):g}"
             decimal += "0" if decimal == match[1] else ""
             raise ParameterError(
@@ -110,6 +110,15 @@ def _seconds(unit: str) -> float | None:
         return conversion("time", unit).scale
     except UnitError:
         return None
+
+
+def _is_measured(unit: str) -> bool:
+    """Whether an age is a time or a distance, of which decimals are usual, and not a count."""
+    try:
+        conversion("length", unit)
+    except UnitError:
+        return _seconds(unit) is not None
+    return True
 
 
 def _counted(unit: str) -> str:
