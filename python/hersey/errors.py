@@ -288,11 +288,16 @@ class SandboxWarning(UserWarning):
         )
 
 
+def capital(text: str) -> str:
+    """Return a text with its first letter, and no other, as a capital."""
+    return f"{text[:1].upper()}{text[1:]}"
+
+
 def followed_by(text: str, remedy: str) -> str:
     """Return what is wrong and, in a sentence of its own, what to do, which may be empty."""
     if not remedy:
         return text
-    return f"{text}{'' if text.endswith(_ENDS) else '.'} {remedy[:1].upper()}{remedy[1:]}"
+    return f"{text}{'' if text.endswith(_ENDS) else '.'} {capital(remedy)}"
 
 
 def sentence(text: str, *, named: bool = False) -> str:
@@ -308,7 +313,7 @@ def sentence(text: str, *, named: bool = False) -> str:
     if not text:
         return ""
     named = named or any(sign in text.split(" ", 1)[0].rstrip(":.") for sign in "_.")
-    first = text if named else f"{text[:1].upper()}{text[1:]}"
+    first = text if named else capital(text)
     return first if first.endswith(_ENDS) else f"{first}."
 
 

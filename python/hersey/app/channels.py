@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from hersey.errors import UnitError, UnreadableLogError
+from hersey.errors import UnitError, UnreadableLogError, capital
 from hersey.log.channels import ROLES, role_conversion
 from hersey.log.doubtful import RARE, TOO_HOT
 from hersey.log.slow_channels import is_slow
@@ -110,7 +110,7 @@ def of_problem(
     at = f"{kind}:{name}" if name else "file:"
     rows = role == "time" and problem["error"] == UnreadableLogError.__name__
     title = "Time is out of order." if rows else "This cannot be read."
-    return Fault(at, title, said[:1].upper() + said[1:], f"{role or 'the log'}: {title.lower().rstrip('.')}")
+    return Fault(at, title, capital(said), f"{role or 'the log'}: {title.lower().rstrip('.')}")
 
 
 def _claimed(role: str, names: list[str], channels: Mapping[str, Any]) -> Fault:

@@ -7,6 +7,7 @@ import numpy as np
 
 from hersey.charts.growth import age_axis
 from hersey.charts.style import BLUE, INK, WIDTH, Chart, plot, rows_of, tip
+from hersey.errors import capital
 from hersey.life.drift.quantities import Quantity
 from hersey.life.drift.result import Drift
 
@@ -37,7 +38,7 @@ def drift_chart(drift: Drift) -> Chart:
 def _panel(drift: Drift, quantity: Quantity, chosen: list[int]) -> Chart:
     scale, unit = _SHOWN[quantity.si]
     x = age_axis("age", drift.age_unit, alt.Scale(), 5)
-    title = f"{quantity.name[:1].upper()}{quantity.name[1:]} ({unit})"
+    title = f"{capital(quantity.name)} ({unit})"
     axis = alt.Axis(minExtent=_AXIS, tickCount=5)
     y = alt.Y("value:Q", title=title, scale=alt.Scale(zero=False), axis=axis)
     low, middle, high = scale * quantity.band

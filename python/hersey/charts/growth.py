@@ -9,6 +9,7 @@ import altair as alt
 import numpy as np
 
 from hersey.charts.style import BLUE, DIAMOND, HEIGHT, INK, ORANGE, WIDTH, Chart, Row, plot, rows_of, tip
+from hersey.errors import capital
 from hersey.life.growth.fit import Growth
 from hersey.life.growth.limit_ages import AgeAtLimit, AgesAtLimit
 
@@ -77,7 +78,7 @@ def growth_chart(growth: Growth, *, ages: AgesAtLimit | None = None, si: str = "
 def _values(growth: Growth, si: str, *, short: bool) -> str:
     """The title of the axis of values."""
     unit = si.replace(" ", "·")
-    name = "Value" if short else f"{growth.quantity[:1].upper()}{growth.quantity[1:]}"
+    name = "Value" if short else capital(growth.quantity)
     return f"{name} ({unit or 'as given'})"
 
 

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from typing import TypeVar
 
 from hersey.cli.terminal import say
-from hersey.errors import HerseyError, ParameterError, printable
+from hersey.errors import HerseyError, ParameterError, capital, printable
 
 Answer = TypeVar("Answer")
 #: The answer that rejects a proposal.
@@ -108,5 +108,5 @@ def _required(proposed: str) -> str:
 def _help(words: str, proposed: str, needed: bool) -> str:
     """What a question is about, and what can be answered."""
     enter = f"accepts {proposed}" if proposed else "" if needed else "skips the question"
-    said = [words[:1].upper() + words[1:], f"Enter {enter}" if enter else "An answer is required"]
+    said = [capital(words), f"Enter {enter}" if enter else "An answer is required"]
     return f"{'. '.join(part for part in said if part)}. Ctrl-C ends, and nothing is written."

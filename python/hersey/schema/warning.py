@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
-from hersey.errors import Setting, followed_by, printable, sentence
+from hersey.errors import Setting, capital, followed_by, printable, sentence
 from hersey.schema.record import Means, Record, json_record
 from hersey.units import celsius, rpm
 
@@ -46,7 +46,7 @@ class _Words(string.Formatter):
             one, many = spec.split("|")
             return one if value == 1 else many
         if spec == "capital":
-            return f"{str(value)[:1].upper()}{str(value)[1:]}"
+            return capital(str(value))
         if spec == "p":
             return f"p = {value:.1g}" if value > _LEAST_P else f"p < {_LEAST_P:.0e}"
         form, _, unit = spec.partition(" ")

@@ -57,8 +57,10 @@ def nothing_steady(
         reasons.setdefault(r.why.label, []).append(r.why)
     listed = ", ".join(f"{len(alike)} x {_in_short(alike)}" for alike in reasons.values())
     way_out = _way_out(log, rejected, asked, dwells_with, other_clock)
-    ways = [*(_remedy(alike) for alike in reasons.values()), way_out]
-    return InsufficientDataError(f"{name}: no dwell found ({listed}). {'. '.join(filter(None, ways))}")
+    said = f"{name}: no dwell found ({listed})"
+    for way in (*(_remedy(alike) for alike in reasons.values()), way_out):
+        said = followed_by(said, way)
+    return InsufficientDataError(said)
 
 
 def _in_short(alike: list[Reason]) -> str:
@@ -67,13 +69,12 @@ def _in_short(alike: list[Reason]) -> str:
 
 
 def _remedy(alike: list[Reason]) -> str:
-    """What to do about reasons of one kind, as a sentence without its full stop; or nothing."""
+    """What to do about reasons of one kind, or nothing."""
     if alike[0].kind == "opposite signs":
         return f"Flip torque or speed with {turned('torque')}"
     if alike[0].kind == "zero torque":
         return "Check that the torque sensor is connected"
-    said = remedies(alike) if alike[0].kind in CAUSES else ""
-    return f"{said[:1].upper()}{said[1:]}"
+    return remedies(alike) if alike[0].kind in CAUSES else ""
 
 
 def too_brief(log: TorqueLog, min_dwell: float) -> str:

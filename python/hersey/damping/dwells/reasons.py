@@ -7,7 +7,7 @@ from statistics import median
 from typing import Literal
 
 from hersey.damping.dwells.groups import MIN_SAMPLES
-from hersey.errors import SIGN, InsufficientDataError, turned
+from hersey.errors import SIGN, InsufficientDataError, capital, turned
 
 Kind = Literal[
     "changing", "standing", "other rotation", "too short", "zero torque", "speed not held", "stick-slip",
@@ -103,10 +103,10 @@ class Reason:
                 how = f". Flip one with {turned('torque')}"
             case "spikes":
                 how = f": {self.count} samples differ from their neighbours by {_times(share)} the mean; "
-                how += f"without them the dwell is steady. {_sentence(_SPIKES)}"
+                how += f"without them the dwell is steady. {capital(_SPIKES)}"
             case "ripple":
                 how = f" at {self.frequency:.3g} Hz, amplitude {_times(share)} the mean, {self.turns()}; "
-                how += f"without it the dwell is steady. {_sentence(self.remedy())}"
+                how += f"without it the dwell is steady. {capital(self.remedy())}"
             case _:
                 how = ""
         return self.label + how
@@ -203,10 +203,6 @@ def _same_frequency(alike: list[Reason]) -> bool:
 
 def _longest(alike: list[Reason]) -> Reason:
     return max(alike, key=lambda r: r.frequency * r.lasts)
-
-
-def _sentence(text: str) -> str:
-    return f"{text[:1].upper()}{text[1:]}"
 
 
 def _times(share: float) -> str:

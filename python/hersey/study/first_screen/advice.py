@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from hersey.decision.behaviour import Behaviour
 from hersey.decision.edges import Edge, Edges, edges_of
 from hersey.decision.measurement import NARROW, WORTH, Measurement
+from hersey.errors import capital
 from hersey.posterior import Posterior
 from hersey.study.first_screen.result import DesignPart, MeasurementPart, PointDecisionPart
 from hersey.study.first_screen.words import at, between, figures, listed, mm
@@ -94,7 +95,7 @@ def ranking(found: Posterior, ranked: Sequence[Measurement]) -> list[str]:
     lines.append("These measurements would narrow it most:")
     for number, each in enumerate(ranked, 1):
         gain = _within(each) if each.left <= WORTH else "hardly narrower"
-        lines.append(f"  {number}. {_capital(_action(each))}: {gain}.")
+        lines.append(f"  {number}. {capital(_action(each))}: {gain}.")
     return lines
 
 
@@ -116,7 +117,3 @@ def _within(best: Measurement) -> str:
 def _within_ratio(ratio: float) -> str:
     """Half the width of an interval whose ends have a ratio, in per cent."""
     return f"within about {max(100.0 * (ratio**0.5 - 1.0), 1.0):.0f} %"
-
-
-def _capital(text: str) -> str:
-    return f"{text[:1].upper()}{text[1:]}"

@@ -14,6 +14,7 @@ from hersey.damping.estimate import Estimate
 from hersey.damping.trend import Trend
 from hersey.decision.behaviour import Behaviour, PointBehaviour
 from hersey.decision.edges import Edge, Edges, edges_of
+from hersey.errors import capital
 from hersey.posterior.result import SAFE
 from hersey.stability.operating_map import OperatingMap
 from hersey.study.findings import Findings
@@ -99,9 +100,9 @@ def of_machine(found: Behaviour, map_: OperatingMap, unit: str, *, few: bool = F
     general, of_general = _general(edges, map_, unit, few=few)
     if not said:
         return Instruction(
-            of_general, f"{where}{general}" if where else _capital(general), interval, _below(edges)
+            of_general, f"{where}{general}" if where else capital(general), interval, _below(edges)
         )
-    otherwise = f"{_capital(_slides(edges))}{_below(edges)}"
+    otherwise = f"{capital(_slides(edges))}{_below(edges)}"
     return Instruction(signal, said, interval, otherwise)
 
 
@@ -165,10 +166,6 @@ def _below(edges: Edges) -> str:
     if edges.turns:
         return f"{between('Below the transition,', turn.value, turn.low, turn.high)}, it sticks."
     return f"Below {figures(1e3 * edges.sticks_below, up=False)} mm/s it sticks."
-
-
-def _capital(text: str) -> str:
-    return f"{text[:1].upper()}{text[1:]}"
 
 
 def of_log(known: Findings, trend: Trend) -> Instruction:
