@@ -190,6 +190,18 @@ def test_a_speed_or_a_temperature_outside_the_log_is_said_once() -> None:
         hersey.operating_map(surface(), MACHINE, temperatures=[330.0, 480.0], draws=1)
 
 
+def test_the_range_of_the_log_ends_where_its_dwells_end() -> None:
+    """Twice the fastest dwell is outside, half the slowest too, and what is a thousandth beyond is not."""
+    drag = surface().drag(roll_radius=0.015, stick_speed=3e-4)
+    assert drag.measured is not None
+    low, high = drag.measured.speed
+    for speed, beyond in ((2 * high, 1), (1.01 * high, 1), (1.0005 * high, 0), (low, 0), (0.5 * low, 1)):
+        with warnings.catch_warnings(record=True) as seen:
+            warnings.simplefilter("always")
+            drag.measured.warn(None, {"drive_speed": speed}, 1)
+        assert len(seen) == beyond, speed
+
+
 def test_two_numbers_that_could_be_swapped_are_given_by_name() -> None:
     with pytest.raises(TypeError, match=r"Give the others by name: force\(speed, temperature=...\)"):
         H.Drag.force(DRAG, 1.0, 400.0)
