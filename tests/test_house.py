@@ -123,7 +123,7 @@ def test_no_circle() -> None:
 
 
 def test_the_root_holds_only_what_every_room_needs() -> None:
-    needed = {"arguments", "arrays", "errors", "result", "units"}
+    needed = {"arrays", "errors", "result", "units"}
     assert {path.stem for path in PACKAGE.glob("*.py")} == {"__init__", *needed}
 
 

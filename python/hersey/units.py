@@ -17,7 +17,9 @@ from fractions import Fraction
 from functools import cache, lru_cache, wraps
 from typing import TYPE_CHECKING, Any, TypeVar, cast
 
-from hersey.arguments import Door, Words, explaining, numbers
+from hersey.arguments.door import Door, Words
+from hersey.arguments.frozen import explaining
+from hersey.arguments.numbers import numbers
 from hersey.errors import ParameterError, UnitError, WrongKindError
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ from functools import partial
 
 import numpy as np
 
-from hersey.arguments import Words
+from hersey.arguments.door import Words
 from hersey.arrays import FloatArray
 from hersey.damping.branches import Transition, fit_branches, transition, why_no_transition
 from hersey.damping.candidates.branched import ONE, Law

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from hersey.arguments import Words
+from hersey.arguments.door import Words
 from hersey.arrays import FloatArray, refuse_unknown
 from hersey.damping.candidates.branched import LEAST_POWER, transition_exponent
 from hersey.damping.distributions import square_quantile

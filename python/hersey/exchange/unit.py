@@ -13,7 +13,7 @@ from types import MappingProxyType
 from typing import Any
 
 from hersey import _core
-from hersey.arguments import Words
+from hersey.arguments.door import Words
 from hersey.damping.fitted_law import FittedLaw
 from hersey.errors import ParameterError, printable
 from hersey.exchange.description import Model, description

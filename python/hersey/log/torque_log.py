@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 
-from hersey.arguments import Words
+from hersey.arguments.door import Words
 from hersey.arrays import FloatArray
 from hersey.log.impossible import Impossible
 from hersey.log.sensors import Sensors

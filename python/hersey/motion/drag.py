@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from hersey import _core
-from hersey.arguments import Words
+from hersey.arguments.door import Words
 from hersey.arrays import FloatArray
 from hersey.errors import ExtrapolationWarning, ParameterError
 from hersey.result import Means, Record

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, NamedTuple, Union, g
 
 import numpy as np
 
-from hersey.arguments import explaining
+from hersey.arguments.frozen import explaining
 
 #: Items of JSON by the kind of an array.
 _ITEMS: dict[str, Any] = {"f": float, "i": int, "u": int, "b": bool, "U": str}

@@ -9,7 +9,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from hersey.arguments import Words
+from hersey.arguments.door import Words
 from hersey.damping.compare import LogComparison, compare
 from hersey.damping.curves import CurveMixture, fit_curves
 from hersey.damping.dwells import SteadyPoints

@@ -1,19 +1,19 @@
-"""What a user passes to a function: names and types, checked before anything is computed."""
+"""Names and types of the arguments of one function, checked as it is called."""
 
 from __future__ import annotations
 
 import ast
 import inspect
 import os
-import re
 import sys
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import FrozenInstanceError, dataclass, field, fields
-from functools import cached_property, wraps
+from dataclasses import dataclass, field
+from functools import cached_property
 from numbers import Integral, Real
-from typing import Any, cast
+from typing import Any
 
-from hersey.errors import ArgumentError, ParameterError, meant, printable
+from hersey.arguments.numbers import described, is_other, with_article
+from hersey.errors import ArgumentError, meant, printable
 
 #: How to get what an argument must be, by its class.
 _SOURCES = {
@@ -74,8 +74,6 @@ _IN_WORDS = {
     "text": "text",
     "path": "a path",
 }
-#: Characters of a value that an example call shows.
-_SHORT = 60
 
 
 def _kinds_of(node: ast.expr) -> Iterator[str]:
@@ -132,7 +130,9 @@ class _Argument:
         """What it may be, in words."""
         in_words = _IN_WORDS | ({"text": " or ".join(map(repr, self.words))} if self.words else {})
         known = [in_words[kind] for kind in self.kinds if kind in in_words]
-        return " or ".join([*map(_a, dict.fromkeys(_SHOWN.get(name, name) for name in self.classes)), *known])
+        return " or ".join(
+            [*map(with_article, dict.fromkeys(_SHOWN.get(name, name) for name in self.classes)), *known]
+        )
 
     def fits(self, value: Any) -> bool:
         """Whether a value is of a type that the argument may be; of numbers, not yet their values."""
@@ -329,36 +329,6 @@ class Door:
         return f" with {name} = {' or '.join(ways)}" if ways else ""
 
 
-def explaining(refuse: Callable[[Any, str, Any], None]) -> Callable[[Any, str, Any], None]:
-    """Return what a frozen data class refuses assignments by, with how to get a changed record."""
-    if hasattr(refuse, "__wrapped__"):
-        return refuse
-
-    @wraps(refuse)
-    def explained(self: Any, name: str, value: Any) -> None:
-        try:
-            refuse(self, name, value)
-        except FrozenInstanceError:
-            raise FrozenInstanceError(_of_frozen(type(self), name, value)) from None
-
-    return explained
-
-
-def _of_frozen(record: type, name: str, value: Any) -> str:
-    """That a record cannot be changed, and the call that makes another one."""
-    known = [each.name for each in fields(cast("Any", record)) if each.init]
-    if name not in known:
-        near = nearest_argument(name, known)
-        did = f"Did you mean {near}?" if near else f"Its fields are {', '.join(known)}"
-        return f"{record.__name__} has no field '{printable(name)}' to set. {did}"
-    variable = re.sub(r"(?<=[a-z])(?=[A-Z])", "_", record.__name__).lower()
-    new = repr(value) if isinstance(value, str | Real) and len(repr(value)) <= _SHORT else "..."
-    return (
-        f"{record.__name__} cannot be changed. Make another one: "
-        f"{variable} = dataclasses.replace({variable}, {name}={new})"
-    )
-
-
 def nearest_argument(name: str, known: list[str]) -> str:
     """Return the known argument that an unknown one is meant for, or an empty text.
 
@@ -369,81 +339,3 @@ def nearest_argument(name: str, known: list[str]) -> str:
     """
     parts = [each for each in known if len(name) > 2 and (name.lower() in each or each in name.lower())]
     return parts[0] if len(parts) == 1 else meant(name, known)
-
-
-def is_other(value: Any) -> bool:
-    """Whether a value is an object that holds no numbers, such as a result or a function."""
-    return isinstance(value, Mapping | set) or callable(value) or hasattr(value, "__dataclass_fields__")
-
-
-def _a(name: str) -> str:
-    return name if name.endswith("s") else f"{'an' if name[0] in 'AEIOU' else 'a'} {name}"
-
-
-def described(value: Any) -> str:
-    """Return what a value is, in words."""
-    kind = type(value).__name__
-    if value is None or isinstance(value, bool):
-        return str(value)
-    if isinstance(value, str):
-        return f"the text '{printable(value[:40])}'"
-    if isinstance(value, Real):
-        return f"the number {value}"
-    if kind == "DataFrame":
-        columns = [str(name) for name in value.columns]
-        return f"a table with the columns {printable(', '.join(columns[:6]))}{', ...' * (len(columns) > 6)}"
-    if kind == "ndarray":
-        return f"an array of shape {value.shape}"
-    if callable(value) and hasattr(value, "__name__"):
-        return f"the {'class' if isinstance(value, type) else 'function'} {value.__name__}"
-    return _a({"dict": "dictionary"}.get(kind, kind))
-
-
-def numbers(name: str, value: Any, *, one: bool) -> Any:
-    """Return numbers of whatever type; an array unless they are already a number, a list or an array.
-
-    Raises
-    ------
-    ArgumentError
-        If they are no numbers, or more than the ``one`` that is needed.
-    ParameterError
-        If a single one is not a number, or some are masked.
-    """
-    if isinstance(value, Real) and not isinstance(value, bool):
-        if value != value:
-            raise ParameterError(f"{name} is NaN: it must be a number", quantity=name)
-        return value
-    import numpy as np
-
-    wanted = "one number" if one else "a number or an array of numbers"
-    if type(value).__name__ == "DataFrame":
-        example = printable(str(value.columns[0])) if len(value.columns) else "..."
-        raise ArgumentError(
-            f"{name} is {described(value)}. It must be {wanted}",
-            remedy=f"give one column, e.g. table['{example}']",
-        )
-    if hasattr(value, "magnitude"):
-        raise ArgumentError(
-            f"{name} is a quantity with a unit. It must be {wanted}", remedy="give its magnitude"
-        )
-    if is_other(value) or isinstance(value, str | bytes | bool):
-        raise ArgumentError(f"{name} is {described(value)}. It must be {wanted}")
-    if isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value):
-        masked = int(np.ma.getmaskarray(value).sum())
-        raise ParameterError(
-            f"{name} has {masked} masked value{'s' * (masked != 1)}. Drop them with {name}.compressed()",
-            quantity=name,
-        )
-    try:
-        array = np.asarray(value, dtype=float)
-    except (TypeError, ValueError):
-        raise ArgumentError(f"{name} is not {wanted}, but {described(value)}") from None
-    if np.asarray(value).dtype.kind in "mMc":
-        raise ArgumentError(f"{name} is {described(value)}. It must be {wanted}")
-    if one and array.size != 1:
-        raise ArgumentError(
-            f"{name} has {array.size} values. It must be one number", remedy="call once for each"
-        )
-    if one:
-        return numbers(name, float(array.reshape(())), one=True)
-    return value if isinstance(value, list | tuple | np.ndarray) else array
