@@ -12,6 +12,7 @@ from hersey.damping.dwells import groups_of_temperature, mean_and_error
 from hersey.damping.dwells.segments import local_noise
 from hersey.errors import InsufficientDataError
 from hersey.log.torque_log import LogFile, Run, TorqueLog
+from tests.conftest import ROOT
 
 RPM = np.pi / 30
 
@@ -133,3 +134,11 @@ def test_constant_series_have_no_error() -> None:
 def test_groups_of_temperature() -> None:
     groups = [g.tolist() for g in groups_of_temperature(np.array([420.0, 300, 301, 421, 350]))]
     assert groups == [[1, 2], [4], [0, 3]]
+
+
+def test_a_duration_longer_than_the_log_is_met_with_the_usual_one() -> None:
+    log = hersey.read(ROOT / "examples/bench.csv")
+    with pytest.raises(
+        InsufficientDataError, match=r"lasts only .* s\. Use min_dwell=2, the usual duration$"
+    ):
+        log.steady(min_dwell=2000)

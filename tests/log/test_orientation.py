@@ -104,6 +104,34 @@ def test_a_long_table_is_refused_with_its_channels(names: list[str], every: int,
         assert all(f"'{column}'" in caught.value.remedy for column in ("TimeString", "VarName", "VarValue"))
 
 
+def test_the_finest_clock_of_a_long_table_makes_its_rows(tmp_path: Path) -> None:
+    rows = [
+        f"{name};05.03.2024 08:00:{i // 5:02d};{i};{45356333333 + 2 * i}"
+        for i in range(60)
+        for name in ("Torque_Nm", "Speed_rpm", "Temp_degC")
+    ]
+    path = written(tmp_path, "\n".join(["VarName;TimeString;VarValue;Time_ms", *rows]))
+    with pytest.raises(UnreadableLogError, match="'Time_ms' as rows"):
+        hersey.read(path)
+
+
+def test_names_may_end_with_their_units(tmp_path: Path) -> None:
+    heads = ["t_ms", "torque_mNm", "speed_rpm", "heater_degC"]
+    path = written(tmp_path, f"{','.join(heads)}\n{ROWS}\n")
+    assert list_channels(path) == [("t", "ms"), ("torque", "mN*m"), ("speed", "rpm"), ("heater", "degC")]
+    run = hersey.read(path).runs[0]
+    assert run.torque[:2] == pytest.approx([1.00e-3, 1.01e-3])
+    assert run.time[1] == pytest.approx(1e-4)
+    named = hersey.read(path, channels={"torque": "torque_mNm", "time": "t_ms"}).runs[0]
+    np.testing.assert_array_equal(named.torque, run.torque)
+
+
+@pytest.mark.parametrize("symbol", ["v_s", "n_s", "mu_s", "F_N", "w_ms"])
+def test_the_index_of_a_symbol_is_no_unit(symbol: str, tmp_path: Path) -> None:
+    path = written(tmp_path, f"Time [s],Torque [N*m],{symbol},Temp [degC]\n{ROWS}\n")
+    assert list_channels(path)[2] == (symbol, "")
+
+
 def test_a_long_table_sorted_by_channel_in_another_order_is_refused(tmp_path: Path) -> None:
     rows = sorted(long_rows(["Torque_Nm", "Speed_rpm", "Temp_degC"]))
     path = written(tmp_path, "\n".join(["Name;Zeit;Wert;Ok", *map(";".join, rows)]))

@@ -31,6 +31,9 @@ def mean_torque(log: hersey.TorqueLog) -> float:
         ("torque [mA]", "0.2 N*m/A", 0.4e-3),
         ("torque [A]", "0.2 N*m/mA", 400.0),
         ("torque [V]", "5 N*m/V", 10.0),
+        ("torque [Volts]", "5 N*m/V", 10.0),
+        ("torque [V]", "5 N*m/volt", 10.0),
+        ("torque [Amps]", "200 mN*m/mA", 400.0),
         ("torque [%]", "5 N*m/%", 10.0),
         ("torque", "5 N*m/V", 10.0),
     ],
@@ -90,3 +93,30 @@ def test_a_mapping_may_give_the_torque_of_a_volt(tmp_path: Path) -> None:
     file = log(tmp_path, "torque [V]")
     (tmp_path / "hersey.toml").write_text('[torque]\nunit = "5 N*m/V"\n')
     assert mean_torque(read_with_mapping(file).log) == pytest.approx(10.0, rel=1e-3)
+
+
+@pytest.mark.parametrize("name", ["CH1", "Dev1/ai0", "Voltage", "analog in 2", "Kanal 3"])
+def test_an_input_without_unit_may_be_a_voltage(name: str, tmp_path: Path) -> None:
+    with pytest.raises(UnitError, match=r"give the torque per V: units=\{'torque': '2 N\*m/V'\}"):
+        hersey.read(log(tmp_path, name), channels={"torque": name})
+
+
+def test_a_channel_with_a_name_is_no_input(tmp_path: Path) -> None:
+    with pytest.raises(UnitError, match="has no unit") as error:
+        hersey.read(log(tmp_path, "torque"))
+    assert "per V" not in str(error.value)
+
+
+def test_an_oscilloscope_states_its_units_in_rows_of_their_own(tmp_path: Path) -> None:
+    rows = [f"{0.1 * i:.1f},{2 + 0.001 * (i % 3)},{3 + 0.001 * (i % 2)}" for i in range(100)]
+    preamble = ["Model,MSO44", "Horizontal Units,S,", "Vertical Units,V,V", ""]
+    (tmp_path / "scope.csv").write_text("\n".join([*preamble, "TIME,CH1,CH2", *rows]))
+    log = hersey.read(
+        tmp_path / "scope.csv",
+        channels={"torque": "CH1", "speed": "CH2"},
+        units={"torque": "5 N*m/V", "speed": "10 rpm/V"},
+        isothermal=True,
+    )
+    assert mean_torque(log) == pytest.approx(10.0, rel=1e-3)
+    assert [c.unit for c in log.files[0].channels] == ["s", "5 N*m/V", "10 rpm/V"]
+    assert float(log.runs[0].time[-1]) == pytest.approx(9.9)

@@ -151,3 +151,9 @@ def test_days_of_excel_need_the_name_of_a_date() -> None:
     assert is_clock_name("Zeit")
     assert is_clock_name("serial")
     assert not is_clock_name("torque")
+
+
+def test_a_millionth_of_a_day_of_excel_is_86_ms() -> None:
+    wincc = 45356333333.333 + np.arange(5) / 0.0864 * 0.2
+    assert counted_since("Time", wincc) == ("86.4 ms", "Excel days times a million")
+    assert counted_since("torque", wincc) == ("", "")

@@ -16,8 +16,8 @@ from hersey.arrays import FloatArray
 from hersey.errors import HerseyError
 from hersey.log.formats import format_of, opened
 from hersey.log.formats.frame import is_frame
-from hersey.log.recording import Cells, Signal, split_unit
-from hersey.log.text.column import Column
+from hersey.log.recording import Cells, Signal
+from hersey.log.text.column import Column, split_unit
 from hersey.log.text.delimited import open_delimited
 from hersey.log.text.repeated_header import refuse_another_header
 from hersey.log.text.separators import split

@@ -20,8 +20,17 @@ from hersey.errors import (
     meant,
     printable,
 )
-from hersey.log.signals import apart, is_signal, per, says_how_much, way_out, way_out_unnamed
-from hersey.log.text.column import Column
+from hersey.log.signals import (
+    apart,
+    is_signal,
+    of_an_input,
+    per,
+    says_how_much,
+    signal_kind,
+    way_out,
+    way_out_unnamed,
+)
+from hersey.log.text.column import Column, with_ending
 from hersey.schema.warning import Warning
 from hersey.units import KINDS, Conversion, conversion, nearest_unit
 
@@ -217,7 +226,7 @@ def no_channel(role: str, columns: tuple[Column, ...], file: str) -> ChannelErro
 def _signals(role: str, columns: tuple[Column, ...]) -> list[Column]:
     """Columns of one unit, A or V, that may hold a role: a current only the torque."""
     for kind in "AV" if role == "torque" else "V" if role in ("speed", "temperature") else "":
-        if found := [c for c in columns if is_signal(c.unit) and c.unit.endswith(kind)]:
+        if found := [c for c in columns if signal_kind(c.unit) == kind]:
             return found
     return []
 
@@ -267,8 +276,8 @@ def called(name: str, columns: tuple[Column, ...]) -> list[Column]:
 
 
 def _spellings(c: Column) -> set[str]:
-    with_unit = (f"{c.path} ({c.unit})", f"{c.name} ({c.unit})", f"{c.name} [{c.unit}]", f"{c.name}_{c.unit}")
-    return {c.name, c.path, str(c), *with_unit}
+    with_unit = (f"{c.path} ({c.unit})", f"{c.name} ({c.unit})", f"{c.name} [{c.unit}]")
+    return {c.name, c.path, str(c), *with_unit, *with_ending(c.name, c.unit)}
 
 
 def _named(role: str, columns: tuple[Column, ...], name: str, file: str) -> Column:
@@ -378,7 +387,7 @@ def _with_unit(
             columns=(column.index,),
             remedy=(
                 f"write '{column.name} [{example}]' in the header, add a row of units, or use "
-                f"{Setting(role, 'unit').to(example)}"
+                f"{Setting(role, 'unit').to(example)}{of_an_input(role, column.name)}"
             ),
             setting=Setting(role, "unit"),
         )

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+import os
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from hersey.arguments.numbers import described
 from hersey.errors import ParameterError
 from hersey.log.assembly import Assembly
 from hersey.log.channels import OTHER_ROLES, ROLES, ChannelChoice, Stated
@@ -154,10 +156,25 @@ def list_channels(path: Any) -> list[tuple[str, str]]:
 
 
 def _listed(paths: Any) -> list[Any]:
-    if is_frame(paths) or isinstance(paths, str | Path):
-        return [paths]
-    if not isinstance(paths, Iterable):
-        raise ParameterError(
-            f"a {type(paths).__name__} is not a log. Give a file name, or a polars or pandas frame"
-        )
-    return list(paths)
+    """The files and frames, each of which is one.
+
+    Raises
+    ------
+    ParameterError
+        If something else is among them.
+    """
+    one = is_frame(paths) or isinstance(paths, str | Path | np.ndarray | Mapping)
+    listed = [paths] if one or not isinstance(paths, Iterable) else list(paths)
+    for each in listed:
+        if isinstance(each, np.ndarray | Mapping):
+            columns = "a" if isinstance(each, Mapping) else "{'Time [s]': a[:, 0], 'Torque [N*m]': a[:, 1]}"
+            raise ParameterError(
+                f"{described(each)} is not a log",
+                remedy="make a frame whose columns have names and units, e.g. "
+                f"hersey.read(polars.DataFrame({columns}))",
+            )
+        if not (is_frame(each) or isinstance(each, str | os.PathLike)):
+            raise ParameterError(
+                f"{described(each)} is not a log. Give a file name, or a polars or pandas frame"
+            )
+    return listed

@@ -18,31 +18,11 @@ import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.errors import ChannelError, UnreadableLogError
-from hersey.log.text.column import Column, name_and_unit
+from hersey.log.text.column import Column
 from hersey.schema.warning import Warning
 
 #: Characters of a cell of text at the most: what it says beyond is no name.
 LONGEST_CELL = 300
-#: Units that a name may end with where the format has no place for a unit: ``torque_Nm``, ``t_s``.
-_ENDINGS = {
-    "s": "s",
-    "ms": "ms",
-    "us": "us",
-    "Nm": "N*m",
-    "N_m": "N*m",
-    "mNm": "mN*m",
-    "Ncm": "N*cm",
-    "N": "N",
-    "rpm": "rpm",
-    "m_s": "m/s",
-    "mm_s": "mm/s",
-    "rad_s": "rad/s",
-    "degC": "degC",
-    "degF": "degF",
-    "K": "K",
-}
-
-
 #: What a file may say of a sample: nothing, that its value is invalid, or that its time is.
 SOUND, INVALID, INVALID_TIME = 0.0, 1.0, 2.0
 
@@ -176,16 +156,6 @@ def listening(name: str) -> Iterator[list[str]]:
     finally:
         for logger in loggers:
             logger.removeFilter(keep)
-
-
-def split_unit(name: str) -> tuple[str, str]:
-    """Return name and unit of a channel called ``Torque [N*m]``, ``Torque (N*m)`` or ``torque_Nm``."""
-    if named := name_and_unit(name):
-        return named
-    for ending, unit in sorted(_ENDINGS.items(), key=lambda e: -len(e[0])):
-        if len(name) > len(ending) + 1 and name.endswith(f"_{ending}"):
-            return name.removesuffix(f"_{ending}"), unit
-    return name, ""
 
 
 def floats(values: Any) -> FloatArray:

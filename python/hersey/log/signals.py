@@ -7,9 +7,13 @@ from collections.abc import Sequence
 
 from hersey.errors import Setting
 
-_SIGNAL = r"([mµμu]?)([AV])|()(%)"
+_SIGNAL = r"([mµμu]?)(A|V|[Aa]mp(?:ere)?s?|[Vv]olts?)|()(%)"
 _ALONE = re.compile(_SIGNAL)
 _PER = re.compile(rf"(.*\S)\s*/\s*(?:{_SIGNAL})")
+#: Names of inputs of oscilloscopes and of data loggers.
+_INPUT = re.compile(
+    r"(.*/)?(ch|channel|kanal|ai|analog(ue)?( ?in(put)?)?|voltage|volts?|input)[ _-]?\d*", re.IGNORECASE
+)
 _PREFIXES = {"": 1.0, "m": 1e-3, "µ": 1e-6, "μ": 1e-6, "u": 1e-6}
 #: What one of a signal, or 100 %, may stand for, as an example.
 _EXAMPLES = {
@@ -50,7 +54,7 @@ def per(given: str, header: str) -> float:
     if not wanted or not header:
         return 1.0
     one, other = (_ALONE.fullmatch(each.strip()) for each in (wanted, header))
-    if one is None or other is None or _kind(one.group()) != _kind(other.group()):
+    if one is None or other is None or signal_kind(one.group()) != signal_kind(other.group()):
         raise ValueError(header)
     return _PREFIXES[other[1] or ""] / _PREFIXES[one[1] or ""]
 
@@ -62,7 +66,7 @@ def says_how_much(given: str) -> bool:
 
 def way_out(role: str, header: str) -> str:
     """Return what to type for a column of a signal."""
-    kind = _kind(header)
+    kind = signal_kind(header)
     typed = Setting(role, "unit").to(_EXAMPLES[role][kind])
     if kind == "%":
         return f"use {typed}, with your value of the {role} at 100 %"
@@ -72,7 +76,7 @@ def way_out(role: str, header: str) -> str:
 
 def way_out_unnamed(role: str, names: Sequence[str], header: str) -> str:
     """Return what to type if one of some columns of amperes or volts, which nobody named, holds a role."""
-    kind, channel = _kind(header), Setting(role, "channel")
+    kind, channel = signal_kind(header), Setting(role, "channel")
     held = "the motor current" if kind == "A" else f"the {role} in volts"
     named, typed = f"'{names[0]}'", channel.to(names[0])
     if len(names) > 1:
@@ -81,5 +85,14 @@ def way_out_unnamed(role: str, names: Sequence[str], header: str) -> str:
     return f"if {named} is {held}, use {typed} and give the {role} per {kind}, e.g. {unit}"
 
 
-def _kind(signal: str) -> str:
-    return signal.strip()[-1]
+def of_an_input(role: str, name: str) -> str:
+    """Return what more to say of a column without unit if it is called like an input of an instrument."""
+    if role not in _EXAMPLES or not _INPUT.fullmatch(name):
+        return ""
+    return f". If it is a voltage, give the {role} per V: {Setting(role, 'unit').to(_EXAMPLES[role]['V'])}"
+
+
+def signal_kind(unit: str) -> str:
+    """Return A, V or %, or nothing for a unit that is not that of a signal."""
+    match = _ALONE.fullmatch(unit.strip())
+    return (match[2] or match[4])[0].upper() if match else ""

@@ -11,6 +11,8 @@ from hersey.arrays import FloatArray
 
 #: Fewest samples of a dwell.
 MIN_SAMPLES = 20
+#: Least duration of a dwell, s, unless another is asked for.
+MIN_DWELL = 2.0
 #: Speeds closer than this share count as the same.
 SAME_SPEED = 0.03
 

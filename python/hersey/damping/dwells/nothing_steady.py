@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 
 from hersey.damping.dwells.few_rows import LASTS, changes_in_steps, held_for_few_rows, rows_held
-from hersey.damping.dwells.groups import MIN_SAMPLES, distinct_speeds
+from hersey.damping.dwells.groups import MIN_DWELL, MIN_SAMPLES, distinct_speeds
 from hersey.damping.dwells.judging import Asked
 from hersey.damping.dwells.points import Rejection
 from hersey.damping.dwells.reasons import CAUSES, Reason, opposite_signs, remedies, sizes
@@ -27,6 +27,8 @@ _BLOCKS, _TURN = 60, 0.1
 _HELD = 0.9
 #: A log shorter than so many dwells has a clock in another unit, or rows less often: so many times, say.
 _TOO_BRIEF, _RARER = 1.0, 50
+#: A log of so many dwells of the usual duration is long enough: the duration asked for is the mistake.
+_ENOUGH = 20.0
 
 
 def nothing_steady(
@@ -82,7 +84,11 @@ def too_brief(log: TorqueLog, min_dwell: float) -> str:
     lasted = sum(float(run.time[-1] - run.time[0]) for run in log.runs)
     if lasted >= _TOO_BRIEF * min_dwell:
         return ""
-    return f"{_held(min_dwell)}, but the whole log lasts only {lasted:.3g} s. {_other_clock(log)}"
+    brief = f"{_held(min_dwell)}, but the whole log lasts only {lasted:.3g} s"
+    if lasted >= _ENOUGH * MIN_DWELL:
+        usual = Setting("min_dwell").to(f"{MIN_DWELL:g} s", python=f"{MIN_DWELL:g}")
+        return f"{brief}. Use {usual}, the usual duration"
+    return f"{brief}. {_other_clock(log)}"
 
 
 def _held(min_dwell: float) -> str:

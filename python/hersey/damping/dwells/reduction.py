@@ -8,7 +8,7 @@ import numpy as np
 import polars as pl
 
 from hersey.arrays import FloatArray
-from hersey.damping.dwells.groups import MIN_SAMPLES
+from hersey.damping.dwells.groups import MIN_DWELL, MIN_SAMPLES
 from hersey.damping.dwells.judging import Asked, Dwell, Stretch, judged
 from hersey.damping.dwells.noise import mean_and_error
 from hersey.damping.dwells.nothing_steady import WORTH_IT, in_seconds, nothing_steady, too_brief
@@ -37,7 +37,7 @@ NOTABLE_SWING = 0.2
 
 
 def steady_points(
-    log: TorqueLog, *, min_dwell: float = 2.0, tare: str = "none", rotation: str = "both"
+    log: TorqueLog, *, min_dwell: float = MIN_DWELL, tare: str = "none", rotation: str = "both"
 ) -> SteadyPoints:
     """Find the dwells of a log and reduce each to a steady point.
 

@@ -11,7 +11,8 @@ import polars as pl
 
 from hersey.arrays import FloatArray
 from hersey.errors import ParameterError, UnreadableLogError
-from hersey.log.recording import Recording, Signal, Source, floats, seconds, split_unit
+from hersey.log.recording import Recording, Signal, Source, floats, seconds
+from hersey.log.text.column import split_unit
 from hersey.processes.forks import refuse_after_fork
 
 

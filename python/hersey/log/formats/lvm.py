@@ -14,8 +14,8 @@ import polars as pl
 
 from hersey.arrays import FloatArray
 from hersey.errors import UnreadableLogError
-from hersey.log.recording import Recording, Signal, split_unit
-from hersey.log.text.column import refuse_columns, refuse_long_name, refuse_ragged
+from hersey.log.recording import Recording, Signal
+from hersey.log.text.column import refuse_columns, refuse_long_name, refuse_ragged, split_unit
 from hersey.log.text.layout import encoding_of
 from hersey.log.text.numbers import LONGEST_NUMBER, NumberStyle, is_missing
 from hersey.schema.warning import Warning

@@ -6,7 +6,8 @@ from collections.abc import Callable
 from typing import Any
 
 from hersey.arrays import FloatArray
-from hersey.log.recording import Signal, floats, split_unit
+from hersey.log.recording import Signal, floats
+from hersey.log.text.column import split_unit
 
 #: A matrix with more columns than this is no table of channels.
 _WIDEST = 256

@@ -30,8 +30,8 @@ from hersey.log.recording import (
     library,
     library_warning,
     listening,
-    split_unit,
 )
+from hersey.log.text.column import split_unit
 from hersey.schema.warning import Warning
 
 _MASTERS = (2, 3)  # channel types: master, virtual master

@@ -12,7 +12,8 @@ import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.errors import UnreadableLogError
-from hersey.log.recording import Recording, Signal, floats, library, library_warning, listening, split_unit
+from hersey.log.recording import Recording, Signal, floats, library, library_warning, listening
+from hersey.log.text.column import split_unit
 from hersey.schema.warning import Warning
 
 #: Scalings that nptdms applies; it reads a channel with any other one raw.

@@ -14,6 +14,29 @@ MOST_COLUMNS = 5000
 LONGEST_NAME = 1000
 #: ``Torque [N*m]`` or ``Torque (N*m)``; no part can match in two ways, so that the time is linear.
 NAME_WITH_UNIT = re.compile(r"(.*?)(?:\[([^\[\]]*)\]|\(([^()]*)\))\s*")
+#: Units that a name may end with: ``torque_Nm``, ``t_s``.
+_ENDINGS = {
+    "s": "s",
+    "ms": "ms",
+    "us": "us",
+    "Nm": "N*m",
+    "N_m": "N*m",
+    "mNm": "mN*m",
+    "Ncm": "N*cm",
+    "kNm": "kN*m",
+    "N": "N",
+    "rpm": "rpm",
+    "m_s": "m/s",
+    "mm_s": "mm/s",
+    "rad_s": "rad/s",
+    "degC": "degC",
+    "degF": "degF",
+    "C": "degC",
+    "K": "K",
+}
+_LONGEST_FIRST = sorted(_ENDINGS, key=len, reverse=True)
+#: Symbols with an index that looks like a unit: a static or sliding quantity, a normal force.
+_SYMBOL = re.compile(r"(?!t_)\w{1,2}_(s|ms|us)|\w_N", re.IGNORECASE)
 
 
 @dataclass(frozen=True)
@@ -47,6 +70,27 @@ def name_and_unit(text: str) -> tuple[str, str] | None:
     """Return name and unit of a column called ``Torque [N*m]`` or ``Torque (N*m)``, None of any other."""
     match = NAME_WITH_UNIT.fullmatch(text)
     return match and (match[1].strip(), (match[2] if match[2] is not None else match[3]).strip())
+
+
+def split_unit(name: str) -> tuple[str, str]:
+    """Return name and unit of a column called ``Torque [N*m]``, ``Torque (N*m)`` or ``torque_Nm``.
+
+    Examples
+    --------
+    >>> split_unit("torque_mNm"), split_unit("Drehmoment (Ncm)"), split_unit("v_s")
+    (('torque', 'mN*m'), ('Drehmoment', 'Ncm'), ('v_s', ''))
+    """
+    if named := name_and_unit(name):
+        return named
+    for ending in _LONGEST_FIRST:
+        if len(name) > len(ending) + 1 and name.endswith(f"_{ending}") and not _SYMBOL.fullmatch(name):
+            return name.removesuffix(f"_{ending}"), _ENDINGS[ending]
+    return name, ""
+
+
+def with_ending(name: str, unit: str) -> set[str]:
+    """Return how a name may have been written with its unit at the end."""
+    return {f"{name}_{ending}" for ending, meant in _ENDINGS.items() if meant == unit} | {f"{name}_{unit}"}
 
 
 def distinct_names(columns: Sequence[Column]) -> list[str]:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import re
 
 from hersey.errors import UnitError, UnreadableLogError, WrongKindError
-from hersey.log.text.column import Column, name_and_unit, refuse_long_name
+from hersey.log.signals import is_signal
+from hersey.log.text.column import Column, name_and_unit, refuse_long_name, split_unit
 from hersey.log.text.numbers import is_missing, looks_numeric
 from hersey.log.text.separators import BLANKS, NumberRows, split
 from hersey.log.text.unit_pairs import of_one_kind, same_unit
@@ -32,13 +33,14 @@ def columns_of(table: NumberRows, numbered: list[Numbered], file: str) -> tuple[
     units: list[str] = []
     if len(above) > 1 and len(above[-2]) == len(header) and _is_units_row(header):
         line, units, header = numbered[table.first - 2][0], header, above[-2]
+    units = units or _of_oscilloscope(above[:-1], len(header))
     _require_width(table, numbered, header, line, file)
     columns = []
     for index in range(table.width):
         name = header[index] if index < len(header) and header[index] else f"#{index + 1}"
         refuse_long_name(f"{file}, line {line}", index + 1, name)
         unit = units[index].strip("[]() ") if index < len(units) else ""
-        plain, own = name_and_unit(name) or (name, "")
+        plain, own = split_unit(name)
         if own and unit and of_one_kind(own, unit) and not same_unit(own, unit):
             raise UnreadableLogError(
                 f"{file}, line {line}, column {index + 1}: the header says '{name}', but the row of "
@@ -94,6 +96,15 @@ def _too_many(table: NumberRows, rows: list[list[str]], named: int) -> str:
     return "Give every column a name. If a comma separates thousands, export with ';' between the columns"
 
 
+def _of_oscilloscope(above: list[list[str]], width: int) -> list[str]:
+    """Units of the time and of each channel, as an oscilloscope writes them in rows of their own."""
+    rows = {row[0].lower().rstrip(":"): row[1:] for row in above if len(row) > 1}
+    time, channels = rows.get("horizontal units"), rows.get("vertical units")
+    if not time or not channels or len(channels) != width - 1 or not all(map(_is_unit, channels)):
+        return []
+    return [time[0].lower(), *channels]
+
+
 def _is_units_row(row: list[str]) -> bool:
     """Units of at least half of the cells that are not blank; no number, no name with a unit of its own."""
     filled = [cell.strip("[]() ") for cell in row if cell.strip()]
@@ -105,6 +116,8 @@ def _is_units_row(row: list[str]) -> bool:
 
 
 def _is_unit(cell: str) -> bool:
+    if is_signal(cell):
+        return True
     for kind in KINDS:
         try:
             return bool(conversion(kind, cell))

@@ -83,7 +83,8 @@ def find_layout(start: bytes, name: str, *, separators: str = SEPARATORS) -> Lay
     style = style_of([cell for row in rows for cell in row])
     columns, warnings = _with_epochs(columns, rows, style)
     texts = frozenset(c.index for c in columns if c.index not in stamps and _holds_words(rows, c.index))
-    refuse_long(name, columns, texts, stamps, rows)
+    if not headless:
+        refuse_long(name, columns, texts, stamps, rows, split(numbered[table.first - 1][1], table.separator))
     first_line = numbered[table.first][0]
     comments = tuple(li.strip("# ~/")[:200] for li in lines[: first_line - 1] if li.startswith(comment))
     return Layout(
@@ -167,7 +168,7 @@ def _refuse_long_words(numbered: list[Numbered], separator: str, name: str) -> N
     header, *rows = [row for row in rows if len(row) == width]
     columns, stamps = _with_stamps(tuple(Column(i, cell, "") for i, cell in enumerate(header)), rows)
     texts = {i for i in range(width) if i not in stamps and _holds_words(rows, i)}
-    refuse_long(name, columns, texts, stamps, rows)
+    refuse_long(name, columns, texts, stamps, rows, header)
 
 
 def encoding_of(start: bytes, name: str) -> str:
@@ -206,13 +207,14 @@ def _holds_words(rows: list[list[str]], index: int) -> bool:
 def _with_epochs(
     columns: tuple[Column, ...], rows: list[list[str]], style: NumberStyle
 ) -> tuple[tuple[Column, ...], tuple[Warning, ...]]:
-    """Clocks without unit that count since 1970 or in days of Excel."""
+    """Clocks without unit, or called ``Time_ms``, that count since 1970 or in days of Excel."""
     out, warnings = [], []
     for column in columns:
-        cells = [row[column.index] for row in rows[:1000]] if not column.unit else []
+        unsure = not column.unit or (column.name, column.unit) == ("Time", "ms")
+        cells = [row[column.index] for row in rows[:1000]] if unsure else []
         numbers = np.array([style.value(cell) for cell in cells if style.is_number(cell)])
         unit, meaning = counted_since(column.name, numbers)
-        if unit:
+        if unit and unit != column.unit:
             warnings.append(clock_without_unit(column.name, meaning))
         out.append(replace(column, unit=unit or column.unit))
     return tuple(out), tuple(warnings)

@@ -7,7 +7,7 @@ from collections.abc import Collection
 
 from hersey.errors import HerseyError, UnreadableLogError
 from hersey.log.channels import ROLES, ChannelChoice, find_channel, is_called
-from hersey.log.text.column import Column
+from hersey.log.text.column import Column, split_unit
 from hersey.log.text.numbers import is_missing, looks_numeric
 from hersey.log.text.separators import split
 from hersey.log.text.stamps import is_stamp
@@ -57,8 +57,9 @@ def refuse_long(
     texts: Collection[int],
     stamps: Collection[int],
     rows: list[list[str]],
+    header: list[str],
 ) -> None:
-    """Raise if a column of words, one of ``texts``, names the channel of each row.
+    """Raise if a column of words, one of ``texts``, names the channel of each row; ``header`` is as written.
 
     Its words name roles of a log that no column plays, or all of them come once per time.
 
@@ -70,7 +71,8 @@ def refuse_long(
     numeric = tuple(column for column in columns if column.index not in texts)
     if not texts or _has_torque(numeric):
         return
-    clocks = [c for c in numeric if c.index in stamps] or [c for c in numeric if is_called("time", c)]
+    clocks = [c for c in numeric if c.index in stamps or is_called("time", c)]
+    clocks.sort(key=lambda c: len({row[c.index] for row in rows[:_ROWS]}), reverse=True)  # finest first
     others = [column for column in numeric if column not in clocks]
     if not clocks or not others:
         return
@@ -91,9 +93,14 @@ def refuse_long(
                 f"{place} is a long table: column '{column.name}' names the channel of each row "
                 f"({listed}). A log needs one column per channel and one row per time",
                 remedy="export it that way, or insert a PivotTable in Excel: "
-                f"'{clocks[0].name}' as rows (not grouped), '{column.name}' as columns, "
+                f"'{_written(clocks[0], header)}' as rows (not grouped), '{column.name}' as columns, "
                 f"the average of {value} as values",
             )
+
+
+def _written(column: Column, header: list[str]) -> str:
+    """The name of a column with the unit that it ends with."""
+    return next((cell for cell in header if split_unit(cell)[0] == column.name), column.name)
 
 
 def _has_torque(columns: tuple[Column, ...]) -> bool:

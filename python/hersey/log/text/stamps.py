@@ -219,6 +219,8 @@ def counted_since(name: str, numbers: FloatArray) -> tuple[str, str]:
             return unit, f"{unit} since 1970"
     if _DAYS_NAME.fullmatch(name) and low > 3e4 and high < 7e4:
         return "d", "Excel days"
+    if low > 3e10 and high < 7e10:  # WinCC calls this Time_ms; a count in ms would end in 1972
+        return "86.4 ms", "Excel days times a million"
     return "", ""
 
 
