@@ -34,3 +34,11 @@ def test_a_machine_is_shown_on_one_line(given: dict[str, Any], line: str) -> Non
 def test_a_machine_from_its_file_is_shown_like_one_made_by_hand() -> None:
     machine = hersey.read_machine(ROOT / "examples" / "machine.toml")
     assert repr(machine) == "Machine(roll radius 15 mm, stiffness 11 kN/m, mass 11 kg, 2 operating points)"
+
+
+def test_a_table_of_the_file_says_where_its_keys_are() -> None:
+    machine = hersey.read_machine(ROOT / "examples/machine.toml")
+    with pytest.raises(AttributeError, match=r"fields of the machine, e\.g\. machine\.stiffness"):
+        machine.drivetrain  # type: ignore[attr-defined]  # noqa: B018
+    with pytest.raises(AttributeError, match="no attribute 'stifness'"):
+        machine.stifness  # type: ignore[attr-defined]  # noqa: B018

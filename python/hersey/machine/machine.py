@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass as plain_dataclass
 from dataclasses import field
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import BeforeValidator
@@ -99,6 +99,16 @@ class Machine:
             f"Machine(roll radius {1e3 * self.roll_radius:.4g} mm, stiffness {stiffness}, "
             f"mass {self.mass:.4g} kg, {count or 'no'} operating point{'' if count == 1 else 's'})"
         )
+
+    if not TYPE_CHECKING:  # which knows the attributes
+
+        def __getattr__(self, name: str) -> Any:
+            """Say where a machine holds what its file has in a table."""
+            if name == "drivetrain":
+                raise AttributeError(
+                    "The keys of [drivetrain] are fields of the machine, e.g. machine.stiffness"
+                )
+            raise AttributeError(f"'Machine' object has no attribute '{name}'", name=name, obj=self)
 
     @property
     def warnings(self) -> tuple[Warning, ...]:
