@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import inspect
+import re
 import timeit
 import warnings
 from collections.abc import Callable, Iterator
@@ -216,13 +217,38 @@ def test_the_check_of_a_call_takes_microseconds() -> None:
     assert min(runs) / 200 < 50e-6
 
 
-@pytest.mark.parametrize("path", ["C:\temp\new.csv", "C:\temp\n*.csv"])
-def test_a_path_whose_backslashes_python_took_as_escapes_is_shown_as_it_was_meant(path: str) -> None:
+@pytest.mark.parametrize(
+    ("path", "shown", "found"),
+    [
+        ("C:\temp\new.csv", r"C:\temp\new.csv", r"\t and \n"),
+        ("C:\temp\n*.csv", r"C:\temp\n*.csv", r"\t and \n"),
+        ("logs\2024.csv", r"logs\2024.csv", r"\202"),
+        ("logs\bench.csv", r"logs\bench.csv", r"\b"),
+    ],
+)
+def test_a_path_whose_backslashes_python_took_as_escapes_is_shown_as_it_was_meant(
+    path: str, shown: str, found: str
+) -> None:
     with pytest.raises(hersey.errors.MissingFileError) as refused:
         hersey.read(path)
-    meant = path.replace("\t", r"\t").replace("\n", r"\n")
-    assert f'r"{meant}"' in refused.value.remedy
-    assert meant in refused.value.reason
+    assert shown in refused.value.reason
+    assert refused.value.remedy.startswith(f"Python reads {found} in")
+    assert eval(refused.value.remedy.split("Write ")[1]) == shown.replace("\\", "/")
+
+
+@pytest.mark.parametrize("typed", ["folder\bench.csv", r"folder\bench.csv", "folderbench.csv"])
+def test_a_path_with_backslashes_gets_the_name_of_the_file_that_is_there(
+    typed: str, bench_csv: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "folder" / "bench.csv").write_bytes(bench_csv.read_bytes())
+    with pytest.raises(hersey.errors.MissingFileError) as refused:
+        hersey.read(typed)
+    advised = re.search(r"""["'](\S+)["']$""", refused.value.remedy)
+    assert advised is not None
+    assert hersey.read(advised[1]).rows > 1000
+    assert ". ." not in str(refused.value)
 
 
 @pytest.mark.parametrize(
