@@ -22,6 +22,7 @@ from hersey.log.channels import (
     refuse_two_clocks,
     refuse_two_roles,
     role_conversion,
+    taken_columns,
 )
 from hersey.log.friction import Chosen, beside, computed, in_rotation, slow_roles, unused
 from hersey.log.impossible import Impossible, Reading, impossible_rows, marked_rows
@@ -179,12 +180,14 @@ class Assembly:
     def _channel(self, role: str) -> tuple[Column, Conversion]:
         """The channel of a role; the part of the file that holds the torque is looked at first."""
         file, choice, channel = self.source.name, self.choices[role], None
+        taken = taken_columns(role, self.columns, self.choices, self.chosen)
         if role != "torque" and not choice.name:
             torque = self.chosen["torque"][0]
             near = tuple(c for c in self.columns if c.group == torque.group and c != torque)
-            channel = find_channel(role, near, choice, file, self._says_nothing)
+            channel = find_channel(role, near, choice, file, self._says_nothing, taken)
         if channel is None:
-            channel = find_channel(role, self._beside_a_speed(role), choice, file, self._says_nothing)
+            among = self._beside_a_speed(role)
+            channel = find_channel(role, among, choice, file, self._says_nothing, taken)
         if channel is None:
             raise no_channel(role, self.columns, file)
         refuse_two_roles(role, channel[0], self.chosen, file)
@@ -246,8 +249,12 @@ class Assembly:
             for c in self.columns
             if c != column and self._may_time(c, signal, column, bool(choice.name))
         )
-        dead = self._says_nothing
-        clock = find_channel("time", near, choice, file, dead) if near or choice.name else None
+        taken = taken_columns("time", near, self.choices, self.chosen)
+        clock = (
+            find_channel("time", near, choice, file, self._says_nothing, taken)
+            if near or choice.name
+            else None
+        )
         if clock is None:
             raise ChannelError(
                 f"{file}: '{column}' has no time channel with {signal.rows} samples. Channels: "
