@@ -193,7 +193,7 @@ def _as_typed(char: str) -> str:
 
 
 def _near(path: Path) -> str:
-    """The file that was probably meant by the path of a missing one, or nothing."""
+    """The file beside a missing one that was probably meant, or nothing."""
     if slashed := _slashed(path):
         return f"write / between folders: '{printable(slashed)}'"
     try:
