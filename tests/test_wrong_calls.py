@@ -18,7 +18,6 @@ import pytest
 
 import hersey
 from hersey.errors import ArgumentError, ExtrapolationWarning, HerseyError, ParameterError
-from hersey.schema.record import Record
 from hersey.units import parse, takes_si
 from tests.conftest import ROOT
 
@@ -273,10 +272,22 @@ def test_a_record_that_is_set_names_the_call_that_makes_another_one(
         record.zzz = 1
 
 
+def test_a_result_that_is_set_names_the_call_that_makes_another_one() -> None:
+    cycles = hersey.rainflow_cycles(np.array([0.0, 1.0, 0.0, 2.0, 0.0]))
+    with pytest.raises(dataclasses.FrozenInstanceError) as refused:
+        cycles.means = cycles.ranges  # type: ignore[misc]
+    call = str(refused.value).split(" = ")[-1]
+    assert call == "dataclasses.replace(rainflow_cycles, means=...)"
+    made = eval(
+        call.replace("...", "ranges"), vars(cycles) | {"rainflow_cycles": cycles, "dataclasses": dataclasses}
+    )
+    assert made.means is cycles.ranges
+
+
 def test_every_public_frozen_record_says_how_to_get_another_one() -> None:
     for name in hersey.__all__:
         record = getattr(hersey, name)
-        if inspect.isclass(record) and issubclass(record, Record) and dataclasses.is_dataclass(record):
+        if inspect.isclass(record) and dataclasses.is_dataclass(record):
             assert hasattr(record.__setattr__, "__wrapped__"), name
 
 
