@@ -133,6 +133,10 @@ class UnreadableLogError(HerseyError, ValueError):
     """A log whose text cannot be read as a table of numbers."""
 
 
+class TimeOrderError(UnreadableLogError):
+    """A log whose rows are not in the order of their times."""
+
+
 class ChannelError(HerseyError, LookupError):
     """A channel that cannot be found, or could be several.
 

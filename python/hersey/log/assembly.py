@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 
 from hersey.arrays import BoolArray, FloatArray, IntArray
-from hersey.errors import ChannelError, HerseyError, Setting, UnreadableLogError
+from hersey.errors import ChannelError, HerseyError, Setting, TimeOrderError, UnreadableLogError
 from hersey.log.believed import in_si
 from hersey.log.channels import (
     EVERY,
@@ -373,9 +373,10 @@ class Assembly:
         steps = np.diff(part.time)
         if (steps < 0).any():
             row = int(np.argmax(steps < 0))
-            raise UnreadableLogError(
-                f"{file}, channel '{name}', sample {row + 2}: time runs backwards by {-steps[row]:.6g} "
-                "s. Split the file there, or sort its rows"
+            raise TimeOrderError(
+                f"{file}, channel '{name}', sample {row + 2}: time runs backwards by {-steps[row]:.6g} s",
+                remedy="split the file there, or sort its rows",
+                setting=Setting("time", "channel"),
             )
 
     def _spans(self) -> str:
