@@ -92,7 +92,7 @@ class OpenFile:
         UnreadableLogError
             If its first ``size`` bytes, or the file behind the path, are no longer the same.
         """
-        from hersey.schema.warning import Warning  # which loads NumPy
+        from hersey.schema.warning import Warning  # which loads all units
 
         self.refuse_loss()
         grown, now = self._has_grown(), os.fstat(self.file.fileno()).st_size
