@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import numpy as np
 import polars as pl
 import pytest
 
+import hersey
 from hersey import testbench
-from hersey.errors import HerseyError, ParameterError, UnitError
+from hersey.errors import ChannelError, HerseyError, ParameterError, UnitError
 from hersey.inspection import inspect
-from hersey.inspection.clock import clock_of
 from hersey.inspection.faults import noise_of, quantisation_step, traits
+from hersey.log.clock import clock_of
 from hersey.log.mapping import FILE_NAME, read_mapping
 from tests.cli.command import run
 from tests.conftest import shared
@@ -245,11 +247,38 @@ def test_a_log_whose_time_steps_back_is_shown_all_the_same(tmp_path: Path) -> No
 
 
 def test_a_clock_that_starts_anew_is_shown_with_its_runs(tmp_path: Path) -> None:
+    first, second = (testbench.run(seed=seed).table.head(3000) for seed in (2, 3))
+    pl.concat([first, second]).write_csv(tmp_path / "anew.csv")
+    found = inspect(tmp_path / "anew.csv")
+    assert found.support is not None
+    assert "run 2 of 2 in anew.csv begins at line 3002" in found.summary()
+
+
+def test_a_log_pasted_twice_into_one_file_supports_no_fit(tmp_path: Path) -> None:
     table = testbench.run(seed=2).table.head(3000)
     pl.concat([table, table]).write_csv(tmp_path / "twice.csv")
     found = inspect(tmp_path / "twice.csv")
-    assert found.support is not None
-    assert "run 2 of 2 in twice.csv begins at line 3002" in found.summary()
+    assert found.support is None
+    assert "run 1 of 2 are the same: one is a copy of the other. Delete one of them" in found.summary()
+
+
+def test_a_time_without_a_unit_is_not_called_missing(tmp_path: Path) -> None:
+    table = testbench.run(seed=2).table.head(3000)
+    table.rename({"Time [s]": "Time"}).write_csv(tmp_path / "log.csv")
+    summary = inspect(tmp_path / "log.csv").summary()
+    assert "column 'Time' has no unit" in summary
+    assert "no time column" not in summary
+
+
+def test_torque_in_volts_is_named_with_what_one_volt_is(tmp_path: Path) -> None:
+    table = testbench.run(seed=2).table.head(3000).rename({"Drive torque [N*m]": "CH1 [V]"})
+    table.write_csv(tmp_path / "log.csv")
+    typed = "channels={'torque': 'CH1'} and give the torque per V, e.g. units={'torque': '2 N*m/V'}"
+    assert typed in inspect(tmp_path / "log.csv").summary()
+    with pytest.raises(ChannelError, match=re.escape(typed)):
+        hersey.read(tmp_path / "log.csv")
+    log = hersey.read(tmp_path / "log.csv", channels={"torque": "CH1"}, units={"torque": "2 N*m/V"})
+    assert log.runs[0].torque == pytest.approx(2.0 * table["CH1 [V]"].to_numpy())
 
 
 def test_a_row_left_out_is_shown_with_line_and_column(tmp_path: Path) -> None:

@@ -214,6 +214,9 @@ def test_frames_in_memory() -> None:
     table.index = pandas.Timestamp("2024-03-01 08:00", tz="CET") + pandas.to_timedelta(TIME, unit="s")
     assert_same(hersey.read(table))
     assert list_channels(table)[:2] == [("time", "s"), ("torque", "N*m")]
+    with pytest.raises(hersey.HerseyError, match="one is a copy of the other"):
+        hersey.read([frame(), table])
+    table["torque"] *= 1.01
     both = hersey.read([frame(), table])
     assert [run.name for run in both.runs] == ["frame 1", "frame 2"]
     with pytest.raises(hersey.HerseyError, match="each file once"):

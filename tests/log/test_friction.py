@@ -266,7 +266,7 @@ def test_many_bad_cells_are_refused_with_the_first(tmp_path: Path) -> None:
 
 
 def test_one_bad_cell_does_not_cost_the_other_files(tmp_path: Path) -> None:
-    paths = [write(tmp_path / f"{i}.csv", f"# {i}\n" + with_cells("Speed [rpm]", {})) for i in range(3)]
+    paths = [write(tmp_path / f"{i}.csv", with_cells("Speed [rpm]", {9: f"1{i}"})) for i in range(3)]
     paths.append(write(tmp_path / "bad.csv", with_cells("Speed [rpm]", {5: "ERR"})))
     log = hersey.read(paths, isothermal=True)
     assert log.rows == 4 * ROWS - 1

@@ -83,7 +83,8 @@ def _lines(inspection: Inspection) -> list[str]:
         lines += [f"  cannot show  {text}" for text in support.cannot]
     lines += [f"Corrected: {each}" for each in inspection.corrections]
     lines += [
-        f"{rows} rows of {name} are dropped: a number is missing or impossible"
+        f"{rows} {'row' if rows == 1 else 'rows'} of {name} {'is' if rows == 1 else 'are'} dropped: "
+        "a number is missing or impossible"
         for name, rows in inspection.dropped.items()
     ]
     if inspection.needed:

@@ -140,7 +140,7 @@ def _file(log: TorqueLog | MeansTable, index: int) -> InputFile:
         missing_rows=file.missing_rows,
         duration=0.0 if run is None else float(run.time[-1] - run.time[0]),
         sampling_interval=0.0 if run is None else run.sampling_interval,
-        gaps=0 if run is None else run.gaps(),
+        gaps=0 if run is None else run.clock.gaps,
         channels=[Channel(role=c.role, name=c.name, unit=c.unit) for c in file.channels],
         comments=list(file.comments),
     )

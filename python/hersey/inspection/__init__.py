@@ -4,7 +4,6 @@
 module       what it holds
 ===========  ================================================================
 raw          every channel of a log as written
-clock        rate, gaps and unevenness of a clock
 faults       step, noise and faults of a channel
 file_report  one file: clocks, channels with their roles, warnings
 support      what the dwells can tell, in words

@@ -11,10 +11,10 @@ import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.errors import Setting, way_in
-from hersey.inspection.clock import Clock, clock_of
 from hersey.inspection.faults import DITHER, Fault, Traits, traits
 from hersey.inspection.raw import Lacking, RawChannel, RawLog, roles_of
 from hersey.log.channels import OTHER_ROLES, ChannelChoice, Stated, is_of_kind
+from hersey.log.clock import Clock, clock_of
 from hersey.log.torque_log import NO_CLOCK
 from hersey.result import Means, Record
 from hersey.schema.warning import Warning
@@ -229,7 +229,8 @@ def file_lines(file: FileReport, *, table: bool) -> list[str]:
             f"{clock.duration:.5g} s in total"
         )
         lines += [f"  ! {warning}" for warning in clock.warnings]
-    if not file.clocks and MEANS not in file.format:
+    no_time = "time" not in file.lacking or file.lacking["time"].absent
+    if not file.clocks and no_time and MEANS not in file.format:
         named = Setting("time", "channel").to()
         lines.append(f"  ! no time column found, so rates and gaps are unknown. Name it with {named}")
     lines += _table(file) if table else []

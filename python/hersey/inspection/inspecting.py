@@ -15,7 +15,15 @@ from hersey.damping.dwells import SteadyPoints
 from hersey.damping.dwells.doubtful import doubtful_order, doubtful_tare
 from hersey.damping.dwells.misleading import misleading
 from hersey.damping.dwells.reasons import LABELS
-from hersey.errors import DROP_MISSING, ISOTHERMAL, HerseyError, InsufficientDataError, Setting, way_in
+from hersey.errors import (
+    DROP_MISSING,
+    ISOTHERMAL,
+    HerseyError,
+    InsufficientDataError,
+    Setting,
+    followed_by,
+    way_in,
+)
 from hersey.inspection.file_report import MEANS, FileReport, file_lines, file_report
 from hersey.inspection.raw import raw_channels
 from hersey.inspection.support import Support, support_of_points
@@ -117,7 +125,8 @@ class Inspection(Result):
             lines += [*file_lines(file, table=len(self.files) <= _TABLES), ""]
         lines += [f"corrected: {correction}" for correction in self.corrections]
         lines += [
-            f"{rows} rows of {name} are excluded, because a number is missing or impossible"
+            f"{rows} {'row' if rows == 1 else 'rows'} of {name} {'is' if rows == 1 else 'are'} excluded, "
+            "because a number is missing or impossible"
             for name, rows in self.dropped.items()
         ]
         if self.needed:
@@ -134,7 +143,7 @@ class Inspection(Result):
     def _hindrance(self) -> str:
         """Why there can be no fit; that a log has no torque comes first."""
         bare = [
-            file.name
+            file
             for file in self.files
             if file.channels
             and "torque" in file.without
@@ -143,11 +152,8 @@ class Inspection(Result):
         ]
         if not bare:
             return self.problem
-        names = bare[0] if len(bare) == 1 else f"{bare[0]} and {len(bare) - 1} more"
-        return (
-            f"{names} has no torque channel. Name one with {Setting('torque', 'channel').to()}, or "
-            "give motor_constant in a mapping if one is the motor current"
-        )
+        names = bare[0].name if len(bare) == 1 else f"{bare[0].name} and {len(bare) - 1} more"
+        return followed_by(f"{names} has no torque channel", bare[0].lacking["torque"].remedy)
 
     @property
     def channel_warnings(self) -> tuple[Warning, ...]:

@@ -10,7 +10,7 @@ import polars as pl
 
 from hersey.arrays import FloatArray
 from hersey.errors import ChannelError, HerseyError, UnitError, printable
-from hersey.log.channels import ROLES, ChannelChoice, Stated, find_channel, is_dead, taken_columns
+from hersey.log.channels import ROLES, ChannelChoice, Stated, find_channel, is_dead, no_channel, taken_columns
 from hersey.log.formats import format_of, opened
 from hersey.log.friction import Chosen, beside
 from hersey.log.text.column import Column, refuse_ragged
@@ -97,13 +97,14 @@ def raw_channels(path: str | Path) -> RawLog:
 class Lacking:
     """Why no column plays a role; ``columns`` are the indices of those that come near, none if none does.
 
-    ``reason`` is the text without what to do.
+    ``reason`` is the text without what to do, ``remedy`` what to do where no column comes near.
     """
 
     text: str
     columns: tuple[int, ...] = ()
     absent: bool = False  #: whether no column of the file comes near
     reason: str = ""
+    remedy: str = ""
 
     def __str__(self) -> str:
         """Return why."""
@@ -132,7 +133,8 @@ def roles_of(
             without[role] = _lacking(error, log)
             continue
         if channel is None:
-            without[role] = Lacking(f"there is no {role} channel", absent=True)
+            remedy = no_channel(role, columns, log.name).remedy
+            without[role] = Lacking(f"there is no {role} channel", absent=True, remedy=remedy)
         else:
             chosen[role] = channel
     try:

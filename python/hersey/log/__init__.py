@@ -11,6 +11,7 @@ channels       which column plays which role
 friction       friction forces and coefficients as torques, sliding speeds as those of a rotation
 stating        a radius or a load: proposed, used once a person states it
 slow_channels  a temperature or a load that is slower than the rows: interpolated between its values
+clock          rate, gaps and unevenness of a clock
 rows           which rows can be used, and where one run ends and the next begins
 believed       what a channel of a drive can read at all, and codes for no reading
 impossible     readings that cannot be right: found, named, left out
@@ -19,6 +20,7 @@ stray_times    rows whose time lies off the clock around them
 wanted         what the user wants of a log, checked
 columns        columns as they stand, for readers with roles of their own
 assembly       from a recording to a run on the clock of the torque
+given_twice    a measurement that a log holds twice: refused
 exchanged      columns under each other's names: refused
 reading        `read`: from files to a log
 many           many files, each a log of its own: in turn, in threads, or by workers

@@ -22,7 +22,7 @@ from hersey.errors import (
     printable,
     way_in,
 )
-from hersey.log.signals import apart, is_signal, per, says_how_much, way_out
+from hersey.log.signals import apart, is_signal, per, says_how_much, way_out, way_out_unnamed
 from hersey.log.text.column import Column
 from hersey.schema.warning import Warning
 from hersey.units import KINDS, Conversion, conversion, nearest_unit
@@ -235,11 +235,8 @@ def no_channel(role: str, columns: tuple[Column, ...], file: str) -> ChannelErro
     way_out = f"name it with {channel.to()}"
     if role == "torque" and any(is_of_kind("force", c.unit) for c in columns):
         way_out += f" (or a friction force, with {Setting('radius').to()} for the radius at which it acts)"
-    elif role == "torque" and (current := next((c for c in columns if _is_current(c)), None)):
-        way_out = (
-            f"if '{current.path}' is the motor current, use {channel.to(current.path)} and give the "
-            f"torque per A, e.g. {Setting(role, 'unit').to('35 mN*m/A')}"
-        )
+    elif signals := _signals(role, columns):
+        way_out = way_out_unnamed(role, [each.path for each in signals], signals[0].unit)
     elif role == "time":
         way_out += f", or give the time between rows with {EVERY.to('2 ms', python='0.002')}"
         way_out += f". If each row is the mean of one dwell, use {MEANS.to()}"
@@ -249,8 +246,12 @@ def no_channel(role: str, columns: tuple[Column, ...], file: str) -> ChannelErro
     return ChannelError(said, remedy=way_out, setting=channel)
 
 
-def _is_current(column: Column) -> bool:
-    return is_signal(column.unit) and column.unit.endswith("A")
+def _signals(role: str, columns: tuple[Column, ...]) -> list[Column]:
+    """Columns of one unit, A or V, that may hold a role: a current only the torque."""
+    for kind in "AV" if role == "torque" else "V" if role in ("speed", "temperature") else "":
+        if found := [c for c in columns if is_signal(c.unit) and c.unit.endswith(kind)]:
+            return found
+    return []
 
 
 def refuse_two_roles(role: str, column: Column, chosen: Mapping[str, tuple[Column, Any]], file: str) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 
 from hersey.errors import Setting
 
@@ -67,6 +68,17 @@ def way_out(role: str, header: str) -> str:
         return f"use {typed}, with your value of the {role} at 100 %"
     condition = "if it is the motor current, " if kind == "A" and role == "torque" else ""
     return f"{condition}give the {role} per {kind}, e.g. {typed}"
+
+
+def way_out_unnamed(role: str, names: Sequence[str], header: str) -> str:
+    """Return what to type if one of some columns of amperes or volts, which nobody named, holds a role."""
+    kind, channel = _kind(header), Setting(role, "channel")
+    held = "the motor current" if kind == "A" else f"the {role} in volts"
+    named, typed = f"'{names[0]}'", channel.to(names[0])
+    if len(names) > 1:
+        named, typed = f"one of {', '.join(map(repr, names))}", f"{channel.to()} with its name"
+    unit = Setting(role, "unit").to(_EXAMPLES[role][kind])
+    return f"if {named} is {held}, use {typed} and give the {role} per {kind}, e.g. {unit}"
 
 
 def _kind(signal: str) -> str:

@@ -10,6 +10,7 @@ import numpy as np
 
 from hersey.arguments.door import Words
 from hersey.arrays import FloatArray
+from hersey.log.clock import Clock, clock_of
 from hersey.log.impossible import Impossible
 from hersey.log.sensors import Sensors
 from hersey.result import Means, Record, Result
@@ -83,7 +84,7 @@ class Run(Record):
             "name": self.name,
             "rows": self.time.size,
             "sampling_interval": self.sampling_interval,
-            "gaps": self.gaps(),
+            "gaps": self.clock.gaps,
             **{name: None if values is None else list(_ends(values)) for name, values in channels.items()},
         }
 
@@ -93,9 +94,10 @@ class Run(Record):
         median = float(np.median(np.diff(self.time)))
         return median or float(self.time[-1] - self.time[0]) / (self.time.size - 1)
 
-    def gaps(self) -> int:
-        """Return how many times rows are missing: intervals over 1.5 times the usual one."""
-        return int(np.count_nonzero(np.diff(self.time) > 1.5 * self.sampling_interval))
+    @cached_property
+    def clock(self) -> Clock:
+        """What the times show of the clock: its interval, and where rows are missing."""
+        return clock_of(self.name, self.time)
 
 
 @dataclass(frozen=True)

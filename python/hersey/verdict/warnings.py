@@ -66,15 +66,14 @@ def _of_file(log: TorqueLog | MeansTable, i: int) -> Iterator[Warning]:
     if file.cut_off:
         yield Warning("cut off", "the file ends too early", severity="watch", where=file.name)
     yield from (warning.within(file.name) for warning in file.warnings)
-    if run is not None and (gaps := run.gaps()):
-        share = 1.0 - run.time.size * run.sampling_interval / max(float(run.time[-1] - run.time[0]), 1e-9)
+    if run is not None and run.clock.gaps:
         yield Warning(
             "gaps",
             "rows are missing at {places} {places:place|places} ({share:.1f %} of the time)",
             severity="watch",
             where=file.name,
-            places=gaps,
-            share=max(share, 0.0),
+            places=run.clock.gaps,
+            share=run.clock.lost / run.clock.duration,
         )
 
 
