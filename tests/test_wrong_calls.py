@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import inspect
+import re
 import timeit
 import warnings
 from collections.abc import Callable, Iterator
@@ -17,7 +18,6 @@ import pytest
 
 import hersey
 from hersey.errors import ArgumentError, ExtrapolationWarning, HerseyError, ParameterError
-from hersey.schema.record import Record
 from hersey.units import parse, takes_si
 from tests.conftest import ROOT
 
@@ -216,13 +216,38 @@ def test_the_check_of_a_call_takes_microseconds() -> None:
     assert min(runs) / 200 < 50e-6
 
 
-@pytest.mark.parametrize("path", ["C:\temp\new.csv", "C:\temp\n*.csv"])
-def test_a_path_whose_backslashes_python_took_as_escapes_is_shown_as_it_was_meant(path: str) -> None:
+@pytest.mark.parametrize(
+    ("path", "shown", "found"),
+    [
+        ("C:\temp\new.csv", r"C:\temp\new.csv", r"\t and \n"),
+        ("C:\temp\n*.csv", r"C:\temp\n*.csv", r"\t and \n"),
+        ("logs\2024.csv", r"logs\2024.csv", r"\202"),
+        ("logs\bench.csv", r"logs\bench.csv", r"\b"),
+    ],
+)
+def test_a_path_whose_backslashes_python_took_as_escapes_is_shown_as_it_was_meant(
+    path: str, shown: str, found: str
+) -> None:
     with pytest.raises(hersey.errors.MissingFileError) as refused:
         hersey.read(path)
-    meant = path.replace("\t", r"\t").replace("\n", r"\n")
-    assert f'r"{meant}"' in refused.value.remedy
-    assert meant in refused.value.reason
+    assert shown in refused.value.reason
+    assert refused.value.remedy.startswith(f"Python reads {found} in")
+    assert eval(refused.value.remedy.split("Write ")[1]) == shown.replace("\\", "/")
+
+
+@pytest.mark.parametrize("typed", ["folder\bench.csv", r"folder\bench.csv", "folderbench.csv"])
+def test_a_path_with_backslashes_gets_the_name_of_the_file_that_is_there(
+    typed: str, bench_csv: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "folder" / "bench.csv").write_bytes(bench_csv.read_bytes())
+    with pytest.raises(hersey.errors.MissingFileError) as refused:
+        hersey.read(typed)
+    advised = re.search(r"""["'](\S+)["']$""", refused.value.remedy)
+    assert advised is not None
+    assert hersey.read(advised[1]).rows > 1000
+    assert ". ." not in str(refused.value)
 
 
 @pytest.mark.parametrize(
@@ -247,10 +272,22 @@ def test_a_record_that_is_set_names_the_call_that_makes_another_one(
         record.zzz = 1
 
 
+def test_a_result_that_is_set_names_the_call_that_makes_another_one() -> None:
+    cycles = hersey.rainflow_cycles(np.array([0.0, 1.0, 0.0, 2.0, 0.0]))
+    with pytest.raises(dataclasses.FrozenInstanceError) as refused:
+        cycles.means = cycles.ranges  # type: ignore[misc]
+    call = str(refused.value).split(" = ")[-1]
+    assert call == "dataclasses.replace(rainflow_cycles, means=...)"
+    made = eval(
+        call.replace("...", "ranges"), vars(cycles) | {"rainflow_cycles": cycles, "dataclasses": dataclasses}
+    )
+    assert made.means is cycles.ranges
+
+
 def test_every_public_frozen_record_says_how_to_get_another_one() -> None:
     for name in hersey.__all__:
         record = getattr(hersey, name)
-        if inspect.isclass(record) and issubclass(record, Record) and dataclasses.is_dataclass(record):
+        if inspect.isclass(record) and dataclasses.is_dataclass(record):
             assert hasattr(record.__setattr__, "__wrapped__"), name
 
 

@@ -116,7 +116,11 @@ class HerseyError(Exception):
 
     def within(self, place: str) -> Self:
         """Return the same error with the place in front of its message."""
-        again = type(self)(f"{place}: {self.reason}")
+        return self.saying(f"{place}: {self.reason}")
+
+    def saying(self, reason: str) -> Self:
+        """Return the same error with another reason."""
+        again = type(self)(reason)
         again.__dict__.update(self.__dict__)
         return again
 
@@ -127,6 +131,10 @@ class MissingFileError(HerseyError, FileNotFoundError):
 
 class UnreadableLogError(HerseyError, ValueError):
     """A log whose text cannot be read as a table of numbers."""
+
+
+class TimeOrderError(UnreadableLogError):
+    """A log whose rows are not in the order of their times."""
 
 
 class ChannelError(HerseyError, LookupError):
@@ -294,9 +302,9 @@ def capital(text: str) -> str:
 
 
 def followed_by(text: str, remedy: str) -> str:
-    """Return what is wrong and, in a sentence of its own, what to do, which may be empty."""
-    if not remedy:
-        return text
+    """Return what is wrong and, in a sentence of its own, what to do; either may be empty."""
+    if not (text and remedy):
+        return text or capital(remedy)
     return f"{text}{'' if text.endswith(_ENDS) else '.'} {capital(remedy)}"
 
 

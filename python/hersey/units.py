@@ -18,7 +18,7 @@ from functools import cache, lru_cache, wraps
 from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 from hersey.arguments.door import Door, Words
-from hersey.arguments.frozen import explaining
+from hersey.arguments.frozen import explained
 from hersey.arguments.numbers import numbers
 from hersey.errors import ParameterError, UnitError, WrongKindError
 
@@ -521,7 +521,7 @@ def _check_fields(record: Any, kinds: Mapping[str, Kind | Words]) -> None:
 
     record.__init__ = called
     if record.__dataclass_params__.frozen:
-        record.__setattr__ = explaining(record.__setattr__)
+        explained(record)
 
 
 def _read(name: str, kind: Kind | None, value: Any, *, one: bool) -> Any:

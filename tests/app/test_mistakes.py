@@ -11,11 +11,11 @@ from typing import Any
 import pytest
 
 from hersey.app.analysis import Analysis, Dropped
-from hersey.app.channels import Fault
+from hersey.app.channels import Fault, of_problem
 from hersey.app.checking import check
 from hersey.app.looking import look
 from hersey.app.view import line_of, view_of
-from hersey.errors import HerseyError
+from hersey.errors import HerseyError, Setting, TimeOrderError, UnreadableLogError
 from tests.cli.test_bad_input import staircase
 from tests.conftest import ROOT
 
@@ -158,6 +158,18 @@ MISTAKES: dict[str, tuple[bytes, str, str, str]] = {
     "an empty file": (b"", "file:", "is empty", "Remove"),
     "a damaged file": (b"\x89HDF\r\n\x1a\n" + bytes(200), "file:", "damaged", "Remove"),
 }
+
+
+def test_the_title_of_what_a_reader_refused_follows_from_its_kind_and_not_from_its_words() -> None:
+    looked = {"name": "log.csv"}
+    choices = {"Time": {"role": "time", "unit": "s"}}
+    for kind, title, link in (
+        (TimeOrderError, "Time is out of order.", "time: time is out of order"),
+        (UnreadableLogError, "This cannot be read.", "time: this cannot be read"),
+    ):
+        problem = kind("log.csv: time runs backwards", setting=Setting("time", "channel")).to_dict()
+        fault = of_problem(problem, looked, choices)
+        assert (fault.at, fault.title, fault.link) == ("role:Time", title, link)
 
 
 @pytest.mark.parametrize("mistake", MISTAKES)

@@ -30,8 +30,8 @@ from tests.cli.command import run
 #: What the verdict says of each state of the map.
 WORDS = {
     "stick_slip": "Act: sticks from any start",
-    "swing": "Watch: depends on start: oscillates from above",
-    "bistable": "Watch: depends on start: sticks from rest, slides from above",
+    "swing": "Watch: depends on start: oscillates when slowed down",
+    "bistable": "Watch: depends on start: sticks from rest, slides when slowed down",
     "smooth": "Good: smooth from any start",
 }
 

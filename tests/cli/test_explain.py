@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+
 from hersey.report.glossary import entries
 from tests.cli.command import run
 from tests.conftest import ROOT
@@ -44,3 +46,15 @@ def test_an_unknown_term_points_to_the_list() -> None:
     done = run("explain", "zzz", cwd=ROOT)
     assert done.returncode == 2
     assert done.stderr == "hersey: 'zzz' is not in the glossary; type hersey explain to list all terms\n"
+
+
+def test_a_term_and_all_terms_as_json() -> None:
+    (one,) = json.loads(run("explain", "stick", "speed", "--json", cwd=ROOT).stdout)["terms"]
+    assert one["term"] == "stick speed"
+    assert "v_s" in one["also"]
+    assert one["see"] == ["closure", "V*"]
+    every = json.loads(run("explain", "--json", cwd=ROOT).stdout)
+    assert [each["term"] for each in every["terms"]] == [each.term for each in entries()]
+    assert one in every["terms"]
+    assert every["command"] == "hersey explain --json"
+    assert run("explain", "zzz", "--json", cwd=ROOT).returncode == 2

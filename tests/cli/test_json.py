@@ -32,6 +32,7 @@ TRACE = str(EXAMPLES / "stick-slip.csv")
 TARE = ["--tare", "standing"]
 #: Arguments that make each command print its part, all of it and quickly.
 ARGUMENTS: dict[str, list[str]] = {
+    "explain": [],
     "inspect": [BENCH],
     "report": [BENCH, *TARE, "--machine", MACHINE],
     "fit": [BENCH, *TARE],

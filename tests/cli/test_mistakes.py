@@ -586,6 +586,46 @@ def test_signs_of_an_option_multiply_those_of_a_mapping(tmp_path: Path) -> None:
     assert run("fit", "log.csv", "--speed-sign", "-1", cwd=tmp_path).returncode == 0
 
 
+def test_of_two_logs_the_one_that_needs_another_mapping_is_told_first_how_it_gets_it(tmp_path: Path) -> None:
+    (tmp_path / "a.csv").write_text(GOOD["log.csv"])
+    (tmp_path / "b.csv").write_text(GOOD["log.csv"].replace("Torque [N*m]", "Tq", 1))
+    (tmp_path / "hersey.toml").write_text('[torque]\nchannel = "Tq"\nunit = "N*m"\n')
+    compared = ("compare", "a.csv", "b.csv")
+
+    def advice(*words: str, reason: str) -> str:
+        return refusal(run(*words, cwd=tmp_path)).split(reason)[1].removeprefix(". ")
+
+    shared = "(channels and units come from hersey.toml)"
+    advised = advice(*compared, reason=shared)
+    assert advised == "If hersey.toml is for b.csv only, rename it to b.hersey.toml"
+    advised = advice(*compared, "--mapping", "hersey.toml", reason=shared)
+    assert advised.startswith("If hersey.toml is for b.csv only, omit --mapping and copy it to b.hersey.toml")
+    advised = advice("compare", "a.csv", "a.csv", reason=shared)
+    assert "hersey.toml is for" not in advised  # there is no other log
+    (tmp_path / "hersey.toml").rename(tmp_path / "b.hersey.toml")
+    assert run(*compared, cwd=tmp_path).returncode == 0
+
+    (tmp_path / "b.hersey.toml").unlink()
+    advised = advice(*compared, reason="column 'Tq' has no unit")
+    assert advised.startswith('If only b.csv needs it, write unit = "UNIT" under [torque] in b.hersey.toml. ')
+    assert "Otherwise, write 'Tq [N*m]' in the header" in advised
+    (tmp_path / "b.hersey.toml").write_text('[torque]\nunit = "N*m"\n')
+    assert run(*compared, cwd=tmp_path).returncode == 0
+
+    (tmp_path / "b.hersey.toml").unlink()
+    advised = advice(*compared, "--torque", "Tq", "--torque-unit", "N*m", reason="'Temperature [degC]'")
+    key = 'write channel = "Tq" under [torque] in b.hersey.toml'
+    assert advised == f"If only b.csv needs it, omit --torque and {key}"
+
+
+def test_a_mapping_in_the_place_of_a_log_leaves_the_place_of_the_other_log(tmp_path: Path) -> None:
+    (tmp_path / "a.csv").write_text(GOOD["log.csv"])
+    (tmp_path / "map.toml").write_text('[torque]\nchannel = "Torque"\n')
+    for files in (("a.csv", "map.toml"), ("map.toml", "a.csv")):
+        said = refusal(run("compare", *files, cwd=tmp_path))
+        assert said.endswith("Type: hersey compare a.csv B --mapping map.toml")
+
+
 def test_a_table_of_means_takes_the_signs_too(tmp_path: Path) -> None:
     means = [(float(w), -drag(w, 100)) for w in (10, 20, 40, 80, 120)]
     (tmp_path / "log.csv").write_text(table(means, "Speed [rpm]", "Torque [N*m]"))

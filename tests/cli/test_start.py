@@ -59,6 +59,13 @@ def test_importing_the_package_loads_nothing() -> None:
     assert not set(done.stdout.split()) & (HEAVY | {"hersey._core"})
 
 
+def test_a_warning_is_had_without_numpy_and_pydantic() -> None:
+    asked = "import hersey.schema.warning, sys; print(*sys.modules)"
+    done = run_apart("-c", asked, cwd=ROOT, command=[sys.executable])
+    assert "hersey.schema.record" in done.stdout.split()
+    assert not set(done.stdout.split()) & HEAVY
+
+
 #: Asks one verb after the other for its help, and says on stderr what is loaded then.
 HELPED = """
 import json, sys

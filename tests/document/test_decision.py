@@ -50,7 +50,7 @@ def test_the_first_sentence_is_about_the_users_points(decide: Decide, found: Beh
     assert said.otherwise.startswith(f"The belt slides from any start above {safe} mm/s.")
     below, turn, above = np.quantile(found.posterior.edges(HOT).transition, (0.025, 0.5, 0.975))
     turns = f"{figures(1e3 * turn)} mm/s {within(below, above, 1e3)}"
-    assert said.otherwise.endswith(f" Below the transition, {turns}, it sticks.")
+    assert said.otherwise.endswith(f" Below the transition (lowest torque), {turns}, it sticks.")
     assert said.safe_speed == found.posterior.safe_speed(HOT)
     assert said.fold is not None
     assert (said.fold.low, said.fold.high) == (low, high)

@@ -34,6 +34,8 @@ def test_a_file_whose_name_looks_like_a_pattern_is_that_file() -> None:
 def test_no_match_and_a_file_named_twice_are_told(folder: Path) -> None:
     with pytest.raises(MissingFileError, match=r"^no file matches x\*\.csv"):
         files_of(["a.csv", "x*.csv"])
+    with pytest.raises(MissingFileError, match=r"Write / between folders: 'inside/\*\.csv'$"):
+        files_of(r"inside\*.csv")
     for twice in (["a.csv", "a.csv"], ["*.csv", folder / "b.csv"], ["inside/../a.csv", "a.csv"]):
         with pytest.raises(ParameterError, match=r"is given twice. Give each file once"):
             files_of(twice)

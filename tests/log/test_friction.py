@@ -15,6 +15,7 @@ from hersey.errors import (
     ChannelError,
     HerseyError,
     ParameterError,
+    TimeOrderError,
     UnitError,
     UnreadableLogError,
     UnstatedRoleError,
@@ -299,7 +300,7 @@ def test_the_number_of_a_run_in_a_column(tmp_path: Path) -> None:
     runs = np.repeat([1, 2], 100)
     time = np.concatenate([TIME[:100], TIME[50:150]])  # falls back, but not to the start
     path = write(tmp_path / "a.csv", text(**(TORQUE | {"Time [s]": time, "Test": runs})))
-    with pytest.raises(UnreadableLogError, match="line 102: time runs backwards"):
+    with pytest.raises(TimeOrderError, match="line 102: time runs backwards"):
         hersey.read(path, isothermal=True)
     log = hersey.read(path, isothermal=True, channels={"run": "Test"})
     assert [run.time.size for run in log.runs] == [100, 100]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import warnings
 from pathlib import Path
 
 import pytest
@@ -228,3 +229,31 @@ def test_an_unusual_value_is_read_with_a_warning(old: str, new: str, meant: str,
     path.write_text(GOOD.replace(old, new, 1))
     with pytest.warns(PlausibilityWarning, match=meant):
         read_machine(path)
+
+
+@pytest.mark.parametrize(
+    ("load", "meant"),
+    [
+        ("1.300 N", "1300 N"),
+        ("0.950 N", ""),
+        ("1.3 N", ""),
+        ("1.3000 N", ""),
+        ("300.125 N", ""),
+        ("1.300 kN", ""),
+        ("1.300e3 N", ""),
+    ],
+)
+def test_a_point_between_thousands_is_asked_about_only_where_the_value_is_implausible(
+    load: str, meant: str, tmp_path: Path
+) -> None:
+    path = tmp_path / "machine.toml"
+    path.write_text(GOOD.replace("300 N", load))
+    with warnings.catch_warnings(record=True) as seen:
+        warnings.simplefilter("always")
+        read_machine(path)
+    said = [str(each.message) for each in seen if issubclass(each.category, PlausibilityWarning)]
+    assert len(said) == bool(meant)
+    if meant:
+        (advised,) = re.findall(r'write (nip_load = "[^"]+")', said[0])
+        path.write_text(GOOD.replace('nip_load = "300 N"', advised))
+        assert read_machine(path).limits.nip_load == 1300.0

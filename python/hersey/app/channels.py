@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from hersey.errors import UnitError, UnreadableLogError, capital
+from hersey.errors import TimeOrderError, UnitError, capital, sentence
 from hersey.log.channels import ROLES, role_conversion
 from hersey.log.doubtful import RARE, TOO_HOT
 from hersey.log.slow_channels import is_slow
@@ -26,6 +26,8 @@ UNITS = {
 }
 #: No belt is colder than this, K; up to this share of the rows may be skipped without asking.
 _TOO_COLD, _FEW = 220.0, 0.02
+#: What is wrong, by the kind of the error of a reader.
+_PROBLEMS = {TimeOrderError.__name__: "time is out of order"}
 _NUMBERS = {2: "Two", 3: "Three", 4: "Four"}
 _SETPOINT = re.compile(r"\b(set|cmd|command|target|demand|reference|soll|nominal)", re.IGNORECASE)
 
@@ -108,9 +110,8 @@ def of_problem(
     name = next((name for name, choice in choices.items() if role and choice["role"] == role), "")
     kind = "unit" if problem["of"] == "unit" else "role"
     at = f"{kind}:{name}" if name else "file:"
-    rows = role == "time" and problem["error"] == UnreadableLogError.__name__
-    title = "Time is out of order." if rows else "This cannot be read."
-    return Fault(at, title, capital(said), f"{role or 'the log'}: {title.lower().rstrip('.')}")
+    what = _PROBLEMS.get(problem["error"], "this cannot be read")
+    return Fault(at, sentence(what), capital(said), f"{role or 'the log'}: {what}")
 
 
 def _claimed(role: str, names: list[str], channels: Mapping[str, Any]) -> Fault:

@@ -7,11 +7,12 @@ from collections.abc import Callable
 from dataclasses import FrozenInstanceError, fields
 from functools import wraps
 from numbers import Real
-from typing import Any, cast
+from typing import Any, TypeVar, cast
 
 from hersey.arguments.door import nearest_argument
 from hersey.errors import printable
 
+T = TypeVar("T")
 #: Characters of a value that an example call shows.
 _SHORT = 60
 
@@ -29,6 +30,13 @@ def explaining(refuse: Callable[[Any, str, Any], None]) -> Callable[[Any, str, A
             raise FrozenInstanceError(_of_frozen(type(self), name, value)) from None
 
     return explained
+
+
+def explained(record: type[T]) -> type[T]:
+    """Let a frozen data class say, when a field is set, how to get a changed one."""
+    changed: Any = record
+    changed.__setattr__ = explaining(changed.__setattr__)
+    return record
 
 
 def _of_frozen(record: type, name: str, value: Any) -> str:

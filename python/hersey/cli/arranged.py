@@ -46,6 +46,8 @@ def refuse_disorder(context: Any, words: Sequence[str]) -> None:
 def _without(toml: str, files: list[str], others: list[str], command: Any, verb: list[str]) -> str:
     """What to type instead of a TOML file among the logs."""
     kind = _kind(toml)
+    needed = [each.metavar for each in command.params if each.required and each.metavar in _OF_LOGS]
+    files = [*files, *needed[len(files) :]] if files else files
     if kind not in options_of(command):
         line = retyped(*verb, *(files or ["LOG"]), *others)
         return f"{toml} is {_KINDS[kind]}, not a log. Omit it: {line}"

@@ -7,6 +7,8 @@ import textwrap
 from typing import TYPE_CHECKING, Annotated
 
 from hersey.cli.groups import argument
+from hersey.cli.outputs import print_json
+from hersey.cli.printing import AsJson
 from hersey.cli.terminal import say_wrapped, width
 
 if TYPE_CHECKING:
@@ -15,7 +17,9 @@ if TYPE_CHECKING:
 _TERM = "Term, e.g. V* or 'stick speed'; if omitted, all terms are listed."
 
 
-def explain(term: Annotated[list[str] | None, argument("TERM", _TERM)] = None) -> None:
+def explain(
+    term: Annotated[list[str] | None, argument("TERM", _TERM)] = None, *, as_json: AsJson = False
+) -> None:
     """Explain a term of reports and docs, or list all terms.
 
     Example: [bold]hersey explain stick speed[/bold]
@@ -26,15 +30,15 @@ def explain(term: Annotated[list[str] | None, argument("TERM", _TERM)] = None) -
     from hersey.report.glossary import entries, find, nearest
 
     name = " ".join(term or [])
-    if not name:
-        say_wrapped(*_listed(entries()))
-        return
-    found = find(name)
-    if found is None:
+    found = find(name) if name else None
+    if name and found is None:
         close = nearest(name)
         advice = f"did you mean '{close}'?" if close else "type hersey explain to list all terms"
         raise ParameterError(f"'{name}' is not in the glossary; {advice}")
-    say_wrapped(*_lines(found))
+    if as_json:
+        print_json({"terms": [found] if found else entries()})
+    else:
+        say_wrapped(*(_lines(found) if found else _listed(entries())))
 
 
 def _listed(entries: tuple[Entry, ...]) -> list[str]:

@@ -24,6 +24,8 @@ PANEL = "What is printed"
 _JSON = "Print the whole result as JSON."
 _VERBOSE = "Print the full statistics and notes too."
 _QUIET = "Print only the names of the files written; errors still go to stderr."
+#: Whether the result is printed as JSON.
+AsJson = Annotated[bool, option(_JSON, "--json", panel=PANEL)]
 #: How grave a warning is, the gravest first; the others are notes.
 _GRAVE = ("act", "watch")
 
@@ -55,7 +57,7 @@ class Printing(Quiet):
     """How much of a result is printed, and whether as JSON."""
 
     verbose: Annotated[bool, option(_VERBOSE, "--verbose", "-v", panel=PANEL)] = False
-    as_json: Annotated[bool, option(_JSON, "--json", panel=PANEL)] = False
+    as_json: AsJson = False
 
     def prepare(self) -> None:
         """Make the notes on stderr follow --quiet."""

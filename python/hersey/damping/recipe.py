@@ -16,6 +16,7 @@ from typing import Annotated, Any, Protocol
 import pydantic.dataclasses
 from pydantic import ValidationInfo
 
+from hersey.arguments.frozen import explained
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.no_load import no_load_torque
 from hersey.damping.no_load_torque import NoLoadTorque
@@ -75,6 +76,7 @@ class _Paths(_Path):
         return tuple(super(_Paths, self).checked(each, info) for each in named)
 
 
+@explained
 @dataclass(frozen=True)
 class Recipe:
     """How logs are read and reduced to dwells: the same recipe on the same files gives the same dwells.

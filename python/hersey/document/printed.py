@@ -8,6 +8,7 @@ from hersey.document.parts.campaign import CampaignPart
 from hersey.document.parts.cycles import CyclesPart
 from hersey.document.parts.exchange import UnitPart
 from hersey.document.parts.fit import FitDocument
+from hersey.document.parts.glossary import GlossaryPart
 from hersey.document.parts.life_test import LifeTestPart
 from hersey.document.parts.models import ModelsPart
 from hersey.document.parts.motion import StickSlipPart, SweepPart
@@ -40,4 +41,5 @@ PRINTED: dict[str, type] = {
     "plan": Plan,
     "warmup": WarmUp,
     "export": UnitPart,
+    "explain": GlossaryPart,
 }

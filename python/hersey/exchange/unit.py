@@ -14,6 +14,7 @@ from typing import Any
 
 from hersey import _core
 from hersey.arguments.door import Words
+from hersey.arguments.frozen import explained
 from hersey.damping.fitted_law import FittedLaw
 from hersey.errors import ParameterError, printable
 from hersey.exchange.description import Model, description
@@ -43,6 +44,7 @@ _TIME = (1980, 1, 1, 0, 0, 0)
 _NONE: Mapping[str, str | Path] = MappingProxyType({})
 
 
+@explained
 @dataclass(frozen=True)
 class ExportedUnit:
     """A written FMU: file, version, drive, start, token, platforms, variables and their start values.

@@ -51,5 +51,10 @@ def _matched(name: str | Path) -> list[Path]:
             once.setdefault(os.path.realpath(path), path)
     files = list(once.values())
     if not files:
-        raise missing(text, "no file matches {}", "check the folder and the file extension")
+        slashed = text.replace("\\", "/")
+        found = slashed != text and bool(glob.glob(slashed, recursive=True))  # noqa: PTH207 - as above
+        remedy = (
+            f"write / between folders: '{slashed}'" if found else "check the folder and the file extension"
+        )
+        raise missing(text, "no file matches {}", remedy)
     return [Path(path) for path in files]

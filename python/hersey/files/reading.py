@@ -9,6 +9,7 @@ from __future__ import annotations
 import hashlib
 import os
 import time
+import unicodedata
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -91,7 +92,7 @@ class OpenFile:
         UnreadableLogError
             If its first ``size`` bytes, or the file behind the path, are no longer the same.
         """
-        from hersey.schema.warning import Warning  # which loads NumPy
+        from hersey.schema.warning import Warning  # which loads all units
 
         self.refuse_loss()
         grown, now = self._has_grown(), os.fstat(self.file.fileno()).st_size
@@ -177,20 +178,24 @@ def open_file(path: Path) -> Iterator[BinaryIO]:
 
 def missing(path: str, words: str, remedy: str) -> MissingFileError:
     """Return the error about a path in words; its remedy differs if Python took signs of it as escapes."""
-    written = "".join(_ESCAPES.get(char, char) for char in path)
+    written = "".join(_as_typed(char) for char in path)
     if written == path or way_in() != "python":
         return MissingFileError(words.format(path), remedy=remedy)
-    found = " and ".join(dict.fromkeys(_ESCAPES[char] for char in path if char in _ESCAPES))
-    return MissingFileError(
-        words.format(written),
-        remedy=f'Python reads {found} in a text as other characters. Write r"{written}"',
-    )
+    found = " and ".join(dict.fromkeys(_as_typed(char) for char in path if _as_typed(char) != char))
+    slashed = written.replace("\\", "/")
+    why = f"Python reads {found} in a text as other characters"
+    return MissingFileError(words.format(written), remedy=f'{why}. Write "{printable(slashed)}"')
+
+
+def _as_typed(char: str) -> str:
+    r"""A character of a path as it was typed; a control character was an escape, as ``\202`` of ``\2024``."""
+    return _ESCAPES.get(char) or (f"\\{ord(char):o}" if unicodedata.category(char) == "Cc" else char)
 
 
 def _near(path: Path) -> str:
     """The file beside a missing one that was probably meant, or nothing."""
     if slashed := _slashed(path):
-        return f". Write / between folders: '{printable(slashed)}'"
+        return f"write / between folders: '{printable(slashed)}'"
     try:
         near = meant(path.name, [each.name for each in path.parent.iterdir() if each.is_file()])
     except (OSError, ValueError):

@@ -10,7 +10,7 @@ import polars as pl
 
 from hersey.arrays import FloatArray
 from hersey.errors import ChannelError, HerseyError, UnitError, printable
-from hersey.log.channels import ROLES, ChannelChoice, Stated, find_channel, is_dead, no_channel
+from hersey.log.channels import ROLES, ChannelChoice, Stated, find_channel, is_dead, no_channel, taken_columns
 from hersey.log.formats import format_of, opened
 from hersey.log.friction import Chosen, beside
 from hersey.log.text.column import Column, refuse_ragged
@@ -127,7 +127,8 @@ def roles_of(
         if role == "time" and stated.every is not None:
             continue
         try:
-            channel = find_channel(role, columns, choices[role], log.name, dead)
+            taken = taken_columns(role, columns, choices, chosen)
+            channel = find_channel(role, columns, choices[role], log.name, dead, taken)
         except HerseyError as error:
             without[role] = _lacking(error, log)
             continue

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
+from hersey.arguments.frozen import explained
 from hersey.arrays import FloatArray, numbers_of
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.units import takes_si
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from hersey.motion.simulation import StickSlipCycle
 
 
+@explained
 @dataclass(frozen=True, repr=False)
 class RainflowCycles:
     """Cycles of a signal: arrays of shape (cycles,), ranges and means in its unit.

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from hersey.arguments.frozen import explained
 from hersey.arrays import FloatArray, IntArray
 from hersey.errors import ParameterError
 from hersey.result import Record
@@ -59,6 +60,7 @@ class OwnAges:
     new: FloatArray
 
 
+@explained
 @dataclass(frozen=True, repr=False)
 class Indicator:
     """One failure mode.
@@ -94,6 +96,7 @@ class Indicator:
             raise ParameterError(f"an error of {self.name} is negative or not a number")
 
 
+@explained
 @dataclass(frozen=True, repr=False)
 class Indicators:
     """Runs and the failure modes that they show; ``warnings`` says which modes are not judged, and why."""

@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 
 from hersey.arrays import BoolArray, FloatArray, IntArray
-from hersey.errors import ChannelError, HerseyError, Setting, UnreadableLogError
+from hersey.errors import ChannelError, HerseyError, Setting, TimeOrderError, UnreadableLogError
 from hersey.log.believed import in_si
 from hersey.log.channels import (
     EVERY,
@@ -22,6 +22,7 @@ from hersey.log.channels import (
     refuse_two_clocks,
     refuse_two_roles,
     role_conversion,
+    taken_columns,
 )
 from hersey.log.friction import Chosen, beside, computed, in_rotation, slow_roles, unused
 from hersey.log.impossible import Impossible, Reading, impossible_rows, marked_rows
@@ -179,12 +180,14 @@ class Assembly:
     def _channel(self, role: str) -> tuple[Column, Conversion]:
         """The channel of a role; the part of the file that holds the torque is looked at first."""
         file, choice, channel = self.source.name, self.choices[role], None
+        taken = taken_columns(role, self.columns, self.choices, self.chosen)
         if role != "torque" and not choice.name:
             torque = self.chosen["torque"][0]
             near = tuple(c for c in self.columns if c.group == torque.group and c != torque)
-            channel = find_channel(role, near, choice, file, self._says_nothing)
+            channel = find_channel(role, near, choice, file, self._says_nothing, taken)
         if channel is None:
-            channel = find_channel(role, self._beside_a_speed(role), choice, file, self._says_nothing)
+            among = self._beside_a_speed(role)
+            channel = find_channel(role, among, choice, file, self._says_nothing, taken)
         if channel is None:
             raise no_channel(role, self.columns, file)
         refuse_two_roles(role, channel[0], self.chosen, file)
@@ -246,8 +249,12 @@ class Assembly:
             for c in self.columns
             if c != column and self._may_time(c, signal, column, bool(choice.name))
         )
-        dead = self._says_nothing
-        clock = find_channel("time", near, choice, file, dead) if near or choice.name else None
+        taken = taken_columns("time", near, self.choices, self.chosen)
+        clock = (
+            find_channel("time", near, choice, file, self._says_nothing, taken)
+            if near or choice.name
+            else None
+        )
         if clock is None:
             raise ChannelError(
                 f"{file}: '{column}' has no time channel with {signal.rows} samples. Channels: "
@@ -366,9 +373,10 @@ class Assembly:
         steps = np.diff(part.time)
         if (steps < 0).any():
             row = int(np.argmax(steps < 0))
-            raise UnreadableLogError(
-                f"{file}, channel '{name}', sample {row + 2}: time runs backwards by {-steps[row]:.6g} "
-                "s. Split the file there, or sort its rows"
+            raise TimeOrderError(
+                f"{file}, channel '{name}', sample {row + 2}: time runs backwards by {-steps[row]:.6g} s",
+                remedy="split the file there, or sort its rows",
+                setting=Setting("time", "channel"),
             )
 
     def _spans(self) -> str:

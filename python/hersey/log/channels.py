@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -19,6 +20,7 @@ from hersey.errors import (
     WrongKindError,
     meant,
     printable,
+    way_in,
 )
 from hersey.log.signals import (
     apart,
@@ -108,10 +110,12 @@ def find_channel(
     choice: ChannelChoice,
     file: str,
     dead: Callable[[Column], bool] = lambda _: False,
+    taken: Mapping[str, Column] = MappingProxyType({}),
 ) -> tuple[Column, Conversion] | None:
     """Return the column of a role and the conversion to SI, or None if no column comes near it.
 
-    ``dead`` tells whether a column says nothing; it is asked where several could play the role.
+    ``dead`` tells whether a column says nothing; it is asked where several could play the role. ``taken``
+    are the columns of other roles (`taken_columns`), of which none is proposed.
 
     Raises
     ------
@@ -121,23 +125,10 @@ def find_channel(
         If the column that must be it has no unit, an unknown one, or one of another kind.
     """
     if choice.name:
-        return _with_unit(role, _named(role, columns, choice.name, file), choice, file, columns)
-    named = [c for c in columns if _is_named(_NAMES[role], c)]
-    measured = [c for c in named if not _SETPOINT.search(c.name)]
-    if not measured:  # what was asked for is not what came, if another column may hold that
-        others = [c for c in columns if c not in named and c.unit and _could_be(role, c, surely=True)]
-        measured = named + (others if named and role != "time" else [])
-    # a column of another kind of unit is out; one without a unit could still be it
-    candidates = (
-        _telling(role, [c for c in measured if _could_be(role, c)])
-        or _in_friction(role, columns, measured)
-        or [
-            c
-            for c in columns
-            if c.unit and _could_be(role, c, surely=True) and not _OSCILLATION.search(c.name)
-        ]
-        or measured
-    )
+        column = _named(role, columns, choice.name, file, taken)
+        return _with_unit(role, column, choice, file, columns, taken)
+    free = tuple(c for c in columns if c not in taken.values())
+    candidates = _candidates(role, free) or _candidates(role, columns)
     if len(candidates) > 1:
         candidates = [c for c in candidates if not dead(c)] or candidates
     if not candidates:
@@ -151,7 +142,40 @@ def find_channel(
             columns=tuple(c.index for c in candidates),
             **_choose(role, candidates[0].path),
         )
-    return _with_unit(role, candidates[0], choice, file, columns)
+    return _with_unit(role, candidates[0], choice, file, columns, taken)
+
+
+def taken_columns(
+    role: str,
+    columns: tuple[Column, ...],
+    choices: Mapping[str, ChannelChoice],
+    chosen: Mapping[str, tuple[Column, Any]],
+) -> dict[str, Column]:
+    """Return the columns that play another role, by that role: named for it, or found before."""
+    named = {other: called(choice.name, columns) for other, choice in choices.items() if choice.name}
+    taken = {other: column for other, (column, _) in chosen.items()}
+    taken |= {other: same[0] for other, same in named.items() if len(same) == 1}
+    return {other: column for other, column in taken.items() if other != role}
+
+
+def _candidates(role: str, columns: tuple[Column, ...]) -> list[Column]:
+    """The columns that could play a role, by name and unit."""
+    named = [c for c in columns if _is_named(_NAMES[role], c)]
+    measured = [c for c in named if not _SETPOINT.search(c.name)]
+    if not measured:  # what was asked for is not what came, if another column may hold that
+        others = [c for c in columns if c not in named and c.unit and _could_be(role, c, surely=True)]
+        measured = named + (others if named and role != "time" else [])
+    # a column of another kind of unit is out; one without a unit could still be it
+    return (
+        _telling(role, [c for c in measured if _could_be(role, c)])
+        or _in_friction(role, columns, measured)
+        or [
+            c
+            for c in columns
+            if c.unit and _could_be(role, c, surely=True) and not _OSCILLATION.search(c.name)
+        ]
+        or measured
+    )
 
 
 def _choose(role: str, path: str) -> dict[str, Any]:
@@ -163,6 +187,14 @@ def _choose(role: str, path: str) -> dict[str, Any]:
 def _is_named(pattern: str, column: Column) -> bool:
     """Whether a column is called so; longer than any name it is not, for the patterns would take long."""
     return len(column.name) <= _LONGEST_NAME and bool(re.fullmatch(pattern, column.name, re.IGNORECASE))
+
+
+def channels_to(columns: Mapping[str, str]) -> str:
+    """Return what to write so that columns play roles, by role."""
+    if way_in() == "python":
+        return f"channels={dict(columns)}"
+    joint = " " if way_in() == "terminal" else ", "
+    return joint.join(Setting(role, "channel").to(path) for role, path in columns.items())
 
 
 def is_called(role: str, column: Column) -> bool:
@@ -280,10 +312,13 @@ def _spellings(c: Column) -> set[str]:
     return {c.name, c.path, str(c), *with_unit, *with_ending(c.name, c.unit)}
 
 
-def _named(role: str, columns: tuple[Column, ...], name: str, file: str) -> Column:
+def _named(
+    role: str, columns: tuple[Column, ...], name: str, file: str, taken: Mapping[str, Column]
+) -> Column:
     same = called(name, columns)
     if not same:
-        near = meant(name, [*(c.path for c in columns), *(str(c) for c in columns)])
+        free = [c for c in columns if c not in taken.values()]
+        near = meant(name, [*(c.path for c in free), *(str(c) for c in free)])
         channel = Setting(role, "channel")
         raise ChannelError(
             f"{file}: there is no column '{name}' ({role}). Columns: {_listed(columns)}",
@@ -370,7 +405,12 @@ def is_of_kind(kind: str, unit: str) -> bool:
 
 
 def _with_unit(
-    role: str, column: Column, choice: ChannelChoice, file: str, columns: tuple[Column, ...]
+    role: str,
+    column: Column,
+    choice: ChannelChoice,
+    file: str,
+    columns: tuple[Column, ...],
+    taken: Mapping[str, Column],
 ) -> tuple[Column, Conversion]:
     unit = choice.unit or column.unit
     if not unit and role == "torque" and _is_named(_FRICTION["friction coefficient"], column):
@@ -394,7 +434,7 @@ def _with_unit(
     try:
         line = role_conversion(role, unit)[1]
     except UnitError as error:
-        swapped = _swapped(role, column, unit, columns)
+        swapped = _swapped(role, column, unit, columns, taken)
         raise UnitError(
             f"{file}: column '{column.path}': {error.reason}{swapped[0]}",
             columns=(column.index,),
@@ -423,14 +463,19 @@ def _signal_in(role: str, column: Column, unit: str, file: str) -> float:
         ) from None
 
 
-def _swapped(role: str, column: Column, unit: str, columns: tuple[Column, ...]) -> tuple[str, str]:
+def _swapped(
+    role: str, column: Column, unit: str, columns: tuple[Column, ...], taken: Mapping[str, Column]
+) -> tuple[str, str]:
     """What else a column of a unit that the role cannot have may be, and the remedy; or nothing."""
+    elsewhere = next((r for r in ROLES if r != role and _could_be(r, column, surely=True)), "")
     others = [c for c in columns if c != column and c.unit and _could_be(role, c, surely=True)]
-    elsewhere = [r for r in ROLES if r != role and _could_be(r, column, surely=True)]
-    if others and elsewhere and unit == column.unit:
-        remedy = f"use {Setting(role, 'channel').to(others[0].path)}"
-        return f", but a unit of {elsewhere[0]}. Are the columns swapped?", remedy
-    return "", ""
+    both = [c for c in others if elsewhere and taken.get(elsewhere) == c]
+    others = [c for c in others if c not in taken.values()] or both
+    if not (others and elsewhere) or unit != column.unit:
+        return "", ""
+    swapped = {role: others[0].path} | ({elsewhere: column.path} if others == both else {})
+    said = f", but a unit of {elsewhere}. Are the columns swapped?"
+    return said, f"use {channels_to(swapped)}"
 
 
 def _right_unit(role: str, unit: str) -> str:

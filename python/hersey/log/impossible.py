@@ -16,7 +16,7 @@ from typing import Annotated
 import numpy as np
 
 from hersey.arrays import BoolArray, FloatArray, IntArray
-from hersey.errors import DROP_MISSING, ISOTHERMAL, Setting, UnreadableLogError
+from hersey.errors import DROP_MISSING, ISOTHERMAL, Setting, TimeOrderError, UnreadableLogError
 from hersey.log.believed import BELIEVED, Believed, as_written, is_code, is_wrapped
 from hersey.log.channels import role_conversion
 from hersey.log.neighbours import bursts, drop_outs, flips, on_its_way, pulses
@@ -317,7 +317,7 @@ def _refuse_many(
         return
     share = f"{bad / rows:.0%} of {reading.role} '{reading.column.path}' is impossible ({bad} of {rows} rows)"
     if any(each.reason is Reason.CLOCK for each in found):
-        raise UnreadableLogError(
+        raise TimeOrderError(
             f"{file}, {found[0]}; {share}",
             remedy=f"sort the rows by '{reading.column.path}' if they are in another order. Otherwise "
             f"{_way_out(bad, rows)}",

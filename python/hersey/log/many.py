@@ -8,6 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
+from hersey.arguments.frozen import explained
 from hersey.arrays import one_thread
 from hersey.errors import HerseyError, ParameterError, UnfinishedError
 from hersey.files.patterns import files_of
@@ -25,6 +26,7 @@ Item = TypeVar("Item")
 R = TypeVar("R")
 
 
+@explained
 @dataclass(frozen=True, repr=False)
 class ManyLogs(Mapping[Path, R], Generic[R]):
     """Results of many files, by path and in order; ``failures`` holds the error of each file that failed."""

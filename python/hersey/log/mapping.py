@@ -266,7 +266,7 @@ def read_with_mapping(
     except (ChannelError, UnitError) as error:
         if chosen.source is None:
             raise
-        raise type(error)(f"{error} (channels and units come from {chosen.source.name})") from None
+        raise error.saying(f"{error.reason} (channels and units come from {chosen.source.name})") from None
     logged = tuple(_as_written(file, chosen) for file in log.files)
     return Corrected(replace(done.log, files=logged, sensors=chosen.sensors), done.corrections)
 

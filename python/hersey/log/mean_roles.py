@@ -10,7 +10,14 @@ import numpy as np
 from hersey.arrays import FloatArray
 from hersey.errors import UnreadableLogError
 from hersey.log.cell_table import CellTable
-from hersey.log.channels import ChannelChoice, called, find_channel, no_channel, role_conversion
+from hersey.log.channels import (
+    ChannelChoice,
+    called,
+    find_channel,
+    no_channel,
+    role_conversion,
+    taken_columns,
+)
 from hersey.log.text.column import Column
 from hersey.units import Conversion
 
@@ -83,12 +90,13 @@ def mean_roles(cells: CellTable, choices: dict[str, ChannelChoice], isothermal: 
         If there is none of torque or speed, or one without a unit.
     """
     usual = measured(cells.columns)
-    roles = {}
+    roles: dict[str, Role] = {}
     for role in ("torque", "speed", "temperature"):
         if role == "temperature" and isothermal:
             continue
         columns = cells.columns if choices[role].name else usual
-        channel = find_channel(role, columns, choices[role], cells.name)
+        taken = taken_columns(role, columns, choices, roles)
+        channel = find_channel(role, columns, choices[role], cells.name, taken=taken)
         if channel is not None:
             roles[role] = channel
         elif role != "temperature":

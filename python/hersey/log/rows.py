@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from hersey.arrays import BoolArray, FloatArray, IntArray
-from hersey.errors import DROP_MISSING, ISOTHERMAL, Setting, UnreadableLogError
+from hersey.errors import DROP_MISSING, ISOTHERMAL, Setting, TimeOrderError, UnreadableLogError
 from hersey.log.slow_channels import LONGEST_INTERVAL, SlowChannel, is_slow
 from hersey.log.torque_log import LogFile, Run
 from hersey.schema.warning import Warning
@@ -57,11 +57,10 @@ class LeftOut:
         how_many = f" (the first of {self.rows} such rows, of {rows})" if self.rows > 1 else ""
         few = f"too few rows remain. {f'{without}. Otherwise n' if without else 'N'}ame another column, or "
         way_out = f"{few}correct the file" if most else _way_out()
-        raise UnreadableLogError(
-            f"{file}, {self.words[0]}{how_many}",
-            remedy=way_out,
-            setting=Setting("time", "channel") if self.out_of_order == self.rows else None,
-        )
+        said = f"{file}, {self.words[0]}{how_many}"
+        if self.out_of_order == self.rows:
+            raise TimeOrderError(said, remedy=way_out, setting=Setting("time", "channel"))
+        raise UnreadableLogError(said, remedy=way_out)
 
     def warnings(self) -> list[Warning]:
         """Return what was left out."""
@@ -127,7 +126,7 @@ def runs_of(
         elif time[row] <= time[starts[-1]] + _START * (time[last] - time[starts[-1]]):
             starts.append(row)
         else:
-            raise UnreadableLogError(
+            raise TimeOrderError(
                 f"{file}, {place(row)}: time runs backwards by {time[last] - time[row]:.6g} s",
                 remedy=(
                     "split the file there, sort its rows, or name the column with the run number with "
@@ -136,7 +135,7 @@ def runs_of(
                 setting=Setting("time", "channel"),
             )
         if len(starts) > _MOST_RUNS:
-            raise UnreadableLogError(
+            raise TimeOrderError(
                 f"{file}: the time column restarts more than {_MOST_RUNS} times, so it is not a clock",
                 remedy="sort the rows by time, or name another column with "
                 f"{Setting('time', 'channel').to()}",

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from typing import Annotated, Literal
 
 from hersey import _core
+from hersey.arguments.frozen import explained
 from hersey.arrays import FloatArray
 from hersey.errors import ParameterError
 from hersey.result import Means
@@ -86,6 +87,7 @@ class LineExponents:
     base_traction: float
 
 
+@explained
 @dataclass(frozen=True, eq=False)
 class LineContactSolution:
     """Pressure, film and friction of a line contact, SI.

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+import re
+from collections.abc import Iterator, Mapping
+from contextlib import suppress
+from typing import Any
 
+from hersey.errors import UnitError
 from hersey.machine.limits import OperatingPoint
 from hersey.schema.warning import Warning
-from hersey.units import celsius
+from hersey.units import celsius, parse
 
 #: Natural frequencies of a belt on its drive, Hz, and the coldest temperature, K, that need no question.
 _SLOWEST, _FASTEST, _COLDEST = 0.5, 500.0, 250.0
@@ -15,6 +19,43 @@ _SLOWEST, _FASTEST, _COLDEST = 0.5, 500.0, 250.0
 _HARD_RUBBER = 3e7
 #: Hardnesses, Shore A, that the formula of the modulus covers.
 _SHORE_A = (20.0, 80.0)
+
+#: A number whose point may stand between thousands, as in German: 1.300 for 1300; and what follows it.
+_THOUSANDS = re.compile(r"\s*([1-9][0-9]{0,2})\.([0-9]{3})(?![0-9.eE])(.*)", re.DOTALL)
+#: Kind and plausible range (SI) of values that are often thousands of their unit, by table and key.
+_PLAUSIBLE = {
+    ("drivetrain", "stiffness"): ("stiffness", 100.0, 1e8),
+    ("limits", "nip_load"): ("force", 10.0, 1e5),
+    ("limits", "speed"): ("belt speed", 0.01, 10.0),
+    ("limits", "acceleration"): ("acceleration", 0.01, 100.0),
+    ("contact", "load"): ("force", 10.0, 1e5),
+}
+
+
+def thousands(document: Mapping[str, Any]) -> Iterator[Warning]:
+    """Yield values of a machine file, as written, that are plausible only if a point separates thousands.
+
+    Three decimals are usual in a measured value, so neither they nor a small value alone are doubted.
+    """
+    for (table, key), (kind, low, high) in _PLAUSIBLE.items():
+        values = document.get(table)
+        text = values.get(key) if isinstance(values, Mapping) else None
+        match = _THOUSANDS.fullmatch(text) if isinstance(text, str) else None
+        if text is None or match is None:
+            continue
+        with suppress(UnitError):
+            value = parse(kind, text)
+            if value < low <= 1e3 * value <= high:
+                yield Warning(
+                    "thousands",
+                    "[{table}] {key} is read as {decimal}, which is unusually small",
+                    severity="watch",
+                    remedy='If the point separates thousands, write {key} = "{whole}"',
+                    table=table,
+                    key=key,
+                    decimal=f"{float(f'{match[1]}.{match[2]}'):g} {match[3].strip()}",
+                    whole=f"{match[1]}{match[2]} {match[3].strip()}",
+                )
 
 
 def doubts(

@@ -25,7 +25,7 @@ from hersey.lubrication.lubricant import Lubricant
 from hersey.lubrication.mixed import MixedContact, mixed_contact
 from hersey.lubrication.mixed_drag import MixedDrag
 from hersey.machine.at_belt import AtBelt
-from hersey.machine.doubts import doubts
+from hersey.machine.doubts import doubts, thousands
 from hersey.machine.duty import GearTable, LifeTable, refuse_other_than_all
 from hersey.machine.heat import HeatTable
 from hersey.machine.limits import Limits, OperatingPoint
@@ -311,7 +311,7 @@ def read_machine(path: str | Path) -> Machine:
         static_friction=None if tables.boundary is None else tables.boundary.static_friction,
         life=tables.life,
     )
-    for doubt in machine.warnings:
+    for doubt in (*thousands(document), *machine.warnings):
         warnings.warn(PlausibilityWarning(f"{printable(path.name)}: {doubt.text}"), stacklevel=2)
     with naming(path.name):
         _ = machine.mixed  # what it lacks is said here, with the file

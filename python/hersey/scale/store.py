@@ -19,6 +19,7 @@ from typing import Any, Protocol
 
 from numpy.typing import NDArray
 
+from hersey.arguments.frozen import explained
 from hersey.errors import OVERWRITE, OutputError, Setting, way_in
 from hersey.files.writing import SUFFIX, refuse_without_folder, unfinished, write_atomically
 from hersey.scale.cutting import Cut
@@ -119,6 +120,7 @@ def sha256_of(scenario: Scenario) -> str:
     return hashlib.sha256(json.dumps(scenario, sort_keys=True).encode()).hexdigest()
 
 
+@explained
 @dataclass(frozen=True)
 class SweepFolder:
     """Folder of a sweep, and how to treat an existing one.

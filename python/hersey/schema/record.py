@@ -1,6 +1,6 @@
 """Records: data classes whose fields say what they mean, so that JSON and its schema follow from them.
 
-Pydantic is loaded only where a schema is asked for.
+Pydantic and NumPy are loaded only where a schema is asked for.
 """
 
 from __future__ import annotations
@@ -15,8 +15,6 @@ from functools import cache, reduce
 from operator import or_
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, NamedTuple, Union, get_args, get_origin
-
-import numpy as np
 
 from hersey.arguments.frozen import explaining
 
@@ -109,7 +107,7 @@ def json_value(value: Any) -> Any:
         return json_value(value._asdict())
     if isinstance(value, list | tuple):
         return [json_value(item) for item in value]
-    if isinstance(value, np.ndarray | np.generic):
+    if hasattr(value, "tolist"):  # an array of NumPy, or a number of it
         return json_value(value.tolist())
     if isinstance(value, BaseException):
         return str(value)
@@ -183,6 +181,8 @@ def declared(record: type, name: str) -> tuple[Any, Means]:
 
 def _plain(kind: Any, means: Means) -> Any:
     """The type by which JSON holds a type of Python."""
+    import numpy as np
+
     origin, inside = get_origin(kind), get_args(kind)
     if origin is Annotated:
         return _plain(inside[0], next((each for each in inside if isinstance(each, Means)), means))
@@ -211,6 +211,8 @@ def _plain(kind: Any, means: Means) -> Any:
 
 def _array(inside: tuple[Any, ...], means: Means) -> Any:
     """Lists as deep as the shape of an array says, or one of its shapes."""
+    import numpy as np
+
     item: Any = _ITEMS[np.dtype(get_args(inside[1])[0]).kind]
     if means.open:
         item |= None

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hersey import _core
+from hersey.arguments.frozen import explained
 from hersey.arrays import FloatArray, numbers_of, together
 from hersey.errors import ParameterError
 from hersey.motion.belt import BeltDrag, Drivetrain, Train, belt_of
@@ -166,6 +167,7 @@ class HysteresisBand(Result):
         )
 
 
+@explained
 @dataclass(frozen=True)
 class CyclesWithoutSticking:
     """Oscillations around steady sliding that never stick; arrays of one shape, speeds in the units given.

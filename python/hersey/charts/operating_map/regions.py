@@ -19,7 +19,7 @@ from hersey.units import celsius
 REGIONS = (
     ("smooth", "smooth", "smooth", "#eef5fb"),
     ("bistable", "depends on start", "depends on start", "#f5cf7f"),
-    ("swing", "depends on start: oscillates from above", "oscillates", "#e08f2d"),
+    ("swing", "depends on start: oscillates when slowed down", "oscillates", "#e08f2d"),
     ("stick_slip", "sticks", "sticks", "#cc6a3d"),
     ("creep", "sticks: slower than the stick speed", "below stick speed", "#a8503a"),
     ("stall", "stall: the roll slips", "stall", "#44444e"),

@@ -9,6 +9,7 @@ models           candidates, comparisons of logs, designs
 campaign         runs of many units at many ages
 cycles           cycles of a trace
 exchange         a unit for other tools
+glossary         terms with their meanings
 posterior        what dwells, starts and stick-slip say together
 study            what a log and its machine tell together
 life             ages at failure

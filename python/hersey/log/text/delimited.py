@@ -22,6 +22,7 @@ from hersey.log.channels import (
     no_channel,
     refuse_two_clocks,
     refuse_two_roles,
+    taken_columns,
 )
 from hersey.log.friction import beside, computed, in_rotation, slow_roles, unused
 from hersey.log.impossible import Impossible, Reading, impossible_rows
@@ -190,7 +191,8 @@ def _channels(
     refuse_two_clocks(layout.named, wanted.stated, name)
     chosen: dict[str, tuple[Column, Conversion]] = {}
     for role in sorted(used, key=lambda r: r != "torque"):  # without it the rest is of no use
-        channel = find_channel(role, layout.named, choices[role], name, dead)
+        taken = taken_columns(role, layout.named, choices, chosen)
+        channel = find_channel(role, layout.named, choices[role], name, dead, taken)
         if channel is None:
             raise no_channel(role, layout.named, name)
         refuse_two_roles(role, channel[0], chosen, name)

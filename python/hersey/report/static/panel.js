@@ -89,7 +89,7 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
     one(place, "stiffness", "Stiffness", "N/mm", 1e3, base.stiffness / 10, base.stiffness * 10);
     const level = hot ? ` at ${digits(known.stick.temperature - 273.15)} °C` : "";
     one(place, "stick_speed", "Stick speed", "mm/s", 1e-3, base.stick_speed / 10, base.stick_speed * 10, { spoken: `Stick speed${level}`, term: "stick speed" });
-    const row = add(place, "div", "", "chosen"), label = add(row, "label", "Belt stops"), select = add(row, "select");
+    const row = add(place, "div", "", "chosen"), label = add(row, "label", "Below it, stops"), select = add(row, "select");
     label.htmlFor = select.id = "try-closure";
     explained(label, "closure");
     const mark = document.createElement("span");
@@ -100,7 +100,7 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
     const further = add(place, "div", "", "further");
     further.id = "further";
     further.hidden = true;
-    const more = button(row, "Mass, spread…", () => {
+    const more = button(row, "Mass, uncertainty…", () => {
       further.hidden = !further.hidden;
       more.setAttribute("aria-expanded", String(!further.hidden));
     });
@@ -108,10 +108,10 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
     more.setAttribute("aria-controls", "further");
     one(further, "mass", "Mass", "kg", 1, base.mass / 10, base.mass * 10);
     const ranges = Object.keys(rangesOf(base));
-    if (ranges.length) one(further, "spread", "Spread", "×", 1, 0.1, 3, { count: 2 });
+    if (ranges.length) one(further, "spread", "Uncertainty", "×", 1, 0.1, 3, { count: 2 });
     const stated = ranges.map((name) => name.replace("_", " ")).join(" and ");
-    add(further, "p", ranges.length ? `Spread 1 is the uncertainty of ${stated} in the machine file (95 %).`
-      : "The machine file states no [uncertainty], so V* has no spread.", "hint");
+    add(further, "p", ranges.length ? `1 × is the uncertainty of ${stated} in the machine file (95 %).`
+      : "The machine file states no [uncertainty], so V* has no interval here.", "hint");
     const told_spread = add(further, "p", "", "hint");
     one(further, "bristle_stiffness", "Bristles", "N/mm", 1e3, base.bristle_stiffness / 100, base.bristle_stiffness * 100);
     one(further, "bristle_damping", "Bristle damping", "N·s/m", 1, base.bristle_damping / 100, base.bristle_damping * 100);
@@ -257,7 +257,7 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
     const ofReport = map.given && !setting.profile && machineKey(setting) === machineKey(base);
     const { zone, signal: kind, words, sub, own } = ofReport ? { ...now, ...reported(setting) } : now;
     const [least, most] = (spread ?? []).map((v) => digits(1e3 * v));
-    controls.spread.textContent = spread ? `With this spread, V* is ${digits(1e3 * found.upper)} [${least}, ${most}] mm/s.` : "\u00a0";
+    controls.spread.textContent = spread ? `With this uncertainty, V* is ${digits(1e3 * found.upper)} [${least}, ${most}] mm/s.` : "\u00a0";
     const far = extrapolated() && !own ? " (extrapolated)" : "";
     verdict.replaceChildren();
     const word = add(verdict, "span", "", `signal ${kind}`);
@@ -310,7 +310,7 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
     const lugre = setting.closure === "lugre";
     for (const each of [made.bristle_stiffness.row, made.bristle_damping.row, bristles]) each.hidden = !lugre;
     const hidden = ["mass", "spread", ...(lugre ? ["bristle_stiffness", "bristle_damping"] : [])].some(differs);
-    more.textContent = `${hidden ? "◆ " : ""}Mass, spread…`;
+    more.textContent = `${hidden ? "◆ " : ""}Mass, uncertainty…`;
     courses.textContent = `${setting.profile ? "◆ " : ""}Profile`;
     courses.setAttribute("aria-pressed", String(Boolean(setting.profile)));
     const name = map.points[point]?.name;

@@ -19,7 +19,7 @@ function traces(place) {
   });
   const [time, plane] = panes;
   const key = add(place, "ul", "", "key");
-  const named = { "from-rest": "from rest", "from-above": "from above", unstable: "sticks outside this loop", drive: "drive" };
+  const named = { "from-rest": "from rest", "from-above": "slowed down", unstable: "sticks outside this loop", drive: "drive" };
   const entries = Object.entries(named).map(([kind, text]) => {
     const item = add(key, "li");
     svg("path", { d: "M1 6h24", class: kind }, svg("svg", { viewBox: "0 0 26 12", "aria-hidden": "true" }, item));

@@ -45,7 +45,7 @@ function verdicts({ map, points, limit, motor, questions }) {
     const { setting, answer, kicked } = now;
     const { cycle, motion, force, law } = answer, radius = map.roll_radius, zone = zoneNow(now);
     const torque = `torque ${torqueText(force * radius)}`;
-    const laps = cycle.frequency > 0 ? `${digits(cycle.frequency)} Hz, at rest ${digits(100 * cycle.stuck_fraction, 2)} %` : "";
+    const laps = cycle.frequency > 0 ? `${digits(cycle.frequency)} Hz, at rest ${digits(100 * cycle.stuck_fraction, 2)} % of the time` : "";
     if (setting.profile) return { zone, ...follows(now) };
     if (!zone.starts) {
       const holds = `starting needs ${torqueText(law.holding_force * radius)}, the ${motor ? "motor" : "grip"} gives ${torqueText(limit * radius)}`;
@@ -60,12 +60,12 @@ function verdicts({ map, points, limit, motor, questions }) {
       case "smooth": return { zone, signal: "good", words: "smooth from any start", sub: [torque, settles(motion, setting)] };
       case "bistable": {
         const kick = kicked ? (kicked.value === null ? "sliding withstands any sudden loss of speed" : `sliding withstands a sudden loss of ${digits(1e3 * kicked.value, 2)} mm/s`) : "";
-        return { zone, signal: "watch", words: "depends on start: sticks from rest, slides from above", sub: [torque, laps, kick] };
+        return { zone, signal: "watch", words: "depends on start: sticks from rest, slides when slowed down", sub: [torque, laps, kick] };
       }
-      case "swing": return { zone, signal: "watch", words: "depends on start: oscillates from above, sticks once it has stuck", sub: [torque, laps] };
+      case "swing": return { zone, signal: "watch", words: "depends on start: oscillates when slowed down, sticks once it has stuck", sub: [torque, laps] };
       default:
         if (setting.speed <= law.stick_speed) return { zone, signal: "act", words: "sticks: slower than the stick speed", sub: [torque] };
-        return { zone, signal: "act", words: "sticks from any start", sub: [laps && `${laps} of the time`, cycle.speed_max > 0 ? `belt peak ${speedText(cycle.speed_max)}` : torque] };
+        return { zone, signal: "act", words: "sticks from any start", sub: [laps, cycle.speed_max > 0 ? `belt peak ${speedText(cycle.speed_max)}` : torque] };
     }
   }
   const [perNewtonMetre, torqueName] = torqueUnit();

@@ -164,7 +164,9 @@ def _slides(edges: Edges) -> str:
 def _below(edges: Edges) -> str:
     turn = edges.transition
     if edges.turns:
-        return f"{between('Below the transition,', turn.value, turn.low, turn.high)}, it sticks."
+        return (
+            f"{between('Below the transition (lowest torque),', turn.value, turn.low, turn.high)}, it sticks."
+        )
     return f"Below {figures(1e3 * edges.sticks_below, up=False)} mm/s it sticks."
 
 
