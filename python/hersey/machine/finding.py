@@ -1,15 +1,18 @@
-"""Machine files in a folder, and what to do where one is missing."""
+"""Machine files in a folder, files that they name, and what to do where one is missing."""
 
 from __future__ import annotations
 
 import shlex
 from contextlib import suppress
 from itertools import islice
-from pathlib import Path
+from pathlib import Path, PureWindowsPath
 
-from hersey.errors import HerseyError, meant, printable, way_in
+from hersey.errors import HerseyError, MissingFileError, meant, printable, way_in
+from hersey.files.endings import could_stand_for
 from hersey.files.reading import missing, slashed
+from hersey.files.text import read_text
 from hersey.files.toml import read_toml
+from hersey.files.toml_lines import as_written
 
 #: Name that ``hersey new`` gives a machine file.
 WRITTEN = "machine.toml"
@@ -53,3 +56,30 @@ def _write(path: Path) -> str:
     own = [] if path == Path(WRITTEN) or path.suffix != ".toml" else ["--machine", printable(str(path))]
     where = "" if way_in() == "terminal" else " in a terminal"
     return f"to write one, type{where}: {shlex.join(['hersey', 'new', 'LOG', *own])}"
+
+
+def named_log(path: Path, table: str, key: str, name: str) -> Path:
+    """Return the log that a key of a machine file names, by its path from the folder of that file.
+
+    Raises
+    ------
+    MissingFileError
+        If there is no such file; it quotes the line, and shows it corrected.
+    """
+    log = path.parent / name
+    if log.is_file():
+        return log
+    line, written = as_written(read_text(path), (table, key))
+    alone = PureWindowsPath(name).name  # whose folders may be parted by either slash
+    there = sorted(each.name for each in path.parent.glob("*") if each.is_file())
+    stems = {Path(each).stem: each for each in there if could_stand_for(each, alone)}
+    near = alone if alone in there else stems.get(meant(Path(alone).stem, stems), "")
+    copied = f"copy {alone} into the folder of {path.name}"
+    if near:
+        remedy = f'write: {key} = "{near}"' if near == alone else f'did you mean {key} = "{near}"?'
+    else:
+        remedy = copied if alone == name else f'{copied} and write: {key} = "{alone}"'
+    raise MissingFileError(
+        f"{path.name}, line {line}: [{table}] {written or key} names a file that does not exist",
+        remedy=remedy,
+    )
