@@ -49,7 +49,8 @@ _SAME = (
 #: Option that prints a result.
 _PRINTS = "--json"
 #: What takes the files of a subcommand.
-_TAKERS = {"fmu": "Simulink, Amesim, Modelica tools and others import an FMU."}
+_FMU = "fmu"
+_TAKERS = {_FMU: "Simulink, Amesim, Modelica tools and others import an FMU."}
 #: Options of which the first names a file to write.
 _WRITING = _SAME[0]
 #: Parts of a name that do not say which option is meant.
@@ -136,7 +137,7 @@ def unknown_subcommand(verb: str, name: str, others: Sequence[str], known: Seque
     if len(known) == 1:
         is_file = bool(Path(name).suffix)
         takers = "" if is_file else f" {_TAKERS[known[0]]}" if known[0] in _TAKERS else ""
-        return f"{said}.{takers} Type: {retyped(verb, known[0], *([name] * is_file), *others)}"
+        return f"{said}.{takers} Type: {retyped(verb, *_of_a_unit([name] * is_file + [*others]))}"
     names = [each for each in (name, *others) if not each.startswith("-")]
     campaigns = [each for each in names if Path(each).suffix.lower() == _CAMPAIGN]
     if any(Path(each).suffix.lower() in LOGS for each in names):
@@ -145,6 +146,14 @@ def unknown_subcommand(verb: str, name: str, others: Sequence[str], known: Seque
     if campaigns:
         return f"{said}. To list the runs type: {retyped(verb, 'list', campaigns[0])}"
     return f"{said}. It has: {', '.join(known)}"
+
+
+def _of_a_unit(words: list[str]) -> list[str]:
+    """The subcommand that exports a unit with these words, so that it runs; else with its help."""
+    from hersey.cli.export import completed
+
+    typed = completed(words) if any(Path(word).suffix.lower() == _MACHINE for word in words) else ["--help"]
+    return [_FMU, *typed]
 
 
 # ---- options
