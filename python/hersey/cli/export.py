@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -17,7 +15,7 @@ from hersey.cli.printing import Printing
 from hersey.cli.progress import working
 from hersey.cli.quantities import target_of, temperature_of
 from hersey.cli.terminal import note
-from hersey.errors import HerseyError, ParameterError
+from hersey.errors import ParameterError
 
 if TYPE_CHECKING:
     from hersey.damping.surface import DampingSurface
@@ -36,8 +34,6 @@ _FMI = "Version of the interface: 3.0, or 2.0 for older tools."
 _DRIVE = "Input that moves the drive: speed or torque."
 _CLOSURE = "Motion below the stick speed: retained, stiction, stribeck or lugre."
 _LIBRARY = "Library built for another platform, e.g. x86_64-windows=win/hersey.dll; repeatable."
-#: Temperature of the examples.
-_EXAMPLE = "180 degC"
 _CLOSING = ("closure", "bristle_stiffness", "bristle_damping")
 _CHECK = "Validate and run the unit with FMPy, and compare it with hersey, before writing."
 export = typer.Typer(
@@ -138,35 +134,6 @@ def fmu(
         printing.files(file.path if kept else None)
     if not kept:
         raise typer.Exit(NOT_FOUND)
-
-
-def completed(words: Sequence[str]) -> list[str]:
-    """Return the words behind ``hersey export fmu`` with the options that it cannot do without."""
-    typed = list(words)
-    at = next((i for i, word in enumerate(typed) if word == "--out" or word.startswith("--out=")), -1)
-    if at < 0:
-        typed += ["--out", "drive.fmu"]
-    elif typed[at] != "--out":
-        typed[at] = f"--out={Path(typed[at].removeprefix('--out=')).with_suffix('.fmu')}"
-    elif at + 1 < len(typed):
-        typed[at + 1] = str(Path(typed[at + 1]).with_suffix(".fmu"))
-    files = [word for word in typed if Path(word).suffix.lower() in (".json", ".toml")]
-    if not any(word.partition("=")[0] == "--temperature" for word in typed) and (warm := _warm(files)):
-        typed += ["--temperature", warm]
-    return typed
-
-
-def _warm(files: Sequence[str]) -> str:
-    """A temperature of the fit among these files, none if it is isothermal; else that of the examples."""
-    from hersey.document.saved_fit import read_fit
-    from hersey.units import celsius
-
-    for file in files:
-        if Path(file).suffix.lower() == ".json":
-            with suppress(HerseyError):
-                known = read_fit(Path(file)).temperature_range
-                return "" if known is None else f"{celsius(known[1]):.0f} degC"
-    return _EXAMPLE
 
 
 def _lines(made: ExportedUnit) -> list[str]:

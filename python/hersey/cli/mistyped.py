@@ -150,7 +150,7 @@ def unknown_subcommand(verb: str, name: str, others: Sequence[str], known: Seque
 
 def _of_a_unit(words: list[str]) -> list[str]:
     """The subcommand that exports a unit with these words, so that it runs; else with its help."""
-    from hersey.cli.export import completed
+    from hersey.cli.completed import completed
 
     typed = completed(words) if any(Path(word).suffix.lower() == _MACHINE for word in words) else ["--help"]
     return [_FMU, *typed]
