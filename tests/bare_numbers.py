@@ -1,4 +1,4 @@
-"""Find numbers without a unit in what a person reads.
+"""Find numbers without a unit in what a person reads, in the terminal and on the page.
 
 A number has a unit if one follows it, its interval or the list that it is part of, or if its table names one.
 `COUNTED`, `NAMES` and `TOPICS` list what has none.
@@ -23,7 +23,7 @@ _MEASURED = re.compile(
 #: What is counted, behind its number.
 COUNTED = re.compile(
     rf"{_NUMBER}(?: (?:of|and) {_NUMBER})* (?:\w+[ -]){{0,2}}(?:draws?|dwells?|rows?|places?|runs?|specimens?"
-    r"|slips?|files?|spikes?|stretch(?:es)?|points?|temperatures?|speeds?|samples?|profiles?|warnings?|more)\b"
+    r"|others|failed|logs?|slips?|files?|spikes?|stretch(?:es)?|points?|temperatures?|speeds?|samples?|profiles?|warnings?|more)\b"
 )
 #: Names that hold a number: equations, specimens, quantiles, files, dates, versions, columns, references.
 NAMES = re.compile(
@@ -38,6 +38,25 @@ TOPICS = re.compile(
     r"|^\s*dwells\s"  # a count, its label in front
 )
 _CELL = re.compile(rf"[\[(]?{_NUMBER}(?:,? [\[(]?{_NUMBER}[\])]?)*[\])]?|-|none|x {_NUMBER}.*")
+
+
+#: Headings of columns whose numbers have no unit, or that of the column before.
+PURE = re.compile(
+    r"exponent|ratio|rows|gaps|stretches|p of|p-value|AICc|sha256|film over flooded film|^run$|^(from|to)$"
+    r"|^± \(1 s\.e\.\)$|^95 % (?:from|interval)$|^(?:Value|Meaning)$",
+    re.IGNORECASE,
+)
+
+
+def bare_columns(rows: list[list[str]]) -> list[str]:
+    """Return the headings of a table, its first row, of columns of numbers whose unit is missing."""
+    heads, *body = rows
+    of_a_unit = re.compile(rf"(?:^|[(, ])\s?{_UNIT}\)?$|\((?:1|as given)\)$")
+    return [
+        head
+        for head, cells in zip(heads, zip(*body, strict=True), strict=True)
+        if any(bare(cell) for cell in cells) and not of_a_unit.search(head) and not PURE.search(head)
+    ]
 
 
 def bare(text: str) -> list[str]:

@@ -168,15 +168,25 @@ def test_columns_of_numbers_or_texts_are_taken() -> None:
         H.stick_slip(TRAIN, DRAG, drive_speed=[1.0, 2.0])
 
 
-def test_a_speed_or_a_temperature_outside_the_log_is_said_once() -> None:
+def test_a_speed_or_a_temperature_outside_the_log_is_said_once(tmp_path: Path) -> None:
     drag = surface().drag(roll_radius=0.015, stick_speed=3e-4)
     fixed: dict[str, Any] = {"temperature": 420.0}
+    one, fmu = drag.at(420.0), tmp_path / "drive.fmu"
+    slow, again = [0.1, 1e-5], {"overwrite": True}
     far: list[tuple[str, Callable[[], object]]] = [
         ("drive_speed is 2.5e", lambda: hersey.stick_slip(MACHINE, surface(), drive_speed=25, **fixed)),
         ("drive_speed is 2.5e", lambda: hersey.stick_slip(TRAIN, drag, drive_speed=25, **fixed)),
         ("drive_speed is 2.5e", lambda: hersey.simulate(TRAIN, drag, drive_speed=25, duration=0.01, **fixed)),
         ("drive_speed is 2.5e", lambda: hersey.disturbance(MACHINE, surface(), drive_speed=25, **fixed)),
         ("temperature is 250 degC", lambda: hersey.hysteresis(MACHINE, surface(), temperature="250 degC")),  # type: ignore[arg-type]
+        ("drive_speed is 2.5e", lambda: hersey.sweep(TRAIN, one, drive_speed=[0.1, 25])),
+        ("drive_speed is 0.01 mm/s", lambda: hersey.sweep(TRAIN, one, drive_speed=slow, mass=[1, 2])),
+        ("temperature is 250 degC", lambda: H.hysteresis_sweep(TRAIN, drag, temperature=[420, 523.15])),
+        ("temperature is 250 degC", lambda: drag.at("250 degC")),  # type: ignore[arg-type]
+        ("drive_speed is 2.5e", lambda: hersey.Stepper(TRAIN, drag, drive_speed=25, **fixed)),
+        ("temperature is 250 degC", lambda: H.Stepper(TRAIN, drag, drive_speed=0.1, temperature="250 degC")),
+        ("drive_speed is 2.5e", lambda: hersey.export_fmu(fmu, TRAIN, drag, drive_speed=25, **fixed)),
+        ("temperature is 250", lambda: H.export_fmu(fmu, TRAIN, drag, temperature="250 degC", **again)),
         ("temperature is outside", lambda: surface().transition_torque(523.0)),
         ("temperature is outside", lambda: surface().stick_speed_at(523.0, stick_speed=3e-4)),
     ]
@@ -188,6 +198,30 @@ def test_a_speed_or_a_temperature_outside_the_log_is_said_once() -> None:
         warnings.simplefilter("error")
         hersey.simulate(MACHINE, surface(), drive_speed=0.1, duration=0.01, **fixed)
         hersey.operating_map(surface(), MACHINE, temperatures=[330.0, 480.0], draws=1)
+        hersey.sweep(TRAIN, one, drive_speed=[0.05, 0.1], stick_speed=[1e-4, 1e-3])
+        hersey.sweep(TRAIN, one, drive_speed=[0.1, 25], transition_force=1.0)  # no longer that of the log
+        hersey.hysteresis_sweep(TRAIN, drag, temperature=[400.0, 420.0])
+        hersey.export_fmu(fmu, TRAIN, drag, overwrite=True, **fixed)  # a drive at rest
+
+
+def test_a_stepper_says_each_time_that_it_leaves_the_range_of_the_log() -> None:
+    drag = surface().drag(roll_radius=0.015, stick_speed=3e-4)
+    stepper = hersey.Stepper(TRAIN, drag, drive_speed=0.1, temperature=420.0)
+    said = []
+    for inputs in (
+        {"drive": 25.0},
+        {"drive": 26.0},
+        {"temperature": 523.15},
+        {"drive": 0.1},
+        {"drive": 25.0},
+    ):
+        with warnings.catch_warnings(record=True) as seen:
+            warnings.simplefilter("always")
+            stepper.set_inputs(**inputs)
+        said.append([(str(each.message).split()[0], Path(each.filename).name) for each in seen])
+    here = Path(__file__).name
+    speed, heat = [("drive_speed", here)], [("temperature", here)]
+    assert said == [speed, [], heat, [], speed]
 
 
 def test_the_range_of_the_log_ends_where_its_dwells_end() -> None:

@@ -246,7 +246,8 @@ def _from_registry(kind: str, text: str, unit: str) -> tuple[float, float]:
     names = " ".join(str(name) for name in parsed._units)
     if kind == "speed" and parsed.dimensionality == {"[time]": -1} and not _ANGLES.search(names):
         raise UnitError(
-            f"unit '{unit}' of a speed could mean revolutions or radians", remedy="write rev/s or rad/s"
+            f"unit '{unit}' of a speed could mean revolutions or radians",
+            remedy="write rev/s or rad/s; for the frequency of an inverter and 2 pole pairs, rev/s/2",
         )
     if parsed.dimensionality != registry.parse_units(si).dimensionality or (
         kind == "torque" and _ENERGIES.search(names)

@@ -268,6 +268,8 @@ def test_a_machine_s_file_names_only_what_was_dropped(asked: Asked) -> None:
         (fault,) = one.faults
         assert fault.at == "toml"
         assert "drop that file here too" in fault.text
+        alone = named.rpartition("/")[2]
+        assert (f"name it {alone} without its folder" in fault.text) == (alone != named)
 
 
 @pytest.mark.parametrize(

@@ -33,7 +33,7 @@ HOT, COOL = 453.15, 403.15
 SENTENCE = {
     "smooth": r"runs? smoothly",
     "depends": r"needs? the start-up profile|(may stick|sticks?) from rest",
-    "unknown": r"needs? the start-up profile|may stick|cannot be judged",
+    "unknown": r"needs? the start-up profile|may not start|may stick|cannot be judged",
     "sticks": r"sticks? from any start",
     "not started": r"(does|do) not start",
     "stalls": r"stalls?",

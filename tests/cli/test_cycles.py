@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import shlex
 import subprocess
 import sys
 import warnings
@@ -135,6 +136,26 @@ def test_a_torque_is_told_in_its_units(tmp_path: Path) -> None:
     assert re.search(r"mass +0\.0005 kg·m\^2 \(given\)", told)
 
 
+@pytest.mark.parametrize(
+    ("heading", "typed", "meant"),
+    [
+        ("time [s],torque [mN*m]", "200 mm/s", 0.2 / 0.015),
+        ("time [s],force [N]", "3 rpm", 3 * 2 * np.pi / 60 * 0.015),
+        ("time [s],force [1]", "3 rpm", 3 * 2 * np.pi / 60 * 0.015),
+    ],
+)
+def test_the_speed_of_a_belt_for_that_of_a_roll_comes_with_the_option_to_type(
+    heading: str, typed: str, meant: float, tmp_path: Path
+) -> None:
+    path = numbers_of(heading, tmp_path)
+    refused = run("cycles", path, "--drive-speed", typed, cwd=tmp_path)
+    assert (refused.returncode, refused.stdout) == (2, "")
+    assert refused.stderr.count("--drive-speed") == 2  # what was typed, and what to type
+    option = shlex.split(refused.stderr.rpartition("type ")[2])
+    document = json.loads(printed(path, *option, "--json"))
+    assert document["drive_speed"] == pytest.approx(meant, rel=5e-3)
+
+
 def test_a_channel_of_the_drive_speed(tmp_path: Path) -> None:
     path = tmp_path / "pull.csv"
     rows = [f"{0.01 * i:.2f},{i % 50 / 5},{20 + (i % 2)}" for i in range(600)]
@@ -159,7 +180,10 @@ def test_a_mistake_ends_in_one_line(tmp_path: Path) -> None:
     ("arguments", "message"),
     [
         (["--drive-speed", "0 mm/s"], "must be greater than 0"),
-        (["--drive-speed", "3 rpm"], "--drive-speed with a trace of force in N"),
+        (
+            ["--drive-speed", "3 rpm"],
+            "is the speed of a roll, but a trace of force in N needs the speed of the belt",
+        ),
         (["--known", "mass=1 kg"], "--known needs --identify"),
         (["--identify"], "--drive-speed '20 mm/s'"),
         (["--identify", "--known", "weight=1 kg"], "write NAME=VALUE with one of stiffness, mass"),

@@ -61,7 +61,10 @@ def test_an_option_of_other_commands_is_omitted_with_its_value(tmp_path: Path) -
         ("plan a.csv --machine m.toml --target '60 mm/s'", "plan m.toml a.csv --target '60 mm/s'"),
         ("plan --machine=m.toml a.csv", "plan m.toml a.csv"),
         ("export fmu --fit f.json m.toml --out x.fmu", "export fmu f.json m.toml --out x.fmu"),
-        ("export f.json m.toml --out x.fmu", "export fmu f.json m.toml --out x.fmu"),
+        (
+            "export f.json m.toml --out x.fmu",
+            "export fmu f.json m.toml --out x.fmu --temperature '180 degC'",
+        ),
         ("report --log a.csv --tare standing", "report --tare standing a.csv"),
         ("--machine m.toml report a.csv", "report --machine m.toml a.csv"),
         ("--machine m.toml a.csv", "report --machine m.toml a.csv"),
@@ -76,7 +79,11 @@ def test_an_option_of_other_commands_is_omitted_with_its_value(tmp_path: Path) -
         ("inspect m.toml a.csv", "inspect a.csv"),
         ("sweep s.toml m.toml", "sweep s.toml --machine m.toml"),
         ("compare a.csv b.csv c.csv", "fit a.csv b.csv c.csv --each fits.csv"),
-        ("export simulink f.json m.toml", "export fmu f.json m.toml"),
+        (
+            "export simulink f.json m.toml",
+            "export fmu f.json m.toml --out drive.fmu --temperature '180 degC'",
+        ),
+        ("export simulink", "export fmu --help"),
         ("life c.hersey m.toml", "life c.hersey --machine m.toml"),
         ("campaign a.csv --unit F1", "campaign add life.hersey a.csv --unit F1"),
         ("campaign l.hersey a.csv --unit F1", "campaign add l.hersey a.csv --unit F1"),
@@ -120,7 +127,8 @@ def test_what_is_missing_is_named_with_its_help(typed: str, name: str, tmp_path:
     parameters = load(typed.split()[0]).params
     known = next(each for each in parameters if name.split()[0] in (*each.opts, each.metavar))
     assert f"{name} needs a value: " in done.stderr or f" needs {name}: " in done.stderr
-    assert done.stderr.rstrip().endswith(known.help.rstrip("."))
+    written = ". To write one, type: hersey new LOG" if typed == "plan" else ""
+    assert done.stderr.rstrip().endswith(f"{known.help.rstrip('.')}{written}")
 
 
 def drive(tmp_path: Path, *header: str, torque: float = 0.2) -> None:
@@ -268,3 +276,39 @@ def test_verbose_prints_the_conclusion_once(verb: str, tmp_path: Path) -> None:
     first = usual.splitlines()[0]
     assert first not in whole
     assert whole.count("Assumed, as not given") == 1
+
+
+@pytest.mark.parametrize("typed", ["film a.csv", "map a.csv", "plan a.csv --target '60 mm/s'", "film"])
+def test_where_there_is_no_machine_file_the_line_that_writes_one_is_named(typed: str, tmp_path: Path) -> None:
+    (tmp_path / "a.csv").write_text(staircase(1))
+    refused = run(*shlex.split(typed), cwd=tmp_path)
+    assert refused.returncode == 2
+    assert "machine.toml" not in refused.stderr
+    line = shlex.split(refused.stderr.rpartition("type: ")[2].replace("LOG", "a.csv"))
+    assert line == ["hersey", "new", "a.csv"]
+    answers = ["", "", "", "", "", "", "", "", "11 N/mm", "11 kg", "15 mm", "3 mm/s", ""]
+    written = run(*line[1:], cwd=tmp_path, answers="\n".join([*answers, *[""] * 12, ""]))
+    assert written.returncode == 0, written.stderr
+    assert (tmp_path / "machine.toml").is_file()
+    (tmp_path / "machine.toml").rename(
+        tmp_path / "drive.toml"
+    )  # beside the mapping, which is no machine file
+    again = run(*shlex.split(typed), cwd=tmp_path)
+    assert "hersey new" not in again.stderr
+    assert "a.csv" not in typed or f"Type: hersey {typed.split()[0]} drive.toml " in again.stderr
+
+
+def test_a_file_of_another_kind_is_not_proposed(tmp_path: Path) -> None:
+    for name in ("joined.html", "hersey.toml", "a.csv", "machin.csv"):
+        (tmp_path / name).write_text("1,2\n" if name.endswith("csv") else "")
+    refused = run("report", "a.csv", "--machine", "machine.toml", cwd=tmp_path)
+    assert refused.stderr.endswith("File not found: machine.toml. To write one, type: hersey new LOG\n")
+    refused = run("report", "a.csv", "--machine", "my drives/m.toml", cwd=tmp_path)
+    assert refused.stderr.endswith("type: hersey new LOG --machine 'my drives/m.toml'\n")
+    (tmp_path / "machin.toml").write_text("[drivetrain]\n")
+    refused = run("report", "a.csv", "--machine", "machine.toml", cwd=tmp_path)
+    assert refused.stderr.endswith(" Did you mean 'machin.toml'?\n")
+    for name in ("bench.html", "bench.tdms"):
+        (tmp_path / name).write_text("")
+    refused = run("report", "benh.csv", cwd=tmp_path)
+    assert refused.stderr.endswith(" Did you mean 'bench.tdms'?\n")

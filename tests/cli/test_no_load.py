@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -76,6 +77,25 @@ def test_a_log_of_the_machine_is_found_beside_it(folder: Path) -> None:
     assert stated is not None
     assert stated.source == "[rest] of machine.toml"
     assert [each.kind for each in stated.warnings] == ["counts as exact"]
+
+
+@pytest.mark.parametrize("name", [r"C:\data\idle.csv", "/data/idle.csv", "logs/idle.csv", "idle.csv"])
+def test_a_log_that_does_not_exist_is_copied_beside_the_machine_file(folder: Path, name: str) -> None:
+    file = folder / "with-log.toml"
+    file.write_text(MACHINE + f"\n[rest]\nlog = '{name}'  # of the drive\n")
+    line = file.read_text().splitlines().index("[rest]") + 2
+    refused = run("report", "log.csv", "--machine", file.name, cwd=folder)
+    assert f"with-log.toml, line {line}: [rest] log = '{name}' names a file" in refused.stderr
+    copied = "Copy idle.csv into the folder of with-log.toml"
+    assert refused.stderr.count(copied) == 1
+    (folder / "free.csv").rename(folder / "idle.csv")
+    if name != "idle.csv":
+        written = re.search(rf'{copied} and write: (log = "idle.csv")\n', refused.stderr)
+        assert written
+        refused = run("report", "log.csv", "--machine", file.name, cwd=folder)  # copied, and not yet written
+        assert refused.stderr.endswith(f" Write: {written[1]}\n")
+        file.write_text(file.read_text().replace(f"log = '{name}'", written[1]))
+    assert read_machine(file).rest is not None
 
 
 @pytest.mark.usefixtures("roughly")

@@ -180,6 +180,7 @@ def test_a_start_is_as_sure_as_the_force_that_it_takes(
     assert (said.points[0].verdict, said.points[0].signal) == (kind, signal)
     if kind == "unknown":
         assert said.points[0].words.startswith("may not start (38 %) or may stick (under 1 %): starting")
+        assert said.instruction.endswith(" may not start.")
         assert said.flags[0].title == "The motor may not start the belt"
 
 

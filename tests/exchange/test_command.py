@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import shlex
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -99,6 +100,26 @@ def test_options_are_heard(options: list[str], typed: Typed) -> None:
     starts = {row["name"]: row["start"] for row in told["variables"]}
     assert ("bristle_stiffness" in starts) == ("lugre" in options)
     assert starts["temperature"] == pytest.approx(423.15)
+
+
+@pytest.mark.parametrize("options", [["--out", "drive.slx"], ["--out=x.mo", "--fmi", "2.0"], []])
+@pytest.mark.parametrize("fit", [["fit.json"], []])
+def test_the_line_proposed_for_another_format_writes_a_unit(
+    fit: list[str], options: list[str], folder: Path, tmp_path: Path
+) -> None:
+    machine = folder / "machine.toml" if fit else ROOT / "examples" / "machine.toml"
+    files = [*(folder / each for each in fit), machine]
+    refused = run("export", "simulink", *files, *options, cwd=tmp_path)
+    assert refused.returncode == 2
+    line = shlex.split(refused.stderr.rpartition("Type: ")[2])
+    done = run(*line[1:], cwd=tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert validate_fmu(str(next(tmp_path.glob("*.fmu")))) == []
+
+
+def test_the_line_proposed_for_an_isothermal_fit_has_no_temperature(folder: Path, tmp_path: Path) -> None:
+    files = (folder / "isothermal.json", folder / "machine.toml")
+    assert "--temperature" not in run("export", "simulink", *files, cwd=tmp_path).stderr
 
 
 @pytest.mark.parametrize("fmi", ["3.0", "2.0"])

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import ast
+import re
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +11,7 @@ import polars as pl
 import pytest
 
 import hersey
-from hersey.errors import ChannelError
+from hersey.errors import ChannelError, HerseyError
 from hersey.log.doubtful import doubtful_units
 
 STEPS = np.repeat([20.0, 60.0, 180.0, 400.0], 100)
@@ -60,3 +62,40 @@ def test_which_unit_of_temperature_would_be_likely(low: float, high: float, unit
     (warning,) = doubtful_units(hersey.read(pl.DataFrame(table)))
     assert warning.kind == "unit of temperature doubtful"
     assert [unit for unit in ("K", "degF", "degC") if f"'{unit}'" in warning.text] == units
+
+
+def in_hertz(name: str, unit: str) -> pl.DataFrame:
+    """A log of a motor of two pole pairs, whose inverter recorded its frequency."""
+    time = np.arange(STEPS.size) * 0.1
+    heat = np.full(STEPS.size, 90.0)
+    return pl.DataFrame(
+        {"Time [s]": time, "Torque [N*m]": TORQUE, f"{name} [{unit}]": SPEED / 30, "T [degC]": heat}
+    )
+
+
+@pytest.mark.parametrize(
+    ("name", "unit", "given"),
+    [("Output frequency", "Hz", "channels"), ("Frequency", "rev/s", "channels"), ("Drive speed", "Hz", "")],
+)
+def test_the_frequency_of_an_inverter_is_met_with_the_pole_pairs(name: str, unit: str, given: str) -> None:
+    table = in_hertz(name, unit)
+    with pytest.raises(HerseyError) as refused:
+        hersey.read(table)
+    typed = {
+        key: ast.literal_eval(each)
+        for key, each in re.findall(
+            r"(channels|units)=(\{.*?\})", str(refused.value).partition("inverter")[2]
+        )
+    }
+    assert ("channels" in typed) == bool(given)
+    log = hersey.read(table, **typed)
+    assert log.runs[0].speed == pytest.approx(SPEED * 2 * np.pi / 60, rel=1e-9)
+    assert doubtful_units(log) == []
+
+
+@pytest.mark.parametrize(("unit", "said"), [("rev/s", 1), ("rev/s/2", 0), ("rev/s/1", 0), ("rpm", 0)])
+def test_a_frequency_read_as_revolutions_is_doubted(unit: str, said: int) -> None:
+    log = hersey.read(in_hertz("frequency", "Hz"), channels={"speed": "frequency"}, units={"speed": unit})
+    assert [each.kind for each in doubtful_units(log)] == ["pole pairs doubtful"] * said
+    named = hersey.read(in_hertz("Drive speed", "Hz"), units={"speed": unit})
+    assert doubtful_units(named) == []

@@ -119,7 +119,7 @@ def test_starts_of_one_page(tmp_path: Path) -> None:
         (
             "duty.csv",
             "other.csv",
-            "[gear] names the log other.csv, but there is no such file beside the machine file",
+            '[gear] duty = "other.csv" names a file that does not exist. Copy other.csv into the folder of m',
         ),
         ('"40 %"', '"30 %"', "points: the shares add up to 90 %, but must add up to 100 %"),
         (

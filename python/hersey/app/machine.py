@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Mapping, Sequence
-from pathlib import Path
+from pathlib import Path, PureWindowsPath
 from tempfile import TemporaryDirectory
 from typing import Any
 
@@ -181,7 +181,9 @@ def _named(document: Mapping[str, Any]) -> dict[str, str]:
 
 def _lay(named: str, folder: Path, dropped: Mapping[str, Path], what: str) -> None:
     if named not in dropped:
-        raise HerseyError(f"{what} {named}: drop that file here too")
+        alone = PureWindowsPath(named).name  # whose folders may be parted by either slash
+        name_only = "" if alone == named else f"name it {alone} without its folder, and "
+        raise HerseyError(f"{what} {named}: {name_only}drop that file here too")
     beside = folder / named
     if named in (MACHINE_FILE, MAPPING_FILE) or (beside.exists() and not beside.is_symlink()):
         raise HerseyError(f"{what} {named}, a name that is taken here: give the log another")

@@ -6,7 +6,7 @@ import altair as alt
 import numpy as np
 
 from hersey.charts.growth import age_axis
-from hersey.charts.style import BLUE, INK, WIDTH, Chart, plot, rows_of, tip
+from hersey.charts.style import BLUE, INK, WIDTH, Chart, age_tip, plot, rows_of, tip
 from hersey.errors import capital
 from hersey.life.drift.quantities import Quantity
 from hersey.life.drift.result import Drift
@@ -44,7 +44,7 @@ def _panel(drift: Drift, quantity: Quantity, chosen: list[int]) -> Chart:
     low, middle, high = scale * quantity.band
     seen = np.isfinite(middle) & np.isfinite(low) & np.isfinite(high)
     band = plot(rows_of(age=drift.ages[seen], value=middle[seen], low=low[seen], high=high[seen]))
-    tips = [tip("age", "age"), tip("value", quantity.name)]
+    tips = [age_tip(drift.age_unit), tip("value", f"{quantity.name} ({unit})")]
     units = [alt.Tooltip("unit:N"), *tips]
     area, line = band.mark_area(color=BLUE, opacity=0.18), band.mark_line(color=BLUE, strokeWidth=2.5)
     layers = [

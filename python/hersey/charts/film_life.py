@@ -14,6 +14,7 @@ from hersey.charts.style import (
     WIDTH,
     Chart,
     Row,
+    age_tip,
     categories,
     level,
     plot,
@@ -75,7 +76,7 @@ def _over_flooded(film: FilmLife, ages: BoolArray, names: list[str]) -> Chart:
     legend = alt.Legend(title=None, orient="bottom-left", columns=4, symbolOpacity=1)
     looks = dict(zip(names, ramp(len(names)), strict=True))
     colour = categories(alt.Color, "unit", looks, legend if len(names) <= _NAMED else None)
-    tips = [alt.Tooltip("unit:N"), tip("age", "age"), tip("value", "film over flooded film")]
+    tips = [alt.Tooltip("unit:N"), age_tip(film.runs.age_unit), tip("value", "film over flooded film")]
     band, line = plot(rows).mark_area(opacity=0.08, clip=True), plot(rows).mark_line(strokeWidth=2, clip=True)
     runs = plot(_runs(film, read, most=1.0))
     bars, points = runs.mark_rule(strokeWidth=1, clip=True), runs.mark_point(filled=True, **_POINT, size=40)
@@ -129,7 +130,7 @@ def _layer(film: FilmLife, ages: BoolArray, name: str, k: int, most: float, *, f
     x = _age(film, ages, ticks=3)
     scale = alt.Scale(domain=[0.0, most], nice=False)
     y = alt.Y("value:Q", title="Layer (µm)" if first else None, scale=scale)
-    tips = [tip("age", "age"), tip("value", "layer (µm)"), tip("need", "flooded film (µm)")]
+    tips = [age_tip(film.runs.age_unit), tip("value", "layer (µm)"), tip("need", "flooded film (µm)")]
     chart = plot(rows)
     seen = plot(_runs(film, film.layer, most=most, unit=name, factor=1.0 / _MICRO))
     return alt.layer(

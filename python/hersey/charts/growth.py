@@ -8,7 +8,20 @@ from typing import NamedTuple
 import altair as alt
 import numpy as np
 
-from hersey.charts.style import BLUE, DIAMOND, HEIGHT, INK, ORANGE, WIDTH, Chart, Row, plot, rows_of, tip
+from hersey.charts.style import (
+    BLUE,
+    DIAMOND,
+    HEIGHT,
+    INK,
+    ORANGE,
+    WIDTH,
+    Chart,
+    Row,
+    age_tip,
+    plot,
+    rows_of,
+    tip,
+)
 from hersey.errors import capital
 from hersey.life.growth.fit import Growth
 from hersey.life.growth.limit_ages import AgeAtLimit, AgesAtLimit
@@ -62,12 +75,14 @@ def growth_chart(growth: Growth, *, ages: AgesAtLimit | None = None, si: str = "
         ends = {name: np.minimum(getattr(curves, name)[i], 10.0 * top) for name in ("low", "median", "high")}
         band = rows_of(age=at, **ends)
         title = _values(growth, si, short=count > 1) if i % columns == 0 else None
-        layers = _curve(growth, band, rows_of(age=runs[i][0], value=runs[i][1]), axes, title)
+        seen = rows_of(age=runs[i][0], value=runs[i][1])
+        layers = _curve(growth, band, seen, axes, title, _unit(si))
         if line is not None:
             rule = plot([{"value": line}]).mark_rule(color=INK, strokeDash=[4, 3])
             layers.append(rule.encode(y=alt.Y("value:Q", title=title)))
         if unit in by_unit:
-            layers += _age(by_unit[unit], line if line is not None else top / _FREE, axes, title)
+            reached, height = by_unit[unit], line if line is not None else top / _FREE
+            layers += _age(reached, height, axes, title, growth.age_unit)
         name = alt.Title(unit, fontSize=12)
         panels.append(alt.layer(*layers, title=name, width=axes.width, height=axes.height))
     rows = [alt.hconcat(*panels[i : i + columns], spacing=12) for i in range(0, count, columns)]
@@ -77,9 +92,13 @@ def growth_chart(growth: Growth, *, ages: AgesAtLimit | None = None, si: str = "
 
 def _values(growth: Growth, si: str, *, short: bool) -> str:
     """The title of the axis of values."""
-    unit = si.replace(" ", "·")
     name = "Value" if short else capital(growth.quantity)
-    return f"{name} ({unit or 'as given'})"
+    return f"{name} ({_unit(si)})"
+
+
+def _unit(si: str) -> str:
+    """The unit of the values, as it is shown."""
+    return si.replace(" ", "·") or "as given"
 
 
 def axis_end(last: float, medians: list[float]) -> float:
@@ -97,26 +116,29 @@ def age_axis(field: str, age_unit: str, scale: alt.Scale, count: int = 8) -> alt
 
 
 def _curve(
-    growth: Growth, band: list[Row], runs: list[Row], axes: _Axes, title: str | None
+    growth: Growth, band: list[Row], runs: list[Row], axes: _Axes, title: str | None, unit: str
 ) -> list[alt.Chart]:
     x = age_axis("age", growth.age_unit, axes.age, 8 if axes.height == HEIGHT else 3)
     axis = alt.Axis(format=".3~g", tickCount=5)
     low, median, value = (
         alt.Y(f"{name}:Q", title=title, scale=axes.value, axis=axis) for name in ("low", "median", "value")
     )
-    tips = [tip("age", "age"), tip("median", "median"), tip("low", "from"), tip("high", "to")]
+    age = age_tip(growth.age_unit)
+    tips = [age, tip("median", f"median ({unit})"), tip("low", "from"), tip("high", "to")]
     area = plot(band).mark_area(color=BLUE, opacity=0.18, clip=True).encode(x=x, y=low, y2="high:Q")
     line = plot(band).mark_line(color=BLUE, strokeWidth=2, clip=True)
     points = plot(runs).mark_point(color=INK, filled=True, opacity=1, size=28)
-    seen = [tip("age", "age"), tip("value", "run")]
+    seen = [age, tip("value", f"run ({unit})")]
     return [area, line.encode(x=x, y=median, tooltip=tips), points.encode(x=x, y=value, tooltip=seen)]
 
 
-def _age(reached: AgeAtLimit, height: float, axes: _Axes, title: str | None) -> list[alt.Chart]:
+def _age(
+    reached: AgeAtLimit, height: float, axes: _Axes, title: str | None, age_unit: str
+) -> list[alt.Chart]:
     """The interval of the age, as far as it lies within the axis, and its median."""
     span = {"low": reached.age.low, "high": min(reached.age.high, axes.end), "value": height}
     mark = {**span, "age": reached.age.value}
-    tips = [tip("age", "age at the limit"), tip("low", "from"), tip("high", "to")]
+    tips = [age_tip(age_unit, "age at the limit"), tip("low", "from"), tip("high", "to")]
     y = alt.Y("value:Q", scale=axes.value, title=title)
     layers = []
     if reached.age.low < axes.end:
@@ -155,7 +177,8 @@ def ages_chart(ages: AgesAtLimit) -> Chart:
         for each in shown
     ]
     base = plot(rows).encode(y=alt.Y("unit:N", title=None, sort=[each.unit for each in shown]))
-    tips = ["unit:N", tip("age", "age"), tip("low", "from"), tip("high", "to"), tip("last", "last seen")]
+    age, last_seen = age_tip(ages.age_unit), tip("last", f"last seen ({ages.age_unit or 'as given'})")
+    tips = ["unit:N", age, tip("low", "from"), tip("high", "to"), last_seen]
     spans = base.mark_rule(color=BLUE, strokeWidth=2)
     points = base.mark_point(color=BLUE, filled=True, opacity=1, size=70, clip=True)
     ticks = base.mark_tick(color=INK, thickness=2, size=14)

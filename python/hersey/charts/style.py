@@ -216,3 +216,8 @@ def zoom() -> alt.Parameter:
 def tip(field: str, title: str) -> alt.Tooltip:
     """Return a number of a tooltip, to four digits."""
     return alt.Tooltip(f"{field}:Q", title=title, format=".4~g")
+
+
+def age_tip(age_unit: str, name: str = "age") -> alt.Tooltip:
+    """Return the age of a tooltip, with its unit."""
+    return tip("age", f"{name} ({age_unit or 'as given'})")

@@ -7,7 +7,20 @@ import math
 import altair as alt
 
 from hersey.charts.growth import age_axis, axis_end
-from hersey.charts.style import BLUE, INK, SHAPES, WIDTH, Chart, Row, categories, plot, ramp, rows_of, tip
+from hersey.charts.style import (
+    BLUE,
+    INK,
+    SHAPES,
+    WIDTH,
+    Chart,
+    Row,
+    age_tip,
+    categories,
+    plot,
+    ramp,
+    rows_of,
+    tip,
+)
 from hersey.charts.weibull import not_failed
 from hersey.life.time_to_failure.estimate import TimeToFailure
 
@@ -60,7 +73,7 @@ def _units(found: TimeToFailure, order: list[str], end: float, scale: alt.Scale)
     shapes = [SHAPES[i % len(SHAPES)] for i in range(len(names))]
     colour = categories(alt.Color, "way", dict(zip(names, ramp(len(names)), strict=True)), legend)
     shape = categories(alt.Shape, "way", dict(zip(names, shapes, strict=True)), legend)
-    tips = ["unit:N", "way:N", tip("age", "age"), tip("low", "from"), tip("to", "to")]
+    tips = ["unit:N", "way:N", age_tip(found.age_unit), tip("low", "from"), tip("to", "to")]
     marks = {"x": age_axis("age", found.age_unit, scale), "color": colour, "shape": shape, "tooltip": tips}
     base = plot(_rows(found, named, order, end)).encode(y=y, yOffset=apart)
     spans, low = base.mark_rule(strokeWidth=2, clip=True), age_axis("low", found.age_unit, scale)
@@ -109,7 +122,7 @@ def _share(found: TimeToFailure, scale: alt.Scale) -> Chart:
     shares = alt.Scale(domain=[0, 100])
     y = alt.Y("median:Q", title="Share failed (%)", scale=shares)
     x = age_axis("age", unit, scale)
-    tips = [tip("age", "age"), tip("median", "share failed (%)"), tip("low", "from"), tip("high", "to")]
+    tips = [age_tip(unit), tip("median", "share failed (%)"), tip("low", "from"), tip("high", "to")]
     band = plot(rows).mark_area(color=BLUE, opacity=0.18, clip=True)
     layers: list[alt.Chart] = [
         band.encode(x=x, y=alt.Y("low:Q", title="Share failed (%)", scale=shares), y2="high:Q"),
@@ -121,10 +134,10 @@ def _share(found: TimeToFailure, scale: alt.Scale) -> Chart:
         points = plot(rows_of(age=ages, share=100 * ranks))
         dots = points.mark_point(color=INK, filled=True, opacity=1, size=50)
         at = alt.Y("share:Q", title="Share failed (%)", scale=shares)
-        layers.append(dots.encode(x=x, y=at, tooltip=[tip("age", "age"), tip("share", "median rank (%)")]))
+        layers.append(dots.encode(x=x, y=at, tooltip=[age_tip(unit), tip("share", "median rank (%)")]))
     others = population.ages[~population.failed]
     if others.size:
-        layers.append(not_failed(others, x, _SHARES))
+        layers.append(not_failed(others, unit, x, _SHARES))
     words = (
         "line and band: prediction for new specimens, 90 %; points: failures at median ranks; "
         "ticks: still running"

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from hersey.arrays import FloatArray
-from hersey.charts.style import BLUE, HEIGHT, INK, WIDTH, Chart, plot, rows_of, tip
+from hersey.charts.style import BLUE, HEIGHT, INK, WIDTH, Chart, age_tip, plot, rows_of, tip
 from hersey.life.population import Population
 
 #: Shares named on the axis; the first and the last end it.
@@ -33,7 +33,7 @@ def weibull_chart(population: Population) -> Chart:
     layers = [*_law(population, x, y), _failures(population, x, y)]
     others = population.ages[~population.failed]
     if others.size:
-        layers.append(not_failed(others, x, HEIGHT))
+        layers.append(not_failed(others, population.unit, x, HEIGHT))
     title = alt.Title("Weibull plot", subtitle=_heading(population))
     return alt.layer(*layers, title=title, width=WIDTH, height=HEIGHT)
 
@@ -81,7 +81,7 @@ def _law(population: Population, x: alt.X, y: alt.Y) -> list[alt.Chart]:
     chart = plot(rows)
     band = chart.mark_area(orient="horizontal", color=BLUE, opacity=0.15, clip=True)
     line = chart.mark_line(color=BLUE, strokeWidth=2, clip=True)
-    tips = [tip("share", "share failed (%)"), tip("age", "age"), tip("low", "from"), tip("high", "to")]
+    tips = [tip("share", "share failed (%)"), age_tip(population.unit), tip("low", "from"), tip("high", "to")]
     return [
         band.encode(x=_ages_axis(population, "low:Q"), x2="high:Q", y=y),
         line.encode(x=x, y=y, order=alt.Order("place:Q"), tooltip=tips),
@@ -92,12 +92,14 @@ def _failures(population: Population, x: alt.X, y: alt.Y) -> alt.Chart:
     ages, shares = population.median_ranks
     points = plot(rows_of(age=ages, place=_place(shares), share=100 * shares))
     mark = points.mark_point(color=INK, filled=True, opacity=1, size=60, clip=True)
-    chart: alt.Chart = mark.encode(x=x, y=y, tooltip=[tip("age", "age"), tip("share", "median rank (%)")])
+    chart: alt.Chart = mark.encode(
+        x=x, y=y, tooltip=[age_tip(population.unit), tip("share", "median rank (%)")]
+    )
     return chart
 
 
-def not_failed(ages: FloatArray, x: alt.X, height: float) -> alt.Chart:
+def not_failed(ages: FloatArray, unit: str, x: alt.X, height: float) -> alt.Chart:
     """Return the specimens that have not failed, as ticks on the axis of ages of a chart of this height."""
     ticks: alt.Chart = plot(rows_of(age=ages)).mark_rule(color=INK, strokeWidth=2)
     ends = {"y": alt.value(height - 14), "y2": alt.value(height)}
-    return ticks.encode(x=x, tooltip=[tip("age", "age")], **ends)
+    return ticks.encode(x=x, tooltip=[age_tip(unit)], **ends)

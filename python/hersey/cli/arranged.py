@@ -7,8 +7,9 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from hersey.cli.mistyped import LOGS, options_of, path_of, retyped
+from hersey.cli.mistyped import machine_here, options_of, path_of, retyped, writing_machine
 from hersey.errors import HerseyError
+from hersey.files.endings import LOGS
 
 _TOML = ".toml"
 #: Arguments that name a log, and arguments that name a TOML file.
@@ -34,8 +35,12 @@ def refuse_disorder(context: Any, words: Sequence[str]) -> None:
         wrong = files and (files[0] in logs or (context.args and "log" in options_of(command)))
         if wrong and len(tomls) <= 1:
             placed = logs if len(slots) > 1 else [word for log in logs for word in ("--log", log)]
-            machine = tomls[0] if tomls else "machine.toml"
+            machine = tomls[0] if tomls else machine_here()
             which = "The machine file comes first" if files[0] in logs else "A log needs --log"
+            if not machine:
+                context.fail(
+                    f"{which}, but this folder has none. To write one, type: {writing_machine(logs[0])}"
+                )
             context.fail(f"{which}. Type: {retyped(*verb, machine, *placed, *others)}")
     elif slots and slots[0] in _OF_LOGS and tomls:
         context.fail(_without(tomls[0], [each for each in files if each != tomls[0]], others, command, verb))

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hersey.cli.groups import argument, grouped, option
-from hersey.cli.mistyped import LOGS, retyped
+from hersey.cli.mistyped import retyped
 from hersey.cli.options import Force, KeepGoing, Reading, SensorsFile
 from hersey.cli.outputs import NOT_FOUND, may_write
 from hersey.cli.printing import Printing, Quiet
@@ -20,6 +20,7 @@ from hersey.cli.progress import bar, working
 from hersey.cli.terminal import note, say
 from hersey.cli.workers import Crew
 from hersey.errors import HerseyError, OutputError, ParameterError
+from hersey.files.endings import LOGS
 from hersey.files.tables import TABLES
 
 if TYPE_CHECKING:

@@ -48,6 +48,8 @@ _CLOSURES = "Closures to compare; stribeck can be added but takes minutes."
 _RUN = "Use only this run, counted from 1, of a file whose time restarts."
 _TRACE = "Trace of force, torque or speed, in any log format."
 _UNIT = "Unit of that column, e.g. 'N'; 1 if the force is relative to the weight."
+#: Radius of a roll by which one speed is turned into the other as an example, m.
+_RADIUS = 0.015
 #: Units in which numbers are printed, and how many make one in SI, by the unit in SI.
 _SHOWN = {"m/s": ("mm/s", 1e3), "N/m": ("N/mm", 1e-3)}
 #: Kinds of what is derived from the parameters of a drive, which are those of some parameter.
@@ -262,12 +264,33 @@ def _turns(given: TraceFile) -> bool:
 def _drive_speed(text: str, given: TraceFile) -> float | None:
     if not text:
         return None
+    wanted, other = ("speed", "belt speed") if _turns(given) else ("belt speed", "speed")
     try:
-        return belt_speed_of(text, "--drive-speed", "speed" if _turns(given) else "belt speed")
+        return belt_speed_of(text, "--drive-speed", wanted)
     except WrongKindError as error:
-        raise WrongKindError(
-            f"--drive-speed with a trace of {given.quantity} in {given.unit}: {error}"
-        ) from None
+        try:
+            speed = belt_speed_of(text, "--drive-speed", other)
+        except WrongKindError:
+            raise error from None
+        raise _other_speed(text, speed, given) from None
+
+
+def _other_speed(text: str, speed: float, given: TraceFile) -> WrongKindError:
+    """Say that the speed of a belt was given for that of a roll, or the other way round, and what to type."""
+    from hersey.identification.trace_file import RELATIVE
+    from hersey.units import rpm
+
+    trace = given.quantity if given.unit == RELATIVE else f"{given.quantity} in {given.unit}"
+    if _turns(given):
+        is_of, needed, by = "a belt", "a roll", "divide it by"
+        typed = f"{rpm(speed / _RADIUS):.3g} rpm"
+    else:
+        is_of, needed, by = "a roll", "the belt", "multiply it by"
+        typed = f"{1e3 * speed * _RADIUS:.3g} mm/s"
+    return WrongKindError(
+        f"--drive-speed '{text}' is the speed of {is_of}, but a trace of {trace} needs the speed of {needed}",
+        remedy=f"{by} the radius of the roll, e.g. at {1e3 * _RADIUS:g} mm type --drive-speed '{typed}'",
+    )
 
 
 def _least_drop(text: str, given: TraceFile) -> float | None:

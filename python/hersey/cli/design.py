@@ -51,9 +51,7 @@ def design(
         raise ParameterError("--trace needs the machine file: add --machine TOML")
 
     if quantity.strip().lower() in _SAFE_SPEED:
-        raise ParameterError(
-            f"{quantity} depends on the machine too: replace --quantity by --machine machine.toml"
-        )
+        raise ParameterError(f"{quantity} depends on the machine too: replace --quantity by --machine TOML")
 
     from hersey.damping.candidates import compare_models
     from hersey.damping.design import design as designed

@@ -11,36 +11,14 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from hersey.errors import meant
+from hersey.files.endings import LOGS
 
-#: Endings of names that are probably those of logs.
-LOGS = frozenset(
-    [
-        ".csv",
-        ".txt",
-        ".tsv",
-        ".dat",
-        ".log",
-        ".lvm",
-        ".tdms",
-        ".mf4",
-        ".mdf",
-        ".mat",
-        ".h5",
-        ".hdf5",
-        ".parquet",
-        ".xlsx",
-        ".xlsm",
-        ".xls",
-        ".npz",
-        ".npy",
-    ]
-)
 #: Ending of a machine file, and of a campaign.
 _MACHINE, _CAMPAIGN = ".toml", ".hersey"
 #: What to type for a file that is not a log, by its ending.
 _OTHER_FILES = {
     _MACHINE: ("report", "LOG", "--machine", "{}"),
-    _CAMPAIGN: ("life", "{}", "--machine", "machine.toml"),
+    _CAMPAIGN: ("life", "{}", "--machine", "TOML"),
 }
 #: Options that mean the same in different commands, and words for them; the first that a command has is
 #: proposed.
@@ -71,7 +49,8 @@ _SAME = (
 #: Option that prints a result.
 _PRINTS = "--json"
 #: What takes the files of a subcommand.
-_TAKERS = {"fmu": "Simulink, Amesim, Modelica tools and others import an FMU."}
+_FMU = "fmu"
+_TAKERS = {_FMU: "Simulink, Amesim, Modelica tools and others import an FMU."}
 #: Options of which the first names a file to write.
 _WRITING = _SAME[0]
 #: Parts of a name that do not say which option is meant.
@@ -105,6 +84,21 @@ def retyped(*words: str) -> str:
     return shlex.join(["hersey", *words])
 
 
+def machine_here() -> str:
+    """Return the machine file in this folder, of several ``machine.toml`` or the first; empty if none."""
+    from hersey.machine.finding import WRITTEN, machine_files
+
+    there = machine_files(Path())
+    return WRITTEN if WRITTEN in there else next(iter(there), "")
+
+
+def writing_machine(log: str = "LOG") -> str:
+    """Return the line that writes a machine file, and the mapping of the log unless there is one."""
+    from hersey.log.mapping import FILE_NAME
+
+    return retyped("new", *([] if Path(log).with_name(FILE_NAME).exists() else [log]))
+
+
 # ---- commands
 
 
@@ -119,6 +113,7 @@ def unknown_command(name: str, others: Sequence[str], commands: Commands) -> str
             what = "a file, not a command" if path.is_file() else "not a command"
             words = _OTHER_FILES.get(path.suffix.lower(), ("report", "{}"))
             typed = [name if word == "{}" else word for word in words]
+            typed = [(machine_here() or word) if word == "TOML" else word for word in typed]
             return f"'{name}' is {what}. For a report type: {retyped(*typed, *others)}"
     near = meant(name, commands.names)
     if near:
@@ -142,7 +137,7 @@ def unknown_subcommand(verb: str, name: str, others: Sequence[str], known: Seque
     if len(known) == 1:
         is_file = bool(Path(name).suffix)
         takers = "" if is_file else f" {_TAKERS[known[0]]}" if known[0] in _TAKERS else ""
-        return f"{said}.{takers} Type: {retyped(verb, known[0], *([name] * is_file), *others)}"
+        return f"{said}.{takers} Type: {retyped(verb, *_of_a_unit([name] * is_file + [*others]))}"
     names = [each for each in (name, *others) if not each.startswith("-")]
     campaigns = [each for each in names if Path(each).suffix.lower() == _CAMPAIGN]
     if any(Path(each).suffix.lower() in LOGS for each in names):
@@ -151,6 +146,14 @@ def unknown_subcommand(verb: str, name: str, others: Sequence[str], known: Seque
     if campaigns:
         return f"{said}. To list the runs type: {retyped(verb, 'list', campaigns[0])}"
     return f"{said}. It has: {', '.join(known)}"
+
+
+def _of_a_unit(words: list[str]) -> list[str]:
+    """The subcommand that exports a unit with these words, so that it runs; else with its help."""
+    from hersey.cli.completed import completed
+
+    typed = completed(words) if any(Path(word).suffix.lower() == _MACHINE for word in words) else ["--help"]
+    return [_FMU, *typed]
 
 
 # ---- options
@@ -298,6 +301,8 @@ def missing(parameter: Any, context: Any) -> str:
     if "--machine" in parameter.opts and len(tomls) == 1:
         rest = [each for each in words if each not in tomls]
         return f"{said}. Type: {retyped(*rest, '--machine', *tomls)}"
+    if parameter.metavar == "MACHINE" and not machine_here():
+        return f"{said}. To write one, type: {writing_machine()}"
     return said
 
 
@@ -332,7 +337,8 @@ def _parameters(words: Sequence[str], commands: Commands) -> dict[str, Any]:
 
 
 def _help(parameter: Any) -> str:
-    return (parameter.help or "").partition("  \\[")[0].rstrip(".")
+    words = (parameter.help or "").partition("  \\[")[0].rstrip(".")
+    return words.replace("\\[", "[")  # as the markup of help texts has a bracket
 
 
 def unquoted(words: Sequence[str]) -> str:

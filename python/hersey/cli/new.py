@@ -44,7 +44,9 @@ def new(
     """
     if mapping is not None and log is None:
         raise ParameterError("--mapping needs a LOG, whose channels it describes")
-    machine = machine or Path("machine.toml")
+    from hersey.machine.finding import WRITTEN
+
+    machine = machine or Path(WRITTEN)
     inputs = [log] if log else []
     outputs = [may_write(machine, force, inputs, flag="--machine", ends=[".toml"])]
     if log is not None:

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
+from typing import Any, cast
 
 from hersey import _core
 from hersey.arguments.door import Words
@@ -25,7 +25,7 @@ from hersey.exchange.variables import Variable, variables_of
 from hersey.files.writing import write_atomically
 from hersey.lubrication.mixed_drag import MixedDrag
 from hersey.motion.belt import Drivetrain
-from hersey.motion.drag import AnyDrag, Wire
+from hersey.motion.drag import AnyDrag, PowersOfTemperature, Wire
 from hersey.motion.simulation import TOLERANCE, simulate
 from hersey.result import json_record
 from hersey.units import celsius, rpm, takes_si
@@ -175,6 +175,9 @@ def export_fmu(
     """
     _refuse(out, name, drive, port, fmi, roll_radius)
     given = {"drive_speed": drive_speed, "drive_torque": drive_torque, "temperature": temperature}
+    if isinstance(drag, PowersOfTemperature):
+        speed = drive_speed if drive == "speed" else None
+        drag = cast("AnyDrag", drag.warned(temperature, stacklevel=3, drive_speed=speed))
     _try(train, drag, drive, given, start, roll_radius, tolerance)
     values = _values(train, drag, drive, port, given, start, roll_radius, tolerance)
     values |= _measured(drag, fitted, roll_radius)

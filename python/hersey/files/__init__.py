@@ -2,6 +2,7 @@
 
 ==========  =================================================================
 patterns    the files that names and patterns stand for
+endings     what a file probably is, by the ending of its name
 reading     a file that may change while it is read
 text        opening a text file, and values of it in messages
 tables      tables as files, of which a spreadsheet runs no text

@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO
 
 from hersey.errors import HerseyError, MissingFileError, UnreadableLogError, meant, printable, way_in
+from hersey.files.endings import LOGS, could_stand_for
 
 if TYPE_CHECKING:
     from hersey.schema.warning import Warning
@@ -24,8 +25,6 @@ if TYPE_CHECKING:
 _ESCAPES = {"\a": r"\a", "\b": r"\b", "\f": r"\f", "\n": r"\n", "\r": r"\r", "\t": r"\t", "\v": r"\v"}
 _WAY_OUT = "Wait until the logger has closed it, or copy it first"
 _CHUNK = 1 << 20
-#: Endings of files of which one is named where a folder was given.
-_OF_A_LOG = frozenset((".csv", ".txt", ".tsv", ".dat", ".xlsx", ".lvm", ".tdms", ".mf4", ".mat", ".parquet"))
 #: Coarsest step of the times that a file system keeps, ns.
 _STEP = 2_000_000_000
 
@@ -194,26 +193,27 @@ def _as_typed(char: str) -> str:
 
 def _near(path: Path) -> str:
     """The file beside a missing one that was probably meant, or nothing."""
-    if slashed := _slashed(path):
-        return f"write / between folders: '{printable(slashed)}'"
+    if found := slashed(path):
+        return f"write / between folders: '{printable(found)}'"
     try:
-        near = meant(path.name, [each.name for each in path.parent.iterdir() if each.is_file()])
+        files = [each.name for each in path.parent.iterdir() if each.is_file()]
+        near = meant(path.name, [name for name in files if could_stand_for(name, path.name)])
     except (OSError, ValueError):
         return ""
     return f"did you mean '{printable(str(path.with_name(near)))}'?" if near else ""
 
 
-def _slashed(path: Path) -> str:
-    r"""The file that was meant by a name with ``\`` between folders, which a shell may have removed."""
+def slashed(path: Path) -> str:
+    r"""Return the file meant by a name with ``\`` between folders, which a shell may have removed."""
     name = str(path)
     if "\\" in name:
-        return slashed if os.path.isfile(slashed := name.replace("\\", "/")) else ""  # noqa: PTH113
+        return written if os.path.isfile(written := name.replace("\\", "/")) else ""  # noqa: PTH113
     try:
         folders = [
             each for each in path.parent.iterdir() if path.name.startswith(each.name) and each.is_dir()
         ]
         inside = [each / path.name.removeprefix(each.name) for each in folders]
-        return next((str(file) if file.is_file() else _slashed(file) for file in inside), "")
+        return next((str(file) if file.is_file() else slashed(file) for file in inside), "")
     except (OSError, ValueError):
         return ""
 
@@ -221,7 +221,7 @@ def _slashed(path: Path) -> str:
 def _one_in(folder: Path) -> str:
     """A file in a folder as an example: the first by name that could be a log, or nothing."""
     try:
-        files = sorted(each for each in folder.iterdir() if each.is_file() and each.suffix in _OF_A_LOG)
+        files = sorted(each for each in folder.iterdir() if each.is_file() and each.suffix.lower() in LOGS)
     except OSError:
         return ""
     return f", e.g. '{printable(str(files[0]))}'" if files else ""

@@ -64,6 +64,12 @@ def line_of(text: str, place: tuple[str | int, ...]) -> int:
     return found
 
 
+def as_written(text: str, place: tuple[str | int, ...]) -> tuple[int, str]:
+    """Return the line (from 1) that states a place, and its text without a comment; else 0 and none."""
+    line = line_of(text, place)
+    return line, _without_comment(text.split("\n")[line - 1]).strip() if line else ""
+
+
 def place_of(text: str, error: ValueError) -> int:
     """Return the line (from 1) of an error of the parser; the last one where the document ends too early."""
     line = getattr(error, "lineno", None)

@@ -70,6 +70,9 @@ _FRICTION = {
 }
 #: What has the unit of a speed of rotation and is none.
 _OSCILLATION = re.compile(r"frequen[cz]|oscillat|oszillat", re.IGNORECASE)
+#: Words of a name of a frequency, and what to do with that of an inverter.
+_FREQUENCY = re.compile(r"fr[eé]q", re.IGNORECASE)
+_INVERTER = "If it is the frequency of an inverter, divide by the pole pairs of the motor, e.g. for 2 use"
 #: As many numbers, all the same, make a dead channel.
 _TELLING = 20
 #: A clock of a part of a run, beside which that of the whole run counts.
@@ -202,6 +205,11 @@ def is_called(role: str, column: Column) -> bool:
     return _is_named(_NAMES[role], column)
 
 
+def is_frequency(name: str) -> bool:
+    """Return whether the name of a column says that it holds a frequency."""
+    return len(name) <= _LONGEST_NAME and _FREQUENCY.search(name) is not None
+
+
 def is_dead(values: FloatArray) -> bool:
     """Return whether a channel says nothing: no number (NaN stands for a missing one), or one throughout."""
     known = values[np.isfinite(values)]
@@ -249,6 +257,13 @@ def no_channel(role: str, columns: tuple[Column, ...], file: str) -> ChannelErro
     elif role == "time":
         way_out += f", or give the time between rows with {EVERY.to('2 ms', python='0.002')}"
         way_out += f". If each row is the mean of one dwell, use {MEANS.to()}"
+    elif role == "speed" and (of := next((c for c in columns if _may_be_of_an_inverter(c)), None)):
+        between = " " if way_in() == "terminal" else " and "
+        named = f"{channel.to(of.path)}{between}{Setting(role, 'unit').to('rev/s/2')}"
+        way_out += (
+            f". If '{of.path}' is the frequency of an inverter, divide by the pole pairs of the motor, e.g. "
+            f"for 2 use {named}"
+        )
     if role == "temperature":
         way_out += f", or use {ISOTHERMAL.to()} to exclude temperature"
     said = f"{file}: no {role} column found. Columns: {_listed(columns)}"
@@ -261,6 +276,10 @@ def _signals(role: str, columns: tuple[Column, ...]) -> list[Column]:
         if found := [c for c in columns if signal_kind(c.unit) == kind]:
             return found
     return []
+
+
+def _may_be_of_an_inverter(column: Column) -> bool:
+    return column.unit == "Hz" or (is_frequency(column.name) and is_of_kind("speed", column.unit))
 
 
 def refuse_two_roles(role: str, column: Column, chosen: Mapping[str, tuple[Column, Any]], file: str) -> None:
@@ -484,6 +503,7 @@ def _right_unit(role: str, unit: str) -> str:
     if is_signal(unit) and role != "time":
         return way_out(role, unit)
     if role == "speed" and unit.strip() in ("Hz", "1/s"):
-        return f"if it means revolutions, use {setting.to('rev/s')}"
+        turns = f"if it means revolutions, use {setting.to('rev/s')}"
+        return f"{turns}. {_INVERTER} {setting.to('rev/s/2')}" if unit.strip() == "Hz" else turns
     kind = ROLE_KINDS[role][0]
     return f"use {setting.to(nearest_unit(kind, unit) or KINDS[kind][1])}, or correct the header"

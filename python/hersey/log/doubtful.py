@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.errors import Setting
 from hersey.log.believed import as_written, in_si
+from hersey.log.channels import is_frequency, is_of_kind
 from hersey.log.means import MeansTable
-from hersey.log.torque_log import TorqueLog
+from hersey.log.torque_log import Channel, TorqueLog
 from hersey.schema.warning import Warning
 from hersey.units import celsius, conversion
 
@@ -16,6 +19,8 @@ from hersey.units import celsius, conversion
 RARE, TOO_HOT = 10.0, 320.0
 #: No drive is colder, and one that starts cold starts between these, degC.
 TOO_COLD, ROOM = -60.0, (5.0, 40.0)
+#: One revolution per second, rad/s.
+_TURN = conversion("speed", "rev/s").scale
 #: Share of the temperatures that is looked at: a spike of the sensor is no unit.
 _MOST = 0.99
 
@@ -33,6 +38,19 @@ def doubtful_units(log: TorqueLog | MeansTable) -> list[Warning]:
                 remedy="if it counts milliseconds, use {how:ms}",
                 interval=min(steps),
                 how=Setting("time", "unit"),
+            )
+        )
+    electrical = next((c.name for c in log.files[0].channels if _may_be_electrical(c)), "")
+    if electrical:
+        out.append(
+            Warning(
+                "pole pairs doubtful",
+                "'{channel}' is a frequency, read as revolutions per second; that of an inverter is higher, "
+                "by the pole pairs of the motor",
+                severity="watch",
+                remedy="divide its unit by them, e.g. for 2 use {how:rev/s/2}; for 1 use {how:rev/s/1}",
+                channel=electrical,
+                how=Setting("speed", "unit"),
             )
         )
     temperatures = _temperatures(log)
@@ -57,6 +75,13 @@ def doubtful_units(log: TorqueLog | MeansTable) -> list[Warning]:
             )
         )
     return out
+
+
+def _may_be_electrical(channel: Channel) -> bool:
+    """Whether a speed is called a frequency, and read in revolutions that no number divides."""
+    if channel.role != "speed" or not is_frequency(channel.name) or re.search(r"/\s*\d", channel.unit):
+        return False
+    return is_of_kind("speed", channel.unit) and conversion("speed", channel.unit).scale == _TURN
 
 
 def _likely_units(log: TorqueLog | MeansTable, coldest: float, hottest: float) -> list[str]:

@@ -2,6 +2,7 @@
 
 ===================  ==============================================================
 machine              `Machine` and the file as a whole
+finding              machine files in a folder, and what to do where one is missing
 limits               what the machine can bear; operating points
 motor                what a motion asks of the motor
 nip                  the tables of contact and lubricant

@@ -11,9 +11,10 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, ValidationInfo
 from pydantic.dataclasses import dataclass
 
-from hersey.errors import MissingFileError, ParameterError
+from hersey.errors import ParameterError
 from hersey.files.text import shown
 from hersey.files.toml import Quantity, Share, Table, Text
+from hersey.machine.finding import named_log
 from hersey.machine.limits import OperatingPoint
 
 _Torque = Annotated[float, Quantity("torque", 1e-6, 1e6, "20 N*m")]
@@ -129,12 +130,7 @@ class GearTable(Table):
             raise ParameterError(f"cold_starts are {100 * self.cold_starts:g} %, but must not exceed 100 %")
         if self.duty is None:
             return self
-        log = path.parent / self.duty
-        if not log.is_file():
-            raise MissingFileError(
-                f"{path.name}: [gear] names the log {self.duty}, but there is no such file beside the "
-                "machine file"
-            )
+        log = named_log(path, "gear", "duty", self.duty)
         return replace(self, duty=str(log.absolute()))
 
 

@@ -27,6 +27,7 @@ from hersey.lubrication.mixed_drag import MixedDrag
 from hersey.machine.at_belt import AtBelt
 from hersey.machine.doubts import doubts, thousands
 from hersey.machine.duty import GearTable, LifeTable, refuse_other_than_all
+from hersey.machine.finding import refuse_missing
 from hersey.machine.heat import HeatTable
 from hersey.machine.limits import Limits, OperatingPoint
 from hersey.machine.nip import ContactTable, LubricantTable
@@ -279,6 +280,7 @@ def read_machine(path: str | Path) -> Machine:
         Each names the file and the key.
     """
     path = Path(path)
+    refuse_missing(path)
     document = read_toml(path, _MachineFile)
     if "drivetrain" not in document:
         _refuse_another(path, document)

@@ -13,9 +13,10 @@ from pydantic.dataclasses import dataclass
 from hersey.damping.no_load import no_load_torque
 from hersey.damping.no_load_torque import NoLoadTorque
 from hersey.damping.recipe import Recipe
-from hersey.errors import HerseyError, MissingFileError, ParameterError, meant
+from hersey.errors import HerseyError, ParameterError
 from hersey.files.text import shown
 from hersey.files.toml import Quantity, Share, Table, Text
+from hersey.machine.finding import named_log
 
 _SLOPE = re.compile(r"([-+]?[0-9]+(?:\.[0-9]*)?)\s*%\s*/\s*(?:K|kelvin|degC|°C)")
 #: No drive changes so much in a kelvin.
@@ -83,15 +84,7 @@ class RestTable(Table):
         )
 
     def _of_log(self, path: Path) -> NoLoadTorque:
-        named = path.parent / str(self.log)
-        if not named.is_file():
-            near = meant(named.name, [each.name for each in named.parent.glob("*") if each.is_file()])
-            remedy = f'did you mean log = "{near}"?' if near and named.parent == path.parent else ""
-            raise MissingFileError(
-                f"{path.name}: [rest] names the log {self.log}, but there is no such file beside the "
-                "machine file",
-                remedy=remedy or "copy it there, or write its path: log = '...'",
-            )
+        named = named_log(path, "rest", "log", str(self.log))
         try:
             return no_load_torque(Recipe(logs=(named,), tare=self.tare or "none").points())
         except HerseyError as error:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Annotated, Any, Protocol, TypeAlias, TypeVar, cast
 
 import numpy as np
@@ -117,7 +117,6 @@ def belt_of(
 
 def _warned(drag: AnyDrag, temperature: Any, speeds: dict[str, Any]) -> AnyDrag:
     """Warn of what is outside the log of a drag, and return it without its range."""
-    if not isinstance(drag, PowersOfTemperature) or drag.measured is None:
+    if not isinstance(drag, PowersOfTemperature):
         return drag
-    drag.measured.warn(temperature, {n: v for n, v in speeds.items() if v is not None}, stacklevel=5)
-    return replace(drag, measured=None)
+    return cast("AnyDrag", drag.warned(temperature, stacklevel=5, **speeds))

@@ -140,34 +140,43 @@ class MeasuredRange:
     speed: tuple[float, float]
     temperature: tuple[float, float] | None = None
 
-    def warn(self, temperature: Any, speeds: Mapping[str, Any], stacklevel: int) -> None:
-        """Warn of speeds and temperatures outside; of a schedule, its highest speed and its temperatures."""
+    def outside(self, temperature: Any, speeds: Mapping[str, Any]) -> dict[str, str]:
+        """Return words by name about each speed and temperature outside; of a schedule its highest speed."""
+        found = {}
         for name, value in speeds.items():
-            high = float(np.max(getattr(value, "values", value)))
-            below = not hasattr(value, "values") and 0 < high < self.speed[0] * (1.0 - _GRAZED)
-            if below or high > self.speed[1] * (1.0 + _GRAZED):
+            given = np.asarray(getattr(value, "values", value), dtype=float)
+            high = float(np.max(given, initial=0.0))
+            moving = given[given > 0.0]
+            slow = float(moving.min()) if moving.size and not hasattr(value, "values") else self.speed[0]
+            if high > self.speed[1] * (1.0 + _GRAZED) or slow < self.speed[0] * (1.0 - _GRAZED):
+                beyond = high if high > self.speed[1] * (1.0 + _GRAZED) else slow
                 low, top = (f"{1e3 * each:.4g}" for each in self.speed)
-                _warn_extrapolated(name, f"{1e3 * high:.4g} mm/s", f"{low} to {top} mm/s", stacklevel + 1)
+                found[name] = _extrapolated(name, f"{1e3 * beyond:.4g} mm/s", f"{low} to {top} mm/s")
         film = getattr(temperature, "film_temperature", temperature)
         if self.temperature is None or film is None:
-            return
+            return found
         kelvin = np.asarray(getattr(film, "values", film), dtype=float)
         cold, hot = self.temperature[0] * (1.0 - _GRAZED), self.temperature[1] * (1.0 + _GRAZED)
-        if kelvin.min() < cold or kelvin.max() > hot:
-            outside = kelvin.min() if kelvin.min() < cold else kelvin.max()
+        if kelvin.size and (kelvin.min() < cold or kelvin.max() > hot):
+            beyond = float(kelvin.min() if kelvin.min() < cold else kelvin.max())
             low, top = (f"{celsius(each):.4g}" for each in self.temperature)
-            _warn_extrapolated(
-                "temperature", f"{celsius(outside):.4g} degC", f"{low} to {top} degC", stacklevel + 1
+            found["temperature"] = _extrapolated(
+                "temperature", f"{celsius(beyond):.4g} degC", f"{low} to {top} degC"
             )
+        return found
+
+    def warn(self, temperature: Any, speeds: Mapping[str, Any], stacklevel: int) -> None:
+        """Warn of speeds and temperatures outside."""
+        for text in self.outside(temperature, speeds).values():
+            warnings.warn(text, ExtrapolationWarning, stacklevel=stacklevel + 1)
 
 
 #: Share by which values may be outside the range of the log without a warning.
 _GRAZED = 1e-3
 
 
-def _warn_extrapolated(name: str, value: str, measured: str, stacklevel: int) -> None:
-    text = f"{name} is {value}, outside the measured range, {measured}, so the result is extrapolated"
-    warnings.warn(text, ExtrapolationWarning, stacklevel=stacklevel + 1)
+def _extrapolated(name: str, value: str, measured: str) -> str:
+    return f"{name} is {value}, outside the measured range, {measured}, so the result is extrapolated"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -202,10 +211,15 @@ class PowersOfTemperature(BesideShape):
 
     @takes_si(temperature="temperature")
     def at(self, temperature: float | None) -> Self:
-        """Return the law at one temperature, K, as one that does not vary; itself if it does not vary."""
+        """Return the law at one temperature, K, as one that does not vary; itself if it does not vary.
+
+        Warns with `ExtrapolationWarning` outside the temperatures of the log.
+        """
         law = self.law_at(temperature)
         if temperature is None or self.reference_temperature is None:
             return self
+        if self.measured is not None:
+            self.measured.warn(temperature, {}, stacklevel=3)
         ratio = (temperature - self.temperature_zero) / (self.reference_temperature - self.temperature_zero)
         force, speed = (
             ratio**power for power in (self.force_temperature_exponent, self.speed_temperature_exponent)
@@ -222,6 +236,21 @@ class PowersOfTemperature(BesideShape):
             speed_temperature_exponent=0.0,
             temperature_zero=0.0,
         )
+
+    def warned(self, temperature: Any, stacklevel: int, **speeds: Any) -> Self:
+        """Warn of what is outside the log, and return the law without its range, which warns no more.
+
+        ``speeds`` (m/s) have the names of arguments; what is None is not given.
+        """
+        if self.measured is None:
+            return self
+        given = {name: value for name, value in speeds.items() if value is not None}
+        self.measured.warn(temperature, given, stacklevel + 1)
+        return self.unwarned()
+
+    def unwarned(self) -> Self:
+        """Return the law without the range of its log, so that nothing warns."""
+        return self if self.measured is None else replace(self, measured=None)
 
     def _scaled(self, force: float, speed: float) -> dict[str, Any]:
         """What of the shape is a force or a speed, times a factor each."""

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from hersey import _core
-from hersey.errors import ParameterError
+from hersey.errors import ExtrapolationWarning, ParameterError
 from hersey.motion.belt import Drivetrain
 from hersey.motion.drag import AnyDrag
 from hersey.motion.parameters import MOST_STEPS, whole
@@ -110,6 +111,7 @@ class Stepper:
         state = start_state(train, drag.law(), Schedule.of(drive), course, start, is_torque=is_torque)
         given = _Given(train, drag, is_torque, drive, warm, state, float(tolerance), most_steps)
         self._take(given)
+        self._warn(drive, warm)
 
     def _take(self, given: _Given) -> None:
         self._given = given
@@ -122,6 +124,20 @@ class Stepper:
             given.start,
             given.tolerance,
         )
+        self._outside: frozenset[str] = frozenset()
+
+    def _warn(self, drive: float | None, temperature: float | None) -> None:
+        """Warn where drive speed or temperature leave the range of the log; what is None stays as it is."""
+        measured = getattr(self._given.drag, "measured", None)
+        if measured is None:
+            return
+        speeds = {} if drive is None or self._given.is_torque else {"drive_speed": drive}
+        found = measured.outside(temperature, speeds)
+        for name, text in found.items():
+            if name not in self._outside:
+                warnings.warn(text, ExtrapolationWarning, stacklevel=4)
+        given = {*speeds, *(() if temperature is None else ("temperature",))}
+        self._outside = frozenset((self._outside - given) | found.keys())
 
     @property
     def state(self) -> StepperState:
@@ -160,7 +176,8 @@ class Stepper:
     ) -> Event | None:
         """Set drive and temperature from now on, and return the immediate change of mode, if any.
 
-        Inputs that are not given continue unchanged; giving the current value changes nothing.
+        Warns with `ExtrapolationWarning` each time that one of them leaves the range of the log. Inputs
+        that are not given continue unchanged; giving the current value changes nothing.
 
         Parameters
         ----------
@@ -192,6 +209,7 @@ class Stepper:
             if warm is None
             else _course("temperature", warm - given.drag.temperature_zero, temperature_rate),
         )
+        self._warn(None if drive is None else _number("drive", drive), warm)
         return _event(event)
 
     def save(self) -> tuple[float, ...]:

@@ -30,6 +30,10 @@ if TYPE_CHECKING:
     from hersey.scale.store import SweepFolder
 
 
+#: Parameters of a drag that a log shows: with others it is no longer that of the log.
+_OF_THE_LAW = frozenset(["transition_force", "transition_speed", "ehl_exponent", "mixed_exponent"])
+
+
 @takes_si(duration="time", **{name: kind for name, kind in KINDS.items() if kind is not None})
 def sweep(
     train: Drivetrain,
@@ -107,6 +111,8 @@ def sweep(
         tolerance=work.within(TOLERANCE),
         most_steps=work.most_steps,
     )
+    if not _OF_THE_LAW & {name for name, values in varied.items() if values is not None}:
+        drag.warned(None, stacklevel=3, drive_speed=sets.given["drive_speed"])
     if out is not None:
         from hersey.motion.checkpoint import checkpointed
 

@@ -306,7 +306,7 @@ def cycles_without_sticking(
     """
     if not isinstance(drag, Drag) or drag.closure == "lugre":
         raise ParameterError("cycles without sticking need a Drag, and its closure must not be 'lugre'")
-    law = drag.at(temperature)
+    law = drag.warned(temperature, stacklevel=3).at(temperature)
     low, high = law.stick_speed, law.transition_speed
     speeds = np.geomspace(low, 0.999 * high, 201) if slowest is None else numbers_of("slowest", slowest)
     if not bool(np.all((speeds >= low) & (speeds < high))):

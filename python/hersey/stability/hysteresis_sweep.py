@@ -99,6 +99,8 @@ def hysteresis_sweep(
     import xarray as xr
 
     refuse_unknown("hysteresis_sweep", varied, OF_THE_BELT, HELD)
+    _check(drag, varied, temperature)
+    drag = drag.warned(temperature, stacklevel=3)
     swept = sweep_bands(train, drag, varied, temperature=temperature, zip=zip, lower=lower, work=work)
     return xr.Dataset(
         {name: (swept.axes, values) for name, values in swept.columns.items()},
@@ -181,7 +183,7 @@ def _check(drag: Drag, varied: Mapping[str, ArrayLike | None], temperature: Arra
 def _at_temperatures(drag: Drag, temperatures: FloatArray) -> dict[str, FloatArray]:
     """The parameters that vary with temperature, at each."""
     values, place = np.unique(temperatures, return_inverse=True)
-    laws = [drag.at(float(t)) for t in values]
+    laws = [drag.unwarned().at(float(t)) for t in values]
     beside = tuple(name for name in BESIDE if getattr(drag, name))
     names = ("transition_force", "transition_speed", "stick_speed", *beside)
     place = place.reshape(temperatures.shape)

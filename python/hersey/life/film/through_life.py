@@ -107,7 +107,7 @@ class FilmLife(Result):
                 for each, film, point in zip(self.film, self.thickness, self.points, strict=True)
             )
             name, age = self.runs.unit[i], self.runs.age[i]
-            lines.append(f"  {name} at {age:.6g}: {films}; layer {_shown(self.layer, i, 1e6)} um")
+            lines.append(f"  {name} at {age:.6g} {unit}: {films}; layer {_shown(self.layer, i, 1e6)} um")
         lines += [f"  {point}" for point in self.points]
         for point, ages in zip(self.points, self.starves, strict=True):
             lines.append(

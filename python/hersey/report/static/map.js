@@ -259,7 +259,7 @@ function operatingMap(place, map, move = null) {
     const value = (v) => (Number.isFinite(v) ? digits(millimetres(v)) : Number.isNaN(v) ? "not computed" : "never");
     const range = (i, low, high) => `${value(intervals[low][i])} to ${value(intervals[high][i])}`;
     const known = map.torque_limit !== null;
-    const heads = ["Sticks below (mm/s)", "Transition", "95 % as reported", "Smooth above V*", "95 % as reported", known ? "Stall from" : "Stall"];
+    const heads = ["Sticks below", "Transition", "95 % as reported", "Smooth above V*", "95 % as reported", known ? "Stall from" : "Stall"].map((head, i) => (i < 5 || known ? `${head} (mm/s)` : head));
     table(figures, [...(hot ? ["°C"] : []), ...heads], rows.map((i) => [
       ...(hot ? [celsius(columns[i]).toFixed(0)] : []), value(edges.lower[i]), value(edges.transition[i]), range(i, 0, 1),
       value(edges.upper[i]), range(i, 2, 3), map.torque_limit === null ? "unknown" : edges.starts[i] ? value(above[i]) : "not started"]),

@@ -73,7 +73,7 @@ def law_at(drag: Drag, kelvin: float | None, rule: str) -> Drag: ...
 def law_at(drag: PowerDrag, kelvin: float | None, rule: str) -> PowerDrag: ...
 def law_at(drag: PowerDrag, kelvin: float | None, rule: str) -> PowerDrag:
     """Return the drag at a temperature (K; None if it does not vary), its stick speed by the rule."""
-    law = drag.at(kelvin)
+    law = drag.unwarned().at(kelvin)
     return replace(law, stick_speed=drag.stick_speed) if rule == FIXED else law
 
 

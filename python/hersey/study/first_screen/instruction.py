@@ -58,6 +58,8 @@ _NOT_KNOWN = Words(
     "cannot be judged: torque may still fall at the fastest dwell",
     "cannot be judged: torque may still fall at the fastest dwell",
 )
+_NOT_STARTED = Words("may not start", "may not start")
+_NOT_STARTED_OR_STICKS = Words("may not start, or may stick", "may not start, or may stick")
 _OF_KIND: Mapping[str, tuple[Words, Signal]] = {
     "smooth": (Words("runs smoothly", "run smoothly"), "good"),
     "unknown": (Words("may stick", "may stick"), "watch"),
@@ -129,6 +131,9 @@ def _verdict_words(found: PointBehaviour) -> tuple[Words, Signal]:
     planned = plan is not None and plan.found
     if kind == "unknown" and found.verdict.probability.unknown > 1.0 - SAFE:
         return _NOT_KNOWN, "watch"
+    if kind == "unknown" and found.verdict.starts < SAFE:  # which no profile changes
+        sticks = found.verdict.sticks_from_rest > 1.0 - SAFE
+        return _NOT_STARTED_OR_STICKS if sticks else _NOT_STARTED, "watch"
     if kind == "depends" and not planned:
         return _SLIDES_ON_ONLY if found.verdict.sticks_from_rest >= SAFE else _SLIDES_ON, "act"
     if kind in ("depends", "unknown") and planned:

@@ -135,7 +135,7 @@ def _judged(found: PointBehaviour, verdict: Verdict, edges: Edges, map_: Operati
         return _Said("good", "smooth from any start", f" (sticks: {per_cent(verdict.sticks_from_rest)})")
     if chances.unknown > 1.0 - SAFE:
         return _Said("watch", "cannot be judged", ": torque may still fall at the fastest dwell")
-    if verdict.starts < 1.0 and edges.starts is None:
+    if verdict.starts < SAFE:
         chance = f"may not start ({per_cent(1.0 - verdict.starts)})"
         return _Said("watch", f"{chance} or may stick ({per_cent(verdict.sticks_from_rest)})", f": {needs}")
     return _with_plan(found, verdict)
