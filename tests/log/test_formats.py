@@ -221,12 +221,6 @@ def test_frames_in_memory() -> None:
     assert [run.name for run in both.runs] == ["frame 1", "frame 2"]
     with pytest.raises(hersey.HerseyError, match="each file once"):
         hersey.read([frame(), frame()])
-    for thing in (3, [3]):
-        with pytest.raises(hersey.HerseyError, match="the number 3 is not a log"):
-            hersey.read(thing)
-    for thing in (np.zeros((9, 4)), [np.zeros(9)], {"Time [s]": [0.0, 1.0]}):
-        with pytest.raises(hersey.HerseyError, match=r"is not a log\. Make a frame .*polars\.DataFrame"):
-            hersey.read(thing)
 
 
 def test_a_missing_value_in_a_frame_is_refused_or_counted() -> None:
