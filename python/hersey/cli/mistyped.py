@@ -105,6 +105,18 @@ def retyped(*words: str) -> str:
     return shlex.join(["hersey", *words])
 
 
+def typed_without(flags: Sequence[str]) -> list[str]:
+    """Return the words that were typed behind ``hersey``, without some options and their values."""
+    kept: list[str] = []
+    skipped = False
+    for word in sys.argv[1:]:
+        if skipped or word.partition("=")[0] in flags:
+            skipped = word in flags and not skipped
+            continue
+        kept.append(word)
+    return kept
+
+
 # ---- commands
 
 
