@@ -132,13 +132,15 @@ class UnreadableLogError(HerseyError, ValueError):
 class ChannelError(HerseyError, LookupError):
     """A channel that cannot be found, or could be several.
 
-    ``columns`` are the indices of the possible columns, if known.
+    ``columns`` are the indices of the possible columns, if known; ``absent`` is whether no column comes near.
     """
 
-    def __init__(self, *message: object, columns: tuple[int, ...] = (), **remedy: Any) -> None:
-        """Take the message, the columns, and ``remedy`` and ``setting``."""
+    def __init__(
+        self, *message: object, columns: tuple[int, ...] = (), absent: bool = False, **remedy: Any
+    ) -> None:
+        """Take the message, the columns, whether there is none, and ``remedy`` and ``setting``."""
         super().__init__(*message, **remedy)
-        self.columns = columns
+        self.columns, self.absent = columns, absent
 
 
 class UnitError(HerseyError, ValueError):

@@ -147,6 +147,29 @@ def test_a_trace_in_the_place_of_a_log_is_sent_to_cycles(tmp_path: Path) -> None
         assert run(*shlex.split(line[1])[1:], cwd=tmp_path).returncode == 0
 
 
+@pytest.mark.parametrize("verb", ["report", "inspect"])
+def test_a_log_with_another_fault_is_not_sent_to_cycles(verb: str, tmp_path: Path) -> None:
+    """The rows twice, or a column that is not there: no stick-slip trace explains that."""
+    header = ("Time [s]", "Drive torque [N*m]", "Drive speed [rpm]", "Temperature [degC]")
+    rows = [f"{0.1 * i:.1f},{0.2 + 0.001 * (i % 7)},30,{20 + i % 3}" for i in range(200)]
+    (tmp_path / "a log.csv").write_text("\n".join([",".join(header), *rows, *rows]))
+    done = run(verb, "a log.csv", cwd=tmp_path)
+    said = done.stdout + done.stderr
+    assert "one is a copy of the other" in " ".join(said.split())
+    assert "hersey cycles" not in said
+    done = run(verb, "a log.csv", "--torque", "Load", cwd=tmp_path)
+    assert "hersey cycles" not in done.stdout + done.stderr
+
+
+def test_a_log_without_a_dwell_may_be_a_trace(tmp_path: Path) -> None:
+    rows = [f"{0.1 * i:.1f},{i % 5},30,20" for i in range(200)]
+    header = "Time [s],Drive torque [N*m],Drive speed [rpm],Temperature [degC]"
+    (tmp_path / "slips.csv").write_text("\n".join([header, *rows]))
+    said = run("inspect", "slips.csv", cwd=tmp_path).stdout
+    assert "0 dwells" in said
+    assert said.endswith("type: hersey cycles slips.csv\n")
+
+
 def test_a_log_without_torque_and_force_is_not_sent_to_cycles(tmp_path: Path) -> None:
     drive(tmp_path, "time [s]", "x [V]", "speed [V]")
     assert "hersey cycles" not in run("report", "a log.csv", cwd=tmp_path).stderr

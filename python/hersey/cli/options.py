@@ -165,7 +165,7 @@ class Reading:
             with bar("reading") as progress, memory_limit(self.max_memory):
                 log: TorqueLog | MeansTable = recipe.log(machine, progress=progress)
         except ChannelError as error:
-            hint = of_a_trace(paths)
+            hint = of_a_trace(paths) if error.absent else ""
             error.remedy = followed_by(error.remedy, hint) if error.remedy else hint
             raise
         for file in log.files:

@@ -211,7 +211,7 @@ def no_channel(role: str, columns: tuple[Column, ...], file: str) -> ChannelErro
     if role == "temperature":
         way_out += f", or use {ISOTHERMAL.to()} to exclude temperature"
     said = f"{file}: no {role} column found. Columns: {_listed(columns)}"
-    return ChannelError(said, remedy=way_out, setting=channel)
+    return ChannelError(said, absent=True, remedy=way_out, setting=channel)
 
 
 def _signals(role: str, columns: tuple[Column, ...]) -> list[Column]:
