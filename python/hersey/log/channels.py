@@ -112,7 +112,7 @@ def find_channel(
         If the column that must be it has no unit, an unknown one, or one of another kind.
     """
     if choice.name:
-        return _with_unit(role, _named(role, columns, choice.name, file), choice, file, columns)
+        return _with_unit(role, named_channel(role, columns, choice.name, file), choice, file, columns)
     named = [c for c in columns if _is_named(_NAMES[role], c)]
     measured = [c for c in named if not _SETPOINT.search(c.name)]
     if not measured:  # what was asked for is not what came, if another column may hold that
@@ -271,7 +271,14 @@ def _spellings(c: Column) -> set[str]:
     return {c.name, c.path, str(c), *with_unit}
 
 
-def _named(role: str, columns: tuple[Column, ...], name: str, file: str) -> Column:
+def named_channel(role: str, columns: tuple[Column, ...], name: str, file: str) -> Column:
+    """Return the column that a person names for a role, whatever its unit.
+
+    Raises
+    ------
+    ChannelError
+        If there is none, or several.
+    """
     same = called(name, columns)
     if not same:
         near = meant(name, [*(c.path for c in columns), *(str(c) for c in columns)])
