@@ -226,6 +226,36 @@ def test_one_of_several_logs_takes_its_sign_from_a_mapping(typed: str, tmp_path:
     assert run(*line, cwd=tmp_path).returncode == 0
 
 
+@pytest.mark.parametrize("typed", ["compare {0} {1}", "report {1} --against {0}", "fit {0} {1} --each t.csv"])
+def test_one_of_several_logs_takes_its_unit_from_a_mapping(typed: str, tmp_path: Path) -> None:
+    """Where the other log states its own unit, which an option would replace."""
+    for name, unit in (("a", "N*m"), ("b", "kg-cm")):
+        (tmp_path / f"{name}.csv").write_text(staircase(1).replace("N*m", unit))
+    line = shlex.split(typed.format("a.csv", "b.csv"))
+    refused = run(*line, cwd=tmp_path)
+    assert refused.returncode in (1, 2)
+    assert "--torque-unit" not in refused.stderr
+    file = re.search(r'[Ww]rite (unit = "kgf\*cm") under (\[torque\]) in (b.hersey.toml), or', refused.stderr)
+    assert file, refused.stderr
+    (tmp_path / file[3]).write_text(f"{file[2]}\n{file[1]}\n")
+    read = run(*line, cwd=tmp_path)
+    assert read.returncode == 0
+    assert "is read in" not in " ".join(read.stdout.split())
+
+
+@pytest.mark.parametrize("typed", ["compare a.csv b.csv", "report a.csv", "report b.csv --against a.csv"])
+def test_a_unit_of_a_file_that_an_option_replaces_is_said(typed: str, tmp_path: Path) -> None:
+    for name, unit in (("a", "N*m"), ("b", "kg-cm")):
+        (tmp_path / f"{name}.csv").write_text(staircase(1).replace("N*m", unit))
+    done = run(*shlex.split(typed), "--torque-unit", "kgf*cm", cwd=tmp_path)
+    said = " ".join(done.stdout.split())
+    assert said.count("a.csv: 'torque' is in N*m, but it is read in kgf*cm") == 1
+    assert "b.csv: 'torque' is in" not in said
+    for unit, times in (("Nm", 0), ("mN*m", 1)):
+        said = " ".join(run("fit", "a.csv", "--torque-unit", unit, cwd=tmp_path).stdout.split())
+        assert said.count(f"is in N*m, but it is read in {unit}") == times
+
+
 @pytest.mark.parametrize(
     ("typed", "flag"),
     [

@@ -200,13 +200,15 @@ class Reading:
             note(*(f"- {warning.sentence}" for warning in points.rest.warnings))
         return points
 
-    def points_of(self, paths: list[Path], machine: Machine | None = None) -> SteadyPoints:
-        """Read one of several logs and reduce it."""
-        with self.one_of_several(paths):
+    def points_of(
+        self, paths: list[Path], machine: Machine | None = None, others: Sequence[Path] = ()
+    ) -> SteadyPoints:
+        """Read one of several logs and reduce it; options hold for the ``others`` too."""
+        with self.one_of_several(paths, others):
             return self.points(paths, self.log(paths, machine), machine)
 
     @contextmanager
-    def one_of_several(self, paths: list[Path]) -> Iterator[None]:
+    def one_of_several(self, paths: list[Path], others: Sequence[Path] = ()) -> Iterator[None]:
         """Let errors begin with the name of the log, and end in how a setting is stated for it alone."""
         from hersey.damping.recipe import naming_logs
 
@@ -214,7 +216,7 @@ class Reading:
             with naming_logs(paths):
                 yield
         except HerseyError as error:
-            raise for_this_log_only(error, paths[0], self.recipe(paths)) from None
+            raise for_this_log_only(error, paths[0], self.recipe(paths), others) from None
 
     def surface_and_posterior(
         self,

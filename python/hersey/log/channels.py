@@ -398,6 +398,7 @@ def _with_unit(
             columns=(column.index,),
             remedy=swapped[1] or _right_unit(role, column.unit if is_signal(column.unit) else unit),
             setting=Setting(role, "unit"),
+            likely="" if swapped[1] or is_signal(unit) else nearest_unit(ROLE_KINDS[role][0], unit),
         ) from None
     return column, replace(line, scale=line.scale * _signal_in(role, column, unit, file))
 
