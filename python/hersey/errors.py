@@ -86,13 +86,16 @@ def turned(role: str) -> str:
 class HerseyError(Exception):
     """A mistake that the user can correct: what is wrong, where, and what to do.
 
-    ``remedy`` says what to do, if it is not part of the message; ``setting`` is what to set.
+    ``remedy`` says what to do, if it is not part of the message; ``setting`` is what to set, and ``likely``
+    the value that was probably meant, if one is known.
     """
 
-    def __init__(self, *message: object, remedy: str = "", setting: Setting | None = None) -> None:
+    def __init__(
+        self, *message: object, remedy: str = "", setting: Setting | None = None, likely: str = ""
+    ) -> None:
         """Take what is wrong, and what to do about it."""
         super().__init__(*message)
-        self.remedy, self.setting = remedy, setting
+        self.remedy, self.setting, self.likely = remedy, setting, likely
 
     @property
     def reason(self) -> str:
@@ -140,13 +143,15 @@ class TimeOrderError(UnreadableLogError):
 class ChannelError(HerseyError, LookupError):
     """A channel that cannot be found, or could be several.
 
-    ``columns`` are the indices of the possible columns, if known.
+    ``columns`` are the indices of the possible columns, if known; ``absent`` is whether no column comes near.
     """
 
-    def __init__(self, *message: object, columns: tuple[int, ...] = (), **remedy: Any) -> None:
-        """Take the message, the columns, and ``remedy`` and ``setting``."""
+    def __init__(
+        self, *message: object, columns: tuple[int, ...] = (), absent: bool = False, **remedy: Any
+    ) -> None:
+        """Take the message, the columns, whether there is none, and ``remedy`` and ``setting``."""
         super().__init__(*message, **remedy)
-        self.columns = columns
+        self.columns, self.absent = columns, absent
 
 
 class UnitError(HerseyError, ValueError):

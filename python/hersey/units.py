@@ -329,6 +329,20 @@ def _split_factor(text: str, unit: str, kind: str) -> tuple[float, str]:
     return factor, plain
 
 
+def without_factor(unit: str) -> str:
+    """Return a unit without the number that multiplies or divides it; one that cannot be read as it is.
+
+    Examples
+    --------
+    >>> without_factor("9.84 mN*m / 100"), without_factor("-1 rpm"), without_factor("1/min")
+    ('mN*m', 'rpm', '1/min')
+    """
+    match = _FACTORED.fullmatch(unit) if len(unit) <= _LONGEST_UNIT else None
+    if match is None or match[2].startswith(("/", "1")):
+        return unit
+    return match[2]
+
+
 def parse(kind: str, text: str) -> float:
     """Return the SI value of a quantity written with its unit, such as ``"25 rpm"``.
 

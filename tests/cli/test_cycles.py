@@ -156,6 +156,26 @@ def test_the_speed_of_a_belt_for_that_of_a_roll_comes_with_the_option_to_type(
     assert document["drive_speed"] == pytest.approx(meant, rel=5e-3)
 
 
+@pytest.mark.parametrize(
+    ("header", "called", "unit"),
+    [("force [N]", "force", "N"), ("torque [N*m]", "torque", "N m"), ("belt speed [m/s]", "stretch", "m")],
+)
+def test_what_drops_is_called_by_what_the_trace_holds(
+    header: str, called: str, unit: str, tmp_path: Path
+) -> None:
+    white = np.random.default_rng(0).normal(size=5000)
+    slow = white if called == "stretch" else np.cumsum(white)  # the stretch adds up the speed
+    for name, values in (("noise", slow), ("slips", np.arange(5000) % 100 / 50.0)):
+        rows = [f"{0.01 * i:.2f},{value:.6f}" for i, value in enumerate(values)]
+        (tmp_path / f"{name}.csv").write_text("\n".join([f"time [s],{header}", *rows]))
+    quantity = ["--quantity", "speed"] if called == "stretch" else []
+    told = printed(tmp_path / "noise.csv", *quantity)
+    assert told.startswith(f"Irregular {called}: ")
+    for verbose in ([], ["--verbose"]):
+        told = printed(tmp_path / "slips.csv", *quantity, *verbose)
+        assert re.search(rf"^ *{called} +\S+ to \S+ {unit}(,|$)", told, re.MULTILINE)
+
+
 def test_a_channel_of_the_drive_speed(tmp_path: Path) -> None:
     path = tmp_path / "pull.csv"
     rows = [f"{0.01 * i:.2f},{i % 50 / 5},{20 + (i % 2)}" for i in range(600)]

@@ -79,7 +79,8 @@ def test_a_column_of_a_length_is_proposed_as_the_radius_and_not_taken(tmp_path: 
 
 def test_a_load_for_each_run(wear: Path) -> None:
     content = (wear / "wear.csv").read_text()
-    (wear / "again.csv").write_text("# again\n" + content)
+    lines = content.splitlines()  # a measurement of its own: one reading differs
+    (wear / "again.csv").write_text("\n".join([*lines[:-2], *lines[-1:]]))
     options = ["--isothermal", "--every", "10 ms", "--radius", "30 mm", "--load", "10 N, 20 N"]
     assert run("fit", "wear.csv", "again.csv", *options, cwd=wear).returncode == 0
     refused = run("fit", "wear.csv", *options, cwd=wear)

@@ -155,6 +155,29 @@ def test_a_trace_in_the_place_of_a_log_is_sent_to_cycles(tmp_path: Path) -> None
         assert run(*shlex.split(line[1])[1:], cwd=tmp_path).returncode == 0
 
 
+@pytest.mark.parametrize("verb", ["report", "inspect"])
+def test_a_log_with_another_fault_is_not_sent_to_cycles(verb: str, tmp_path: Path) -> None:
+    """The rows twice, or a column that is not there: no stick-slip trace explains that."""
+    header = ("Time [s]", "Drive torque [N*m]", "Drive speed [rpm]", "Temperature [degC]")
+    rows = [f"{0.1 * i:.1f},{0.2 + 0.001 * (i % 7)},30,{20 + i % 3}" for i in range(200)]
+    (tmp_path / "a log.csv").write_text("\n".join([",".join(header), *rows, *rows]))
+    done = run(verb, "a log.csv", cwd=tmp_path)
+    said = done.stdout + done.stderr
+    assert "one is a copy of the other" in " ".join(said.split())
+    assert "hersey cycles" not in said
+    done = run(verb, "a log.csv", "--torque", "Load", cwd=tmp_path)
+    assert "hersey cycles" not in done.stdout + done.stderr
+
+
+def test_a_log_without_a_dwell_may_be_a_trace(tmp_path: Path) -> None:
+    rows = [f"{0.1 * i:.1f},{i % 5},30,20" for i in range(200)]
+    header = "Time [s],Drive torque [N*m],Drive speed [rpm],Temperature [degC]"
+    (tmp_path / "slips.csv").write_text("\n".join([header, *rows]))
+    said = run("inspect", "slips.csv", cwd=tmp_path).stdout
+    assert "0 dwells" in said
+    assert said.endswith("type: hersey cycles slips.csv\n")
+
+
 def test_a_log_without_torque_and_force_is_not_sent_to_cycles(tmp_path: Path) -> None:
     drive(tmp_path, "time [s]", "x [V]", "speed [V]")
     assert "hersey cycles" not in run("report", "a log.csv", cwd=tmp_path).stderr
@@ -209,6 +232,36 @@ def test_one_of_several_logs_takes_its_sign_from_a_mapping(typed: str, tmp_path:
     assert f"omit --torque-sign -1 and {file[0].rsplit(' in ', 1)[0]} in " in given.stderr
     (tmp_path / file[3]).write_text(f"{file[2]}\n{file[1]}\n")
     assert run(*line, cwd=tmp_path).returncode == 0
+
+
+@pytest.mark.parametrize("typed", ["compare {0} {1}", "report {1} --against {0}", "fit {0} {1} --each t.csv"])
+def test_one_of_several_logs_takes_its_unit_from_a_mapping(typed: str, tmp_path: Path) -> None:
+    """Where the other log states its own unit, which an option would replace."""
+    for name, unit in (("a", "N*m"), ("b", "kg-cm")):
+        (tmp_path / f"{name}.csv").write_text(staircase(1).replace("N*m", unit))
+    line = shlex.split(typed.format("a.csv", "b.csv"))
+    refused = run(*line, cwd=tmp_path)
+    assert refused.returncode in (1, 2)
+    assert "--torque-unit" not in refused.stderr
+    file = re.search(r'[Ww]rite (unit = "kgf\*cm") under (\[torque\]) in (b.hersey.toml), or', refused.stderr)
+    assert file, refused.stderr
+    (tmp_path / file[3]).write_text(f"{file[2]}\n{file[1]}\n")
+    read = run(*line, cwd=tmp_path)
+    assert read.returncode == 0
+    assert "is read in" not in " ".join(read.stdout.split())
+
+
+@pytest.mark.parametrize("typed", ["compare a.csv b.csv", "report a.csv", "report b.csv --against a.csv"])
+def test_a_unit_of_a_file_that_an_option_replaces_is_said(typed: str, tmp_path: Path) -> None:
+    for name, unit in (("a", "N*m"), ("b", "kg-cm")):
+        (tmp_path / f"{name}.csv").write_text(staircase(1).replace("N*m", unit))
+    done = run(*shlex.split(typed), "--torque-unit", "kgf*cm", cwd=tmp_path)
+    said = " ".join(done.stdout.split())
+    assert said.count("a.csv: 'torque' is in N*m, but it is read in kgf*cm") == 1
+    assert "b.csv: 'torque' is in" not in said
+    for unit, times in (("Nm", 0), ("mN*m", 1)):
+        said = " ".join(run("fit", "a.csv", "--torque-unit", unit, cwd=tmp_path).stdout.split())
+        assert said.count(f"is in N*m, but it is read in {unit}") == times
 
 
 @pytest.mark.parametrize(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import shlex
 from pathlib import Path
 
 import pytest
@@ -60,6 +61,23 @@ def test_a_range_that_is_none(bench_csv: Path, flag: str, text: str) -> None:
     done = run("design", bench_csv, *BENCH, flag, text, cwd=ROOT)
     assert done.returncode == 2
     assert f"{flag} '{text}' is not a range" in done.stderr
+
+
+@pytest.mark.parametrize("quantity", [("--quantity", "V*"), ("--quantity=v",)])
+def test_a_design_for_the_safe_speed_names_the_line_to_type(
+    bench_csv: Path, tmp_path: Path, quantity: tuple[str, ...]
+) -> None:
+    limits = ["--speeds", "2 to 200 rpm", *quantity, "--count", "4"]
+    done = run("design", bench_csv, *limits, *BENCH, cwd=tmp_path)
+    assert done.returncode == 2
+    assert "Write machine.toml with hersey new" in done.stderr
+    (tmp_path / "machine.toml").write_text((ROOT / "tests" / "stand" / "machine.toml").read_text())
+    done = run("design", bench_csv, *limits, *BENCH, cwd=tmp_path)
+    assert "hersey new" not in done.stderr
+    typed = shlex.split(done.stderr.partition("Type: hersey ")[2])
+    assert typed == ["design", str(bench_csv), *BENCH, "--machine", "machine.toml"]
+    with_both = run("design", bench_csv, *limits[:2], *typed[2:], cwd=tmp_path)
+    assert with_both.stderr.endswith("omit --speeds\n")
 
 
 def test_compare_two_logs(bench_csv: Path, tmp_path: Path) -> None:

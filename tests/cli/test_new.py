@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import select
@@ -97,6 +98,43 @@ def test_what_the_answers_do_not_fit_is_said_at_once(folder: Path) -> None:
     done = run("new", "--all", cwd=folder, answers=lines(*machine, *oil))
     assert (done.returncode, done.stdout) == (2, "")
     assert "a kinematic viscosity. Add e.g. density" in done.stderr
+
+
+def can_be_fitted(folder: Path) -> bool:
+    found = json.loads(run("inspect", "log.csv", "--json", cwd=folder).stdout)
+    return found["support"] is not None and found["support"]["dwells"] > 0
+
+
+@pytest.mark.parametrize(
+    ("unit", "asked", "answer", "written"),
+    [
+        ("%", "torque at 100 % (e.g. 9.84 mN*m)", "1.27 N*m", "1.27 N*m / 100"),
+        ("%", "torque at 100 % (e.g. 9.84 mN*m)", "1.27 N*m / 100", "1.27 N*m / 100"),
+        ("V", "torque per V (e.g. 2 N*m)", "2 N*m", "2 N*m/V"),
+        ("mA", "torque per A (e.g. 35 mN*m)", "35 mN*m/A", "35 mN*m/A"),
+    ],
+)
+def test_what_a_signal_stands_for_is_asked(
+    unit: str, asked: str, answer: str, written: str, folder: Path
+) -> None:
+    log = folder / "log.csv"
+    log.write_text(log.read_text().replace("Torque [N*m]", f"Torque [{unit}]", 1))
+    done = run("new", "log.csv", cwd=folder, answers=lines("", answer, *CHANNELS[2:], ""))
+    assert done.returncode == 0, done.stderr
+    assert f"{asked} [skip]: " in done.stderr
+    assert read_mapping(folder / "hersey.toml").units["torque"] == written
+    assert can_be_fitted(folder)
+    skipped = run("new", "log.csv", "--force", cwd=folder, answers=lines(*CHANNELS, ""))
+    assert skipped.returncode == 0, skipped.stderr
+    mapping = folder / "hersey.toml"
+    left = mapping.read_text()
+    example = re.search(r'unit = "" +# write the unit, e\.g\. (.*)', left)
+    assert example
+    mapping.write_text(left.replace('unit = ""', f'unit = "{example[1]}"'))
+    assert can_be_fitted(folder)
+    for wrong in ("9.84", "N*m", "5 rpm"):
+        done = run("new", "log.csv", "--force", cwd=folder, answers=lines("", wrong, *CHANNELS))
+        assert f"'{wrong}' is not a torque with its unit: write '" in done.stderr
 
 
 def test_files_that_are_there_are_not_replaced_unasked(folder: Path) -> None:

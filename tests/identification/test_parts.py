@@ -132,7 +132,7 @@ def test_spikes_are_removed_and_said() -> None:
 def test_other_warnings_of_a_record() -> None:
     time, force = saw(rise=20, fall=120)
     turned = of_kind(cycles(time, force), "sign may be turned")
-    assert turned.sentence == "The force rises faster than it falls. Is its sign flipped?"
+    assert turned.sentence == "The trace rises faster than it falls. Is its sign flipped?"
     time, force = saw(rise=30, fall=3)
     coarse = cycles(time, force)
     lasts = np.median(coarse.steep_duration) / 0.01

@@ -171,6 +171,9 @@ def test_the_corrected_value_is_the_one_meant(
             'viscosity_40 = "500 cSt"\nviscosity_200 = "7.2 cSt"',
             r'these 2 lines: viscosities = \[\["40 degC", "500 cSt"\], \["200 degC", "7.2 cSt"\]\]$',
         ),
+        (OIL, f"{OIL}\nviscosity_index = 98", "line 19: .* Delete this line: the two viscosities say it"),
+        (OIL, 'VI = 98\nkv40 = "500 cSt"\nkv100 = "40 cSt"', "line 18: .* Delete this line: the two"),
+        (OIL, 'VI = 98\nkv40 = "500 cSt"', "line 18: .* Write the viscosity at two temperatures instead"),
         (OIL, 'kv40 = "500 cSt"', r'that line: viscosities = \[\["40 degC", "500 cSt"\]\]$'),
         (OIL, OIL.replace(', ["200 degC", "7.2 mm^2/s"]', ""), r"line 16: .* needs 2 pairs .* has 1\. Add 1"),
         (

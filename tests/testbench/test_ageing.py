@@ -270,7 +270,12 @@ def test_the_command_writes_a_campaign(tmp_path: Path) -> None:
             "--out is for a single log",
         ),
         (("--units", "2", "--ages", "5, 2 kpages", "--out-dir", "x"), "must ascend"),
-        (("--units", "2", "--ages", "0, 5 h", "--out-dir", "x"), "'0' is not a number of pages"),
+        (("--units", "2", "--ages", "0, 5 h", "--out-dir", "x"), "'h' is not a unit of pages"),
+        (("--units", "2", "--ages", "0, 50.000 Seiten", "--out-dir", "x"), "'Seiten' is not a unit of pages"),
+        (
+            ("--units", "2", "--ages", "0, 50.000, 100.000 pages", "--out-dir", "x"),
+            "Write '50000 pages' or '50 pages'",
+        ),
     ],
 )
 def test_what_the_command_refuses(typed: tuple[str, ...], said: str, tmp_path: Path) -> None:
@@ -283,6 +288,7 @@ def test_what_the_command_refuses(typed: tuple[str, ...], said: str, tmp_path: P
 def test_bad_numbers_are_named(drive: tuple[Machine, NoLoadTorque]) -> None:
     assert ages_of("0, 50, 100 kpages") == (0.0, 5e4, 1e5)
     assert ages_of("0 pages, 2 kpages, 1 Mpages") == (0.0, 2e3, 1e6)
+    assert ages_of("0, 50.5, 100.25 kpages") == (0.0, 50_500.0, 100_250.0)
     with pytest.raises(ParameterError, match="side_flow is -1"):
         Ageing(side_flow=-1.0)
     with pytest.raises(ParameterError, match="'oil' is not known: supply, side_flow"):

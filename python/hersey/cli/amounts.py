@@ -240,18 +240,24 @@ def _with_machine(
 ) -> Amounts:
     stated = {name: float(getattr(machine, name)) for name in _OF_A_MACHINE if name in lacking}
     stated |= {"duration": _BASELINE["duration"]} if "duration" in lacking else {}
-    for name in lacking:
-        if name in stated:
-            continue
-        example = _KINDS[name][1]
-        if name == "drive_speed" and machine.points:
-            example = f"{1e3 * machine.points[0].speed:.4g} mm/s"
-        raise ParameterError(f"{file} does not state the {_words(name)}: add {_flag(name)} '{example}'")
+    unknown = [name for name in lacking if name not in stated]
+    if unknown:
+        *first, last = (f"the {_words(name)}" for name in unknown)
+        words = f"{', '.join(first)} and {last}" if first else last
+        flags = " ".join(f"{_flag(name)} '{_example(name, machine)}'" for name in unknown)
+        raise ParameterError(f"{file} does not state {words}: add {flags}")
     filled = ""
     if "stick_speed" in stated:
         speed = three(1e3 * machine.stick_speed, "mm/s")
         filled = f"The stick speed is {speed} (from {file}), assumed to hold at the temperature of the drag."
     return Amounts({**values, **stated}, in_si=True, filled=filled)
+
+
+def _example(name: str, machine: Machine) -> str:
+    """An amount as an option takes it, the speed of the drive that of the machine's first point."""
+    if name == "drive_speed" and machine.points:
+        return f"{1e3 * machine.points[0].speed:.4g} mm/s"
+    return _KINDS[name][1]
 
 
 def _words(name: str) -> str:

@@ -30,7 +30,7 @@ def compare(
     """
     from hersey.damping.compare import compare as compared
 
-    of_a, of_b = (reading.points_of([path], other=other) for path, other in ((a, b), (b, a)))
+    of_a, of_b = (reading.points_of([log], others=[other]) for log, other in ((a, b), (b, a)))
     with working("comparing"):
         comparison = compared(of_a, of_b, names=(str(a), str(b)))
     if printing.json(comparison):

@@ -52,6 +52,8 @@ _UNIT = "Unit of that column, e.g. 'N'; 1 if the force is relative to the weight
 _RADIUS = 0.015
 #: Units in which numbers are printed, and how many make one in SI, by the unit in SI.
 _SHOWN = {"m/s": ("mm/s", 1e3), "N/m": ("N/mm", 1e-3)}
+#: What drops in a slip, where it is not what the trace holds, and its unit by that of the trace.
+_DROPS, _UNITS = {"speed": "stretch"}, {"m/s": "m", "rad/s": "rad"}
 #: Kinds of what is derived from the parameters of a drive, which are those of some parameter.
 _DERIVED = {
     "release_force": "transition_force",
@@ -151,29 +153,30 @@ def cycles(
         speed = _drive_speed(trace.drive_speed, given) if channel is None else _of_channel(channel, given)
         known = _known(sought.known or [], given)
         record = trace.record(given, speed)
-        drive, unit = sought.drive(record, known), given.unit.replace("*", " ")
+        drive, unit = sought.drive(record, known), _UNITS.get(given.unit, given.unit).replace("*", " ")
         shown = "share of the weight" if given.unit == "1" else unit
         drawing.draw(record, drive=drive, unit=shown)
         if printing.json(record, unit=given.unit, drive=drive):
             continue
         if len(chosen) > 1:
             printing.text(*([""] if number != chosen[0] else []), f"Run {number + 1} of {len(runs)}")
-        whole = [record.summary(unit), *([] if drive is None else ["", drive.summary(unit)])]
+        called = _DROPS.get(given.quantity, given.quantity)
+        whole = [record.summary(unit, called=called), *([] if drive is None else ["", drive.summary(unit)])]
         warned = (*record.warnings, *(() if drive is None else drive.warnings))
-        printing.conclusion(partial(_lines, record, drive, unit), "\n".join(whole), *warned)
+        printing.conclusion(partial(_lines, record, drive, unit, called), "\n".join(whole), *warned)
         if record.kind == "steady_sliding" and given.quantity == "torque":
             printing.text(f"For the drag of steady sliding type: {retyped('report', str(file))}")
         printing.files(figure)
 
 
-def _lines(record: CycleRecord, drive: IdentifiedDrive | None, unit: str) -> list[str]:
-    """The motion and its figures, then the drive that makes it."""
+def _lines(record: CycleRecord, drive: IdentifiedDrive | None, unit: str, called: str) -> list[str]:
+    """The motion and its figures, then the drive that makes it; ``called`` as in `CycleRecord.summary`."""
     import numpy as np
 
     from hersey.cli.figures import labelled, three
     from hersey.identification.detection import FEWEST_SLIPS
 
-    of, lines = {"1": "of the weight"}.get(unit, unit), [sentence(record.headline(unit))]
+    of, lines = {"1": "of the weight"}.get(unit, unit), [sentence(record.headline(unit, called=called))]
     if record.kind != "steady_sliding" and record.slips >= FEWEST_SLIPS:
         what = {"stick_slip": "Stick-slip", "inertial": "Inertial oscillation"}[record.kind]
         lines = [f"{what} with {record.slips} slips."]
@@ -181,7 +184,7 @@ def _lines(record: CycleRecord, drive: IdentifiedDrive | None, unit: str) -> lis
         low, high = float(np.median(record.force_min)), float(np.median(record.force_max))
         rows = [
             ("frequency", f"{three(1 / lap, 'Hz')} (period {three(lap, 's')})"),
-            ("force", f"{three(low)} to {three(high)} {of}, drop {three(drop)} {of}"),
+            (called, f"{three(low)} to {three(high)} {of}, drop {three(drop)} {of}"),
             ("stuck", f"{100 * record.stuck_fraction:.0f} % of the time"),
         ]
         if record.stiffness:

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Annotated
 
 from hersey.cli.groups import grouped, option
+from hersey.cli.mistyped import machine_here, retyped, typed_without
 from hersey.cli.options import Logs, Reading, Traces
 from hersey.cli.printing import Printing
 from hersey.cli.progress import working
@@ -16,6 +17,8 @@ _QUANTITY = "Narrow this quantity, e.g. 'transition speed' or 'c'.  [default: al
 _MACHINE = "Machine file: rank the measurements that would narrow its V*."
 _SPEEDS = "Speeds that can be run, e.g. '2 to 200 rpm'.  [default: those measured]"
 _TEMPERATURES = "Temperatures that can be run, e.g. '60 to 200 degC'.  [default: those measured]"
+#: Name that hersey new gives a machine file.
+_MACHINE_FILE = "machine.toml"
 #: Names of the safe speed, which is no parameter of a fit.
 _SAFE_SPEED = ("v*", "v", "vstar", "v_star", "safe speed")
 
@@ -40,18 +43,22 @@ def design(
 
     With --machine, rank what would narrow V*: starts from rest, break-away torque, stick-slip, a slow dwell.
     """
+    limiting = {"--quantity": quantity, "--speeds": speeds, "--temperatures": temperatures}
+    stray = [flag for flag, value in limiting.items() if value]
     if machine_file is not None:
-        if quantity or speeds or temperatures:
-            raise ParameterError(
-                "--machine ranks measurements of V*: omit --quantity, --speeds and --temperatures"
-            )
+        if stray:
+            listed = " and ".join(filter(None, [", ".join(stray[:-1]), stray[-1]]))
+            raise ParameterError(f"--machine ranks measurements of V*: omit {listed}")
         _for_the_machine(logs, reading, machine_file, trace, seed, printing)
         return
     if trace:
         raise ParameterError("--trace needs the machine file: add --machine TOML")
 
     if quantity.strip().lower() in _SAFE_SPEED:
-        raise ParameterError(f"{quantity} depends on the machine too: replace --quantity by --machine TOML")
+        there = machine_here()
+        typed = [*typed_without([*stray, "--count"]), "--machine", there or _MACHINE_FILE]
+        how = "Type" if there else f"Write {_MACHINE_FILE} with hersey new, then type"
+        raise ParameterError(f"{quantity} depends on the machine too. {how}: {retyped(*typed)}")
 
     from hersey.damping.candidates import compare_models
     from hersey.damping.design import design as designed

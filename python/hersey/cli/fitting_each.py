@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -23,6 +24,10 @@ if TYPE_CHECKING:
     from hersey.machine.machine import Machine
 
 
+#: Other logs of which it is looked up whether they state a unit that one lacks.
+_OTHERS = 3
+
+
 def fit_each(
     logs: list[Path],
     reading: Reading,
@@ -35,8 +40,10 @@ def fit_each(
     """Fit each log separately and write a table with a row for each, in their order."""
     from hersey.log.many import collected, each_of, failure_line
 
-    task = partial(row, reading if crew.scheduler is None else reading.anywhere(), machine)
     files = logs if crew.scheduler is None else [log.absolute() for log in logs]
+    task = partial(
+        row, reading if crew.scheduler is None else reading.anywhere(), machine, others=files[:_OTHERS]
+    )
     with crew.at_work() as client, bar("fitting", unit="logs") as progress:
         results = each_of(task, files, client=client, progress=progress)
         fits = collected(logs, results, keep_going)
@@ -50,14 +57,16 @@ def fit_each(
         raise typer.Exit(NOT_FOUND)
 
 
-def row(reading: Reading, machine: Machine | None, log: Path) -> dict[str, Any] | HerseyError:
+def row(
+    reading: Reading, machine: Machine | None, log: Path, *, others: Sequence[Path] = ()
+) -> dict[str, Any] | HerseyError:
     """Return dwells, fit and verdict of a log, in SI, with its 95 % intervals; or what is wrong with it."""
     from hersey.damping.fit import fit
     from hersey.verdict.regime import regime
 
     try:
         with one_thread():
-            points = reading.points_of([log], machine)
+            points = reading.points_of([log], machine, [each for each in others if each != log])
             surface = fit(points, temperature_scale=reading.temperature_scale)
             words = regime(points, surface).headline()
     except HerseyError as error:

@@ -65,10 +65,17 @@ def inspect(
         return
     if printing.verbose or inspection.support is None:  # what a log lacks can be anywhere in it
         printing.text(inspection.summary())
-        printing.text(*filter(None, [] if inspection.support else [of_a_trace(logs)]))
     else:
         printing.text(*_lines(inspection))
+    printing.text(*filter(None, [of_a_trace(logs)] if _may_be_a_trace(inspection) else []))
     printing.files(kept, save_recipe, figure)
+
+
+def _may_be_a_trace(inspection: Inspection) -> bool:
+    """Whether no fit is possible because the file has no dwell, or not the channels of a log."""
+    if inspection.support is not None:
+        return inspection.support.dwells == 0
+    return any(why.absent for file in inspection.files for why in file.lacking.values())
 
 
 def _lines(inspection: Inspection) -> list[str]:

@@ -99,6 +99,18 @@ def writing_machine(log: str = "LOG") -> str:
     return retyped("new", *([] if Path(log).with_name(FILE_NAME).exists() else [log]))
 
 
+def typed_without(flags: Sequence[str]) -> list[str]:
+    """Return the words that were typed behind ``hersey``, without some options and their values."""
+    kept: list[str] = []
+    skipped = False
+    for word in sys.argv[1:]:
+        if skipped or word.partition("=")[0] in flags:
+            skipped = word in flags and not skipped
+            continue
+        kept.append(word)
+    return kept
+
+
 # ---- commands
 
 

@@ -12,7 +12,7 @@ from hersey.cli.groups import argument, option
 from hersey.cli.options import Force
 from hersey.cli.outputs import may_write
 from hersey.cli.terminal import say
-from hersey.errors import HerseyError, ParameterError, WrongKindError
+from hersey.errors import HerseyError, ParameterError, UnitError, WrongKindError
 
 if TYPE_CHECKING:
     from hersey.cli.asking import Asking
@@ -122,7 +122,7 @@ def _mapping(log: Path, asking: Asking) -> tuple[str, list[str]]:
     units = {channel["name"]: channel.get("unit", "") for channel in seen["channels"]}
     say(f"{log.name}: {', '.join(map(str, columns[:40]))}", file=sys.stderr)
     answers: dict[str, str] = {}
-    lacking: list[str] = []
+    lacking: dict[str, str] = {}
     options: list[str] = []
     for role in _ROLES:
         claims = seen["claims"].get(role, [])
@@ -135,7 +135,9 @@ def _mapping(log: Path, asking: Asking) -> tuple[str, list[str]]:
         if not given and role == "temperature" and not (claims or proposed):
             options.append("--isothermal")
         elif given or not known:
-            lacking += [key for field in ("channel", "unit") if (key := f"{role}.{field}") not in given]
+            example = _example(role, units.get(given.get(f"{role}.channel", ""), ""))
+            examples = {f"{role}.channel": "", f"{role}.unit": example}
+            lacking |= {key: text for key, text in examples.items() if key not in given}
     title = f"Channels of {log.name}, from the answers to hersey new."
     return mapping_text(answers, title=title, lacking=lacking), options
 
@@ -145,30 +147,57 @@ def _channel(
 ) -> dict[str, str]:
     """Channel of a role and its unit, as answered; nothing without a channel."""
     from hersey.errors import ChannelError, meant
-    from hersey.log.channels import ChannelChoice, find_channel, role_conversion
-    from hersey.units import KINDS
+    from hersey.log.channels import named_channel
 
     def named(text: str) -> str:
         try:
-            found = find_channel(role, columns, ChannelChoice(text, KINDS[role][1]), file)
+            found = named_channel(role, columns, text, file)
         except ChannelError as error:
             near = meant(text, [column.path for column in columns])
             raise ChannelError(error.reason, remedy=f"did you mean {near}?" if near else "") from None
-        return text if found is None or text in units else found[0].path
+        return text if text in units else found.path
+
+    name = asking.ask(f"channel of the {role}", named, proposed=proposed)
+    if asking.by_hand and not name:
+        return {}
+    of = _unit(role, units.get(name or "", ""), asking)
+    given = {f"{role}.channel": name, f"{role}.unit": of if name else None}
+    return {key: text for key, text in given.items() if text}
+
+
+def _unit(role: str, written: str, asking: Asking) -> str | None:
+    """Unit of a role as answered; of a signal, what it stands for is asked."""
+    from hersey.log.channels import role_conversion
+    from hersey.log.signals import answered, is_signal, question, says_how_much
 
     def unit(text: str) -> str:
         role_conversion(role, text)
         return text
 
-    name = asking.ask(f"channel of the {role}", named, proposed=proposed)
-    written = units.get(name or "", "")
-    likely = _likely(role, written)
-    words = f"the log has '{written}'" if likely != written else ""
-    if asking.by_hand and not name:
-        return {}
-    of = asking.ask(f"unit of the {role}", unit, words=words, proposed=likely)
-    given = {f"{role}.channel": name, f"{role}.unit": of if name else None}
-    return {key: text for key, text in given.items() if text}
+    if role == "time" or not is_signal(written):
+        likely = _likely(role, written)
+        words = f"the log has '{written}'" if likely != written else ""
+        return asking.ask(f"unit of the {role}", unit, words=words, proposed=likely)
+    what, example = question(role, written)
+
+    def amount(text: str) -> str:
+        try:
+            if says_how_much(text):
+                return unit(answered(text, written))
+        except UnitError:
+            pass
+        raise UnitError(f"'{text}' is not a {role} with its unit: write '{example}', for example")
+
+    return asking.ask(what, amount, words=f"e.g. {example}")
+
+
+def _example(role: str, written: str) -> str:
+    """A unit of a signal as an example, else nothing."""
+    from hersey.log.signals import answered, is_signal, question
+
+    if role == "time" or not is_signal(written):
+        return ""
+    return answered(question(role, written)[1], written)
 
 
 def _likely(role: str, written: str) -> str:

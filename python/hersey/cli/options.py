@@ -165,7 +165,7 @@ class Reading:
             with bar("reading") as progress, memory_limit(self.max_memory):
                 log: TorqueLog | MeansTable = recipe.log(machine, progress=progress)
         except ChannelError as error:
-            if not (recipe.channels or recipe.chosen.channels):  # else the columns are known by name
+            if not (recipe.channels or recipe.chosen.channels) and error.absent:
                 error.remedy = followed_by(error.remedy, of_a_trace(paths))
             raise
         for file in log.files:
@@ -201,22 +201,22 @@ class Reading:
         return points
 
     def points_of(
-        self, paths: list[Path], machine: Machine | None = None, *, other: Path | None = None
+        self, paths: list[Path], machine: Machine | None = None, others: Sequence[Path] = ()
     ) -> SteadyPoints:
-        """Read one of several logs and reduce it; ``other`` is the only other one, if there is one."""
-        with self.one_of_several(paths, other):
+        """Read one of several logs and reduce it; options hold for the ``others`` too."""
+        with self.one_of_several(paths, others):
             return self.points(paths, self.log(paths, machine), machine)
 
     @contextmanager
-    def one_of_several(self, paths: list[Path], other: Path | None = None) -> Iterator[None]:
-        """Let errors begin with the name of the log, and advice with how a setting is stated for it alone."""
+    def one_of_several(self, paths: list[Path], others: Sequence[Path] = ()) -> Iterator[None]:
+        """Let errors begin with the name of the log, and end in how a setting is stated for it alone."""
         from hersey.damping.recipe import naming_logs
 
         try:
             with naming_logs(paths):
                 yield
         except HerseyError as error:
-            raise for_this_log_only(error, paths[0], self.recipe(paths), other) from None
+            raise for_this_log_only(error, paths[0], self.recipe(paths), others) from None
 
     def surface_and_posterior(
         self,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from contextlib import nullcontext
 from datetime import UTC, datetime
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -109,14 +110,14 @@ def _studied(
     from hersey.study import study
 
     machine = None if machine_file is None else read_machine(machine_file)
-    alone = reading.one_of_several if against else lambda _: nullcontext()
-    with alone(logs):
+    alone = partial(reading.one_of_several, logs, against) if against else nullcontext
+    with alone():
         log = reading.log(logs, machine)
-    other = reading.points_of(against, machine) if against else None
+    other = reading.points_of(against, machine, logs) if against else None
     traces = [reading.trace(path, machine) for path in trace or []]
     with steps() as step:
         step("finding the dwells")
-        with alone(logs):
+        with alone():
             points = reading.points(logs, log, machine)
         return study(
             points,

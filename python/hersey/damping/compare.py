@@ -28,6 +28,7 @@ from hersey.damping.dwells import SteadyPoints
 from hersey.damping.dwells.reduced import require_points
 from hersey.damping.estimate import CONFIDENCE, Estimate
 from hersey.errors import ISOTHERMAL, HerseyError, InsufficientDataError
+from hersey.log.replaced import replaced_in
 from hersey.result import Means, Record, Result
 from hersey.schema.warning import Warning
 from hersey.units import convert, rpm, takes_si
@@ -191,7 +192,16 @@ def compare(
         mean_ratio=mean,
         changes=changes,
         verdict=_verdict(mean, low, high, changes, names, of_visits=bool(once)),
-        warnings=(*_warnings(first, second, of_a), *([_of_visits(once)] if once else [])),
+        warnings=(
+            *(
+                each
+                for points in (a, b)
+                if not isinstance(points, Observations)
+                for each in replaced_in(points.log.files)
+            ),
+            *_warnings(first, second, of_a),
+            *([_of_visits(once)] if once else []),
+        ),
         names=names,
     )
 

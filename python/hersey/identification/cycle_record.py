@@ -32,6 +32,8 @@ if TYPE_CHECKING:
 
 #: What a trace may hold.
 QUANTITIES = ("force", "speed")
+#: What drops in a slip, by what the trace holds: of a speed it is the stretch of the spring.
+_CALLED = {"force": "force", "speed": "stretch"}
 #: Figures of a record as JSON has them, some of its samples, and those of which each cycle has one.
 _FIGURES = (
     *("kind", "quantity", "slips", "falls", "drive_speed", "drive_speed_uncertainty", "loading_slope"),
@@ -165,15 +167,15 @@ class CycleRecord(Result):
             }
         )
 
-    def headline(self, unit: str = "") -> str:
-        """Return the kind of motion and the number of slips or drops."""
+    def headline(self, unit: str = "", *, called: str = "") -> str:
+        """Return the kind of motion and the number of slips or drops; ``called`` as in `summary`."""
         words = self.kind.replace("_", " ")
         beyond = f"{self.falls} drops exceed the noise"
         if self.kind == "steady_sliding":
             return (
                 f"{words}: no cycles"
                 if self.falls < FEWEST_SLIPS
-                else f"irregular force: {beyond}, but no cycles"
+                else f"irregular {called or _CALLED[self.quantity]}: {beyond}, but no cycles"
             )
         if self.slips >= FEWEST_SLIPS:
             return f"{words}: {self.slips} slips"
@@ -181,10 +183,14 @@ class CycleRecord(Result):
         least, greatest = (_amount(amount, unit) for amount in (self.least_drop, self.motion.greatest))
         return f"{words}: {beyond}, {number} of at least {least}; the largest is {greatest}"
 
-    def summary(self, unit: str = "") -> str:
-        """Return the results as text, one per line; ``unit`` is the unit of the trace."""
+    def summary(self, unit: str = "", *, called: str = "") -> str:
+        """Return the results as text, one per line.
+
+        ``unit`` is the unit of the trace and ``called`` the name of what drops in a slip, e.g. ``torque``.
+        """
+        called = called or _CALLED[self.quantity]
         of = f" {unit}" if unit not in ("", "1") else ""
-        heading = self.headline(unit)
+        heading = self.headline(unit, called=called)
         if self.kind == "steady_sliding" or self.slips < FEWEST_SLIPS:
             return "\n".join([heading, *(f"- {each}" for each in self.warnings)])
         period, drop = Scatter.of(self.period), Scatter.of(self.drop)
@@ -199,7 +205,7 @@ class CycleRecord(Result):
             heading,
             f"period        {period.median:.4g} s (scatter {period.deviation:.2g} s){free}",
             f"drop          {drop.median:.4g}{of} (scatter {drop.deviation:.2g}{of})",
-            f"force         {np.median(self.force_min):.4g} to {np.median(self.force_max):.4g}{of}",
+            f"{called:<14}{np.median(self.force_min):.4g} to {np.median(self.force_max):.4g}{of}",
             f"loading slope {self.loading_slope:.5g}{of or ' 1'}/s",
             f"stuck         {self.stuck_fraction:.0%} of the time",
             *([stiff] if stiff else []),

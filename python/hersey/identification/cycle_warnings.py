@@ -93,7 +93,7 @@ def _of_the_level(samples: Samples, figures: SlipFigures, drift: float) -> Itera
     if period.size and float(np.median(period)) - lasts < 0.5 * lasts:
         yield Warning(
             "sign may be turned",
-            "the force rises faster than it falls. Is its sign flipped?",
+            "the trace rises faster than it falls. Is its sign flipped?",
             severity="watch",
         )
     swing = abs(drift) * samples.interval * samples.value.size

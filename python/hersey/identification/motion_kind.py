@@ -84,7 +84,7 @@ def _kind(figures: SlipFigures, stuck: float, least: float) -> tuple[str, tuple[
         return "steady_sliding", (words,)
     if not regular:
         words = Warning(
-            "irregular force", "the force varies irregularly without sticking, so there is no cycle"
+            "irregular force", "the trace varies irregularly without sticking, so there is no cycle"
         )
         return "steady_sliding", (words,)
     return "inertial", ()

@@ -58,13 +58,7 @@ class Age:
         if not (match[2] or unit):
             raise UnitError(f"age '{text[:40]}' has no unit. {_WAY_OUT}")
         counted = match[2] or unit
-        if _THOUSANDS.fullmatch(match[1]) and not _is_measured(counted):
-            decimal = f"{float(match[1]):g}"
-            decimal += "0" if decimal == match[1] else ""
-            raise ParameterError(
-                f"age '{match[1]} {counted}' can be read in two ways. Write "
-                f"'{match[1].replace('.', '')} {counted}' or '{decimal} {counted}'"
-            )
+        refuse_thousands(match[1], counted)
         return cls(float(match[1]), counted)
 
     def as_unit(self, unit: str) -> Age:
@@ -97,6 +91,23 @@ def refuse_no_unit(unit: str) -> None:
     """
     if _WORD.fullmatch(unit) is None:
         raise UnitError(f"unit '{unit[:40]}' of an age must be one word. {_WAY_OUT}")
+
+
+def refuse_thousands(number: str, counted: str) -> None:
+    """Refuse a count whose point may stand between thousands, as in German.
+
+    Raises
+    ------
+    ParameterError
+        If the number has such a point and counts no time or distance, of which decimals are usual.
+    """
+    if _THOUSANDS.fullmatch(number) and not _is_measured(counted):
+        decimal = f"{float(number):g}"
+        decimal += "0" if decimal == number else ""
+        raise ParameterError(
+            f"age '{number} {counted}' can be read in two ways. Write "
+            f"'{number.replace('.', '')} {counted}' or '{decimal} {counted}'"
+        )
 
 
 def one_of(unit: str) -> str:

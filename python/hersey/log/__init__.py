@@ -13,6 +13,7 @@ stating        a radius or a load: proposed, used once a person states it
 slow_channels  a temperature or a load that is slower than the rows: interpolated between its values
 clock          rate, gaps and unevenness of a clock
 rows           which rows can be used, and where one run ends and the next begins
+replaced       units of a file that a person replaced
 believed       what a channel of a drive can read at all, and codes for no reading
 impossible     readings that cannot be right: found, named, left out
 neighbours     rows that their neighbours rule out

@@ -27,6 +27,7 @@ from hersey.log.channels import (
 from hersey.log.friction import Chosen, beside, computed, in_rotation, slow_roles, unused
 from hersey.log.impossible import Impossible, Reading, impossible_rows, marked_rows
 from hersey.log.recording import INVALID, INVALID_TIME, Recording, Signal, columns, nothing_to_read
+from hersey.log.replaced import replaced_units
 from hersey.log.rows import LeftOut, runs_with_records
 from hersey.log.text.column import Column
 from hersey.log.text.stamps import clock_without_unit, counted_since, is_clock_name
@@ -77,6 +78,7 @@ class Assembly:
         self._clocks: dict[str, tuple[FloatArray, str, Channel]] = {}
         self._dead: dict[int, Warning | None] = {}
         self.chosen: Chosen = {}
+        self._timed: Chosen = {}
         for role in wanted.roles:
             if role != "time":  # which is that of the channel
                 self.chosen[role] = self._channel(role)
@@ -115,6 +117,7 @@ class Assembly:
             arrays = {role: values[usable] for role, values in arrays.items()}
             rows = rows[usable]
         warnings += computed(self.chosen, self.stated)
+        warnings += replaced_units(self._timed | self.chosen)
         warnings += [*filter(None, self._dead.values()), *self._unused]
         log = self._record(tuple(warnings))
         log = replace(log, missing_rows=rows_marked + rows_impossible, impossible=impossible)
@@ -266,6 +269,7 @@ class Assembly:
                 setting=Setting("time", "channel"),
             )
         chosen, unit = clock
+        self._timed["time"] = clock
         tick = f"column {chosen.index}"
         if tick not in self._clocks:
             values = in_si(self.recording.signals[chosen.index].load(), unit)

@@ -128,7 +128,7 @@ def find_channel(
         If the column that must be it has no unit, an unknown one, or one of another kind.
     """
     if choice.name:
-        column = _named(role, columns, choice.name, file, taken)
+        column = named_channel(role, columns, choice.name, file, taken)
         return _with_unit(role, column, choice, file, columns, taken)
     free = tuple(c for c in columns if c not in taken.values())
     candidates = _candidates(role, free) or _candidates(role, columns)
@@ -267,7 +267,7 @@ def no_channel(role: str, columns: tuple[Column, ...], file: str) -> ChannelErro
     if role == "temperature":
         way_out += f", or use {ISOTHERMAL.to()} to exclude temperature"
     said = f"{file}: no {role} column found. Columns: {_listed(columns)}"
-    return ChannelError(said, remedy=way_out, setting=channel)
+    return ChannelError(said, absent=True, remedy=way_out, setting=channel)
 
 
 def _signals(role: str, columns: tuple[Column, ...]) -> list[Column]:
@@ -331,9 +331,20 @@ def _spellings(c: Column) -> set[str]:
     return {c.name, c.path, str(c), *with_unit, *with_ending(c.name, c.unit)}
 
 
-def _named(
-    role: str, columns: tuple[Column, ...], name: str, file: str, taken: Mapping[str, Column]
+def named_channel(
+    role: str,
+    columns: tuple[Column, ...],
+    name: str,
+    file: str,
+    taken: Mapping[str, Column] = MappingProxyType({}),
 ) -> Column:
+    """Return the column that a person names for a role, whatever its unit; ``taken`` are those with a role.
+
+    Raises
+    ------
+    ChannelError
+        If there is none, or several.
+    """
     same = called(name, columns)
     if not same:
         free = [c for c in columns if c not in taken.values()]
@@ -459,6 +470,7 @@ def _with_unit(
             columns=(column.index,),
             remedy=swapped[1] or _right_unit(role, column.unit if is_signal(column.unit) else unit),
             setting=Setting(role, "unit"),
+            likely="" if swapped[1] or is_signal(unit) else nearest_unit(ROLE_KINDS[role][0], unit),
         ) from None
     return column, replace(line, scale=line.scale * _signal_in(role, column, unit, file))
 

@@ -30,6 +30,7 @@ from hersey.log.mean_roles import (
     plain_column,
     torque_errors,
 )
+from hersey.log.replaced import replaced_units
 from hersey.log.sensors import Sensors
 from hersey.log.text.column import Column
 from hersey.log.torque_log import LARGEST, Channel, LogFile, title_of
@@ -252,7 +253,12 @@ def _read(
         _bad(cells, int(i), next(name for name in bad if bad[name][i]), roles) for i in np.flatnonzero(gone)
     ]
     channels = tuple(Channel(role, column.name, unit.unit) for role, (column, unit) in used.items())
-    warnings = (*computed(used, said), *unused(cells.columns, used, said), *_rows_left_out(left_out))
+    warnings = (
+        *computed(used, said),
+        *replaced_units(used),
+        *unused(cells.columns, used, said),
+        *_rows_left_out(left_out),
+    )
     file = LogFile(
         name=cells.name,
         sha256=cells.sha256,

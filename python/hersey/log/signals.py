@@ -14,6 +14,8 @@ _PER = re.compile(rf"(.*\S)\s*/\s*(?:{_SIGNAL})")
 _INPUT = re.compile(
     r"(.*/)?(ch|channel|kanal|ai|analog(ue)?( ?in(put)?)?|voltage|volts?|input)[ _-]?\d*", re.IGNORECASE
 )
+#: An amount that a number divides, as that at 100 %.
+_DIVIDED = re.compile(r"/\s*[0-9.]+\s*$")
 _PREFIXES = {"": 1.0, "m": 1e-3, "µ": 1e-6, "μ": 1e-6, "u": 1e-6}
 #: What one of a signal, or 100 %, may stand for, as an example.
 _EXAMPLES = {
@@ -72,6 +74,33 @@ def way_out(role: str, header: str) -> str:
         return f"use {typed}, with your value of the {role} at 100 %"
     condition = "if it is the motor current, " if kind == "A" and role == "torque" else ""
     return f"{condition}give the {role} per {kind}, e.g. {typed}"
+
+
+def question(role: str, header: str) -> tuple[str, str]:
+    """Return what to ask about a column of a signal, and an answer as an example.
+
+    Examples
+    --------
+    >>> question("torque", "%"), question("speed", "mV")
+    (('torque at 100 %', '9.84 mN*m'), ('speed per V', '100 rpm'))
+    """
+    kind = signal_kind(header)
+    example = _EXAMPLES[role][kind]
+    return f"{role} {'at 100 %' if kind == '%' else f'per {kind}'}", example.rpartition("/")[0].rstrip()
+
+
+def answered(answer: str, header: str) -> str:
+    """Return the unit that an answer to `question` states; one that is a unit of the signal already stays.
+
+    Examples
+    --------
+    >>> answered("9.84 mN*m", "%"), answered("2 N*m", "V"), answered("2 N*m/V", "V")
+    ('9.84 mN*m / 100', '2 N*m/V', '2 N*m/V')
+    """
+    kind = signal_kind(header)
+    if apart(answer)[1] or _DIVIDED.search(answer):
+        return answer
+    return f"{answer.strip()} / 100" if kind == "%" else f"{answer.strip()}/{kind}"
 
 
 def way_out_unnamed(role: str, names: Sequence[str], header: str) -> str:

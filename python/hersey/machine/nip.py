@@ -12,6 +12,7 @@ from typing import Annotated, Any, ClassVar
 from pydantic import BeforeValidator, ValidationInfo
 from pydantic.dataclasses import dataclass
 
+from hersey import _core
 from hersey.errors import ParameterError, UnitError, WrongKindError
 from hersey.files.toml import Quantity, Share, Table
 from hersey.lubrication.contact import Contact, shore_a_modulus
@@ -192,10 +193,14 @@ class LubricantTable(Table):
     @classmethod
     def instead(cls, table: Mapping[str, Any], key: str, /) -> str:
         """Return the pairs that keys with a temperature in their names stand for."""
+        stated = sorted((int(m[1]), value) for name, value in table.items() if (m := _AT.fullmatch(name)))
         if _INDEX.fullmatch(key):
+            listed = table.get("viscosities")
+            known = max(len(stated), len(listed) if isinstance(listed, list) else 0)
+            if known > 1:
+                return f"Delete this line: the {'two' if known == 2 else known} viscosities say it"
             pairs = _written(_EXAMPLES[:2])
             return f"Write the viscosity at two temperatures instead, e.g. viscosities = {pairs}"
-        stated = sorted((int(m[1]), value) for name, value in table.items() if (m := _AT.fullmatch(name)))
         if not _AT.fullmatch(key):
             return ""
         found = [
@@ -267,17 +272,31 @@ class LubricantTable(Table):
         return EXAMPLES[self.example]
 
     def _through_points(self) -> Lubricant:
-        for key in ("model", "viscosities"):
-            if getattr(self, key) in ("", None):
-                raise ParameterError(f"lacks '{key}'")
+        if self.viscosities is None:
+            raise ParameterError(f"lacks 'viscosities'. Add e.g. viscosities = {_written(_EXAMPLES[:2])}")
+        if not self.model:
+            raise ParameterError(f"lacks 'model'. {self._add_model(len(self.viscosities))}")
         return Lubricant(
             self.model,
-            self.viscosities or (),
+            self.viscosities,
             density=self.density,
             pressure_viscosity=self.pressure_viscosity,
             name=self.name,
             source=self.source,
         )
+
+    def _add_model(self, count: int) -> str:
+        """What to write of the model: one that takes as many points, of the standard where it can."""
+        takes = [
+            name
+            for name, law in _core.VISCOSITY_LAWS.items()
+            if law.points == count and (self.density is not None or not law.kinematic)
+        ]
+        takes.sort(key=lambda name: not _core.VISCOSITY_LAWS[name].kinematic)
+        if takes:
+            return f'Add model = "{takes[0]}"'
+        points = " or ".join(map(str, sorted(set(MODELS.values()))))
+        return f"A model takes {points} pairs of temperature and viscosity, but viscosities has {count}"
 
     def _thinning(self) -> ShearThinning | None:
         time, exponent = self.relaxation_time, self.carreau_exponent

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from types import MappingProxyType
 from typing import Any
 
 from hersey.errors import ParameterError
@@ -67,19 +68,19 @@ def mapping_text(
     *,
     title: str = "",
     others: Others | None = None,
-    lacking: Collection[str] = (),
+    lacking: Mapping[str, str] | None = None,
 ) -> str:
     """Return ``hersey.toml`` as text; ``title`` is a first line of its own, ``others`` what no question asks.
 
-    ``lacking`` are questions that must be answered and are not: their values are empty, which no reader
-    takes, with a comment that says what to write there.
+    ``lacking`` are questions that must be answered and are not, each with an example, empty for that of the
+    question: their values are empty, which no reader takes, with a comment that says what to write there.
 
     Raises
     ------
     ParameterError, UnitError
         If an answer cannot be read, in the reader's words.
     """
-    lines = _tables(MAPPING, _values(answers), others or {}, lacking)
+    lines = _tables(MAPPING, _values(answers), others or {}, lacking or {})
     return "\n".join([*([f"# {title}"] if title else []), *lines]) + "\n"
 
 
@@ -153,7 +154,10 @@ def _values(answers: Mapping[str, str]) -> dict[str, Any]:
 
 
 def _tables(
-    questions: Iterable[Question], values: Mapping[str, Any], others: Others, lacking: Collection[str] = ()
+    questions: Iterable[Question],
+    values: Mapping[str, Any],
+    others: Others,
+    lacking: Mapping[str, str] = MappingProxyType({}),
 ) -> list[str]:
     lines = [_line(key, value, "") for key, value in others.items() if not isinstance(value, dict)]
     sections = list(dict.fromkeys(q.section for q in questions))
@@ -171,9 +175,8 @@ def _tables(
             if q.key in values:
                 lines.append(_line(q.field, values[q.key], q.words))
             elif q.key in lacking:
-                lines.append(
-                    _line(q.field, "", f"write the {q.words.removeprefix('its ')}, e.g. {_example(q)}")
-                )
+                example = lacking[q.key] or _example(q)
+                lines.append(_line(q.field, "", f"write the {q.words.removeprefix('its ')}, e.g. {example}"))
             else:
                 lines.append(f"# {_line(q.field, _example(q), q.words)}")
         lines += [_line(key, value, "") for key, value in more.items()]

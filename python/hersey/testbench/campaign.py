@@ -13,6 +13,7 @@ import numpy as np
 
 from hersey import _core
 from hersey.errors import ParameterError, printable
+from hersey.life.age import refuse_thousands
 from hersey.result import json_value
 from hersey.testbench.ageing import AgedTruth, Unit
 from hersey.testbench.stand import PREAMBLE, Stand
@@ -31,7 +32,7 @@ LATEST = 1e6
 #: Age up to which an end is looked for, in ages of the last run.
 _WITHIN = 6.0
 _COLUMNS = "speed [rpm],temperature [degC],torque [N*m],torque error [N*m],approach"
-_AGE = re.compile(r"(\d{1,12}(?:\.\d*)?)\s*([A-Za-z]*)")
+_AGE = re.compile(r"(\d{1,12}(?:\.\d*)?)\s*([^\W\d_]*)")
 _PAGES = {"pages": 1.0, "kpages": 1e3, "Mpages": 1e6}
 
 
@@ -227,15 +228,17 @@ def ages_of(text: str) -> tuple[float, ...]:
     >>> ages_of("0, 50, 100 kpages")
     (0.0, 50000.0, 100000.0)
     """
-    parts = [_AGE.fullmatch(part.strip()) for part in text.split(",")]
+    typed = [part.strip() for part in text.split(",")]
+    parts = [_AGE.fullmatch(part) for part in typed]
     last = parts[-1][2] if parts[-1] else ""
     ages = []
-    for part, typed in zip(parts, text.split(","), strict=True):
+    for part, given in zip(parts, typed, strict=True):
         unit = (part[2] or last) if part else ""
         if part is None or unit not in _PAGES:
+            wrong = f"'{unit}' is not a unit" if unit else f"'{printable(given)}' is not a number"
             raise ParameterError(
-                f"'{printable(typed.strip())}' is not a number of pages. Write e.g. '0, 50, 100 kpages' "
-                f"(units: {', '.join(_PAGES)})"
+                f"{wrong} of pages. Write e.g. '0, 50, 100 kpages' (units: {', '.join(_PAGES)})"
             )
+        refuse_thousands(part[1], unit)
         ages.append(round(float(part[1]) * _PAGES[unit], 6))
     return tuple(ages)

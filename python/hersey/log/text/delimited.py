@@ -26,6 +26,7 @@ from hersey.log.channels import (
 )
 from hersey.log.friction import beside, computed, in_rotation, slow_roles, unused
 from hersey.log.impossible import Impossible, Reading, impossible_rows
+from hersey.log.replaced import replaced_units
 from hersey.log.rows import LeftOut, runs_with_records
 from hersey.log.text.blocks import Block, blocks
 from hersey.log.text.cells import CellReader
@@ -75,6 +76,7 @@ def read_delimited(path: Path, wanted: Wanted, progress: Progress | None = None)
             *layout.warnings,
             *table.reader.warnings(),
             *computed(channels, stated),
+            *replaced_units(table.channels),
             *dead.warnings,
             *unused(layout.named, channels, stated),
             *end.warnings,

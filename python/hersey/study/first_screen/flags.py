@@ -14,6 +14,7 @@ from hersey.decision.behaviour import Behaviour
 from hersey.decision.edges import edges_of
 from hersey.errors import Setting
 from hersey.log.doubtful import doubtful_units
+from hersey.log.replaced import UNIT_REPLACED, replaced_in
 from hersey.posterior.result import SAFE
 from hersey.schema.warning import Warning
 from hersey.stability.operating_map import OperatingMap
@@ -50,7 +51,7 @@ def flags(known: Findings) -> list[Warning]:
     What a comparison says was asked for, and stands among them whatever it is, first of its kind.
     """
     points, surface, found, map_ = known.points, known.surface, known.behaviour, known.map
-    out = [] if found is None else _unused(found)
+    out = [*_replaced(points, known.comparison), *([] if found is None else _unused(found))]
     turns = found is None or map_ is None or edges_of(found.posterior, found.temperature).turns
     out += [*_contradictions(known.nip, known.torque_budget), *_of_log(points, surface, asked=not turns)]
     if known.why:
@@ -301,6 +302,13 @@ def _plans(found: Behaviour) -> Iterator[Warning]:
 def few_slow_dwells(points: SteadyPoints, surface: DampingSurface) -> bool:
     """Return whether too few dwells lie below the transition."""
     return surface.transition is not None and _below(points, surface) <= _FEW
+
+
+def _replaced(points: SteadyPoints, comparison: LogComparison | None) -> Iterator[Warning]:
+    """The first unit of a file that was replaced, of this log or the one it is compared with."""
+    others = () if comparison is None else comparison.warnings
+    for each in [*replaced_in(points.log.files), *(e for e in others if e.kind == UNIT_REPLACED)][:1]:
+        yield each.titled("A unit was replaced", section="data")
 
 
 def _of_log(points: SteadyPoints, surface: DampingSurface, *, asked: bool) -> Iterator[Warning]:
