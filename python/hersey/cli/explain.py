@@ -6,10 +6,9 @@ import sys
 import textwrap
 from typing import TYPE_CHECKING, Annotated
 
-from hersey.cli.groups import argument
-from hersey.cli.outputs import print_json
-from hersey.cli.printing import AsJson
-from hersey.cli.terminal import say_wrapped, width
+from hersey.cli.groups import argument, grouped
+from hersey.cli.printing import Printing
+from hersey.cli.terminal import width
 
 if TYPE_CHECKING:
     from hersey.report.glossary import Entry
@@ -17,9 +16,8 @@ if TYPE_CHECKING:
 _TERM = "Term, e.g. V* or 'stick speed'; if omitted, all terms are listed."
 
 
-def explain(
-    term: Annotated[list[str] | None, argument("TERM", _TERM)] = None, *, as_json: AsJson = False
-) -> None:
+@grouped
+def explain(term: Annotated[list[str] | None, argument("TERM", _TERM)] = None, *, printing: Printing) -> None:
     """Explain a term of reports and docs, or list all terms.
 
     Example: [bold]hersey explain stick speed[/bold]
@@ -35,10 +33,14 @@ def explain(
         close = nearest(name)
         advice = f"did you mean '{close}'?" if close else "type hersey explain to list all terms"
         raise ParameterError(f"'{name}' is not in the glossary; {advice}")
-    if as_json:
-        print_json({"terms": [found] if found else entries()})
+    if printing.json({"terms": [found] if found else entries()}):
+        return
+    if found:
+        printing.text(*_lines(found))
+    elif printing.verbose:
+        printing.text("\n\n".join("\n".join(_lines(each)) for each in entries()))
     else:
-        say_wrapped(*(_lines(found) if found else _listed(entries())))
+        printing.text(*_listed(entries()))
 
 
 def _listed(entries: tuple[Entry, ...]) -> list[str]:
