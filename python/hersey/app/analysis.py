@@ -17,7 +17,8 @@ from hersey.app.machine import answer_faults, form_text, mapping_of_form, mappin
 from hersey.app.recipe import options_of_recipe
 from hersey.errors import HerseyError
 from hersey.files.text import read_text
-from hersey.log.channels import OTHER_ROLES, ROLES, called
+from hersey.log.channels import called
+from hersey.log.roles import OTHER_ROLES, ROLES
 from hersey.log.text.column import Column
 from hersey.machine.questions import BY_KEY, MAPPING
 from hersey.machine.writing import answers_of

@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from hersey.errors import TimeOrderError, UnitError, capital, sentence
-from hersey.log.channels import ROLES, role_conversion
 from hersey.log.doubtful import RARE, TOO_HOT
+from hersey.log.roles import ROLES, role_conversion
 from hersey.log.slow_channels import is_slow
 from hersey.log.stating import proposed
 from hersey.log.text.column import Column

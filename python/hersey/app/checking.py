@@ -8,7 +8,7 @@ from pathlib import Path
 from hersey.app.analysis import Analysis, Dropped
 from hersey.app.channels import Fault, channel_faults
 from hersey.app.machine import answer_faults, doubtful, file_faults, mapping_faults
-from hersey.log.channels import ROLES
+from hersey.log.roles import ROLES
 
 
 def check(one: Analysis) -> None:

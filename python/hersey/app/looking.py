@@ -12,9 +12,10 @@ from hersey.arrays import FloatArray
 from hersey.errors import HerseyError, UnreadableLogError
 from hersey.inspection.file_report import ChannelReport, file_report
 from hersey.inspection.raw import Lacking, RawLog, raw_channels
-from hersey.log.channels import OTHER_ROLES, ROLES, ChannelChoice, Stated, find_channel, is_called, is_dead
+from hersey.log.channels import ChannelChoice, Stated, find_channel, is_dead
 from hersey.log.mapping import LogMapping, read_with_mapping
 from hersey.log.means import is_means_table
+from hersey.log.roles import OTHER_ROLES, ROLES, is_called
 from hersey.log.stating import proposed
 from hersey.log.text.column import Column, distinct_names
 

@@ -13,9 +13,9 @@ from hersey.app.channels import Fault
 from hersey.errors import HerseyError
 from hersey.files.toml import read_toml
 from hersey.files.writing import write_atomically
-from hersey.log.channels import OTHER_ROLES, ROLES
 from hersey.log.mapping import read_mapping
 from hersey.log.quantities import amount
+from hersey.log.roles import OTHER_ROLES, ROLES
 from hersey.machine.machine import read_machine
 from hersey.machine.questions import BY_KEY, POINT, lacking
 from hersey.machine.writing import answers_of, machine_text, mapping_text

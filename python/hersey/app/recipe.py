@@ -12,7 +12,7 @@ from typing import Any
 from hersey.damping.recipe import Recipe
 from hersey.errors import HerseyError
 from hersey.files.toml import read_toml
-from hersey.log.channels import OTHER_ROLES, ROLES
+from hersey.log.roles import OTHER_ROLES, ROLES
 
 #: Settings that are options of the page.
 _OPTIONS = ("isothermal", "drop_missing", "tare")

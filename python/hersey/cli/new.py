@@ -167,7 +167,7 @@ def _channel(
 
 def _unit(role: str, written: str, asking: Asking) -> str | None:
     """Unit of a role as answered; of a signal, what it stands for is asked."""
-    from hersey.log.channels import role_conversion
+    from hersey.log.roles import role_conversion
     from hersey.log.signals import answered, is_signal, question, says_how_much
 
     def unit(text: str) -> str:
@@ -202,7 +202,7 @@ def _example(role: str, written: str) -> str:
 
 def _likely(role: str, written: str) -> str:
     """The unit of a role that a log has, or that one it cannot have was probably meant for."""
-    from hersey.log.channels import role_conversion
+    from hersey.log.roles import role_conversion
     from hersey.units import nearest_unit
 
     try:

@@ -8,8 +8,9 @@ from pathlib import Path
 
 from hersey.arrays import FloatArray
 from hersey.errors import ChannelError, ParameterError, Setting, UnitError, UnreadableLogError, meant
-from hersey.log.channels import ROLE_KINDS, called, is_called, is_of_kind
+from hersey.log.channels import called
 from hersey.log.columns import OpenColumns, open_columns
+from hersey.log.roles import ROLE_KINDS, is_called, is_of_kind
 from hersey.log.rows import LeftOut, runs_of
 from hersey.log.text.column import Column
 from hersey.schema.warning import Warning

@@ -13,8 +13,9 @@ from hersey.arrays import FloatArray
 from hersey.errors import Setting, way_in
 from hersey.inspection.faults import DITHER, Fault, Traits, traits
 from hersey.inspection.raw import Lacking, RawChannel, RawLog, roles_of
-from hersey.log.channels import OTHER_ROLES, ChannelChoice, Stated, is_of_kind
+from hersey.log.channels import ChannelChoice, Stated
 from hersey.log.clock import Clock, clock_of
+from hersey.log.roles import OTHER_ROLES, is_of_kind
 from hersey.log.torque_log import NO_CLOCK
 from hersey.result import Means, Record
 from hersey.schema.warning import Warning

@@ -27,11 +27,12 @@ from hersey.errors import (
 from hersey.inspection.file_report import MEANS, FileReport, file_lines, file_report
 from hersey.inspection.raw import raw_channels
 from hersey.inspection.support import Support, support_of_points
-from hersey.log.channels import OTHER_ROLES, ROLES, ChannelChoice, Stated
+from hersey.log.channels import ChannelChoice, Stated
 from hersey.log.corrections import Corrected
 from hersey.log.doubtful import doubtful_units
 from hersey.log.mapping import LogMapping, as_stated, mapping_of, read_with_mapping, without_what_is_said
 from hersey.log.means import MeansTable, read_means
+from hersey.log.roles import OTHER_ROLES, ROLES
 from hersey.log.torque_log import ROTATIONS, TARES, Correction, LogFile, TorqueLog
 from hersey.result import Means, Result
 from hersey.schema.warning import Warning

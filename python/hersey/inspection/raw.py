@@ -10,9 +10,10 @@ import polars as pl
 
 from hersey.arrays import FloatArray
 from hersey.errors import ChannelError, HerseyError, UnitError, printable
-from hersey.log.channels import ROLES, ChannelChoice, Stated, find_channel, is_dead, no_channel, taken_columns
+from hersey.log.channels import ChannelChoice, Stated, find_channel, is_dead, no_channel, taken_columns
 from hersey.log.formats import format_of, opened
 from hersey.log.friction import Chosen, beside
+from hersey.log.roles import ROLES
 from hersey.log.text.column import Column, refuse_ragged
 from hersey.log.text.delimited import open_delimited
 from hersey.log.text.layout import Layout

@@ -7,6 +7,8 @@ text           CSV and its relatives
 recording      what a file of any other format holds: channels with clocks of their own
 formats        one reader per format, and which one opens a file
 signals        currents, voltages and percentages, and how much one of them stands for
+roles          roles of columns: their names, and the kinds of units that they may have
+role_units     the unit of a column with a role
 channels       which column plays which role
 friction       friction forces and coefficients as torques, sliding speeds as those of a rotation
 stating        a radius or a load: proposed, used once a person states it

@@ -12,22 +12,19 @@ from hersey.arrays import BoolArray, FloatArray, IntArray
 from hersey.errors import ChannelError, HerseyError, Setting, TimeOrderError, UnreadableLogError
 from hersey.log.believed import in_si
 from hersey.log.channels import (
-    EVERY,
-    OTHER_ROLES,
-    ROLES,
     constant_channel,
     find_channel,
     is_dead,
     no_channel,
     refuse_two_clocks,
     refuse_two_roles,
-    role_conversion,
     taken_columns,
 )
 from hersey.log.friction import Chosen, beside, computed, in_rotation, slow_roles, unused
 from hersey.log.impossible import Impossible, Reading, impossible_rows, marked_rows
 from hersey.log.recording import INVALID, INVALID_TIME, Recording, Signal, columns, nothing_to_read
 from hersey.log.replaced import replaced_units
+from hersey.log.roles import EVERY, OTHER_ROLES, ROLES, role_conversion
 from hersey.log.rows import LeftOut, runs_with_records
 from hersey.log.text.column import Column
 from hersey.log.text.stamps import clock_without_unit, counted_since, is_clock_name

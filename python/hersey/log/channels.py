@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
 
@@ -16,69 +16,32 @@ from hersey.errors import (
     ChannelError,
     ParameterError,
     Setting,
-    UnitError,
-    WrongKindError,
     meant,
     printable,
     way_in,
 )
-from hersey.log.signals import (
-    apart,
-    is_signal,
-    of_an_input,
-    per,
-    says_how_much,
-    signal_kind,
-    way_out,
-    way_out_unnamed,
+from hersey.log.role_units import with_unit
+from hersey.log.roles import (
+    EVERY,
+    FRICTION_NAMES,
+    MEANS,
+    could_be,
+    is_called,
+    is_frequency,
+    is_named,
+    is_of_kind,
 )
+from hersey.log.signals import signal_kind, way_out_unnamed
 from hersey.log.text.column import Column, with_ending
 from hersey.schema.warning import Warning
-from hersey.units import KINDS, Conversion, conversion, nearest_unit
+from hersey.units import Conversion
 
-#: Roles of a log's columns, in the order in which they are asked for.
-ROLES = ("time", "torque", "speed", "temperature")
-#: Roles of columns that a log may have beside them: normal load, radius at which a friction force acts, and
-#: the number of a run.
-OTHER_ROLES = ("load", "radius", "run")
-#: What a person sets beside the channels.
-EVERY = Setting("every")
-MEANS = Setting("means", "switch")
-#: What a column of a role may hold, kinds of units: the first where there is a choice.
-ROLE_KINDS: dict[str, tuple[str, ...]] = {
-    "time": ("time",),
-    "torque": ("torque", "force", "friction coefficient"),
-    "speed": ("speed", "belt speed"),
-    "temperature": ("temperature",),
-    "load": ("force",),
-    "radius": ("length",),
-}
-
-_NAMES = {
-    "time": r"t|time.*|.*\btime|.*datetime|.*zeit|timestamp|elapsed.*|.*seconds|epoch.*|unix.*",
-    "torque": r".*torque.*|tq.*|.*\btq|.*moment.*|m",
-    "speed": r".*speed.*|.*velocity.*|.*rpm.*|.*omega.*|.*drehzahl.*|n|w|ω",
-    "temperature": r".*temp.*|.*thermistor.*|.*heater.*|.*thermocouple.*|.*film t.*",
-    "load": r".*\bload(?! ?cell).*|.*normal ?(force|kraft).*|.*normalkraft.*|f_?n|.*axial ?force",
-    "radius": r".*radius.*",
-}
-#: Names of what stands for a torque, or a speed of rotation, where the radius is known.
-_FRICTION = {
-    "friction coefficient": r"(.*\b)?cof\b.*|[µμ]|mu|.*(friction|traction|reib).*(coef|koef|beiwert|zahl).*",
-    "force": r".*(friction|traction|reib).*|.*tangential.*(force|kraft).*|f_?[tf]",
-    "belt speed": r"v|v_?(s|rel|slid).*|.*(slid|slip|gleit|surface|peripheral).*",
-}
 #: What has the unit of a speed of rotation and is none.
 _OSCILLATION = re.compile(r"frequen[cz]|oscillat|oszillat", re.IGNORECASE)
-#: Words of a name of a frequency, and what to do with that of an inverter.
-_FREQUENCY = re.compile(r"fr[eé]q", re.IGNORECASE)
-_INVERTER = "If it is the frequency of an inverter, divide by the pole pairs of the motor, e.g. for 2 use"
 #: As many numbers, all the same, make a dead channel.
 _TELLING = 20
 #: A clock of a part of a run, beside which that of the whole run counts.
 _PART_OF_A_RUN = re.compile(r"step|segment|interval|cycle|lap", re.IGNORECASE)
-#: Characters of a name at the most.
-_LONGEST_NAME = 200
 #: Columns named in a message at the most.
 _SHOWN = 40
 _SETPOINT = re.compile(
@@ -129,7 +92,7 @@ def find_channel(
     """
     if choice.name:
         column = named_channel(role, columns, choice.name, file, taken)
-        return _with_unit(role, column, choice, file, columns, taken)
+        return with_unit(role, column, choice.unit, file, columns, taken)
     free = tuple(c for c in columns if c not in taken.values())
     candidates = _candidates(role, free) or _candidates(role, columns)
     if len(candidates) > 1:
@@ -145,7 +108,7 @@ def find_channel(
             columns=tuple(c.index for c in candidates),
             **_choose(role, candidates[0].path),
         )
-    return _with_unit(role, candidates[0], choice, file, columns, taken)
+    return with_unit(role, candidates[0], choice.unit, file, columns, taken)
 
 
 def taken_columns(
@@ -163,19 +126,19 @@ def taken_columns(
 
 def _candidates(role: str, columns: tuple[Column, ...]) -> list[Column]:
     """The columns that could play a role, by name and unit."""
-    named = [c for c in columns if _is_named(_NAMES[role], c)]
+    named = [c for c in columns if is_called(role, c)]
     measured = [c for c in named if not _SETPOINT.search(c.name)]
     if not measured:  # what was asked for is not what came, if another column may hold that
-        others = [c for c in columns if c not in named and c.unit and _could_be(role, c, surely=True)]
+        others = [c for c in columns if c not in named and c.unit and could_be(role, c, surely=True)]
         measured = named + (others if named and role != "time" else [])
     # a column of another kind of unit is out; one without a unit could still be it
     return (
-        _telling(role, [c for c in measured if _could_be(role, c)])
+        _telling(role, [c for c in measured if could_be(role, c)])
         or _in_friction(role, columns, measured)
         or [
             c
             for c in columns
-            if c.unit and _could_be(role, c, surely=True) and not _OSCILLATION.search(c.name)
+            if c.unit and could_be(role, c, surely=True) and not _OSCILLATION.search(c.name)
         ]
         or measured
     )
@@ -185,29 +148,6 @@ def _choose(role: str, path: str) -> dict[str, Any]:
     """The remedy where several columns could play a role."""
     channel = Setting(role, "channel")
     return {"remedy": f"choose one with {channel.to(path)}", "setting": channel}
-
-
-def _is_named(pattern: str, column: Column) -> bool:
-    """Whether a column is called so; longer than any name it is not, for the patterns would take long."""
-    return len(column.name) <= _LONGEST_NAME and bool(re.fullmatch(pattern, column.name, re.IGNORECASE))
-
-
-def channels_to(columns: Mapping[str, str]) -> str:
-    """Return what to write so that columns play roles, by role."""
-    if way_in() == "python":
-        return f"channels={dict(columns)}"
-    joint = " " if way_in() == "terminal" else ", "
-    return joint.join(Setting(role, "channel").to(path) for role, path in columns.items())
-
-
-def is_called(role: str, column: Column) -> bool:
-    """Return whether a column has a name that columns of a role have."""
-    return _is_named(_NAMES[role], column)
-
-
-def is_frequency(name: str) -> bool:
-    """Return whether the name of a column says that it holds a frequency."""
-    return len(name) <= _LONGEST_NAME and _FREQUENCY.search(name) is not None
 
 
 def is_dead(values: FloatArray) -> bool:
@@ -223,27 +163,6 @@ def constant_channel(column: Column) -> Warning:
         "'{column}' is constant and was skipped",
         column=str(column),
     )
-
-
-def role_conversion(role: str, unit: str) -> tuple[str, Conversion]:
-    """Return the kind of what a column of a role holds, and its conversion to SI.
-
-    ``unit`` may be that of one of a signal, as ``0.2 N*m/A``.
-
-    Raises
-    ------
-    UnitError
-        If the unit is unknown, or of no kind that the role can have.
-    """
-    text = "1" if unit in ("-", "\u2013") else apart(unit)[0]
-    for kind in ROLE_KINDS[role]:
-        if kind == "friction coefficient" and text != "1":  # % of a torque is none
-            continue
-        try:
-            return kind, replace(conversion(kind, text), unit=unit)
-        except WrongKindError:
-            continue
-    return ROLE_KINDS[role][0], conversion(ROLE_KINDS[role][0], unit)
 
 
 def no_channel(role: str, columns: tuple[Column, ...], file: str) -> ChannelError:
@@ -385,24 +304,12 @@ def _listed(columns: tuple[Column, ...]) -> str:
     return listed + (f" and {len(columns) - _SHOWN} more" if len(columns) > _SHOWN else "")
 
 
-def _could_be(role: str, column: Column, surely: bool = False) -> bool:
-    """Whether the unit allows the role; one that is missing or unknown does, unless asked to be sure."""
-    if role == "time" and re.search("rad|rev|turn", column.unit):  # angles have no dimension
-        return False
-    try:
-        return bool(column.unit and conversion(ROLE_KINDS[role][0], column.unit)) or not surely
-    except WrongKindError:
-        return False
-    except UnitError:
-        return not surely
-
-
 def _telling(role: str, candidates: list[Column]) -> list[Column]:
     """The candidates without those that others put in the shade.
 
     A letter without a unit beside a name with one, and the clock of a step beside that of the run.
     """
-    if any(c.unit and _could_be(role, c, surely=True) for c in candidates):
+    if any(c.unit and could_be(role, c, surely=True) for c in candidates):
         candidates = [c for c in candidates if c.unit or len(c.name) > 1]
     if role == "time":
         candidates = [c for c in candidates if not _PART_OF_A_RUN.search(c.name)] or candidates
@@ -412,110 +319,15 @@ def _telling(role: str, candidates: list[Column]) -> list[Column]:
 def _in_friction(role: str, columns: tuple[Column, ...], measured: list[Column]) -> list[Column]:
     """Columns of a friction force, or else a coefficient, or of a sliding speed."""
     if role == "speed":
-        sliding = [c for c in columns if _is_named(_FRICTION["belt speed"], c)]
+        sliding = [c for c in columns if is_named(FRICTION_NAMES["belt speed"], c)]
         return [c for c in measured or sliding if is_of_kind("belt speed", c.unit)]
     if role != "torque":
         return []
-    coefficients = [c for c in columns if _is_named(_FRICTION["friction coefficient"], c)]
-    forces = [c for c in columns if _is_named(_FRICTION["force"], c) and c not in coefficients]
+    coefficients = [c for c in columns if is_named(FRICTION_NAMES["friction coefficient"], c)]
+    forces = [c for c in columns if is_named(FRICTION_NAMES["force"], c) and c not in coefficients]
     forces = [c for c in forces if not c.unit or is_of_kind("force", c.unit)]
     return (
         forces
         or [c for c in measured if is_of_kind("force", c.unit)]
         or [c for c in coefficients if not c.unit or c.unit in ("1", "-", "\u2013")]
     )
-
-
-def is_of_kind(kind: str, unit: str) -> bool:
-    """Return whether a unit is one of a kind of quantity."""
-    try:
-        return bool(unit and conversion(kind, unit))
-    except UnitError:
-        return False
-
-
-def _with_unit(
-    role: str,
-    column: Column,
-    choice: ChannelChoice,
-    file: str,
-    columns: tuple[Column, ...],
-    taken: Mapping[str, Column],
-) -> tuple[Column, Conversion]:
-    unit = choice.unit or column.unit
-    if not unit and role == "torque" and _is_named(_FRICTION["friction coefficient"], column):
-        unit = "1"
-    if role == "run":
-        return column, Conversion(unit, 1.0, 0.0)
-    if not unit:
-        of_a_force = role == "torque" and _is_named(_FRICTION["force"], column)
-        of_sliding = role == "speed" and _is_named(_FRICTION["belt speed"], column)
-        kind = "force" if of_a_force else "belt speed" if of_sliding else ROLE_KINDS[role][0]
-        example = KINDS[kind][1]
-        raise UnitError(
-            f"{file}: column '{column.path}' has no unit",
-            columns=(column.index,),
-            remedy=(
-                f"write '{column.name} [{example}]' in the header, add a row of units, or use "
-                f"{Setting(role, 'unit').to(example)}{of_an_input(role, column.name)}"
-            ),
-            setting=Setting(role, "unit"),
-        )
-    try:
-        line = role_conversion(role, unit)[1]
-    except UnitError as error:
-        swapped = _swapped(role, column, unit, columns, taken)
-        raise UnitError(
-            f"{file}: column '{column.path}': {error.reason}{swapped[0]}",
-            columns=(column.index,),
-            remedy=swapped[1] or _right_unit(role, column.unit if is_signal(column.unit) else unit),
-            setting=Setting(role, "unit"),
-            likely="" if swapped[1] or is_signal(unit) else nearest_unit(ROLE_KINDS[role][0], unit),
-        ) from None
-    return column, replace(line, scale=line.scale * _signal_in(role, column, unit, file))
-
-
-def _signal_in(role: str, column: Column, unit: str, file: str) -> float:
-    """How many of the signal that the unit is for, if it is for any, one in the column is."""
-    try:
-        if is_signal(column.unit) and not says_how_much(unit):
-            raise ValueError(unit)
-        return per(unit, column.unit)
-    except ValueError:
-        raise UnitError(
-            f"{file}: column '{column.path}' is in {column.unit}, but the unit given for it is '{unit}'",
-            columns=(column.index,),
-            remedy=(
-                way_out(role, column.unit)
-                if is_signal(column.unit)
-                else f"omit it, or write the unit of the column as {apart(unit)[1]} in the header"
-            ),
-            setting=Setting(role, "unit"),
-        ) from None
-
-
-def _swapped(
-    role: str, column: Column, unit: str, columns: tuple[Column, ...], taken: Mapping[str, Column]
-) -> tuple[str, str]:
-    """What else a column of a unit that the role cannot have may be, and the remedy; or nothing."""
-    elsewhere = next((r for r in ROLES if r != role and _could_be(r, column, surely=True)), "")
-    others = [c for c in columns if c != column and c.unit and _could_be(role, c, surely=True)]
-    both = [c for c in others if elsewhere and taken.get(elsewhere) == c]
-    others = [c for c in others if c not in taken.values()] or both
-    if not (others and elsewhere) or unit != column.unit:
-        return "", ""
-    swapped = {role: others[0].path} | ({elsewhere: column.path} if others == both else {})
-    said = f", but a unit of {elsewhere}. Are the columns swapped?"
-    return said, f"use {channels_to(swapped)}"
-
-
-def _right_unit(role: str, unit: str) -> str:
-    """What to do where a column has a unit that its role cannot have."""
-    setting = Setting(role, "unit")
-    if is_signal(unit) and role != "time":
-        return way_out(role, unit)
-    if role == "speed" and unit.strip() in ("Hz", "1/s"):
-        turns = f"if it means revolutions, use {setting.to('rev/s')}"
-        return f"{turns}. {_INVERTER} {setting.to('rev/s/2')}" if unit.strip() == "Hz" else turns
-    kind = ROLE_KINDS[role][0]
-    return f"use {setting.to(nearest_unit(kind, unit) or KINDS[kind][1])}, or correct the header"

@@ -9,8 +9,8 @@ import numpy as np
 from hersey.arrays import FloatArray
 from hersey.errors import Setting
 from hersey.log.believed import as_written, in_si
-from hersey.log.channels import is_frequency, is_of_kind
 from hersey.log.means import MeansTable
+from hersey.log.roles import is_frequency, is_of_kind
 from hersey.log.torque_log import Channel, TorqueLog
 from hersey.schema.warning import Warning
 from hersey.units import celsius, conversion

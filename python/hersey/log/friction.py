@@ -14,7 +14,8 @@ import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.errors import ParameterError
-from hersey.log.channels import ChannelChoice, Stated, find_channel, role_conversion
+from hersey.log.channels import ChannelChoice, Stated, find_channel
+from hersey.log.roles import role_conversion
 from hersey.log.stating import proposals, unstated
 from hersey.log.text.column import Column
 from hersey.log.torque_log import LogFile, Run

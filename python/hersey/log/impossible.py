@@ -18,8 +18,8 @@ import numpy as np
 from hersey.arrays import BoolArray, FloatArray, IntArray
 from hersey.errors import DROP_MISSING, ISOTHERMAL, Setting, TimeOrderError, UnreadableLogError
 from hersey.log.believed import BELIEVED, Believed, as_written, is_code, is_wrapped
-from hersey.log.channels import role_conversion
 from hersey.log.neighbours import bursts, drop_outs, flips, on_its_way, pulses
+from hersey.log.roles import role_conversion
 from hersey.log.stray_times import stray_times
 from hersey.log.text.column import Column
 from hersey.result import Means, Record

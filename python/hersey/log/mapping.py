@@ -20,7 +20,7 @@ from pydantic.dataclasses import dataclass
 from hersey.errors import MAPPING, ChannelError, ParameterError, Setting, UnitError, printable, turned
 from hersey.files.toml import Table, naming, read_tables, read_toml
 from hersey.log import corrections
-from hersey.log.channels import OTHER_ROLES, ROLE_KINDS, ROLES, Stated, role_conversion
+from hersey.log.channels import Stated
 from hersey.log.corrections import Corrected
 from hersey.log.reading import read
 from hersey.log.role_tables import (
@@ -32,6 +32,7 @@ from hersey.log.role_tables import (
     TimeMapping,
     TorqueMapping,
 )
+from hersey.log.roles import OTHER_ROLES, ROLE_KINDS, ROLES, role_conversion
 from hersey.log.sensor_tables import sensors_of
 from hersey.log.sensors import Sensors
 from hersey.log.text.delimited import Progress

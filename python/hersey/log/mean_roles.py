@@ -10,14 +10,8 @@ import numpy as np
 from hersey.arrays import FloatArray
 from hersey.errors import UnreadableLogError
 from hersey.log.cell_table import CellTable
-from hersey.log.channels import (
-    ChannelChoice,
-    called,
-    find_channel,
-    no_channel,
-    role_conversion,
-    taken_columns,
-)
+from hersey.log.channels import ChannelChoice, called, find_channel, no_channel, taken_columns
+from hersey.log.roles import role_conversion
 from hersey.log.text.column import Column
 from hersey.units import Conversion
 

@@ -9,9 +9,10 @@ import numpy as np
 
 from hersey.errors import HerseyError, printable
 from hersey.files.toml import quoted
-from hersey.log.channels import ChannelChoice, called, find_channel, is_dead, role_conversion
+from hersey.log.channels import ChannelChoice, called, find_channel, is_dead
 from hersey.log.columns import open_columns
 from hersey.log.reading import list_channels
+from hersey.log.roles import role_conversion
 from hersey.log.stating import proposed
 from hersey.log.text.column import Column
 from hersey.units import Conversion

@@ -12,13 +12,14 @@ import numpy as np
 from hersey.arguments.numbers import described
 from hersey.errors import ParameterError
 from hersey.log.assembly import Assembly
-from hersey.log.channels import OTHER_ROLES, ROLES, ChannelChoice, Stated
+from hersey.log.channels import ChannelChoice, Stated
 from hersey.log.exchanged import refuse_exchanged
 from hersey.log.formats import format_of, opened
 from hersey.log.formats.frame import frame_recording, is_frame
 from hersey.log.friction import of_each_run
 from hersey.log.given_twice import refuse_given_twice
 from hersey.log.recording import columns, nothing_to_read
+from hersey.log.roles import OTHER_ROLES, ROLES
 from hersey.log.text.column import distinct_names
 from hersey.log.text.delimited import Progress, delimited_columns, read_delimited
 from hersey.log.torque_log import LARGEST, LogFile, Run, TorqueLog

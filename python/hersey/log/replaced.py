@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from hersey.errors import Setting, UnitError
-from hersey.log.channels import role_conversion
+from hersey.log.roles import role_conversion
 from hersey.log.text.column import Column
 from hersey.log.torque_log import LogFile
 from hersey.schema.warning import Warning

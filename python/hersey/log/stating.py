@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import Final
 
 from hersey.errors import Setting, UnstatedRoleError, way_in
-from hersey.log.channels import is_called, is_of_kind
+from hersey.log.roles import is_called, is_of_kind
 from hersey.log.text.column import Column
 from hersey.schema.warning import Warning
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from hersey.errors import ISOTHERMAL, ChannelError, ParameterError
-from hersey.log.channels import EVERY, ROLES, ChannelChoice, Stated
+from hersey.log.channels import ChannelChoice, Stated
+from hersey.log.roles import EVERY, ROLES
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from hersey.damping.dwells.judging import Asked
 from hersey.damping.dwells.points import Rejection
 from hersey.damping.dwells.reasons import CAUSES, Reason, opposite_signs, remedies, sizes
 from hersey.errors import ROTATION, InsufficientDataError, Setting, followed_by, turned
-from hersey.log.channels import EVERY
+from hersey.log.roles import EVERY
 from hersey.log.torque_log import NO_CLOCK, Run, TorqueLog
 from hersey.units import rpm
 

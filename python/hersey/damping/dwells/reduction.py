@@ -22,7 +22,7 @@ from hersey.damping.dwells.shared_noise import Powers, SharedNoise, shared_noise
 from hersey.damping.dwells.steadiness import MAX_TEMPERATURE_DRIFT, drift_over, straightened
 from hersey.damping.dwells.zero import Zero, standing_stretches, starts_of
 from hersey.errors import TARE, InsufficientDataError, ParameterError, Setting
-from hersey.log.channels import MEANS
+from hersey.log.roles import MEANS
 from hersey.log.torque_log import ROTATIONS, TARES, Run, TorqueLog
 
 #: Rounds in which dwells are judged again by the noise of those kept, at the most.

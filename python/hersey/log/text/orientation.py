@@ -6,7 +6,8 @@ import re
 from collections.abc import Collection
 
 from hersey.errors import HerseyError, UnreadableLogError
-from hersey.log.channels import ROLES, ChannelChoice, find_channel, is_called
+from hersey.log.channels import ChannelChoice, find_channel
+from hersey.log.roles import ROLES, is_called
 from hersey.log.text.column import Column, split_unit
 from hersey.log.text.numbers import is_missing, looks_numeric
 from hersey.log.text.separators import split

@@ -1,0 +1,112 @@
+"""Roles of a log's columns: their names, and the kinds of units that they may have."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import replace
+
+from hersey.errors import Setting, UnitError, WrongKindError, way_in
+from hersey.log.signals import apart
+from hersey.log.text.column import Column
+from hersey.units import Conversion, conversion
+
+#: Roles of a log's columns, in the order in which they are asked for.
+ROLES = ("time", "torque", "speed", "temperature")
+#: Roles of columns that a log may have beside them: normal load, radius at which a friction force acts, and
+#: the number of a run.
+OTHER_ROLES = ("load", "radius", "run")
+#: What a person sets beside the channels.
+EVERY = Setting("every")
+MEANS = Setting("means", "switch")
+#: What a column of a role may hold, kinds of units: the first where there is a choice.
+ROLE_KINDS: dict[str, tuple[str, ...]] = {
+    "time": ("time",),
+    "torque": ("torque", "force", "friction coefficient"),
+    "speed": ("speed", "belt speed"),
+    "temperature": ("temperature",),
+    "load": ("force",),
+    "radius": ("length",),
+}
+_NAMES = {
+    "time": r"t|time.*|.*\btime|.*datetime|.*zeit|timestamp|elapsed.*|.*seconds|epoch.*|unix.*",
+    "torque": r".*torque.*|tq.*|.*\btq|.*moment.*|m",
+    "speed": r".*speed.*|.*velocity.*|.*rpm.*|.*omega.*|.*drehzahl.*|n|w|ω",
+    "temperature": r".*temp.*|.*thermistor.*|.*heater.*|.*thermocouple.*|.*film t.*",
+    "load": r".*\bload(?! ?cell).*|.*normal ?(force|kraft).*|.*normalkraft.*|f_?n|.*axial ?force",
+    "radius": r".*radius.*",
+}
+#: Names of what stands for a torque, or a speed of rotation, where the radius is known.
+FRICTION_NAMES = {
+    "friction coefficient": r"(.*\b)?cof\b.*|[µμ]|mu|.*(friction|traction|reib).*(coef|koef|beiwert|zahl).*",
+    "force": r".*(friction|traction|reib).*|.*tangential.*(force|kraft).*|f_?[tf]",
+    "belt speed": r"v|v_?(s|rel|slid).*|.*(slid|slip|gleit|surface|peripheral).*",
+}
+#: Words of a name of a frequency, and what to do with that of an inverter.
+_FREQUENCY = re.compile(r"fr[eé]q", re.IGNORECASE)
+#: Characters of a name at the most.
+_LONGEST_NAME = 200
+
+
+def channels_to(columns: Mapping[str, str]) -> str:
+    """Return what to write so that columns play roles, by role."""
+    if way_in() == "python":
+        return f"channels={dict(columns)}"
+    joint = " " if way_in() == "terminal" else ", "
+    return joint.join(Setting(role, "channel").to(path) for role, path in columns.items())
+
+
+def is_called(role: str, column: Column) -> bool:
+    """Return whether a column has a name that columns of a role have."""
+    return is_named(_NAMES[role], column)
+
+
+def is_named(pattern: str, column: Column) -> bool:
+    """Return whether a column is called so; a very long name is not, as patterns take long."""
+    return len(column.name) <= _LONGEST_NAME and bool(re.fullmatch(pattern, column.name, re.IGNORECASE))
+
+
+def is_frequency(name: str) -> bool:
+    """Return whether the name of a column says that it holds a frequency."""
+    return len(name) <= _LONGEST_NAME and _FREQUENCY.search(name) is not None
+
+
+def is_of_kind(kind: str, unit: str) -> bool:
+    """Return whether a unit is one of a kind of quantity."""
+    try:
+        return bool(unit and conversion(kind, unit))
+    except UnitError:
+        return False
+
+
+def could_be(role: str, column: Column, surely: bool = False) -> bool:
+    """Return whether the unit allows the role; a missing or unknown one does, unless asked to be sure."""
+    if role == "time" and re.search("rad|rev|turn", column.unit):  # angles have no dimension
+        return False
+    try:
+        return bool(column.unit and conversion(ROLE_KINDS[role][0], column.unit)) or not surely
+    except WrongKindError:
+        return False
+    except UnitError:
+        return not surely
+
+
+def role_conversion(role: str, unit: str) -> tuple[str, Conversion]:
+    """Return the kind of what a column of a role holds, and its conversion to SI.
+
+    ``unit`` may be that of one of a signal, as ``0.2 N*m/A``.
+
+    Raises
+    ------
+    UnitError
+        If the unit is unknown, or of no kind that the role can have.
+    """
+    text = "1" if unit in ("-", "\u2013") else apart(unit)[0]
+    for kind in ROLE_KINDS[role]:
+        if kind == "friction coefficient" and text != "1":  # % of a torque is none
+            continue
+        try:
+            return kind, replace(conversion(kind, text), unit=unit)
+        except WrongKindError:
+            continue
+    return ROLE_KINDS[role][0], conversion(ROLE_KINDS[role][0], unit)
