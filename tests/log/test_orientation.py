@@ -126,6 +126,39 @@ def test_names_may_end_with_their_units(tmp_path: Path) -> None:
     np.testing.assert_array_equal(named.torque, run.torque)
 
 
+@pytest.mark.parametrize("order", [(0, 1, 2), (0, 2, 1)])
+def test_a_row_of_data_types_is_passed_over(order: tuple[int, ...], tmp_path: Path) -> None:
+    above = ["Time;Torque;Speed;Temp", "ms;Nm;rpm;degC", "DINT;REAL;REAL;LREAL"]
+    text = "\n".join([*(above[i] for i in order), ROWS.replace(",", ";"), ""])
+    path = written(tmp_path, text)
+    assert list_channels(path) == [("Time", "ms"), ("Torque", "Nm"), ("Speed", "rpm"), ("Temp", "degC")]
+    assert hersey.read(path).rows == len(NUMBERS)
+
+
+def test_units_in_the_cells_are_named(tmp_path: Path) -> None:
+    rows = [f"{i / 10} s;0.2 Nm;{60 + i} rpm;150 °C" for i in range(40)]
+    path = written(tmp_path, "\n".join(["Time;Torque;Speed;Temp", *rows, ""]))
+    with pytest.raises(UnreadableLogError, match=r"line 41: .*'3\.9 s'\. Write .* 'Time \[s\]'"):
+        hersey.read(path)
+
+
+def test_a_clock_of_whole_minutes_asks_for_the_time_between_rows(tmp_path: Path) -> None:
+    rows = [f"08:{i // 600:02d},{1 + i % 7 / 100:g},60,150" for i in range(3000)]
+    path = written(tmp_path, "\n".join([",".join(["Time", *HEAD[1:]]), *rows, ""]))
+    with pytest.raises(UnreadableLogError, match=r"only hours and minutes, each in 600 rows.* every=0\.1$"):
+        hersey.read(path)
+    log = hersey.read(path, every=0.1)
+    assert float(log.runs[0].time[-1]) == pytest.approx(299.9)
+    (warning,) = [each for each in log.files[0].warnings if each.kind == "clock passed over"]
+    assert "column 'Time' is not used: every sets the time between rows" in str(warning)
+
+
+def test_minutes_and_seconds_of_a_fast_log_stay_so(tmp_path: Path) -> None:
+    rows = [f"{i // 6000}:{i // 100 % 60:02d},{1 + i % 7 / 100:g},60,150" for i in range(3000)]
+    path = written(tmp_path, "\n".join([",".join(["Time", *HEAD[1:]]), *rows, ""]))
+    assert float(hersey.read(path).runs[0].time[-1]) == pytest.approx(29.0)
+
+
 @pytest.mark.parametrize("symbol", ["v_s", "n_s", "mu_s", "F_N", "w_ms"])
 def test_the_index_of_a_symbol_is_no_unit(symbol: str, tmp_path: Path) -> None:
     path = written(tmp_path, f"Time [s],Torque [N*m],{symbol},Temp [degC]\n{ROWS}\n")

@@ -12,11 +12,11 @@ from hersey.arrays import BoolArray, FloatArray, IntArray
 from hersey.errors import ChannelError, HerseyError, Setting, TimeOrderError, UnreadableLogError
 from hersey.log.believed import in_si
 from hersey.log.channels import (
+    clocks_passed_over,
     constant_channel,
     find_channel,
     is_dead,
     no_channel,
-    refuse_two_clocks,
     refuse_two_roles,
     taken_columns,
 )
@@ -81,9 +81,8 @@ class Assembly:
                 self.chosen[role] = self._channel(role)
         torque = self.chosen["torque"][0]
         near = tuple(c for c in self.columns if c.group == torque.group)
-        refuse_two_clocks(near, self.stated, self.source.name)
         self.chosen |= beside(near, self.choices, self.stated, self.chosen, self.source.name)
-        self._unused = unused(near, self.chosen, self.stated)
+        self._unused = [*clocks_passed_over(near, self.stated), *unused(near, self.chosen, self.stated)]
         self.parts = {role: self._part(role) for role in self.chosen}
 
     def runs(self) -> list[tuple[Run, LogFile]]:

@@ -14,7 +14,6 @@ from hersey.arrays import FloatArray
 from hersey.errors import (
     ISOTHERMAL,
     ChannelError,
-    ParameterError,
     Setting,
     meant,
     printable,
@@ -217,20 +216,20 @@ def refuse_two_roles(role: str, column: Column, chosen: Mapping[str, tuple[Colum
             )
 
 
-def refuse_two_clocks(columns: tuple[Column, ...], stated: Stated, file: str) -> None:
-    """Raise if the time between rows is stated beside a column of the time.
-
-    Raises
-    ------
-    ParameterError
-        It names the column.
-    """
+def clocks_passed_over(columns: tuple[Column, ...], stated: Stated) -> list[Warning]:
+    """Return a warning of the column of the time beside which the time between rows is stated."""
     clock = next((c for c in columns if is_called("time", c) and is_of_kind("time", c.unit)), None)
-    if stated.every is not None and clock is not None:
-        raise ParameterError(
-            f"{file}: column '{clock}' is a clock, but {EVERY.to()} gives the time between rows as well",
-            remedy=f"omit {EVERY.to()}, or rename the column if its times are wrong",
+    if stated.every is None or clock is None:
+        return []
+    return [
+        Warning(
+            "clock passed over",
+            "column '{column}' is not used: {setting} sets the time between rows",
+            severity="watch",
+            column=clock.path,
+            setting=EVERY,
         )
+    ]
 
 
 def called(name: str, columns: tuple[Column, ...]) -> list[Column]:

@@ -16,11 +16,11 @@ from hersey.files.reading import OpenFile, appended
 from hersey.log.believed import in_si
 from hersey.log.channels import (
     Stated,
+    clocks_passed_over,
     constant_channel,
     find_channel,
     is_dead,
     no_channel,
-    refuse_two_clocks,
     refuse_two_roles,
     taken_columns,
 )
@@ -34,6 +34,7 @@ from hersey.log.text.column import Column
 from hersey.log.text.footer import end_of_table
 from hersey.log.text.layout import SNIFFED, Layout, find_layout
 from hersey.log.text.numbers import is_missing
+from hersey.log.text.stamps import refuse_whole_minutes
 from hersey.log.torque_log import NO_CLOCK, Channel, LogFile, Run
 from hersey.log.wanted import Wanted
 from hersey.schema.warning import Warning
@@ -60,6 +61,8 @@ def read_delimited(path: Path, wanted: Wanted, progress: Progress | None = None)
         table.read(file.opened, end.byte, progress)
         growth = file.opened.growth(table.digest.hexdigest())
     arrays, impossible = table.arrays()
+    if (time := channels.get("time")) and (stamps := table.reader.stamps.get(time[0].index)):
+        refuse_whole_minutes(f"{name}: column '{time[0].name}'", stamps, arrays["time"])
     used = tuple(Channel(role, column.name, si.unit) for role, (column, si) in table.channels.items())
     if stated.every is not None:
         used = (Channel("time", NO_CLOCK, f"{stated.every:g} s"), *used)
@@ -75,6 +78,7 @@ def read_delimited(path: Path, wanted: Wanted, progress: Progress | None = None)
         (
             *layout.warnings,
             *table.reader.warnings(),
+            *clocks_passed_over(layout.named, stated),
             *computed(channels, stated),
             *replaced_units(table.channels),
             *dead.warnings,
@@ -190,7 +194,6 @@ def _channels(
     choices, used = wanted.choices, wanted.roles
     if layout.headless and not all(choices[role].name for role in used):
         raise UnreadableLogError(_by_number(layout, [role for role in used if not choices[role].name], used))
-    refuse_two_clocks(layout.named, wanted.stated, name)
     chosen: dict[str, tuple[Column, Conversion]] = {}
     for role in sorted(used, key=lambda r: r != "torque"):  # without it the rest is of no use
         taken = taken_columns(role, layout.named, choices, chosen)

@@ -15,6 +15,10 @@ from hersey.units import KINDS, conversion
 #: A line of the text with its number, counted from 1.
 Numbered = tuple[int, str]
 #: A name in a header between blanks, with the unit behind it.
+_TYPE = re.compile(
+    r"(L?REAL|[US]?D?INT|L?INT|D?WORD|BYTE|BOOL|STRING|(DATE_AND_)?TIME|FLOAT|DOUBLE|U?INT\d+|FLOAT\d+)",
+    re.IGNORECASE,
+)
 _NAME = re.compile(r"[^\s\[(]+(?:[ \t]?(?:\[[^\[\]]*\]|\([^()]*\)))?|\S+")
 
 
@@ -28,12 +32,15 @@ def columns_of(table: NumberRows, numbered: list[Numbered], file: str) -> tuple[
     """
     if headless := _headless(table, numbered, file):
         return tuple(Column(index, f"#{index + 1}", "") for index in range(table.width)), headless
-    above = [_names(line, table) for _, line in numbered[: table.first]]
-    line, header = numbered[table.first - 1][0], above[-1]
+    above = [(number, _names(line, table)) for number, line in numbered[: table.first]]
+    above = [row for row in above[:-1] if not _are_types(row[1])] + above[-1:]
+    if len(above) > 1 and _are_types(above[-1][1]):
+        del above[-1]
+    line, header = above[-1]
     units: list[str] = []
-    if len(above) > 1 and len(above[-2]) == len(header) and _is_units_row(header):
-        line, units, header = numbered[table.first - 2][0], header, above[-2]
-    units = units or _of_oscilloscope(above[:-1], len(header))
+    if len(above) > 1 and len(above[-2][1]) == len(header) and _is_units_row(header):
+        units, (line, header) = header, above[-2]
+    units = units or _of_oscilloscope([row for _, row in above[:-1]], len(header))
     _require_width(table, numbered, header, line, file)
     columns = []
     for index in range(table.width):
@@ -94,6 +101,11 @@ def _too_many(table: NumberRows, rows: list[list[str]], named: int) -> str:
             "between the columns, or with decimal points"
         )
     return "Give every column a name. If a comma separates thousands, export with ';' between the columns"
+
+
+def _are_types(row: list[str]) -> bool:
+    """Whether a row names only data types, as panels write them below the names."""
+    return len(row) > 1 and all(_TYPE.fullmatch(cell) for cell in row)
 
 
 def _of_oscilloscope(above: list[list[str]], width: int) -> list[str]:

@@ -27,6 +27,10 @@ _LINES_OF_A_CELL = 10
 _COMMENTS = ("#", "~", "//")
 
 
+#: A number with its unit.
+_WITH_UNIT = re.compile(r"([-+]?[0-9][0-9.,]*(?:[eE][-+]?[0-9]+)?) ?([A-Za-zµμ°%][A-Za-z0-9µμ°%*/·^]*)")
+
+
 @dataclass(frozen=True)
 class Layout:
     """How to read the table: ``first_line`` is the line of the first row, counted from 1.
@@ -153,6 +157,7 @@ def _table(numbered: list[Numbered], separators: str, name: str) -> NumberRows:
     if table.score == 0:
         for each in separators:
             _refuse_long_words(numbered, each, name)
+            _refuse_units_in_cells(numbered, each, name)
         raise UnreadableLogError(
             f"{name} has a header but no rows of numbers"
             if any(len(split(numbered[-1][1], each)) > 1 for each in SEPARATORS)
@@ -169,6 +174,21 @@ def _refuse_long_words(numbered: list[Numbered], separator: str, name: str) -> N
     columns, stamps = _with_stamps(tuple(Column(i, cell, "") for i, cell in enumerate(header)), rows)
     texts = {i for i in range(width) if i not in stamps and _holds_words(rows, i)}
     refuse_long(name, columns, texts, stamps, rows, header)
+
+
+def _refuse_units_in_cells(numbered: list[Numbered], separator: str, name: str) -> None:
+    """Raise if the cells of the rows are numbers with their units."""
+    (number, last), (_, header) = numbered[-1], numbered[0]
+    cells, names = split(last, separator), split(header, separator)
+    found = [(i, match) for i, cell in enumerate(cells) if (match := _WITH_UNIT.fullmatch(cell))]
+    if len(cells) < 2 or 2 * len(found) < len(cells):
+        return
+    index, match = found[0]
+    named = names[index] if index < len(names) else "Time"
+    raise UnreadableLogError(
+        f"{name}, line {number}: the cells hold units, e.g. '{cells[index]}'",
+        remedy=f"write the unit in the header, '{named} [{match[2]}]', and only numbers in the cells",
+    )
 
 
 def encoding_of(start: bytes, name: str) -> str:

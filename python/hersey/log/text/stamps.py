@@ -10,7 +10,8 @@ import numpy as np
 import polars as pl
 
 from hersey.arrays import FloatArray
-from hersey.errors import Setting
+from hersey.errors import UnreadableLogError
+from hersey.log.roles import EVERY
 from hersey.log.text.numbers import NumberStyle, is_missing, with_thousands
 from hersey.schema.warning import Warning
 
@@ -74,6 +75,8 @@ _MONTH = (
     "(?i:jan(uary)?|feb(ruary)?|mar(ch)?|apr(il)?|may|june?|july?|aug(ust)?|sep(tember)?|oct(ober)?"
     "|nov(ember)?|dec(ember)?)"
 )
+#: More rows than this in what is written as a second are those of a minute.
+_ROWS_OF_A_SECOND = 200
 #: A time such as 0:05, which could be hours and minutes too.
 _TWO_PARTS = "minutes and whole seconds"
 _NAMED = rf"[0-9]{{1,2}}[- ]{_MONTH}[- ][0-9]{{4}} "
@@ -169,7 +172,7 @@ class Stamps:
             since=since,
             midnights=self.midnights,
             period="day" if self.style.is_time_of_day else "hour",
-            every=Setting("every"),
+            every=EVERY,
         )
 
     def _past_its_period(self, times: FloatArray) -> FloatArray:
@@ -181,6 +184,26 @@ class Stamps:
             self._last, self.midnights = float(times[known[-1]]), int(midnights[-1])
             times[known] += self.style.period * midnights
         return times
+
+
+def refuse_whole_minutes(place: str, stamps: Stamps, time: FloatArray) -> None:
+    """Raise if so many rows share each time that its seconds were lost: ``time`` in s, shape (rows,).
+
+    Raises
+    ------
+    UnreadableLogError
+        It says how long one row lasts if a time is a minute.
+    """
+    if stamps.style.name != _TWO_PARTS or not time.size:
+        return
+    rows = float(np.median(np.unique(time, return_counts=True)[1]))
+    if rows > _ROWS_OF_A_SECOND:
+        every = f"{60.0 / rows:.2g}"
+        raise UnreadableLogError(
+            f"{place} shows only hours and minutes, each in {rows:.0f} rows",
+            remedy="export it with seconds and their decimals, or give the time between rows, e.g. "
+            + EVERY.to(f"{every} s", python=every),
+        )
 
 
 def numbers_in(cells: pl.Series, written: NumberStyle | Stamps) -> tuple[FloatArray, pl.Series]:
