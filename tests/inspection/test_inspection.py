@@ -317,6 +317,7 @@ def test_other_formats_are_shown_channel_by_channel() -> None:
     (file,) = inspect(shared("data/daq-formats/tdms") / "Digital_Input.tdms").files
     assert [round(clock.interval, 6) for clock in file.clocks] == [0.0005, 0.025, 1.25]
     assert file.rows == 20_000
+    assert "time" not in file.lacking
     for path in sorted(shared("data/daq-formats/mf4-bus").glob("*.MF4")):
         found = inspect(path)
         assert found.files[0].channels == ()

@@ -125,7 +125,7 @@ def roles_of(
         return is_dead(values[column])
 
     for role in ROLES:
-        if role == "time" and stated.every is not None:
+        if role == "time" and (stated.every is not None or any(c.clock is not None for c in log.channels)):
             continue
         try:
             taken = taken_columns(role, columns, choices, chosen)
