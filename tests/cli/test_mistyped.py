@@ -323,6 +323,15 @@ def test_a_machine_file_is_no_scenario(tmp_path: Path) -> None:
     assert "--machine" in done.stderr
 
 
+@pytest.mark.parametrize("verb", ["fit", "cycles", "report"])
+def test_a_scenario_is_no_log(verb: str, tmp_path: Path) -> None:
+    done = run(verb, ROOT / "examples" / "scenario.toml", cwd=tmp_path)
+    assert done.returncode == 2
+    assert done.stderr.endswith(
+        f"is a scenario, not a log. To run it, type: hersey sweep {ROOT}/examples/scenario.toml\n"
+    )
+
+
 @pytest.mark.parametrize("verb", ["hysteresis", "simulate"])
 def test_verbose_prints_the_conclusion_once(verb: str, tmp_path: Path) -> None:
     usual, whole = (run(verb, *more, cwd=tmp_path).stdout for more in ([], ["-v"]))

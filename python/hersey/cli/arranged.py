@@ -51,6 +51,8 @@ def refuse_disorder(context: Any, words: Sequence[str]) -> None:
 def _without(toml: str, files: list[str], others: list[str], command: Any, verb: list[str]) -> str:
     """What to type instead of a TOML file among the logs."""
     kind = _kind(toml)
+    if kind == "scenario":
+        return f"{toml} is a scenario, not a log. To run it, type: {retyped('sweep', toml)}"
     needed = [each.metavar for each in command.params if each.required and each.metavar in _OF_LOGS]
     files = [*files, *needed[len(files) :]] if files else files
     if kind not in options_of(command):
@@ -75,6 +77,8 @@ def _kind(toml: str) -> str:
         tables = set(read_toml(Path(toml)))
     if "drivetrain" in tables:
         return "machine"
+    if "parameters" in tables:
+        return "scenario"
     return "recipe" if "logs" in tables else "mapping" if tables & _ROLES else "machine"
 
 
