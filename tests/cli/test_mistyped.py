@@ -98,6 +98,48 @@ def test_words_in_the_wrong_place_are_put_right(typed: str, line: str, tmp_path:
 
 
 @pytest.mark.parametrize(
+    ("typed", "line"),
+    [
+        ("map m.toml f.json", "map m.toml --fit f.json"),
+        ("map f.json m.toml --json", "map m.toml --fit f.json --json"),
+        (
+            "plan m.toml a.csv f.json --tare standing --torque-sign -1 --target '60 mm/s'",
+            "plan m.toml --fit f.json --target '60 mm/s'",
+        ),
+        ("warmup f.json", "warmup MACHINE --fit f.json"),
+        ("simulate m.toml f.json --heat", "simulate --machine m.toml --fit f.json --heat"),
+        ("report f.json --tare standing", "report LOG --tare standing"),
+        ("report m.toml f.json", "report LOG --machine m.toml"),
+        ("fit a.csv f.json", "fit a.csv"),
+        ("compare f.json a.csv", "compare a.csv B"),
+        ("film m.toml f.json", "film m.toml --log LOG"),
+    ],
+)
+def test_a_saved_fit_in_the_place_of_a_log_is_given_its_option(typed: str, line: str, tmp_path: Path) -> None:
+    (tmp_path / "f.json").write_text('{"hersey_version": "0.1.0", "fit": {"values": [1]}}')
+    done = run(*shlex.split(typed), cwd=tmp_path)
+    assert done.returncode == 2
+    assert done.stderr.startswith("hersey: f.json is a saved fit, not a log. ")
+    assert done.stderr.endswith(f": hersey {line}\n")
+
+
+def test_json_is_no_log(tmp_path: Path) -> None:
+    """A result under another name, and any other JSON, which no line of numbers in it makes a table."""
+    numbers = '"values": [\n' + "1, 2, 3,\n" * 20 + "1, 2, 3]}"
+    (tmp_path / "f.txt").write_text('{\n "hersey_version": "0.1.0",\n "fit": {' + numbers + "}")
+    for verb in ("report", "fit"):
+        done = run(verb, "f.txt", cwd=tmp_path)
+        assert (done.returncode, done.stderr) == (
+            2,
+            "hersey: f.txt is a result of hersey, not a log. Give the log itself; where a command takes a "
+            "saved fit, use --fit\n",
+        )
+    (tmp_path / "f.json").write_text("{" + numbers)
+    done = run("report", "f.json", cwd=tmp_path)
+    assert done.stderr == "hersey: f.json is JSON, not a table. Export the channels as text (CSV)\n"
+
+
+@pytest.mark.parametrize(
     ("typed", "advice"),
     [
         ("simulate --stiffness 11 N/mm --mass '11 kg'", "--stiffness '11 N/mm'"),
