@@ -65,6 +65,10 @@ def test_an_option_of_other_commands_is_omitted_with_its_value(tmp_path: Path) -
             "export f.json m.toml --out x.fmu",
             "export fmu f.json m.toml --out x.fmu --temperature '180 degC'",
         ),
+        (
+            "export m.toml f.json --out x.slx",
+            "export fmu f.json m.toml --out x.fmu --temperature '180 degC'",
+        ),
         ("report --log a.csv --tare standing", "report --tare standing a.csv"),
         ("--machine m.toml report a.csv", "report --machine m.toml a.csv"),
         ("--machine m.toml a.csv", "report --machine m.toml a.csv"),
