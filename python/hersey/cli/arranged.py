@@ -28,7 +28,7 @@ def refuse_disorder(context: Any, words: Sequence[str]) -> None:
     """
     command, verb = context.command, path_of(context)
     slots = [each.metavar for each in command.params if not each.opts[0].startswith("-")]
-    files, others = _parted(words, command)
+    files, others = parted(words, command)
     tomls = [each for each in files if _ends(each, {_TOML})]
     logs = [each for each in files if _ends(each, LOGS)]
     fits = [each for each in files if _is_fit(each)]
@@ -106,13 +106,18 @@ def _not_of_a_log(others: list[str], command: Any) -> list[str]:
     """Options as typed, without those that say how a log is read, which no saved fit takes, and ``--fit``."""
     from hersey.cli.options import READ, REDUCED
 
-    panel_of = {name: getattr(each, "rich_help_panel", None) for each in command.params for name in each.opts}
-    omitted = {name for name, panel in panel_of.items() if panel in (READ, REDUCED)} | {"--fit"}
+    read = [each for each in command.params if getattr(each, "rich_help_panel", None) in (READ, REDUCED)]
+    return without_options(others, ["--fit", *(name for each in read for name in each.opts)], command)
+
+
+def without_options(others: Sequence[str], omitted: Sequence[str], command: Any) -> list[str]:
+    """Return options with their values as typed, without those ``omitted``."""
+    known = {name for each in command.params for name in each.opts}
     kept: list[str] = []
     dropping = False
     for word in others:
         flag = word.partition("=")[0]
-        if flag in panel_of:
+        if flag in known:
             dropping = flag in omitted
         if not dropping:
             kept.append(word)
@@ -160,8 +165,8 @@ def _ends(file: str, endings: set[str] | frozenset[str]) -> bool:
     return Path(file).suffix.lower() in endings
 
 
-def _parted(words: Sequence[str], command: Any) -> tuple[list[str], list[str]]:
-    """The arguments of a command, and its options with their values, each as typed."""
+def parted(words: Sequence[str], command: Any) -> tuple[list[str], list[str]]:
+    """Return the arguments of a command, and its options with their values, each as typed."""
     takes_value = {
         name: not getattr(each, "is_flag", False)
         for each in command.params
