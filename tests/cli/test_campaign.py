@@ -14,6 +14,7 @@ from hersey.cli import campaign_reading
 from hersey.cli.options import Reading
 from hersey.life.campaign import Entry
 from tests.cli.command import Done, run
+from tests.conftest import ROOT
 from tests.life.test_campaign import means
 
 F12 = ("--unit", "F12", "--age", "1000 pages")
@@ -56,6 +57,15 @@ def test_runs_are_added_listed_shown_checked_and_exported(folder: Path) -> None:
     assert [each["kind"] for each in json.loads(done.stdout)["warnings"]] == ["log missing"]
     assert typed(folder, "export", "life.hersey", "--out", "dwells.parquet").stdout == "dwells.parquet\n"
     assert pl.read_parquet(folder / "dwells.parquet").height == 20
+
+
+def test_a_specimen_that_is_not_there_is_named_with_those_that_are(folder: Path) -> None:
+    typed(folder, "add", "life.hersey", "0.csv", *F12)
+    (folder / "machine.toml").write_text((ROOT / "tests" / "stand" / "machine.toml").read_text())
+    said = "life.hersey has no specimen 'U9'. Specimens: F12\n"
+    done = run("life", "life.hersey", "--machine", "machine.toml", "--unit", "U9", cwd=folder)
+    assert (done.returncode, done.stderr) == (2, f"hersey: --unit: {said}")
+    assert typed(folder, "show", "life.hersey", "U9").stderr == f"hersey: {said}"
 
 
 def test_hundreds_are_read_in_processes_of_their_own(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
