@@ -183,6 +183,33 @@ def drive(tmp_path: Path, *header: str, torque: float = 0.2) -> None:
     (tmp_path / "a log.csv").write_text("\n".join([",".join(header), *rows]))
 
 
+@pytest.mark.parametrize(
+    ("typed", "says"),
+    [
+        ("app --port 8080x", "--port must be a whole number, not 8080x"),
+        ("life c.hersey --machine m.toml --seed 1.5", "--seed must be a whole number, not 1.5"),
+        ("plan m.toml --confidence high", "--confidence must be a number, not high"),
+        ("sweep s.toml --threads 0", "--threads must be at least 1, not 0"),
+        ("testbench --units 2000", "--units must be at most 1000, not 2000"),
+    ],
+)
+def test_a_number_that_an_option_does_not_take(typed: str, says: str, tmp_path: Path) -> None:
+    done = run(*shlex.split(typed), cwd=tmp_path)
+    assert (done.returncode, done.stdout, done.stderr) == (2, "", f"hersey: {says}\n")
+
+
+def test_a_folder_is_needed_where_a_file_is_named(tmp_path: Path) -> None:
+    (tmp_path / "notes.txt").write_text("")
+    done = run("app", "--no-browser", "--reports", "notes.txt", cwd=tmp_path)
+    assert done.returncode == 2
+    assert done.stderr.startswith("hersey: notes.txt is a file, but reports are saved in a folder")
+    done = run("examples", "my files.zip", cwd=tmp_path)
+    assert (done.returncode, (tmp_path / "my files.zip").exists()) == (2, False)
+    line = done.stderr.partition("Type: ")[2]
+    assert run(*shlex.split(line)[1:], cwd=tmp_path).returncode == 0
+    assert (tmp_path / "my files" / "bench.csv").exists()
+
+
 def test_cycles_finds_the_torque_of_a_log_and_names_the_command_for_steady_sliding(tmp_path: Path) -> None:
     drive(tmp_path, "Time [s]", "Drive torque [N*m]", "Drive speed [rpm]")
     done = run("cycles", "a log.csv", cwd=tmp_path)
