@@ -115,11 +115,11 @@ def fmu(
         raise ParameterError(
             f"{len(files)} files are given: name a fit and a machine file, or only a machine file"
         )
-    *fits, machine_file = _in_order(files)
     file = may_write(out, force, [*files, *others.values()], ends=[".fmu"])
 
     from hersey.machine.machine import read_machine
 
+    *fits, machine_file = _in_order(files)
     machine = read_machine(machine_file)
     surface = finished_fit(fits[0], machine) if fits else None
     drag = unit.drag(surface, machine, machine_file.name)
