@@ -103,6 +103,40 @@ def test_the_same_belt_in_both_units(tmp_path: Path) -> None:
     assert band["step"]["sticks"]
 
 
+@pytest.mark.parametrize(
+    ("step", "says"),
+    [
+        (
+            ["--from-speed", "20 mm/s", "--to-speed=60 mm/s"],
+            "--from-speed '20 mm/s' lies below the transition speed, 25.4 mm/s.",
+        ),
+        (
+            ["--from-speed", "0.5 in/s", "--to-speed", "2.5 in/s"],
+            "--from-speed '0.5 in/s' (12.7 mm/s) lies below the transition speed, 25.4 mm/s.",
+        ),
+        (
+            ["--from-speed", "0.5", "--to-speed", "2.5"],
+            "--from-speed '0.5' lies below the transition speed, 1.",
+        ),
+    ],
+)
+def test_a_step_from_a_speed_without_steady_sliding_is_refused_as_typed(
+    step: list[str], says: str, tmp_path: Path
+) -> None:
+    done = run("hysteresis", *step, cwd=tmp_path)
+    assert (done.returncode, done.stderr.startswith(f"hersey: {says} ")) == (2, True), done.stderr
+    line = done.stderr.partition("swap the two speeds: ")[2]
+    done = run(*shlex.split(line)[1:], cwd=tmp_path)
+    assert (done.returncode, "A sudden step from" in done.stdout) == (0, True), done.stderr
+
+
+def test_no_swap_is_proposed_to_a_speed_without_steady_sliding(tmp_path: Path) -> None:
+    done = run("hysteresis", "--from-speed", "0.5", "--to-speed", "0.2", cwd=tmp_path)
+    assert done.stderr.endswith(". Start from a higher speed\n")
+    done = run("hysteresis", "--from-speed", "2 mm/s", "--to-speed", "0 mm/s", cwd=tmp_path)
+    assert done.stderr == "hersey: --to-speed '0 mm/s' must be greater than 0\n"
+
+
 def test_a_sweep_takes_from_the_machine_what_its_file_lacks(tmp_path: Path) -> None:
     lines = [
         '[parameters]', 'transition_force = "14 N"', 'ehl_exponent = -0.7', 'mixed_exponent = -1.2',

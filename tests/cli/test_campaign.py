@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shlex
 from pathlib import Path
 
 import polars as pl
@@ -13,6 +14,7 @@ from hersey.cli import campaign_reading
 from hersey.cli.options import Reading
 from hersey.life.campaign import Entry
 from tests.cli.command import Done, run
+from tests.conftest import ROOT
 from tests.life.test_campaign import means
 
 F12 = ("--unit", "F12", "--age", "1000 pages")
@@ -32,8 +34,11 @@ def typed(folder: Path, *arguments: str) -> Done:
 
 
 def test_runs_are_added_listed_shown_checked_and_exported(folder: Path) -> None:
+    done = typed(folder, "add", "life.hersey", "0.csv", "1.csv", "--quiet", *F12)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+    (folder / "life.hersey").unlink()
     done = typed(folder, "add", "life.hersey", "0.csv", "1.csv", *F12)
-    assert (done.returncode, done.stderr) == (0, "")
+    assert (done.returncode, done.stderr.count(".")) == (0, 3)  # two sentences and runs.csv
     assert done.stdout.startswith("0.csv: added as run 1, F12 at 1000 pages, 10 dwells\n1.csv: added as")
     assert "already there as run 1" in typed(folder, "add", "life.hersey", "0.csv", *F12).stdout
     assert typed(folder, "list", "life.hersey").stdout == (
@@ -52,6 +57,15 @@ def test_runs_are_added_listed_shown_checked_and_exported(folder: Path) -> None:
     assert [each["kind"] for each in json.loads(done.stdout)["warnings"]] == ["log missing"]
     assert typed(folder, "export", "life.hersey", "--out", "dwells.parquet").stdout == "dwells.parquet\n"
     assert pl.read_parquet(folder / "dwells.parquet").height == 20
+
+
+def test_a_specimen_that_is_not_there_is_named_with_those_that_are(folder: Path) -> None:
+    typed(folder, "add", "life.hersey", "0.csv", *F12)
+    (folder / "machine.toml").write_text((ROOT / "tests" / "stand" / "machine.toml").read_text())
+    said = "life.hersey has no specimen 'U9'. Specimens: F12\n"
+    done = run("life", "life.hersey", "--machine", "machine.toml", "--unit", "U9", cwd=folder)
+    assert (done.returncode, done.stderr) == (2, f"hersey: --unit: {said}")
+    assert typed(folder, "show", "life.hersey", "U9").stderr == f"hersey: {said}"
 
 
 def test_hundreds_are_read_in_processes_of_their_own(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -166,6 +180,51 @@ def test_logs_by_a_pattern_go_with_the_rows_of_a_table(folder: Path) -> None:
         listed = campaign.runs().sort("run")
         assert listed.select("unit", "age").rows() == [("F12", 0.0), ("F12", 1000.0), ("F13", 5.0)]
         assert listed["log"].to_list() == [str(folder / f"{number}.csv") for number in range(3)]
+
+
+def test_a_table_of_runs_among_the_logs_is_named_before_any_is_read(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (folder / "runs.csv").write_text("Unit;Age [h];log\nF12;0;0.csv\nF12;5;1.csv\n")
+    with monkeypatch.context() as patched:
+        patched.setattr(campaign_reading, "entries", lambda *_: pytest.fail("a log is read"))
+        done = typed(folder, "add", "life.hersey", "*.csv", *F12, "--min-dwell=2 s", "--torque-sign", "1")
+    assert done.returncode == 2
+    said, line = done.stderr.split(". To add the logs that it lists, type: ")
+    assert said == "hersey: runs.csv is a table of runs, not a log"
+    assert "1000" not in line
+    assert "--torque-sign 1" in line
+    done = run(*shlex.split(line)[1:], cwd=folder)
+    assert (done.returncode, done.stdout) == (0, "life.hersey: 2 added\n")
+
+
+def test_the_table_itself_may_be_among_the_logs_and_no_other(folder: Path) -> None:
+    for name in ("runs.csv", "others.csv"):
+        rows = "".join(f"{number}.csv,F12,{number}\n" for number in range(4))
+        (folder / name).write_text(f"log,unit,age [h]\n{rows}")
+    done = typed(folder, "add", "life.hersey", "*.csv", "--table", "runs.csv")
+    assert (done.returncode, "others.csv is a table of runs, not a log. Omit it" in done.stderr) == (2, True)
+    (folder / "others.csv").unlink()
+    done = typed(folder, "add", "life.hersey", "*.csv", "--table", "runs.csv")
+    assert (done.returncode, done.stdout) == (0, "life.hersey: 4 added\n")
+
+
+def test_several_logs_of_one_specimen_at_one_age_are_said_to_be_that(folder: Path) -> None:
+    done = typed(folder, "add", "life.hersey", "0.csv", "1.csv", "--unit", "F12")
+    assert "add --age '120000 pages'. All 2 logs get this specimen and age. " in done.stderr
+    assert "--table runs.csv instead of --unit and --age" in done.stderr
+    said = "The specimen of all 2 logs is F12, their age 1000 pages. If they differ, "
+    for more in ([], ["--keep-going"]):
+        done = typed(folder, "add", "life.hersey", "0.csv", "1.csv", *F12, *more)
+        assert (done.returncode, " ".join(done.stderr.split()).startswith(said)) == (0, True), done.stderr
+    assert typed(folder, "add", "life.hersey", "0.csv", *F12).stderr == ""
+    assert "--table runs.csv --force" in " ".join(
+        typed(folder, "add", "life.hersey", "0.csv", "1.csv", *F12).stderr.split()
+    )
+    (folder / "runs.csv").write_text("log,unit,age [pages]\n0.csv,F1,0\n1.csv,F2,500\n")
+    assert typed(folder, "add", "life.hersey", "--table", "runs.csv", "--force").returncode == 0
+    with hersey.Campaign.open(folder / "life.hersey") as campaign:
+        assert campaign.runs().select("unit", "age").rows() == [("F1", 0.0), ("F2", 500.0)]
 
 
 def test_of_logs_and_rows_of_one_name_paths_decide(folder: Path) -> None:

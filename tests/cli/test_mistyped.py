@@ -65,6 +65,10 @@ def test_an_option_of_other_commands_is_omitted_with_its_value(tmp_path: Path) -
             "export f.json m.toml --out x.fmu",
             "export fmu f.json m.toml --out x.fmu --temperature '180 degC'",
         ),
+        (
+            "export m.toml f.json --out x.slx",
+            "export fmu f.json m.toml --out x.fmu --temperature '180 degC'",
+        ),
         ("report --log a.csv --tare standing", "report --tare standing a.csv"),
         ("--machine m.toml report a.csv", "report --machine m.toml a.csv"),
         ("--machine m.toml a.csv", "report --machine m.toml a.csv"),
@@ -95,6 +99,48 @@ def test_words_in_the_wrong_place_are_put_right(typed: str, line: str, tmp_path:
     done = run(*shlex.split(typed), cwd=tmp_path)
     assert done.returncode == 2
     assert done.stderr.endswith(f": hersey {line}\n")
+
+
+@pytest.mark.parametrize(
+    ("typed", "line"),
+    [
+        ("map m.toml f.json", "map m.toml --fit f.json"),
+        ("map f.json m.toml --json", "map m.toml --fit f.json --json"),
+        (
+            "plan m.toml a.csv f.json --tare standing --torque-sign -1 --target '60 mm/s'",
+            "plan m.toml --fit f.json --target '60 mm/s'",
+        ),
+        ("warmup f.json", "warmup MACHINE --fit f.json"),
+        ("simulate m.toml f.json --heat", "simulate --machine m.toml --fit f.json --heat"),
+        ("report f.json --tare standing", "report LOG --tare standing"),
+        ("report m.toml f.json", "report LOG --machine m.toml"),
+        ("fit a.csv f.json", "fit a.csv"),
+        ("compare f.json a.csv", "compare a.csv B"),
+        ("film m.toml f.json", "film m.toml --log LOG"),
+    ],
+)
+def test_a_saved_fit_in_the_place_of_a_log_is_given_its_option(typed: str, line: str, tmp_path: Path) -> None:
+    (tmp_path / "f.json").write_text('{"hersey_version": "0.1.0", "fit": {"values": [1]}}')
+    done = run(*shlex.split(typed), cwd=tmp_path)
+    assert done.returncode == 2
+    assert done.stderr.startswith("hersey: f.json is a saved fit, not a log. ")
+    assert done.stderr.endswith(f": hersey {line}\n")
+
+
+def test_json_is_no_log(tmp_path: Path) -> None:
+    """A result under another name, and any other JSON, which no line of numbers in it makes a table."""
+    numbers = '"values": [\n' + "1, 2, 3,\n" * 20 + "1, 2, 3]}"
+    (tmp_path / "f.txt").write_text('{\n "hersey_version": "0.1.0",\n "fit": {' + numbers + "}")
+    for verb in ("report", "fit"):
+        done = run(verb, "f.txt", cwd=tmp_path)
+        assert (done.returncode, done.stderr) == (
+            2,
+            "hersey: f.txt is a result of hersey, not a log. Give the log itself; where a command takes a "
+            "saved fit, use --fit\n",
+        )
+    (tmp_path / "f.json").write_text("{" + numbers)
+    done = run("report", "f.json", cwd=tmp_path)
+    assert done.stderr == "hersey: f.json is JSON, not a table. Export the channels as text (CSV)\n"
 
 
 @pytest.mark.parametrize(
@@ -135,6 +181,33 @@ def drive(tmp_path: Path, *header: str, torque: float = 0.2) -> None:
     """A log of a steady drive, 20 s long."""
     rows = [f"{0.1 * i:.1f},{torque + 0.001 * (i % 3)},30" for i in range(200)]
     (tmp_path / "a log.csv").write_text("\n".join([",".join(header), *rows]))
+
+
+@pytest.mark.parametrize(
+    ("typed", "says"),
+    [
+        ("app --port 8080x", "--port must be a whole number, not 8080x"),
+        ("life c.hersey --machine m.toml --seed 1.5", "--seed must be a whole number, not 1.5"),
+        ("plan m.toml --confidence high", "--confidence must be a number, not high"),
+        ("sweep s.toml --threads 0", "--threads must be at least 1, not 0"),
+        ("testbench --units 2000", "--units must be at most 1000, not 2000"),
+    ],
+)
+def test_a_number_that_an_option_does_not_take(typed: str, says: str, tmp_path: Path) -> None:
+    done = run(*shlex.split(typed), cwd=tmp_path)
+    assert (done.returncode, done.stdout, done.stderr) == (2, "", f"hersey: {says}\n")
+
+
+def test_a_folder_is_needed_where_a_file_is_named(tmp_path: Path) -> None:
+    (tmp_path / "notes.txt").write_text("")
+    done = run("app", "--no-browser", "--reports", "notes.txt", cwd=tmp_path)
+    assert done.returncode == 2
+    assert done.stderr.startswith("hersey: notes.txt is a file, but reports are saved in a folder")
+    done = run("examples", "my files.zip", cwd=tmp_path)
+    assert (done.returncode, (tmp_path / "my files.zip").exists()) == (2, False)
+    line = done.stderr.partition("Type: ")[2]
+    assert run(*shlex.split(line)[1:], cwd=tmp_path).returncode == 0
+    assert (tmp_path / "my files" / "bench.csv").exists()
 
 
 def test_cycles_finds_the_torque_of_a_log_and_names_the_command_for_steady_sliding(tmp_path: Path) -> None:

@@ -79,6 +79,22 @@ def test_a_fit_and_a_machine_become_a_unit(typed: Typed, folder: Path, tmp_path:
     assert far(np.asarray(got["spring_force"]), core.spring_force) < 1e-9
 
 
+def test_fit_and_machine_may_come_in_either_order(typed: Typed) -> None:
+    done = typed(*HOT, fit="machine.toml", machine="fit.json")
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_a_fit_alone_gets_the_line_with_a_machine_file(folder: Path, tmp_path: Path) -> None:
+    (tmp_path / "machine.toml").write_text(MACHINE.read_text())
+    out = ["--out", "drive.fmu", *HOT]
+    done = run("export", "fmu", folder / "fit.json", *out, cwd=tmp_path)
+    line = re.search(r"Type: (hersey .*)\n", done.stderr)
+    assert line, done.stderr
+    assert not (tmp_path / "drive.fmu").exists()
+    assert run(*shlex.split(line[1])[1:], cwd=tmp_path).returncode == 0
+    assert (tmp_path / "drive.fmu").exists()
+
+
 @pytest.mark.parametrize(
     "options",
     [

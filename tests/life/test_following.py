@@ -7,7 +7,8 @@ from functools import cache
 import pytest
 
 import hersey
-from hersey.errors import InsufficientDataError
+from hersey.errors import InsufficientDataError, ParameterError
+from hersey.life import following
 from hersey.life.following import follow
 from hersey.report.life_page import render_life
 from tests.life import shipped
@@ -75,3 +76,9 @@ def test_the_page_holds_the_answer() -> None:
     assert '"Time to failure"' in page
     for name in ("ends", "growth_1", "maps", "film", "drift", "population"):
         assert f'"{name}"' in page
+
+
+def test_a_specimen_that_is_not_there_is_refused_before_the_work(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(following, "indicators_of", lambda *_: pytest.fail("the work began"))
+    with pytest.raises(ParameterError, match=r"^unit: .* has no specimen 'X9'\. Specimens: U1, U2$"):
+        follow(shipped.opened(2), bare(), unit="X9")

@@ -59,7 +59,7 @@ def test_where_nothing_or_everything_disturbs() -> None:
 
 
 def test_what_makes_no_sense_is_refused() -> None:
-    with pytest.raises(ParameterError, match=r"from_speed is 0\.5: below the transition speed 1"):
+    with pytest.raises(ParameterError, match=r"from_speed is 0\.5, below the transition speed 1\."):
         hersey.safe_step(TRAIN, DRAG, from_speed=0.5, to_speed=1.0)
     with pytest.raises(ParameterError, match="to_speed is -1"):
         hersey.safe_step(TRAIN, DRAG, from_speed=2.5, to_speed=-1.0)

@@ -8,6 +8,7 @@ from typing import Annotated
 
 from hersey.cli.groups import option
 from hersey.cli.terminal import say
+from hersey.errors import OutputError
 
 _PORT = "Port on 127.0.0.1.  [default: any free port]"
 _NO_BROWSER = "Print the address without opening a browser."
@@ -25,9 +26,11 @@ def app_(
 
     Only this computer can reach the app, and no data leaves the computer. Stop it with Ctrl-C.
     """
-    from hersey.app.starting import serve
-
     kept = reports or Path("hersey-reports")
+    if kept.exists() and not kept.is_dir():
+        raise OutputError(f"{kept} is a file, but reports are saved in a folder: name one with --reports")
+
+    from hersey.app.starting import serve
 
     def said(address: str) -> None:
         say(f"hersey app: {address}", f"Reports are saved in {kept}. Stop with Ctrl-C.")

@@ -15,6 +15,7 @@ from hersey.cli.groups import option
 from hersey.cli.interruption import INTERRUPTED
 from hersey.cli.mistyped import (
     Commands,
+    misread,
     missing,
     misused,
     printed,
@@ -181,12 +182,14 @@ def main() -> None:
 
 
 def _misuse(error: Any) -> str:
-    """What to type instead of an option that does not exist or lacks its value; else nothing."""
+    """What to say of an option that does not exist, lacks its value or has a wrong one; else nothing."""
     if hasattr(error, "possibilities"):
         return unknown_option(error.option_name, error.ctx, COMMANDS)
     if hasattr(error, "option_name"):
         return misused(error.option_name, COMMANDS)
-    return missing(error.param, error.ctx) if hasattr(error, "param_type") else ""
+    if hasattr(error, "param_type"):
+        return missing(error.param, error.ctx)
+    return misread(error) if hasattr(error, "param") else ""
 
 
 def _slip() -> str:

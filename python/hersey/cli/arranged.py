@@ -28,9 +28,14 @@ def refuse_disorder(context: Any, words: Sequence[str]) -> None:
     """
     command, verb = context.command, path_of(context)
     slots = [each.metavar for each in command.params if not each.opts[0].startswith("-")]
-    files, others = _parted(words, command)
+    files, others = parted(words, command)
     tomls = [each for each in files if _ends(each, {_TOML})]
     logs = [each for each in files if _ends(each, LOGS)]
+    fits = [each for each in files if _is_fit(each)]
+    if fits and (_OF_LOGS & {*slots} or options_of(command).keys() & {"fit", "log"}):
+        context.fail(
+            _instead_of_fit(fits, [each for each in files if each not in fits], others, slots, context)
+        )
     if slots and slots[0] == _OF_A_MACHINE and len(files) == len(tomls) + len(logs):
         wrong = files and (files[0] in logs or (context.args and "log" in options_of(command)))
         if wrong and len(tomls) <= 1:
@@ -66,6 +71,59 @@ def _without(toml: str, files: list[str], others: list[str], command: Any, verb:
         others = others[:named] + others[named + value + 1 :]
     files = files or ([] if kind == "recipe" else ["LOG"])
     return f"{toml} is {_KINDS[kind]}, not a log. Type: {retyped(*verb, *files, flag, toml, *others)}"
+
+
+def _is_fit(file: str) -> bool:
+    """Whether a file holds a saved fit."""
+    if not _ends(file, {".json"}):
+        return False
+    from hersey.document.saved_fit import holds_fit
+
+    return holds_fit(file)
+
+
+def _instead_of_fit(
+    fits: list[str], files: list[str], others: list[str], slots: list[str], context: Any
+) -> str:
+    """What to type instead of a saved fit among the logs; ``files`` are the others."""
+    command, verb = context.command, path_of(context)
+    said = f"{fits[0]} is a saved fit, not a log"
+    tomls = [each for each in files if _ends(each, {_TOML})][:1]
+    if _OF_A_MACHINE in slots:
+        machine = [*(tomls or [machine_here() or _OF_A_MACHINE])]
+    else:
+        machine = ["--machine", *tomls] if tomls and "machine" in options_of(command) else []
+    if "fit" in options_of(command):
+        return f"{said}. Type: {retyped(*verb, *machine, '--fit', fits[0], *_not_of_a_log(others, command))}"
+    logs = [each for each in files if each not in tomls]
+    needed = [each for each in slots if each in _OF_LOGS] or ["LOG"]
+    do = "Omit it" if len(logs) >= len(needed) else "Give the log itself"
+    logs += needed[len(logs) :]
+    placed = logs if _OF_LOGS & {*slots} else [word for log in logs for word in ("--log", log)]
+    typed = [*machine, *placed] if _OF_A_MACHINE in slots else [*placed, *machine]
+    return f"{said}. {do}: {retyped(*verb, *typed, *others)}"
+
+
+def _not_of_a_log(others: list[str], command: Any) -> list[str]:
+    """Options as typed, without those that say how a log is read, which no saved fit takes, and ``--fit``."""
+    from hersey.cli.options import READ, REDUCED
+
+    read = [each for each in command.params if getattr(each, "rich_help_panel", None) in (READ, REDUCED)]
+    return without_options(others, ["--fit", *(name for each in read for name in each.opts)], command)
+
+
+def without_options(others: Sequence[str], omitted: Sequence[str], command: Any) -> list[str]:
+    """Return options with their values as typed, without those ``omitted``."""
+    known = {name for each in command.params for name in each.opts}
+    kept: list[str] = []
+    dropping = False
+    for word in others:
+        flag = word.partition("=")[0]
+        if flag in known:
+            dropping = flag in omitted
+        if not dropping:
+            kept.append(word)
+    return kept
 
 
 def _kind(toml: str) -> str:
@@ -111,8 +169,8 @@ def _ends(file: str, endings: set[str] | frozenset[str]) -> bool:
     return Path(file).suffix.lower() in endings
 
 
-def _parted(words: Sequence[str], command: Any) -> tuple[list[str], list[str]]:
-    """The arguments of a command, and its options with their values, each as typed."""
+def parted(words: Sequence[str], command: Any) -> tuple[list[str], list[str]]:
+    """Return the arguments of a command, and its options with their values, each as typed."""
     takes_value = {
         name: not getattr(each, "is_flag", False)
         for each in command.params

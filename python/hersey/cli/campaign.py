@@ -7,10 +7,11 @@ from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from hersey.cli.arranged import parted, without_options
 from hersey.cli.groups import argument, grouped, option
 from hersey.cli.mistyped import retyped
 from hersey.cli.options import Force, KeepGoing, Reading, SensorsFile
@@ -45,6 +46,8 @@ _RUNS = "Log of one run, or logs of one specimen at one age, or a pattern, e.g. 
 _UNIT = "Name of the specimen, e.g. F12."
 _AGE = "Age of the specimen, e.g. '120000 pages', '310 h' or '2e6 cycles'."
 _TABLE = "Table of runs with columns log, unit and age, instead of --unit and --age."
+#: What to do with logs of several specimens or ages.
+_LIST_THEM = "list log, unit and age of each in a table and give it with --table runs.csv"
 _OUT = "Table to write, .parquet or .csv, one row per dwell."
 
 
@@ -79,26 +82,39 @@ def add(
             f"{file} is not a campaign: name one first, and it is created if it does not exist. "
             f"Type: {retyped('campaign', 'add', 'life.hersey', *typed)}"
         )
+    runs = _without_tables(file, runs or [], table)
     if table is None and not runs:
         raise ParameterError("name the logs with --unit and --age, or a table of runs with --table")
     if table is not None and (unit or age):
         raise ParameterError("the table holds unit and age: omit --unit and --age, or omit --table")
     if table is None and not (unit and age):
-        missing = "--age '120000 pages'" if unit else "--unit F12"
-        raise ParameterError(f"a run needs the name and the age of its specimen: add {missing}")
+        missing = " ".join(["--unit F12"] * (not unit) + ["--age '120000 pages'"] * (not age))
+        alike = (
+            f". All {len(runs)} logs get this specimen and age. If they differ, {_LIST_THEM} instead of "
+            "--unit and --age"
+        )
+        raise ParameterError(
+            f"a run needs the name and the age of its specimen: add {missing}{alike * (len(runs) > 1)}"
+        )
 
     from hersey.life.age import Age
     from hersey.life.campaign import Campaign, RunToAdd
 
     failed: list[str] = []
+    alike = ""
     if table is not None:
         wanted = _of_table(table, runs, failed)
     else:
         parsed = Age.parse(age)
-        wanted = [RunToAdd(path, unit, parsed) for path in runs or []]
+        wanted = [RunToAdd(path, unit, parsed) for path in runs]
+        if len(runs) > 1:
+            alike = (
+                f"The specimen of all {len(runs)} logs is {unit}, their age {parsed}. If they differ, "
+                f"{_LIST_THEM} --force."
+            )
     Campaign.refuse_unless_writable(file)
     with crew.at_work() as client:
-        adding = _Adding(reading, machine, force, client, printing)
+        adding = _Adding(reading, machine, force, client, printing, alike)
         if table is None and not keep_going:
             adding.all(file, wanted)
             return
@@ -106,7 +122,30 @@ def add(
             adding.each(opened, wanted, failed)
 
 
-def _of_table(table: Path, logs: list[Path] | None, failed: list[str]) -> list[RunToAdd]:
+def _without_tables(file: Path, logs: list[Path], table: Path | None) -> list[Path]:
+    """The logs without the given table of runs, which a pattern may match; any other table is refused."""
+    from hersey.life.campaign import lists_runs
+
+    logs = [
+        log
+        for log in logs
+        if table is None or not log.exists() or not table.exists() or not log.samefile(table)
+    ]
+    found = next((log for log in logs if lists_runs(log)), None)
+    if found is None:
+        return logs
+    if table is not None:
+        raise ParameterError(f"{found} is a table of runs, not a log. Omit it, or give it instead of {table}")
+    group: Any = typer.main.get_command(campaign)
+    command = group.commands["add"]
+    others = without_options(parted(sys.argv[3:], command)[1], ["--unit", "--age"], command)
+    line = retyped("campaign", "add", str(file), "--table", str(found), *others)
+    raise ParameterError(
+        f"{found} is a table of runs, not a log. To add the logs that it lists, type: {line}"
+    )
+
+
+def _of_table(table: Path, logs: list[Path], failed: list[str]) -> list[RunToAdd]:
     """The runs of a table, or those of the given logs that it lists; the other logs join the ``failed``."""
     from hersey.life.campaign import RunToAdd, read_runs, rows_of
 
@@ -123,13 +162,17 @@ def _of_table(table: Path, logs: list[Path] | None, failed: list[str]) -> list[R
 
 @dataclass(frozen=True)
 class _Adding:
-    """How runs are read, by which workers, and whether they replace runs that are there."""
+    """How runs are read, by which workers, and whether they replace runs that are there.
+
+    ``alike`` is what to print if several logs are added as one specimen at one age.
+    """
 
     reading: Reading
     machine: Path | None
     force: bool
     client: AtWork
     printing: Quiet
+    alike: str
 
     def all(self, file: Path, wanted: list[RunToAdd]) -> None:
         """Add all runs or none."""
@@ -145,6 +188,7 @@ class _Adding:
         with Campaign.create(file) as opened:
             for added in opened.add_entries(read, force=self.force):
                 self.printing.text(added.summary())
+        note(*filter(None, [self.alike]))
 
     def each(self, opened: Campaign, wanted: list[RunToAdd], failed: list[str]) -> None:
         """Add the runs that can be added; the others join the ``failed``, and the exit code is 1."""
@@ -177,6 +221,8 @@ class _Adding:
         self.printing.text(f"{opened.path.name}: {', '.join(counted)}")
         if failed:
             say(*(f"- {each}" for each in failed), file=sys.stderr)
+        note(*filter(None, [self.alike]))
+        if failed:
             raise typer.Exit(NOT_FOUND)
 
     def _read(self, runs: list[tuple[RunToAdd, str]]) -> Iterator[tuple[RunToAdd, Entry | HerseyError]]:

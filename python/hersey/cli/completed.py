@@ -13,7 +13,7 @@ _EXAMPLE = "180 degC"
 
 
 def completed(words: Sequence[str]) -> list[str]:
-    """Return the words behind ``hersey export fmu`` with the options that it cannot do without."""
+    """Return the words behind ``hersey export fmu``, the fit first, with the options that are required."""
     typed = list(words)
     at = next((i for i, word in enumerate(typed) if word == "--out" or word.startswith("--out=")), -1)
     if at < 0:
@@ -23,6 +23,9 @@ def completed(words: Sequence[str]) -> list[str]:
     elif at + 1 < len(typed):
         typed[at + 1] = str(Path(typed[at + 1]).with_suffix(".fmu"))
     files = [word for word in typed if Path(word).suffix.lower() in (".json", ".toml")]
+    if [Path(word).suffix.lower() for word in files] == [".toml", ".json"]:
+        first, second = map(typed.index, files)
+        typed[first], typed[second] = files[::-1]
     if not any(word.partition("=")[0] == "--temperature" for word in typed) and (warm := _warm(files)):
         typed += ["--temperature", warm]
     return typed

@@ -7,7 +7,12 @@ from pathlib import Path
 from typing import Annotated
 
 from hersey.cli.groups import argument
+from hersey.cli.mistyped import retyped
 from hersey.cli.terminal import say
+from hersey.errors import OutputError
+
+#: Endings of archives, which this command does not write.
+_ARCHIVES = (".zip", ".tar", ".gz", ".tgz", ".7z")
 
 
 def examples(folder: Annotated[Path, argument("FOLDER", "Folder to create; it must not exist yet.")]) -> None:
@@ -15,6 +20,12 @@ def examples(folder: Annotated[Path, argument("FOLDER", "Folder to create; it mu
 
     Example: [bold]hersey examples try-hersey[/bold]
     """
+    if folder.suffix.lower() in _ARCHIVES:
+        line = retyped("examples", str(folder.with_suffix("")))
+        raise OutputError(
+            f"{folder} names an archive, but the examples are copied into a folder. Type: {line}"
+        )
+
     from hersey.files.shipped import copy_examples
 
     written = copy_examples(folder)

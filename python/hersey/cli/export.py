@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -9,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from hersey.cli.groups import argument, grouped, option
+from hersey.cli.mistyped import machine_here, retyped
 from hersey.cli.options import BristleDamping, BristleStiffness, Force, Start, finished_fit
 from hersey.cli.outputs import NOT_FOUND, Output, may_write
 from hersey.cli.printing import Printing
@@ -117,7 +119,7 @@ def fmu(
 
     from hersey.machine.machine import read_machine
 
-    *fits, machine_file = files
+    *fits, machine_file = _in_order(files)
     machine = read_machine(machine_file)
     surface = finished_fit(fits[0], machine) if fits else None
     drag = unit.drag(surface, machine, machine_file.name)
@@ -134,6 +136,22 @@ def fmu(
         printing.files(file.path if kept else None)
     if not kept:
         raise typer.Exit(NOT_FOUND)
+
+
+def _in_order(files: list[Path]) -> list[Path]:
+    """The fit, if there is one, and the machine file, whichever was typed first."""
+    from hersey.document.saved_fit import holds_fit
+
+    if len(files) == 2 and holds_fit(files[1]):
+        return files[::-1]
+    if len(files) == 1 and holds_fit(files[0]):
+        machine = machine_here() or "machine.toml"
+        at = sys.argv.index(str(files[0])) + 1 if str(files[0]) in sys.argv else len(sys.argv)
+        raise ParameterError(
+            f"{files[0]} is a saved fit, which needs a machine file too. "
+            f"Type: {retyped(*sys.argv[1:at], machine, *sys.argv[at:])}"
+        )
+    return files
 
 
 def _lines(made: ExportedUnit) -> list[str]:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+import sys
 from typing import TYPE_CHECKING, Annotated
 
 from hersey.cli.belt import Belt
 from hersey.cli.groups import grouped, option
+from hersey.cli.mistyped import retyped
 from hersey.cli.printing import Printing
 from hersey.cli.progress import working
 from hersey.errors import ParameterError
@@ -55,13 +57,40 @@ def hysteresis(
         if sliding is not None:
             kick = disturbance(train, law, drive_speed=sliding)
         if before is not None and after is not None:
-            step = safe_step(train, law, from_speed=before, to_speed=after)
+            try:
+                step = safe_step(train, law, from_speed=before, to_speed=after)
+            except ParameterError as error:
+                raise _as_typed(error, {"from_speed": from_speed, "to_speed": to_speed}, numbers) from None
     if printing.json(band, disturbance=kick, step=step):
         return
     printing.conclusion(lambda: _band(band, numbers), band.summary({**vars(train), **vars(law)}))
     printing.text(*([] if kick is None else [_survived(kick, numbers)]))
     printing.text(*([] if step is None else [_stepped(step, numbers)]))
     printing.text(*numbers.words)
+
+
+def _as_typed(error: ParameterError, typed: dict[str, str | None], numbers: Amounts) -> ParameterError:
+    """The same error of a speed in the words and units of the command line."""
+    if error.quantity not in typed or error.limit is None or error.value is None:
+        return error
+    value, shown = typed[error.quantity], numbers.shown(error.value, "belt speed")
+    said = f"--{error.quantity.replace('_', '-')} '{value}'{f' ({shown})' * (shown != value)}"
+    if error.limit == 0:
+        return ParameterError(f"{said} must be {'finite' if error.value == math.inf else 'greater than 0'}")
+    end = numbers.values["to_speed"]
+    swaps = end is not None and end >= error.limit
+    swap = f", or swap the two speeds: {retyped(*_swapped(sys.argv[1:]))}" if swaps else ""
+    return ParameterError(
+        f"{said} lies below the transition speed, {numbers.shown(error.limit, 'belt speed')}. Below it the "
+        f"belt cannot slide steadily. Start from a higher speed{swap}"
+    )
+
+
+def _swapped(words: list[str]) -> list[str]:
+    """The words with the two ends of the step exchanged."""
+    other = {"--from-speed": "--to-speed", "--to-speed": "--from-speed"}
+    split = (word.partition("=") for word in words)
+    return [f"{other.get(flag, flag)}{mark}{value}" for flag, mark, value in split]
 
 
 def _band(band: HysteresisBand, numbers: Amounts) -> list[str]:

@@ -328,6 +328,23 @@ def misused(name: str, commands: Commands) -> str:
     return f"{name} needs a value: {_help(parameter)}"
 
 
+def misread(error: Any) -> str:
+    """Say which numbers an option takes if its value is another one or no number; else nothing."""
+    faults = error.__cause__.errors() if hasattr(error.__cause__, "errors") else []
+    if not faults or error.param is None:
+        return ""
+    kind, limits = str(faults[0]["type"]), faults[0].get("ctx", {})
+    asked = {
+        "greater_than_equal": f"at least {limits.get('ge')}",
+        "less_than_equal": f"at most {limits.get('le')}",
+    } | {
+        f"{number}_{fault}": words
+        for number, words in (("int", "a whole number"), ("float", "a number"))
+        for fault in ("parsing", "type", "from_float", "parsing_size")
+    }
+    return f"{error.param.opts[0]} must be {asked[kind]}, not {faults[0]['input']}" if kind in asked else ""
+
+
 def without_value(words: Sequence[str], commands: Commands) -> str:
     """Return the first option that was typed without its value, so that the next option became the value."""
     known = _parameters(words, commands)

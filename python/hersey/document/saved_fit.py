@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator
 from dataclasses import fields
 from pathlib import Path
@@ -72,6 +73,17 @@ def read_fit(path: str | Path) -> DampingSurface:
         for field, asked in faults_of_fit(surface, document.fit, document.points):
             raise _broken(path, f"fit.{field}", f"it must be {asked}")
     return surface
+
+
+def holds_fit(path: str | Path) -> bool:
+    """Return whether a file is JSON that states a version of hersey and a fit, whether or not it is sound."""
+    try:
+        document = json.loads(read_text(Path(path)))
+    except (HerseyError, OSError, ValueError, RecursionError):
+        return False
+    return (
+        isinstance(document, dict) and "hersey_version" in document and isinstance(document.get("fit"), dict)
+    )
 
 
 def _broken(path: Path, field: str, reason: str) -> ParameterError:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from hersey.arrays import one_thread
-from hersey.errors import HerseyError
+from hersey.errors import HerseyError, ParameterError, Setting
 from hersey.life.ageing_maps import AgeingMaps, ageing_maps
 from hersey.life.drift.result import Drift, fit_drift
 from hersey.life.film.through_life import FilmLife, film_life
@@ -102,6 +102,11 @@ def follow(
     ParameterError
         If the campaign has no such specimen.
     """
+    if unit:
+        try:
+            campaign.runs(unit)
+        except ParameterError as error:
+            raise error.within(Setting("unit").to()) from None
     said = step or (lambda _text: None)
     warnings: list[Warning] = []
 

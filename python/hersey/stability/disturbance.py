@@ -85,12 +85,17 @@ def safe_step(
     train, drag, temperature = belt_of(train, drag, temperature, from_speed=from_speed, to_speed=to_speed)
     for name, speed in (("from_speed", from_speed), ("to_speed", to_speed)):
         if not 0 < speed < inf:
-            raise ParameterError(f"{name} is {speed}: it must be greater than 0")
+            raise ParameterError(
+                f"{name} is {speed}: it must be greater than 0", quantity=name, value=speed, limit=0.0
+            )
     band = hysteresis(train, drag, temperature=temperature, sensitivity=False)
     if from_speed < band.transition:
         raise ParameterError(
-            f"from_speed is {from_speed}: below the transition speed {band.transition:.6g} steady "
-            "sliding is unstable"
+            f"from_speed is {from_speed}, below the transition speed {band.transition:.6g}. Below it the "
+            "belt cannot slide steadily: start from a higher speed",
+            quantity="from_speed",
+            value=from_speed,
+            limit=band.transition,
         )
     sticks, slowest = _sticks(train, drag, from_speed, to_speed, 0.0, temperature)
     if to_speed < band.lower:

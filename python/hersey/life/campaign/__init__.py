@@ -22,6 +22,6 @@ from hersey.life.campaign.adding import Added
 from hersey.life.campaign.checks import CampaignCheck
 from hersey.life.campaign.entry import Entry
 from hersey.life.campaign.file import Campaign
-from hersey.life.campaign.table import RunToAdd, read_runs, rows_of
+from hersey.life.campaign.table import RunToAdd, lists_runs, read_runs, rows_of
 
-__all__ = ["Added", "Campaign", "CampaignCheck", "Entry", "RunToAdd", "read_runs", "rows_of"]
+__all__ = ["Added", "Campaign", "CampaignCheck", "Entry", "RunToAdd", "lists_runs", "read_runs", "rows_of"]

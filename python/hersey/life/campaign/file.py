@@ -32,6 +32,8 @@ if TYPE_CHECKING:
 _AT_ONCE = 100_000
 #: Columns of the list of runs.
 _LISTED = "id, unit, age, path, sha256, dwells, exponent, transition_speed, no_fit, version, added"
+#: Specimens that a message lists.
+_SPECIMENS = 12
 
 
 class Campaign:
@@ -197,7 +199,9 @@ class Campaign:
     def _no_unit(self, unit: str) -> ParameterError:
         known = [row[0] for row in self._database.execute("SELECT DISTINCT unit FROM runs ORDER BY unit")]
         near = meant(unit, known)
-        way = f"did you mean '{near}'?" if near else self._lists_runs
+        more = f" and {len(known) - _SPECIMENS} more" if len(known) > _SPECIMENS else ""
+        listed = f"specimens: {', '.join(known[:_SPECIMENS])}{more}"
+        way = f"did you mean '{near}'?" if near else listed if known else "add a run first"
         return ParameterError(f"{self.path.name} has no specimen '{unit}'", remedy=way)
 
     @property

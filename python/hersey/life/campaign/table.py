@@ -10,12 +10,15 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from hersey.errors import ChannelError, HerseyError, ParameterError, UnreadableLogError
+from hersey.files.reading import open_file
 from hersey.files.tables import text_of
-from hersey.files.text import read_table_text
+from hersey.files.text import encoding_of, read_table_text
 from hersey.life.age import Age
 
 _HEADING = re.compile(r"\s*(.*?)\s*(?:[\[(]\s*(.*?)\s*[\])])?\s*")
 _NEEDED = ("log", "unit", "age")
+#: Bytes that hold the first line.
+_START = 4096
 
 
 @dataclass(frozen=True)
@@ -40,13 +43,12 @@ def read_runs(path: str | Path) -> list[RunToAdd]:
     """
     path = Path(path)
     lines = read_table_text(path).split("\n")
-    separator = max(",;\t", key=lines[0].count)
+    separator = _separator(lines[0])
     try:
         rows = list(csv.reader(lines, delimiter=separator))
     except csv.Error as error:
         raise UnreadableLogError(f"{path.name} is not a table: {error}") from None
-    headings = [_HEADING.fullmatch(cell) for cell in rows[0]]
-    names = [match[1].casefold() if match else "" for match in headings]
+    headings, names = _named(rows[0])
     for name in _NEEDED:
         if names.count(name) != 1:
             what = "there is no column" if name not in names else "there is more than one column"
@@ -75,6 +77,31 @@ def read_runs(path: str | Path) -> list[RunToAdd]:
     if not found:
         raise UnreadableLogError(f"{path.name} lists no runs. Write one line per run below the header")
     return found
+
+
+def lists_runs(path: str | Path) -> bool:
+    """Return whether a file is a table of runs, by its first line."""
+    with open_file(Path(path)) as file:
+        start = file.read(_START)
+    encoding = encoding_of(start)
+    if not encoding:
+        return False
+    head = start.decode(encoding, errors="replace").splitlines()[:1]
+    try:
+        rows = list(csv.reader(head, delimiter=_separator(head[0]))) if head else []
+    except csv.Error:
+        return False
+    return bool(rows) and set(_NEEDED) <= set(_named(rows[0])[1])
+
+
+def _separator(line: str) -> str:
+    return max(",;\t", key=line.count)
+
+
+def _named(cells: Sequence[str]) -> tuple[list[re.Match[str] | None], list[str]]:
+    """The cells of line 1, each with its unit, and the names of the columns."""
+    headings = [_HEADING.fullmatch(cell) for cell in cells]
+    return headings, [match[1].casefold() if match else "" for match in headings]
 
 
 def rows_of(logs: Sequence[Path], rows: Sequence[RunToAdd], table: str) -> list[RunToAdd | ParameterError]:

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from hersey.errors import MAPPING, Setting, UnreadableLogError
+from hersey.errors import MAPPING, Setting, UnreadableLogError, way_in
 from hersey.files import text as text_files
 from hersey.log.text.column import Column, refuse_columns
 from hersey.log.text.header import Numbered, columns_of
@@ -27,6 +27,9 @@ _LINES_OF_A_CELL = 10
 _COMMENTS = ("#", "~", "//")
 
 
+#: How JSON of objects begins, and what a result of this package in JSON states.
+_JSON = re.compile(r'\s*\[?\s*\{\s*"')
+_RESULT = '"hersey_version"'
 #: A number with its unit.
 _WITH_UNIT = re.compile(r"([-+]?[0-9][0-9.,]*(?:[eE][-+]?[0-9]+)?) ?([A-Za-zµμ°%][A-Za-z0-9µμ°%*/·^]*)")
 
@@ -72,6 +75,7 @@ def find_layout(start: bytes, name: str, *, separators: str = SEPARATORS) -> Lay
     """
     encoding = encoding_of(start, name)
     lines = _lines(start, encoding, name, separators)
+    _refuse_json("\n".join(lines), name)
     comment = next((c for c in _COMMENTS if any(line.startswith(c) for line in lines)), "#")
     numbered = [
         (number, line)
@@ -166,6 +170,16 @@ def _table(numbered: list[Numbered], separators: str, name: str) -> NumberRows:
     return table
 
 
+def _refuse_json(text: str, name: str) -> None:
+    """Raise if a text is JSON and not a table."""
+    if not _JSON.match(text):
+        return
+    if _RESULT not in text:
+        raise UnreadableLogError(f"{name} is JSON, not a table. Export the channels as text (CSV)")
+    fit = f"; where a command takes a saved fit, use {Setting('fit').to()}" * (way_in() == "terminal")
+    raise UnreadableLogError(f"{name} is a result of hersey, not a log. Give the log itself{fit}")
+
+
 def _refuse_long_words(numbered: list[Numbered], separator: str, name: str) -> None:
     """Raise if rows of words and few numbers are those of a long table."""
     rows = [split(line, separator) for _, line in numbered]
@@ -245,4 +259,4 @@ def _of_another_kind(name: str) -> str:
     if name.endswith(".toml"):
         machine, mapping = Setting("machine").to(), MAPPING.to()
         return f". Give a machine file with {machine}, or a mapping of channels with {mapping}"
-    return f". Give a saved fit with {Setting('fit').to()}" if name.endswith(".json") else ""
+    return ""
