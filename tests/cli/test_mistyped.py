@@ -362,12 +362,11 @@ def test_a_path_of_windows_is_written_with_slashes(typed: str, tmp_path: Path) -
     assert done.stderr.endswith(" 'logs/a.csv'\n")
 
 
-def test_a_time_between_rows_beside_a_clock_is_refused(tmp_path: Path) -> None:
+def test_a_time_between_rows_goes_before_a_clock_and_says_so(tmp_path: Path) -> None:
     (tmp_path / "a.csv").write_text(staircase(1))
-    done = run("fit", "a.csv", "--every", "2 ms", cwd=tmp_path)
-    assert done.returncode == 2
-    assert "column 'time [s]'" in done.stderr
-    assert "--every" in done.stderr
+    done = run("inspect", "a.csv", "--every", "100 ms", cwd=tmp_path)
+    assert done.returncode == 0
+    assert "Column 'time' is not used: --every sets the time between rows" in done.words
 
 
 @pytest.mark.parametrize(

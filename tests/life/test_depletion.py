@@ -195,7 +195,7 @@ def test_the_shipped_units_starve_when_they_do() -> None:
 def test_what_a_result_says() -> None:
     film = shipped.film()
     text = film.summary()
-    assert "U4 at 170000: 0.7" in text
+    assert "U4 at 170000 pages: 0.7" in text
     assert "the cold corner (127.3 rpm, 60 degC)" in text
     assert f"starved below {STARVED:.2f}" in text
     oil = film.oil[3]

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any, TextIO
 
-from hersey.errors import PlausibilityWarning, SandboxWarning, printable
+from hersey.errors import ExtrapolationWarning, PlausibilityWarning, SandboxWarning, UntoldWarning, printable
 
 #: Replacements of characters that a terminal lacks.
 _PLAIN = str.maketrans(
@@ -130,7 +130,7 @@ def warnings_said() -> Iterator[None]:
     usual = warnings.formatwarning
 
     def formatted(message: Warning | str, *about: Any, **more: Any) -> str:
-        if isinstance(message, PlausibilityWarning):
+        if isinstance(message, ExtrapolationWarning | PlausibilityWarning | UntoldWarning):
             return f"hersey: warning: {printable(str(message))}\n"
         if isinstance(message, SandboxWarning):  # about the system, not about a line of the program
             return f"hersey: {printable(str(message))}\n"

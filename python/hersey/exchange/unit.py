@@ -175,10 +175,12 @@ def export_fmu(
     """
     _refuse(out, name, drive, port, fmi, roll_radius)
     given = {"drive_speed": drive_speed, "drive_torque": drive_torque, "temperature": temperature}
-    if isinstance(drag, PowersOfTemperature):
-        speed = drive_speed if drive == "speed" else None
-        drag = cast("AnyDrag", drag.warned(temperature, stacklevel=3, drive_speed=speed))
+    of_log = drag if isinstance(drag, PowersOfTemperature) else None
+    drag = drag if of_log is None else cast("AnyDrag", of_log.unwarned())
     _try(train, drag, drive, given, start, roll_radius, tolerance)
+    if of_log is not None:
+        speed = drive_speed if drive == "speed" else None
+        of_log.warned(temperature, stacklevel=3, drive_speed=speed)
     values = _values(train, drag, drive, port, given, start, roll_radius, tolerance)
     values |= _measured(drag, fitted, roll_radius)
     variables = _own(variables_of(own_library()), values, fmi)
