@@ -395,6 +395,22 @@ def test_a_machine_file_is_no_scenario(tmp_path: Path) -> None:
     assert "--machine" in done.stderr
 
 
+def test_a_machine_file_alone_comes_with_the_log_to_add(tmp_path: Path) -> None:
+    (tmp_path / "machine.toml").write_text((ROOT / "examples" / "machine.toml").read_text())
+    for typed, line in ((["machine.toml"], ["LOG"]), (["a.csv", "machine.toml"], ["a.csv"])):
+        done = run("posterior", *typed, cwd=tmp_path)
+        assert done.returncode == 2
+        assert done.stderr.endswith(f"Type: hersey posterior {line[0]} --machine machine.toml\n")
+
+
+@pytest.mark.parametrize("verb", ["fit", "inspect", "cycles"])
+def test_a_table_of_runs_is_no_log(verb: str, tmp_path: Path) -> None:
+    (tmp_path / "runs.csv").write_text("log,unit,age\na.csv,U1,0 pages\n")
+    done = run(verb, "runs.csv", cwd=tmp_path)
+    assert done.returncode == 2
+    assert "runs.csv is a table of the runs of a life test, not a log" in " ".join(done.stderr.split())
+
+
 @pytest.mark.parametrize("verb", ["fit", "cycles", "report"])
 def test_a_scenario_is_no_log(verb: str, tmp_path: Path) -> None:
     done = run(verb, ROOT / "examples" / "scenario.toml", cwd=tmp_path)

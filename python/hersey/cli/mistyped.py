@@ -312,6 +312,9 @@ def missing(parameter: Any, context: Any) -> str:
     tomls = [each for each in words if Path(each).suffix.lower() == _MACHINE]
     if "--machine" in parameter.opts and len(tomls) == 1:
         rest = [each for each in words if each not in tomls]
+        takes_log = any(each.metavar == "LOG" for each in context.command.params)
+        if takes_log and not any(Path(each).suffix.lower() in LOGS for each in rest):
+            rest.append("LOG")
         return f"{said}. Type: {retyped(*rest, '--machine', *tomls)}"
     if parameter.metavar == "MACHINE" and not machine_here():
         return f"{said}. To write one, type: {writing_machine()}"

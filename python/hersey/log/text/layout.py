@@ -160,6 +160,7 @@ def _table(numbered: list[Numbered], separators: str, name: str) -> NumberRows:
     refuse_columns(name, table.width)
     if table.score == 0:
         for each in separators:
+            _refuse_runs(numbered, each, name)
             _refuse_long_words(numbered, each, name)
             _refuse_units_in_cells(numbered, each, name)
         raise UnreadableLogError(
@@ -178,6 +179,14 @@ def _refuse_json(text: str, name: str) -> None:
         raise UnreadableLogError(f"{name} is JSON, not a table. Export the channels as text (CSV)")
     fit = f"; where a command takes a saved fit, use {Setting('fit').to()}" * (way_in() == "terminal")
     raise UnreadableLogError(f"{name} is a result of hersey, not a log. Give the log itself{fit}")
+
+
+def _refuse_runs(numbered: list[Numbered], separator: str, name: str) -> None:
+    """Raise if a table lists the runs of a life test."""
+    if {"log", "unit", "age"} <= {cell.strip().lower() for cell in split(numbered[0][1], separator)}:
+        raise UnreadableLogError(
+            f"{name} is a table of the runs of a life test, not a log. Give one of its logs"
+        )
 
 
 def _refuse_long_words(numbered: list[Numbered], separator: str, name: str) -> None:
