@@ -12,6 +12,8 @@ from hersey.arrays import FloatArray
 from hersey.damping.estimate import Estimate, quantile
 from hersey.errors import InsufficientDataError, ParameterError, Setting
 from hersey.identification.cycle_record import CycleRecord
+from hersey.identification.cycle_warnings import FALLS_OF_FEW_SAMPLES
+from hersey.identification.detection import FEWEST_SLIPS
 from hersey.identification.drive_fit import EXPONENTS, NORMAL_REACH, DriveFit
 from hersey.identification.drive_warnings import warnings_of
 from hersey.identification.independence import ESTIMABLE
@@ -243,8 +245,7 @@ def _check(record: CycleRecord, known: Mapping[str, float], closures: tuple[str,
             "a trace of speed has no force. To identify a drive, give a trace of the spring force"
         )
     if record.kind != "stick_slip":
-        kind = record.kind.replace("_", " ")
-        raise InsufficientDataError(f"the record shows {kind}, but a drive is identified from stick-slip")
+        raise _no_stick_slip(record)
     if record.slips < FEWEST_LAPS <= record.falls:
         raise InsufficientDataError(
             f"{record.headline()}. To identify a drive, omit {Setting('least_drop').to()}"
@@ -262,6 +263,19 @@ def _check(record: CycleRecord, known: Mapping[str, float], closures: tuple[str,
         raise ParameterError(
             f"unknown closures: {', '.join(unknown) or 'none given'}. Use {', '.join(CLOSURES)}"
         )
+
+
+def _no_stick_slip(record: CycleRecord) -> InsufficientDataError:
+    """What a trace shows instead of stick-slip, and what to do if it was recorded too slowly."""
+    if record.kind != "steady_sliding":
+        found = f"the trace shows {record.kind.replace('_', ' ')} motion"
+    elif record.falls < FEWEST_SLIPS:
+        found = "the trace shows steady sliding"
+    else:
+        found = f"the trace is irregular: {record.falls} drops exceed the noise, but no cycles were found"
+    few = [each for each in record.warnings if each.kind == FALLS_OF_FEW_SAMPLES]
+    needed = "a drive is identified from the cycles of stick-slip"
+    return InsufficientDataError(found, remedy=str(few[0]) if few else needed)
 
 
 def _intervals(
