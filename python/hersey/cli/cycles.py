@@ -118,17 +118,18 @@ class _Identification:
     known: Annotated[list[str] | None, option(_KNOWN, metavar="NAME=VALUE")] = None
     closures: Annotated[str, option(_CLOSURES)] = "retained,stiction"
 
-    def drive(self, record: CycleRecord, known: dict[str, float], *, instead: str) -> IdentifiedDrive | None:
-        """Return the drive, if it is to be identified; ``instead`` is what to do if there is no stick-slip."""
+    def drive(
+        self, record: CycleRecord, known: dict[str, float], unit: str, *, instead: str
+    ) -> IdentifiedDrive | None:
+        """Return the drive, if it is to be identified; ``instead``: what to do if there is no stick-slip."""
         from hersey.identification.identified_drive import identify
 
         if not self.identify:
             return None
         with working("identifying the drive"):
             try:
-                return identify(
-                    record, known=known, closures=tuple(self.closures.replace(" ", "").split(","))
-                )
+                compared = tuple(self.closures.replace(" ", "").split(","))
+                return identify(record, known=known, closures=compared, unit=unit)
             except InsufficientDataError as error:
                 error.remedy = followed_by(error.remedy, instead)
                 raise
@@ -168,10 +169,8 @@ def cycles(
         record = trace.record(given, speed)
         drag_only = record.kind == "steady_sliding" and given.quantity == "torque"
         for_drag = f"For the drag of steady sliding type: {retyped('report', str(file))}" * drag_only
-        drive, unit = (
-            sought.drive(record, known, instead=for_drag),
-            _UNITS.get(given.unit, given.unit).replace("*", " "),
-        )
+        unit = _UNITS.get(given.unit, given.unit).replace("*", " ")
+        drive = sought.drive(record, known, unit, instead=for_drag)
         shown = "share of the weight" if given.unit == "1" else unit
         drawing.draw(record, drive=drive, unit=shown)
         if printing.json(record, unit=given.unit, drive=drive):

@@ -15,7 +15,7 @@ from hersey.identification.cycle_record import CycleRecord
 from hersey.identification.cycle_warnings import FALLS_OF_FEW_SAMPLES
 from hersey.identification.detection import FEWEST_SLIPS
 from hersey.identification.drive_fit import EXPONENTS, NORMAL_REACH, DriveFit
-from hersey.identification.drive_warnings import warnings_of
+from hersey.identification.drive_warnings import doubted, forced, warnings_of
 from hersey.identification.independence import ESTIMABLE
 from hersey.identification.motion_kind import NO_FREE_PERIOD
 from hersey.identification.waveform import FEWEST_LAPS, Waveform, mean_waveform
@@ -163,7 +163,11 @@ _UNITS = {
 
 @takes_si()
 def identify(
-    record: CycleRecord, *, known: Mapping[str, float] | None = None, closures: tuple[str, ...] = COMPARED
+    record: CycleRecord,
+    *,
+    known: Mapping[str, float] | None = None,
+    closures: tuple[str, ...] = COMPARED,
+    unit: str = "",
 ) -> IdentifiedDrive:
     """Identify the drive from the cycles of a trace of force at known drive speed.
 
@@ -177,6 +181,10 @@ def identify(
         Parameters that are known, e.g. ``{"mass": 0.03}``; names as in `OF_THE_BELT`.
     closures
         Closures to compare.
+    unit
+        Unit of the trace, ``N``, ``N m`` or ``1``, in which warnings show numbers.
+
+    If the known parameters do not fit the trace, the drive is also identified without them, for a warning.
 
     Raises
     ------
@@ -196,7 +204,8 @@ def identify(
     near = [fit for fit in fits if (fit.chi_square - best.chi_square) / scale <= UNDECIDED]
     covariances = [fit.covariance(scale) for fit in near]
     intervals, systematic = _intervals(near, covariances, scale, wave.number)
-    warnings = warnings_of(record, near, covariances[0], intervals)
+    warnings = warnings_of(record, near, covariances[0], intervals, unit)
+    warnings = (*_forced(record, best, closures, warnings, unit), *warnings)
     if any(each.kind == NO_FREE_PERIOD for each in warnings):
         del intervals["free_period"]
     return IdentifiedDrive(
@@ -217,6 +226,19 @@ def identify(
     )
 
 
+def _forced(
+    record: CycleRecord, best: DriveFit, closures: tuple[str, ...], warnings: tuple[Warning, ...], unit: str
+) -> tuple[Warning, ...]:
+    """What is to be known of known parameters that keep the fit from the trace: without them it is better."""
+    if not (names := doubted(best, warnings)):
+        return ()
+    try:
+        free = identify(record, closures=closures)
+    except InsufficientDataError:
+        return ()
+    return forced(best, names, free.misfit, free.estimates, unit)
+
+
 def _fits(
     wave: Waveform, record: CycleRecord, given: Mapping[str, float], closures: tuple[str, ...]
 ) -> list[DriveFit]:
@@ -228,7 +250,10 @@ def _fits(
     fits.sort(key=lambda fit: fit.chi_square)
     if fits[0].lap is None:
         raise InsufficientDataError(
-            "no drive of the model makes such a cycle. Give known parameters, or check the units"
+            "no drive of the model makes such a cycle",
+            remedy=f"check {', '.join(given)} and the units"
+            if given
+            else "give known parameters, or check the units",
         )
     return fits
 
