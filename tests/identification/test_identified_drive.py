@@ -178,6 +178,21 @@ def test_records_without_an_answer_are_refused() -> None:
         identify(cycles(good.samples.time[:1200], good.samples.value[:1200], drive_speed=1.0))
 
 
+def test_a_force_that_lost_its_zero_is_not_identified() -> None:
+    """An oscilloscope with AC coupling takes the mean off; then the work of friction would be none."""
+    good, kind = record(0), "force changes sign"
+    time, force = good.samples.time, good.samples.value
+    coupled = cycles(time, force - np.mean(force), drive_speed=1.0)
+    (said,) = [each for each in coupled.warnings if each.kind == kind]
+    assert said.number("low") < -0.4 * np.median(coupled.drop) < 0 < said.number("high")
+    with pytest.raises(InsufficientDataError, match="zero of the force is lost") as refused:
+        identify(coupled, closures=("retained",))
+    assert "DC coupling" in refused.value.remedy
+    assert kind not in [each.kind for each in good.warnings]
+    known = {"mass": 1.0, "stick_speed": 0.01}
+    assert identify(good, known=known, closures=("retained",)).misfit < 0.01  # the advice: with its zero
+
+
 def test_the_document_is_json() -> None:
     drive: IdentifiedDrive = identify(record(5), closures=("retained",))
     document = json.loads(json.dumps(drive.to_dict()))

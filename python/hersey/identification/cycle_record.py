@@ -316,7 +316,13 @@ def _record(
         warnings=(
             *warnings,
             *warnings_of(
-                samples, figures, found.least, least_drop, drift, cyclic=motion.kind != "steady_sliding"
+                samples,
+                figures,
+                found.least,
+                least_drop,
+                drift,
+                cyclic=motion.kind != "steady_sliding",
+                zeroed=motion.kind == "stick_slip" and quantity == "force",
             ),
         ),
     )

@@ -17,6 +17,9 @@ from hersey.schema.warning import Warning
 FALLS_OF_FEW_SAMPLES = "falls of few samples"
 #: Samples that a fall must last for its duration to be trusted.
 _FEW_SAMPLES = 6
+#: Force below zero after each slip, as a share of the drop, from which its zero is doubted. A free slip ends
+#: there if the belt breaks away at 3.5 times the friction of sliding: (1 - 2 x 0.3) / (2 - 2 x 0.3) of it.
+_BELOW_ZERO = 0.3
 
 
 def warnings_of(
@@ -27,10 +30,12 @@ def warnings_of(
     drift: float,
     *,
     cyclic: bool,
+    zeroed: bool,
 ) -> tuple[Warning, ...]:
     """Return the warnings of slips of which the ``least`` was counted, where ``least_drop`` was asked for.
 
-    ``drift`` is that of the level, per s; ``cyclic`` whether the falls make cycles.
+    ``drift`` is that of the level, per s; ``cyclic`` whether the falls make cycles, ``zeroed``
+    whether they are slips of a force, which has a zero.
     """
     if figures.drop.size < FEWEST_SLIPS:
         return ()
@@ -38,6 +43,7 @@ def warnings_of(
         *_of_the_falls(samples, figures, least, least_drop),
         *_of_the_samples(samples),
         *_of_the_level(samples, figures, drift, cyclic=cyclic),
+        *(_of_the_zero(figures) if zeroed else ()),
     )
 
 
@@ -109,4 +115,19 @@ def _of_the_level(samples: Samples, figures: SlipFigures, drift: float, *, cycli
     if swing > 0.5 * float(np.median(figures.drop)):
         yield Warning(
             "level drifts", "the level drifts by {drift:.3g} over the trace", severity="watch", drift=swing
+        )
+
+
+def _of_the_zero(figures: SlipFigures) -> Iterator[Warning]:
+    """Yield that the force changes sign in every cycle, as it does if its mean was removed."""
+    low, high = float(np.median(figures.low)), float(np.median(figures.high))
+    if low < -_BELOW_ZERO * (high - low):
+        yield Warning(
+            "force changes sign",
+            "the force changes sign in every cycle ({low:.3g} to {high:.3g}). Either break-away takes more "
+            "than 3 times the force of sliding, or the zero of the force is lost; identification needs it",
+            severity="watch",
+            remedy="record with DC coupling, and zero the sensor without load",
+            low=low,
+            high=high,
         )

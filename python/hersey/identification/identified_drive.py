@@ -37,6 +37,9 @@ UNDECIDED = 10.0
 #: What needs no single parameter: the free period 2 pi sqrt(m/k), s, the force at which a held belt is
 #: released, and the drag at the drive speed.
 DERIVED = ("free_period", "release_force", "drag_at_drive_speed")
+#: Force averaged over a cycle, as a share of the drop, below which its zero is lost. A drive breaks away at
+#: 50 times the friction of sliding if it is more than zero by so little.
+_LEAST_MEAN = 0.01
 #: The drive speed is estimated only if what is known halves the interval that was stated.
 _HALVED = 0.5
 
@@ -275,6 +278,7 @@ def _check(record: CycleRecord, known: Mapping[str, float], closures: tuple[str,
         raise InsufficientDataError(
             f"{record.headline()}. To identify a drive, omit {Setting('least_drop').to()}"
         )
+    _refuse_a_lost_zero(record)
     if record.drive_speed is None:
         needed = Setting("drive_speed").to("20 mm/s", python="0.02")
         raise ParameterError(f"the drive speed is needed to identify a drive. Give it, e.g. {needed}")
@@ -287,6 +291,20 @@ def _check(record: CycleRecord, known: Mapping[str, float], closures: tuple[str,
     if unknown or not closures:
         raise ParameterError(
             f"unknown closures: {', '.join(unknown) or 'none given'}. Use {', '.join(CLOSURES)}"
+        )
+
+
+def _refuse_a_lost_zero(record: CycleRecord) -> None:
+    """Refuse a force whose mean over a cycle is not above zero, although its work is what friction takes."""
+    first, last = (np.searchsorted(record.samples.time, record.slip_time[end]) for end in (0, -1))
+    share = float(np.mean(record.samples.value[first:last]) / np.median(record.drop))
+    if share < _LEAST_MEAN:
+        raise InsufficientDataError(
+            "the zero of the force is lost: over a cycle the force averages "
+            f"{100 * share + 0.0:.1f} % of its drop, but a belt that slides against friction needs a "
+            "force above zero",
+            remedy="identification needs the true zero: record with DC coupling, and zero the sensor "
+            "without load",
         )
 
 
