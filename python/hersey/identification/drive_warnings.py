@@ -13,7 +13,7 @@ from hersey.identification.cycle_record import CycleRecord
 from hersey.identification.drive_fit import DriveFit, HeldSlope
 from hersey.identification.independence import ESTIMABLE, NOT_ESTIMABLE, not_estimable
 from hersey.identification.motion_kind import LONGEST_OF_LAP, NO_FREE_PERIOD
-from hersey.identification.trace_units import field, kind_of
+from hersey.identification.trace_units import in_unit, kind_of
 from hersey.schema.warning import Warning
 
 #: A fit is called poor if its mean cycle is off by more than this share of the drop (root mean square).
@@ -89,20 +89,24 @@ def forced(
     for name in named:
         values[name] = known[name]
         label, kind = name.replace("_", " "), kind_of(name)
-        given.append(f"{label} {field(name, kind, unit, digits=3)}")
+        given.append(f"{label} {in_unit(known[name], kind, unit, digits=3)}")
         if name in outside:
-            values[f"{name}_low"], values[f"{name}_high"] = estimates[name].low, estimates[name].high
-            low, high = (field(f"{name}_{end}", kind, unit, digits=3) for end in ("low", "high"))
+            ends = estimates[name].low, estimates[name].high
+            values[f"{name}_low"], values[f"{name}_high"] = ends
+            low, high = (in_unit(end, kind, unit, digits=3) for end in ends)
             found.append((f"{label} " if len(named) > 1 else "") + f"{low} to {high}")
     labels = ["mass, which includes the motor" if n == "mass" else n.replace("_", " ") for n in named]
     checked = [*labels, *["drive speed"] * bool(_SCALES.intersection(named))]
     warning = Warning(
         "known parameters misfit",
-        f"with {' and '.join(given)} the fit misses the trace by {{misfit:.2f %}} of the drop; without "
-        f"{'it' if len(known) == 1 else 'what is known'} by {{free_misfit:.2f %}}"
-        + (f", at {' and '.join(found)}" if found else ""),
+        "with {given} the fit misses the trace by {misfit:.2f %} of the drop; without {these} by "
+        "{free_misfit:.2f %}{found}",
         severity="act",
-        remedy=f"check the {' and the '.join(checked)}".replace("motor and", "motor, and"),
+        remedy="check the {checked}",
+        given=" and ".join(given),
+        these="it" if len(known) == 1 else "what is known",
+        found=f", at {' and '.join(found)}" if found else "",
+        checked=" and the ".join(checked).replace("motor and", "motor, and"),
         misfit=fit.misfit,
         free_misfit=misfit,
         **values,
@@ -187,44 +191,49 @@ def _contradiction(
         yield _taken_for_creep(best, held, fitted, unit)
 
 
-def _by_slope(best: DriveFit, unit: str) -> str:
-    """The words for the stiffness that the slope means, and the other one."""
-    return (
-        f"while the belt is held, the spring force rises by {field('slope', 'slope', unit)}. At the drive "
-        f"speed of {field('drive_speed', 'speed', unit)} this means a stiffness of "
-        f"{field('by_slope', 'stiffness', unit)}, but {field('stiffness', 'stiffness', unit)} is "
-        f"{'given' if 'stiffness' in best.known else 'fitted'}"
-    )
-
-
 def _other_stiffness(best: DriveFit, held: HeldSlope, fitted: float, unit: str) -> Warning:
+    agreed = held.slope / held.followed / fitted
     return Warning(
         _OTHER_STIFFNESS,
-        f"{_by_slope(best, unit)}; they would agree at a drive speed of {field('agreed', 'speed', unit)}",
+        "while the belt is held, the spring force rises by {rise}. At the drive speed of {speed} this means "
+        "a stiffness of {measured}, but {other} is {source}; they would agree at a drive speed of {needed}",
         severity="watch",
         remedy="check the drive speed and the parameters given as known",
-        slope=held.slope,
-        drive_speed=best.drive_speed,
-        by_slope=held.slope / best.drive_speed,
-        stiffness=fitted,
-        agreed=held.slope / held.followed / fitted,
+        agreed=agreed,
+        needed=in_unit(agreed, "speed", unit),
+        **_by_slope(best, held, fitted, unit),
     )
 
 
 def _taken_for_creep(best: DriveFit, held: HeldSlope, fitted: float, unit: str) -> Warning:
+    agreed = held.slope / fitted
     return Warning(
         "difference taken for creep",
-        f"{_by_slope(best, unit)}. The fit explains the difference by creep of the held belt, "
-        f"{{creep:.1%}} of the drive speed; a drive speed of {field('agreed', 'speed', unit)} would explain "
-        "it too",
+        "while the belt is held, the spring force rises by {rise}. At the drive speed of {speed} this means "
+        "a stiffness of {measured}, but {other} is {source}. The fit explains the difference by creep of the "
+        "held belt, {creep:.1%} of the drive speed; a drive speed of {needed} would explain it too",
         severity="watch",
-        slope=held.slope,
-        drive_speed=best.drive_speed,
-        by_slope=held.slope / best.drive_speed,
-        stiffness=fitted,
         creep=1 - held.followed,
-        agreed=held.slope / fitted,
+        agreed=agreed,
+        needed=in_unit(agreed, "speed", unit),
+        **_by_slope(best, held, fitted, unit),
     )
+
+
+def _by_slope(best: DriveFit, held: HeldSlope, fitted: float, unit: str) -> dict[str, Any]:
+    """The stiffness that the slope means and the other one, in SI, and as words show them."""
+    by_slope = held.slope / best.drive_speed
+    return {
+        "slope": held.slope,
+        "drive_speed": best.drive_speed,
+        "by_slope": by_slope,
+        "stiffness": fitted,
+        "rise": in_unit(held.slope, "slope", unit),
+        "speed": in_unit(best.drive_speed, "speed", unit),
+        "measured": in_unit(by_slope, "stiffness", unit),
+        "other": in_unit(fitted, "stiffness", unit),
+        "source": "given" if "stiffness" in best.known else "fitted",
+    }
 
 
 def _lost(best: DriveFit, covariance: FloatArray, intervals: Mapping[str, Estimate]) -> Iterator[Warning]:

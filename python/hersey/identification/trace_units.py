@@ -2,24 +2,33 @@
 
 from __future__ import annotations
 
-#: Format that converts a number from SI, and its unit, of each kind of number, by the unit of the trace.
+#: Unit of each kind of number by the unit of the trace, and how many of it make one in SI.
 _SHOWN = {
-    "N": {"slope": (" N/s", ""), "stiffness": ("", " N/mm"), "mass": (" kg", ""), "force": (" N", "")},
+    "N": {
+        "slope": ("N/s", 1.0),
+        "stiffness": ("N/mm", 1e-3),
+        "mass": ("kg", 1.0),
+        "force": ("N", 1.0),
+        "speed": ("mm/s", 1e3),
+    },
     "N m": {
-        "slope": (" N m/s", ""),
-        "stiffness": (" N m/rad", ""),
-        "mass": (" kg m^2", ""),
-        "force": (" N m", ""),
-        "speed": (" rad/s", ""),
+        "slope": ("N m/s", 1.0),
+        "stiffness": ("N m/rad", 1.0),
+        "mass": ("kg m^2", 1.0),
+        "force": ("N m", 1.0),
+        "speed": ("rad/s", 1.0),
     },
     "1": {
-        "slope": (" of the weight per s", ""),
-        "stiffness": (" of the weight per m", ""),
-        "mass": (" s^2/m", ""),
-        "force": (" of the weight", ""),
+        "slope": ("of the weight per s", 1.0),
+        "stiffness": ("of the weight per m", 1.0),
+        "mass": ("s^2/m", 1.0),
+        "force": ("of the weight", 1.0),
+        "speed": ("mm/s", 1e3),
     },
 }
-_SHOWN["N"]["speed"] = _SHOWN["1"]["speed"] = ("", " mm/s")
+#: Of a trace whose unit is not known.
+_UNKNOWN = {"slope": ("(unit of the trace) per s", 1.0), "speed": ("(SI)", 1.0)}
+_OTHERS = ("(SI if the trace is)", 1.0)
 #: Kinds of the parameters of a drive; exponents have none.
 _KINDS = {
     "stiffness": "stiffness",
@@ -28,9 +37,6 @@ _KINDS = {
     "transition_speed": "speed",
     "stick_speed": "speed",
 }
-#: Of a trace whose unit is not known.
-_UNKNOWN = {"slope": " (unit of the trace) per s", "speed": " (SI)"}
-_SOME = " (SI if the trace is)"
 
 
 def kind_of(parameter: str) -> str:
@@ -38,15 +44,15 @@ def kind_of(parameter: str) -> str:
     return _KINDS.get(parameter, "")
 
 
-def field(value: str, kind: str, unit: str, *, digits: int = 4) -> str:
-    """Return the words of a warning that show one of its values, of a kind, with its unit.
+def in_unit(number: float, kind: str, unit: str, *, digits: int = 4) -> str:
+    """Return a number of a kind, in SI, with its unit, for people.
 
     Examples
     --------
-    >>> field("agreed", "speed", "N"), field("fitted", "stiffness", "N m")
-    ('{agreed:.4g mm/s}', '{fitted:.4g} N m/rad')
+    >>> in_unit(0.02, "speed", "N"), in_unit(1980.1, "stiffness", "N"), in_unit(3.0, "stiffness", "N m")
+    ('20 mm/s', '1.98 N/mm', '3 N m/rad')
     """
     if not kind:
-        return f"{{{value}:.{digits}g}}"
-    behind, converted = _SHOWN.get(unit, {}).get(kind, (_UNKNOWN.get(kind, _SOME), ""))
-    return f"{{{value}:.{digits}g{converted}}}{behind}"
+        return f"{number:.{digits}g}"
+    name, factor = _SHOWN.get(unit, _UNKNOWN).get(kind, _OTHERS)
+    return f"{factor * number:.{digits}g} {name}"

@@ -26,7 +26,6 @@ _UNITS: dict[str, Callable[[Any], Any]] = {
     "%": lambda value: 100.0 * value,
     "mm": lambda value: 1e3 * value,
     "mm/s": lambda value: 1e3 * value,
-    "N/mm": lambda value: 1e-3 * value,
     "um": lambda value: 1e6 * value,
     "nm": lambda value: 1e9 * value,
     "GPa": lambda value: 1e-9 * value,
