@@ -241,6 +241,47 @@ def test_two_numbers_that_could_be_swapped_are_given_by_name() -> None:
         H.Drag.force(DRAG, 1.0, 400.0)
 
 
+BENCH = ROOT / "examples" / "bench.csv"
+
+
+@pytest.mark.parametrize(
+    ("call", "written"),
+    [
+        (lambda: H.read(BENCH, torque_unit="mN*m"), {"units": {"torque": "mN*m"}}),
+        (lambda: H.read(BENCH, torque_units="mN*m"), {"units": {"torque": "mN*m"}}),
+        (lambda: H.read(BENCH, torque="Drive torque"), {"channels": {"torque": "Drive torque"}}),
+        (lambda: H.read_many(BENCH, torque="Drive torque"), {"channels": {"torque": "Drive torque"}}),
+        (lambda: H.read_with_mapping(BENCH, torque_sign=-1), {"signs": {"torque": -1}}),
+        (lambda: H.inspect(BENCH, torque_unit="mN*m"), {"units": {"torque": "mN*m"}}),
+        (
+            lambda: H.read(BENCH, channels={"Drive torque": "torque", "time": "Time"}),
+            {"channels": {"torque": "Drive torque", "time": "Time"}},
+        ),
+        (lambda: H.read(BENCH, units={"mN*m": "torque"}), {"units": {"torque": "mN*m"}}),
+    ],
+)
+def test_a_column_or_unit_given_outside_its_dictionary_gets_the_dictionary_to_write(
+    call: Callable[[], Any], written: dict[str, dict[str, Any]]
+) -> None:
+    with pytest.raises(ParameterError) as refused:
+        call()
+    advice = str(refused.value).rpartition("Write ")[2]
+    assert eval(f"dict({advice})") == written
+    if "signs" not in written:
+        assert hersey.read(BENCH, **written).rows > 10_000
+
+
+@pytest.mark.parametrize("read", [H.read, H.inspect, H.read_with_mapping])
+def test_what_must_be_a_dictionary_comes_with_an_example(read: Any) -> None:
+    for name, example in (("units", "{'torque': 'Nm'}"), ("channels", "{'torque': 'Torque 1'}")):
+        with pytest.raises(ArgumentError) as refused:
+            read(BENCH, **{name: "Nm"})
+        assert str(refused.value).endswith(f"It must be a dictionary, e.g. {name}={example}")
+    assert (
+        H.inspect(BENCH, radius="15 mm", load=None, units=None).problem == ""
+    )  # arguments that are no roles
+
+
 def test_the_check_of_a_call_takes_microseconds() -> None:
     @takes_si(speed="speed", temperature="temperature")
     def nothing(law: object, *, speed: float, temperature: float | None = None) -> None:

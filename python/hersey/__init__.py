@@ -40,6 +40,7 @@ Nothing flows backwards: a log knows no fit, a fit knows no motion. Names are lo
 
 from __future__ import annotations
 
+import os
 from typing import Any
 
 import lazy_loader
@@ -48,10 +49,50 @@ _load, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)  # importi
 __all__ += ["__version__"]
 
 
+#: What does in Python what a command of another name does.
+_OF_COMMANDS = {
+    "campaign": "Campaign.open",
+    "export": "export_fmu",
+    "film": "film_thickness",
+    "life": "follow",
+    "map": "operating_map",
+    "models": "compare_models",
+    "plan": "plan_profile",
+    "warmup": "warm_up",
+}
+#: Commands that Python has no function for.
+_ONLY_COMMANDS = ("app", "examples", "explain", "new", "testbench")
+
+
 def __getattr__(name: str) -> Any:
     """Load a public name when it is first used."""
     if name == "__version__":  # the core knows it, too, and loads NumPy
         from importlib.metadata import version
 
         return version("hersey")
-    return _load(name)
+    if name in __all__ or name.startswith("_"):
+        return _load(name)
+    try:
+        return _load(name)
+    except AttributeError:
+        remedy = _instead_of(name)
+    # Python adds the nearest name to a message whose object it knows, and would do so a second time.
+    raise AttributeError(f"hersey has no '{name}'. {remedy}", name=name, obj=None)
+
+
+def _instead_of(name: str) -> str:
+    """Return what to write instead of a name that is not there."""
+    if name in _OF_COMMANDS:
+        return f"Use hersey.{_OF_COMMANDS[name]}(...)"
+    if name in _ONLY_COMMANDS:
+        return f"In a terminal, type: hersey {name}"
+    path = f"{__path__[0]}{os.sep}{name}"
+    if os.path.exists(path) or os.path.exists(f"{path}.py"):  # noqa: PTH110 - `pathlib` takes longer to load
+        return f"Load it: import hersey.{name}"
+    from hersey.errors import meant
+
+    known = [*__all__, *_OF_COMMANDS]
+    alike = [each for each in known if each[0].isupper() == name[0].isupper()]  # a class, or a function
+    near = meant(name, alike) or meant(name, known)
+    near = _OF_COMMANDS.get(near, near)
+    return f"Did you mean hersey.{near}?" if near else "dir(hersey) lists the names it has"

@@ -17,7 +17,7 @@ from fractions import Fraction
 from functools import cache, lru_cache, wraps
 from typing import TYPE_CHECKING, Any, TypeVar, cast
 
-from hersey.arguments.door import Door, Words
+from hersey.arguments.door import Door, Keys, Words
 from hersey.arguments.frozen import explained
 from hersey.arguments.numbers import numbers
 from hersey.errors import ParameterError, UnitError, WrongKindError
@@ -501,7 +501,7 @@ def _called_from_inside() -> bool:
     return str(frame.f_globals["__name__"]).startswith("hersey.")
 
 
-def takes_si(**kinds: Kind | Words) -> Callable[[F], F]:
+def takes_si(**kinds: Kind | Words | Keys) -> Callable[[F], F]:
     """Check what a function or a record is called with; take the arguments named as `argument` does.
 
     Names and types follow from the signature (`hersey.arguments`). Quantities, each of its kind, may be
@@ -526,7 +526,7 @@ def takes_si(**kinds: Kind | Words) -> Callable[[F], F]:
     return decorate
 
 
-def _check_fields(record: Any, kinds: Mapping[str, Kind | Words]) -> None:
+def _check_fields(record: Any, kinds: Mapping[str, Kind | Words | Keys]) -> None:
     """Let a record check the fields that it is made with."""
     door, made = Door(inspect.signature(record), record.__name__, kinds, _read), record.__init__
 

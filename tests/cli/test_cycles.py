@@ -176,6 +176,17 @@ def test_what_drops_is_called_by_what_the_trace_holds(
         assert re.search(rf"^ *{called} +\S+ to \S+ {unit}(,|$)", told, re.MULTILINE)
 
 
+def test_a_log_of_steady_sliding_is_not_identified_but_gets_the_command_for_its_drag() -> None:
+    bench = CSV.with_name("bench.csv")
+    refused = run("cycles", bench, "--drive-speed", "12.7 rpm", "--identify", cwd=ROOT)
+    assert (refused.returncode, refused.stdout) == (2, "")
+    assert "the trace is irregular: 363 drops exceed the noise" in refused.stderr
+    assert "steady sliding, but" not in refused.stderr
+    typed = shlex.split(refused.stderr.rpartition("type: ")[2])
+    assert typed == ["hersey", "report", str(bench)]
+    assert run("report", bench, "--json", cwd=ROOT).returncode == 0
+
+
 def test_a_channel_of_the_drive_speed(tmp_path: Path) -> None:
     path = tmp_path / "pull.csv"
     rows = [f"{0.01 * i:.2f},{i % 50 / 5},{20 + (i % 2)}" for i in range(600)]

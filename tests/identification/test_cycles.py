@@ -10,9 +10,9 @@ import pytest
 
 import hersey
 from hersey.errors import InsufficientDataError, ParameterError
-from hersey.identification import CycleRecord, cycles
+from hersey.identification import CycleRecord, cycles, identify
 from hersey.identification.trace_file import read_trace
-from tests.conftest import shared
+from tests.conftest import ROOT, shared
 
 TRAIN = hersey.Drivetrain(1000, 1)
 FREE_PERIOD = 2 * np.pi / np.sqrt(1000)
@@ -61,6 +61,25 @@ def test_steady_sliding_is_no_cycle() -> None:
         50 + 0.2 * np.cumsum(rng.normal(0, 1, times.size)) + rng.normal(0, 1, times.size),
     ):
         assert cycles(times, force).kind == "steady_sliding"
+
+
+def test_stick_slip_that_is_sampled_too_slowly_is_not_called_steady() -> None:
+    """Every 50th sample of the shipped trace, a little more than one per cycle."""
+    whole = read_trace(ROOT / "examples" / "stick-slip.csv")
+    slow = cycles(whole.time[::50], whole.value[::50], drive_speed=0.02)
+    kinds = [each.kind for each in slow.warnings]
+    assert (slow.kind, slow.falls >= 3) == ("steady_sliding", True)
+    assert "falls of few samples" in kinds
+    assert "sign may be turned" not in kinds  # it is not: sampling makes the rises and falls
+    with pytest.raises(InsufficientDataError) as refused:
+        identify(slow)
+    assert refused.value.reason.startswith(f"the trace is irregular: {slow.falls} drops exceed the noise")
+    assert refused.value.remedy.startswith("a drop lasts only 3.9 samples. Sample faster")
+    turned = cycles(whole.time[::8], -whole.value[::8])
+    assert (turned.kind, "sign may be turned" in [each.kind for each in turned.warnings]) == (
+        "inertial",
+        True,
+    )
 
 
 @pytest.mark.parametrize("noise", [0.0, 0.05])

@@ -29,7 +29,7 @@ def record(seed: int, stated: float, uncertainty: float = 1e-3) -> CycleRecord:
 @cache
 def drive(stated: float, uncertainty: float, *known: str, seed: int = 0) -> IdentifiedDrive:
     given = {name: float(getattr(TRUTH, name)) for name in known}
-    return identify(record(seed, stated, uncertainty), known=given, closures=("retained",))
+    return identify(record(seed, stated, uncertainty), known=given, closures=("retained",), unit="N")
 
 
 @pytest.mark.parametrize("stated", mostly_nightly([1.02, 1 / 1.02], 1.02))  # the scale of speeds cancels
@@ -84,15 +84,32 @@ def test_a_slope_that_contradicts_the_stiffness_is_said_with_both_numbers() -> N
     (other,) = notable(drive(1.02, 0.001, "stiffness", "stick_speed"))
     assert other.kind == "slope contradicts stiffness"
     assert other.values["stiffness"] == 1000.0
-    assert "a stiffness of 970.4" in str(other)
-    assert "but 1000 is given; they would agree at a drive speed of 0.99" in str(other)
+    assert "At the drive speed of 1020 mm/s this means a stiffness of 0.9704 N/mm" in str(other)
+    assert "but 1 N/mm is given; they would agree at a drive speed of 99" in str(other)
     assert other.values["by_slope"] == other.values["slope"] / 1.02
     (creep,) = notable(drive(1.02, 0.001, "stiffness"))
     assert creep.kind == "difference taken for creep"
-    assert "a stiffness of 970.4" in str(creep)
+    assert "a stiffness of 0.9705 N/mm" in str(creep)
     assert creep.values["agreed"] == creep.values["slope"] / 1000.0
     for known in ((), ("stick_speed",), ("stiffness", "stick_speed")):
         assert notable(drive(1.0, 0.001, *known)) == []
+
+
+@pytest.mark.parametrize(
+    ("unit", "said"),
+    [
+        (
+            "N m",
+            "rises by 989.8 N m/s. At the drive speed of 1.02 rad/s this means a stiffness of 970.4 N m/rad",
+        ),
+        ("1", "rises by 989.8 of the weight per s. At the drive speed of 1020 mm/s"),
+        ("", "rises by 989.8 (unit of the trace) per s. At the drive speed of 1.02 (SI)"),
+    ],
+)
+def test_numbers_of_a_warning_have_the_units_of_the_trace(unit: str, said: str) -> None:
+    given = {name: float(getattr(TRUTH, name)) for name in ("stiffness", "stick_speed")}
+    found = identify(record(0, 1.02), known=given, closures=("retained",), unit=unit)
+    assert said in str(notable(found)[0])
 
 
 def test_an_uncertainty_is_a_share() -> None:

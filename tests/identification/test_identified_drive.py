@@ -84,6 +84,23 @@ def test_known_parameters_sharpen_the_others() -> None:
         assert held.estimates[name].low <= TRUTH[name] <= held.estimates[name].high
 
 
+def test_a_wrong_known_mass_is_said_with_the_mass_that_fits() -> None:
+    """The mass given is 0.6 times the truth; a true one is not doubted, nor is the stick speed."""
+    kind, closures = "known parameters misfit", ("retained",)
+    wrong = identify(record(1), known={"mass": 0.6, "stick_speed": 0.01}, closures=closures, unit="N")
+    (said,) = [each for each in wrong.warnings if each.kind == kind]
+    assert said.severity == "act"
+    assert said.number("misfit") == wrong.misfit > 2 * said.number("free_misfit")
+    assert said.number("mass_low") < TRUTH["mass"] < said.number("mass_high")
+    assert "stick_speed" not in said.values
+    assert said.text.startswith("With mass 0.6 kg the fit misses the trace by ")
+    assert said.text.endswith("Check the mass, which includes the motor, and the drive speed.")
+    free = identify(record(1), closures=closures)  # the advice: what the trace itself says of the mass
+    assert free.estimates["mass"].low == said.number("mass_low")
+    right = identify(record(1), known={"mass": 1.0, "stick_speed": 0.01}, closures=closures, unit="N")
+    assert kind not in [each.kind for each in (*right.warnings, *free.warnings)]
+
+
 @pytest.mark.parametrize("closure", ["retained", "stiction"])
 def test_the_closure_is_chosen_or_left_open(closure: str) -> None:
     """Never decided for the wrong one; decided with little noise and a known stick speed."""
@@ -159,6 +176,21 @@ def test_records_without_an_answer_are_refused() -> None:
         identify(cycles(run.time, run.belt_speed, quantity="speed", drive_speed=1.0))
     with pytest.raises(InsufficientDataError, match="whole cycles"):
         identify(cycles(good.samples.time[:1200], good.samples.value[:1200], drive_speed=1.0))
+
+
+def test_a_force_that_lost_its_zero_is_not_identified() -> None:
+    """An oscilloscope with AC coupling takes the mean off; then the work of friction would be none."""
+    good, kind = record(0), "force changes sign"
+    time, force = good.samples.time, good.samples.value
+    coupled = cycles(time, force - np.mean(force), drive_speed=1.0)
+    (said,) = [each for each in coupled.warnings if each.kind == kind]
+    assert said.number("low") < -0.4 * np.median(coupled.drop) < 0 < said.number("high")
+    with pytest.raises(InsufficientDataError, match="zero of the force is lost") as refused:
+        identify(coupled, closures=("retained",))
+    assert "DC coupling" in refused.value.remedy
+    assert kind not in [each.kind for each in good.warnings]
+    known = {"mass": 1.0, "stick_speed": 0.01}
+    assert identify(good, known=known, closures=("retained",)).misfit < 0.01  # the advice: with its zero
 
 
 def test_the_document_is_json() -> None:

@@ -6,7 +6,7 @@ import ast
 import inspect
 import os
 import sys
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from numbers import Integral, Real
@@ -109,6 +109,27 @@ class Words(tuple[str, ...]):
     __slots__ = ()
 
 
+class Keys(tuple[str, ...]):
+    """The keys that a dictionary can have, named in `takes_si` where the kind of a quantity would be.
+
+    ``example`` is such a dictionary as text. ``suffix`` is what a user may put behind a key to make an
+    argument of it, e.g. ``torque_unit``.
+    """
+
+    example: str
+    suffix: str
+
+    def __new__(cls, keys: Iterable[str], example: str, suffix: str = "") -> Keys:
+        """Take the keys, the example and the suffix."""
+        made = super().__new__(cls, keys)
+        made.example, made.suffix = example, suffix
+        return made
+
+    def of(self, name: str) -> str:
+        """Return the key that an argument of such a name is meant to set, or an empty text."""
+        return next((key for key in self if name in (f"{key}{self.suffix}", f"{key}{self.suffix}s")), "")
+
+
 @dataclass
 class _Argument:
     """A parameter, and what it may be."""
@@ -118,6 +139,7 @@ class _Argument:
     required: bool
     by_position: bool
     words: tuple[str, ...] = ()  #: all that a text may be, if they are few
+    example: str = ""  #: a dictionary that it may be, as text
     passed: set[type] = field(default_factory=set)  #: types that need no further look
 
     @cached_property
@@ -129,6 +151,8 @@ class _Argument:
     def wanted(self) -> str:
         """What it may be, in words."""
         in_words = _IN_WORDS | ({"text": " or ".join(map(repr, self.words))} if self.words else {})
+        if self.example:
+            in_words["mapping"] += f", e.g. {self.name}={self.example}"
         known = [in_words[kind] for kind in self.kinds if kind in in_words]
         return " or ".join(
             [*map(with_article, dict.fromkeys(_SHOWN.get(name, name) for name in self.classes)), *known]
@@ -182,7 +206,9 @@ class Door:
         """Take signature and name of the function, the kinds of its quantities, and what reads them."""
         self.signature, self.title, self.read = signature, title, read
         self.words = {name: each for name, each in quantities.items() if isinstance(each, Words)}
-        self.quantities = {name: each for name, each in quantities.items() if name not in self.words}
+        self.keys = {name: each for name, each in quantities.items() if isinstance(each, Keys)}
+        special = self.words.keys() | self.keys.keys()
+        self.quantities = {name: each for name, each in quantities.items() if name not in special}
 
     @cached_property
     def arguments(self) -> dict[str, _Argument]:
@@ -198,8 +224,18 @@ class Door:
                 kinds = (*kinds, "none")
             by_position = each.kind is not each.KEYWORD_ONLY
             required, words = each.default is each.empty, self.words.get(name, ())
-            found[name] = _Argument(name, kinds, required, by_position, words)
+            example = self.keys[name].example if name in self.keys else ""
+            found[name] = _Argument(name, kinds, required, by_position, words, example)
         return found
+
+    @cached_property
+    def collected(self) -> dict[str, _Argument]:
+        """The dictionaries of known keys that are among other keywords which the function takes."""
+        return {
+            name: _Argument(name, ("mapping", "none"), False, False, example=keys.example)
+            for name, keys in self.keys.items()
+            if name not in self.signature.parameters
+        }
 
     @cached_property
     def positions(self) -> tuple[str, ...]:
@@ -232,15 +268,16 @@ class Door:
         for name in named:
             if name in values:
                 raise ArgumentError(f"{self.title} got {name} twice, by position and by name")
-            if name not in self.arguments and not self.open:
-                raise self._unknown(name)
+            if name not in self.arguments and (self._entry(name) or not self.open):
+                raise self._unknown(name, named[name])
         values |= named
         if not values.keys() >= self.required:
             raise self._missing(
                 next(name for name in self.arguments if name in self.required - values.keys())
             )
         for name, value in values.items():
-            argument, kind, type_ = self.arguments.get(name), self.quantities.get(name), type(value)
+            argument = self.arguments.get(name) or self.collected.get(name)
+            kind, type_ = self.quantities.get(name), type(value)
             plain = type_ is int or (type_ is float and value == value)
             if plain and kind != "temperature" and (argument is None or argument.takes_numbers):
                 continue
@@ -274,7 +311,17 @@ class Door:
         written = ", ".join([*positions[: last + 1], *(f"{name}=..." for name in named)])
         return f"{'hersey.' * public}{self.title}({written})"
 
-    def _unknown(self, name: str) -> ArgumentError:
+    def _entry(self, name: str) -> tuple[str, str] | None:
+        """The dictionary and its key that an argument which is none of the function's is meant to set."""
+        if name in self.quantities:
+            return None
+        return next(((each, key) for each, keys in self.keys.items() if (key := keys.of(name))), None)
+
+    def _unknown(self, name: str, value: Any) -> ArgumentError:
+        if entry := self._entry(name):
+            held = repr(value) if isinstance(value, str | int) else "..."
+            remedy = f"write {entry[0]}={{'{entry[1]}': {held}}}"
+            return ArgumentError(f"{self.title} has no argument '{name}'", remedy=remedy)
         near = nearest_argument(name, self.own)
         did = f"Did you mean {near}? " if near else ""
         takes = f"{did}Its arguments are {', '.join(self.own)}" if self.own else "It takes none"

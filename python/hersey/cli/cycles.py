@@ -14,7 +14,14 @@ from hersey.cli.outputs import may_draw
 from hersey.cli.printing import Printing
 from hersey.cli.progress import working
 from hersey.cli.quantities import belt_speed_of, share
-from hersey.errors import ParameterError, UnitError, WrongKindError, sentence
+from hersey.errors import (
+    InsufficientDataError,
+    ParameterError,
+    UnitError,
+    WrongKindError,
+    followed_by,
+    sentence,
+)
 
 if TYPE_CHECKING:
     from hersey.arrays import FloatArray
@@ -111,14 +118,21 @@ class _Identification:
     known: Annotated[list[str] | None, option(_KNOWN, metavar="NAME=VALUE")] = None
     closures: Annotated[str, option(_CLOSURES)] = "retained,stiction"
 
-    def drive(self, record: CycleRecord, known: dict[str, float]) -> IdentifiedDrive | None:
-        """Return the drive, if it is to be identified."""
+    def drive(
+        self, record: CycleRecord, known: dict[str, float], unit: str, *, instead: str
+    ) -> IdentifiedDrive | None:
+        """Return the drive, if it is to be identified; ``instead``: what to do if there is no stick-slip."""
         from hersey.identification.identified_drive import identify
 
         if not self.identify:
             return None
         with working("identifying the drive"):
-            return identify(record, known=known, closures=tuple(self.closures.replace(" ", "").split(",")))
+            try:
+                compared = tuple(self.closures.replace(" ", "").split(","))
+                return identify(record, known=known, closures=compared, unit=unit)
+            except InsufficientDataError as error:
+                error.remedy = followed_by(error.remedy, instead)
+                raise
 
 
 @grouped
@@ -153,7 +167,10 @@ def cycles(
         speed = _drive_speed(trace.drive_speed, given) if channel is None else _of_channel(channel, given)
         known = _known(sought.known or [], given)
         record = trace.record(given, speed)
-        drive, unit = sought.drive(record, known), _UNITS.get(given.unit, given.unit).replace("*", " ")
+        drag_only = record.kind == "steady_sliding" and given.quantity == "torque"
+        for_drag = f"For the drag of steady sliding type: {retyped('report', str(file))}" * drag_only
+        unit = _UNITS.get(given.unit, given.unit).replace("*", " ")
+        drive = sought.drive(record, known, unit, instead=for_drag)
         shown = "share of the weight" if given.unit == "1" else unit
         drawing.draw(record, drive=drive, unit=shown)
         if printing.json(record, unit=given.unit, drive=drive):
@@ -164,8 +181,8 @@ def cycles(
         whole = [record.summary(unit, called=called), *([] if drive is None else ["", drive.summary(unit)])]
         warned = (*record.warnings, *(() if drive is None else drive.warnings))
         printing.conclusion(partial(_lines, record, drive, unit, called), "\n".join(whole), *warned)
-        if record.kind == "steady_sliding" and given.quantity == "torque":
-            printing.text(f"For the drag of steady sliding type: {retyped('report', str(file))}")
+        if for_drag:
+            printing.text(for_drag)
         printing.files(figure)
 
 

@@ -13,6 +13,7 @@ cycle_record      cycles of a trace, their figures and kind
 waveform          the mean cycle of a trace, and of the model
 independence      which parameters can be estimated from a trace, and which only together
 drive_fit         the drive that makes the mean cycle, and others that do nearly as well
+trace_units       units in which warnings show the numbers of a drive
 drive_warnings    what to know of the drive that was identified
 identified_drive  closure, parameters and intervals from the fits
 trace_file        a trace read from a file of any format of a log

@@ -313,7 +313,18 @@ def _record(
         period=figures.period,
         rise_slope=figures.slope,
         drift=drift,
-        warnings=(*warnings, *warnings_of(samples, figures, found.least, least_drop, drift)),
+        warnings=(
+            *warnings,
+            *warnings_of(
+                samples,
+                figures,
+                found.least,
+                least_drop,
+                drift,
+                cyclic=motion.kind != "steady_sliding",
+                zeroed=motion.kind == "stick_slip" and quantity == "force",
+            ),
+        ),
     )
 
 

@@ -13,23 +13,37 @@ from hersey.identification.slip_figures import SlipFigures
 from hersey.identification.turning_points import least_turn
 from hersey.schema.warning import Warning
 
+#: Kind of the warning that the slip is not resolved.
+FALLS_OF_FEW_SAMPLES = "falls of few samples"
 #: Samples that a fall must last for its duration to be trusted.
 _FEW_SAMPLES = 6
+#: Force below zero after each slip, as a share of the drop, from which its zero is doubted. A free slip ends
+#: there if the belt breaks away at 3.5 times the friction of sliding: (1 - 2 x 0.3) / (2 - 2 x 0.3) of it.
+_BELOW_ZERO = 0.3
 
 
 def warnings_of(
-    samples: Samples, figures: SlipFigures, least: float, least_drop: float | None, drift: float
+    samples: Samples,
+    figures: SlipFigures,
+    least: float,
+    least_drop: float | None,
+    drift: float,
+    *,
+    cyclic: bool,
+    zeroed: bool,
 ) -> tuple[Warning, ...]:
     """Return the warnings of slips of which the ``least`` was counted, where ``least_drop`` was asked for.
 
-    ``drift`` is that of the level, per s.
+    ``drift`` is that of the level, per s; ``cyclic`` whether the falls make cycles, ``zeroed``
+    whether they are slips of a force, which has a zero.
     """
     if figures.drop.size < FEWEST_SLIPS:
         return ()
     return (
         *_of_the_falls(samples, figures, least, least_drop),
         *_of_the_samples(samples),
-        *_of_the_level(samples, figures, drift),
+        *_of_the_level(samples, figures, drift, cyclic=cyclic),
+        *(_of_the_zero(figures) if zeroed else ()),
     )
 
 
@@ -40,7 +54,7 @@ def _of_the_falls(
     drop, lasts = figures.drop, float(np.median(figures.steep / samples.interval))
     if lasts < _FEW_SAMPLES:
         yield Warning(
-            "falls of few samples",
+            FALLS_OF_FEW_SAMPLES,
             "a drop lasts only {samples:.1f} samples",
             severity="watch",
             remedy="sample faster to resolve the slip",
@@ -87,10 +101,11 @@ def _of_the_samples(samples: Samples) -> Iterator[Warning]:
         )
 
 
-def _of_the_level(samples: Samples, figures: SlipFigures, drift: float) -> Iterator[Warning]:
+def _of_the_level(samples: Samples, figures: SlipFigures, drift: float, *, cyclic: bool) -> Iterator[Warning]:
     """Yield whether the sign may be turned, and how far the level drifts."""
     period, lasts = figures.period, float(np.median(figures.steep))
-    if period.size and float(np.median(period)) - lasts < 0.5 * lasts:
+    shaped = cyclic or lasts >= _FEW_SAMPLES * samples.interval  # else rises and falls are made by sampling
+    if shaped and period.size and float(np.median(period)) - lasts < 0.5 * lasts:
         yield Warning(
             "sign may be turned",
             "the trace rises faster than it falls. Is its sign flipped?",
@@ -100,4 +115,19 @@ def _of_the_level(samples: Samples, figures: SlipFigures, drift: float) -> Itera
     if swing > 0.5 * float(np.median(figures.drop)):
         yield Warning(
             "level drifts", "the level drifts by {drift:.3g} over the trace", severity="watch", drift=swing
+        )
+
+
+def _of_the_zero(figures: SlipFigures) -> Iterator[Warning]:
+    """Yield that the force changes sign in every cycle, as it does if its mean was removed."""
+    low, high = float(np.median(figures.low)), float(np.median(figures.high))
+    if low < -_BELOW_ZERO * (high - low):
+        yield Warning(
+            "force changes sign",
+            "the force changes sign in every cycle ({low:.3g} to {high:.3g}). Either break-away takes more "
+            "than 3 times the force of sliding, or the zero of the force is lost; identification needs it",
+            severity="watch",
+            remedy="record with DC coupling, and zero the sensor without load",
+            low=low,
+            high=high,
         )

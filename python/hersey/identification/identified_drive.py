@@ -12,8 +12,10 @@ from hersey.arrays import FloatArray
 from hersey.damping.estimate import Estimate, quantile
 from hersey.errors import InsufficientDataError, ParameterError, Setting
 from hersey.identification.cycle_record import CycleRecord
+from hersey.identification.cycle_warnings import FALLS_OF_FEW_SAMPLES
+from hersey.identification.detection import FEWEST_SLIPS
 from hersey.identification.drive_fit import EXPONENTS, NORMAL_REACH, DriveFit
-from hersey.identification.drive_warnings import warnings_of
+from hersey.identification.drive_warnings import doubted, forced, warnings_of
 from hersey.identification.independence import ESTIMABLE
 from hersey.identification.motion_kind import NO_FREE_PERIOD
 from hersey.identification.waveform import FEWEST_LAPS, Waveform, mean_waveform
@@ -35,6 +37,9 @@ UNDECIDED = 10.0
 #: What needs no single parameter: the free period 2 pi sqrt(m/k), s, the force at which a held belt is
 #: released, and the drag at the drive speed.
 DERIVED = ("free_period", "release_force", "drag_at_drive_speed")
+#: Force averaged over a cycle, as a share of the drop, below which its zero is lost. A drive breaks away at
+#: 50 times the friction of sliding if it is more than zero by so little.
+_LEAST_MEAN = 0.01
 #: The drive speed is estimated only if what is known halves the interval that was stated.
 _HALVED = 0.5
 
@@ -161,7 +166,11 @@ _UNITS = {
 
 @takes_si()
 def identify(
-    record: CycleRecord, *, known: Mapping[str, float] | None = None, closures: tuple[str, ...] = COMPARED
+    record: CycleRecord,
+    *,
+    known: Mapping[str, float] | None = None,
+    closures: tuple[str, ...] = COMPARED,
+    unit: str = "",
 ) -> IdentifiedDrive:
     """Identify the drive from the cycles of a trace of force at known drive speed.
 
@@ -175,6 +184,10 @@ def identify(
         Parameters that are known, e.g. ``{"mass": 0.03}``; names as in `OF_THE_BELT`.
     closures
         Closures to compare.
+    unit
+        Unit of the trace, ``N``, ``N m`` or ``1``, in which warnings show numbers.
+
+    If the known parameters do not fit the trace, the drive is also identified without them, for a warning.
 
     Raises
     ------
@@ -194,7 +207,8 @@ def identify(
     near = [fit for fit in fits if (fit.chi_square - best.chi_square) / scale <= UNDECIDED]
     covariances = [fit.covariance(scale) for fit in near]
     intervals, systematic = _intervals(near, covariances, scale, wave.number)
-    warnings = warnings_of(record, near, covariances[0], intervals)
+    warnings = warnings_of(record, near, covariances[0], intervals, unit)
+    warnings = (*_forced(record, best, closures, warnings, unit), *warnings)
     if any(each.kind == NO_FREE_PERIOD for each in warnings):
         del intervals["free_period"]
     return IdentifiedDrive(
@@ -215,6 +229,19 @@ def identify(
     )
 
 
+def _forced(
+    record: CycleRecord, best: DriveFit, closures: tuple[str, ...], warnings: tuple[Warning, ...], unit: str
+) -> tuple[Warning, ...]:
+    """What is to be known of known parameters that keep the fit from the trace: without them it is better."""
+    if not (names := doubted(best, warnings)):
+        return ()
+    try:
+        free = identify(record, closures=closures)
+    except InsufficientDataError:
+        return ()
+    return forced(best, names, free.misfit, free.estimates, unit)
+
+
 def _fits(
     wave: Waveform, record: CycleRecord, given: Mapping[str, float], closures: tuple[str, ...]
 ) -> list[DriveFit]:
@@ -226,7 +253,10 @@ def _fits(
     fits.sort(key=lambda fit: fit.chi_square)
     if fits[0].lap is None:
         raise InsufficientDataError(
-            "no drive of the model makes such a cycle. Give known parameters, or check the units"
+            "no drive of the model makes such a cycle",
+            remedy=f"check {', '.join(given)} and the units"
+            if given
+            else "give known parameters, or check the units",
         )
     return fits
 
@@ -243,12 +273,12 @@ def _check(record: CycleRecord, known: Mapping[str, float], closures: tuple[str,
             "a trace of speed has no force. To identify a drive, give a trace of the spring force"
         )
     if record.kind != "stick_slip":
-        kind = record.kind.replace("_", " ")
-        raise InsufficientDataError(f"the record shows {kind}, but a drive is identified from stick-slip")
+        raise _no_stick_slip(record)
     if record.slips < FEWEST_LAPS <= record.falls:
         raise InsufficientDataError(
             f"{record.headline()}. To identify a drive, omit {Setting('least_drop').to()}"
         )
+    _refuse_a_lost_zero(record)
     if record.drive_speed is None:
         needed = Setting("drive_speed").to("20 mm/s", python="0.02")
         raise ParameterError(f"the drive speed is needed to identify a drive. Give it, e.g. {needed}")
@@ -262,6 +292,33 @@ def _check(record: CycleRecord, known: Mapping[str, float], closures: tuple[str,
         raise ParameterError(
             f"unknown closures: {', '.join(unknown) or 'none given'}. Use {', '.join(CLOSURES)}"
         )
+
+
+def _refuse_a_lost_zero(record: CycleRecord) -> None:
+    """Refuse a force whose mean over a cycle is not above zero, although its work is what friction takes."""
+    first, last = (np.searchsorted(record.samples.time, record.slip_time[end]) for end in (0, -1))
+    share = float(np.mean(record.samples.value[first:last]) / np.median(record.drop))
+    if share < _LEAST_MEAN:
+        raise InsufficientDataError(
+            "the zero of the force is lost: over a cycle the force averages "
+            f"{100 * share + 0.0:.1f} % of its drop, but a belt that slides against friction needs a "
+            "force above zero",
+            remedy="identification needs the true zero: record with DC coupling, and zero the sensor "
+            "without load",
+        )
+
+
+def _no_stick_slip(record: CycleRecord) -> InsufficientDataError:
+    """What a trace shows instead of stick-slip, and what to do if it was recorded too slowly."""
+    if record.kind != "steady_sliding":
+        found = f"the trace shows {record.kind.replace('_', ' ')} motion"
+    elif record.falls < FEWEST_SLIPS:
+        found = "the trace shows steady sliding"
+    else:
+        found = f"the trace is irregular: {record.falls} drops exceed the noise, but no cycles were found"
+    few = [each for each in record.warnings if each.kind == FALLS_OF_FEW_SAMPLES]
+    needed = "a drive is identified from the cycles of stick-slip"
+    return InsufficientDataError(found, remedy=str(few[0]) if few else needed)
 
 
 def _intervals(

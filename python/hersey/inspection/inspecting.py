@@ -32,7 +32,7 @@ from hersey.log.corrections import Corrected
 from hersey.log.doubtful import doubtful_units
 from hersey.log.mapping import LogMapping, as_stated, mapping_of, read_with_mapping, without_what_is_said
 from hersey.log.means import MeansTable, read_means
-from hersey.log.roles import OTHER_ROLES, ROLES
+from hersey.log.roles import CHANNELS, OTHER_ROLES, ROLES, SIGNS, UNITS
 from hersey.log.torque_log import ROTATIONS, TARES, Correction, LogFile, TorqueLog
 from hersey.result import Means, Result
 from hersey.schema.warning import Warning
@@ -179,6 +179,9 @@ class Inspection(Result):
     tare=TARES,
     rotation=ROTATIONS,
     temperature_scale=Words(("degC", "K")),
+    channels=CHANNELS,
+    units=UNITS,
+    signs=SIGNS,
 )
 def inspect(
     paths: str | Path | Sequence[str | Path],

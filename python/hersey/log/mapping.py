@@ -32,7 +32,7 @@ from hersey.log.role_tables import (
     TimeMapping,
     TorqueMapping,
 )
-from hersey.log.roles import OTHER_ROLES, ROLE_KINDS, ROLES, role_conversion
+from hersey.log.roles import CHANNELS, OTHER_ROLES, ROLE_KINDS, ROLES, SIGNS, UNITS, role_conversion
 from hersey.log.sensor_tables import sensors_of
 from hersey.log.sensors import Sensors
 from hersey.log.text.delimited import Progress
@@ -207,7 +207,7 @@ def find_mapping(path: str | Path) -> Path | None:
     return next((candidate for candidate in beside if os.path.isfile(candidate)), None)  # noqa: PTH113
 
 
-@takes_si(every="time", radius="length", load="force")
+@takes_si(every="time", radius="length", load="force", channels=CHANNELS, units=UNITS, signs=SIGNS)
 def read_with_mapping(
     paths: str | Path | Sequence[str | Path],
     *,

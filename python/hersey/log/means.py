@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 import polars as pl
 
+from hersey.arguments.door import Keys
 from hersey.arrays import FloatArray
 from hersey.errors import HerseyError, InsufficientDataError, ParameterError
 from hersey.log.cell_table import CellTable, cells_of
@@ -31,6 +32,7 @@ from hersey.log.mean_roles import (
     torque_errors,
 )
 from hersey.log.replaced import replaced_units
+from hersey.log.roles import CHANNELS, SIGNS, UNITS
 from hersey.log.sensors import Sensors
 from hersey.log.text.column import Column
 from hersey.log.torque_log import LARGEST, Channel, LogFile, title_of
@@ -42,6 +44,9 @@ from hersey.units import takes_si
 FEW_ROWS, FEW_BYTES = 300, 200_000
 #: Share of neighbouring rows at one speed from which on rows are samples and no means.
 SAMPLED = 0.7
+#: Roles of the columns, and the dictionaries by role.
+_ROLES = ("torque", "speed", "temperature", "load", "radius")
+_CHANNELS, _UNITS = Keys(_ROLES, CHANNELS.example), Keys(_ROLES, UNITS.example, UNITS.suffix)
 #: Rows left out that a warning names at the most.
 _NAMED = 5
 #: Approaches as people write them.
@@ -117,7 +122,7 @@ class MeansTable(Result):
         return pl.DataFrame([asdict(row) for row in self.means])
 
 
-@takes_si(radius="length", load="force")
+@takes_si(radius="length", load="force", channels=_CHANNELS, units=_UNITS, signs=SIGNS)
 def read_means(
     tables: Any,
     *,
@@ -172,10 +177,7 @@ def _turned(row: MeanRow, signs: Mapping[str, int]) -> MeanRow:
 
 
 def _choices(channels: dict[str, str], units: dict[str, str]) -> dict[str, ChannelChoice]:
-    return {
-        role: ChannelChoice(channels.get(role, ""), units.get(role, ""))
-        for role in ("torque", "speed", "temperature", "load", "radius")
-    }
+    return {role: ChannelChoice(channels.get(role, ""), units.get(role, "")) for role in _ROLES}
 
 
 def _for_each(name: str, given: float | Sequence[float] | None, tables: int) -> list[float | None]:

@@ -19,7 +19,7 @@ from hersey.log.formats.frame import frame_recording, is_frame
 from hersey.log.friction import of_each_run
 from hersey.log.given_twice import refuse_given_twice
 from hersey.log.recording import columns, nothing_to_read
-from hersey.log.roles import OTHER_ROLES, ROLES
+from hersey.log.roles import CHANNELS, OTHER_ROLES, ROLES, UNITS
 from hersey.log.text.column import distinct_names
 from hersey.log.text.delimited import Progress, delimited_columns, read_delimited
 from hersey.log.torque_log import LARGEST, LogFile, Run, TorqueLog
@@ -27,7 +27,7 @@ from hersey.log.wanted import Wanted
 from hersey.units import takes_si
 
 
-@takes_si(every="time", radius="length", load="force")
+@takes_si(every="time", radius="length", load="force", channels=CHANNELS, units=UNITS)
 def read(
     paths: Any,
     *,
@@ -85,9 +85,17 @@ def read(
     if not files:
         raise ParameterError("no log file is given")
     known = (*ROLES, *OTHER_ROLES)
-    for role in [*(channels or {}), *(units or {})]:
-        if role not in known:
-            raise ParameterError(f"unknown role '{role}' of a channel. The roles are {', '.join(known)}")
+    for name, by_role in (("channels", channels or {}), ("units", units or {})):
+        unknown = [role for role in by_role if role not in known]
+        if unknown:
+            wrong_way = {role for role in unknown if by_role[role] in known}
+            turned = {
+                by_role[r] if r in wrong_way else r: r if r in wrong_way else by_role[r] for r in by_role
+            }
+            raise ParameterError(
+                f"unknown role '{unknown[0]}' of a channel. The roles are {', '.join(known)}",
+                remedy=f"write {name}={turned}" if wrong_way else "",
+            )
     choices = {r: ChannelChoice((channels or {}).get(r, ""), (units or {}).get(r, "")) for r in known}
     stated = _stated(every=every, radius=radius, load=load)
     wanted = Wanted(choices, stated, isothermal, drop_missing)

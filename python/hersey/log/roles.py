@@ -6,6 +6,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import replace
 
+from hersey.arguments.door import Keys
 from hersey.errors import Setting, UnitError, WrongKindError, way_in
 from hersey.log.signals import apart
 from hersey.log.text.column import Column
@@ -16,6 +17,10 @@ ROLES = ("time", "torque", "speed", "temperature")
 #: Roles of columns that a log may have beside them: normal load, radius at which a friction force acts, and
 #: the number of a run.
 OTHER_ROLES = ("load", "radius", "run")
+#: Dictionaries by role that functions take, of a log and of a table of means.
+CHANNELS = Keys((*ROLES, *OTHER_ROLES), "{'torque': 'Torque 1'}")
+UNITS = Keys(CHANNELS, "{'torque': 'Nm'}", "_unit")
+SIGNS = Keys(("torque", "speed"), "{'torque': -1}", "_sign")
 #: What a person sets beside the channels.
 EVERY = Setting("every")
 MEANS = Setting("means", "switch")
