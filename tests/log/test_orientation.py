@@ -126,6 +126,30 @@ def test_names_may_end_with_their_units(tmp_path: Path) -> None:
     np.testing.assert_array_equal(named.torque, run.torque)
 
 
+def test_names_that_differ_only_in_their_units_stay_whole(tmp_path: Path) -> None:
+    path = written(tmp_path, f"t_s,M_Nm,n_rpm,temp_degC,temp_K\n{ROWS.replace(',150', ',150,423')}\n")
+    assert list_channels(path)[3:] == [("temp_degC", "degC"), ("temp_K", "K")]
+
+
+def test_a_row_of_units_goes_before_the_end_of_a_name(tmp_path: Path) -> None:
+    path = written(tmp_path, f"Time,Torque,Speed,temp_C\ns,Nm,rpm,degF\n{ROWS}\n")
+    assert list_channels(path)[3] == ("temp_C", "degF")
+
+
+def test_milliseconds_of_an_uptime_stay_so(tmp_path: Path) -> None:
+    rows = [f"{1200000000 + 100 * i},{1 + i % 7 / 100:g},60,150" for i in range(60)]
+    path = written(tmp_path, "\n".join(["Time [ms],Torque [N*m],Speed [rpm],Temp [degC]", *rows, ""]))
+    assert float(np.ptp(hersey.read(path).runs[0].time)) == pytest.approx(5.9)
+    wincc = [f"{45356333333 + 2 * i},{1 + i % 7 / 100:g},60,150" for i in range(60)]
+    path = written(tmp_path, "\n".join(["Time_ms,Torque [N*m],Speed [rpm],Temp [degC]", *wincc, ""]), "b.csv")
+    assert float(np.ptp(hersey.read(path).runs[0].time)) == pytest.approx(59 * 2 * 0.0864)
+
+
+def test_a_line_of_settings_may_stand_above_a_table(tmp_path: Path) -> None:
+    path = written(tmp_path, f'{{"bench": "3", "rate": 100}}\n{",".join(HEAD)}\n{ROWS}\n')
+    assert hersey.read(path).rows == len(NUMBERS)
+
+
 @pytest.mark.parametrize("order", [(0, 1, 2), (0, 2, 1)])
 def test_a_row_of_data_types_is_passed_over(order: tuple[int, ...], tmp_path: Path) -> None:
     above = ["Time;Torque;Speed;Temp", "ms;Nm;rpm;degC", "DINT;REAL;REAL;LREAL"]
@@ -145,7 +169,7 @@ def test_units_in_the_cells_are_named(tmp_path: Path) -> None:
 def test_a_clock_of_whole_minutes_asks_for_the_time_between_rows(tmp_path: Path) -> None:
     rows = [f"08:{i // 600:02d},{1 + i % 7 / 100:g},60,150" for i in range(3000)]
     path = written(tmp_path, "\n".join([",".join(["Time", *HEAD[1:]]), *rows, ""]))
-    with pytest.raises(UnreadableLogError, match=r"only hours and minutes, each in 600 rows.* every=0\.1$"):
+    with pytest.raises(UnreadableLogError, match=r"each pair in 600 rows.* every=0\.1 if it shows hours and"):
         hersey.read(path)
     log = hersey.read(path, every=0.1)
     assert float(log.runs[0].time[-1]) == pytest.approx(299.9)
@@ -159,7 +183,7 @@ def test_minutes_and_seconds_of_a_fast_log_stay_so(tmp_path: Path) -> None:
     assert float(hersey.read(path).runs[0].time[-1]) == pytest.approx(29.0)
 
 
-@pytest.mark.parametrize("symbol", ["v_s", "n_s", "mu_s", "F_N", "w_ms"])
+@pytest.mark.parametrize("symbol", ["v_s", "n_s", "mu_s", "F_N", "Weg_s", "I_C", "Thermo_K", "Phase_C"])
 def test_the_index_of_a_symbol_is_no_unit(symbol: str, tmp_path: Path) -> None:
     path = written(tmp_path, f"Time [s],Torque [N*m],{symbol},Temp [degC]\n{ROWS}\n")
     assert list_channels(path)[2] == (symbol, "")

@@ -25,6 +25,8 @@ _OTHER_STIFFNESS = "slope contradicts stiffness"
 #: Noise explains a chi-square per point of less than this; known parameters are doubted if without them the
 #: misfit is smaller than with them by this factor or more.
 _BY_NOISE = 2.0
+#: A misfit below this share of the drop is that of a sensor, not of a known parameter.
+_LEAST_MISFIT = 5e-3
 _MUCH_BETTER = 2.0
 
 
@@ -63,7 +65,7 @@ def doubted(fit: DriveFit, warnings: tuple[Warning, ...]) -> list[str]:
     A stiffness that the slope of the force contradicts is not among them: a warning says so, and that the
     drive speed may be wrong instead.
     """
-    if fit.chi_square <= _BY_NOISE * fit.wave.offset.size:
+    if fit.chi_square <= _BY_NOISE * fit.wave.offset.size or fit.misfit < _LEAST_MISFIT:
         return []
     said = {"stiffness"} if any(each.kind == _OTHER_STIFFNESS for each in warnings) else set()
     return [name for name in fit.known if name not in said]
@@ -95,18 +97,18 @@ def forced(
             values[f"{name}_low"], values[f"{name}_high"] = ends
             low, high = (in_unit(end, kind, unit, digits=3) for end in ends)
             found.append((f"{label} " if len(named) > 1 else "") + f"{low} to {high}")
-    labels = ["mass, which includes the motor" if n == "mass" else n.replace("_", " ") for n in named]
+    labels = ["mass (which includes the motor)" if n == "mass" else n.replace("_", " ") for n in named]
     checked = [*labels, *["drive speed"] * bool(_SCALES.intersection(named))]
     warning = Warning(
         "known parameters misfit",
         "with {given} the fit misses the trace by {misfit:.2f %} of the drop; without {these} by "
         "{free_misfit:.2f %}{found}",
-        severity="act",
+        severity="act" if misfit < _LEAST_MISFIT else "watch",  # else the model misses the trace anyway
         remedy="check the {checked}",
         given=" and ".join(given),
         these="it" if len(known) == 1 else "what is known",
         found=f", at {' and '.join(found)}" if found else "",
-        checked=" and the ".join(checked).replace("motor and", "motor, and"),
+        checked=" and the ".join(checked),
         misfit=fit.misfit,
         free_misfit=misfit,
         **values,

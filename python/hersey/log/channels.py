@@ -41,6 +41,8 @@ _OSCILLATION = re.compile(r"frequen[cz]|oscillat|oszillat", re.IGNORECASE)
 _TELLING = 20
 #: A clock of a part of a run, beside which that of the whole run counts.
 _PART_OF_A_RUN = re.compile(r"step|segment|interval|cycle|lap", re.IGNORECASE)
+#: Kind of the warning of a clock that is not used.
+CLOCK_PASSED_OVER = "clock passed over"
 #: Columns named in a message at the most.
 _SHOWN = 40
 _SETPOINT = re.compile(
@@ -92,8 +94,8 @@ def find_channel(
     if choice.name:
         column = named_channel(role, columns, choice.name, file, taken)
         return with_unit(role, column, choice.unit, file, columns, taken)
-    free = tuple(c for c in columns if c not in taken.values())
-    candidates = _candidates(role, free) or _candidates(role, columns)
+    candidates = _candidates(role, columns)
+    candidates = [c for c in candidates if c not in taken.values()] or candidates
     if len(candidates) > 1:
         candidates = [c for c in candidates if not dead(c)] or candidates
     if not candidates:
@@ -223,7 +225,7 @@ def clocks_passed_over(columns: tuple[Column, ...], stated: Stated) -> list[Warn
         return []
     return [
         Warning(
-            "clock passed over",
+            CLOCK_PASSED_OVER,
             "column '{column}' is not used: {setting} sets the time between rows",
             severity="watch",
             column=clock.path,

@@ -81,8 +81,11 @@ def read_runs(path: str | Path) -> list[RunToAdd]:
 
 def lists_runs(path: str | Path) -> bool:
     """Return whether a file is a table of runs, by its first line."""
-    with open_file(Path(path)) as file:
-        start = file.read(_START)
+    try:
+        with open_file(Path(path)) as file:
+            start = file.read(_START)
+    except HerseyError:  # which reading it says, too
+        return False
     encoding = encoding_of(start)
     if not encoding:
         return False

@@ -35,8 +35,13 @@ _ENDINGS = {
     "K": "K",
 }
 _LONGEST_FIRST = sorted(_ENDINGS, key=len, reverse=True)
-#: Symbols with an index that looks like a unit: a static or sliding quantity, a normal force.
-_SYMBOL = re.compile(r"(?!t_)\w{1,2}_(s|ms|us)|\w_N", re.IGNORECASE)
+#: Names beside which a short ending is a unit: a phase C, a type K, a static or sliding quantity is none.
+_CLOCK = re.compile(r"t|.*time.*|.*zeit.*|.*(elapsed|clock|stamp).*", re.IGNORECASE)
+_MEANT = {
+    **dict.fromkeys(("s", "ms", "us"), _CLOCK),
+    **dict.fromkeys(("C", "K"), re.compile(r"T|.*temp.*", re.IGNORECASE)),
+    "N": re.compile(r".{2,}"),
+}
 
 
 @dataclass(frozen=True)
@@ -83,8 +88,9 @@ def split_unit(name: str) -> tuple[str, str]:
     if named := name_and_unit(name):
         return named
     for ending in _LONGEST_FIRST:
-        if len(name) > len(ending) + 1 and name.endswith(f"_{ending}") and not _SYMBOL.fullmatch(name):
-            return name.removesuffix(f"_{ending}"), _ENDINGS[ending]
+        plain = name.removesuffix(f"_{ending}")
+        if plain and plain != name and (ending not in _MEANT or _MEANT[ending].fullmatch(plain)):
+            return plain, _ENDINGS[ending]
     return name, ""
 
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
+from dataclasses import replace
 
 from hersey.errors import UnitError, UnreadableLogError, WrongKindError
 from hersey.log.signals import is_signal
@@ -14,11 +16,12 @@ from hersey.units import KINDS, conversion
 
 #: A line of the text with its number, counted from 1.
 Numbered = tuple[int, str]
-#: A name in a header between blanks, with the unit behind it.
+#: A data type of a panel or a logger.
 _TYPE = re.compile(
-    r"(L?REAL|[US]?D?INT|L?INT|D?WORD|BYTE|BOOL|STRING|(DATE_AND_)?TIME|FLOAT|DOUBLE|U?INT\d+|FLOAT\d+)",
+    r"(L?REAL|[US]?D?INT|L?INT|D?WORD|BYTE|BOOL|STRING|(DATE_AND_)?TIME|DOUBLE|U?INT\d+|(FLOAT|REAL)\d*)",
     re.IGNORECASE,
 )
+#: A name in a header between blanks, with the unit behind it.
 _NAME = re.compile(r"[^\s\[(]+(?:[ \t]?(?:\[[^\[\]]*\]|\([^()]*\)))?|\S+")
 
 
@@ -47,14 +50,24 @@ def columns_of(table: NumberRows, numbered: list[Numbered], file: str) -> tuple[
         name = header[index] if index < len(header) and header[index] else f"#{index + 1}"
         refuse_long_name(f"{file}, line {line}", index + 1, name)
         unit = units[index].strip("[]() ") if index < len(units) else ""
-        plain, own = split_unit(name)
+        plain, own = name_and_unit(name) or (name, "")
         if own and unit and of_one_kind(own, unit) and not same_unit(own, unit):
             raise UnreadableLogError(
                 f"{file}, line {line}, column {index + 1}: the header says '{name}', but the row of "
                 f"units says {unit}. Correct one of them"
             )
         columns.append(Column(index, name if unit else plain or f"#{index + 1}", unit or own))
-    return tuple(columns), ""
+    return _with_endings(tuple(columns)), ""
+
+
+def _with_endings(columns: tuple[Column, ...]) -> tuple[Column, ...]:
+    """The columns with the units at the end of their names; a name that another has stays whole."""
+    split = [split_unit(c.name) if not c.unit else (c.name, c.unit) for c in columns]
+    counts = Counter(name for name, _ in split)
+    return tuple(
+        replace(c, name=name if counts[name] == 1 else c.name, unit=unit)
+        for c, (name, unit) in zip(columns, split, strict=True)
+    )
 
 
 def _names(line: str, table: NumberRows) -> list[str]:
@@ -105,7 +118,8 @@ def _too_many(table: NumberRows, rows: list[list[str]], named: int) -> str:
 
 def _are_types(row: list[str]) -> bool:
     """Whether a row names only data types, as panels write them below the names."""
-    return len(row) > 1 and all(_TYPE.fullmatch(cell) for cell in row)
+    filled = [cell for cell in row if cell]
+    return len(filled) > 1 and all(_TYPE.fullmatch(cell) for cell in filled)
 
 
 def _of_oscilloscope(above: list[list[str]], width: int) -> list[str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import json
 import re
 from collections import Counter
 from collections.abc import Iterator
@@ -12,12 +13,12 @@ import numpy as np
 
 from hersey.errors import MAPPING, Setting, UnreadableLogError, way_in
 from hersey.files import text as text_files
-from hersey.log.text.column import Column, refuse_columns
+from hersey.log.text.column import Column, refuse_columns, split_unit
 from hersey.log.text.header import Numbered, columns_of
 from hersey.log.text.numbers import NumberStyle, is_missing, looks_numeric, style_of
 from hersey.log.text.orientation import refuse_long, refuse_transposed
 from hersey.log.text.separators import BLANKS, SEPARATORS, NumberRows, number_rows, split
-from hersey.log.text.stamps import StampStyle, clock_without_unit, counted_since, stamp_style
+from hersey.log.text.stamps import MILLIONTHS, StampStyle, clock_without_unit, counted_since, stamp_style
 from hersey.schema.warning import Warning
 
 #: Bytes looked at; preambles of data loggers are far shorter.
@@ -30,6 +31,8 @@ _COMMENTS = ("#", "~", "//")
 #: How JSON of objects begins, and what a result of this package in JSON states.
 _JSON = re.compile(r'\s*\[?\s*\{\s*"')
 _RESULT = '"hersey_version"'
+#: Name of a clock of WinCC that counts millionths of a day.
+_OF_WINCC = "Time_ms"
 #: A number with its unit.
 _WITH_UNIT = re.compile(r"([-+]?[0-9][0-9.,]*(?:[eE][-+]?[0-9]+)?) ?([A-Za-zµμ°%][A-Za-z0-9µμ°%*/·^]*)")
 
@@ -87,12 +90,13 @@ def find_layout(start: bytes, name: str, *, separators: str = SEPARATORS) -> Lay
     rows = [split(line, table.separator) for _, line in numbered[table.first :]]
     rows = [row for row in rows if len(row) == table.width]
     columns, headless = columns_of(table, numbered, name)
+    header = split(numbered[table.first - 1][1], table.separator) if table.first else []
     columns, stamps = _with_stamps(columns, rows)
     style = style_of([cell for row in rows for cell in row])
-    columns, warnings = _with_epochs(columns, rows, style)
+    columns, warnings = _with_epochs(columns, rows, style, [] if headless else header)
     texts = frozenset(c.index for c in columns if c.index not in stamps and _holds_words(rows, c.index))
     if not headless:
-        refuse_long(name, columns, texts, stamps, rows, split(numbered[table.first - 1][1], table.separator))
+        refuse_long(name, columns, texts, stamps, rows, header)
     first_line = numbered[table.first][0]
     comments = tuple(li.strip("# ~/")[:200] for li in lines[: first_line - 1] if li.startswith(comment))
     return Layout(
@@ -175,15 +179,25 @@ def _refuse_json(text: str, name: str) -> None:
     """Raise if a text is JSON and not a table."""
     if not _JSON.match(text):
         return
+    first, _, rest = text.lstrip().partition("\n")
+    if rest.strip() and not rest.lstrip().startswith("{") and _is_json(first):
+        return  # a line of settings above a table
     if _RESULT not in text:
         raise UnreadableLogError(f"{name} is JSON, not a table. Export the channels as text (CSV)")
     fit = f"; where a command takes a saved fit, use {Setting('fit').to()}" * (way_in() == "terminal")
     raise UnreadableLogError(f"{name} is a result of hersey, not a log. Give the log itself{fit}")
 
 
+def _is_json(line: str) -> bool:
+    try:
+        return isinstance(json.loads(line), dict)
+    except ValueError:
+        return False
+
+
 def _refuse_runs(numbered: list[Numbered], separator: str, name: str) -> None:
     """Raise if a table lists the runs of a life test."""
-    if {"log", "unit", "age"} <= {cell.strip().lower() for cell in split(numbered[0][1], separator)}:
+    if {"log", "unit", "age"} <= {split_unit(cell)[0].lower() for cell in split(numbered[0][1], separator)}:
         raise UnreadableLogError(
             f"{name} is a table of the runs of a life test, not a log. Give one of its logs"
         )
@@ -201,13 +215,15 @@ def _refuse_long_words(numbered: list[Numbered], separator: str, name: str) -> N
 
 def _refuse_units_in_cells(numbered: list[Numbered], separator: str, name: str) -> None:
     """Raise if the cells of the rows are numbers with their units."""
-    (number, last), (_, header) = numbered[-1], numbered[0]
-    cells, names = split(last, separator), split(header, separator)
+    number, last = numbered[-1]
+    cells = split(last, separator)
     found = [(i, match) for i, cell in enumerate(cells) if (match := _WITH_UNIT.fullmatch(cell))]
     if len(cells) < 2 or 2 * len(found) < len(cells):
         return
+    rows = [row for _, line in numbered if len(row := split(line, separator)) == len(cells)]
+    names = next((row for row in rows if not any(map(_WITH_UNIT.fullmatch, row))), cells)
     index, match = found[0]
-    named = names[index] if index < len(names) else "Time"
+    named = split_unit(names[index])[0]
     raise UnreadableLogError(
         f"{name}, line {number}: the cells hold units, e.g. '{cells[index]}'",
         remedy=f"write the unit in the header, '{named} [{match[2]}]', and only numbers in the cells",
@@ -248,17 +264,19 @@ def _holds_words(rows: list[list[str]], index: int) -> bool:
 
 
 def _with_epochs(
-    columns: tuple[Column, ...], rows: list[list[str]], style: NumberStyle
+    columns: tuple[Column, ...], rows: list[list[str]], style: NumberStyle, header: list[str]
 ) -> tuple[tuple[Column, ...], tuple[Warning, ...]]:
-    """Clocks without unit, or called ``Time_ms``, that count since 1970 or in days of Excel."""
+    """Clocks without unit that count since 1970 or in days of Excel, and ``Time_ms`` of WinCC."""
     out, warnings = [], []
     for column in columns:
-        unsure = not column.unit or (column.name, column.unit) == ("Time", "ms")
-        cells = [row[column.index] for row in rows[:1000]] if unsure else []
+        wincc = column.unit == "ms" and header[column.index : column.index + 1] == [_OF_WINCC]
+        cells = [row[column.index] for row in rows[:1000]] if wincc or not column.unit else []
         numbers = np.array([style.value(cell) for cell in cells if style.is_number(cell)])
         unit, meaning = counted_since(column.name, numbers)
-        if unit and unit != column.unit:
-            warnings.append(clock_without_unit(column.name, meaning))
+        if wincc and unit != MILLIONTHS:
+            unit = ""
+        if unit:
+            warnings.append(clock_without_unit(_OF_WINCC if wincc else column.name, meaning))
         out.append(replace(column, unit=unit or column.unit))
     return tuple(out), tuple(warnings)
 

@@ -75,6 +75,8 @@ _MONTH = (
     "(?i:jan(uary)?|feb(ruary)?|mar(ch)?|apr(il)?|may|june?|july?|aug(ust)?|sep(tember)?|oct(ober)?"
     "|nov(ember)?|dec(ember)?)"
 )
+#: A millionth of a day.
+MILLIONTHS = "86.4 ms"
 #: More rows than this in what is written as a second are those of a minute.
 _ROWS_OF_A_SECOND = 200
 #: A time such as 0:05, which could be hours and minutes too.
@@ -197,13 +199,18 @@ def refuse_whole_minutes(place: str, stamps: Stamps, time: FloatArray) -> None:
     if stamps.style.name != _TWO_PARTS or not time.size:
         return
     rows = float(np.median(np.unique(time, return_counts=True)[1]))
-    if rows > _ROWS_OF_A_SECOND:
-        every = f"{60.0 / rows:.2g}"
+    if rows > _ROWS_OF_A_SECOND and float(np.max(time)) + _seconds_of_day(stamps) < _DAY / 60.0:
+        hours, minutes = (EVERY.to(f"{one / rows:.2g} s", python=f"{one / rows:.2g}") for one in (60.0, 1.0))
         raise UnreadableLogError(
-            f"{place} shows only hours and minutes, each in {rows:.0f} rows",
-            remedy="export it with seconds and their decimals, or give the time between rows, e.g. "
-            + EVERY.to(f"{every} s", python=every),
+            f"{place} shows only two numbers, each pair in {rows:.0f} rows",
+            remedy=f"export it with decimals of the second, or give the time between rows: {hours} if it "
+            f"shows hours and minutes, {minutes} if minutes and seconds",
         )
+
+
+def _seconds_of_day(stamps: Stamps) -> float:
+    """The first time of a clock without a date, s."""
+    return ((stamps.first or _START) - _START) * 1e-9
 
 
 def numbers_in(cells: pl.Series, written: NumberStyle | Stamps) -> tuple[FloatArray, pl.Series]:
@@ -243,7 +250,7 @@ def counted_since(name: str, numbers: FloatArray) -> tuple[str, str]:
     if _DAYS_NAME.fullmatch(name) and low > 3e4 and high < 7e4:
         return "d", "Excel days"
     if low > 3e10 and high < 7e10:  # WinCC calls this Time_ms; a count in ms would end in 1972
-        return "86.4 ms", "Excel days times a million"
+        return MILLIONTHS, "Excel days times a million"
     return "", ""
 
 

@@ -13,6 +13,7 @@ from hersey.damping.surface import DampingSurface
 from hersey.decision.behaviour import Behaviour
 from hersey.decision.edges import edges_of
 from hersey.errors import Setting
+from hersey.log.channels import CLOCK_PASSED_OVER
 from hersey.log.doubtful import doubtful_units
 from hersey.log.replaced import UNIT_REPLACED, replaced_in
 from hersey.posterior.result import SAFE
@@ -309,6 +310,11 @@ def _replaced(points: SteadyPoints, comparison: LogComparison | None) -> Iterato
     others = () if comparison is None else comparison.warnings
     for each in [*replaced_in(points.log.files), *(e for e in others if e.kind == UNIT_REPLACED)][:1]:
         yield each.titled("A unit was replaced", section="data")
+    clocks = [
+        w.within(file.name) for file in points.log.files for w in file.warnings if w.kind == CLOCK_PASSED_OVER
+    ]
+    for each in clocks[:1]:
+        yield each.titled("The clock is not used", section="data")
 
 
 def _of_log(points: SteadyPoints, surface: DampingSurface, *, asked: bool) -> Iterator[Warning]:
