@@ -94,7 +94,7 @@ def test_a_wrong_known_mass_is_said_with_the_mass_that_fits() -> None:
     assert said.number("mass_low") < TRUTH["mass"] < said.number("mass_high")
     assert "stick_speed" not in said.values
     assert said.text.startswith("With mass 0.6 kg the fit misses the trace by ")
-    assert said.text.endswith("Check the mass, which includes the motor, and the drive speed.")
+    assert said.text.endswith("Check the mass (which includes the motor) and the drive speed.")
     free = identify(record(1), closures=closures)  # the advice: what the trace itself says of the mass
     assert free.estimates["mass"].low == said.number("mass_low")
     right = identify(record(1), known={"mass": 1.0, "stick_speed": 0.01}, closures=closures, unit="N")
