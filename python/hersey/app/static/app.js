@@ -12,14 +12,14 @@ let token = "", questions = null, analyses = [], earlier = [], current = "", vie
 
 /** Ask the server; what it refuses is said above the page. */
 async function ask(method, path, body, headers = {}) {
-  let answer;
+  let answer, said;
   try {
     answer = await fetch(`api/${path}`, { method, body, headers: { "X-Hersey-Token": token, ...headers } });
+    said = await answer.json(); // which fails, too, if the server ends while it answers
   } catch {
     say("hersey app does not answer: it has ended. Start it again and open the address it prints.");
     return null;
   }
-  const said = await answer.json();
   if (answer.ok) return said;
   say(said.error);
   refused = busy();
