@@ -177,7 +177,7 @@ def ages_chart(ages: AgesAtLimit) -> Chart:
         for each in shown
     ]
     base = plot(rows).encode(y=alt.Y("unit:N", title=None, sort=[each.unit for each in shown]))
-    age, last_seen = age_tip(ages.age_unit), tip("last", f"last seen ({ages.age_unit or 'as given'})")
+    age, last_seen = age_tip(ages.age_unit), age_tip(ages.age_unit, "last seen", "last")
     tips = ["unit:N", age, tip("low", "from"), tip("high", "to"), last_seen]
     spans = base.mark_rule(color=BLUE, strokeWidth=2)
     points = base.mark_point(color=BLUE, filled=True, opacity=1, size=70, clip=True)

@@ -218,6 +218,6 @@ def tip(field: str, title: str) -> alt.Tooltip:
     return alt.Tooltip(f"{field}:Q", title=title, format=".4~g")
 
 
-def age_tip(age_unit: str, name: str = "age") -> alt.Tooltip:
-    """Return the age of a tooltip, with its unit."""
-    return tip("age", f"{name} ({age_unit or 'as given'})")
+def age_tip(age_unit: str, name: str = "age", field: str = "age") -> alt.Tooltip:
+    """Return an age of a tooltip, with its unit."""
+    return tip(field, f"{name} ({age_unit or 'as given'})")

@@ -24,10 +24,9 @@ _SCALES = {"stiffness", "mass"}
 _OTHER_STIFFNESS = "slope contradicts stiffness"
 #: Noise explains a chi-square per point of less than this; known parameters are doubted if without them the
 #: misfit is smaller than with them by this factor or more.
-_BY_NOISE = 2.0
+_BY_NOISE, _MUCH_BETTER = 2.0, 2.0
 #: A misfit below this share of the drop is that of a sensor, not of a known parameter.
 _LEAST_MISFIT = 5e-3
-_MUCH_BETTER = 2.0
 
 
 def warnings_of(

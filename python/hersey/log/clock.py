@@ -18,6 +18,8 @@ GAP, GAP_OF_UNEVEN = 1.5, 5.0
 UNEVEN_SHARE, UNEVEN = 0.02, 0.10
 #: So few different intervals are those of a clock that counts in steps.
 _FEW = 12
+#: Intervals looked at before all of them are.
+_LOOKED_AT = 10_000
 
 
 @dataclass(frozen=True)
@@ -167,9 +169,13 @@ def _resolution(time: FloatArray, forward: FloatArray) -> float | None:
     if not forward.size:
         return None
     precision = float(np.spacing(np.abs(time).max()))
-    levels = np.unique(np.round(forward, max(0, int(-np.log10(max(4.0 * precision, 1e-9))))))
-    levels = levels[levels > 0]
-    if not levels.size or levels.size > _FEW:
+    digits = max(0, int(-np.log10(max(4.0 * precision, 1e-9))))
+    for steps in (forward[:_LOOKED_AT], forward):  # the first alone show most clocks that count in no steps
+        levels = np.unique(np.round(steps, digits))
+        levels = levels[levels > 0]
+        if levels.size > _FEW:
+            return None
+    if not levels.size:
         return None
     step = float(np.min(np.diff(levels, prepend=0.0)))
     ratio = levels / step

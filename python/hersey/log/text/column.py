@@ -35,8 +35,8 @@ _ENDINGS = {
     "K": "K",
 }
 _LONGEST_FIRST = sorted(_ENDINGS, key=len, reverse=True)
-#: Names beside which a short ending is a unit: a phase C, a type K, a static or sliding quantity is none.
 _CLOCK = re.compile(r"t|.*time.*|.*zeit.*|.*(elapsed|clock|stamp).*", re.IGNORECASE)
+#: Names beside which a short ending is a unit: a phase C, a type K, a static or sliding quantity is none.
 _MEANT = {
     **dict.fromkeys(("s", "ms", "us"), _CLOCK),
     **dict.fromkeys(("C", "K"), re.compile(r"T|.*temp.*", re.IGNORECASE)),
