@@ -169,11 +169,11 @@ def test_what_drops_is_called_by_what_the_trace_holds(
         rows = [f"{0.01 * i:.2f},{value:.6f}" for i, value in enumerate(values)]
         (tmp_path / f"{name}.csv").write_text("\n".join([f"time [s],{header}", *rows]))
     quantity = ["--quantity", "speed"] if called == "stretch" else []
-    told = printed(tmp_path / "noise.csv", *quantity)
-    assert told.startswith(f"Irregular {called}: ")
+    shown = printed(tmp_path / "noise.csv", *quantity)
+    assert shown.startswith(f"Irregular {called}: ")
     for verbose in ([], ["--verbose"]):
-        told = printed(tmp_path / "slips.csv", *quantity, *verbose)
-        assert re.search(rf"^ *{called} +\S+ to \S+ {unit}(,|$)", told, re.MULTILINE)
+        shown = printed(tmp_path / "slips.csv", *quantity, *verbose)
+        assert re.search(rf"^ *{called} +\S+ to \S+ {unit}(,|$)", shown, re.MULTILINE)
 
 
 def test_a_log_of_steady_sliding_is_not_identified_but_gets_the_command_for_its_drag() -> None:

@@ -41,8 +41,8 @@ def test_a_start_that_may_fail_is_not_promised(
     """The profile brings a belt to slide that the drive breaks away, and no other."""
     chances = PointProbability(smooth=0.02, from_above=0.8, sticks=0.11, stalls=0.05, unknown=0.02)
     verdict = Verdict("unknown", chances, starts=starts, bears=0.98)
-    told = decide(replace(found, points=(replace(found.points[1], verdict=verdict),)))
-    headline, (said,) = told.instruction, told.points
+    decided = decide(replace(found, points=(replace(found.points[1], verdict=verdict),)))
+    headline, (said,) = decided.instruction, decided.points
     assert ("needs the start-up profile" in headline) == promised
     assert ("needs the start-up profile" in said.words) == promised
     assert ("may not start, or may stick" in headline) != promised
