@@ -10,6 +10,7 @@ import pytest
 
 import hersey
 from hersey.inspection import inspect
+from hersey.verdict.warnings import warnings_of
 
 NOISE = np.random.default_rng(5).normal(0.0, 1e-3, 600)
 
@@ -56,3 +57,13 @@ def test_rows_are_missing_where_an_inspection_says_so(tmp_path: Path) -> None:
     (clock,) = inspect(tmp_path / "log.csv").files[0].clocks
     assert (read.runs[0].clock.gaps, clock.gaps) == (1, 1)
     assert read.runs[0].clock.lost == pytest.approx(5.0)
+
+
+def test_the_share_of_the_time_that_is_missing_is_that_of_all_gaps() -> None:
+    """Rows 100 to 149 and 300 to 319 of 600 at 0.1 s: 7 s of 59.9 s, and not the longest of them, 5 s."""
+    rows = np.arange(600)
+    kept = (rows < 100) | ((rows >= 150) & (rows < 300)) | (rows >= 320)
+    points = hersey.read(log(0.2 + NOISE).filter(pl.Series(kept))).steady()
+    (gaps,) = [each for each in warnings_of(points, None) if each.kind == "gaps"]
+    assert gaps.number("places") == 2
+    assert gaps.number("share") == pytest.approx(7.0 / 59.9)
