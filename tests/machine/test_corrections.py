@@ -260,3 +260,35 @@ def test_a_point_between_thousands_is_asked_about_only_where_the_value_is_implau
         (advised,) = re.findall(r'write (nip_load = "[^"]+")', said[0])
         path.write_text(GOOD.replace('nip_load = "300 N"', advised))
         assert read_machine(path).limits.nip_load == 1300.0
+
+
+@pytest.mark.parametrize(
+    ("stated", "wider", "within"),
+    [
+        ('stick_speed = "5 mm/s to 8 mm/s"', "3 mm/s to 8 mm/s", '6 stick_speed = "6.325 mm/s"'),
+        ('stiffness = "5-8 N/mm"', "5 N/mm to 11 N/mm", '3 stiffness = "6.325 N/mm"'),
+        ('mass = "8 kg to 9.5 kg"', "8 kg to 11 kg", '4 mass = "8.718 kg"'),
+    ],
+)
+def test_a_range_without_the_value_of_the_drivetrain_is_refused(
+    stated: str, wider: str, within: str, tmp_path: Path
+) -> None:
+    path = tmp_path / "machine.toml"
+    path.write_text(f"{GOOD}\n[uncertainty]\n{stated}\n")
+    with pytest.raises(HerseyError, match=f"line 27: .* does not contain .* in line {within[0]}") as refused:
+        read_machine(path)
+    key = stated.partition(" = ")[0]
+    advised = re.findall(rf'{key} = "([^"]+)"', str(refused.value))
+    assert advised == [wider, within.split('"')[1]]
+    path.write_text(f'{GOOD}\n[uncertainty]\n{key} = "{wider}"\n')
+    assert set(read_machine(path).uncertainty) == {key}
+    lines = path.read_text().replace(f'{key} = "{wider}"', stated).split("\n")
+    lines[int(within[0]) - 1] = within[2:]
+    path.write_text("\n".join(lines))
+    assert set(read_machine(path).uncertainty) == {key}
+
+
+def test_a_range_that_ends_at_the_value_in_another_unit_is_read(tmp_path: Path) -> None:
+    path = tmp_path / "machine.toml"
+    path.write_text(f'{GOOD}\n[uncertainty]\nstick_speed = "0.3 cm/s to 8 mm/s"\nmass = "5 kg to 11000 g"\n')
+    assert set(read_machine(path).uncertainty) == {"stick_speed", "mass"}

@@ -16,7 +16,9 @@ from pydantic.dataclasses import dataclass
 from hersey.damping.no_load_torque import NoLoadTorque, with_rest
 from hersey.damping.surface import WITH_TRANSITION
 from hersey.errors import MAPPING, ParameterError, PlausibilityWarning, printable
+from hersey.files.text import read_text
 from hersey.files.toml import Quantity, Table, at_line, naming, read_tables, read_toml
+from hersey.files.toml_lines import line_of
 from hersey.log.sensor_tables import SensorTables, sensors_of
 from hersey.log.sensors import Sensors
 from hersey.lubrication.asperities import Asperities, BoundaryFriction
@@ -33,7 +35,7 @@ from hersey.machine.limits import Limits, OperatingPoint
 from hersey.machine.nip import ContactTable, LubricantTable
 from hersey.machine.no_load import RestTable
 from hersey.machine.sharing import NEEDED, AsperitiesTable, BoundaryTable
-from hersey.machine.uncertainty import Uncertainty, read_uncertainty
+from hersey.machine.uncertainty import Uncertainty, read_uncertainty, refuse_value_outside
 from hersey.motion.belt import Drivetrain
 from hersey.motion.heat import HeatBalance
 from hersey.schema.warning import Warning
@@ -261,6 +263,20 @@ def _refuse_another(path: Path, document: Mapping[str, Any]) -> None:
             )
 
 
+def _uncertainty(path: Path, document: Mapping[str, Any], tables: _MachineFile) -> dict[str, Uncertainty]:
+    """How far parameters are known, by their names; a range contains the value of [drivetrain]."""
+    found = {}
+    for parameter, text in tables.uncertainty.items():
+        with at_line(path, f"uncertainty.{parameter}", "uncertainty", parameter):
+            found[parameter] = read_uncertainty(parameter, text)
+            if (value := getattr(tables.drivetrain, parameter, None)) is not None:
+                line = line_of(read_text(path), ("drivetrain", parameter))
+                refuse_value_outside(
+                    found[parameter], parameter, text, value, document["drivetrain"][parameter], line
+                )
+    return found
+
+
 @takes_si()
 def read_machine(path: str | Path) -> Machine:
     """Read ``[drivetrain]``, and the other tables if they are there.
@@ -285,10 +301,6 @@ def read_machine(path: str | Path) -> Machine:
     if "drivetrain" not in document:
         _refuse_another(path, document)
     tables = read_tables(path, _MachineFile)
-    uncertainty = {}
-    for parameter, text in tables.uncertainty.items():
-        with at_line(path, f"uncertainty.{parameter}", "uncertainty", parameter):
-            uncertainty[parameter] = read_uncertainty(parameter, text)
     parts: dict[str, Any] = {
         "contact": lambda of: of.contact(tables.drivetrain.roll_radius, tables.limits.nip_load),
         "lubricant": lambda of: of.lubricant(),
@@ -308,7 +320,7 @@ def read_machine(path: str | Path) -> Machine:
         **parts,
         limits=tables.limits,
         points=tables.points,
-        uncertainty=uncertainty,
+        uncertainty=_uncertainty(path, document, tables),
         sensors=sensors_of(**vars(tables.sensors)),
         static_friction=None if tables.boundary is None else tables.boundary.static_friction,
         life=tables.life,

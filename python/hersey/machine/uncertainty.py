@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import dataclass
 
@@ -11,10 +12,12 @@ from hersey.arrays import FloatArray
 from hersey.errors import ParameterError, meant
 from hersey.motion.parameters import KINDS, OF_THE_BELT
 from hersey.units import KINDS as UNITS
-from hersey.units import parse, takes_si
+from hersey.units import convert, parse, takes_si
 
 #: Standard deviations that enclose 95 % of a normal distribution on either side.
 _DEVIATIONS = 1.96
+#: Share of an end of a range that rounding of units may take.
+_BELOW = 1 - 1e-9
 
 
 @takes_si()
@@ -99,6 +102,29 @@ def read_uncertainty(parameter: str, text: object) -> Uncertainty:
     if low > high:
         raise ParameterError(f"'{text}' begins with its upper end. Write '{ends[1]} to {ends[0]}'")
     return Uncertainty(limits=(low, high))
+
+
+def refuse_value_outside(
+    known: Uncertainty, parameter: str, text: str, value: float, written: str, line: int
+) -> None:
+    """Refuse a range, of this ``text``, without the value that ``line`` of the same file states as ``written``.
+
+    Raises
+    ------
+    ParameterError
+        If the value is outside the range.
+    """
+    if known.limits is None or known.limits[0] * _BELOW <= value <= known.limits[1] / _BELOW:
+        return
+    low, high = range_ends(text) or ("", "")
+    wider = f"{written} to {high}" if value < known.limits[0] else f"{low} to {written}"
+    si, usual = UNITS[str(KINDS[parameter])]
+    middle = f"{convert(math.sqrt(known.limits[0] * known.limits[1]), si, usual):.4g} {usual}"
+    raise ParameterError(
+        f"the range {text} does not contain {written}, the value in line {line}. Write here: "
+        f'{parameter} = "{wider}". If the range is right, write in line {line} a value within it, e.g. '
+        f'{parameter} = "{middle}"'
+    )
 
 
 def range_ends(text: str) -> tuple[str, str] | None:
