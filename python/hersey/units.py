@@ -161,7 +161,7 @@ _SPELLINGS = (
     (r"(?i:rpm|(U|r|rev|1)?\s*/\s*min|min(\^|\*\*)?\(?-1\)?|min⁻¹)", "rpm"),
     (r"U/s|r/s", "rev/s"),
     (r"rad\s+s(\^|\*\*)?-1|rad\s+s⁻¹", "rad/s"),
-    (r"([mcdknuµμ]?)N[\s.·*-]?([mc]?m)", r"\1N*\2"),
+    (r"([mcdknuµμ]?)N[\s.·*-]?([mc]?m)((?:[\s.·*]s)?/[A-Za-z°]+)?", r"\1N*\2\3"),
     (r"(?i:sec)", "s"),
     (r"mils?", "thou"),
 )

@@ -114,6 +114,8 @@ def follow(path: Path, most: int = 6) -> None:
         (OIL, OIL[:-1]),
         (OIL, 'viscosities = [["500 mm^2/s", "40 degC"], ["7.2 mm^2/s", "200 degC"]]'),
         (OIL, 'viscosities = [["40 degC", "7.2 mm^2/s"], ["200 degC", "500 mm^2/s"]]'),
+        (OIL, 'viscosities = [["200 degC", "7.2 mm^2/s"], ["40 degC", "500 mm^2/s"]]'),
+        (OIL, f'{OIL}\npressure_viscosity = [["90 degC", "9 GPa^-1"], ["40 degC", "20 GPa^-1"]]'),
         (OIL, 'viscosities = [["200 degC", "0.5 Pa*s"], ["40 degC", "7.2 mPa*s"]]'),
         (OIL, "viscosities = [[40 degC, 500 mm^2/s], [200 degC, 7.2 mm^2/s]]"),
         ('"11 kg"', '"108 N"'),
@@ -136,6 +138,8 @@ def test_the_advice_works(old: str, new: str, tmp_path: Path) -> None:
         ('"11 kg"', '"108 N"', 11000, 11.01, 0.015),
         ('"11 kg"', '"2e-4 kg*m^2"', 11000, 0.8889, 0.015),
         ('"11 N/mm"', '"2.5 N*m/rad"', 11110, 11, 0.015),
+        ('"11 N/mm"', '"2.5 Nm/rad"', 11110, 11, 0.015),
+        ('"11 N/mm"', '"40 mNm/°"', 10190, 11, 0.015),
     ],
 )
 def test_the_corrected_value_is_the_one_meant(
@@ -166,6 +170,16 @@ def test_the_corrected_value_is_the_one_meant(
         ),
         ('"11 kg"', '"11 kg +/- 10 %"', r'line 4: .* "11 kg" .*\[uncertainty\]: mass = "± 10 %"'),
         ("roll_friction = 0.6", "roll_friction = 60", "line 9: .* write 0.6$"),
+        (
+            OIL,
+            OIL.replace("200 degC", "313.15 K"),
+            "line 18: .* two values at 313.15 K, 500 mm.* and 7.2 mm.* Correct the temperature of one$",
+        ),
+        (
+            'stiffness = "11 N/mm"   # at the belt\nmass = "11 kg"\nroll_radius = "15 mm"',
+            'stiffness = "2.5 Nm/rad"\nmass = "11 kg"',
+            "line 3: .* a torsional stiffness, .* Divide it by the square of roll_radius$",
+        ),
         (
             OIL,
             'viscosity_40 = "500 cSt"\nviscosity_200 = "7.2 cSt"',

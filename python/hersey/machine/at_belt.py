@@ -31,6 +31,14 @@ _INSTEAD: dict[str, tuple[tuple[str, str, float, int], ...]] = {
     "torque": (("force", "a force, but the torque at the roll is needed", 1.0, 1),),
 }
 
+#: Units by which a torsional stiffness is told from a torque.
+_ANGLES = ("rad", "deg", "°", "rev")
+#: What leads from the other kind, by the power of the radius.
+_BY_RADIUS = {
+    1: "Multiply it by roll_radius",
+    -1: "Divide it by roll_radius",
+    -2: "Divide it by the square of roll_radius",
+}
 
 #: A value with its uncertainty, as 11 ± 1 N/mm, 11 N/mm +/- 1 N/mm or 11 N/mm ± 10 %.
 _PLUS_MINUS = re.compile(
@@ -95,15 +103,25 @@ class AtBelt(Quantity):
         for kind, what, factor, power in _INSTEAD.get(str(self.kind), ()):
             try:
                 value = parse(kind, str(given))
-                if kind == "torsional stiffness" and "rad" not in str(given) and "deg" not in str(given):
+                if kind == "torsional stiffness" and not any(each in str(given) for each in _ANGLES):
                     continue  # N*m, which is a slip of N/m too
-                radius = parse("length", str(document["drivetrain"]["roll_radius"])) if power else 1.0
-            except (UnitError, LookupError, TypeError):
+                radius = _radius(document) if power else 1.0
+            except UnitError:
                 continue
-            if value > 0 and radius > 0:
+            if value > 0 and radius is None:
+                return f"{what}. {_BY_RADIUS[power]}"
+            if value > 0 and radius:
                 return f'{what}. Write "{self._written(value * factor * radius**power)}"'
         return ""
 
     def _written(self, value: float) -> str:
         si, usual = KINDS[str(self.kind)]
         return f"{convert(value, si, usual):.4g} {usual}"
+
+
+def _radius(document: Any) -> float | None:
+    """The roll radius of a document, m; None if it states none that can be read."""
+    try:
+        return parse("length", str(document["drivetrain"]["roll_radius"]))
+    except (UnitError, LookupError, TypeError):
+        return None

@@ -166,6 +166,21 @@ def _falling(given: object) -> object:
                     "falls with temperature. Were the two exchanged? Write "
                     f"{_written(sorted(fixed, key=_kelvin))}"
                 )
+    return _ascending(pairs)
+
+
+def _ascending(pairs: list[list[Any]]) -> list[list[Any]]:
+    """Pairs of which each temperature is above the one before, as far as they can be read."""
+    if not all(_COLDEST <= _kelvin(pair) <= _HOTTEST for pair in pairs):
+        return pairs
+    ordered = sorted(pairs, key=_kelvin)
+    for first, second in pairwise(ordered):
+        if _kelvin(first) == _kelvin(second):
+            raise ParameterError(
+                f"has two values at {second[0]}, {first[1]} and {second[1]}. Correct the temperature of one"
+            )
+    if ordered != pairs:
+        raise ParameterError(f"has a hotter point first. Write {_written(ordered)}")
     return pairs
 
 
@@ -179,7 +194,7 @@ def _kelvin(pair: Sequence[Any]) -> float:
 
 
 def _or_one(given: object) -> object:
-    return _pairs([[_ANY, given]] if isinstance(given, str) else given)
+    return _ascending(_pairs([[_ANY, given]] if isinstance(given, str) else given))
 
 
 _Temperature = Annotated[float, Quantity("temperature", _COLDEST, _HOTTEST)]
