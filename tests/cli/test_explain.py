@@ -42,6 +42,12 @@ def test_a_near_miss_names_the_term() -> None:
     assert done.stderr == "hersey: 'stik sped' is not in the glossary; did you mean 'stick speed'?\n"
 
 
+def test_a_curve_is_proposed_before_a_closure_of_its_name() -> None:
+    done = run("explain", "Stribek", cwd=ROOT)
+    assert done.stderr.endswith("did you mean 'Stribeck curve' or 'stribeck'?\n")
+    assert run("explain", "Stribeck curve", cwd=ROOT).stdout.startswith("lubrication regime\n")
+
+
 def test_an_unknown_term_points_to_the_list() -> None:
     done = run("explain", "zzz", cwd=ROOT)
     assert done.returncode == 2

@@ -31,7 +31,8 @@ def explain(term: Annotated[list[str] | None, argument("TERM", _TERM)] = None, *
     found = find(name) if name else None
     if name and found is None:
         close = nearest(name)
-        advice = f"did you mean '{close}'?" if close else "type hersey explain to list all terms"
+        quoted = " or ".join(f"'{each}'" for each in close)
+        advice = f"did you mean {quoted}?" if close else "type hersey explain to list all terms"
         raise ParameterError(f"'{name}' is not in the glossary; {advice}")
     if printing.json({"terms": [found] if found else entries()}):
         return

@@ -75,10 +75,23 @@ def find(name: str) -> Entry | None:
     return next((each for each in entries() if wanted in map(key, each.spellings)), None)
 
 
-def nearest(name: str) -> str:
-    """Return the term or spelling that a name with a slip is nearest to, or an empty text."""
+def nearest(name: str) -> tuple[str, ...]:
+    """Return the terms or spellings that a name with a slip may mean; empty if there is none.
+
+    A term of another entry that begins with the nearest one, as the Stribeck curve, comes first.
+    """
     known = {key(spelling): spelling for each in entries() for spelling in each.spellings}
-    return known.get(meant(key(name), known), "")
+    near = known.get(meant(key(name), known), "")
+    if not near:
+        return ()
+    others = [each for each in entries() if near not in each.spellings]
+    longer = [
+        spelling
+        for each in others
+        for spelling in each.spellings
+        if spelling.casefold().startswith(f"{near} ".casefold())
+    ]
+    return (*longer, near)
 
 
 def meanings(terms: Iterable[str]) -> dict[str, str]:
