@@ -12,6 +12,9 @@ from hersey.cli.application import load
 from tests.cli.command import run
 from tests.conftest import ROOT
 
+#: Dashes of word processors.
+EN, EM = "\N{EN DASH}", "\N{EM DASH}"
+
 
 def options(verb: str) -> set[str]:
     """The options of a command."""
@@ -462,3 +465,26 @@ def test_a_file_of_another_kind_is_not_proposed(tmp_path: Path) -> None:
         (tmp_path / name).write_text("")
     refused = run("report", "benh.csv", cwd=tmp_path)
     assert refused.stderr.endswith(" Did you mean 'bench.tdms'?\n")
+
+
+@pytest.mark.parametrize(
+    ("typed", "plain"),
+    [
+        ([f"{EN}machine", "examples/machine.toml"], ["--machine", "examples/machine.toml"]),
+        ([f"{EM}tare", "standing"], ["--tare", "standing"]),
+        ([f"{EN}{EN}tare=standing"], ["--tare=standing"]),
+        ([f"{EN}q", f"-{EM}tare", "standing"], ["-q", "--tare", "standing"]),
+    ],
+)
+def test_a_long_dash_is_named_and_the_line_has_plain_ones(typed: list[str], plain: list[str]) -> None:
+    done = run("fit", "examples/bench.csv", *typed, cwd=ROOT)
+    assert done.returncode == 2
+    line = shlex.join(["hersey", "fit", "examples/bench.csv", *plain])
+    assert done.stderr.endswith(f" has a long dash, as word processors write. Type: {line}\n")
+    assert run(*shlex.split(line)[1:], cwd=ROOT).returncode == 0
+
+
+def test_a_long_dash_is_kept_where_it_begins_a_file_or_a_value(tmp_path: Path) -> None:
+    (tmp_path / f"{EM}log.csv").write_text("")
+    assert "long dash" not in run("fit", f"{EM}log.csv", cwd=tmp_path).stderr
+    assert "long dash" not in run("fit", "a.csv", "--torque", f"{EN}Tq", cwd=tmp_path).stderr

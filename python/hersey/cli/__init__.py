@@ -12,6 +12,7 @@ columns       columns of a small CSV: a drive speed over time, a drag curve
 groups        an option with its help, and options that belong together as a data class
 options       options that several commands share, and the reading of a log by them
 mistyped      what to type instead of a command line that cannot be understood
+long_dashes   the same where a word processor has joined the dashes of an option
 completed     the options that an export cannot do without, for a line that is proposed
 recipe_file   a recipe file as options
 quantities    shares, ranges, temperatures and speeds of options

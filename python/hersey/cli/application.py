@@ -13,6 +13,7 @@ from typer.core import TyperCommand, TyperGroup
 from hersey.cli.arranged import refuse_disorder
 from hersey.cli.groups import option
 from hersey.cli.interruption import INTERRUPTED
+from hersey.cli.long_dashes import long_dashed
 from hersey.cli.mistyped import (
     Commands,
     misread,
@@ -161,6 +162,8 @@ def main() -> None:
     """Run the command line."""
     speak("terminal")
     hush(False)
+    if said := long_dashed(sys.argv[1:], COMMANDS):  # else the option would be taken as a file
+        _fail(said)
     code: int | None = None
     try:
         with warnings_said():

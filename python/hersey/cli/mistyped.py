@@ -323,7 +323,7 @@ def missing(parameter: Any, context: Any) -> str:
 
 def misused(name: str, commands: Commands) -> str:
     """Say what an option needs that was typed without its value, or with one that it does not take."""
-    parameter = _parameters(sys.argv[1:], commands).get(name)
+    parameter = parameters_of(sys.argv[1:], commands).get(name)
     if parameter is None:
         return ""
     if getattr(parameter, "is_flag", False):
@@ -350,15 +350,15 @@ def misread(error: Any) -> str:
 
 def without_value(words: Sequence[str], commands: Commands) -> str:
     """Return the first option that was typed without its value, so that the next option became the value."""
-    known = _parameters(words, commands)
+    known = parameters_of(words, commands)
     for flag, value in pairwise(words):
         if value.partition("=")[0] in known and not getattr(known.get(flag), "is_flag", flag not in known):
             return flag
     return ""
 
 
-def _parameters(words: Sequence[str], commands: Commands) -> dict[str, Any]:
-    """The options of the command that was typed, by their names."""
+def parameters_of(words: Sequence[str], commands: Commands) -> dict[str, Any]:
+    """Return the options of the command that was typed, by their names."""
     if not words or words[0] not in commands.names:
         return {}
     command = commands.load(words[0])
