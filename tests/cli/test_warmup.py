@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shlex
 from dataclasses import replace
 from pathlib import Path
 
@@ -66,6 +67,15 @@ def test_a_motion_with_heat_is_told_and_written(folder: Path) -> None:
     header, first = (folder / "run.csv").read_text().splitlines()[:2]
     assert header.endswith("mode,roll_slips,film_temperature,roll_temperature")
     assert first.endswith("293.15,293.15")
+
+
+def test_a_start_above_the_setpoint_warms_nothing_up(folder: Path) -> None:
+    done = run(*TYPED[:6], "--from", "250 degC", cwd=folder)
+    assert done.returncode == 2
+    assert done.stderr.startswith("hersey: --from is 250 degC, above the setpoint of the heater, 180 degC, ")
+    line = done.stderr.rstrip().partition(" type: ")[2]
+    assert shlex.split(line) == ["hersey", *TYPED[:6], "--from", "25 degC"]
+    assert run(*shlex.split(line)[1:], cwd=folder).returncode == 0
 
 
 @pytest.mark.parametrize(

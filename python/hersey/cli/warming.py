@@ -6,6 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from hersey.cli.mistyped import retyped, typed_without
 from hersey.cli.quantities import temperature_of
 from hersey.errors import ParameterError
 
@@ -39,6 +40,24 @@ def heat_of(machine: Machine, file: Path, start: str) -> HeatBalance:
     if kelvin is None:
         return machine.heat
     return replace(machine.heat, film_temperature=kelvin, roll_temperature=kelvin)
+
+
+def refuse_above_setpoint(machine: Machine, file: Path, start: str) -> None:
+    """Refuse a warm-up that starts above the temperature at which the heater is held."""
+    from hersey.units import celsius
+
+    heat = heat_of(machine, file, start)
+    if heat.setpoint is None or heat.film_temperature <= heat.setpoint:
+        return
+    begins, held = (f"{celsius(kelvin):.4g} degC" for kelvin in (heat.film_temperature, heat.setpoint))
+    stated = FROM if start else f"{file.name}: [heat]: the film at the start"
+    said = f"{stated} is {begins}, above the setpoint of the heater, {held}, so nothing warms up"
+    colder = f"{celsius(heat.surroundings):.4g} degC"
+    if not start:
+        raise ParameterError(f'{said}. Write film_temperature = "{colder}"')
+    raise ParameterError(
+        f"{said}. To start at the surroundings, type: {retyped(*typed_without([FROM]), FROM, colder)}"
+    )
 
 
 def refuse_below_zero(

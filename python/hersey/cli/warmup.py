@@ -12,7 +12,14 @@ from hersey.cli.outputs import may_write_table_and_figure
 from hersey.cli.printing import Printing, write_course
 from hersey.cli.progress import working
 from hersey.cli.quantities import amount_of, share, target_of
-from hersey.cli.warming import beyond_the_log, heat_of, refuse_below_zero, start_of, warming_drag
+from hersey.cli.warming import (
+    beyond_the_log,
+    heat_of,
+    refuse_above_setpoint,
+    refuse_below_zero,
+    start_of,
+    warming_drag,
+)
 from hersey.errors import ParameterError
 
 if TYPE_CHECKING:
@@ -75,6 +82,7 @@ def warmup(
 
     machine = read_machine(machine_file)
     sought, heat = course.sought(machine), heat_of(machine, machine_file, course.start)
+    refuse_above_setpoint(machine, machine_file, course.start)
     weakest, limits = _limits(machine, machine_file.name)
     surface = reading.surface(logs, fit_file, machine)
     refuse_below_zero(surface, heat, start_of(machine_file, course.start), fit_file)

@@ -107,7 +107,7 @@ def read_uncertainty(parameter: str, text: object) -> Uncertainty:
 def refuse_value_outside(
     known: Uncertainty, parameter: str, text: str, value: float, written: str, line: int
 ) -> None:
-    """Refuse a range, of this ``text``, without the value that ``line`` of the same file states as ``written``.
+    """Refuse a range, read from ``text``, without the value that ``line`` of the file states as ``written``.
 
     Raises
     ------
