@@ -107,8 +107,20 @@ def test_what_cannot_be_judged_keeps_its_reason() -> None:
     assert grip.where == "grip"
     assert str(grip.values["reason"]).startswith("no specimen was measured at two ages")
     assert "\nheat is not judged. No table [motor].\n" in told().summary()
-    with pytest.raises(InsufficientDataError, match="grip: No run shows it"):
+    with pytest.raises(InsufficientDataError, match="Grip: No run shows it"):
         time_to_failure(of(indicator("grip", np.full(AGE.size, np.nan), 2.0)))
+
+
+def test_where_nothing_can_be_judged_the_reason_of_most_modes_comes_first() -> None:
+    once = np.where(AGE == 0.0, 1.0, np.nan)
+    each = [indicator(name, once, 2.0) for name in ("torque", "film", "grip")]
+    stated = Warning(NOT_JUDGED, "no table [motor]", where="heat", remedy="add [motor]")
+    with pytest.raises(InsufficientDataError) as refused:
+        time_to_failure(of(*each, warnings=(stated,)))
+    assert str(refused.value) == (
+        "no failure mode can be judged. 3 failure modes: No specimen was measured at two ages, so its growth "
+        "is unknown. Add runs at another age. Heat: No table [motor]. Add [motor]."
+    )
 
 
 def test_the_result_is_whole_and_the_same_again() -> None:

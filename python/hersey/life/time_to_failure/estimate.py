@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import numpy as np
 
 from hersey.arrays import FloatArray, IntArray, one_thread
-from hersey.errors import HerseyError, InsufficientDataError
+from hersey.errors import HerseyError, InsufficientDataError, capital, sentence
 from hersey.life.growth.limit_ages import (
     CONFIDENCE,
     AgeAtLimit,
@@ -46,6 +46,8 @@ _PLACES = 121
 _WEIGHED, _ADVISED = 24, 3
 #: Rows that a summary shows.
 _SHOWN = 24
+#: Failure modes of one reason that an error names.
+_NAMED = 2
 NEVER = "none"
 
 
@@ -213,8 +215,8 @@ def time_to_failure(
             progress(i + 1, len(indicators.each))
     ending = [each for each in fitted if not each.mode.sign]
     if not ending:
-        why = "; ".join(_by_reason(warnings)) or "no indicator is given"
-        raise InsufficientDataError(f"no failure mode can be judged: {why}")
+        why = " ".join(_by_reason(warnings)) or "No indicator is given."
+        raise InsufficientDataError(f"no failure mode can be judged. {why}")
     random = np.random.default_rng([seed, 2])
     of_runs = correlations([each.residuals for each in ending])
     names, last = indicators.runs.units, last_ages(indicators)
@@ -241,11 +243,17 @@ def time_to_failure(
 
 
 def _by_reason(warnings: Sequence[Warning]) -> list[str]:
-    """The reasons why something cannot be judged, each once behind all that it holds for."""
+    """The reasons why something cannot be judged, as sentences, the one of most modes first."""
     concerned: dict[str, list[str]] = {}
     for each in warnings:
         concerned.setdefault(each.text, []).append(each.where)
-    return [": ".join(filter(None, (", ".join(where), why))) for why, where in concerned.items()]
+    ordered = sorted(concerned.items(), key=lambda reason: -len(reason[1]))
+    return [": ".join(filter(None, (_modes(where), sentence(why)))) for why, where in ordered]
+
+
+def _modes(names: Sequence[str]) -> str:
+    """The failure modes that a reason holds for: their number where there are many."""
+    return f"{len(names)} failure modes" if len(names) > _NAMED else capital(", ".join(names))
 
 
 def _shares(ending: Sequence[FittedWay], new: FloatArray) -> dict[str, Interval]:
