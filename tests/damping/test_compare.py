@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,7 +14,7 @@ from hersey.damping.candidates.branched import FREE, HELD, Law
 from hersey.damping.candidates.thermal import ARRHENIUS, Thermal
 from hersey.damping.compare import compare
 from hersey.errors import InsufficientDataError
-from tests.conftest import shared
+from tests.conftest import ROOT, shared
 from tests.damping.candidates.test_comparison import REFERENCE, dwells
 from tests.damping.candidates.test_shared_errors import visited
 
@@ -100,6 +101,17 @@ def test_two_screw_drives_differ() -> None:
     assert found.temperatures.size == 0
     assert "Damping of drive 2 is higher than that of drive 1" in found.verdict
     assert found.mean_ratio.low > 1.0 or found.mean_ratio.high < 1.0
+
+
+def test_a_measurement_compared_with_itself_is_named(tmp_path: Path) -> None:
+    bench, copy = ROOT / "examples" / "bench.csv", tmp_path / "copy.csv"
+    copy.write_bytes(bench.read_bytes())
+    first, again = (hersey.read(path).steady(tare="standing") for path in (bench, copy))
+    warning = compare(first, again).warnings[0]
+    assert (warning.kind, warning.severity) == ("same log", "watch")
+    assert warning.text.startswith("A and B are the same measurement, so no difference can show")
+    other = hersey.read(copy).steady()
+    assert "same log" not in [each.kind for each in compare(first, other).warnings]
 
 
 def test_two_visits_of_one_lubricant_are_not_two_lubricants() -> None:

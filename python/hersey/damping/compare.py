@@ -10,7 +10,7 @@ and what depends on temperature is not compared.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Annotated
 
@@ -36,6 +36,8 @@ from hersey.units import convert, rpm, takes_si
 if TYPE_CHECKING:
     import polars as pl
 
+#: Kind of the warning that a log is compared with itself.
+SAME_LOG = "same log"
 #: Speeds at which the ratio is taken.
 SPEEDS = 9
 #: Temperatures at which it is.
@@ -193,17 +195,25 @@ def compare(
         changes=changes,
         verdict=_verdict(mean, low, high, changes, names, of_visits=bool(once)),
         warnings=(
-            *(
-                each
-                for points in (a, b)
-                if not isinstance(points, Observations)
-                for each in replaced_in(points.log.files)
-            ),
+            *_of_logs([points for points in (a, b) if not isinstance(points, Observations)]),
             *_warnings(first, second, of_a),
             *([_of_visits(once)] if once else []),
         ),
         names=names,
     )
+
+
+def _of_logs(logs: Sequence[SteadyPoints]) -> list[Warning]:
+    """Warnings of the files of each log, first that the dwells of both are the same."""
+    found = [each for points in logs for each in replaced_in(points.log.files)]
+    if len(logs) == 2 and logs[0].table.equals(logs[1].table):  # noise makes two measurements differ
+        words = (
+            "A and B are the same measurement, so no difference can show; the limits say how small a "
+            "difference could be detected"
+        )
+        remedy = "to compare two logs, give two different files"
+        found.insert(0, Warning(SAME_LOG, words, severity="watch", remedy=remedy))
+    return found
 
 
 def _fitted(data: Observations, name: str) -> ModelComparison:
