@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from tests.cli.command import run
+from tests.conftest import ROOT
 
 pytestmark = pytest.mark.usefixtures("roughly")
 SPEEDS = (10.0, 20.0, 40.0, 80.0, 160.0)
@@ -91,3 +92,24 @@ def test_an_amount_without_a_unit_is_no_name(wear: Path) -> None:
     refused = run("fit", "wear.csv", "--isothermal", "--every", "10 ms", "--radius", "30", cwd=wear)
     assert refused.returncode == 2
     assert "radius: '30' is not a number with a unit of length" in refused.stderr
+
+
+@pytest.mark.parametrize("name", ["Spring force", "Drive torque"])
+def test_a_trace_of_a_force_becomes_one_of_torque_by_a_mapping_of_its_own(name: str, tmp_path: Path) -> None:
+    examples = ROOT / "examples"
+    text = (examples / "bench.csv").read_text().replace("Drive torque [N*m]", f"{name} [N]")
+    (tmp_path / "pull.csv").write_text(text)
+    bench, machine = examples / "bench.csv", examples / "machine.toml"
+    typed = ["posterior", str(bench), "--machine", str(machine), "--trace", "pull.csv", "--draws", "100"]
+    done = run(*typed, cwd=tmp_path)
+    assert done.returncode == 2
+    advised = re.search(r"write two lines into (\S+): (.*) and (.*)\n", done.stderr)
+    assert advised, done.stderr
+    mapping = tmp_path / advised[1]
+    mapping.write_text(f"{advised[2]}\n{advised[3]}\n")
+    assert advised.groups() == (
+        "pull.hersey.toml",
+        f'torque.channel = "{name}"',
+        'radius.value = "15 mm"',
+    )
+    assert run(*typed, cwd=tmp_path).returncode == 0

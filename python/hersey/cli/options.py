@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
+from hersey.cli.force_trace import of_a_force
 from hersey.cli.groups import argument, option
 from hersey.cli.mistyped import retyped
 from hersey.cli.progress import bar, working
@@ -183,7 +184,12 @@ class Reading:
 
         if machine is None:
             raise ParameterError("--trace needs --machine, because a start depends on stiffness and mass")
-        read = self.log([path], machine)
+        try:
+            read = self.log([path], machine)
+        except HerseyError as error:
+            if self.mapping:
+                raise
+            raise of_a_force(error, path, machine) from None
         if not isinstance(read, TorqueLog):
             raise ParameterError(
                 f"{path} is a table of means; a trace needs columns of time, torque and speed"

@@ -36,7 +36,7 @@ def for_this_log_only(
     given = {"channel": recipe.channels, "unit": recipe.units}.get(setting.kind, recipe.signs)
     alone = setting.kind == "unit" and bool(error.likely) and role not in given
     if alone and any(_states_unit(each, role) for each in others):
-        error.remedy = f"write {key} under [{role}] in {_mapping_of(log)}, or correct the header"
+        error.remedy = f"write {key} under [{role}] in {mapping_of_log(log)}, or correct the header"
         return error
     mapping = recipe.chosen
     stated = {"channel": mapping.channels, "unit": mapping.units}.get(setting.kind, {})
@@ -51,7 +51,7 @@ def for_this_log_only(
         do = f"omit {MAPPING.to()} and copy it to" if recipe.mapping else "rename it to"
         how = f"if {mapping.source} is for {another} only, {do} {there}"
     elif recipe.mapping is None:
-        how = f"if only {log.name} needs it, write {key} under [{role}] in {_mapping_of(log)}"
+        how = f"if only {log.name} needs it, write {key} under [{role}] in {mapping_of_log(log)}"
     else:
         return error
     otherwise = f"otherwise, {error.remedy}" if error.remedy[:1].islower() else error.remedy
@@ -80,8 +80,8 @@ def _states_unit(log: Path, role: str) -> bool:
         return False
 
 
-def _mapping_of(log: Path) -> str:
-    """Where to write what holds for a log alone."""
+def mapping_of_log(log: Path) -> str:
+    """Return where to write what holds for a log alone."""
     from hersey.log.mapping import find_mapping
 
     alone, found = _own_mapping(log), find_mapping(log)
