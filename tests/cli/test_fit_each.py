@@ -56,6 +56,22 @@ def test_the_rest_of_the_drive_is_taken_off_each(folder: Path) -> None:
     assert pl.read_csv(folder / "fits.csv")["c"][0] == surface.c.value
 
 
+def test_a_unit_that_an_option_replaces_is_said_once_with_the_logs(folder: Path) -> None:
+    for number in range(2, 5):
+        means(folder / "logs" / f"{number}.csv", 5.0)
+    means(folder / "other.csv", 5.0)
+    other = (folder / "other.csv").read_text().replace("mN*m", "N*m")
+    (folder / "other.csv").write_text(other)
+    option = ["--torque-unit", "N*m"]
+    done = typed(folder, "logs/*.csv", "other.csv", "--each", "fits.csv", *option)
+    assert done.returncode == 0, done.stderr
+    _, said = done.words.split(" - ")
+    assert said.startswith("logs/0.csv, logs/1.csv, logs/2.csv and 2 more: ")
+    assert "is in mN*m, but it is read in N*m. If the file is right, omit --torque-unit" in said
+    alone = typed(folder, "logs/0.csv", *option).words
+    assert said.partition(": ")[2].partition(" fits.csv")[0] in alone
+
+
 def test_what_fails_is_left_out_only_when_asked(folder: Path) -> None:
     (folder / "logs" / "0b.csv").write_text("no log at all\n")
     done = typed(folder, "logs/*.csv", "none.csv", "--each", "fits.csv")

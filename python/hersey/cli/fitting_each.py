@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -22,10 +22,13 @@ from hersey.errors import HerseyError
 if TYPE_CHECKING:
     from hersey.damping.estimate import Estimate
     from hersey.machine.machine import Machine
+    from hersey.schema.warning import Warning
 
 
 #: Other logs of which it is looked up whether they state a unit that one lacks.
 _OTHERS = 3
+#: Logs that a warning names.
+_NAMED = 3
 
 
 def fit_each(
@@ -47,10 +50,11 @@ def fit_each(
     with crew.at_work() as client, bar("fitting", unit="logs") as progress:
         results = each_of(task, files, client=client, progress=progress)
         fits = collected(logs, results, keep_going)
-    rows = [{"log": str(log), **fits[log]} for log in fits]
+    rows = [{"log": str(log), **fitted} for log, (fitted, _) in fits.items()]
     if rows and table.path is not None:
         table.write(_table(rows, table.path.suffix))
         printing.text(f"{len(rows)} of {len(logs)} logs are fitted.")
+        printing.warnings(*_joint({log: replaced for log, (_, replaced) in fits.items()}))
         printing.files(table.path)
     if fits.failures:
         say(*(f"- {failure_line(*failed)}" for failed in fits.failures.items()), file=sys.stderr)
@@ -59,9 +63,13 @@ def fit_each(
 
 def row(
     reading: Reading, machine: Machine | None, log: Path, *, others: Sequence[Path] = ()
-) -> dict[str, Any] | HerseyError:
-    """Return dwells, fit and verdict of a log, in SI, with its 95 % intervals; or what is wrong with it."""
+) -> tuple[dict[str, Any], list[Warning]] | HerseyError:
+    """Return dwells, fit and verdict of a log, in SI, with its 95 % intervals, and which units were replaced.
+
+    Or what is wrong with the log.
+    """
     from hersey.damping.fit import fit
+    from hersey.log.replaced import UNIT_REPLACED
     from hersey.verdict.regime import regime
 
     try:
@@ -72,7 +80,7 @@ def row(
     except HerseyError as error:
         return error
     bend, kelvin = surface.transition, surface.temperature_range or (None, None)
-    return {
+    fitted = {
         "dwells": points.table.height,
         "speed from (rad/s)": surface.speed_range[0],
         "speed to (rad/s)": surface.speed_range[1],
@@ -85,6 +93,24 @@ def row(
         **_columns("transition speed", "rad/s", None if bend is None else bend.speed),
         "regime": words,
     }
+    return fitted, [each for file in points.log.files for each in file.warnings if each.kind == UNIT_REPLACED]
+
+
+def _joint(found: Mapping[Path, Sequence[Warning]]) -> list[Warning]:
+    """Warnings by log, those that are the same as one with the names of their logs."""
+    logs: dict[tuple[object, ...], list[Path]] = {}
+    first: dict[tuple[object, ...], Warning] = {}
+    for log, warnings in found.items():
+        for each in warnings:
+            same = (each.kind, *each.values.items())
+            first.setdefault(same, each)
+            logs.setdefault(same, []).append(log)
+    return [each.within(_names(logs[same])) for same, each in first.items()]
+
+
+def _names(logs: Sequence[Path]) -> str:
+    named, more = ", ".join(map(str, logs[:_NAMED])), len(logs) - _NAMED
+    return f"{named} and {more} more" if more > 0 else named
 
 
 def _columns(name: str, unit: str, known: Estimate | None) -> dict[str, float | None]:

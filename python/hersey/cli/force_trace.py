@@ -23,7 +23,9 @@ def of_a_force(error: HerseyError, path: Path, machine: Machine) -> HerseyError:
     from hersey.log.roles import is_of_kind
 
     lacking = isinstance(error, UnstatedRoleError) and error.role == "radius"
-    absent = isinstance(error, ChannelError) and error.absent and error.setting == Setting("torque", "channel")
+    absent = (
+        isinstance(error, ChannelError) and error.absent and error.setting == Setting("torque", "channel")
+    )
     if not (lacking or absent):
         return error
     columns = list_channels(path)
