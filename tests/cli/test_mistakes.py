@@ -608,7 +608,7 @@ def test_of_two_logs_the_one_that_needs_another_mapping_is_told_first_how_it_get
     (tmp_path / "b.hersey.toml").unlink()
     advised = advice(*compared, reason="column 'Tq' has no unit")
     assert advised.startswith('If only b.csv needs it, write unit = "UNIT" under [torque] in b.hersey.toml. ')
-    assert "Otherwise, write 'Tq [N*m]' in the header" in advised
+    assert "Otherwise: write 'Tq [N*m]' in the header" in advised
     (tmp_path / "b.hersey.toml").write_text('[torque]\nunit = "N*m"\n')
     assert run(*compared, cwd=tmp_path).returncode == 0
 

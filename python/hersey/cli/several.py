@@ -54,8 +54,7 @@ def for_this_log_only(
         how = f"if only {log.name} needs it, write {key} under [{role}] in {mapping_of_log(log)}"
     else:
         return error
-    otherwise = f"otherwise, {error.remedy}" if error.remedy[:1].islower() else error.remedy
-    error.remedy = followed_by(how, otherwise)
+    error.remedy = followed_by(how, f"otherwise: {error.remedy}" if error.remedy else "")
     return error
 
 
