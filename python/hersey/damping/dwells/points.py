@@ -213,11 +213,7 @@ class SteadyPoints(Result):
         [0.005, 0.0056, 0.0063]
         """
         name = self.log.files[0].name
-        if self.rest is not None or any(c.name.startswith("no-load") for c in self.log.corrections):
-            raise ParameterError(
-                f"{name}: the no-load torque is already subtracted. Remove no_load from the mapping, "
-                "or omit the no-load torque"
-            )
+        self.refuse_subtracted()
         speed, torque, error = (self.column(n) for n in ("speed", "torque", "torque_error"))
         kelvin = None
         if self.log.has_temperature and rest.reference_temperature is not None:
@@ -236,6 +232,14 @@ class SteadyPoints(Result):
             )
         table = self.table.with_columns(torque=film)
         return replace(self, table=table, rest=rest, rest_errors=errors)
+
+    def refuse_subtracted(self) -> None:
+        """Raise `ParameterError` if a no-load torque was already subtracted, be it by the mapping."""
+        if self.rest is not None or any(c.name.startswith("no-load") for c in self.log.corrections):
+            raise ParameterError(
+                f"{self.log.files[0].name}: the no-load torque is already subtracted. Remove no_load from "
+                "the mapping, or omit the no-load torque"
+            )
 
     def __len__(self) -> int:
         """Return the number of steady points."""
