@@ -188,7 +188,7 @@ class Assembly:
             among = self._beside_a_speed(role)
             channel = find_channel(role, among, choice, file, self._says_nothing, taken)
         if channel is None:
-            raise no_channel(role, self.columns, file)
+            raise no_channel(role, self.columns, file, self.recording.others)
         refuse_two_roles(role, channel[0], self.chosen, file)
         return channel
 

@@ -19,6 +19,7 @@ from hersey.log.formats.frame import is_frame
 from hersey.log.recording import Cells, Signal
 from hersey.log.text.column import Column, split_unit
 from hersey.log.text.delimited import open_delimited
+from hersey.log.text.numbers import style_of
 from hersey.log.text.repeated_header import refuse_another_header
 from hersey.log.text.separators import split
 
@@ -92,4 +93,5 @@ def _of_frame(frame: Any, name: str) -> CellTable:
     by_name = {str(c): list(frame[c]) for c in frame.columns}
     columns = tuple(Column(i, *split_unit(title)) for i, title in enumerate(by_name))
     content = repr(by_name).encode()
-    return CellTable(name, _sha(content), len(content), columns, tuple(by_name.values()), float)
+    style = style_of([cell.strip() for cells in by_name.values() for cell in cells if isinstance(cell, str)])
+    return CellTable(name, _sha(content), len(content), columns, tuple(by_name.values()), style.value)

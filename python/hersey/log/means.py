@@ -249,11 +249,16 @@ def _read(
     gone = np.logical_or.reduce(list(bad.values()))
     known = _with_labels(cells, values, max((row.run for row in before), default=-1) + 1)
     rows = [_row({name: each[i] for name, each in known.items()}) for i in np.flatnonzero(~gone)]
-    if not rows:
-        raise InsufficientDataError(f"{cells.name}: no row has both speed and torque")
     left_out = [
         _bad(cells, int(i), next(name for name in bad if bad[name][i]), roles) for i in np.flatnonzero(gone)
     ]
+    if not rows:
+        named = f"{', '.join(list(bad)[:-1])} and {list(bad)[-1]}"
+        first = f", e.g. {left_out[0]}" if left_out else ""
+        raise InsufficientDataError(
+            f"{cells.name}: no row has numbers of {named}{first}",
+            remedy="write numbers alone in the cells, and their unit behind the name of the column",
+        )
     channels = tuple(Channel(role, column.name, unit.unit) for role, (column, unit) in used.items())
     warnings = (
         *computed(used, said),
