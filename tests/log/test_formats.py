@@ -223,21 +223,6 @@ def test_frames_in_memory() -> None:
         hersey.read([frame(), frame()])
 
 
-def test_numbers_as_text_in_a_frame() -> None:
-    pandas = pytest.importorskip("pandas")
-    texts = {name: [str(v) for v in column] for name, column in frame().to_dict(as_series=False).items()}
-    commas = {name: [text.replace(".", ",") for text in column] for name, column in texts.items()}
-    for each in (texts, commas):
-        assert_same(hersey.read(pl.DataFrame(each)))
-        assert_same(hersey.read(pandas.DataFrame(each)))
-    commas["Torque [N*m]"][3] = None
-    assert hersey.read(pandas.DataFrame(commas)).files[0].missing_rows == 1
-    commas["Torque [N*m]"][3] = "Fehler"
-    said = r"no torque column found.* Not numbers: 'Torque \[N\*m\]' \(text, e\.g\. 'Fehler'\)"
-    with pytest.raises(ChannelError, match=said):
-        hersey.read(pandas.DataFrame(commas))
-
-
 def test_a_missing_value_in_a_frame_is_refused_or_counted() -> None:
     gap = frame().with_columns(
         pl.when(pl.col("Time [s]") == 0.5).then(None).otherwise("Torque [N*m]").alias("Torque [N*m]")

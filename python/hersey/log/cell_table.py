@@ -13,7 +13,7 @@ import numpy as np
 import polars as pl
 
 from hersey.arrays import FloatArray
-from hersey.errors import HerseyError
+from hersey.errors import HerseyError, UnreadableLogError
 from hersey.log.formats import format_of, opened
 from hersey.log.formats.frame import is_frame
 from hersey.log.recording import Cells, Signal
@@ -61,7 +61,7 @@ class CellTable:
 def cells_of(table: Any, name: str) -> CellTable:
     """Return a table as it stands, from a file or from memory."""
     if isinstance(table, Mapping):
-        table = pl.DataFrame(dict(table), strict=False)
+        table = _framed(table, name)
     if is_frame(table):
         return _of_frame(table, name)
     path = Path(table)
@@ -81,6 +81,15 @@ def cells_of(table: Any, name: str) -> CellTable:
     named = tuple(column for column in layout.columns if column.name)
     cells = tuple([row[c.index] if c.index < len(row) else "" for row in rows] for c in named)
     return CellTable(path.name, _sha(text), len(text), named, cells, layout.style.value, layout.comments)
+
+
+def _framed(columns: Mapping[str, Any], name: str) -> pl.DataFrame:
+    """Columns by name as a frame."""
+    try:
+        return pl.DataFrame(dict(columns), strict=False)
+    except pl.exceptions.ShapeError:
+        rows = ", ".join(f"'{title}' has {np.size(cells)}" for title, cells in columns.items())
+        raise UnreadableLogError(f"{name}: the columns differ in length: {rows}") from None
 
 
 def _sha(content: bytes) -> str:

@@ -189,8 +189,13 @@ def no_channel(
     if role == "temperature":
         way_out += f", or use {ISOTHERMAL.to()} to exclude temperature"
     said = f"{file}: no {role} column found. Columns: {_listed(columns)}"
-    said += f". Not numbers: {', '.join(others)[:1000]}" if others else ""
+    said += not_numbers(others)
     return ChannelError(said, absent=True, remedy=way_out, setting=channel)
+
+
+def not_numbers(others: tuple[str, ...]) -> str:
+    """Return the end of a sentence that names channels which hold no numbers."""
+    return f". Not numbers: {', '.join(others[:40])[:1000]}" if others else ""
 
 
 def _signals(role: str, columns: tuple[Column, ...]) -> list[Column]:

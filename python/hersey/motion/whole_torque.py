@@ -1,4 +1,4 @@
-"""A torque of film and drive together where the machine states the no-load torque: the film would have both."""
+"""The whole torque, of film and drive together, where the machine states a no-load torque to subtract."""
 
 from __future__ import annotations
 

@@ -10,6 +10,7 @@ import numpy as np
 import polars as pl
 
 from hersey.arrays import FloatArray
+from hersey.damping.dwells.columns import column_of
 from hersey.damping.dwells.reasons import NO_DWELL, Reason, joined, opposite_signs
 from hersey.damping.dwells.relaxation import Relaxation
 from hersey.damping.dwells.resolution import Resolution
@@ -192,6 +193,7 @@ class SteadyPoints(Result):
         frame = pl.DataFrame(dwells, schema_overrides=kinds)
         return cls(frame, tuple(rejected), 0.0, None, table, warnings=(_of_means(table),))
 
+    @takes_si()
     def without(self, rest: NoLoadTorque) -> SteadyPoints:
         """Return the same dwells with the torque of the film alone: the no-load torque is subtracted.
 
@@ -246,8 +248,8 @@ class SteadyPoints(Result):
         return self.table.height
 
     def column(self, name: str) -> FloatArray:
-        """Return a column as an array of shape (points,)."""
-        return self.table[name].to_numpy()
+        """Return a column as an array of shape (points,); `ChannelError` if there is none of that name."""
+        return column_of(self.table, name).to_numpy()
 
     def summary(self) -> str:
         """Return the number of dwells, their ranges, the tare, and what is excluded, as text."""

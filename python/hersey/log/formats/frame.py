@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable
+from datetime import datetime
 from typing import Any
 
 import numpy as np
@@ -18,6 +19,8 @@ from hersey.processes.forks import refuse_after_fork
 
 #: Types of columns that may hold numbers written as text.
 _TEXT = (pl.String, pl.Categorical, pl.Enum)
+#: How a time stamp in text begins.
+_STAMP = r"^\s*[0-9]{4}-[0-9]{2}-[0-9]{2}[T ][0-9]{2}:"
 
 
 def is_frame(thing: object) -> bool:
@@ -64,8 +67,30 @@ def _as_numbers(columns: list[tuple[str, pl.Series]]) -> list[tuple[str, pl.Seri
         numbers = style.values(series.cast(pl.String)) if series.dtype in _TEXT else None
         if numbers is not None and np.isfinite(numbers).any():
             series = pl.Series(column, numbers)
+        elif series.dtype in _TEXT and _are_stamps(series.cast(pl.String)):
+            series = series.cast(pl.String).str.to_datetime(time_unit="ns", strict=False)
         found.append((column, series))
     return found
+
+
+def _are_stamps(texts: pl.Series) -> bool:
+    """Whether every text is a time stamp that begins with the year, which can be read in one way only."""
+    if texts.drop_nulls().is_empty() or not texts.drop_nulls().str.contains(_STAMP).all():
+        return False
+    try:
+        return texts.str.to_datetime(time_unit="ns", strict=False).null_count() == texts.null_count()
+    except pl.exceptions.PolarsError:  # no one format
+        return False
+
+
+def _times(name: str, values: list[Any]) -> pl.Series | None:
+    """Objects that are dates with times as a column, or None if they are others."""
+    if not any(isinstance(each, datetime) for each in values):
+        return None
+    try:
+        return pl.Series(name, values, dtype=pl.Datetime("us"))
+    except (TypeError, pl.exceptions.PolarsError):
+        return None
 
 
 def _held(series: pl.Series) -> str:
@@ -121,6 +146,9 @@ def _series(name: str, column: Any) -> pl.Series:
     values = column.to_numpy()
     if values.dtype == object:
         missing = column.isna().to_numpy()
+        times = _times(name, [None if gone else v for v, gone in zip(values, missing, strict=True)])
+        if times is not None:
+            return times
         texts = [None if gone else str(v) for v, gone in zip(values, missing, strict=True)]
         return pl.Series(name, texts, dtype=pl.String)
     return pl.Series(name, values)
