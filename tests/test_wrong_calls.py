@@ -17,7 +17,7 @@ import pandas as pd
 import pytest
 
 import hersey
-from hersey.errors import ArgumentError, ExtrapolationWarning, HerseyError, ParameterError
+from hersey.errors import ArgumentError, ExtrapolationWarning, HerseyError, ParameterError, WrongKindError
 from hersey.units import parse, takes_si
 from tests.conftest import ROOT
 
@@ -383,3 +383,17 @@ def test_an_argument_with_few_words_lists_them(call: Callable[[], Any], words: t
         call()
     for word in words:
         assert f"'{word}'" in refused.value.reason
+
+
+def test_a_number_beside_a_wrong_value_is_not_taken_for_it() -> None:
+    with pytest.raises(ArgumentError) as caught:
+        hersey.simulate(TRAIN, DRAG, drive_speed=H.fit, duration=1.0)
+    assert "which was given as" not in str(caught.value)
+    with pytest.raises(ParameterError, match=r"Did you mean transition_speed, stick_speed or drive_speed\?"):
+        H.sweep(TRAIN, DRAG, speed=[0.1])
+    with pytest.raises(ArgumentError, match=r"rest is a Machine\. .* with rest = machine\.rest or"):
+        log_points().without(H.Machine(11e3, 11.0, roll_radius=0.015, stick_speed=3e-4))
+    with pytest.raises(LookupError, match=r"no column 'torque \[mN\*m\]'\. Did you mean 'torque'\?"):
+        log_points().column("torque [mN*m]")
+    with pytest.raises(WrongKindError, match=r"rpm' is that of a speed of rotation, .* radius of the roll"):
+        H.stick_slip(TRAIN, DRAG, drive_speed="20 rpm")

@@ -109,7 +109,8 @@ def refuse_unknown(
     """
     for name in given:
         if name not in known:
-            near = meant(name, known)
+            parts = [each for each in known if name in each.split("_")]
+            near = f"{', '.join(parts[:-1])} or {parts[-1]}" if parts[1:] else meant(name, known)
             remedy = f"Did you mean {near}?" if near else f"Its arguments are {', '.join(known)}"
             if elsewhere and name in elsewhere:
                 remedy = f"Write {elsewhere[name]}"

@@ -96,6 +96,9 @@ _MISTAKEN = {
         ("W/m/K", "thermal conductivity", "multiply by area / thickness: 0.2 W/m/K x 0.5 m = '0.1 W/K'"),
         ("K/W", "thermal resistance", "write its inverse: 1 / 2 K/W = '0.5 W/K'"),
     ),
+    "belt speed": (
+        ("rad/s", "speed of rotation", "multiply by the radius of the roll: 10 rad/s x 15 mm = '150 mm/s'"),
+    ),
     "power": (("W/m^2", "heat flux", "multiply by the area: 18000 W/m^2 x 0.05 m^2 = '900 W'"),),
 }  # fmt: skip
 #: How alike (`difflib`) a usual unit must be to an unknown one, and to one of another kind, to be proposed.

@@ -114,7 +114,7 @@ def test_a_log_that_does_not_exist_is_copied_beside_the_machine_file(folder: Pat
         (("fit", "log.csv", "--no-load", "none.csv"), "none.csv"),
         (
             ("map", "machine.toml", "--fit", "whole.json"),
-            "whole.json was fitted to the whole torque, but [rest] of machine.toml states a no-load torque",
+            "whole.json was fitted to the whole torque, but the machine states a no-load torque",
         ),
     ],
 )

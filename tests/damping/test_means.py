@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+import pandas as pd
 import polars as pl
 import pytest
 from scipy.io import savemat
@@ -143,6 +145,17 @@ def test_decimal_commas_and_semicolons(tmp_path: Path) -> None:
     text = table().replace(",", ";").replace(".", ",")
     points = hersey.SteadyPoints.from_table(written(tmp_path, text))
     assert points.column("torque")[0] == pytest.approx(torque(5.0, 90.0) / 1e3, rel=1e-4)
+
+
+@pytest.mark.parametrize("made", [dict, pl.DataFrame, pd.DataFrame])
+def test_numbers_as_text_in_memory(made: Any) -> None:
+    held = {"speed [rpm]": ["10,5", "20,5", "40,1"], "torque [mN*m]": ["25,1", "", "26,3"]}
+    points = hersey.SteadyPoints.from_table(made(held))
+    assert points.column("speed") / RPM == pytest.approx([10.5, 40.1])
+    assert points.column("torque") == pytest.approx([25.1e-3, 26.3e-3])
+    held["speed [rpm]"] = ["10 rpm", "20 rpm", "40 rpm"]
+    with pytest.raises(InsufficientDataError, match=r"of torque and speed, e\.g\. row 1 \(speed '10 rpm'\)"):
+        hersey.SteadyPoints.from_table(made(held))
 
 
 def test_what_is_taken_for_a_table_of_means(tmp_path: Path) -> None:

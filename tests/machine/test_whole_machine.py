@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cache
+from typing import Any
 
 import pytest
 
 import hersey
 from hersey.errors import ParameterError
+from hersey.log.torque_log import Correction
 from hersey.machine.machine import Machine
 from tests.conftest import ROOT
 from tests.machines import machine_of
@@ -75,3 +77,70 @@ def test_a_surface_needs_a_machine() -> None:
         hersey.hysteresis(machine.train, surface, temperature=AT)
     with pytest.raises(ParameterError, match=r"machine is a Drivetrain\. It must be a Machine"):
         hersey.operating_map(surface, machine.train)  # type: ignore[arg-type]
+
+
+@cache
+def whole() -> tuple[hersey.SteadyPoints, hersey.DampingSurface]:
+    points = hersey.read(EXAMPLES / "bench.csv").steady(tare="standing")
+    return points, hersey.fit(points)
+
+
+#: Every way from a surface and its machine to a motion.
+MOTIONS: dict[str, Any] = {
+    "stick_slip": lambda m, s: hersey.stick_slip(m, s, drive_speed=0.06, temperature=AT),
+    "simulate": lambda m, s: hersey.simulate(m, s, drive_speed=0.06, temperature=AT, duration=0.1),
+    "hysteresis": lambda m, s: hersey.hysteresis(m, s, temperature=AT, sensitivity=False),
+    "disturbance": lambda m, s: hersey.disturbance(m, s, drive_speed=0.3, temperature=AT),
+    "safe_step": lambda m, s: hersey.safe_step(m, s, from_speed=0.2, to_speed=0.1, temperature=AT),
+    "operating_map": lambda m, s: hersey.operating_map(s, m, temperatures=[AT, AT + 1], draws=2),
+    "plan_profile": lambda m, s: hersey.plan_profile(
+        replace(m, uncertainty={}), s, target_speed=0.2, temperature=AT
+    ),
+    "warm_up": lambda m, s: hersey.warm_up(
+        m, s, m.heat, target_speed=0.1, force_limit=70.0, acceleration=0.5
+    ),
+    "drag": lambda m, s: s.drag(**m.belt),
+    "drag_samples": lambda m, s: s.drag_samples(2, 1, temperature=AT, **m.belt),
+    "drag of the surface": lambda m, s: hersey.stick_slip(
+        m, s.drag(roll_radius=m.roll_radius, stick_speed=m.stick_speed), drive_speed=0.06, temperature=AT
+    ),
+}
+
+
+@pytest.mark.filterwarnings("ignore::hersey.errors.ExtrapolationWarning")
+@pytest.mark.parametrize("way", MOTIONS)
+def test_the_whole_torque_is_refused_where_the_machine_states_a_no_load_torque(way: str) -> None:
+    """The no-load torque, which grows with speed, counted as film: steady sliding where the belt sticks."""
+    surface, machine = fitted()
+    with pytest.raises(ParameterError) as caught:
+        MOTIONS[way](machine, whole()[1])
+    assert caught.value.quantity == "no-load torque"
+    assert "hersey.fit(points.without(machine.rest))" in caught.value.remedy
+    assert "machine = dataclasses.replace(machine, rest=None)" in caught.value.remedy
+    MOTIONS[way](machine, surface)
+    MOTIONS[way](replace(machine, rest=None), whole()[1])
+    MOTIONS[way](machine, replace(whole()[1], data_sha256=()))  # of no log: nobody knows what its torque is
+    MOTIONS[way](replace(machine, rest=None), surface)
+
+
+def test_points_of_the_whole_torque_are_refused() -> None:
+    points, surface = whole()
+    _, machine = fitted()
+    for write, call in {
+        "write hersey.study(points.without(machine.rest), machine)": lambda: hersey.study(points, machine),
+        "hersey.posterior(points.without(machine.rest), machine)": lambda: hersey.posterior(points, machine),
+        "hersey.fit(points.without(machine.rest))": lambda: hersey.posterior(
+            points.without(machine.rest), machine, surface=surface
+        ),
+    }.items():
+        with pytest.raises(ParameterError) as caught:
+            call()
+        assert caught.value.quantity == "no-load torque"
+        assert write in caught.value.remedy
+    with pytest.raises(
+        ParameterError, match=r"machine = hersey\.read_machine\('.*machine\.toml'\) and hersey"
+    ):
+        hersey.study(points, EXAMPLES / "machine.toml")
+    mapped = replace(points.log, corrections=(Correction("no-load torque", (), ()),))
+    with pytest.raises(ParameterError, match=r"already subtracted\. Remove no_load from the mapping"):
+        hersey.study(replace(points, log=mapped), machine)

@@ -99,7 +99,7 @@ def test_a_range_of_the_stick_speed_moves_with_it(fitted: hersey.DampingSurface)
     share = {"stick_speed": hersey.Uncertainty(share=0.3)}
     assert _uncertainty(replace(m, uncertainty=share), drag) == share
     given: dict[str, Any] = {"temperatures": [420.0, HOT], "draws": 4, "seed": 3}
-    sticking = {name: value for name, value in m.belt.items() if name != "roll_radius"}
+    sticking = {name: value for name, value in m.belt.items() if name not in ("roll_radius", "rest")}
     first = fitted.stick_speed_at(fitted.reference_temperature, **sticking)
     stated = map_of(fitted, m.train, **m.belt, uncertainty=m.uncertainty, **given)
     moved = {"stick_speed": known.times(first / 3e-4)}

@@ -34,7 +34,7 @@ _SOURCES = {
     "Contact": "machine.contact",
     "Lubricant": "machine.lubricant",
     "MixedContact": "machine.mixed",
-    "NoLoadTorque": "hersey.no_load_torque(points)",
+    "NoLoadTorque": "machine.rest or hersey.no_load_torque(points)",
     "HeatBalance": "hersey.HeatBalance(...)",
     "Schedule": "hersey.Schedule(times, values)",
 }  # fmt: skip
@@ -169,7 +169,7 @@ class _Argument:
         if isinstance(value, str | os.PathLike):
             return "path" in self.kinds or ("text" in self.kinds and isinstance(value, str))
         fits = (
-            any(each.__name__ in self.classes for each in type(value).__mro__)
+            self.is_made(value)
             or ("mapping" in self.kinds and isinstance(value, Mapping))
             or ("sequence" in self.kinds and hasattr(value, "__getitem__") and not isinstance(value, Mapping))
             or ("function" in self.kinds and callable(value))
@@ -179,6 +179,10 @@ class _Argument:
         if fits:
             self.passed.add(type(value))
         return fits or (self.takes_numbers and not is_other(value))
+
+    def is_made(self, value: Any) -> bool:
+        """Whether a value is of one of its classes: a plain number may be that of any argument."""
+        return any(each.__name__ in self.classes for each in type(value).__mro__)
 
     def converts(self, value: Any) -> bool:
         """Whether a value without units is to be looked at as numbers."""
@@ -263,7 +267,7 @@ class Door:
             If a quantity has no or a wrong unit, or is no number.
         """
         if len(given) > len(self.positions):
-            raise self._too_many(len(given))
+            raise self._too_many(given)
         values = dict(zip(self.positions, given, strict=False))
         for name in named:
             if name in values:
@@ -286,6 +290,8 @@ class Door:
                 if wrong is None:
                     return values
                 raise wrong
+            if name in self.keys and isinstance(value, Mapping):
+                self._refuse_entries(name, value)
             if value is None or (argument and type_ in argument.passed and not isinstance(value, Real)):
                 continue
             if kind or (argument is not None and argument.takes_numbers and argument.converts(value)):
@@ -296,6 +302,16 @@ class Door:
                 )
                 values[name] = self.read(name, kind, value, one=one)
         return values
+
+    def _refuse_entries(self, name: str, given: Mapping[Any, Any]) -> None:
+        """Refuse an entry of a dictionary of texts that is none."""
+        example = self.keys[name].example
+        if not all(isinstance(each, str) for each in ast.literal_eval(example).values()):
+            return
+        for key, value in given.items():
+            if not isinstance(value, str):
+                what = f"{self.title}: {name} has {described(value)} for {key!r}. It must be text"
+                raise ArgumentError(what, remedy=f"write e.g. {name}={example}")
 
     @property
     def own(self) -> list[str]:
@@ -335,11 +351,15 @@ class Door:
             remedy=f"write {self.call()}{self._sources(name)}",
         )
 
-    def _too_many(self, count: int) -> ArgumentError:
+    def _too_many(self, values: tuple[Any, ...]) -> ArgumentError:
+        count = len(values)
         positions = [name for name in self.positions if name in self.own]
         behind = [name for name in self.own if name not in positions]
         most, given = len(positions), count - len(self.positions) + len(positions)
         what = f"takes {most} argument{'s' * (most != 1)} by position, not {given}"
+        if positions[-1:] == ["paths"] and all(isinstance(each, str | os.PathLike) for each in values):
+            listed = ", ".join(repr(os.fspath(each)) for each in values)
+            return ArgumentError(f"{self.title} {what}", remedy=f"write hersey.{self.title}([{listed}])")
         if not behind:
             return ArgumentError(f"{self.title} {what}", remedy=f"write {self.call(*self.own)}")
         if not most:
@@ -355,7 +375,7 @@ class Door:
         call = self.call(argument.name)
         for name, other in given.items():
             taker = self.arguments.get(name)
-            if taker and taker is not argument and argument.classes and argument.fits(other):
+            if taker and taker is not argument and argument.classes and argument.is_made(other):
                 if taker.fits(value):
                     remedy = f"swap {argument.name} and {name}: write {self.call(argument.name, name)} with"
                     remedy += f" {argument.name} = {described(other)}, {name} = {described(value)}"

@@ -288,6 +288,7 @@ _NOT_OF_FILE = "not from the machine file"
 def finished_fit(file: Path, machine: Machine | None = None) -> DampingSurface:
     """Read a fit that ``hersey fit --json`` printed; print which parts of the machine file it replaces."""
     from hersey.document.saved_fit import read_fit
+    from hersey.motion.whole_torque import refuse_whole_torque
 
     if machine is not None and machine.sensors.stated:
         note(f"The sensor errors come from the fit, {_NOT_OF_FILE}.")
@@ -295,10 +296,11 @@ def finished_fit(file: Path, machine: Machine | None = None) -> DampingSurface:
     if machine is None or machine.rest is None:
         return surface
     if surface.rest is None:
-        raise ParameterError(
-            f"{file.name} was fitted to the whole torque, but {machine.rest.source} states a no-load torque "
-            "to subtract. Write the fit again with hersey fit LOG --machine TOML --json, or delete [rest] "
-            "from the machine file"
+        refuse_whole_torque(
+            f"{file.name} was fitted to",
+            machine.rest,
+            "write the fit again with hersey fit LOG --machine TOML --json",
+            "delete [rest] from the machine file",
         )
     note(f"The no-load torque comes from the fit, {_NOT_OF_FILE}.")
     return surface

@@ -21,6 +21,7 @@ from hersey.damping.candidates.thermal import CELSIUS, KELVIN, Thermal
 from hersey.damping.estimate import Estimate
 from hersey.damping.no_load_torque import NoLoadTorque
 from hersey.errors import ExtrapolationWarning, ParameterError, UntoldWarning
+from hersey.motion.whole_torque import refuse_whole_torque
 from hersey.result import Result
 from hersey.units import ZERO_CELSIUS, takes_si
 
@@ -86,6 +87,20 @@ class FittedLaw(Result):
         """
         speeds, inputs = self._points(speed, temperature)
         return np.asarray(np.exp(self._law.predict(self._law_values, inputs)).reshape(speeds.shape) / speeds)
+
+    def refuse_whole_torque(self, stated: NoLoadTorque | None) -> None:
+        """Raise `ParameterError` if a no-load torque is stated, but was not subtracted before the fit."""
+        if stated is not None and self._is_whole:
+            refuse_whole_torque(
+                "surface was fitted to",
+                stated,
+                "write surface = hersey.fit(points.without(machine.rest))",
+            )
+
+    @property
+    def _is_whole(self) -> bool:
+        """Whether the torque is known to be the whole torque: without a log nobody knows."""
+        return self.rest is None and bool(self.data_sha256)
 
     @cached_property
     def _law(self) -> Law:

@@ -23,7 +23,7 @@ from hersey.damping.candidates.branched import LEAST_POWER, transition_exponent
 from hersey.damping.distributions import square_quantile
 from hersey.damping.estimate import Estimate, quantile
 from hersey.damping.fitted_law import FittedLaw
-from hersey.damping.no_load_torque import with_rest
+from hersey.damping.no_load_torque import NoLoadTorque, with_rest
 from hersey.damping.surface_words import headline_of, record_of, summary_of, table_of
 from hersey.errors import InsufficientDataError, ParameterError, UntoldWarning
 from hersey.motion.drag import Drag, MeasuredRange
@@ -192,6 +192,7 @@ class DampingSurface(FittedLaw):
         temperature: float | None = None,
         stick_speed_temperature: float | None = None,
         stick_speed_rule: str = WITH_TRANSITION,
+        rest: NoLoadTorque | None = None,
     ) -> Drag:
         """Return the drag on the belt surface, at one temperature or varying with it.
 
@@ -209,12 +210,17 @@ class DampingSurface(FittedLaw):
         stick_speed_temperature, stick_speed_rule
             Temperature at which the stick speed holds (K; default: reference temperature of the fit), and how
             it depends on temperature: ``with transition``, or ``fixed``, which needs a temperature.
+        rest
+            No-load torque that the machine states; the drag has that which was subtracted before the fit.
 
         Raises
         ------
         InsufficientDataError
             If the data show no transition: without a falling branch there is no stick-slip to compute.
+        ParameterError
+            If a no-load torque is stated, but the fit is of the whole torque.
         """
+        self.refuse_whole_torque(rest)
         self._warn_of(temperature, stick_speed_temperature)
         sticking: dict[str, Any] = {
             "stick_speed": stick_speed,
@@ -242,7 +248,8 @@ class DampingSurface(FittedLaw):
 
     def _measured(self, roll_radius: float) -> MeasuredRange:
         low, high = self.speed_range
-        return MeasuredRange((low * roll_radius, high * roll_radius), self.temperature_range)
+        speeds = low * roll_radius, high * roll_radius
+        return MeasuredRange(speeds, self.temperature_range, self._is_whole)
 
     def _varying_drag(
         self, roll_radius: float, reference: float, exponent: float, sticking: dict[str, Any]
@@ -306,7 +313,7 @@ class DampingSurface(FittedLaw):
         ParameterError
             If a value is out of range, with its name.
         """
-        known = ("stick_speed", "stick_speed_temperature", "stick_speed_rule")
+        known = ("stick_speed", "stick_speed_temperature", "stick_speed_rule", "rest")
         refuse_unknown("drag_samples", sticking, known)
         if "stick_speed" not in sticking:
             raise ParameterError("drag_samples needs stick_speed, e.g. stick_speed='0.3 mm/s'")
@@ -322,6 +329,7 @@ class DampingSurface(FittedLaw):
         self, count: int, seed: int, *, roll_radius: float, temperature: float | None = None, **sticking: Any
     ) -> tuple[dict[str, FloatArray], tuple[Warning, ...]]:
         """Return the draws of `drag_samples` and its warnings; for threads, which share warnings."""
+        self.refuse_whole_torque(sticking.pop("rest", None))
         if self.transition is None:
             raise InsufficientDataError(
                 f"the data show no falling branch: {self.rejected_transition}. {what_to_record(self)}"

@@ -6,6 +6,7 @@ first bytes are hashed once more: that tells a logger which appends from a progr
 
 from __future__ import annotations
 
+import glob
 import hashlib
 import os
 import time
@@ -170,7 +171,7 @@ def open_file(path: Path) -> Iterator[BinaryIO]:
     except HerseyError:
         raise
     except FileNotFoundError:
-        raise missing(str(path), "File not found: {}", _near(path)) from None
+        raise missing(str(path), "File not found: {}", _of_pattern(path) or _near(path)) from None
     except OSError as error:
         raise MissingFileError(f"{path} cannot be read: {error.strerror}") from None
 
@@ -189,6 +190,17 @@ def missing(path: str, words: str, remedy: str) -> MissingFileError:
 def _as_typed(char: str) -> str:
     r"""A character of a path as it was typed; a control character was an escape, as ``\202`` of ``\2024``."""
     return _ESCAPES.get(char) or (f"\\{ord(char):o}" if unicodedata.category(char) == "Cc" else char)
+
+
+def _of_pattern(path: Path) -> str:
+    """How the files of a pattern are read in Python, where there are some."""
+    pattern = str(path)
+    if way_in() != "python" or not glob.has_magic(pattern) or not glob.glob(pattern):  # noqa: PTH207
+        return ""
+    return (
+        f"read the files of a pattern as one log each by hersey.read_many({pattern!r}), or as one log by "
+        f"hersey.read(sorted(glob.glob({pattern!r})))"
+    )
 
 
 def _near(path: Path) -> str:

@@ -24,6 +24,7 @@ wanted         what the user wants of a log, checked
 columns        columns as they stand, for readers with roles of their own
 assembly       from a recording to a run on the clock of the torque
 given_twice    a measurement that a log holds twice: refused
+not_a_log      what is neither a file nor a table: refused
 exchanged      columns under each other's names: refused
 reading        `read`: from files to a log
 many           many files, each a log of its own: in turn, in threads, or by workers

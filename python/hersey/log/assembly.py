@@ -17,6 +17,7 @@ from hersey.log.channels import (
     find_channel,
     is_dead,
     no_channel,
+    not_numbers,
     refuse_two_roles,
     taken_columns,
 )
@@ -188,7 +189,7 @@ class Assembly:
             among = self._beside_a_speed(role)
             channel = find_channel(role, among, choice, file, self._says_nothing, taken)
         if channel is None:
-            raise no_channel(role, self.columns, file)
+            raise no_channel(role, self.columns, file, self.recording.others)
         refuse_two_roles(role, channel[0], self.chosen, file)
         return channel
 
@@ -257,7 +258,7 @@ class Assembly:
         if clock is None:
             raise ChannelError(
                 f"{file}: '{column}' has no time channel with {signal.rows} samples. Channels: "
-                f"{', '.join(repr(str(c)) for c in self.columns[:40])}",
+                f"{', '.join(repr(str(c)) for c in self.columns[:40])}{not_numbers(self.recording.others)}",
                 remedy=(
                     f"name it with {Setting('time', 'channel').to()}, or give the time between rows with "
                     f"{EVERY.to('2 ms', python='0.002')}"

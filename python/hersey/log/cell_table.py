@@ -13,12 +13,13 @@ import numpy as np
 import polars as pl
 
 from hersey.arrays import FloatArray
-from hersey.errors import HerseyError
+from hersey.errors import HerseyError, UnreadableLogError
 from hersey.log.formats import format_of, opened
 from hersey.log.formats.frame import is_frame
 from hersey.log.recording import Cells, Signal
 from hersey.log.text.column import Column, split_unit
 from hersey.log.text.delimited import open_delimited
+from hersey.log.text.numbers import style_of
 from hersey.log.text.repeated_header import refuse_another_header
 from hersey.log.text.separators import split
 
@@ -60,7 +61,7 @@ class CellTable:
 def cells_of(table: Any, name: str) -> CellTable:
     """Return a table as it stands, from a file or from memory."""
     if isinstance(table, Mapping):
-        table = pl.DataFrame(dict(table), strict=False)
+        table = _framed(table, name)
     if is_frame(table):
         return _of_frame(table, name)
     path = Path(table)
@@ -82,6 +83,15 @@ def cells_of(table: Any, name: str) -> CellTable:
     return CellTable(path.name, _sha(text), len(text), named, cells, layout.style.value, layout.comments)
 
 
+def _framed(columns: Mapping[str, Any], name: str) -> pl.DataFrame:
+    """Columns by name as a frame."""
+    try:
+        return pl.DataFrame(dict(columns), strict=False)
+    except pl.exceptions.ShapeError:
+        rows = ", ".join(f"'{title}' has {np.size(cells)}" for title, cells in columns.items())
+        raise UnreadableLogError(f"{name}: the columns differ in length: {rows}") from None
+
+
 def _sha(content: bytes) -> str:
     return hashlib.sha256(content).hexdigest()
 
@@ -92,4 +102,5 @@ def _of_frame(frame: Any, name: str) -> CellTable:
     by_name = {str(c): list(frame[c]) for c in frame.columns}
     columns = tuple(Column(i, *split_unit(title)) for i, title in enumerate(by_name))
     content = repr(by_name).encode()
-    return CellTable(name, _sha(content), len(content), columns, tuple(by_name.values()), float)
+    style = style_of([cell.strip() for cells in by_name.values() for cell in cells if isinstance(cell, str)])
+    return CellTable(name, _sha(content), len(content), columns, tuple(by_name.values()), style.value)

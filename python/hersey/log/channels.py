@@ -166,8 +166,10 @@ def constant_channel(column: Column) -> Warning:
     )
 
 
-def no_channel(role: str, columns: tuple[Column, ...], file: str) -> ChannelError:
-    """Return the error for a role that no column plays."""
+def no_channel(
+    role: str, columns: tuple[Column, ...], file: str, others: tuple[str, ...] = ()
+) -> ChannelError:
+    """Return the error for a role that no column plays; ``others`` hold no numbers."""
     channel = Setting(role, "channel")
     way_out = f"name it with {channel.to()}"
     if role == "torque" and any(is_of_kind("force", c.unit) for c in columns):
@@ -187,7 +189,13 @@ def no_channel(role: str, columns: tuple[Column, ...], file: str) -> ChannelErro
     if role == "temperature":
         way_out += f", or use {ISOTHERMAL.to()} to exclude temperature"
     said = f"{file}: no {role} column found. Columns: {_listed(columns)}"
+    said += not_numbers(others)
     return ChannelError(said, absent=True, remedy=way_out, setting=channel)
+
+
+def not_numbers(others: tuple[str, ...]) -> str:
+    """Return the end of a sentence that names channels which hold no numbers."""
+    return f". Not numbers: {', '.join(others[:40])[:1000]}" if others else ""
 
 
 def _signals(role: str, columns: tuple[Column, ...]) -> list[Column]:

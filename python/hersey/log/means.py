@@ -7,7 +7,7 @@ costs that row alone.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -16,11 +16,11 @@ import numpy as np
 import polars as pl
 
 from hersey.arguments.door import Keys
+from hersey.arguments.numbers import described
 from hersey.arrays import FloatArray
 from hersey.errors import HerseyError, InsufficientDataError, ParameterError
 from hersey.log.cell_table import CellTable, cells_of
 from hersey.log.channels import ChannelChoice, Stated, called, find_channel
-from hersey.log.formats.frame import is_frame
 from hersey.log.friction import beside, computed, in_rotation, unused
 from hersey.log.mean_roles import (
     Role,
@@ -31,11 +31,12 @@ from hersey.log.mean_roles import (
     plain_column,
     torque_errors,
 )
+from hersey.log.not_a_log import is_one, refuse_not_a_log
 from hersey.log.replaced import replaced_units
 from hersey.log.roles import CHANNELS, SIGNS, UNITS
 from hersey.log.sensors import Sensors
 from hersey.log.text.column import Column
-from hersey.log.torque_log import LARGEST, Channel, LogFile, title_of
+from hersey.log.torque_log import LARGEST, Channel, LogFile, TorqueLog, title_of
 from hersey.result import Result, json_record
 from hersey.schema.warning import Warning
 from hersey.units import takes_si
@@ -155,7 +156,9 @@ def read_means(
     HerseyError
         If a file cannot be read, lacks speed or torque, or has a unit that is none.
     """
-    listed = [tables] if _is_one(tables) else list(tables)
+    listed = [tables] if is_one(tables) or not isinstance(tables, Iterable) else list(tables)
+    for table in listed:
+        _refuse_other(table)
     means: list[MeanRow] = []
     files: list[LogFile] = []
     stated = []
@@ -227,8 +230,19 @@ def _clock(columns: tuple[Column, ...]) -> bool:
         return True
 
 
-def _is_one(tables: Any) -> bool:
-    return is_frame(tables) or isinstance(tables, str | Path | Mapping)
+def _refuse_other(table: Any) -> None:
+    """Refuse what is no table of means."""
+    if isinstance(table, TorqueLog):
+        raise ParameterError(
+            "a log is not a table of means", remedy="its dwells are log.steady(tare='standing')"
+        )
+    if isinstance(table, Sequence | np.ndarray) and not isinstance(table, str | bytes):
+        raise ParameterError(
+            f"{described(table)} is not a table of means",
+            remedy="give columns by name, e.g. {'speed [rpm]': [10, 20], 'torque [mN*m]': [25, 26]}",
+        )
+    if not isinstance(table, Mapping):
+        refuse_not_a_log(table, "hersey.SteadyPoints.from_table")
 
 
 def _read(
@@ -249,11 +263,16 @@ def _read(
     gone = np.logical_or.reduce(list(bad.values()))
     known = _with_labels(cells, values, max((row.run for row in before), default=-1) + 1)
     rows = [_row({name: each[i] for name, each in known.items()}) for i in np.flatnonzero(~gone)]
-    if not rows:
-        raise InsufficientDataError(f"{cells.name}: no row has both speed and torque")
     left_out = [
         _bad(cells, int(i), next(name for name in bad if bad[name][i]), roles) for i in np.flatnonzero(gone)
     ]
+    if not rows:
+        named = f"{', '.join(list(bad)[:-1])} and {list(bad)[-1]}"
+        first = f", e.g. {left_out[0]}" if left_out else ""
+        raise InsufficientDataError(
+            f"{cells.name}: no row has numbers of {named}{first}",
+            remedy="write numbers alone in the cells, and their unit behind the name of the column",
+        )
     channels = tuple(Channel(role, column.name, unit.unit) for role, (column, unit) in used.items())
     warnings = (
         *computed(used, said),

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from hersey.arguments.numbers import described
 from hersey.errors import ParameterError
 from hersey.log.assembly import Assembly
 from hersey.log.channels import ChannelChoice, Stated
@@ -18,6 +16,7 @@ from hersey.log.formats import format_of, opened
 from hersey.log.formats.frame import frame_recording, is_frame
 from hersey.log.friction import of_each_run
 from hersey.log.given_twice import refuse_given_twice
+from hersey.log.not_a_log import is_one, refuse_not_a_log
 from hersey.log.recording import columns, nothing_to_read
 from hersey.log.roles import CHANNELS, OTHER_ROLES, ROLES, UNITS
 from hersey.log.text.column import distinct_names
@@ -172,18 +171,7 @@ def _listed(paths: Any) -> list[Any]:
     ParameterError
         If something else is among them.
     """
-    one = is_frame(paths) or isinstance(paths, str | Path | np.ndarray | Mapping)
-    listed = [paths] if one or not isinstance(paths, Iterable) else list(paths)
+    listed = [paths] if is_one(paths) or not isinstance(paths, Iterable) else list(paths)
     for each in listed:
-        if isinstance(each, np.ndarray | Mapping):
-            columns = "a" if isinstance(each, Mapping) else "{'Time [s]': a[:, 0], 'Torque [N*m]': a[:, 1]}"
-            raise ParameterError(
-                f"{described(each)} is not a log",
-                remedy="make a frame whose columns have names and units, e.g. "
-                f"hersey.read(polars.DataFrame({columns}))",
-            )
-        if not (is_frame(each) or isinstance(each, str | os.PathLike)):
-            raise ParameterError(
-                f"{described(each)} is not a log. Give a file name, or a polars or pandas frame"
-            )
+        refuse_not_a_log(each, "hersey.read")
     return listed

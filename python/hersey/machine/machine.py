@@ -194,8 +194,8 @@ class Machine:
 
     @property
     def belt(self) -> dict[str, Any]:
-        """What a fitted surface needs to be the drag of a belt, as `DampingSurface.drag` and maps take it."""
-        names = ("roll_radius", "stick_speed", "stick_speed_temperature", "stick_speed_rule")
+        """What a fitted surface needs to be the drag of a belt, as `DampingSurface.drag` takes it."""
+        names = ("roll_radius", "stick_speed", "stick_speed_temperature", "stick_speed_rule", "rest")
         return {name: getattr(self, name) for name in names}
 
 

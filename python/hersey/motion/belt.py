@@ -10,6 +10,7 @@ import numpy as np
 
 from hersey.errors import ParameterError
 from hersey.motion.drag import AnyDrag, PowersOfTemperature
+from hersey.motion.whole_torque import refuse_whole_torque
 from hersey.result import Means, Record
 from hersey.units import takes_si
 
@@ -72,7 +73,7 @@ class StatedMachine(Protocol):
 
     @property
     def belt(self) -> dict[str, Any]:
-        """Roll radius, and the stick speed with its temperature and rule."""
+        """Roll radius, the stick speed with its temperature and rule, and the no-load torque."""
 
 
 class FittedLaw(Protocol):
@@ -98,11 +99,14 @@ def belt_of(
     Raises
     ------
     ParameterError
-        If a fitted law comes with a drivetrain, which knows neither radius nor stick speed.
+        If a fitted law comes with a drivetrain, which knows neither radius nor stick speed, or was fitted to
+        the whole torque although the machine states a no-load torque.
     """
     machine = cast("StatedMachine", train) if hasattr(train, "belt") else None
     plain = cast("Drivetrain", train) if machine is None else machine.train
     if isinstance(drag, AnyDrag):
+        if machine is not None:
+            _refuse_whole_torque(drag, machine.belt["rest"])
         return plain, _warned(drag, temperature, speeds), temperature
     if machine is None:
         raise ParameterError(
@@ -113,6 +117,17 @@ def belt_of(
         at_one = drag.drag(**machine.belt, temperature=temperature)
         return plain, _warned(at_one, None, speeds), None
     return plain, _warned(drag.drag(**machine.belt), temperature, speeds), temperature
+
+
+def _refuse_whole_torque(drag: AnyDrag, stated: object) -> None:
+    """Refuse the drag of a log whose whole torque it holds, with a machine that states a no-load torque."""
+    log = getattr(drag, "measured", None)
+    if stated is not None and log is not None and log.whole_torque:
+        refuse_whole_torque(
+            "drag is of a fit to",
+            stated,
+            "write drag = hersey.fit(points.without(machine.rest)).drag(**machine.belt)",
+        )
 
 
 def _warned(drag: AnyDrag, temperature: Any, speeds: dict[str, Any]) -> AnyDrag:

@@ -135,10 +135,11 @@ _POWERS = (
 
 @dataclass(frozen=True)
 class MeasuredRange:
-    """The speeds (m/s) and temperatures (K) of the log that a drag was fitted to."""
+    """The log that a drag was fitted to: its speeds (m/s) and temperatures (K), and of what its torque is."""
 
     speed: tuple[float, float]
     temperature: tuple[float, float] | None = None
+    whole_torque: bool = False  #: whether no no-load torque was subtracted from the log
 
     def outside(self, temperature: Any, speeds: Mapping[str, Any]) -> dict[str, str]:
         """Return words by name about each speed and temperature outside; of a schedule its highest speed."""

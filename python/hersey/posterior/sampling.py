@@ -11,7 +11,7 @@ import numpy as np
 from hersey.arrays import FloatArray, refuse_unknown
 from hersey.damping.curves import CurveMixture, fit_curves
 from hersey.damping.dwells import SteadyPoints
-from hersey.damping.dwells.reduced import require_points
+from hersey.damping.dwells.reduced import require_film, require_points
 from hersey.damping.fit import fit
 from hersey.damping.surface import DampingSurface
 from hersey.errors import ParameterError
@@ -101,7 +101,8 @@ def posterior(
     Raises
     ------
     ParameterError
-        If draws or seed are out of range, or evidence lacks the temperature that the fit needs.
+        If draws or seed are out of range, evidence lacks the temperature that the fit needs, or the machine
+        states a no-load torque that was not subtracted.
 
     Examples
     --------
@@ -113,6 +114,9 @@ def posterior(
     'retained'
     """
     require_points(points, "hersey.posterior({points}, machine)")
+    require_film(points, machine.rest, "hersey.posterior({points}, machine)")
+    if surface is not None:
+        surface.refuse_whole_torque(machine.rest)
     refuse_unknown("posterior", sampling, tuple(Sampling.__annotations__))
     draws, seed, threads = sampling.get("draws", DRAWS), sampling.get("seed", 1), sampling.get("threads", 1)
     if draws < 20 * CHAINS or seed < 0:

@@ -13,7 +13,7 @@ from hersey.arguments.door import Words
 from hersey.damping.compare import LogComparison, compare
 from hersey.damping.curves import CurveMixture, fit_curves
 from hersey.damping.dwells import SteadyPoints
-from hersey.damping.dwells.reduced import require_points
+from hersey.damping.dwells.reduced import require_film, require_points
 from hersey.damping.fit import fit
 from hersey.decision.behaviour import Step, Working
 from hersey.errors import HerseyError, ParameterError
@@ -121,7 +121,8 @@ def study(
     InsufficientDataError
         If the points cannot determine the surface, or share nothing with those of the other log.
     ParameterError
-        If a file is in both logs, the machine file is wrong, or a log is given in the place of its points.
+        If a file is in both logs, the machine file is wrong, a log is given in the place of its points, or
+        the machine states a no-load torque that was not subtracted.
 
     Examples
     --------
@@ -129,11 +130,15 @@ def study(
     >>> study(Recipe(logs="examples/bench.csv", tare="standing").points()).decision.signal
     'watch'
     """
-    require_points(points, "hersey.study({points})" if machine is None else "hersey.study({points}, machine)")
+    call = "hersey.study({points})" if machine is None else "hersey.study({points}, machine)"
+    require_points(points, call)
     if against is not None:
         require_points(against, "hersey.study(points, against={points})")
     if isinstance(machine, str | Path):
         machine_file, machine = Path(machine), read_machine(machine)
+        call = f"machine = hersey.read_machine({str(machine_file)!r}) and {call}"
+    if machine is not None:
+        require_film(points, machine.rest, call)
     comparison = None
     if against is not None:
         step("comparing the two logs")

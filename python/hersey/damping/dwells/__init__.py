@@ -2,6 +2,7 @@
 
 ==============  =======================================================================
 groups          points that share a temperature or a speed
+columns         a column of the steady points by its name
 points          `SteadyPoints`: one row per dwell, and what is not used
 segments        stretches of a run in which the speed holds
 ripple          dwells whose speed ripples with the shaft, put together again

@@ -10,6 +10,7 @@ import numpy as np
 import polars as pl
 
 from hersey.arrays import FloatArray
+from hersey.damping.dwells.columns import column_of
 from hersey.damping.dwells.reasons import NO_DWELL, Reason, joined, opposite_signs
 from hersey.damping.dwells.relaxation import Relaxation
 from hersey.damping.dwells.resolution import Resolution
@@ -192,6 +193,7 @@ class SteadyPoints(Result):
         frame = pl.DataFrame(dwells, schema_overrides=kinds)
         return cls(frame, tuple(rejected), 0.0, None, table, warnings=(_of_means(table),))
 
+    @takes_si()
     def without(self, rest: NoLoadTorque) -> SteadyPoints:
         """Return the same dwells with the torque of the film alone: the no-load torque is subtracted.
 
@@ -213,11 +215,7 @@ class SteadyPoints(Result):
         [0.005, 0.0056, 0.0063]
         """
         name = self.log.files[0].name
-        if self.rest is not None or any(c.name.startswith("no-load") for c in self.log.corrections):
-            raise ParameterError(
-                f"{name}: the no-load torque is already subtracted. Remove no_load from the mapping, "
-                "or omit the no-load torque"
-            )
+        self.refuse_subtracted()
         speed, torque, error = (self.column(n) for n in ("speed", "torque", "torque_error"))
         kelvin = None
         if self.log.has_temperature and rest.reference_temperature is not None:
@@ -237,13 +235,21 @@ class SteadyPoints(Result):
         table = self.table.with_columns(torque=film)
         return replace(self, table=table, rest=rest, rest_errors=errors)
 
+    def refuse_subtracted(self) -> None:
+        """Raise `ParameterError` if a no-load torque was already subtracted, be it by the mapping."""
+        if self.rest is not None or any(c.name.startswith("no-load") for c in self.log.corrections):
+            raise ParameterError(
+                f"{self.log.files[0].name}: the no-load torque is already subtracted. Remove no_load from "
+                "the mapping, or omit the no-load torque"
+            )
+
     def __len__(self) -> int:
         """Return the number of steady points."""
         return self.table.height
 
     def column(self, name: str) -> FloatArray:
-        """Return a column as an array of shape (points,)."""
-        return self.table[name].to_numpy()
+        """Return a column as an array of shape (points,); `ChannelError` if there is none of that name."""
+        return column_of(self.table, name).to_numpy()
 
     def summary(self) -> str:
         """Return the number of dwells, their ranges, the tare, and what is excluded, as text."""

@@ -6,10 +6,12 @@ import json
 from pathlib import Path
 
 from hersey.damping.dwells.points import SteadyPoints
+from hersey.damping.no_load_torque import NoLoadTorque
 from hersey.errors import ParameterError
 from hersey.log.formats.frame import is_frame
 from hersey.log.means import MeansTable
 from hersey.log.torque_log import TorqueLog
+from hersey.motion.whole_torque import refuse_whole_torque
 
 #: How a log becomes steady points; the tare changes every torque, so nobody chooses it but the user.
 _REDUCED = '.steady(tare="standing")'
@@ -41,6 +43,20 @@ hersey.fit(hersey.read("bench.csv").steady(tare="standing")), or tare="none" if 
     if isinstance(given, SteadyPoints):
         return
     refuse_unfitted(given, call, "steady points")
+
+
+def require_film(points: SteadyPoints, stated: NoLoadTorque | None, call: str) -> None:
+    """Refuse points of the whole torque where the machine states a no-load torque; ``call`` as above.
+
+    Raises
+    ------
+    ParameterError
+        With the line to write.
+    """
+    if stated is None or points.rest is not None:
+        return
+    points.refuse_subtracted()
+    refuse_whole_torque("points hold", stated, f"write {call.format(points='points.without(machine.rest)')}")
 
 
 def refuse_unfitted(given: object, call: str, needed: str) -> None:

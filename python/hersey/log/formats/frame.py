@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable
+from datetime import datetime
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,13 @@ from hersey.arrays import FloatArray
 from hersey.errors import ParameterError, UnreadableLogError
 from hersey.log.recording import Recording, Signal, Source, floats, seconds
 from hersey.log.text.column import split_unit
+from hersey.log.text.numbers import is_missing, looks_numeric, style_of
 from hersey.processes.forks import refuse_after_fork
+
+#: Types of columns that may hold numbers written as text.
+_TEXT = (pl.String, pl.Categorical, pl.Enum)
+#: How a time stamp in text begins.
+_STAMP = r"^\s*[0-9]{4}-[0-9]{2}-[0-9]{2}[T ][0-9]{2}:"
 
 
 def is_frame(thing: object) -> bool:
@@ -27,10 +34,11 @@ def frame_recording(frame: Any, name: str = "frame") -> Recording:
     """Return a frame as a recording, with the SHA-256 of its numbers and their size in bytes.
 
     Units stand in the names of the columns, or in ``frame.attrs["units"]`` (pandas) by column. An index of
-    time stamps, or with a name, counts as a column.
+    time stamps, or with a name, counts as a column. Text whose every cell is a number is read as numbers,
+    with decimal commas if the frame has them.
     """
     refuse_after_fork()
-    columns = _columns(frame)
+    columns = _as_numbers(_columns(frame))
     attributes = getattr(frame, "attrs", None)
     units = attributes.get("units", {}) if isinstance(attributes, dict) else {}
     if not isinstance(units, dict):
@@ -40,7 +48,7 @@ def frame_recording(frame: Any, name: str = "frame") -> Recording:
     for column, series in columns:
         kind = series.dtype
         if not (kind.is_numeric() or kind.is_temporal() or kind == pl.Boolean):
-            others.append(f"'{column}' ({kind})")
+            others.append(f"'{column}' ({_held(series)})")
             continue
         numbers = np.ascontiguousarray(series.to_physical().to_numpy())
         digest.update(column.encode() + numbers.tobytes())
@@ -48,6 +56,49 @@ def frame_recording(frame: Any, name: str = "frame") -> Recording:
         signals.append(column_signal(column, kind, len(series), series.clone, str(units.get(column, ""))))
     source = Source(name, digest.hexdigest(), size)
     return Recording("frame", tuple(signals), tuple(others), source=source)
+
+
+def _as_numbers(columns: list[tuple[str, pl.Series]]) -> list[tuple[str, pl.Series]]:
+    """The same columns, numbers that are written as text as numbers."""
+    written = [series.cast(pl.String) for _, series in columns if series.dtype in _TEXT]
+    style = style_of([cell.strip() for series in written for cell in series.drop_nulls()])
+    found = []
+    for column, series in columns:
+        numbers = style.values(series.cast(pl.String)) if series.dtype in _TEXT else None
+        if numbers is not None and np.isfinite(numbers).any():
+            series = pl.Series(column, numbers)
+        elif series.dtype in _TEXT and _are_stamps(series.cast(pl.String)):
+            series = series.cast(pl.String).str.to_datetime(time_unit="ns", strict=False)
+        found.append((column, series))
+    return found
+
+
+def _are_stamps(texts: pl.Series) -> bool:
+    """Whether every text is a time stamp that begins with the year, which can be read in one way only."""
+    if texts.drop_nulls().is_empty() or not texts.drop_nulls().str.contains(_STAMP).all():
+        return False
+    try:
+        return texts.str.to_datetime(time_unit="ns", strict=False).null_count() == texts.null_count()
+    except pl.exceptions.PolarsError:  # no one format
+        return False
+
+
+def _times(name: str, values: list[Any]) -> pl.Series | None:
+    """Objects that are dates with times as a column, or None if they are others."""
+    if not any(isinstance(each, datetime) for each in values):
+        return None
+    try:
+        return pl.Series(name, values, dtype=pl.Datetime("us"))
+    except (TypeError, pl.exceptions.PolarsError):
+        return None
+
+
+def _held(series: pl.Series) -> str:
+    """What a column holds that is none of numbers, in words."""
+    cells = series.cast(pl.String).drop_nulls() if series.dtype in _TEXT else series.clear()
+    there = [cell for cell in cells if not is_missing(cell.strip())]
+    odd = next((cell for cell in there if not looks_numeric(cell.strip())), there[0] if there else "")
+    return f"text, e.g. '{odd[:40]}'" if odd else str(series.dtype)
 
 
 def column_signal(
@@ -94,5 +145,10 @@ def _series(name: str, column: Any) -> pl.Series:
         return pl.Series(name, column.to_numpy(dtype=float, na_value=np.nan))
     values = column.to_numpy()
     if values.dtype == object:
-        return pl.Series(name, [str(v) for v in values], dtype=pl.String)
+        missing = column.isna().to_numpy()
+        times = _times(name, [None if gone else v for v, gone in zip(values, missing, strict=True)])
+        if times is not None:
+            return times
+        texts = [None if gone else str(v) for v, gone in zip(values, missing, strict=True)]
+        return pl.Series(name, texts, dtype=pl.String)
     return pl.Series(name, values)

@@ -27,7 +27,7 @@ def refuse_another_header(place: str, column: Column, cell: str, columns: tuple[
         )
     else:
         other = cell.strip("[]() ")
-        if not of_one_kind(column.unit, other):
+        if other[:1].isdigit() or not of_one_kind(column.unit, other):  # a number with its unit is a value
             return
     if other and not same_unit(column.unit, other):
         raise UnreadableLogError(

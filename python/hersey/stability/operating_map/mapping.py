@@ -68,7 +68,8 @@ def operating_map(
     InsufficientDataError
         If the data show no falling branch, so there is no stick-slip to map.
     ParameterError
-        If a value is out of range, with its name.
+        If a value is out of range, with its name, or the surface was fitted to the whole torque although the
+        machine states a no-load torque.
 
     Examples
     --------
@@ -80,7 +81,8 @@ def operating_map(
     ['stick_slip', 'bistable', 'smooth']
     """
     _check(surface, draws)
-    sticking = {name: value for name, value in machine.belt.items() if name != "roll_radius"}
+    surface.refuse_whole_torque(machine.rest)
+    sticking = {name: value for name, value in machine.belt.items() if name not in ("roll_radius", "rest")}
     first = surface.stick_speed_at(surface.reference_temperature, **sticking)
     train, radius, rule = machine.train, machine.roll_radius, machine.stick_speed_rule
     drag = replace(surface.drag(roll_radius=radius, stick_speed=first), measured=None)
