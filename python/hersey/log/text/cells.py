@@ -13,6 +13,7 @@ from hersey.arrays import FloatArray
 from hersey.errors import UnreadableLogError
 from hersey.log.text.blocks import Block
 from hersey.log.text.column import Column
+from hersey.log.text.decimal_commas import with_decimal_commas
 from hersey.log.text.layout import Layout
 from hersey.log.text.numbers import NULLS, NumberStyle, looks_numeric
 from hersey.log.text.repeated_header import refuse_another_header
@@ -89,7 +90,8 @@ class CellReader:
         for row, cells in enumerate(block.cells(self.layout.between)):
             if any(cells[width:]):
                 raise UnreadableLogError(
-                    f"{self.name}, line {block.lines[row]}: {len(cells)} cells, but the header has {width}"
+                    f"{self.name}, line {block.lines[row]}: {len(cells)} cells, but the header has {width}",
+                    remedy=with_decimal_commas([cells], width) if self.layout.separator == "," else "",
                 )
             table.append(cells + [""] * (width - len(cells)))
         return [
