@@ -304,6 +304,7 @@ class Assembly:
                 self._set_apart(part, gone)
             here = left_out if own else LeftOut()
             here.add(int(gone.sum()), (self._fault(needed, int(row)) for row in np.flatnonzero(gone)))
+            here.dates = next((p.column.name for p in parts if p.column.path in self.recording.dates), "")
             here.refuse_many(self.source.name, gone.size, allowed=self.drop_missing)
             if not own:
                 left_out.add(here.rows, here.words)

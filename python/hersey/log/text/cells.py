@@ -13,6 +13,7 @@ from hersey.arrays import FloatArray
 from hersey.errors import UnreadableLogError
 from hersey.log.text.blocks import Block
 from hersey.log.text.column import Column
+from hersey.log.text.dated_numbers import numbers_lost, was_number
 from hersey.log.text.decimal_commas import with_decimal_commas
 from hersey.log.text.layout import Layout
 from hersey.log.text.numbers import NULLS, NumberStyle, looks_numeric
@@ -31,6 +32,7 @@ class CellReader:
         """Take the file's name, how it is read, and the columns."""
         self.name, self.layout, self.columns, self.strict = name, layout, columns, strict
         self.stamps = {i: Stamps(style) for i, style in layout.stamps.items()}
+        self.dates = dict[int, Column]()  # columns in which numbers have become dates, by index
 
     def warnings(self) -> list[Warning]:
         """Return how time stamps were read."""
@@ -107,11 +109,16 @@ class CellReader:
             if plain:
                 refuse_another_header(place, column, cells[row], self.layout.columns)
             written = plain and looks_numeric(cells[row])
+            dated = plain and was_number(column.name, cells[row])
+            if dated:
+                self.dates[column.index] = column
             if self.strict or written:
                 raise UnreadableLogError(
                     f"{place}, column '{column.name}': '{cells[row][:40]}' is not a {self.what(column)}",
                     remedy="export numbers with one decimal mark and without thousands separators"
                     if written
+                    else numbers_lost(column.name)
+                    if dated
                     else "",
                 )
         return values

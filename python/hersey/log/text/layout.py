@@ -14,6 +14,7 @@ import numpy as np
 from hersey.errors import MAPPING, Setting, UnreadableLogError, way_in
 from hersey.files import text as text_files
 from hersey.log.text.column import Column, refuse_columns, split_unit
+from hersey.log.text.dated_numbers import was_number
 from hersey.log.text.header import Numbered, columns_of
 from hersey.log.text.numbers import NumberStyle, is_missing, looks_numeric, style_of
 from hersey.log.text.orientation import refuse_long, refuse_transposed
@@ -94,7 +95,7 @@ def find_layout(start: bytes, name: str, *, separators: str = SEPARATORS) -> Lay
     columns, stamps = _with_stamps(columns, rows)
     style = style_of([cell for row in rows for cell in row])
     columns, warnings = _with_epochs(columns, rows, style, [] if headless else header)
-    texts = frozenset(c.index for c in columns if c.index not in stamps and _holds_words(rows, c.index))
+    texts = frozenset(c.index for c in columns if c.index not in stamps and _holds_words(rows, c))
     if not headless:
         refuse_long(name, columns, texts, stamps, rows, header)
     first_line = numbered[table.first][0]
@@ -209,7 +210,7 @@ def _refuse_long_words(numbered: list[Numbered], separator: str, name: str) -> N
     width = Counter(map(len, rows)).most_common(1)[0][0]
     header, *rows = [row for row in rows if len(row) == width]
     columns, stamps = _with_stamps(tuple(Column(i, cell, "") for i, cell in enumerate(header)), rows)
-    texts = {i for i in range(width) if i not in stamps and _holds_words(rows, i)}
+    texts = {c.index for c in columns if c.index not in stamps and _holds_words(rows, c)}
     refuse_long(name, columns, texts, stamps, rows, header)
 
 
@@ -252,15 +253,17 @@ def _with_stamps(
     """Columns of time stamps, which are read in s whatever unit the header gives them."""
     stamps: dict[int, StampStyle] = {}
     for column in columns:
-        style = stamp_style([row[column.index] for row in rows[:1000] if not is_missing(row[column.index])])
+        cells = [row[column.index] for row in rows[:1000] if not is_missing(row[column.index])]
+        style = stamp_style([cell for cell in cells if not was_number(column.name, cell)])
         if style is not None:
             stamps[column.index] = style
     return tuple(replace(c, unit="s") if c.index in stamps else c for c in columns), stamps
 
 
-def _holds_words(rows: list[list[str]], index: int) -> bool:
-    cells = [row[index] for row in rows[:1000] if not is_missing(row[index])]
-    return not cells or 2 * sum(looks_numeric(cell) for cell in cells) < len(cells)
+def _holds_words(rows: list[list[str]], column: Column) -> bool:
+    cells = [row[column.index] for row in rows[:1000] if not is_missing(row[column.index])]
+    numbers = sum(looks_numeric(cell) or was_number(column.name, cell) for cell in cells)
+    return not cells or 2 * numbers < len(cells)
 
 
 def _with_epochs(
