@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -20,7 +21,7 @@ from hersey.log.text.delimited import open_delimited
 from hersey.log.text.layout import Layout
 from hersey.log.text.numbers import NULLS
 from hersey.log.text.separators import BLANKS, split, tabbed
-from hersey.log.text.stamps import Stamps, counted_since, numbers_in
+from hersey.log.text.stamps import Stamps, counted_unit, numbers_in
 from hersey.schema.warning import Warning
 
 
@@ -84,8 +85,8 @@ def raw_channels(path: str | Path) -> RawLog:
                     )
                 )
                 continue
-            unit = "" if signal.unit else counted_since(signal.name, values)[0]
-            column = Column(index, signal.name, signal.unit or unit, signal.group)
+            unit, _ = counted_unit(signal.name, signal.unit, partial(np.asarray, values))
+            column = Column(index, signal.name, unit or signal.unit, signal.group)
             clock = clocks.get(signal.tick) if signal.clock is not None else None
             channels.append(
                 RawChannel(column, values, clock=clock, tick=signal.tick or f"{signal.rows} rows")

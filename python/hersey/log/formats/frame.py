@@ -13,6 +13,7 @@ from hersey.arrays import FloatArray
 from hersey.errors import ParameterError, UnreadableLogError
 from hersey.log.recording import Recording, Signal, Source, floats, seconds
 from hersey.log.text.column import split_unit
+from hersey.log.text.stamps import OF_WINCC
 from hersey.processes.forks import refuse_after_fork
 
 
@@ -55,6 +56,8 @@ def column_signal(
 ) -> Signal:
     """Return a column as a signal; time stamps and durations come in s."""
     plain, stated = (name, unit) if unit else split_unit(name)
+    if name == OF_WINCC:  # what it counts shows by its size
+        plain = name
 
     def numbers() -> FloatArray:
         series = load()

@@ -8,9 +8,11 @@ import re
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
+from hersey.arrays import FloatArray
 from hersey.errors import MAPPING, Setting, UnreadableLogError, way_in
 from hersey.files import text as text_files
 from hersey.log.text.column import Column, refuse_columns, split_unit
@@ -19,7 +21,7 @@ from hersey.log.text.header import Numbered, columns_of
 from hersey.log.text.numbers import NumberStyle, is_missing, looks_numeric, style_of
 from hersey.log.text.orientation import refuse_long, refuse_transposed
 from hersey.log.text.separators import BLANKS, SEPARATORS, NumberRows, number_rows, split
-from hersey.log.text.stamps import MILLIONTHS, StampStyle, clock_without_unit, counted_since, stamp_style
+from hersey.log.text.stamps import OF_WINCC, StampStyle, clock_without_unit, counted_unit, stamp_style
 from hersey.schema.warning import Warning
 
 #: Bytes looked at; preambles of data loggers are far shorter.
@@ -32,8 +34,6 @@ _COMMENTS = ("#", "~", "//")
 #: How JSON of objects begins, and what a result of this package in JSON states.
 _JSON = re.compile(r'\s*\[?\s*\{\s*"')
 _RESULT = '"hersey_version"'
-#: Name of a clock of WinCC that counts millionths of a day.
-_OF_WINCC = "Time_ms"
 #: A number with its unit.
 _WITH_UNIT = re.compile(r"([-+]?[0-9][0-9.,]*(?:[eE][-+]?[0-9]+)?) ?([A-Za-zµμ°%][A-Za-z0-9µμ°%*/·^]*)")
 
@@ -272,16 +272,18 @@ def _with_epochs(
     """Clocks without unit that count since 1970 or in days of Excel, and ``Time_ms`` of WinCC."""
     out, warnings = [], []
     for column in columns:
-        wincc = column.unit == "ms" and header[column.index : column.index + 1] == [_OF_WINCC]
-        cells = [row[column.index] for row in rows[:1000]] if wincc or not column.unit else []
-        numbers = np.array([style.value(cell) for cell in cells if style.is_number(cell)])
-        unit, meaning = counted_since(column.name, numbers)
-        if wincc and unit != MILLIONTHS:
-            unit = ""
+        name = OF_WINCC if header[column.index : column.index + 1] == [OF_WINCC] else column.name
+        unit, meaning = counted_unit(name, column.unit, partial(_numbers, rows, column, style))
         if unit:
-            warnings.append(clock_without_unit(_OF_WINCC if wincc else column.name, meaning))
+            warnings.append(clock_without_unit(name, meaning))
         out.append(replace(column, unit=unit or column.unit))
     return tuple(out), tuple(warnings)
+
+
+def _numbers(rows: list[list[str]], column: Column, style: NumberStyle) -> FloatArray:
+    """The numbers of a column in the first rows."""
+    cells = [row[column.index] for row in rows[:1000]]
+    return np.array([style.value(cell) for cell in cells if style.is_number(cell)])
 
 
 def _of_another_kind(name: str) -> str:
