@@ -161,9 +161,9 @@ def test_the_clock_of_wincc_counts_days_in_frames_and_parquet_too(name: str, tmp
                 118 * (0.0864 if days else 0.001), rel=1e-4
             )
             assert [each.kind for each in log.files[0].warnings] == ["clock without unit"] * days
+            assert hersey.read(source, channels={"time": name}).rows == 60
         (clock,) = inspect(tmp_path / "a.parquet").files[0].clocks
         assert clock.duration == pytest.approx(118 * (0.0864 if days else 0.001), rel=1e-4)
-    assert hersey.read(frame, channels={"time": name}).rows == 60
 
 
 def test_a_line_of_settings_may_stand_above_a_table(tmp_path: Path) -> None:

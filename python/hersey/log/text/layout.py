@@ -276,7 +276,8 @@ def _with_epochs(
         unit, meaning = counted_unit(name, column.unit, partial(_numbers, rows, column, style))
         if unit:
             warnings.append(clock_without_unit(name, meaning))
-        out.append(replace(column, unit=unit or column.unit))
+            column = replace(column, name=name, unit=unit)  # whose ending is not its unit
+        out.append(column)
     return tuple(out), tuple(warnings)
 
 
