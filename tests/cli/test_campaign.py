@@ -251,3 +251,15 @@ def test_of_logs_that_are_named_failing_ones_are_left_out_only_when_asked(folder
     done = typed(folder, "add", "life.hersey", "*.csv", *F12, "--keep-going")
     assert (done.returncode, done.stdout) == (1, "life.hersey: 4 added, 1 failed\n")
     assert done.stderr.startswith("- 1b.csv: ")
+
+
+def test_a_missing_file_among_named_logs_costs_only_itself_when_asked(folder: Path) -> None:
+    done = typed(folder, "add", "life.hersey", "0.csv", "none.csv", "2.csv", *F12)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "none.csv" in done.stderr
+    assert not (folder / "life.hersey").exists()
+    done = typed(folder, "add", "life.hersey", "0.csv", "none.csv", "2.csv", *F12, "--keep-going")
+    assert (done.returncode, done.stdout) == (1, "life.hersey: 2 added, 1 failed\n")
+    assert done.stderr.startswith("- none.csv: File not found: none.csv")
+    with hersey.Campaign.open(folder / "life.hersey") as campaign:
+        assert [Path(log).name for log in campaign.runs()["log"]] == ["0.csv", "2.csv"]

@@ -333,3 +333,43 @@ def test_a_clock_that_starts_anew_parts_the_trace_as_it_parts_a_log(tmp_path: Pa
     assert (refused.returncode, "holds 2 runs" in refused.stderr) == (2, True)
     with pytest.raises(UnreadableLogError, match=r"twice\.csv has 2 runs, because its time restarts"):
         read_trace(twice)
+
+
+def of_two_sizes(heading: str, folder: Path) -> Path:
+    """A trace of 20 large teeth and 8 small ones; of a speed, that of a belt whose spring stretches so."""
+
+    def teeth(count: int, rise: int, height: float) -> np.ndarray:
+        up = np.linspace(0.0, height, rise, endpoint=False)
+        return np.tile(np.concatenate([up, np.linspace(height, 0.0, 20, endpoint=False)]), count)
+
+    values = np.concatenate([teeth(20, 180, 10.0), teeth(8, 30, 2.0)])
+    if "Speed" in heading:
+        values = 20.0 - 0.2 * np.gradient(values, 0.01)
+    rows = "".join(f"{3.0 + 0.01 * i:.2f},{value:.6g}\n" for i, value in enumerate(values))
+    path = folder / "trace.csv"
+    path.write_text(f"Time [s],{heading}\n{rows}")
+    return path
+
+
+@pytest.mark.parametrize(
+    ("heading", "more", "unit"),
+    [("Force [N]", [], " N"), ("Torque [mN*m]", [], " N*m"), ("Force", ["--unit", "1"], "")],
+)
+def test_the_smallest_drop_to_count_is_typed_as_shown(
+    heading: str, more: list[str], unit: str, tmp_path: Path
+) -> None:
+    path = of_two_sizes(heading, tmp_path)
+    advice = re.search(r"half the median with --least-drop (.+?)\.\n", f"{unwrapped(printed(path, *more))}\n")
+    assert advice
+    (typed,) = shlex.split(advice[1])
+    assert typed.lstrip("0123456789.e-") == unit
+    assert "half the median" not in printed(path, *more, "--least-drop", typed)
+
+
+def test_a_trace_of_speed_is_offered_no_smallest_drop(tmp_path: Path) -> None:
+    said = unwrapped(printed(of_two_sizes("Speed [mm/s]", tmp_path)))
+    assert re.search(r"smallest drop counted \([\d.e-]+ m here; samples scatter by [\d.e-]+ m\)\.$", said)
+
+
+def unwrapped(text: str) -> str:
+    return " ".join(text.split())

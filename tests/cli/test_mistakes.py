@@ -92,6 +92,13 @@ def spoilt(every: int, cell: str, first: int = 1) -> str:
     return "\n".join(lines) + "\n"
 
 
+#: Torque alone has decimals, after a comma as between the columns.
+DECIMALS_OF_TORQUE = "Time [ms],Torque [mN*m],Speed [rpm],Temperature [degC]\n" + "".join(
+    f"{1000 * t:.0f},{1000 * torque:.1f},{w:.0f},{kelvin:.0f}\n".replace(".", ",")
+    for t, torque, w, kelvin in rows()
+)
+
+
 def typed(it: Refused) -> list[str]:
     """Follow the first proposal of the message that can be typed."""
     proposals = followed(it.arguments, it.message)
@@ -142,6 +149,17 @@ def marked(it: Refused) -> list[str]:
     number = r"\d+,\d{3}(?=,)" if "decimal commas" in it.message else r"\d[\d,]*\.\d(?=,)"
     parts = [re.findall(number, line + ",") for line in lines]
     path.write_text("\n".join([header.replace(",", match[2]), *map(match[2].join, parts)]) + "\n")
+    return it.arguments
+
+
+def marked_in_one(it: Refused) -> list[str]:
+    """Export the log with the mark between columns that the message names; torque has decimal commas."""
+    match = re.search(r"hersey: (\S+), .*with '(.)' between the columns", it.message)
+    assert match
+    path = it.folder / match[1]
+    header, *lines = path.read_text().splitlines()
+    parts = [re.sub(r"^(\d+),(\d+,\d),(\d+),(\d+)$", r"\1;\2;\3;\4", line) for line in lines]
+    path.write_text("\n".join([header.replace(",", match[2]), *parts]) + "\n")
     return it.arguments
 
 
@@ -358,6 +376,12 @@ MISTAKES: dict[str, Mistake] = {
         "fit log.csv",
         ("line 1", "header has 4 cells, but the rows have 8", "decimal commas"),
         marked,
+    ),
+    "decimal commas in one column between commas": Mistake(
+        {"log.csv": DECIMALS_OF_TORQUE},
+        "fit log.csv",
+        ("line 1", "header has 4 cells, but the rows have 5", "some seem to be decimal commas"),
+        marked_in_one,
     ),
     "commas for thousands between commas": Mistake(
         {

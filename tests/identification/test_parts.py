@@ -171,6 +171,7 @@ def test_small_slips_are_said_and_left_out() -> None:
         f"{count} of {record.slips} slips are smaller than half the median, so their number depends on "
         "the smallest drop counted ("
     )
+    assert str(last).endswith(f"half the median with least_drop={0.5 * np.median(record.drop):.3g}")
     assert (
         cycles(3.0 + 0.01 * np.arange(both.size), both, least_drop=5.0).slips == 19
     )  # the last is not followed by such a rise

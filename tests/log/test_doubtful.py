@@ -52,7 +52,9 @@ def test_a_slow_drive_of_great_torque_is_not_doubted(tmp_path: Path) -> None:
         (77.0, 356.0, ["degF"]),  # from a start at 25 degC
         (298.0, 454.0, ["K"]),
         (330.0, 350.0, ["K", "degF"]),
-        (600.0, 900.0, []),
+        (600.0, 900.0, ["0.1 degC"]),
+        (235.0, 1200.0, ["0.1 degC"]),  # from a start at 23.5 degC
+        (235.0, 600.0, ["degF", "0.1 degC"]),
     ],
 )
 def test_which_unit_of_temperature_would_be_likely(low: float, high: float, units: list[str]) -> None:
@@ -61,7 +63,9 @@ def test_which_unit_of_temperature_would_be_likely(low: float, high: float, unit
     table = {"Time [s]": time, "Torque [N*m]": TORQUE, "Speed [rpm]": SPEED, "Temp [degC]": degrees}
     (warning,) = doubtful_units(hersey.read(pl.DataFrame(table)))
     assert warning.kind == "unit of temperature doubtful"
-    assert [unit for unit in ("K", "degF", "degC") if f"'{unit}'" in warning.text] == units
+    assert [
+        unit for unit in ("K", "degF", "degC", "0.1 degC", "0.1 K") if f"'{unit}'" in warning.text
+    ] == units
 
 
 def in_hertz(name: str, unit: str) -> pl.DataFrame:

@@ -298,3 +298,32 @@ EXAMPLES = Path(__file__).parents[2] / "examples"
 def test_the_examples_lose_no_row(name: str) -> None:
     file = hersey.read(EXAMPLES / name, isothermal=name == "no-load.csv").files[0]
     assert (file.missing_rows, file.impossible) == (0, ())
+
+
+@pytest.mark.parametrize(("header", "offset", "unit"), [("degC", 0.0, "0.1 degC"), ("K", 2731.5, "0.1 K")])
+def test_tenths_of_a_degree_are_met_with_their_unit(
+    header: str, offset: float, unit: str, tmp_path: Path
+) -> None:
+    """Rows in another unit are not missing: to drop them is no way out."""
+    rows = [f"{0.1 * i:.1f},200,60,{round(10 * (23.5 + 0.4 * i) + offset)}" for i in range(400)]
+    path = tmp_path / "log.csv"
+    path.write_text("\n".join([f"Time [s],Torque [mN*m],Speed [rpm],Temperature [{header}]", *rows]))
+    with pytest.raises(UnreadableLogError, match="impossible temperature") as refused:
+        hersey.read(path)
+    assert refused.value.remedy == (
+        f"if the temperatures are in tenths of a degree, use units={{'temperature': '{unit}'}}. Otherwise "
+        "name another column, or correct the file"
+    )
+    log = hersey.read(path, units={"temperature": unit})
+    assert log.rows == 400
+    assert log.runs[0].temperature is not None
+    assert log.runs[0].temperature[0] == pytest.approx(273.15 + 23.5, abs=0.06)
+
+
+def test_a_code_of_a_sensor_is_not_taken_for_tenths(tmp_path: Path) -> None:
+    rows = [f"{0.1 * i:.1f},200,60,{1820 if i % 2 else 120.5}" for i in range(400)]
+    path = tmp_path / "log.csv"
+    path.write_text("\n".join([f"{TIME},{TORQUE},{SPEED},{HOT}", *rows]))
+    with pytest.raises(UnreadableLogError, match="impossible temperature") as refused:
+        hersey.read(path)
+    assert "0.1 degC" not in refused.value.remedy

@@ -5,10 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import polars as pl
 import pytest
 
 import hersey
 from hersey.errors import ChannelError, HerseyError, UnreadableLogError
+from hersey.inspection import inspect
 from hersey.inspection.raw import raw_channels
 from hersey.log import list_channels
 from hersey.log.text.layout import SNIFFED, find_layout
@@ -143,6 +145,25 @@ def test_milliseconds_of_an_uptime_stay_so(tmp_path: Path) -> None:
     wincc = [f"{45356333333 + 2 * i},{1 + i % 7 / 100:g},60,150" for i in range(60)]
     path = written(tmp_path, "\n".join(["Time_ms,Torque [N*m],Speed [rpm],Temp [degC]", *wincc, ""]), "b.csv")
     assert float(np.ptp(hersey.read(path).runs[0].time)) == pytest.approx(59 * 2 * 0.0864)
+
+
+@pytest.mark.parametrize("name", ["Time_ms", "Time [ms]", "time_ms"])
+def test_the_clock_of_wincc_counts_days_in_frames_and_parquet_too(name: str, tmp_path: Path) -> None:
+    steps = np.arange(60)
+    others = {"Torque [N*m]": 1.0 + steps % 7 / 100, "Speed [rpm]": 60.0, "Temp [degC]": 150.0}
+    for first, days in ((45356333333, name == "Time_ms"), (1200000000, False)):
+        frame = pl.DataFrame({name: first + 2 * steps}).with_columns(**others)
+        frame.write_parquet(tmp_path / "a.parquet")
+        frame.write_csv(tmp_path / "a.csv")
+        for source in (frame, tmp_path / "a.parquet", tmp_path / "a.csv"):
+            log = hersey.read(source)
+            assert float(np.ptp(log.runs[0].time)) == pytest.approx(
+                118 * (0.0864 if days else 0.001), rel=1e-4
+            )
+            assert [each.kind for each in log.files[0].warnings] == ["clock without unit"] * days
+            assert hersey.read(source, channels={"time": name}).rows == 60
+        (clock,) = inspect(tmp_path / "a.parquet").files[0].clocks
+        assert clock.duration == pytest.approx(118 * (0.0864 if days else 0.001), rel=1e-4)
 
 
 def test_a_line_of_settings_may_stand_above_a_table(tmp_path: Path) -> None:

@@ -10,6 +10,7 @@ import pytest
 
 import hersey
 from hersey.errors import UnreadableLogError
+from hersey.inspection import inspect
 from hersey.log.slow_channels import SlowChannel
 
 RATE, LASTS, EVERY = 50, 60, 50
@@ -149,3 +150,18 @@ def test_an_empty_temperature_can_be_done_without(text: bool, tmp_path: Path) ->
     with pytest.raises(UnreadableLogError, match="isothermal=True"):
         hersey.read(source)
     assert not hersey.read(source, isothermal=True).has_temperature
+
+
+@pytest.mark.parametrize("filler", ["#NV", "", "---.-"])
+@pytest.mark.parametrize("first", [0, 1500])
+def test_inspect_sees_the_slow_temperature_that_is_read(filler: str, first: int, tmp_path: Path) -> None:
+    hot = [f"{120 + i / 100:.2f}" if i >= first and i % 20 == 0 else filler for i in range(4000)]
+    rows = [f"{0.05 * i:.2f},1.5,60,{cell}" for i, cell in enumerate(hot)]
+    path = tmp_path / "log.csv"
+    path.write_text("\n".join(["Time [s],Torque [N*m],Speed [rpm],Temperature [degC]", *rows]))
+    assert hersey.read(path, drop_missing=True).has_temperature
+    report = inspect(path, drop_missing=True)
+    assert report.problem == ""
+    assert "temperature" not in report.files[0].without
+    (channel,) = [each for each in report.files[0].channels if each.role == "temperature"]
+    assert channel.traits.missing == sum(cell == filler for cell in hot)

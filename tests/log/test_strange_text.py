@@ -252,3 +252,37 @@ def test_rows_in_the_order_of_another_column_are_to_be_sorted(tmp_path: Path) ->
     with pytest.raises(UnreadableLogError) as refused:
         hersey.read(path)
     assert refused.value.remedy.startswith("sort the rows by 'Time'")
+
+
+@pytest.mark.parametrize(
+    "header", ["Time [ms],Speed [rpm],Torque [mN*m]", "Time [ms],Speed [rpm],Torque [mN*m],"]
+)
+def test_decimal_commas_between_commas_are_called_so(header: str, tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    path.write_text(f"{header}\n" + "".join(f"{5 * i},60,203,{i % 10}\n" for i in range(40)))
+    with pytest.raises(UnreadableLogError) as refused:
+        hersey.read(path, isothermal=True)
+    assert str(refused.value) == (
+        "log.csv, line 1: the header has 3 cells, but the rows have 4. Commas separate the columns, and "
+        "some seem to be decimal commas, as in '100,60,203,0'. Export with ';' between the columns (or "
+        "tabs), or with decimal points. Only if the further cells are channels of their own, give every "
+        "column a name"
+    )
+
+
+def test_a_decimal_comma_in_a_few_rows_is_called_so(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    rows = [f"{5 * i},60,203" + ",5" * (i == 30) for i in range(40)]
+    path.write_text("\n".join(["Time [ms],Speed [rpm],Torque [mN*m]", *rows]))
+    with pytest.raises(UnreadableLogError, match="line 32: 4 cells, but the header has 3") as refused:
+        hersey.read(path, isothermal=True)
+    assert "decimal commas, as in '150,60,203,5'" in refused.value.remedy
+
+
+@pytest.mark.parametrize("row", ["{},60,203.5,1", "{},-60,203,-1", "{},60,203,"])
+def test_a_column_without_a_name_is_no_decimal_comma(row: str, tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    path.write_text(
+        "Time [ms],Speed [rpm],Torque [mN*m],\n" + "".join(f"{row.format(0.5 * i)}\n" for i in range(40))
+    )
+    assert hersey.read(path, isothermal=True).rows == 40

@@ -97,6 +97,7 @@ class _Trace:
     def record(self, given: TraceFile, speed: float | FloatArray | None) -> CycleRecord:
         """Return the cycles of a run."""
         from hersey.identification.cycle_record import cycles
+        from hersey.identification.cycle_warnings import in_unit
 
         uncertainty = self.drive_speed_uncertainty
         record = cycles(
@@ -107,7 +108,10 @@ class _Trace:
             quantity="speed" if given.quantity == "speed" else "force",
             least_drop=_least_drop(self.least_drop, given),
         )
-        return replace(record, warnings=(*record.warnings, *given.warnings))
+        force = given.quantity != "speed"
+        unit = given.unit if force else _UNITS.get(given.unit, given.unit)
+        found = (in_unit(each, unit, chosen=force) for each in record.warnings)
+        return replace(record, warnings=(*found, *given.warnings))
 
 
 @dataclass(frozen=True)

@@ -18,6 +18,7 @@ from hersey.damping.candidates.likelihood import minimise, scatter_beyond
 from hersey.damping.candidates.observations import Observations
 from hersey.damping.candidates.thermal import scaled_temperature
 from hersey.damping.dwells import SteadyPoints, groups_of_temperature
+from hersey.damping.dwells.least_duration import temperatures_lost
 from hersey.damping.dwells.reduced import require_points
 from hersey.damping.estimate import Estimate, estimate
 from hersey.damping.fitted_law import SCALES, FitStatistics
@@ -56,7 +57,7 @@ def fit(points: SteadyPoints, *, temperature_scale: str = "degC") -> DampingSurf
     if temperature_scale not in SCALES:
         raise ParameterError(f"temperature scale '{temperature_scale}' is not known. Use degC or K")
     data = Observations.of(points)
-    _require_temperatures(data, temperature_scale)
+    _require_temperatures(data, temperature_scale, points)
     _require_dwells(data)
     thermal = None if data.inputs.kelvin is None else SCALES[temperature_scale]
     law = Candidate(thermal, ONE).law(data)
@@ -72,13 +73,15 @@ def fit(points: SteadyPoints, *, temperature_scale: str = "degC") -> DampingSurf
     return _surface(points, data, branches.fit, measured_transition, "", temperature_scale)
 
 
-def _require_temperatures(data: Observations, scale: str) -> None:
+def _require_temperatures(data: Observations, scale: str, points: SteadyPoints) -> None:
     kelvin = data.inputs.kelvin
     if kelvin is None:
         return
     if sum(1 for _ in groups_of_temperature(kelvin)) < 2:
         ends = {f"{celsius(float(each)):.1f}": None for each in (kelvin.min(), kelvin.max())}
         at = " to ".join(ends)
+        if lost := temperatures_lost(points):
+            raise InsufficientDataError(f"all dwells are at one temperature ({at} degC): {lost}")
         raise InsufficientDataError(
             f"all dwells are at one temperature ({at} degC), so exponent b cannot be estimated. "
             f"Record other temperatures, or fit without b by {ISOTHERMAL.to()}"

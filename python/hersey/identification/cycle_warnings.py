@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from typing import Any
 
 import numpy as np
 
@@ -15,6 +16,8 @@ from hersey.schema.warning import Warning
 
 #: Kind of the warning that the slip is not resolved.
 FALLS_OF_FEW_SAMPLES = "falls of few samples"
+#: Kind of the warning that the number of slips depends on the smallest drop counted.
+MANY_SMALL = "many small slips"
 #: Samples that a fall must last for its duration to be trusted.
 _FEW_SAMPLES = 6
 #: Force below zero after each slip, as a share of the drop, from which its zero is doubted. A free slip ends
@@ -70,19 +73,29 @@ def _of_the_falls(
         )
     small = int(np.sum(drop < 0.5 * np.median(drop)))
     if least_drop is None and small > 0.05 * drop.size:
-        yield Warning(
-            "many small slips",
-            "{small} of {slips} slips are smaller than half the median, so their number depends on the "
-            "smallest drop counted ({least:.3g} here; samples scatter by {scatter:.3g})",
-            severity="watch",
-            remedy="choose it with {option}, e.g. half the median: {half:.3g} in the unit of the trace",
-            option=Setting("least_drop"),
-            half=0.5 * float(np.median(drop)),
-            small=small,
-            slips=drop.size,
-            least=least,
-            scatter=least_turn(samples.noise, samples.value.size, 1),
-        )
+        numbers = {"small": small, "slips": drop.size, "half": 0.5 * float(np.median(drop)), "least": least}
+        yield _many_small(numbers | {"scatter": least_turn(samples.noise, samples.value.size, 1)})
+
+
+def in_unit(warning: Warning, unit: str, *, chosen: bool) -> Warning:
+    """Return a warning of a trace whose unit is known, as it is typed; ``1`` for a share of the weight.
+
+    ``chosen`` says whether the smallest drop may be chosen with its unit: not for a trace of speed.
+    """
+    return _many_small(warning.values, unit, chosen=chosen) if warning.kind == MANY_SMALL else warning
+
+
+def _many_small(numbers: Mapping[str, Any], unit: str = "", *, chosen: bool = True) -> Warning:
+    shown = "" if unit in ("", "1") else " {unit}"
+    typed = "{option:{half:.3g}" + shown + "}" if unit else "{option}={half:.3g}"
+    return Warning(
+        MANY_SMALL,
+        "{small} of {slips} slips are smaller than half the median, so their number depends on the "
+        f"smallest drop counted ({{least:.3g}}{shown} here; samples scatter by {{scatter:.3g}}{shown})",
+        severity="watch",
+        remedy=f"choose it, e.g. half the median with {typed}" if chosen else "",
+        **(dict(numbers) | {"option": Setting("least_drop")} | ({"unit": unit} if unit else {})),
+    )
 
 
 def _of_the_samples(samples: Samples) -> Iterator[Warning]:

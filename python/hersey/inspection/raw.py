@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -14,12 +15,13 @@ from hersey.log.channels import ChannelChoice, Stated, find_channel, is_dead, no
 from hersey.log.formats import format_of, opened
 from hersey.log.friction import Chosen, beside
 from hersey.log.roles import ROLES
+from hersey.log.slow_channels import FEWEST
 from hersey.log.text.column import Column, refuse_ragged
 from hersey.log.text.delimited import open_delimited
 from hersey.log.text.layout import Layout
 from hersey.log.text.numbers import NULLS
 from hersey.log.text.separators import BLANKS, split, tabbed
-from hersey.log.text.stamps import Stamps, counted_since, numbers_in
+from hersey.log.text.stamps import Stamps, counted_unit, numbers_in
 from hersey.schema.warning import Warning
 
 
@@ -83,8 +85,8 @@ def raw_channels(path: str | Path) -> RawLog:
                     )
                 )
                 continue
-            unit = "" if signal.unit else counted_since(signal.name, values)[0]
-            column = Column(index, signal.name, signal.unit or unit, signal.group)
+            unit, _ = counted_unit(signal.name, signal.unit, partial(np.asarray, values))
+            column = Column(index, signal.name, unit or signal.unit, signal.group)
             clock = clocks.get(signal.tick) if signal.clock is not None else None
             channels.append(
                 RawChannel(column, values, clock=clock, tick=signal.tick or f"{signal.rows} rows")
@@ -161,9 +163,10 @@ def _of_text(path: Path) -> RawLog:
     text = tabbed(text) if layout.separator == BLANKS else text
     frame = _frame(text, layout)
     channels = [
-        _text_channel(layout, column, frame[f"{column.index}"])
+        channel
         for column in layout.named
-        if column.index not in layout.texts and f"{column.index}" in frame.columns
+        if f"{column.index}" in frame.columns
+        and (channel := _text_channel(layout, column, frame[f"{column.index}"])) is not None
     ]
     warnings = (*layout.warnings, *end.warnings, *growth)
     return RawLog(printable(path.name), "text", tuple(channels), layout.comments, warnings, end.cut_off)
@@ -218,10 +221,13 @@ def _line_by_line(text: bytes, layout: Layout) -> pl.DataFrame:
     return pl.DataFrame({f"{index}": column for index, column in enumerate(columns)})
 
 
-def _text_channel(layout: Layout, column: Column, cells: pl.Series) -> RawChannel:
+def _text_channel(layout: Layout, column: Column, cells: pl.Series) -> RawChannel | None:
+    """A column as a channel; one of words is none, unless numbers stand among them, as of a slow one."""
     if cells.dtype == pl.Float64:
         numbers = cells.fill_null(np.nan).to_numpy()
         return RawChannel(column, np.where(np.isfinite(numbers), numbers, np.nan), tick="rows")
     style = layout.stamps.get(column.index)
     values, odd = numbers_in(cells.fill_null(""), layout.style if style is None else Stamps(style))
+    if column.index in layout.texts and np.count_nonzero(np.isfinite(values)) < FEWEST:
+        return None
     return RawChannel(column, values, odd=int(odd.sum()), tick="rows")

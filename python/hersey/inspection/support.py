@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from hersey.arrays import FloatArray
 from hersey.damping.dwells import SteadyPoints, distinct_speeds, groups_of_temperature
 from hersey.damping.dwells.constant import constant_torque
+from hersey.damping.dwells.least_duration import speeds_lost, temperatures_lost
 from hersey.damping.dwells.reasons import Kind
 from hersey.damping.estimate import Estimate, rounded
 from hersey.damping.fit import fit
@@ -73,7 +74,7 @@ def support_of_points(points: SteadyPoints, *, temperature_scale: str = "degC") 
     for says in (
         *(
             (
-                _speed(speed),
+                _speed(speed, points),
                 _temperature(levels, points, fitted),
                 _branches(points, groups or [np.arange(speed.size)], speed, fitted),
             )
@@ -113,12 +114,14 @@ def _nothing(torque: float) -> Said:
     ]
 
 
-def _speed(speed: FloatArray) -> Said:
+def _speed(speed: FloatArray, points: SteadyPoints) -> Said:
     count, low, high = distinct_speeds(speed), float(speed.min()), float(speed.max())
     span = f"{rpm(low):.3g} to {rpm(high):.3g} rpm"
     if count < 3:
         held = f"{rpm(low):.4g} rpm" if count == 1 else span
         few = "one speed" if count == 1 else "two speeds"
+        if lost := speeds_lost(points):
+            return [], [f"exponent c (speed): {few} ({held}): {lost}"]
         return [], [f"exponent c (speed): {few} ({held}). Record dwells at three or more speeds"]
     if high < NARROW_SPEEDS * low:
         return [], [
@@ -131,6 +134,8 @@ def _temperature(levels: tuple[float, ...], points: SteadyPoints, fitted: Dampin
     if not levels:
         return [], ["any dependence on temperature: none was recorded"]
     temperatures = _levels(levels)
+    if len(levels) == 1 and (lost := temperatures_lost(points)):
+        return [], [f"exponent b (temperature): all dwells are at {temperatures}: {lost}"]
     if len(levels) == 1:
         return [], [f"exponent b (temperature): all dwells are at {temperatures}. Record other temperatures"]
     kelvin, speed = points.column("temperature"), np.abs(points.column("speed"))

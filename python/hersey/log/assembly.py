@@ -28,7 +28,7 @@ from hersey.log.replaced import replaced_units
 from hersey.log.roles import EVERY, OTHER_ROLES, ROLES, role_conversion
 from hersey.log.rows import LeftOut, runs_with_records
 from hersey.log.text.column import Column
-from hersey.log.text.stamps import clock_without_unit, counted_since, is_clock_name
+from hersey.log.text.stamps import clock_without_unit, counted_unit, is_clock_name
 from hersey.log.torque_log import NO_CLOCK, Channel, LogFile, Run
 from hersey.log.wanted import Wanted
 from hersey.schema.warning import Warning
@@ -75,6 +75,7 @@ class Assembly:
         self._lacking: dict[str, LeftOut] = {}  # rows of the torque that lack a role that may be slow
         self._clocks: dict[str, tuple[FloatArray, str, Channel]] = {}
         self._dead: dict[int, Warning | None] = {}
+        self._counted: dict[int, Warning] = {}  # clocks that count from a known day
         self.chosen: Chosen = {}
         self._timed: Chosen = {}
         for role in wanted.roles:
@@ -95,7 +96,7 @@ class Assembly:
             If too many numbers are missing, a clock runs backwards, or the channels do not overlap.
         """
         left_out, torque = LeftOut(), self.parts["torque"]
-        warnings = list(self.recording.warnings)
+        warnings = [*self.recording.warnings, *self._counted.values()]
         marked, rows_marked = self._leave_out(self._marked)
         self._leave_out_missing(left_out)
         impossible, rows_impossible = self._leave_out(self._impossible)
@@ -278,15 +279,13 @@ class Assembly:
         return other.rows == signal.rows and (named or candidate.group == column.group)
 
     def _with_epoch(self, column: Column) -> Column:
-        if column.unit or not is_clock_name(column.name):
+        if not is_clock_name(column.name):
             return column
-        signal = self.recording.signals[column.index]
-        unit, meaning = counted_since(column.name, signal.load())
+        load = self.recording.signals[column.index].load
+        unit, meaning = counted_unit(column.name, column.unit, load)
         if unit:
-            warning = clock_without_unit(column.path, meaning)
-            if warning not in self.recording.warnings:
-                self.recording.warnings.append(warning)
-        return Column(column.index, column.name, unit, column.group)
+            self._counted[column.index] = clock_without_unit(column.path, meaning)
+        return Column(column.index, column.name, unit or column.unit, column.group)
 
     def _by_clock(self) -> Iterator[list[_Part]]:
         """The channels on each clock, which lose the same samples."""
@@ -305,6 +304,7 @@ class Assembly:
                 self._set_apart(part, gone)
             here = left_out if own else LeftOut()
             here.add(int(gone.sum()), (self._fault(needed, int(row)) for row in np.flatnonzero(gone)))
+            here.dates = next((p.column.name for p in parts if p.column.path in self.recording.dates), "")
             here.refuse_many(self.source.name, gone.size, allowed=self.drop_missing)
             if not own:
                 left_out.add(here.rows, here.words)

@@ -45,6 +45,8 @@ BELIEVED = {
     "time": Believed(-1e11, 1e11, "s"),
 }
 
+#: Units of a temperature that a controller keeps as a whole number.
+TENTHS = ("0.1 degC", "0.1 K")
 #: Least and greatest count of converters and counters of 16 and 32 bits.
 _COUNTS = (65535.0, 32767.0, -32768.0, 4294967295.0, 2147483647.0, -2147483648.0)
 #: Scales of such counts: loggers store tenths, hundredths and thousandths.

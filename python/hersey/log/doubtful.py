@@ -8,7 +8,7 @@ import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.errors import Setting
-from hersey.log.believed import as_written, in_si
+from hersey.log.believed import TENTHS, as_written, in_si
 from hersey.log.means import MeansTable
 from hersey.log.roles import is_frequency, is_of_kind
 from hersey.log.torque_log import Channel, TorqueLog
@@ -90,12 +90,12 @@ def _likely_units(log: TorqueLog | MeansTable, coldest: float, hottest: float) -
     if not read_as:
         return []
     written = as_written(np.array([coldest, hottest]), conversion("temperature", read_as))
-    ends = {unit: in_si(written, conversion("temperature", unit)) for unit in ("K", "degF", "degC")}
-    likely = {
-        u: low for u, (low, high) in ends.items() if celsius(low) > TOO_COLD and celsius(high) < TOO_HOT
-    }
-    cold = [unit for unit, low in likely.items() if ROOM[0] < celsius(low) < ROOM[1]]
-    return cold or list(likely)
+    ends = {unit: in_si(written, conversion("temperature", unit)) for unit in ("K", "degF", "degC", *TENTHS)}
+    degrees = {unit: (celsius(low), celsius(high)) for unit, (low, high) in ends.items()}
+    likely = {unit: (low, high) for unit, (low, high) in degrees.items() if low > TOO_COLD and high < TOO_HOT}
+    cold = [unit for unit, (low, high) in likely.items() if ROOM[0] < low < ROOM[1] < high]
+    whole = [unit for unit in likely if unit not in TENTHS]
+    return [u for u in cold if u in whole] or cold + whole or list(likely)
 
 
 def _temperatures(log: TorqueLog | MeansTable) -> list[FloatArray]:

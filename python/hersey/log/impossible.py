@@ -17,7 +17,7 @@ import numpy as np
 
 from hersey.arrays import BoolArray, FloatArray, IntArray
 from hersey.errors import DROP_MISSING, ISOTHERMAL, Setting, TimeOrderError, UnreadableLogError
-from hersey.log.believed import BELIEVED, Believed, as_written, is_code, is_wrapped
+from hersey.log.believed import BELIEVED, TENTHS, Believed, as_written, in_si, is_code, is_wrapped
 from hersey.log.neighbours import bursts, drop_outs, flips, on_its_way, pulses
 from hersey.log.roles import role_conversion
 from hersey.log.stray_times import stray_times
@@ -49,6 +49,7 @@ MOST, MOST_ALLOWED = 0.2, 0.5
 _NAMED = 3
 #: Units in which a temperature may have been meant, and the range of those that are likely, K.
 _LIKELY = (233.15, 673.15)
+_OTHER_FILE = "name another column, or correct the file"
 #: Larger numbers, in SI, are cut to this before they are compared: their differences would overflow.
 _NO_LARGER = 1e30
 
@@ -220,7 +221,7 @@ def marked_rows(
 def _way_out(bad: int, rows: int) -> str:
     """What to do about so many rows that cannot be used."""
     drop = f", or exclude such rows with {DROP_MISSING.to()}" if bad <= MOST_ALLOWED * rows else ""
-    return f"name another column, or correct the file{drop}"
+    return f"{_OTHER_FILE}{drop}"
 
 
 def _of_clock(time: FloatArray) -> dict[Reason, BoolArray]:
@@ -324,20 +325,28 @@ def _refuse_many(
             setting=Setting("time", "channel"),
         )
     meant = _meant_unit(reading) if kind == "temperature" else ""
-    unit = f"if the unit is wrong, use {Setting(reading.role, 'unit').to(meant)}"
-    raise UnreadableLogError(
-        f"{file}, {found[0]}; {share}", remedy=f"{unit}. Otherwise {_way_out(bad, rows)}"
-    )
+    tenths = "temperatures are in tenths of a degree" if meant in TENTHS else "unit is wrong"
+    unit = f"if the {tenths}, use {Setting(reading.role, 'unit').to(meant)}"
+    other = _OTHER_FILE if meant else _way_out(bad, rows)  # rows in another unit are not missing
+    raise UnreadableLogError(f"{file}, {found[0]}; {share}", remedy=f"{unit}. Otherwise {other}")
 
 
 def _meant_unit(reading: Reading) -> str:
     """The unit in which most of the temperatures written would be ordinary, or nothing."""
-    written = as_written(reading.values, reading.unit)
+    written = as_written(reading.values[np.isfinite(reading.values)], reading.unit)
     for unit in ("degC", "K", "degF"):
-        si = role_conversion("temperature", unit)[1]
-        if _LIKELY[0] < float(np.median(written)) * si.scale + si.offset < _LIKELY[1]:
+        if _are_likely(np.array([np.median(written)]), unit):
             return unit if unit != reading.unit.unit else ""
+    whole = np.round(written)
+    if np.allclose(written, whole, rtol=0.0, atol=1e-6) and np.ptp(whole) > 0:  # a word of a PLC
+        return next((unit for unit in TENTHS if _are_likely(np.quantile(written, [0.01, 0.99]), unit)), "")
     return ""
+
+
+def _are_likely(written: FloatArray, unit: str) -> bool:
+    """Whether temperatures as written would be ordinary in a unit."""
+    kelvin = in_si(written, role_conversion("temperature", unit)[1])
+    return bool(np.all((_LIKELY[0] < kelvin) & (kelvin < _LIKELY[1])))
 
 
 def _times(count: int) -> str:

@@ -87,6 +87,7 @@ class Recording:
     nothing: str = ""  #: why there are no signals, if the format can tell
     source: Source = Source("", "", 0)
     cells: tuple[Cells, ...] = ()  #: every named column as text, where the file is one of cells
+    dates: set[str] = field(default_factory=set)  #: paths of columns in which numbers have become dates
 
 
 def columns(recording: Recording) -> tuple[Column, ...]:

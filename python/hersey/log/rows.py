@@ -11,6 +11,7 @@ import numpy as np
 from hersey.arrays import BoolArray, FloatArray, IntArray
 from hersey.errors import DROP_MISSING, ISOTHERMAL, Setting, TimeOrderError, UnreadableLogError
 from hersey.log.slow_channels import LONGEST_INTERVAL, SlowChannel, is_slow
+from hersey.log.text.dated_numbers import numbers_lost
 from hersey.log.torque_log import LogFile, Run
 from hersey.schema.warning import Warning
 
@@ -34,6 +35,7 @@ class LeftOut:
     rows: int = 0
     words: list[str] = field(default_factory=list)  #: for the first of them: place, and what is wrong there
     out_of_order: int = 0  #: those among them whose time is
+    dates: str = ""  #: a column in which a spreadsheet has made dates of numbers
 
     def add(self, rows: int, words: Iterable[str], *, out_of_order: bool = False) -> None:
         """Count rows; of ``words``, one for each of them, no more are taken than are shown."""
@@ -52,12 +54,15 @@ class LeftOut:
             It names the first of them; also if most rows are of no use, whatever is allowed.
         """
         most = 2 * self.rows > rows
-        if not self.rows or (allowed and not most) or self.rows <= max(1.0, FEW * rows):
+        allowed = allowed and not most and not self.dates  # what has become a date are not any numbers
+        if not self.rows or allowed or self.rows <= max(1.0, FEW * rows):
             return
         how_many = f" (the first of {self.rows} such rows, of {rows})" if self.rows > 1 else ""
         few = f"too few rows remain. {f'{without}. Otherwise n' if without else 'N'}ame another column, or "
         way_out = f"{few}correct the file" if most else _way_out()
         said = f"{file}, {self.words[0]}{how_many}"
+        if self.dates:
+            way_out = numbers_lost(self.dates)
         if self.out_of_order == self.rows:
             raise TimeOrderError(said, remedy=way_out, setting=Setting("time", "channel"))
         raise UnreadableLogError(said, remedy=way_out)
@@ -71,6 +76,7 @@ class LeftOut:
                 "rows left out",
                 "{rows} {rows:row was|rows were} excluded: {faults}"
                 + ("; and {others} more" if self.rows > len(self.words) else ""),
+                remedy=numbers_lost(self.dates) if self.dates else "",
                 rows=self.rows,
                 faults="; ".join(self.words),
                 others=self.rows - len(self.words),

@@ -16,6 +16,7 @@ from hersey.damping.dwells import (
     held_for_few_rows,
 )
 from hersey.damping.dwells.constant import refuse_constant_torque
+from hersey.damping.dwells.least_duration import speeds_lost
 from hersey.damping.dwells.misleading import lagging, one_direction, unlinked_runs
 from hersey.errors import InsufficientDataError
 from hersey.log.means import MeansTable
@@ -82,6 +83,8 @@ class Observations:
         speed, torque = np.abs(points.column("speed")), np.abs(points.column("torque"))
         if distinct_speeds(speed) < fewest_speeds:
             held = " and ".join(f"{v} rpm" for v in sorted({f"{rpm(w):.3g}" for w in speed}, key=float)[:2])
+            if lost := speeds_lost(points):
+                raise InsufficientDataError(f"all dwells are at {held}: {lost}")
             if isinstance(points.log, TorqueLog) and (few := held_for_few_rows(points.log)):
                 raise InsufficientDataError(few)
             raise InsufficientDataError(f"all dwells are at {held}. Record dwells at three or more speeds")

@@ -16,6 +16,7 @@ judging         which rows of a stretch are a dwell, or why none are
 few_rows        speeds that are held for too few rows to be dwells
 nothing_steady  why a log has no dwell at all, and what to do
 zero            the zero of the torque over the log, from every standing stretch
+least_duration  speeds and temperatures that only the least duration asked for excludes
 doubtful        what is doubtful before a fit: the tare, and what goes together with time
 constant        whether the torque varies at all
 resolution      the step of a sensor, and the error that rounding leaves in a dwell

@@ -68,7 +68,8 @@ class _Open:
         """What may change while numbers are loaded."""
         assert self.recording is not None
         warnings = [each.to_dict() for each in self.recording.warnings]
-        return {"warnings": warnings, "cut_off": self.recording.cut_off}
+        state = {"warnings": warnings, "cut_off": self.recording.cut_off}
+        return state | {"dates": sorted(self.recording.dates)}
 
     def numbers(self, what: str, index: int) -> bytes:
         """The values of a signal, its clock, or what the file says of each sample, as float64."""

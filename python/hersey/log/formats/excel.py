@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from functools import partial
 from typing import BinaryIO
 
@@ -15,6 +16,7 @@ from hersey.arrays import FloatArray
 from hersey.errors import HerseyError
 from hersey.log.recording import LONGEST_CELL, Cells, Recording, Signal, library
 from hersey.log.text.column import Column
+from hersey.log.text.dated_numbers import was_number
 from hersey.log.text.footer import summary_lines
 from hersey.log.text.layout import SNIFFED, Layout, find_layout
 from hersey.log.text.repeated_header import refuse_another_header
@@ -115,7 +117,7 @@ def _signals(recording: Recording, group: str, table: pl.DataFrame, layout: Layo
     for column in layout.named:
         if column.index in layout.texts:
             continue
-        load = partial(_numbers, recording, _sheet(group), table.to_series(column.index), layout, column)
+        load = partial(_numbers, recording, group, table.to_series(column.index), layout, column)
         yield Signal(column.name, column.unit, table.height, load, group=group, line=layout.first_line)
 
 
@@ -139,16 +141,18 @@ def _texts(cells: pl.Series, layout: Layout) -> list[str]:
 
 
 def _numbers(
-    recording: Recording, sheet: str, cells: pl.Series, layout: Layout, column: Column
+    recording: Recording, group: str, cells: pl.Series, layout: Layout, column: Column
 ) -> FloatArray:
     """The numbers of a column: a cell that is none is missing, and warned of."""
     style = layout.stamps.get(column.index)
     written = layout.style if style is None else Stamps(style)
-    text = cells.fill_null("")
+    text, sheet = cells.fill_null(""), _sheet(group)
     values, odd = numbers_in(text, written)
     for row in odd.arg_true() if style is None else ():
         where = ", ".join(filter(None, (recording.source.name, sheet, f"row {layout.first_line + row}")))
         refuse_another_header(where, column, text[row][:LONGEST_CELL], layout.columns)
+    if style is None and any(was_number(column.name, cell) for cell in text.filter(odd)):
+        recording.dates.add(replace(column, group=group).path)
     for row in odd.arg_true()[:1]:
         recording.warnings.append(
             Warning(

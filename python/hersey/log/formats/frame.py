@@ -15,6 +15,7 @@ from hersey.errors import ParameterError, UnreadableLogError
 from hersey.log.recording import Recording, Signal, Source, floats, seconds
 from hersey.log.text.column import split_unit
 from hersey.log.text.numbers import is_missing, looks_numeric, style_of
+from hersey.log.text.stamps import OF_WINCC
 from hersey.processes.forks import refuse_after_fork
 
 #: Types of columns that may hold numbers written as text.
@@ -106,6 +107,8 @@ def column_signal(
 ) -> Signal:
     """Return a column as a signal; time stamps and durations come in s."""
     plain, stated = (name, unit) if unit else split_unit(name)
+    if name == OF_WINCC:  # what it counts shows by its size
+        plain = name
 
     def numbers() -> FloatArray:
         series = load()

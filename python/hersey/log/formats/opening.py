@@ -240,6 +240,7 @@ class _Reader:
             )
         recording.warnings[:] = map(_warning, about["warnings"])
         recording.cut_off = about["cut_off"]
+        recording.dates = {_plain(each, _LONGEST_NAME) for each in about["dates"]}
         return np.frombuffer(content, dtype=float)
 
     def _texts(self, index: int, rows: int) -> list[str]:

@@ -4,8 +4,10 @@
 numbers          how a text file writes numbers
 stamps           how it writes times
 column           a column: name and unit
+decimal_commas   commas between the columns that are decimal marks too
 separators       what stands between cells, and the rows of numbers that it makes
 header           names and units of the columns, from the lines above
+dated_numbers    dates that a spreadsheet has made of numbers
 orientation      tables whose channels are not columns, which are refused
 layout           where the table starts, and what its columns are
 footer           where it ends

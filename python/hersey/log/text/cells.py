@@ -13,6 +13,8 @@ from hersey.arrays import FloatArray
 from hersey.errors import UnreadableLogError
 from hersey.log.text.blocks import Block
 from hersey.log.text.column import Column
+from hersey.log.text.dated_numbers import numbers_lost, was_number
+from hersey.log.text.decimal_commas import with_decimal_commas
 from hersey.log.text.layout import Layout
 from hersey.log.text.numbers import NULLS, NumberStyle, looks_numeric
 from hersey.log.text.repeated_header import refuse_another_header
@@ -30,6 +32,7 @@ class CellReader:
         """Take the file's name, how it is read, and the columns."""
         self.name, self.layout, self.columns, self.strict = name, layout, columns, strict
         self.stamps = {i: Stamps(style) for i, style in layout.stamps.items()}
+        self.dates = dict[int, Column]()  # columns in which numbers have become dates, by index
 
     def warnings(self) -> list[Warning]:
         """Return how time stamps were read."""
@@ -89,7 +92,8 @@ class CellReader:
         for row, cells in enumerate(block.cells(self.layout.between)):
             if any(cells[width:]):
                 raise UnreadableLogError(
-                    f"{self.name}, line {block.lines[row]}: {len(cells)} cells, but the header has {width}"
+                    f"{self.name}, line {block.lines[row]}: {len(cells)} cells, but the header has {width}",
+                    remedy=with_decimal_commas([cells], width) if self.layout.separator == "," else "",
                 )
             table.append(cells + [""] * (width - len(cells)))
         return [
@@ -105,11 +109,16 @@ class CellReader:
             if plain:
                 refuse_another_header(place, column, cells[row], self.layout.columns)
             written = plain and looks_numeric(cells[row])
+            dated = plain and was_number(column.name, cells[row])
+            if dated:
+                self.dates[column.index] = column
             if self.strict or written:
                 raise UnreadableLogError(
                     f"{place}, column '{column.name}': '{cells[row][:40]}' is not a {self.what(column)}",
                     remedy="export numbers with one decimal mark and without thousands separators"
                     if written
+                    else numbers_lost(column.name)
+                    if dated
                     else "",
                 )
         return values

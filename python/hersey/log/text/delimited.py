@@ -304,6 +304,7 @@ class _Table:
             self.lacking.setdefault(role, LeftOut()).add(rows.size, faults)
         words = (self._fault(block, values, int(row)) for row in np.flatnonzero(gone))
         self.left_out.add(int(gone.sum()), words)
+        self.left_out.dates = next((column.name for column in self.reader.dates.values()), "")
         kept = np.flatnonzero(~gone) if gone.any() else None
         first = self._lines[-1][0] + self._kept_last if self._lines else 0
         self._kept_last = len(block.lines) if kept is None else kept.size

@@ -9,6 +9,7 @@ from dataclasses import replace
 from hersey.errors import UnitError, UnreadableLogError, WrongKindError
 from hersey.log.signals import is_signal
 from hersey.log.text.column import Column, name_and_unit, refuse_long_name, split_unit
+from hersey.log.text.decimal_commas import with_decimal_commas
 from hersey.log.text.numbers import is_missing, looks_numeric
 from hersey.log.text.separators import BLANKS, NumberRows, split
 from hersey.log.text.unit_pairs import of_one_kind, same_unit
@@ -92,27 +93,23 @@ def _require_width(
 ) -> None:
     """A header with fewer or more names than the rows have cells would shift every column."""
     rows = [split(text, table.separator) for _, text in numbered[table.first :]]
-    beyond = any(any(row[len(header) :]) for row in rows if len(row) == table.width)
-    if beyond or any(header[table.width :]):
+    rows = [row for row in rows if len(row) == table.width]
+    named = max((index + 1 for index, name in enumerate(header) if name), default=0)
+    cut = with_decimal_commas(rows, named) if table.separator == "," else ""
+    beyond = any(any(row[len(header) :]) for row in rows)
+    if beyond or any(header[table.width :]) or cut:
         raise UnreadableLogError(
-            f"{file}, line {line}: the header has {len(header)} cells, but the rows have {table.width}. "
-            f"{_too_many(table, rows, len(header))}"
+            f"{file}, line {line}: the header has {named if cut else len(header)} cells, but the rows have "
+            f"{table.width}. {cut or _misfit(table, len(header))}"
         )
 
 
-def _too_many(table: NumberRows, rows: list[list[str]], named: int) -> str:
-    """What to do where rows have more cells than the header: a comma within the numbers parts them too."""
-    cells = [row for row in rows if len(row) == table.width]
-    whole_numbers = cells and all(re.fullmatch(r"[-+]?\d+", cell.strip()) for row in cells for cell in row)
+def _misfit(table: NumberRows, named: int) -> str:
+    """What to do where the rows have more or fewer cells than the header."""
     if table.width < named:
         return "Delete the names that have no column"
     if table.separator != "," or table.width > 2 * named:
         return "Give every column a name"
-    if table.width == 2 * named and whole_numbers:
-        return (
-            "The numbers have decimal commas, and commas also separate the columns. Export with ';' "
-            "between the columns, or with decimal points"
-        )
     return "Give every column a name. If a comma separates thousands, export with ';' between the columns"
 
 

@@ -8,17 +8,20 @@ import re
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
+from hersey.arrays import FloatArray
 from hersey.errors import MAPPING, Setting, UnreadableLogError, way_in
 from hersey.files import text as text_files
 from hersey.log.text.column import Column, refuse_columns, split_unit
+from hersey.log.text.dated_numbers import was_number
 from hersey.log.text.header import Numbered, columns_of
 from hersey.log.text.numbers import NumberStyle, is_missing, looks_numeric, style_of
 from hersey.log.text.orientation import refuse_long, refuse_transposed
 from hersey.log.text.separators import BLANKS, SEPARATORS, NumberRows, number_rows, split
-from hersey.log.text.stamps import MILLIONTHS, StampStyle, clock_without_unit, counted_since, stamp_style
+from hersey.log.text.stamps import OF_WINCC, StampStyle, clock_without_unit, counted_unit, stamp_style
 from hersey.schema.warning import Warning
 
 #: Bytes looked at; preambles of data loggers are far shorter.
@@ -31,8 +34,6 @@ _COMMENTS = ("#", "~", "//")
 #: How JSON of objects begins, and what a result of this package in JSON states.
 _JSON = re.compile(r'\s*\[?\s*\{\s*"')
 _RESULT = '"hersey_version"'
-#: Name of a clock of WinCC that counts millionths of a day.
-_OF_WINCC = "Time_ms"
 #: A number with its unit.
 _WITH_UNIT = re.compile(r"([-+]?[0-9][0-9.,]*(?:[eE][-+]?[0-9]+)?) ?([A-Za-zµμ°%][A-Za-z0-9µμ°%*/·^]*)")
 
@@ -94,7 +95,7 @@ def find_layout(start: bytes, name: str, *, separators: str = SEPARATORS) -> Lay
     columns, stamps = _with_stamps(columns, rows)
     style = style_of([cell for row in rows for cell in row])
     columns, warnings = _with_epochs(columns, rows, style, [] if headless else header)
-    texts = frozenset(c.index for c in columns if c.index not in stamps and _holds_words(rows, c.index))
+    texts = frozenset(c.index for c in columns if c.index not in stamps and _holds_words(rows, c))
     if not headless:
         refuse_long(name, columns, texts, stamps, rows, header)
     first_line = numbered[table.first][0]
@@ -209,7 +210,7 @@ def _refuse_long_words(numbered: list[Numbered], separator: str, name: str) -> N
     width = Counter(map(len, rows)).most_common(1)[0][0]
     header, *rows = [row for row in rows if len(row) == width]
     columns, stamps = _with_stamps(tuple(Column(i, cell, "") for i, cell in enumerate(header)), rows)
-    texts = {i for i in range(width) if i not in stamps and _holds_words(rows, i)}
+    texts = {c.index for c in columns if c.index not in stamps and _holds_words(rows, c)}
     refuse_long(name, columns, texts, stamps, rows, header)
 
 
@@ -252,15 +253,17 @@ def _with_stamps(
     """Columns of time stamps, which are read in s whatever unit the header gives them."""
     stamps: dict[int, StampStyle] = {}
     for column in columns:
-        style = stamp_style([row[column.index] for row in rows[:1000] if not is_missing(row[column.index])])
+        cells = [row[column.index] for row in rows[:1000] if not is_missing(row[column.index])]
+        style = stamp_style([cell for cell in cells if not was_number(column.name, cell)])
         if style is not None:
             stamps[column.index] = style
     return tuple(replace(c, unit="s") if c.index in stamps else c for c in columns), stamps
 
 
-def _holds_words(rows: list[list[str]], index: int) -> bool:
-    cells = [row[index] for row in rows[:1000] if not is_missing(row[index])]
-    return not cells or 2 * sum(looks_numeric(cell) for cell in cells) < len(cells)
+def _holds_words(rows: list[list[str]], column: Column) -> bool:
+    cells = [row[column.index] for row in rows[:1000] if not is_missing(row[column.index])]
+    numbers = sum(looks_numeric(cell) or was_number(column.name, cell) for cell in cells)
+    return not cells or 2 * numbers < len(cells)
 
 
 def _with_epochs(
@@ -269,16 +272,19 @@ def _with_epochs(
     """Clocks without unit that count since 1970 or in days of Excel, and ``Time_ms`` of WinCC."""
     out, warnings = [], []
     for column in columns:
-        wincc = column.unit == "ms" and header[column.index : column.index + 1] == [_OF_WINCC]
-        cells = [row[column.index] for row in rows[:1000]] if wincc or not column.unit else []
-        numbers = np.array([style.value(cell) for cell in cells if style.is_number(cell)])
-        unit, meaning = counted_since(column.name, numbers)
-        if wincc and unit != MILLIONTHS:
-            unit = ""
+        name = OF_WINCC if header[column.index : column.index + 1] == [OF_WINCC] else column.name
+        unit, meaning = counted_unit(name, column.unit, partial(_numbers, rows, column, style))
         if unit:
-            warnings.append(clock_without_unit(_OF_WINCC if wincc else column.name, meaning))
-        out.append(replace(column, unit=unit or column.unit))
+            warnings.append(clock_without_unit(name, meaning))
+            column = replace(column, name=name, unit=unit)  # whose ending is not its unit
+        out.append(column)
     return tuple(out), tuple(warnings)
+
+
+def _numbers(rows: list[list[str]], column: Column, style: NumberStyle) -> FloatArray:
+    """The numbers of a column in the first rows."""
+    cells = [row[column.index] for row in rows[:1000]]
+    return np.array([style.value(cell) for cell in cells if style.is_number(cell)])
 
 
 def _of_another_kind(name: str) -> str:

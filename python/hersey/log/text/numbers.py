@@ -17,6 +17,7 @@ LONGEST_NUMBER = 60
 MISSING = (
     *("", "nan", "-nan", "na", "n/a", "null", "none", "-", "--", "---", "inf", "-inf", "+inf"),
     *("ovl", "overload", "over", "ol", "#n/a", "#value!", "#div/0!", "#num!", "#ref!"),
+    *("#nv", "#wert!", "#zahl!", "#bezug!", "#name?", "#null!"),  # those of Excel in German too
     *("1.#qnan", "-1.#qnan", "1.#ind", "-1.#ind", "1.#inf", "-1.#inf", "nan(ind)", "-nan(ind)"),
 )
 #: The same, as polars takes them.

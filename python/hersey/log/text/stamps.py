@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import datetime
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -75,8 +76,8 @@ _MONTH = (
     "(?i:jan(uary)?|feb(ruary)?|mar(ch)?|apr(il)?|may|june?|july?|aug(ust)?|sep(tember)?|oct(ober)?"
     "|nov(ember)?|dec(ember)?)"
 )
-#: A millionth of a day.
-MILLIONTHS = "86.4 ms"
+#: A millionth of a day, and the name of a clock of WinCC that counts them.
+MILLIONTHS, OF_WINCC = "86.4 ms", "Time_ms"
 #: More rows than this in what is written as a second are those of a minute.
 _ROWS_OF_A_SECOND = 200
 #: A time such as 0:05, which could be hours and minutes too.
@@ -252,6 +253,17 @@ def counted_since(name: str, numbers: FloatArray) -> tuple[str, str]:
     if low > 3e10 and high < 7e10:  # WinCC calls this Time_ms; a count in ms would end in 1972
         return MILLIONTHS, "Excel days times a million"
     return "", ""
+
+
+def counted_unit(name: str, unit: str, numbers: Callable[[], FloatArray]) -> tuple[str, str]:
+    """Return unit and meaning of a clock as `counted_since` does, two empty words if its own unit holds.
+
+    Only ``Time_ms`` may count otherwise than its unit says.
+    """
+    if unit and (name, unit) != (OF_WINCC, "ms"):
+        return "", ""
+    found, meaning = counted_since(name, numbers())
+    return (found, meaning) if not unit or found == MILLIONTHS else ("", "")
 
 
 def clock_without_unit(column: str, meaning: str) -> Warning:
