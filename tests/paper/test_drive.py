@@ -48,9 +48,14 @@ def machine() -> Machine:
 
 
 @pytest.fixture(scope="module")
-def measured(points: SteadyPoints) -> Measured:
-    """Dwells of the test stand's law: exponents -0.7 and -1.2, a transition that moves with temperature."""
-    return Measured.of(points)
+def measured(points: SteadyPoints, machine: Machine) -> Measured:
+    """Dwells of the test stand's law: exponents -0.7 and -1.2, a transition that moves with temperature.
+
+    What the drive takes was measured with them and is subtracted.
+    """
+    assert machine.rest is not None
+    whole = points.column("torque") + machine.rest.torque(points.column("speed"))
+    return Measured.of(replace(points, table=points.table.with_columns(torque=whole)).without(machine.rest))
 
 
 @pytest.fixture(scope="module")
