@@ -63,8 +63,11 @@ MADE = {
         "RECORD = hersey.cycles(TRACE.time, TRACE.value, drive_speed=0.02)"
     ),
     "POINTS": 'POINTS = hersey.read(BENCH).steady(tare="standing")',
-    "SURFACE": 'SURFACE = hersey.fit(hersey.read(BENCH).steady(tare="standing"))',
     "MACHINE": 'MACHINE = hersey.read_machine("examples/machine.toml")',
+    "SURFACE": (
+        'SURFACE = hersey.fit(hersey.read(BENCH).steady(tare="standing").without('
+        'hersey.read_machine("examples/machine.toml").rest))'
+    ),
 }
 #: Each with what would make it last for long.
 CALLS = {
@@ -88,7 +91,7 @@ CALLS = {
     "models": "[hersey.compare_models(POINTS) for _ in range(9999)]",
     "identify": "[hersey.identify(RECORD) for _ in range(99)]",
     "study": "[study(POINTS) for _ in range(999)]",
-    "map": ("[hersey.operating_map(SURFACE, MACHINE) for _ in range(999)]"),
+    "map": "[hersey.operating_map(SURFACE, MACHINE) for _ in range(999)]",
     "plan": "[plan_profile(PLANNED, DRAG, target_speed=1.2) for _ in range(999)]",
     "films": "_core.layer(np.broadcast_arrays(np.linspace(900.0, 1300.0, 10**7), 0.015, 0.0035, 2e6, 0.48))",
 }

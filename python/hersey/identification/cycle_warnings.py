@@ -86,14 +86,24 @@ def in_unit(warning: Warning, unit: str, *, chosen: bool) -> Warning:
 
 
 def _many_small(numbers: Mapping[str, Any], unit: str = "", *, chosen: bool = True) -> Warning:
-    shown = "" if unit in ("", "1") else " {unit}"
-    typed = "{option:{half:.3g}" + shown + "}" if unit else "{option}={half:.3g}"
+    plain = unit in ("", "1")
+    remedy = "choose it, e.g. half the median with " + (
+        "{option}={half:.3g}"
+        if not unit
+        else "{option:{half:.3g}}"
+        if plain
+        else "{option:{half:.3g} {unit}}"
+    )
     return Warning(
         MANY_SMALL,
         "{small} of {slips} slips are smaller than half the median, so their number depends on the "
-        f"smallest drop counted ({{least:.3g}}{shown} here; samples scatter by {{scatter:.3g}}{shown})",
+        + (
+            "smallest drop counted ({least:.3g} here; samples scatter by {scatter:.3g})"
+            if plain
+            else "smallest drop counted ({least:.3g} {unit} here; samples scatter by {scatter:.3g} {unit})"
+        ),
         severity="watch",
-        remedy=f"choose it, e.g. half the median with {typed}" if chosen else "",
+        remedy=remedy if chosen else "",
         **(dict(numbers) | {"option": Setting("least_drop")} | ({"unit": unit} if unit else {})),
     )
 

@@ -76,7 +76,14 @@ class LeftOut:
                 "rows left out",
                 "{rows} {rows:row was|rows were} excluded: {faults}"
                 + ("; and {others} more" if self.rows > len(self.words) else ""),
-                remedy=numbers_lost(self.dates) if self.dates else "",
+                remedy=(
+                    "A spreadsheet has made dates of numbers in column '{dates}', and this file has lost "
+                    "these numbers. Export it again from the original file, with the column formatted as "
+                    "number"
+                )
+                if self.dates
+                else "",
+                dates=self.dates,
                 rows=self.rows,
                 faults="; ".join(self.words),
                 others=self.rows - len(self.words),
