@@ -46,7 +46,8 @@ def test_few_of_them_are_warned_of(tmp_path: Path) -> None:
     path = tmp_path / "log.csv"
     path.write_text(table(100, "05. Jan"))
     (warning,) = hersey.read(path).files[0].warnings
-    assert (warning.values["rows"], warning.remedy) == (4, LOST)
+    assert warning.values["rows"] == 4
+    assert LOST in warning.text
 
 
 def test_cells_of_a_workbook_that_are_dates_are_called_so(tmp_path: Path) -> None:
