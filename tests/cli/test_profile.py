@@ -44,7 +44,7 @@ def test_a_remark_in_windows_1252_does_no_harm(tmp_path: Path) -> None:
         ("0,1\n1,2\n", r"'time \(s\),speed \(mm/s\)' in line 1"),
         ("time (s),n (rpm)\n0,0\n", r"no column is named speed.*'n \[rpm\]'.*'speed \(mm/s\)'"),
         ("time (s),speed\n0,0\n", r"column 'speed' has no unit. Write 'speed \(mm/s\)'"),
-        ("time (s),speed (rpm)\n0,0\n", r"column 'speed \[rpm\]': unit 'rpm' is not a unit of belt speed"),
+        ("time (s),speed (rpm)\n0,0\n", r"column 'speed \[rpm\]': unit 'rpm' is that of a speed of rotation"),
         ("time (s),speed (mm/s),speed (m/s)\n0,0,0\n", "more than one column is named speed"),
         ("time (s),speed (mm/s)\n", "no rows"),
         ("time (s),speed (mm/s)\n0,1\n1,x\n", "line 3, column 'speed': 'x' is not a number"),

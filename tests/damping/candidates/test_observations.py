@@ -47,6 +47,7 @@ def points(
             has_temperature=temperature, sensors=Sensors(film_heating=heating), corrections=(), runs=()
         ),
         temperature_rates=np.empty(0),
+        rejected=(),
         column=lambda name: table[name].to_numpy(),
     )
 
