@@ -432,6 +432,13 @@ def test_a_doubtful_unit_is_told_of_logs_and_of_tables_of_means(tmp_path: Path) 
         "The clock gives one row every 50 s, which is unusually slow. "
         "If it counts milliseconds, use units={'time': 'ms'}."
     )
+    stated = inspect(log, isothermal=True, every=50.0).warnings[0]
+    assert stated.sentence == (
+        "Rows are 50 s apart (every), which is unusually slow. If that is milliseconds, use every='50 ms'."
+    )
+    assert "unit of time doubtful" not in {
+        each.kind for each in inspect(log, isothermal=True, every="50 ms").warnings
+    }
     log.write_text("speed [rpm],torque [N*m],temp [degC]\n10,1,420\n20,1.1,421\n30,1.3,422\n")
     assert inspect(log, means=True).warnings[0].sentence.startswith("Temperature reaches 422 degC")
 
