@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hersey.arrays import FloatArray
-from hersey.errors import ParameterError, TimeOrderError
+from hersey.errors import ParameterError, Setting, TimeOrderError
 from hersey.log.torque_log import Run
 
 #: Fewer rows than these may be equal by chance.
@@ -83,6 +83,7 @@ def refuse_rows_repeated(arrays: Mapping[str, FloatArray], file: str, place: Cal
         raise TimeOrderError(
             f"{file}: the rows {pasted} repeat those from {place(earlier)} to {place(earlier + rows - 1)}",
             remedy=f"delete the rows {pasted}",
+            setting=Setting("time", "channel"),
         )
 
 
