@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from hersey import units
 from hersey.errors import UnitError, WrongKindError
-from hersey.units import KINDS, Conversion, conversion, convert, parse
+from hersey.units import KINDS, Conversion, argument, conversion, convert, parse
 
 OUNCE_INCH = 0.45359237 / 16 * 9.80665 * 0.0254
 
@@ -303,6 +303,25 @@ def test_other_spellings_of_the_pen_are_read() -> None:
 def test_a_unit_of_another_kind_is_no_slip(kind: str, unit: str) -> None:
     with pytest.raises(WrongKindError, match=f"Write one such as {KINDS[kind][1]}".replace("*", "[*]")):
         conversion(kind, unit)
+
+
+@pytest.mark.parametrize(
+    ("text", "period", "seconds"),
+    [
+        ("20 Hz", "50 ms", 0.05),
+        ("1 kHz", "1 ms", 1e-3),
+        ("0.5 hertz", "2 s", 2.0),
+        ("30 Hz", "33.3333333 ms", 1 / 30),
+        ("20 kHz", "50 us", 5e-5),
+    ],
+)
+def test_a_frequency_in_place_of_a_time_becomes_its_period(text: str, period: str, seconds: float) -> None:
+    with pytest.raises(WrongKindError) as refused:
+        argument("every", "time", text)
+    assert str(refused.value) == f"every: '{text}' is a frequency, not a time. Write its period, '{period}'"
+    assert parse("time", period) == pytest.approx(seconds, rel=1e-8)
+    with pytest.raises(UnitError, match="Write one such as s"):
+        parse("time", "0 Hz")
 
 
 def test_every_unit_that_is_proposed_can_be_read() -> None:

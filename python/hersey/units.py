@@ -103,6 +103,8 @@ _MISTAKEN = {
 }  # fmt: skip
 #: How alike (`difflib`) a usual unit must be to an unknown one, and to one of another kind, to be proposed.
 _ALIKE, _ALIKE_OF_ANOTHER_KIND = 0.6, 0.8
+#: Counts of one revolution of an encoder, as an example.
+COUNTS = 2000
 
 #: Exponents of m, kg, s, K and rad. The angle counts here, so that 1/s is no speed of a drive.
 _Dimension = tuple[int, int, int, int, int]
@@ -178,6 +180,14 @@ _COUNT = rf"10\^[-+]?[0-9]{{1,2}}|{_NUMBER}"
 _TIMES = re.compile(rf"[x\u00d7]\s*({_COUNT})\s*([A-Za-z°%].*)|([A-Za-z°%].*?)\s*[x\u00d7]\s*({_COUNT})")
 _POWER = re.compile(r"(?<=[A-Za-z)])(\*\*|\^)-?[1-4](?![\d.^]|\*\*)")
 _TERM = re.compile(r"([*/]?)([A-Za-zµμ]+|1)(?:(?:\*\*|\^)(-?[1-4]))?")
+#: Counts of an encoder in a time, or alone.
+_COUNTS = re.compile(
+    r"(?:counts?|cn?ts?|puls(?:es?)?|ticks?|in[ck]r?|increments?|inkremente?|imp|impulses?|steps?|[cp]ps)"
+    r"(?:\s*/\s*(s|ms|sec|second|min))?",
+    re.IGNORECASE,
+)
+#: Units of a frequency as people write them, in lower case, and each in Hz.
+_HERTZ = {"hz": 1.0, "hertz": 1.0, "khz": 1e3, "mhz": 1e6, "sps": 1.0}
 _ANGLES = re.compile(r"radian|degree|rev|turn|cycle|arc")
 _ENERGIES = re.compile(r"joule|watt|volt|calorie|erg|british")
 
@@ -206,6 +216,11 @@ def conversion(kind: str, unit: str) -> Conversion:
     if len(unit) > _LONGEST_UNIT:
         shown = f"'{unit[:20]}...' ({len(unit)} characters, at most {_LONGEST_UNIT} are allowed)"
         raise UnitError(f"unknown unit {shown}", remedy=f"write one such as {example}")
+    if kind == "speed" and (counted := of_encoder(unit)):
+        raise WrongKindError(
+            f"unit '{unit}' of a speed needs the counts of one revolution",
+            remedy=f"write {counted}, with your value instead of {COUNTS}",
+        )
     factor, text = _split_factor(unit.strip(), unit, kind)
     line, standard = (_from_table(each, energy=kind in _ENERGY_KINDS) for each in (text, si))
     if line and standard and line[2] == standard[2]:
@@ -217,6 +232,18 @@ def conversion(kind: str, unit: str) -> Conversion:
     if not 1e-15 < abs(factor * scale) < 1e15:
         raise UnitError(f"the factor in unit '{unit}' is impossible")
     return Conversion(unit, factor * scale, zero)
+
+
+def of_encoder(unit: str) -> str:
+    """Return the unit of a speed in counts of an encoder, `COUNTS` a revolution; nothing for any other unit.
+
+    Examples
+    --------
+    >>> of_encoder("counts/s"), of_encoder("inc/min"), of_encoder("rpm")
+    ('rev/s/2000', 'rev/min/2000', '')
+    """
+    match = _COUNTS.fullmatch(unit.strip())
+    return f"rev/{(match[1] or 's').lower()}/{COUNTS}" if match else ""
 
 
 @lru_cache(maxsize=256)
@@ -363,11 +390,23 @@ def parse(kind: str, text: str) -> float:
         raise UnitError(f"'{text}' is not a number with a unit of {kind}. Write {_written(kind, text)}")
     if re.match(r"(\S+\s+)?to\s", match[2]):
         raise UnitError(f"'{text}' is a range. Write one value here, e.g. '{match[1]} {example}'")
+    if kind == "time" and (period := _period(float(match[1]), match[2])):
+        raise WrongKindError(f"'{text}' is a frequency, not a time", remedy=f"write its period, '{period}'")
     line = conversion(kind, match[2])
     value = line.scale * float(match[1]) + line.offset
     if not math.isfinite(value):
         raise UnitError(f"'{text}' is not a finite number")
     return value
+
+
+def _period(number: float, unit: str) -> str:
+    """The period of a frequency; nothing for any other quantity."""
+    scale = _HERTZ.get(unit.lower(), 0.0)
+    if not 0.0 < number * scale < math.inf:
+        return ""
+    period = 1.0 / (number * scale)
+    size, name = next(((s, n) for s, n in ((1.0, "s"), (1e-3, "ms")) if period >= s), (1e-6, "us"))
+    return f"{period / size:.9g} {name}"
 
 
 def _written(kind: str, text: str) -> str:

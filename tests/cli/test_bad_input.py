@@ -51,7 +51,7 @@ FILES: dict[str, tuple[bytes, list[str]]] = {
     "ambiguous speed unit": (text(staircase(), HEADER.replace("rpm", "Hz")), ["revolutions or radians"]),
     "no torque column": (text(staircase(), HEADER.replace("Torque [N*m]", "Force [N]")), ["--torque"]),
     "time running backwards": (
-        text([*staircase()[:80], *staircase()[40:]]),
+        text([*staircase()[:80], *staircase()[70:40:-1]]),
         ["line 82", "backwards"],
     ),
     "many NaN rows": (

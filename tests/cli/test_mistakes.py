@@ -174,6 +174,15 @@ def split_there(it: Refused) -> list[str]:
     return ["fit", "first.csv", "second.csv"]
 
 
+def lines_deleted(it: Refused) -> list[str]:
+    """Delete the lines that the message names."""
+    match = re.search(r"hersey: (\S+): .*Delete the rows from line (\d+) to line (\d+)", it.message)
+    assert match
+    lines = (it.folder / match[1]).read_text().splitlines()
+    (it.folder / match[1]).write_text("\n".join(lines[: int(match[2]) - 1] + lines[int(match[3]) :]) + "\n")
+    return it.arguments
+
+
 def recorded(it: Refused) -> list[str]:
     """Record what the message asks for: dwells as long as it says, at as many speeds, or slower ones."""
     lasts = re.search(r"[Hh]old (?:one|each) speed for at least ([\d.]+) s", it.message)
@@ -366,10 +375,16 @@ MISTAKES: dict[str, Mistake] = {
         {"log.csv": named(0, "Time [ms]")}, "fit log.csv", ("the whole log lasts only 0.0899 s",)
     ),
     "a clock that runs backwards": Mistake(
-        {"log.csv": table(rows()[:300] + rows()[270:])},
+        {"log.csv": table(rows()[:300] + column(1, lambda x: 1.001 * x)[270:])},
         "fit log.csv",
         ("line 302", "runs backwards"),
         split_there,
+    ),
+    "rows pasted twice": Mistake(
+        {"log.csv": table(rows()[:300] + rows()[240:])},
+        "fit log.csv",
+        ("the rows from line 302 to line 361 repeat those from line 242 to line 301",),
+        lines_deleted,
     ),
     "decimal commas between commas": Mistake(
         {"log.csv": table(rows(), number="{:.3f}").replace(".", ",").replace("N*m", "N*m")},

@@ -127,6 +127,12 @@ HONEST = {
     "a ramp": np.linspace(0.0, 1.0, 500),
     "noise": np.random.default_rng(4).standard_normal(20_000),
     "heavy noise": np.random.default_rng(5).standard_t(4, 20_000),
+    "a torque held at the limit of a motor": np.minimum(
+        1.0, 0.5 + 0.3 * np.random.default_rng(7).standard_normal(400).repeat(50)
+    )
+    + 0.01 * np.random.default_rng(8).standard_normal(20_000).round(1),
+    "a highest set point held again and again": held_levels(200, *[0, 20, 40, 60] * 5)
+    + np.random.default_rng(9).integers(-2, 3, 4000),
     "a step": np.concatenate([np.zeros(500), np.ones(500)]) + 0.01 * np.random.default_rng(6).random(1000),
 }
 
@@ -240,7 +246,7 @@ def test_a_log_whose_time_steps_back_is_shown_all_the_same(tmp_path: Path) -> No
     path = tmp_path / "twice.csv"
     pl.concat([table, table.tail(2000)]).write_csv(path)
     found = inspect(path)
-    assert "time runs backwards" in found.problem
+    assert "the rows from line 3002 to line 5001 repeat those from line 1002 to line 3001" in found.problem
     assert found.support is None
     back = {each.kind: each for each in found.channel_warnings}["time steps back"]
     assert back.values == {"times": 1, "row": 3001}
@@ -259,7 +265,7 @@ def test_a_log_pasted_twice_into_one_file_supports_no_fit(tmp_path: Path) -> Non
     pl.concat([table, table]).write_csv(tmp_path / "twice.csv")
     found = inspect(tmp_path / "twice.csv")
     assert found.support is None
-    assert "run 1 of 2 are the same: one is a copy of the other. Delete one of them" in found.summary()
+    assert "the rows from line 3002 to line 6001 repeat those from line 2 to line 3001" in found.summary()
 
 
 def test_a_time_without_a_unit_is_not_called_missing(tmp_path: Path) -> None:
@@ -432,6 +438,13 @@ def test_a_doubtful_unit_is_told_of_logs_and_of_tables_of_means(tmp_path: Path) 
         "The clock gives one row every 50 s, which is unusually slow. "
         "If it counts milliseconds, use units={'time': 'ms'}."
     )
+    stated = inspect(log, isothermal=True, every=50.0).warnings[0]
+    assert stated.sentence == (
+        "Rows are 50 s apart (every), which is unusually slow. If that is milliseconds, use every='50 ms'."
+    )
+    assert "unit of time doubtful" not in {
+        each.kind for each in inspect(log, isothermal=True, every="50 ms").warnings
+    }
     log.write_text("speed [rpm],torque [N*m],temp [degC]\n10,1,420\n20,1.1,421\n30,1.3,422\n")
     assert inspect(log, means=True).warnings[0].sentence.startswith("Temperature reaches 422 degC")
 

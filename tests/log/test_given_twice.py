@@ -9,6 +9,7 @@ import polars as pl
 import pytest
 
 import hersey
+from hersey.errors import TimeOrderError
 from hersey.inspection import inspect
 from hersey.verdict.warnings import warnings_of
 
@@ -42,6 +43,53 @@ def test_one_other_reading_makes_two_measurements() -> None:
 
 def test_a_torque_that_never_changes_may_come_twice() -> None:
     assert len(hersey.read([log(np.full(600, 0.2)), log(np.full(600, 0.2), step=0.2)]).runs) == 2
+
+
+def pasted(table: pl.DataFrame, first: int, end: int, at: int) -> list[str]:
+    """The lines of a table in which some rows come once more, at another row."""
+    head, *rows = table.write_csv().splitlines()
+    return [head, *rows[:at], *rows[first:end], *rows[at:]]
+
+
+@pytest.mark.parametrize(
+    ("first", "end", "at"), [(0, 300, 300), (200, 400, 400), (200, 400, 500), (0, 100, 600)]
+)
+def test_rows_that_are_pasted_twice_are_named_and_can_be_deleted(
+    first: int, end: int, at: int, tmp_path: Path
+) -> None:
+    lines, file = pasted(log(0.2 + NOISE), first, end, at), tmp_path / "log.csv"
+    file.write_text("\n".join(lines))
+    again = f"from line {at + 2} to line {at + end - first + 1}"
+    with pytest.raises(TimeOrderError) as refused:
+        hersey.read(file)
+    assert str(refused.value) == (
+        f"log.csv: the rows {again} repeat those from line {first + 2} to line {end + 1}. "
+        f"Delete the rows {again}"
+    )
+    file.write_text("\n".join(lines[: at + 1] + lines[at + 1 + end - first :]))
+    assert hersey.read(file).rows == 600
+
+
+def test_rows_of_other_readings_at_the_same_times_are_another_run() -> None:
+    start, torque = log(0.2 + NOISE)[:300], 0.2 + NOISE
+    assert len(hersey.read(pl.concat([start, log(torque[::-1])])).runs) == 2
+    held = pl.concat([log(np.full(600, 0.2))[:300], log(np.full(600, 0.2))])
+    assert len(hersey.read(held).runs) == 2
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_rows_that_two_files_share_are_refused(turned: bool, tmp_path: Path) -> None:
+    files = [tmp_path / "a.csv", tmp_path / "b.csv"]
+    whole = log(0.2 + NOISE)
+    whole[:400].write_csv(files[0])
+    whole[350:].write_csv(files[1])
+    with pytest.raises(hersey.HerseyError) as refused:
+        hersey.read(files[::-1] if turned else files)
+    assert str(refused.value) == (
+        "the first 50 rows of b.csv, 35 to 39.9 s, are also in a.csv. Delete them in b.csv"
+    )
+    whole[400:].write_csv(files[1])
+    assert hersey.read(files).rows == 600
 
 
 def test_stamps_in_whole_seconds_miss_no_rows() -> None:

@@ -52,6 +52,40 @@ def test_a_tachometer_has_a_unit_as_well(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
+    ("counted", "advice", "seconds"),
+    [
+        ("counts/s", "rev/s/2000", 1),
+        ("counts", "rev/s/2000", 1),
+        ("cts/min", "rev/min/2000", 60),
+        ("pulses/s", "rev/s/2000", 1),
+        ("ticks/min", "rev/min/2000", 60),
+        ("inc/s", "rev/s/2000", 1),
+        ("Imp/min", "rev/min/2000", 60),
+        ("steps/s", "rev/s/2000", 1),
+    ],
+)
+def test_counts_of_an_encoder_need_those_of_one_revolution(
+    counted: str, advice: str, seconds: int, tmp_path: Path
+) -> None:
+    file = log(tmp_path, "torque [N*m]", f"speed [{counted}]")
+    with pytest.raises(UnitError) as refused:
+        hersey.read(file)
+    assert str(refused.value) == (
+        f"log.csv: column 'speed': unit '{counted}' of a speed needs the counts of one revolution. "
+        f"Use units={{'speed': '{advice}'}}, with your value instead of 2000"
+    )
+    assert (refused.value.columns, refused.value.likely) == ((2,), "")
+    read = hersey.read(file, units={"speed": advice})
+    assert float(read.runs[0].speed.mean()) == pytest.approx(30 / 2000 * 2 * 3.14159265 / seconds)
+
+
+def test_a_speed_in_counts_gives_way_to_one_in_rpm(tmp_path: Path) -> None:
+    file = log(tmp_path, "torque [N*m]", "speed [rpm],speed raw [counts/s]")
+    file.write_text(file.read_text().replace(",50", ",1000,50"))
+    assert [each.name for each in hersey.read(file).files[0].channels if each.role == "speed"] == ["speed"]
+
+
+@pytest.mark.parametrize(
     ("torque", "unit", "advice"),
     [
         ("torque [A]", "N*m", "35 mN*m/A"),

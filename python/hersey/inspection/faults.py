@@ -27,9 +27,10 @@ QUIET = 0.7
 #: unless its value is held more often than so; at most so many are looked at.
 STUCK_ROWS, STUCK_CHANCE, RECURRING, MOST_STRETCHES = 20, 1e-6, 2, 200
 #: Clipped: two plateaus or more of at least so many rows at the extreme, so many rows in all, the extreme so
-#: much more frequent than any other value, and elsewhere noise of so many steps (rounding alone makes 0.3) in
-#: at least this share of the rows.
-PLATEAU_ROWS, CLIPPED_ROWS, CLIPPED_EXCESS, CLIPPED_NOISE, UNCLIPPED = 3, 10, 5.0, 1.0, 0.2
+#: much more frequent than any value within so many times the noise from it.
+PLATEAU_ROWS, CLIPPED_ROWS, CLIPPED_EXCESS, CLIPPED_NEAR = 3, 10, 5.0, 3.0
+#: And elsewhere noise of so many steps (rounding alone makes 0.3) in at least this share of the rows.
+CLIPPED_NOISE, UNCLIPPED = 1.0, 0.2
 #: What stands shows less than this share of its greatest value.
 STANDS = 0.005
 #: Neighbours elsewhere are equal in at most this share of a channel whose plateaus mean something.
@@ -180,9 +181,8 @@ def dropouts(values: FloatArray, *, stands: bool = False) -> list[Fault]:
 def clipping(values: FloatArray, step: float | None, *, stands: bool = False) -> list[Fault]:
     """Return plateaus at the greatest and least value of a channel that is noisy elsewhere."""
     starts, lengths = equal_runs(values)
-    _, counts = np.unique(values, return_counts=True)
+    levels, counts = np.unique(values, return_counts=True)
     plateaus = []
-    usual = int(counts[1:-1].max(initial=1))
     standing = STANDS * float(np.max(np.abs(values)))
     for limit in (float(values.max()), float(values.min())):
         if stands and abs(limit) <= standing:
@@ -190,13 +190,15 @@ def clipping(values: FloatArray, step: float | None, *, stands: bool = False) ->
         flat = (values[starts] == limit) & (lengths >= PLATEAU_ROWS)
         rows = int(lengths[flat].sum())
         away = (values != values.max()) & (values != values.min())
+        noise = noise_of(values[away]) or 0.0
+        beside = (levels != limit) & (np.abs(levels - limit) <= CLIPPED_NEAR * noise)
+        usual = int(counts[beside].max(initial=1))
         few = np.count_nonzero(flat) < 2 or rows < max(CLIPPED_ROWS, CLIPPED_EXCESS * usual)
         if few or np.mean(away) < UNCLIPPED:
             continue
         pairs = away[1:] & away[:-1]
         same = int(np.count_nonzero((values[1:] == values[:-1]) & pairs))
         equal = same / max(1, int(np.count_nonzero(pairs)))
-        noise = noise_of(values[away]) or 0.0
         least = CLIPPED_NOISE * step if step else 1e-9 * float(np.ptp(values))
         if equal <= PLATEAU_QUIET and noise > least:
             kind = "clipped above" if limit == values.max() else "clipped below"

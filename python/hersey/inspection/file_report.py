@@ -191,6 +191,7 @@ def _of_fault(fault: Fault, channel_traits: Traits, unit: str, role: str) -> War
     return Warning(
         fault.kind,
         "{fault} at {reading} in {rows} {rows:row|rows} ({share:.2g %}) {place}",
+        remedy="record again with a wider measuring range" if role else "",
         fault=fault.kind,
         **numbers,
     )

@@ -10,8 +10,8 @@ from hersey.arrays import FloatArray
 from hersey.errors import Setting
 from hersey.log.believed import TENTHS, as_written, in_si
 from hersey.log.means import MeansTable
-from hersey.log.roles import is_frequency, is_of_kind
-from hersey.log.torque_log import Channel, TorqueLog
+from hersey.log.roles import EVERY, is_frequency, is_of_kind
+from hersey.log.torque_log import NO_CLOCK, Channel, TorqueLog
 from hersey.schema.warning import Warning
 from hersey.units import celsius, conversion
 
@@ -30,16 +30,7 @@ def doubtful_units(log: TorqueLog | MeansTable) -> list[Warning]:
     out = []
     steps = [run.sampling_interval for run in log.runs]
     if steps and min(steps) >= RARE:
-        out.append(
-            Warning(
-                "unit of time doubtful",
-                "the clock gives one row every {interval:.4g} s, which is unusually slow",
-                severity="watch",
-                remedy="if it counts milliseconds, use {how:ms}",
-                interval=min(steps),
-                how=Setting("time", "unit"),
-            )
-        )
+        out.append(_slow(min(steps), stated=any(c.name == NO_CLOCK for c in log.files[0].channels)))
     electrical = next((c.name for c in log.files[0].channels if _may_be_electrical(c)), "")
     if electrical:
         out.append(
@@ -75,6 +66,24 @@ def doubtful_units(log: TorqueLog | MeansTable) -> list[Warning]:
             )
         )
     return out
+
+
+def _slow(interval: float, *, stated: bool) -> Warning:
+    """A time between rows that no logger of a drive has, read from a column or stated for all rows."""
+    words = "the clock gives one row every {interval:.4g} s, which is unusually slow"
+    remedy = "if it counts milliseconds, use {how:ms}"
+    if stated:
+        words = "rows are {interval:.4g} s apart ({how}), which is unusually slow"
+        remedy = "if that is milliseconds, use {how:{meant}}"
+    return Warning(
+        "unit of time doubtful",
+        words,
+        severity="watch",
+        remedy=remedy,
+        interval=interval,
+        meant=f"{interval:.6g} ms",
+        how=EVERY if stated else Setting("time", "unit"),
+    )
 
 
 def _may_be_electrical(channel: Channel) -> bool:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from hashlib import sha256
 
 import numpy as np
+from numpy.typing import NDArray
 
-from hersey.errors import ParameterError
+from hersey.arrays import FloatArray
+from hersey.errors import ParameterError, Setting, TimeOrderError
 from hersey.log.torque_log import Run
 
 #: Fewer rows than these may be equal by chance.
@@ -35,6 +37,80 @@ def refuse_given_twice(runs: Sequence[Run]) -> None:
                 "one is a copy of the other",
                 remedy="delete one of them",
             )
+
+
+def refuse_rows_shared(runs: Sequence[Run]) -> None:
+    """Refuse two runs of which the end of one is the beginning of the other, times included.
+
+    Raises
+    ------
+    ParameterError
+        Naming the rows.
+    """
+    starts = np.array([run.time[0] for run in runs])
+    torques = np.array([run.torque[0] for run in runs])
+    for run in runs if len(runs) > 1 else ():
+        at = np.minimum(np.searchsorted(run.time, starts), run.time.size - 1)
+        for number in map(int, np.flatnonzero((run.time[at] == starts) & (run.torque[at] == torques))):
+            later, row = runs[number], int(at[number])
+            rows = min(run.time.size - row, later.time.size)
+            if later is run or rows < _FEW or not np.ptp(later.torque[:rows]):
+                continue
+            if np.array_equal(_bits(run, row, row + rows), _bits(later, 0, rows)):
+                raise ParameterError(
+                    f"the first {rows} rows of {later.name}, {later.time[0]:.6g} to "
+                    f"{later.time[rows - 1]:.6g} s, are also in {run.name}",
+                    remedy=f"delete them in {later.name}",
+                )
+
+
+def refuse_rows_repeated(arrays: Mapping[str, FloatArray], file: str, place: Callable[[int], str]) -> None:
+    """Refuse a file in which rows repeat earlier ones, times included, as if they were pasted twice.
+
+    ``arrays`` are those of its rows by role, and ``place`` says in words where a row stands.
+
+    Raises
+    ------
+    TimeOrderError
+        Naming both stretches.
+    """
+    time, torque = arrays["time"], arrays["torque"]
+    for row, earlier, rows in _repeated(arrays):
+        end = row + rows
+        if not np.ptp(torque[row:end]) or (end < time.size and time[end] < time[row - 1]):
+            continue
+        pasted = f"from {place(row)} to {place(end - 1)}"
+        raise TimeOrderError(
+            f"{file}: the rows {pasted} repeat those from {place(earlier)} to {place(earlier + rows - 1)}",
+            remedy=f"delete the rows {pasted}",
+            setting=Setting("time", "channel"),
+        )
+
+
+def _repeated(arrays: Mapping[str, FloatArray]) -> Iterator[tuple[int, int, int]]:
+    """Where time falls back to rows that are there already: the row, the earlier one, and how many agree."""
+    time = arrays["time"]
+    back = np.append(False, np.diff(time) < 0)
+    if not back.any():
+        return
+    rows = _as_bits([values for role, values in arrays.items() if role != "run"])
+    seen: dict[bytes, int] = {}
+    for row in map(int, np.flatnonzero(np.isin(time, time[back]))):
+        earlier = seen.setdefault(rows[row : row + _FEW].tobytes(), row)
+        if back[row] and earlier < row <= time.size - _FEW:
+            most = min(row - earlier, time.size - row)
+            differ = np.any(rows[earlier : earlier + most] != rows[row : row + most], axis=1)
+            yield row, earlier, int(np.argmax(differ)) if differ.any() else most
+
+
+def _bits(run: Run, first: int, end: int) -> NDArray[np.int64]:
+    channels = (run.time, run.torque, run.speed, run.temperature)
+    return _as_bits([each[first:end] for each in channels if each is not None])
+
+
+def _as_bits(channels: Sequence[FloatArray]) -> NDArray[np.int64]:
+    """Channels as columns of integers that are equal where the numbers are, missing ones included."""
+    return np.column_stack([np.ascontiguousarray(each, dtype=np.float64).view(np.int64) for each in channels])
 
 
 def _rows(run: Run) -> bytes:

@@ -15,7 +15,7 @@ from hersey.log.exchanged import refuse_exchanged
 from hersey.log.formats import format_of, opened
 from hersey.log.formats.frame import frame_recording, is_frame
 from hersey.log.friction import of_each_run
-from hersey.log.given_twice import refuse_given_twice
+from hersey.log.given_twice import refuse_given_twice, refuse_rows_shared
 from hersey.log.not_a_log import is_one, refuse_not_a_log
 from hersey.log.recording import columns, nothing_to_read
 from hersey.log.roles import CHANNELS, OTHER_ROLES, ROLES, UNITS
@@ -108,6 +108,7 @@ def read(
     done = of_each_run(done, stated)
     log = TorqueLog(tuple(run for run, _ in done), tuple(log for _, log in done))
     refuse_given_twice(log.runs)
+    refuse_rows_shared(log.runs)
     refuse_exchanged(log, choices)
     return log
 

@@ -17,7 +17,7 @@ from hersey.log.roles import (
 )
 from hersey.log.signals import apart, is_signal, of_an_input, per, says_how_much, way_out
 from hersey.log.text.column import Column
-from hersey.units import KINDS, Conversion, nearest_unit
+from hersey.units import COUNTS, KINDS, Conversion, nearest_unit, of_encoder
 
 _INVERTER = "If it is the frequency of an inverter, divide by the pole pairs of the motor, e.g. for 2 use"
 
@@ -60,12 +60,13 @@ def with_unit(
         line = role_conversion(role, unit)[1]
     except UnitError as error:
         swapped = _swapped(role, column, unit, columns, taken)
+        unlike = swapped[1] or is_signal(unit) or (role == "speed" and of_encoder(unit))
         raise UnitError(
             f"{file}: column '{column.path}': {error.reason}{swapped[0]}",
             columns=(column.index,),
             remedy=swapped[1] or _right_unit(role, column.unit if is_signal(column.unit) else unit),
             setting=Setting(role, "unit"),
-            likely="" if swapped[1] or is_signal(unit) else nearest_unit(ROLE_KINDS[role][0], unit),
+            likely="" if unlike else nearest_unit(ROLE_KINDS[role][0], unit),
         ) from None
     return column, replace(line, scale=line.scale * _signal_in(role, column, unit, file))
 
@@ -112,5 +113,7 @@ def _right_unit(role: str, unit: str) -> str:
     if role == "speed" and unit.strip() in ("Hz", "1/s"):
         turns = f"if it means revolutions, use {setting.to('rev/s')}"
         return f"{turns}. {_INVERTER} {setting.to('rev/s/2')}" if unit.strip() == "Hz" else turns
+    if role == "speed" and (counted := of_encoder(unit)):
+        return f"use {setting.to(counted)}, with your value instead of {COUNTS}"
     kind = ROLE_KINDS[role][0]
     return f"use {setting.to(nearest_unit(kind, unit) or KINDS[kind][1])}, or correct the header"

@@ -10,7 +10,7 @@ from hersey.arguments.door import Keys
 from hersey.errors import Setting, UnitError, WrongKindError, way_in
 from hersey.log.signals import apart
 from hersey.log.text.column import Column
-from hersey.units import Conversion, conversion
+from hersey.units import Conversion, conversion, of_encoder
 
 #: Roles of a log's columns, in the order in which they are asked for.
 ROLES = ("time", "torque", "speed", "temperature")
@@ -107,7 +107,8 @@ def role_conversion(role: str, unit: str) -> tuple[str, Conversion]:
         If the unit is unknown, or of no kind that the role can have.
     """
     text = "1" if unit in ("-", "\u2013") else apart(unit)[0]
-    for kind in ROLE_KINDS[role]:
+    counted = role == "speed" and of_encoder(text)  # no other kind of speed knows these
+    for kind in ROLE_KINDS[role][:1] if counted else ROLE_KINDS[role]:
         if kind == "friction coefficient" and text != "1":  # % of a torque is none
             continue
         try:

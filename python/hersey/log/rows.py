@@ -10,6 +10,7 @@ import numpy as np
 
 from hersey.arrays import BoolArray, FloatArray, IntArray
 from hersey.errors import DROP_MISSING, ISOTHERMAL, Setting, TimeOrderError, UnreadableLogError
+from hersey.log.given_twice import refuse_rows_repeated
 from hersey.log.slow_channels import LONGEST_INTERVAL, SlowChannel, is_slow
 from hersey.log.text.dated_numbers import numbers_lost
 from hersey.log.torque_log import LogFile, Run
@@ -175,7 +176,7 @@ def runs_with_records(
     Raises
     ------
     UnreadableLogError
-        If too many rows were left out, time runs backwards, or no run has two rows.
+        If too many rows were left out, time runs backwards, rows repeat earlier ones, or no run has two rows.
     """
     rows = arrays["time"].size + left_out.rows
     slow, gone = _slow(file, arrays, lacking)
@@ -184,6 +185,7 @@ def runs_with_records(
         arrays = {role: values[~gone] for role, values in arrays.items()}
         place = _among(place, np.flatnonzero(~gone))
     time = arrays["time"]
+    refuse_rows_repeated(arrays, file.name, place)
     parts = runs_of(time, arrays.pop("run", None), file.name, place, left_out)
     cold = lacking.get("temperature", LeftOut()).rows
     without = f"If the log has no temperature, use {ISOTHERMAL.to()}" if 2 * cold > rows else ""

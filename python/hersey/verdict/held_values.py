@@ -2,34 +2,41 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from hersey.arrays import FloatArray
+from hersey.damping.dwells import SteadyPoints
 from hersey.damping.dwells.resolution import quantisation_step
 from hersey.inspection.faults import Fault, clipping, stuck
-from hersey.log.means import MeansTable
-from hersey.log.torque_log import Run, TorqueLog
+from hersey.log.torque_log import Run
 from hersey.schema.warning import Warning
+from hersey.units import rpm
+
+#: Share of the rows of a dwell at the end of a range from which its mean counts as wrong.
+NOTABLE = 0.01
+#: Such dwells that are listed, at the most.
+_LISTED = 4
 
 
-def held_values(log: TorqueLog | MeansTable) -> list[Warning]:
-    """Return which channels of a log are clipped or stuck; often none."""
+def held_values(points: SteadyPoints) -> list[Warning]:
+    """Return which channels of a log are clipped or stuck; often none.
+
+    A clipped channel comes with the dwells that have `NOTABLE` of their rows at the end of its range.
+    """
+    log = points.log
     return [
-        _said(name, fault, file.name)
-        for file, run in zip(log.files, log.runs, strict=False)
+        _stuck(name, fault, file.name)
+        if fault.kind == "stuck"
+        else _clipped(name, fault, file.name, _dwells_at(points, number, name, fault.value))
+        for number, (file, run) in enumerate(zip(log.files, log.runs, strict=False))
         for name, fault in _faults(run)
     ]
 
 
-def _said(name: str, fault: Fault, file: str) -> Warning:
+def _stuck(name: str, fault: Fault, file: str) -> Warning:
     return Warning(
         fault.kind,
-        "{channel} is {fault} at "
-        + ("{value:.4g degC}" if name == "temperature" else "{value:.4g} N m")
-        + " for {rows} rows, "
-        + (
-            "so its true value there is unknown"
-            if fault.kind == "stuck"
-            else "because the range of sensor or logger ends there, so dwells at this value are wrong"
-        ),
+        f"{_found(name)} for {{rows}} rows, so its true value there is unknown",
         severity="watch",
         where=file,
         channel=name,
@@ -37,6 +44,46 @@ def _said(name: str, fault: Fault, file: str) -> Warning:
         value=float(fault.value),
         rows=int(fault.rows),
     )
+
+
+def _clipped(name: str, fault: Fault, file: str, dwells: list[str]) -> Warning:
+    """A channel at the end of its range, with the dwells that reach it."""
+    words = f"{_found(name)} in {{rows}} rows, where the range of sensor or logger ends"
+    remedy = "no dwell reaches this value"
+    if dwells:
+        words += ". {dwells} {dwells:dwell reaches this value and is|dwells reach this value and are} wrong: "
+        words += "{first}" + (" and {others} more" if len(dwells) > _LISTED else "")
+        remedy = "record {dwells:it|them} again with a wider range, or delete {dwells:its|their} rows"
+    return Warning(
+        fault.kind,
+        words,
+        severity="act" if dwells else "watch",
+        remedy=remedy,
+        where=file,
+        channel=name,
+        fault=fault.kind,
+        value=float(fault.value),
+        rows=int(fault.rows),
+        dwells=len(dwells),
+        first=", ".join(dwells[:_LISTED]),
+        others=max(0, len(dwells) - _LISTED),
+    )
+
+
+def _found(name: str) -> str:
+    """The words for a channel that keeps a value."""
+    return "{channel} is {fault} at " + ("{value:.4g degC}" if name == "temperature" else "{value:.4g} N m")
+
+
+def _dwells_at(points: SteadyPoints, number: int, name: str, end: float) -> list[str]:
+    """The dwells of a run in which a channel is at the end of its range: their speeds and times."""
+    run = points.log.runs[number]
+    time, at_end = run.time, getattr(run, name) == end
+    return [
+        f"{abs(rpm(speed)):.3g} rpm at {start:.6g} to {last:.6g} s"
+        for of, start, last, speed in points.table.select("run", "start", "end", "speed").iter_rows()
+        if of == number and np.mean(at_end[(time >= start) & (time <= last)]) >= NOTABLE
+    ]
 
 
 def _faults(run: Run) -> list[tuple[str, Fault]]:

@@ -38,7 +38,7 @@ def warnings_of(points: SteadyPoints, surface: DampingSurface | None) -> tuple[W
     log = points.log
     found = [Warning("corrected", "corrected: {how}", how=str(correction)) for correction in log.corrections]
     found += [each for i in range(len(log.files)) for each in _of_file(log, i)]
-    found += [*doubtful_units(log), *held_values(log), *doubtful_tare(points), *points.warnings]
+    found += [*doubtful_units(log), *held_values(points), *doubtful_tare(points), *points.warnings]
     found += _of_rest(points)
     if loads := points.varying_load:
         words = "one law is fitted to loads from {low:.3g} to {high:.3g} N. Fit each load separately"

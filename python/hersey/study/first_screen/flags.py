@@ -34,6 +34,7 @@ from hersey.study.first_screen.words import (
 )
 from hersey.study.nip_film import FilmPart, VerdictPart
 from hersey.study.torque_budget import TorqueBudgetPart
+from hersey.verdict.held_values import held_values
 from hersey.verdict.warnings import SCATTER
 
 #: How many the first screen has room for.
@@ -324,6 +325,8 @@ def _of_log(points: SteadyPoints, surface: DampingSurface, *, asked: bool) -> It
     """
     for each in doubtful_units(points.log)[:1]:
         yield each.titled("A unit is doubtful", section="data")
+    for each in held_values(points)[:1]:
+        yield each.titled("{channel:capital} is {fault}", section="data")
     for each in doubtful_tare(points)[:1]:
         yield each.titled("The zero is doubtful", section="data")
     if few_slow_dwells(points, surface):
