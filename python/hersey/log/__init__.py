@@ -25,6 +25,7 @@ columns        columns as they stand, for readers with roles of their own
 assembly       from a recording to a run on the clock of the torque
 given_twice    a measurement that a log holds twice: refused
 not_a_log      what is neither a file nor a table: refused
+own_tables     tables that hersey wrote: refused as logs
 exchanged      columns under each other's names: refused
 reading        `read`: from files to a log
 many           many files, each a log of its own: in turn, in threads, or by workers

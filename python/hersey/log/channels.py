@@ -19,6 +19,7 @@ from hersey.errors import (
     printable,
     way_in,
 )
+from hersey.log.own_tables import not_a_log, own_table
 from hersey.log.role_units import with_unit
 from hersey.log.roles import (
     EVERY,
@@ -170,6 +171,8 @@ def no_channel(
     role: str, columns: tuple[Column, ...], file: str, others: tuple[str, ...] = ()
 ) -> ChannelError:
     """Return the error for a role that no column plays; ``others`` hold no numbers."""
+    if what := own_table(column.name for column in columns):
+        return not_a_log(what, file)
     channel = Setting(role, "channel")
     way_out = f"name it with {channel.to()}"
     if role == "torque" and any(is_of_kind("force", c.unit) for c in columns):

@@ -1,0 +1,33 @@
+"""The logs that words of a command line name, without tables that hersey wrote beside them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from hersey.cli.terminal import note
+from hersey.files.patterns import files_of
+
+
+def logs_of(words: Sequence[Path], tables: Sequence[Path | None]) -> list[Path]:
+    """Return the files that names and patterns stand for; a table that hersey wrote is skipped, and noted.
+
+    It is skipped where a pattern matched it. It is also skipped where the command writes it again, as one of
+    ``tables``: a shell may have put the files in the place of the pattern. Any other is refused when read.
+    """
+    files = files_of(words)
+    again = [path for path in tables if path is not None and path.is_file()]
+    doubtful = [
+        path
+        for path in files
+        if path.exists() and (path not in words or any(path.samefile(each) for each in again))
+    ]
+    if not doubtful or len(files) == 1:
+        return files
+    from hersey.log.own_tables import own_table_in
+
+    skipped = {path: what for path in doubtful if (what := own_table_in(path))}
+    if len(skipped) == len(files):
+        return files
+    note(*(f"{path} is skipped: it is {what}, not a log." for path, what in skipped.items()))
+    return [path for path in files if path not in skipped]
