@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -16,12 +17,8 @@ def logs_of(words: Sequence[Path], tables: Sequence[Path | None]) -> list[Path]:
     ``tables``: a shell may have put the files in the place of the pattern. Any other is refused when read.
     """
     files = files_of(words)
-    again = [path for path in tables if path is not None and path.is_file()]
-    doubtful = [
-        path
-        for path in files
-        if path.exists() and (path not in words or any(path.samefile(each) for each in again))
-    ]
+    again = {os.path.realpath(path) for path in tables if path is not None}
+    doubtful = [path for path in files if path not in words or os.path.realpath(path) in again]
     if not doubtful or len(files) == 1:
         return files
     from hersey.log.own_tables import own_table_in

@@ -10,6 +10,7 @@ signals        currents, voltages and percentages, and how much one of them stan
 roles          roles of columns: their names, and the kinds of units that they may have
 role_units     the unit of a column with a role
 channels       which column plays which role
+without_units  columns without units: named at once
 friction       friction forces and coefficients as torques, sliding speeds as those of a rotation
 stating        a radius or a load: proposed, used once a person states it
 slow_channels  a temperature or a load that is slower than the rows: interpolated between its values

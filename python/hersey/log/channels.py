@@ -92,9 +92,27 @@ def find_channel(
     UnitError
         If the column that must be it has no unit, an unknown one, or one of another kind.
     """
+    column = find_column(role, columns, choice, file, dead, taken)
+    return None if column is None else with_unit(role, column, choice.unit, file, columns, taken)
+
+
+def find_column(
+    role: str,
+    columns: tuple[Column, ...],
+    choice: ChannelChoice,
+    file: str,
+    dead: Callable[[Column], bool] = lambda _: False,
+    taken: Mapping[str, Column] = MappingProxyType({}),
+) -> Column | None:
+    """Return the column of a role as `find_channel`, whatever its unit.
+
+    Raises
+    ------
+    ChannelError
+        If several columns could play the role, or the named one is not there.
+    """
     if choice.name:
-        column = named_channel(role, columns, choice.name, file, taken)
-        return with_unit(role, column, choice.unit, file, columns, taken)
+        return named_channel(role, columns, choice.name, file, taken)
     candidates = _candidates(role, columns)
     candidates = [c for c in candidates if c not in taken.values()] or candidates
     if len(candidates) > 1:
@@ -110,7 +128,7 @@ def find_channel(
             columns=tuple(c.index for c in candidates),
             **_choose(role, candidates[0].path),
         )
-    return with_unit(role, candidates[0], choice.unit, file, columns, taken)
+    return candidates[0]
 
 
 def taken_columns(
