@@ -112,7 +112,7 @@ def test_a_pattern_that_matches_its_own_table_can_be_typed_again(folder: Path) -
     first = typed(folder, "logs/*.csv", *again)
     assert (first.returncode, first.stderr) == (0, "")
     written = (folder / "logs" / "fits.csv").read_bytes()
-    what = "a table of the fits that 'hersey fit --each' wrote, not a log"
+    what = "a table of the fits that 'hersey fit' wrote, not a log"
     by_shell = ["logs/0.csv", "logs/1.csv", "logs/fits.csv"]
     for logs in (["logs/*.csv"], by_shell):
         done = typed(folder, *logs, *again)

@@ -192,7 +192,7 @@ def test_draws_are_an_arviz_data_set(alone: Posterior) -> None:
     assert np.sort(data.fold_speed.to_numpy().ravel()) == pytest.approx(np.sort(alone.edges(HOT).fold))
     assert alone.to_frame().shape == (400, 7)
     named = [split_unit(name)[0] for name in alone.to_frame().columns]
-    assert own_table(named) == "a table of the draws that 'hersey posterior --out' wrote"
+    assert own_table(named) == "a table of the draws that 'hersey posterior' wrote"
     record = alone.to_dict()
     assert record["fold"]["low"] < record["fold"]["value"] < record["safe_speed"] == record["fold"]["high"]
     assert "V* at 180 degC" in alone.summary()

@@ -60,9 +60,9 @@ def read_fit(path: str | Path) -> DampingSurface:
     path = Path(path)
     text = read_text(path)
     if _PRINTED.search(text):
-        raise ParameterError(
-            f"{path.name} is the text that hersey fit prints without --json", remedy=save_again(path)
-        )
+        printed = "the printed text of a fit, not its JSON"
+        said = "the text that hersey fit prints without --json" if way_in() == "terminal" else printed
+        raise ParameterError(f"{path.name} is {said}", remedy=save_again(path))
     try:
         document = _FitFile.model_validate_json(text, strict=True)
     except ValidationError as error:

@@ -3,20 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from pathlib import Path
 
-from hersey.errors import ChannelError, HerseyError
-from hersey.files.reading import open_file
-from hersey.log.text.column import split_unit
+from hersey.errors import ChannelError
 
 #: Columns of numbers that no log has together, by what such a table holds and the command that wrote it.
 _TABLES = {
-    ("fits", "hersey fit --each"): {"dwells", "speed from", "speed to", "c low", "c high"},
+    ("fits", "hersey fit"): {"dwells", "speed from", "speed to", "c low", "c high"},
     ("dwells", "hersey campaign export"): {"run_id", "unit", "age", "settling_rows"},
-    ("draws", "hersey posterior --out"): {"stick_speed", "fold_speed"},
+    ("draws", "hersey posterior"): {"stick_speed", "fold_speed"},
 }
-#: Bytes of a first line that are read at the most.
-_START = 4096
 
 
 def own_table(names: Iterable[str]) -> str:
@@ -24,22 +19,6 @@ def own_table(names: Iterable[str]) -> str:
     there = set(names)
     found = next((kind for kind, columns in _TABLES.items() if columns <= there), None)
     return "" if found is None else f"a table of the {found[0]} that '{found[1]}' wrote"
-
-
-def own_table_in(path: Path) -> str:
-    """Return what a file is, if it is a table that hersey wrote; only its first line is read."""
-    try:
-        if path.suffix == ".csv":
-            with open_file(path) as file:
-                head = file.read(_START).decode(errors="replace").partition("\n")[0]
-            return own_table(split_unit(cell.strip('"\r'))[0] for cell in head.split(","))
-        if path.suffix == ".parquet":
-            from hersey.log.reading import list_channels
-
-            return own_table(name for name, _ in list_channels(path))
-    except HerseyError:  # which reading it says, too
-        return ""
-    return ""
 
 
 def not_a_log(what: str, file: str) -> ChannelError:
