@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from datetime import timedelta
 from functools import cache, partial
 from typing import Any
 
@@ -14,7 +15,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import hersey
-from hersey.errors import UnitError, WrongKindError
+from hersey.errors import ArgumentError, ParameterError, PlausibilityWarning, UnitError, WrongKindError
 from hersey.units import argument, registry, takes_si
 from hersey.verdict.evidence import measured_film
 from tests.conftest import ROOT
@@ -321,3 +322,30 @@ def test_a_function_keeps_its_name_and_its_defaults() -> None:
     assert double("5 mm", "4 mm") == (pytest.approx(0.01), "4 mm")  # type: ignore[arg-type]
     with pytest.raises(TypeError, match="double has no argument 'width'"):
         double(width=1.0)  # type: ignore[call-arg]
+
+
+@pytest.mark.parametrize("given", [timedelta(seconds=0.5), np.timedelta64(500, "ms")])
+def test_a_duration_with_its_unit_is_a_time(given: Any) -> None:
+    run = hersey.simulate(TRAIN, DRAG, drive_speed=2.0, duration=given)
+    assert run.time[-1] == 0.5
+    with pytest.raises(ArgumentError, match=r"drive_speed is .*the duration .*one number|drive_speed is not"):
+        hersey.simulate(TRAIN, DRAG, drive_speed=given, duration=1.0)
+
+
+def test_months_have_no_length() -> None:
+    with pytest.raises(ArgumentError, match="the duration 2 months"):
+        hersey.simulate(TRAIN, DRAG, drive_speed=2.0, duration=np.timedelta64(2, "M"))
+
+
+def test_a_roll_radius_in_mm_without_its_unit_is_doubted() -> None:
+    said = "^roll_radius is 15 without a unit, which means 15 m. If it is in mm, write '15 mm'$"
+    with pytest.warns(PlausibilityWarning, match=said) as found:
+        surface().drag(roll_radius=15, stick_speed=3e-3, temperature="180 degC")
+    assert found[0].filename == __file__
+    for known in (0.015, "15 mm", "15 m"):
+        surface().drag(roll_radius=known, stick_speed=3e-3, temperature="180 degC")  # type: ignore[arg-type]
+
+
+def test_a_confidence_in_percent_is_met_with_the_share() -> None:
+    with pytest.raises(ParameterError, match=r"^confidence is 95: it must be from .* Write 0\.95$"):
+        hersey.plan_profile(TRAIN, DRAG, target_speed=2.0, confidence=95)

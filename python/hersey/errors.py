@@ -129,7 +129,15 @@ class HerseyError(Exception):
 
 
 class MissingFileError(HerseyError, FileNotFoundError):
-    """A file that does not exist, or is not a file."""
+    """A file that does not exist, or is not a file.
+
+    ``path`` is what does not exist, as it was given, if it is that.
+    """
+
+    def __init__(self, *message: object, path: str = "", **remedy: Any) -> None:
+        """Take the message, the path, and ``remedy`` and ``setting``."""
+        super().__init__(*message, **remedy)
+        self.path = path
 
 
 class UnreadableLogError(HerseyError, ValueError):

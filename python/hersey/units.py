@@ -11,16 +11,17 @@ import inspect
 import math
 import re
 import sys
+import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache, lru_cache, wraps
 from typing import TYPE_CHECKING, Any, TypeVar, cast
 
-from hersey.arguments.door import Door, Keys, Words
+from hersey.arguments.door import ROLL_RADIUS, Door, Keys, Words
 from hersey.arguments.frozen import explained
-from hersey.arguments.numbers import numbers
-from hersey.errors import ParameterError, UnitError, WrongKindError
+from hersey.arguments.numbers import duration, numbers
+from hersey.errors import ParameterError, PlausibilityWarning, UnitError, WrongKindError
 
 if TYPE_CHECKING:
     import numpy as np
@@ -482,6 +483,10 @@ def _with_units(value: Any) -> list[Any] | None:
 
 #: A plain number below this is no temperature of a drive in K, but one in degC.
 _COLDEST = 250.0
+#: A roll of a greater radius, m, is none of a drive, but one in mm.
+_LARGEST_ROLL = 2.0
+#: Frames from the warning of an argument to the call of the user.
+_USER = 6
 
 
 def argument(name: str, kind: Kind, value: Any, *, one: bool = False) -> Any:
@@ -498,9 +503,13 @@ def argument(name: str, kind: Kind, value: Any, *, one: bool = False) -> Any:
     if value is None:
         return None
     kinds = (kind,) if isinstance(kind, str) else kind
+    if "time" in kinds and (seconds := duration(value)) is not None:
+        return seconds
     if not isinstance(value, str) and not hasattr(value, "magnitude"):
         if (items := _with_units(value)) is None:
             found = numbers(name, value, one=one)
+            if name == ROLL_RADIUS:
+                _doubt_radius(found)
             if kinds == ("temperature",) and name != "temperature_zero":
                 _refuse_celsius(name, found)
             return found
@@ -535,8 +544,15 @@ def _refuse_celsius(name: str, value: Any) -> None:
         )
 
 
+def _doubt_radius(value: Any) -> None:
+    """Warn of a plain number in m that a user can only have meant in mm."""
+    if isinstance(value, float | int) and value > _LARGEST_ROLL and not _called_from_inside():
+        said = f"roll_radius is {value:g} without a unit, which means {value:g} m. If it is in mm, write"
+        warnings.warn(PlausibilityWarning(f"{said} '{value:g} mm'"), stacklevel=_USER)
+
+
 def _called_from_inside() -> bool:
-    """Whether the package itself called what checks its arguments here: its plain numbers are in K."""
+    """Whether the package itself called what checks its arguments here: its plain numbers are in SI."""
     frame = sys._getframe(1)
     while frame.f_back is not None and frame.f_globals["__name__"] in (__name__, Door.__module__):
         frame = frame.f_back

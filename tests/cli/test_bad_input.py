@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import re
+import shlex
 from pathlib import Path
 
 import pytest
@@ -236,3 +238,18 @@ def test_simulation_parameters_are_checked(tmp_path: Path) -> None:
     assert_one_clear_line(run("simulate", "--stiffness", "-1", cwd=tmp_path), ["stiffness is -1"])
     assert_one_clear_line(run("simulate", "--mass", "heavy", cwd=tmp_path), ["--mass", "number"])
     assert_one_clear_line(run("simulate", "--start", "up", cwd=tmp_path), ["start is 'up'"])
+
+
+def test_the_units_that_all_columns_lack_are_options_of_one_line(tmp_path: Path) -> None:
+    bare = re.sub(r" \[[^\]]*\]", "", text(staircase()).decode())
+    (tmp_path / "log.csv").write_text(bare)
+    said = run("fit", "log.csv", cwd=tmp_path).stderr
+    assert_one_clear_line(
+        run("fit", "log.csv", cwd=tmp_path),
+        ["columns 'Time', 'Torque', 'Speed', 'Temperature' have no units"],
+    )
+    typed = shlex.split(said[said.index("--time-unit") :].removesuffix(", with your units\n"))
+    assert len(typed) == 8
+    done = run("fit", "log.csv", *typed, cwd=tmp_path)
+    assert "no unit" not in done.stderr
+    assert run("inspect", "log.csv", *typed, cwd=tmp_path).returncode == 0

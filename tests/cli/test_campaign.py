@@ -260,6 +260,7 @@ def test_a_missing_file_among_named_logs_costs_only_itself_when_asked(folder: Pa
     assert not (folder / "life.hersey").exists()
     done = typed(folder, "add", "life.hersey", "0.csv", "none.csv", "2.csv", *F12, "--keep-going")
     assert (done.returncode, done.stdout) == (1, "life.hersey: 2 added, 1 failed\n")
-    assert done.stderr.startswith("- none.csv: File not found: none.csv")
+    assert done.stderr.startswith("- none.csv: File not found. ")
+    assert done.stderr.count("none.csv") == 1
     with hersey.Campaign.open(folder / "life.hersey") as campaign:
         assert [Path(log).name for log in campaign.runs()["log"]] == ["0.csv", "2.csv"]

@@ -105,3 +105,37 @@ def test_a_mistake_is_one_line(folder: Path, arguments: list[str], said: str) ->
     assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
     assert said in done.stderr
     assert not (folder / "fits.csv").exists()
+
+
+def test_a_pattern_that_matches_its_own_table_can_be_typed_again(folder: Path) -> None:
+    again = ["--each", "logs/fits.csv", "--force"]
+    first = typed(folder, "logs/*.csv", *again)
+    assert (first.returncode, first.stderr) == (0, "")
+    written = (folder / "logs" / "fits.csv").read_bytes()
+    what = "a table of the fits that 'hersey fit' wrote, not a log"
+    by_shell = ["logs/0.csv", "logs/1.csv", "logs/fits.csv"]
+    for logs in (["logs/*.csv"], by_shell):
+        done = typed(folder, *logs, *again)
+        assert (done.returncode, done.stdout) == (0, "2 of 2 logs are fitted.\nlogs/fits.csv\n")
+        assert " ".join(done.stderr.split()) == f"logs/fits.csv is skipped: it is {what}."
+        assert (folder / "logs" / "fits.csv").read_bytes() == written
+    assert typed(folder, "logs/*.csv", "--each", "other.csv").returncode == 0
+    done = typed(folder, *by_shell, "--each", "third.csv")
+    refusal = f"fits.csv is {what}. Give the logs without it"
+    assert (done.returncode, done.stderr) == (2, f"hersey: {refusal}\n")
+    done = run("inspect", "logs/fits.csv", cwd=folder)
+    assert f"No fit is possible: {refusal}" in done.words
+    done = typed(folder, "logs/*.csv", "--each", "logs/1.csv", "--force")
+    assert done.stderr.endswith("hersey: logs/1.csv is an input: name another file for the output\n")
+
+
+def test_every_table_that_hersey_writes_beside_logs_is_skipped_in_a_pattern(folder: Path) -> None:
+    age = ["--unit", "F1", "--age", "1 h"]
+    assert run("campaign", "add", "life.hersey", "logs/*.csv", *age, cwd=folder).returncode == 0
+    assert run("campaign", "export", "life.hersey", "--out", "logs/dwells.csv", cwd=folder).returncode == 0
+    assert typed(folder, "logs/?.csv", "--each", "logs/fits.parquet").returncode == 0
+    draws = "stick_speed (m/s),closure,fold_speed (m/s)\n0.003,retained,0.1\n"
+    (folder / "logs" / "draws.csv").write_text(draws)
+    done = typed(folder, "logs/*", "--each", "fits.csv")
+    assert (done.returncode, done.stdout) == (0, "2 of 2 logs are fitted.\nfits.csv\n")
+    assert done.stderr.count(" is skipped: ") == 3

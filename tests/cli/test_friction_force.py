@@ -113,3 +113,27 @@ def test_a_trace_of_a_force_becomes_one_of_torque_by_a_mapping_of_its_own(name: 
         'radius.value = "15 mm"',
     )
     assert run(*typed, cwd=tmp_path).returncode == 0
+
+
+def test_a_trace_without_its_columns_is_met_with_all_that_it_needs(tmp_path: Path) -> None:
+    examples = ROOT / "examples"
+    bench, machine = examples / "bench.csv", examples / "machine.toml"
+    typed = ["posterior", str(bench), "--machine", str(machine), "--draws", "100", "--trace"]
+    (tmp_path / "slip.csv").write_text((examples / "stick-slip.csv").read_text())
+    done = run(*typed, "slip.csv", cwd=tmp_path)
+    assert done.stderr.endswith(
+        "hersey: slip.csv: no torque or speed or temperature column found. A trace is a recording of this "
+        "machine with time, torque, speed and temperature. Columns: 'time [s]', 'force [N]'. If a column is "
+        'one of these, name it in slip.hersey.toml, e.g. torque.channel = "NAME". If it is a stick-slip '
+        "trace, type: hersey cycles slip.csv\n"
+    )
+    assert run("cycles", "slip.csv", cwd=tmp_path).returncode == 0
+    text = (examples / "bench.csv").read_text().replace("Drive speed [rpm]", "Turning [rpm#]")
+    (tmp_path / "turning.csv").write_text(text)
+    done = run(*typed, "turning.csv", "--isothermal", cwd=tmp_path)
+    assert "turning.csv: no speed column found. " in done.stderr
+    assert "with time, torque and speed. Columns" in done.stderr
+    advised = re.search(r'name it in (\S+), e.g. (speed.channel = )"NAME"', done.stderr)
+    assert advised
+    (tmp_path / advised[1]).write_text(f'{advised[2]}"Turning"\nspeed.unit = "rpm"\n')
+    assert run(*typed, "turning.csv", cwd=tmp_path).returncode == 0

@@ -126,3 +126,19 @@ def test_mistakes_end_in_one_line(folder: Path, arguments: tuple[str, ...], mess
     line = done.stderr.strip().splitlines()[-1]
     assert message in line
     assert "Traceback" not in done.stderr
+
+
+@pytest.mark.usefixtures("roughly")
+@pytest.mark.parametrize("details", [(), ("--verbose",)])
+def test_the_printed_text_of_a_fit_is_met_with_the_line_that_saves_one(
+    folder: Path, details: tuple[str, ...]
+) -> None:
+    (folder / "fit.txt").write_text(run("fit", "log.csv", *details, cwd=folder).stdout)
+    map_of = ("map", "machine.toml", "--fit")
+    line = "hersey fit LOG --machine machine.toml --json"
+    said = "fit.txt is the text that hersey fit prints without --json"
+    refused = run(*map_of, "fit.txt", cwd=folder)
+    assert refused.stderr == f"hersey: {said}. Save the fit again with: {line} > fit.json\n"
+    words = line.replace("LOG", "log.csv").split()[1:]
+    (folder / "fit.json").write_text(run(*words, cwd=folder).stdout)
+    assert run(*map_of, "fit.json", cwd=folder).stderr.startswith("The no-load torque comes from the fit")

@@ -233,10 +233,10 @@ def test_a_stick_speed_that_is_fixed_holds_at_one_temperature(typed: Typed) -> N
         (
             HOT,
             {"fit": "cycle.json"},
-            "cycle.json: fit: Field required. Save the fit again with: hersey fit LOG",
+            "cycle.json: fit: Field required. Save the fit again with: hersey fit LOG --machine ",
         ),
         (HOT, {"fit": "none.json"}, "none.json"),
-        (HOT, {"fit": "rising.csv"}, "Save the fit again with: hersey fit LOG --json > fit.json"),
+        (HOT, {"fit": "rising.csv"}, "machine.toml --json > fit.json"),
         (
             HOT,
             {"fit": "isothermal.json"},
@@ -308,7 +308,9 @@ def test_a_fit_takes_off_the_rest_that_the_machine_states(typed: Typed, folder: 
     (folder / "resting.toml").write_text(text)
     refused = typed(*HOT, machine="resting.toml")
     assert "was fitted to the whole torque" in refused.stderr
-    assert "Write the fit again with hersey fit LOG --machine TOML --json, or delete [rest]" in refused.stderr
+    resting = folder / "resting.toml"
+    saved = f"hersey fit LOG --machine {resting} --json > fit.json"
+    assert f"Save the fit again with: {saved}, or delete [rest] from {resting}\n" in refused.stderr
     told = json.loads((folder / "fit.json").read_text())["command"].split()
     fit = run("fit", told[2], "--tare", "standing", "--machine", "resting.toml", "--json", cwd=folder)
     (folder / "film.json").write_text(fit.stdout)

@@ -11,6 +11,8 @@ import pytest
 import hersey
 from hersey.damping.no_load_torque import NoLoadTorque
 from hersey.log import TorqueLog
+from hersey.log.own_tables import own_table
+from hersey.log.text.column import split_unit
 from hersey.log.torque_log import Run
 from hersey.machine.uncertainty import Uncertainty
 from hersey.posterior import BreakAway, Posterior, Start, StickSlip
@@ -189,6 +191,8 @@ def test_draws_are_an_arviz_data_set(alone: Posterior) -> None:
     assert data.fold_speed.attrs["units"] == "m/s"
     assert np.sort(data.fold_speed.to_numpy().ravel()) == pytest.approx(np.sort(alone.edges(HOT).fold))
     assert alone.to_frame().shape == (400, 7)
+    named = [split_unit(name)[0] for name in alone.to_frame().columns]
+    assert own_table(named) == "a table of the draws that 'hersey posterior' wrote"
     record = alone.to_dict()
     assert record["fold"]["low"] < record["fold"]["value"] < record["safe_speed"] == record["fold"]["high"]
     assert "V* at 180 degC" in alone.summary()

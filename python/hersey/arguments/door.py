@@ -38,6 +38,8 @@ _SOURCES = {
     "HeatBalance": "hersey.HeatBalance(...)",
     "Schedule": "hersey.Schedule(times, values)",
 }  # fmt: skip
+#: Argument of which a plain number may lack its unit.
+ROLL_RADIUS = "roll_radius"
 #: Classes of which a function says itself what is missing: it knows what was given in their place.
 _SAID_ELSEWHERE = ("SteadyPoints", "Study")
 #: Classes that no function of the package makes, or makes under no name of its own.
@@ -283,7 +285,12 @@ class Door:
             argument = self.arguments.get(name) or self.collected.get(name)
             kind, type_ = self.quantities.get(name), type(value)
             plain = type_ is int or (type_ is float and value == value)
-            if plain and kind != "temperature" and (argument is None or argument.takes_numbers):
+            if (
+                plain
+                and kind != "temperature"
+                and name != ROLL_RADIUS
+                and (argument is None or argument.takes_numbers)
+            ):
                 continue
             if argument is not None and not (kind and isinstance(value, str)) and not argument.fits(value):
                 wrong = self._wrong(argument, value, values)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from datetime import timedelta
 from numbers import Real
 from typing import Any
 
@@ -12,6 +13,25 @@ from hersey.errors import ArgumentError, ParameterError, printable
 def is_other(value: Any) -> bool:
     """Whether a value is an object that holds no numbers, such as a result or a function."""
     return isinstance(value, Mapping | set) or callable(value) or hasattr(value, "__dataclass_fields__")
+
+
+def is_duration(value: Any) -> bool:
+    """Whether a value is a duration with its unit, of the standard library, NumPy or pandas."""
+    return isinstance(value, timedelta) or type(value).__name__ == "timedelta64"
+
+
+def duration(value: Any) -> float | None:
+    """Return a duration in s; None for anything else, also for months, which have no length."""
+    if isinstance(value, timedelta):
+        return value.total_seconds()
+    if not is_duration(value):
+        return None
+    import numpy as np
+
+    try:
+        return float(value / np.timedelta64(1, "s"))
+    except TypeError:
+        return None
 
 
 def with_article(name: str) -> str:
@@ -26,6 +46,8 @@ def described(value: Any) -> str:
         return str(value)
     if isinstance(value, str):
         return f"the text '{printable(value[:40])}'"
+    if is_duration(value):
+        return f"the duration {value}"
     if isinstance(value, Real):
         return f"the number {value}"
     if kind == "DataFrame":
@@ -48,7 +70,7 @@ def numbers(name: str, value: Any, *, one: bool) -> Any:
     ParameterError
         If a single one is not a number, or some are masked.
     """
-    if isinstance(value, Real) and not isinstance(value, bool):
+    if isinstance(value, Real) and not isinstance(value, bool) and not is_duration(value):
         if value != value:
             raise ParameterError(f"{name} is NaN: it must be a number", quantity=name)
         return value

@@ -16,7 +16,8 @@ long_dashes   the same where a word processor has joined the dashes of an option
 completed     the options that an export cannot do without, for a line that is proposed
 recipe_file   a recipe file as options
 quantities    shares, ranges, temperatures and speeds of options
-force_trace   a recording of a force in the place of one of a torque: what to write beside it
+named_logs    the logs that words name, without tables that hersey wrote
+traces        what a recording for a trace lacks, and how to read it for itself
 warming       a machine that heats up: its heat balance and its drag
 workers       worker processes on this machine, or those of a scheduler
 outputs       files that a command writes: refused early, never replaced without being asked

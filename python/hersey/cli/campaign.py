@@ -192,13 +192,15 @@ class _Adding:
 
     def each(self, opened: Campaign, wanted: list[RunToAdd], failed: list[str]) -> None:
         """Add the runs that can be added; the others join the ``failed``, and the exit code is 1."""
+        from hersey.log.many import failure_line
+
         counts: Counter[str] = Counter()
         new: list[tuple[RunToAdd, str]] = []
         for run in wanted:
             try:
                 settled = self._there(opened, run)
             except HerseyError as error:
-                failed.append(f"{run.log}: {error}")
+                failed.append(failure_line(run.log, error))
                 continue
             if isinstance(settled, str):
                 new.append((run, settled))
@@ -214,7 +216,7 @@ class _Adding:
                 except OutputError:  # what the next run would meet too
                     raise
                 except HerseyError as error:
-                    failed.append(f"{run.log}: {error}")
+                    failed.append(failure_line(run.log, error))
                 progress(number, len(new))
         said = [f"{counts[outcome]} {outcome}" for outcome in sorted(counts)]
         counted = [*said, *([f"{len(failed)} failed"] if failed else [])]

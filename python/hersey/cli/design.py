@@ -87,7 +87,7 @@ def _for_the_machine(
     from hersey.study.first_screen.advice import design_part, ranking
 
     machine = read_machine(machine_file)
-    _, drawn = reading.surface_and_posterior(logs, None, machine, trace, seed=seed)
+    _, drawn = reading.surface_and_posterior(logs, None, machine, trace, machine_file=machine_file, seed=seed)
     assert drawn is not None
     ranked = measurements(drawn)
     if printing.json(design_part(drawn, ranked)):

@@ -121,7 +121,7 @@ def fmu(
 
     *fits, machine_file = _in_order(files)
     machine = read_machine(machine_file)
-    surface = finished_fit(fits[0], machine) if fits else None
+    surface = finished_fit(fits[0], machine, machine_file) if fits else None
     drag = unit.drag(surface, machine, machine_file.name)
     # a torque acts on the roll itself: there is none beyond it that could slip
     train = machine.train if unit.drive == "speed" else replace(machine.train, grip=None)

@@ -10,11 +10,13 @@ from typing import Any, get_type_hints
 
 import typer
 
+from hersey.cli.named_logs import logs_of
 from hersey.errors import ParameterError
-from hersey.files.patterns import files_of
 
 #: Arguments that name logs, in which patterns are allowed.
 _LOGS = {"logs", "runs"}
+#: Options that name a table to write.
+_TABLES = ("each", "out")
 #: Parameters that take the logs of a recipe if none are typed.
 _OF_A_RECIPE = ("logs", "log")
 #: Parameter that shows which options were typed.
@@ -50,7 +52,7 @@ def grouped(command: Callable[..., None]) -> Callable[..., None]:
     def run(**typed: Any) -> None:
         context = typed.pop(_CONTEXT, None)
         for logs in _LOGS & typed.keys():
-            typed[logs] = typed[logs] and files_of(typed[logs])
+            typed[logs] = typed[logs] and logs_of(typed[logs], [typed.get(name) for name in _TABLES])
         taken = {
             name: group(**{field.name: typed.pop(field.name) for field in fields(group)})
             for name, group in groups.items()

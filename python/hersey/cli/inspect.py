@@ -6,10 +6,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 from hersey.cli.groups import grouped, option
-from hersey.cli.options import Force, Logs, Reading, SaveRecipe, drawn, of_a_trace
+from hersey.cli.options import Force, Logs, Reading, SaveRecipe, drawn
 from hersey.cli.outputs import may_draw, may_save_recipe, may_write
 from hersey.cli.printing import Printing
 from hersey.cli.progress import working
+from hersey.cli.traces import of_a_trace
 from hersey.errors import Setting
 
 if TYPE_CHECKING:

@@ -48,7 +48,7 @@ def map_(
 
     machine = read_machine(machine_file)
     threads = os.cpu_count() or 1
-    surface, drawn = reading.surface_and_posterior(logs, fit_file, machine, trace)
+    surface, drawn = reading.surface_and_posterior(logs, fit_file, machine, trace, machine_file=machine_file)
     with working("computing the map"):
         if drawn is not None:
             found = map_of(drawn, threads=threads)

@@ -9,14 +9,13 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-from hersey.cli.force_trace import of_a_force
 from hersey.cli.groups import argument, option
-from hersey.cli.mistyped import retyped
 from hersey.cli.progress import bar, working
 from hersey.cli.quantities import amount_of, amounts_in
 from hersey.cli.recipe_file import ROLES, read_recipe
 from hersey.cli.several import for_this_log_only
 from hersey.cli.terminal import note
+from hersey.cli.traces import lacking_columns, of_a_force, of_a_trace
 from hersey.errors import ChannelError, HerseyError, ParameterError, followed_by
 
 if TYPE_CHECKING:
@@ -189,7 +188,10 @@ class Reading:
         except HerseyError as error:
             if self.mapping:
                 raise
-            raise of_a_force(error, path, machine) from None
+            of_force = of_a_force(error, path, machine)
+            raise (
+                lacking_columns(error, path, self.recipe([path])) if of_force is error else of_force
+            ) from None
         if not isinstance(read, TorqueLog):
             raise ParameterError(
                 f"{path} is a table of means; a trace needs columns of time, torque and speed"
@@ -231,11 +233,12 @@ class Reading:
         machine: Machine,
         traces: list[Path] | None = None,
         *,
+        machine_file: Path,
         seed: int = 1,
     ) -> tuple[DampingSurface, Posterior | None]:
         """Read a saved fit, or fit a log and draw from its posterior; there are no draws without a log."""
         if fit_file is not None or not paths:
-            return self.surface(paths, fit_file, machine), None
+            return self.surface(paths, fit_file, machine, machine_file), None
         from hersey.damping.fit import fit
         from hersey.posterior.sampling import posterior
 
@@ -249,7 +252,7 @@ class Reading:
             )
 
     def surface(
-        self, paths: list[Path] | None, fit_file: Path | None, machine: Machine | None = None
+        self, paths: list[Path] | None, fit_file: Path | None, machine: Machine, machine_file: Path
     ) -> DampingSurface:
         """Read a saved fit, or fit the log of a machine."""
         from hersey.damping.fit import fit
@@ -261,46 +264,34 @@ class Reading:
                 "name a LOG, or give --fit with the file that 'hersey fit LOG --json' printed"
             )
         if fit_file is not None:
-            return finished_fit(fit_file, machine)
+            return finished_fit(fit_file, machine, machine_file)
         logs = paths or []
         log = self.log(logs, machine)
         with working("fitting the surface"):
             return fit(self.points(logs, log, machine), temperature_scale=self.temperature_scale)
 
 
-def of_a_trace(paths: list[Path]) -> str:
-    """Return what to type for a stick-slip trace in the place of a log; nothing if the file is no trace."""
-    from hersey.identification.trace_file import read_trace_runs
-
-    if len(paths) != 1:
-        return ""
-    try:
-        read_trace_runs(paths[0])
-    except HerseyError:
-        return ""
-    return f"If it is a stick-slip trace, type: {retyped('cycles', str(paths[0]))}"
-
-
 _AS_GIVEN = ("isothermal", "drop_missing", "means", "tare", "rotation", "temperature_scale")
 _NOT_OF_FILE = "not from the machine file"
 
 
-def finished_fit(file: Path, machine: Machine | None = None) -> DampingSurface:
+def finished_fit(file: Path, machine: Machine, machine_file: Path) -> DampingSurface:
     """Read a fit that ``hersey fit --json`` printed; print which parts of the machine file it replaces."""
-    from hersey.document.saved_fit import read_fit
+    from hersey.document.saved_fit import read_fit, save_again
     from hersey.motion.whole_torque import refuse_whole_torque
 
-    if machine is not None and machine.sensors.stated:
+    again = save_again(file, "--machine", str(machine_file))
+    if machine.sensors.stated:
         note(f"The sensor errors come from the fit, {_NOT_OF_FILE}.")
-    surface = read_fit(file)
-    if machine is None or machine.rest is None:
+    try:
+        surface = read_fit(file)
+    except ParameterError as error:
+        error.remedy = error.remedy and again
+        raise
+    if machine.rest is None:
         return surface
     if surface.rest is None:
-        refuse_whole_torque(
-            f"{file.name} was fitted to",
-            machine.rest,
-            "write the fit again with hersey fit LOG --machine TOML --json",
-            "delete [rest] from the machine file",
-        )
+        otherwise = f"delete [rest] from {machine_file}"
+        refuse_whole_torque(f"{file.name} was fitted to", machine.rest, again, otherwise)
     note(f"The no-load torque comes from the fit, {_NOT_OF_FILE}.")
     return surface

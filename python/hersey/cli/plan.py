@@ -112,7 +112,9 @@ def plan(
     machine = read_machine(machine_file)
     wanted = target_of(target, machine)
     temperature = film.temperature(machine, machine_file, reading.max_memory)
-    surface, drawn_of_log = reading.surface_and_posterior(logs, fit_file, machine, trace, seed=proof.seed)
+    surface, drawn_of_log = reading.surface_and_posterior(
+        logs, fit_file, machine, trace, machine_file=machine_file, seed=proof.seed
+    )
     if temperature is not None and not isinstance(temperature, Schedule):
         given = start_of(machine_file, film.start) if film.heat else "--at"
         refuse_below_zero(surface, temperature, given, fit_file)

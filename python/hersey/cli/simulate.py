@@ -242,7 +242,7 @@ def _warmed(belt: Belt, drive: _Drive, heat: _Heat) -> _Motion:
     balance = heat_of(machine, belt.machine, heat.begin)
     speed = target_of(drive.drive_speed, machine, "--drive-speed")
     time = amount_of("time", drive.duration or _WARMING, "--duration")
-    surface = finished_fit(heat.fit_file, machine)
+    surface = finished_fit(heat.fit_file, machine, belt.machine)
     refuse_below_zero(surface, balance, start_of(belt.machine, heat.begin), heat.fit_file)
     train, drag = machine.train, warming_drag(surface, machine)
     asked: dict[str, Any] = {"duration": time, "start": drive.start, "check": drive.check}

@@ -84,7 +84,7 @@ def warmup(
     sought, heat = course.sought(machine), heat_of(machine, machine_file, course.start)
     refuse_above_setpoint(machine, machine_file, course.start)
     weakest, limits = _limits(machine, machine_file.name)
-    surface = reading.surface(logs, fit_file, machine)
+    surface = reading.surface(logs, fit_file, machine, machine_file)
     refuse_below_zero(surface, heat, start_of(machine_file, course.start), fit_file)
     with working("warming up"):
         warm = warm_up(machine.train, warming_drag(surface, machine), heat, **sought, **limits)

@@ -104,7 +104,10 @@ def plan_start_up(
         raise ParameterError(f"target_speed is {target_speed}: it must be greater than 0")
     low, high = CONFIDENCES
     if not low <= confidence <= high:
-        raise ParameterError(f"confidence is {confidence}: it must be from {low} to {high}")
+        raise ParameterError(
+            f"confidence is {confidence:g}: it must be from {low} to {high}",
+            remedy=f"write {confidence / 100:g}" if low <= confidence / 100 <= high else "",
+        )
     machine = found.model.machine
     limit = drive_limit(machine.limits, machine.roll_radius, machine.train.grip)
     if machine.limits.spring_force is not None:

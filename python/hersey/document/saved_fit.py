@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import re
+import shlex
 from collections.abc import Iterator
 from dataclasses import fields
 from pathlib import Path
@@ -30,6 +32,8 @@ from hersey.schema.warning import Warning
 
 #: How far a number may be from the one it follows from, relative: JSON keeps all digits.
 _ROUNDING = 1e-9
+#: The law as ``hersey fit`` prints it in a text.
+_PRINTED = re.compile(r"^ *B = a (?:T\^b )?w\^c[, ]", re.MULTILINE)
 
 
 class _FitFile(BaseModel):
@@ -54,8 +58,13 @@ def read_fit(path: str | Path) -> DampingSurface:
         If it is no such document, naming the file and the field.
     """
     path = Path(path)
+    text = read_text(path)
+    if _PRINTED.search(text):
+        printed = "the printed text of a fit, not its JSON"
+        said = "the text that hersey fit prints without --json" if way_in() == "terminal" else printed
+        raise ParameterError(f"{path.name} is {said}", remedy=save_again(path))
     try:
-        document = _FitFile.model_validate_json(read_text(path), strict=True)
+        document = _FitFile.model_validate_json(text, strict=True)
     except ValidationError as error:
         first = error.errors()[0]
         if first["type"] == "json_invalid":
@@ -87,10 +96,16 @@ def holds_fit(path: str | Path) -> bool:
 
 
 def _broken(path: Path, field: str, reason: str) -> ParameterError:
+    return ParameterError(f"{path.name}: {field}: {reason}", remedy=save_again(path))
+
+
+def save_again(path: Path, *options: str) -> str:
+    """Return how to save a fit in the place of a file; ``options`` are those of ``hersey fit``."""
+    if way_in() != "terminal":
+        return "save the fit again"
     # a file that may be the log itself is never named as the place to write to
     name = path.name if path.suffix == ".json" else "fit.json"
-    how = f" with: hersey fit LOG --json > {name}" if way_in() == "terminal" else ""
-    return ParameterError(f"{path.name}: {field}: {reason}. Save the fit again{how}")
+    return f"save the fit again with: {shlex.join(['hersey', 'fit', 'LOG', *options, '--json'])} > {name}"
 
 
 def _check(path: Path, document: _FitFile) -> None:

@@ -180,7 +180,7 @@ def missing(path: str, words: str, remedy: str) -> MissingFileError:
     """Return the error about a path in words; its remedy differs if Python took signs of it as escapes."""
     written = "".join(_as_typed(char) for char in path)
     if written == path or way_in() != "python":
-        return MissingFileError(words.format(path), remedy=remedy)
+        return MissingFileError(words.format(path), remedy=remedy, path=path)
     found = " and ".join(dict.fromkeys(_as_typed(char) for char in path if _as_typed(char) != char))
     slashed = written.replace("\\", "/")
     why = f"Python reads {found} in a text as other characters"

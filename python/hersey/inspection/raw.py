@@ -132,12 +132,13 @@ def roles_of(
         try:
             taken = taken_columns(role, columns, choices, chosen)
             channel = find_channel(role, columns, choices[role], log.name, dead, taken)
-        except HerseyError as error:
-            without[role] = _lacking(error, log)
+        except HerseyError as refused:
+            without[role] = _lacking(refused, log)
             continue
         if channel is None:
-            remedy = no_channel(role, columns, log.name).remedy
-            without[role] = Lacking(f"there is no {role} channel", absent=True, remedy=remedy)
+            error = no_channel(role, columns, log.name)
+            said = Lacking(f"there is no {role} channel", absent=True, remedy=error.remedy)
+            without[role] = said if error.absent else _lacking(error, log)
         else:
             chosen[role] = channel
     try:

@@ -10,6 +10,7 @@ signals        currents, voltages and percentages, and how much one of them stan
 roles          roles of columns: their names, and the kinds of units that they may have
 role_units     the unit of a column with a role
 channels       which column plays which role
+without_units  columns without units: named at once
 friction       friction forces and coefficients as torques, sliding speeds as those of a rotation
 stating        a radius or a load: proposed, used once a person states it
 slow_channels  a temperature or a load that is slower than the rows: interpolated between its values
@@ -25,6 +26,7 @@ columns        columns as they stand, for readers with roles of their own
 assembly       from a recording to a run on the clock of the torque
 given_twice    a measurement that a log holds twice: refused
 not_a_log      what is neither a file nor a table: refused
+own_tables     tables that hersey wrote: refused as logs
 exchanged      columns under each other's names: refused
 reading        `read`: from files to a log
 many           many files, each a log of its own: in turn, in threads, or by workers

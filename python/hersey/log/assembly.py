@@ -9,7 +9,14 @@ from functools import partial
 import numpy as np
 
 from hersey.arrays import BoolArray, FloatArray, IntArray
-from hersey.errors import ChannelError, HerseyError, Setting, TimeOrderError, UnreadableLogError
+from hersey.errors import (
+    ChannelError,
+    HerseyError,
+    Setting,
+    TimeOrderError,
+    UnitError,
+    UnreadableLogError,
+)
 from hersey.log.believed import in_si
 from hersey.log.channels import (
     clocks_passed_over,
@@ -21,6 +28,7 @@ from hersey.log.channels import (
     refuse_two_roles,
     taken_columns,
 )
+from hersey.log.formats.frame import FRAME
 from hersey.log.friction import Chosen, beside, computed, in_rotation, slow_roles, unused
 from hersey.log.impossible import Impossible, Reading, impossible_rows, marked_rows
 from hersey.log.recording import INVALID, INVALID_TIME, Recording, Signal, columns, nothing_to_read
@@ -31,6 +39,7 @@ from hersey.log.text.column import Column
 from hersey.log.text.stamps import clock_without_unit, counted_unit, is_clock_name
 from hersey.log.torque_log import NO_CLOCK, Channel, LogFile, Run
 from hersey.log.wanted import Wanted
+from hersey.log.without_units import naming_all
 from hersey.schema.warning import Warning
 from hersey.units import Conversion
 
@@ -78,7 +87,15 @@ class Assembly:
         self._counted: dict[int, Warning] = {}  # clocks that count from a known day
         self.chosen: Chosen = {}
         self._timed: Chosen = {}
-        for role in wanted.roles:
+        self.parts: dict[str, _Part] = {}
+        try:
+            self._choose(wanted.roles)
+        except UnitError as error:
+            raise self._naming_all(error, wanted.roles) from None
+
+    def _choose(self, roles: tuple[str, ...]) -> None:
+        """Find the channel of each role, and load it."""
+        for role in roles:
             if role != "time":  # which is that of the channel
                 self.chosen[role] = self._channel(role)
         torque = self.chosen["torque"][0]
@@ -86,6 +103,22 @@ class Assembly:
         self.chosen |= beside(near, self.choices, self.stated, self.chosen, self.source.name)
         self._unused = [*clocks_passed_over(near, self.stated), *unused(near, self.chosen, self.stated)]
         self.parts = {role: self._part(role) for role in self.chosen}
+
+    def _naming_all(self, error: UnitError, roles: tuple[str, ...]) -> UnitError:
+        """The error of a channel without a unit, with all others that lack one."""
+        if not self.choices["time"].name and any(each.clock is not None for each in self.recording.signals):
+            roles = tuple(role for role in roles if role != "time")
+        columns = tuple(map(self._with_epoch, self.columns)) if "time" in roles else self.columns
+        of_a_frame = self.recording.format == FRAME
+        return naming_all(
+            error,
+            roles,
+            columns,
+            self.choices,
+            self.source.name,
+            dead=self._says_nothing,
+            of_a_frame=of_a_frame,
+        )
 
     def runs(self) -> list[tuple[Run, LogFile]]:
         """Return the runs on the clock of the torque, and what was done to get there.

@@ -35,6 +35,7 @@ class CellTable:
     cells: tuple[Sequence[object], ...]
     number: Any  #: from a cell of text to a number
     comments: tuple[str, ...] = ()
+    of_a_frame: bool = False  #: without a header or a row of units
 
     def numbers(self, column: Column) -> FloatArray:
         """Return a column as written, NaN where a cell is no number."""
@@ -103,4 +104,5 @@ def _of_frame(frame: Any, name: str) -> CellTable:
     columns = tuple(Column(i, *split_unit(title)) for i, title in enumerate(by_name))
     content = repr(by_name).encode()
     style = style_of([cell.strip() for cells in by_name.values() for cell in cells if isinstance(cell, str)])
-    return CellTable(name, _sha(content), len(content), columns, tuple(by_name.values()), style.value)
+    cells = tuple(by_name.values())
+    return CellTable(name, _sha(content), len(content), columns, cells, style.value, of_a_frame=True)

@@ -19,6 +19,7 @@ from hersey.errors import (
     printable,
     way_in,
 )
+from hersey.log.own_tables import not_a_log, own_table
 from hersey.log.role_units import with_unit
 from hersey.log.roles import (
     EVERY,
@@ -91,9 +92,27 @@ def find_channel(
     UnitError
         If the column that must be it has no unit, an unknown one, or one of another kind.
     """
+    column = find_column(role, columns, choice, file, dead, taken)
+    return None if column is None else with_unit(role, column, choice.unit, file, columns, taken)
+
+
+def find_column(
+    role: str,
+    columns: tuple[Column, ...],
+    choice: ChannelChoice,
+    file: str,
+    dead: Callable[[Column], bool] = lambda _: False,
+    taken: Mapping[str, Column] = MappingProxyType({}),
+) -> Column | None:
+    """Return the column of a role as `find_channel`, whatever its unit.
+
+    Raises
+    ------
+    ChannelError
+        If several columns could play the role, or the named one is not there.
+    """
     if choice.name:
-        column = named_channel(role, columns, choice.name, file, taken)
-        return with_unit(role, column, choice.unit, file, columns, taken)
+        return named_channel(role, columns, choice.name, file, taken)
     candidates = _candidates(role, columns)
     candidates = [c for c in candidates if c not in taken.values()] or candidates
     if len(candidates) > 1:
@@ -109,7 +128,7 @@ def find_channel(
             columns=tuple(c.index for c in candidates),
             **_choose(role, candidates[0].path),
         )
-    return with_unit(role, candidates[0], choice.unit, file, columns, taken)
+    return candidates[0]
 
 
 def taken_columns(
@@ -170,6 +189,8 @@ def no_channel(
     role: str, columns: tuple[Column, ...], file: str, others: tuple[str, ...] = ()
 ) -> ChannelError:
     """Return the error for a role that no column plays; ``others`` hold no numbers."""
+    if what := own_table(column.name for column in columns):
+        return not_a_log(what, file)
     channel = Setting(role, "channel")
     way_out = f"name it with {channel.to()}"
     if role == "torque" and any(is_of_kind("force", c.unit) for c in columns):

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from hersey.arguments.frozen import explained
 from hersey.arrays import one_thread
-from hersey.errors import HerseyError, ParameterError, UnfinishedError
+from hersey.errors import HerseyError, MissingFileError, ParameterError, UnfinishedError, followed_by
 from hersey.files.patterns import files_of
 from hersey.log.reading import read
 from hersey.scale.tasks import done, in_order
@@ -151,6 +151,8 @@ def collected(files: Iterable[Path], results: Iterable[R | HerseyError], keep_go
 
 def failure_line(path: Path, error: HerseyError) -> str:
     """Return why a file gave nothing, in a line that begins with its path."""
+    if isinstance(error, MissingFileError) and error.path == str(path):
+        return f"{path}: {followed_by('File not found', error.remedy)}"
     text = str(error)
     for name in (str(path), path.name):
         text = text.removeprefix(f"{name}: ")

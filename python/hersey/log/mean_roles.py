@@ -8,11 +8,12 @@ from dataclasses import replace
 import numpy as np
 
 from hersey.arrays import FloatArray
-from hersey.errors import UnreadableLogError
+from hersey.errors import UnitError, UnreadableLogError
 from hersey.log.cell_table import CellTable
 from hersey.log.channels import ChannelChoice, called, find_channel, no_channel, taken_columns
 from hersey.log.roles import role_conversion
 from hersey.log.text.column import Column
+from hersey.log.without_units import naming_all
 from hersey.units import Conversion
 
 _ERROR = re.compile(r"error|uncert|\bsem\b|\bse\b|±", re.IGNORECASE)
@@ -85,12 +86,14 @@ def mean_roles(cells: CellTable, choices: dict[str, ChannelChoice], isothermal: 
     """
     usual = measured(cells.columns)
     roles: dict[str, Role] = {}
-    for role in ("torque", "speed", "temperature"):
-        if role == "temperature" and isothermal:
-            continue
+    needed = ("torque", "speed") if isothermal else ("torque", "speed", "temperature")
+    for role in needed:
         columns = cells.columns if choices[role].name else usual
         taken = taken_columns(role, columns, choices, roles)
-        channel = find_channel(role, columns, choices[role], cells.name, taken=taken)
+        try:
+            channel = find_channel(role, columns, choices[role], cells.name, taken=taken)
+        except UnitError as error:
+            raise naming_all(error, needed, usual, choices, cells.name, of_a_frame=cells.of_a_frame) from None
         if channel is not None:
             roles[role] = channel
         elif role != "temperature":

@@ -22,6 +22,19 @@ from hersey.units import COUNTS, KINDS, Conversion, nearest_unit, of_encoder
 _INVERTER = "If it is the frequency of an inverter, divide by the pole pairs of the motor, e.g. for 2 use"
 
 
+def known_unit(role: str, column: Column) -> str:
+    """Return the unit of a column that states none, where its name leaves no choice; else nothing."""
+    return "1" if role == "torque" and is_named(FRICTION_NAMES["friction coefficient"], column) else ""
+
+
+def example_unit(role: str, column: Column) -> str:
+    """Return a unit that a column of a role could have."""
+    of_a_force = role == "torque" and is_named(FRICTION_NAMES["force"], column)
+    of_sliding = role == "speed" and is_named(FRICTION_NAMES["belt speed"], column)
+    kind = "force" if of_a_force else "belt speed" if of_sliding else ROLE_KINDS[role][0]
+    return KINDS[kind][1]
+
+
 def with_unit(
     role: str,
     column: Column,
@@ -37,16 +50,11 @@ def with_unit(
     UnitError
         If there is no unit, an unknown one, or one that the role cannot have.
     """
-    unit = given or column.unit
-    if not unit and role == "torque" and is_named(FRICTION_NAMES["friction coefficient"], column):
-        unit = "1"
+    unit = given or column.unit or known_unit(role, column)
     if role == "run":
         return column, Conversion(unit, 1.0, 0.0)
     if not unit:
-        of_a_force = role == "torque" and is_named(FRICTION_NAMES["force"], column)
-        of_sliding = role == "speed" and is_named(FRICTION_NAMES["belt speed"], column)
-        kind = "force" if of_a_force else "belt speed" if of_sliding else ROLE_KINDS[role][0]
-        example = KINDS[kind][1]
+        example = example_unit(role, column)
         raise UnitError(
             f"{file}: column '{column.path}' has no unit",
             columns=(column.index,),

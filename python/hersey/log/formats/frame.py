@@ -18,6 +18,8 @@ from hersey.log.text.numbers import is_missing, looks_numeric, style_of
 from hersey.log.text.stamps import OF_WINCC
 from hersey.processes.forks import refuse_after_fork
 
+#: Format of a recording that is a frame.
+FRAME = "frame"
 #: Types of columns that may hold numbers written as text.
 _TEXT = (pl.String, pl.Categorical, pl.Enum)
 #: How a time stamp in text begins.
@@ -56,7 +58,7 @@ def frame_recording(frame: Any, name: str = "frame") -> Recording:
         size += numbers.nbytes
         signals.append(column_signal(column, kind, len(series), series.clone, str(units.get(column, ""))))
     source = Source(name, digest.hexdigest(), size)
-    return Recording("frame", tuple(signals), tuple(others), source=source)
+    return Recording(FRAME, tuple(signals), tuple(others), source=source)
 
 
 def _as_numbers(columns: list[tuple[str, pl.Series]]) -> list[tuple[str, pl.Series]]:

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from hersey.arrays import BoolArray, FloatArray, IntArray
-from hersey.errors import Setting, UnreadableLogError, printable
+from hersey.errors import Setting, UnitError, UnreadableLogError, printable
 from hersey.files.reading import OpenFile, appended
 from hersey.log.believed import in_si
 from hersey.log.channels import (
@@ -37,6 +37,7 @@ from hersey.log.text.numbers import is_missing
 from hersey.log.text.stamps import refuse_whole_minutes
 from hersey.log.torque_log import NO_CLOCK, Channel, LogFile, Run
 from hersey.log.wanted import Wanted
+from hersey.log.without_units import naming_all
 from hersey.schema.warning import Warning
 from hersey.units import Conversion
 
@@ -197,7 +198,10 @@ def _channels(
     chosen: dict[str, tuple[Column, Conversion]] = {}
     for role in sorted(used, key=lambda r: r != "torque"):  # without it the rest is of no use
         taken = taken_columns(role, layout.named, choices, chosen)
-        channel = find_channel(role, layout.named, choices[role], name, dead, taken)
+        try:
+            channel = find_channel(role, layout.named, choices[role], name, dead, taken)
+        except UnitError as error:
+            raise naming_all(error, used, layout.named, choices, name, dead=dead) from None
         if channel is None:
             raise no_channel(role, layout.named, name)
         refuse_two_roles(role, channel[0], chosen, name)

@@ -308,6 +308,9 @@ def _check(drag: AnyDrag, target_speed: float, limits: Limits, confidence: float
             raise ParameterError(f"{name} is {value}: it must be greater than 0")
     if not CONFIDENCES[0] <= confidence <= CONFIDENCES[1]:
         low, high = CONFIDENCES
-        raise ParameterError(f"confidence is {confidence}: it must be from {low} to {high}")
+        raise ParameterError(
+            f"confidence is {confidence:g}: it must be from {low} to {high}",
+            remedy=f"write {confidence / 100:g}" if low <= confidence / 100 <= high else "",
+        )
     if seed < 0:
         raise ParameterError(f"seed is {seed}: it must not be negative")
