@@ -18,7 +18,7 @@ import numpy as np
 from hersey.arrays import BoolArray, FloatArray, IntArray
 from hersey.errors import DROP_MISSING, ISOTHERMAL, Setting, TimeOrderError, UnreadableLogError
 from hersey.log.believed import BELIEVED, TENTHS, Believed, as_written, in_si, is_code, is_wrapped
-from hersey.log.neighbours import bursts, drop_outs, flips, on_its_way, pulses
+from hersey.log.neighbours import LEAST_JUMP, NEAREST_BURST, bursts, drop_outs, flips, on_its_way, pulses
 from hersey.log.roles import role_conversion
 from hersey.log.stray_times import stray_times
 from hersey.log.text.column import Column
@@ -52,6 +52,8 @@ _LIKELY = (233.15, 673.15)
 _OTHER_FILE = "name another column, or correct the file"
 #: Larger numbers, in SI, are cut to this before they are compared: their differences would overflow.
 _NO_LARGER = 1e30
+#: Share by which a zero in SI may be off.
+_ROUNDING = 1e-9
 
 
 class Reason(StrEnum):
@@ -226,6 +228,8 @@ def _way_out(bad: int, rows: int) -> str:
 
 def _of_clock(time: FloatArray) -> dict[Reason, BoolArray]:
     believed = BELIEVED["time"]
+    if not time.size or (time.min() >= believed.low and time.max() <= believed.high):
+        return {Reason.CLOCK: stray_times(time)}
     beyond = (time < believed.low) | (time > believed.high)
     stray = np.zeros(time.size, dtype=bool)
     stray[~beyond] = stray_times(time[~beyond])
@@ -236,34 +240,43 @@ def _of_channel(
     reading: Reading, kind: str, time: FloatArray | None, known: BoolArray
 ) -> dict[Reason, BoolArray]:
     """Rows that cannot be right by reason, each row under one; ``known`` are its rows among those of time."""
-    values, believed = np.clip(reading.values, -_NO_LARGER, _NO_LARGER), BELIEVED[kind]
-    masks = {Reason.RANGE: (values < believed.low) | (values > believed.high)}
-    if values.size < FEWEST:
-        return masks
-    ordinary = _ordinary(reading, kind, believed)
+    values, believed = reading.values, BELIEVED[kind]
+    if not values.size:
+        return {}
+    least, most = float(values.min()), float(values.max())  # most channels need no further look
+    masks: dict[Reason, BoolArray] = {}
+    if least < believed.low or most > believed.high:
+        values = np.clip(values, -_NO_LARGER, _NO_LARGER)
+        masks[Reason.RANGE] = (values < believed.low) | (values > believed.high)
+    ordinary = _ordinary(reading, kind, believed) if values.size >= FEWEST else None
     if ordinary is None:
         return masks
     low, high, size = ordinary
-    taken = masks[Reason.RANGE].copy()
+    taken = np.zeros(values.size, dtype=bool) | masks.get(Reason.RANGE, False)
 
     def take(reason: Reason, mask: BoolArray) -> None:
         masks[reason] = masks.get(reason, np.zeros(values.size, dtype=bool)) | (mask & ~taken)
         taken[:] |= mask
 
-    far = np.flatnonzero((values > high + _CODE * size) | (values < low - _CODE * size))
-    if far.size:
+    def some_beyond(sizes: float) -> bool:
+        return most > high + sizes * size or least < low - sizes * size
+
+    if some_beyond(_CODE):
+        far = np.flatnonzero((values > high + _CODE * size) | (values < low - _CODE * size))
         beyond = np.maximum(values[far] - high, low - values[far]) / size if size > 0 else np.inf
         wrapped = is_wrapped(values[far], reading.unit) & (beyond > _WRAP)
         take(Reason.CODE, _at(far[is_code(values[far], reading.unit, kind) | wrapped], values.size))
-    if size > 0:
+    if size > 0 and some_beyond(NEAREST_BURST):
         take(Reason.OUTLIER, _few(bursts(values, low, high, size) & ~taken))
-    least = _NEAR_ZERO if kind == "temperature" else 0.0
-    take(Reason.DROP_OUT, _few(drop_outs(values, reading.unit.offset, least) & ~taken))
-    if kind == "temperature" and time is not None:
+    zero = reading.unit.offset
+    if least <= zero + _ROUNDING * zero and most >= zero - _ROUNDING * zero:
+        nearest = _NEAR_ZERO if kind == "temperature" else 0.0
+        take(Reason.DROP_OUT, _few(drop_outs(values, zero, nearest) & ~taken))
+    if kind == "temperature" and time is not None and most - least > LEAST_JUMP:
         take(Reason.JUMP, pulses(values, time[known], high - low, MOST))
-    if taken.any() and size > 0:
+    if size > 0 and taken.any():
         take(Reason.OUTLIER, on_its_way(values, taken, low, high, size) & ~taken)
-    if kind in ("torque", "force", "friction coefficient", "speed", "belt speed"):
+    if least < 0.0 <= most and kind in ("torque", "force", "friction coefficient", "speed", "belt speed"):
         take(Reason.SIGN, _few(flips(values) & ~taken))
     return masks
 

@@ -10,6 +10,7 @@ from hersey.arrays import BoolArray, FloatArray, IntArray
 
 #: A burst lies so many sizes (span, or greatest value) beyond the ordinary range, for at most so many rows.
 _BURSTS = ((5.0, 2), (20.0, 20), (1000.0, 1_000_000_000))
+NEAREST_BURST = _BURSTS[0][0]
 #: Rows beside what is impossible go with it where they lie beyond the ordinary range by more than this many
 #: sizes and change by more than this many from one to the next: a reading on its way there.
 _BESIDE, _ON_ITS_WAY = 0.25, 0.1
@@ -18,7 +19,7 @@ _SHORT, _AROUND = 2, 5
 #: Rows are steady if they span at most this share of their median, and opposite to it within the second.
 _STEADY_FLIP, _STEADY_DROP = 0.5, 0.3
 #: No temperature jumps by so many kelvin from row to row, and back again, with rows at most so many s apart.
-_JUMP, _ROWS_APART = 100.0, 10.0
+LEAST_JUMP, _ROWS_APART = 100.0, 10.0
 #: Short runs are looked at one by one unless they start in more than this share of the rows.
 _MOST_STARTS = 0.3
 
@@ -56,7 +57,7 @@ def on_its_way(values: FloatArray, seeds: BoolArray, low: float, high: float, si
 
 def pulses(values: FloatArray, time: FloatArray, size: float, most: float) -> BoolArray:
     """Return rows between a jump and the one that leads back to the level before it."""
-    jump, steps = max(_JUMP, size), np.diff(values)
+    jump, steps = max(LEAST_JUMP, size), np.diff(values)
     jumps = np.flatnonzero((np.abs(steps) > jump) & (np.diff(time) <= _ROWS_APART)) + 1
     found = np.zeros(values.size, dtype=bool)
     longest, i = most * values.size, 0

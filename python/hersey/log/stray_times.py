@@ -35,9 +35,13 @@ def stray_times(time: FloatArray) -> BoolArray:
     if time.size < 3:
         return stray
     steps = np.diff(time)
-    forward = steps[steps > 0]
-    if not forward.size:
+    greatest = float(steps.max())
+    if greatest <= 0.0:
         return stray
+    # even clocks need no median: if it is a tenth of the greatest step, none is a jump
+    if steps.min() >= 0.0 and 2 * np.count_nonzero(steps > greatest / _JUMP) > np.count_nonzero(steps > 0.0):
+        return stray
+    forward = steps[steps > 0]
     usual = float(np.median(forward))
     jumps = np.flatnonzero((steps < 0) | (steps > _JUMP * usual)) + 1
     done = 0

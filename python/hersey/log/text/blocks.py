@@ -7,6 +7,9 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import BinaryIO
 
+import numpy as np
+
+from hersey.arrays import BoolArray
 from hersey.errors import UnreadableLogError
 from hersey.files.reading import OpenFile
 from hersey.log.text.layout import Layout
@@ -16,6 +19,7 @@ from hersey.log.text.separators import BLANKS, split, tabbed
 BLOCK = 1 << 22
 #: Bytes of a line at the most.
 LONGEST_LINE = 1 << 25
+_END = ord("\n")
 
 
 @dataclass
@@ -56,11 +60,10 @@ def blocks(
 
 def _cleaned(text: bytes, line: int, layout: Layout, name: str) -> Block:
     """The block without blank lines and comments."""
-    comment = layout.comment.encode()
-    count = text.count(b"\n") + (not text.endswith(b"\n"))
-    blank = text.startswith((b"\n", b"\r\n")) or b"\n\n" in text or b"\n\r\n" in text
-    if not blank and not text.startswith(comment) and b"\n" + comment not in text:
-        return Block(text, range(line, line + count))
+    comment, ends = layout.comment.encode(), _line_ends(text)
+    commented = comment in text and (text.startswith(comment) or b"\n" + comment in text)
+    if not commented and not _has_blank_line(text, ends):
+        return Block(text, range(line, line + int(np.count_nonzero(ends)) + (not ends[-1])))
     kept = [
         (number, row)
         for number, row in enumerate(text.split(b"\n"), start=line)
@@ -96,20 +99,35 @@ def _whole_lines(
         more = bool(chunk)
         hashed(chunk)
         done += len(chunk)
-        text = rest + (decoder.decode(chunk, final=not more).encode() if decoder else chunk)
-        last = text.rfind(b"\n") + 1 if more else len(text)
-        if more and not last and len(text) > LONGEST_LINE:
+        if decoder:
+            chunk = decoder.decode(chunk, final=not more).encode()
+        last = chunk.rfind(b"\n") + 1 if more else len(chunk)
+        if more and not last and len(rest) + len(chunk) > LONGEST_LINE:
             raise UnreadableLogError(
                 f"{name}: a line is longer than {LONGEST_LINE} bytes, so it is not a log"
             )
-        block, rest = text[:last], text[last:]
+        whole = last or not more
+        block = b"".join((rest, memoryview(chunk)[:last])) if whole else b""  # copied once
+        rest = chunk[last:] if whole else rest + chunk
         if skip:
             above = _end_of_lines(block, skip)
             passed = block.count(b"\n", 0, above)
             skip, line, block = skip - passed, line + passed, block[above:]
         if block and not block.isspace():
             yield block, line, done
-        line += block.count(b"\n")
+        line += int(np.count_nonzero(_line_ends(block)))
+
+
+def _line_ends(text: bytes) -> BoolArray:
+    """Which bytes end a line: several times as fast as counting or searching them in the text."""
+    return np.frombuffer(text, np.uint8) == _END
+
+
+def _has_blank_line(text: bytes, ends: BoolArray) -> bool:
+    """Whether a line of the text is empty."""
+    if ends[0] or text.startswith(b"\r\n") or (ends[1:] & ends[:-1]).any():
+        return True
+    return b"\r" in text and bool((ends[2:] & ends[:-2]).any()) and b"\n\r\n" in text
 
 
 def _end_of_lines(text: bytes, count: int) -> int:

@@ -57,24 +57,12 @@ class CellReader:
         fast = not self.stamps and (
             style.is_plain or (comma and self.layout.separator != "," and b"." not in block.text)
         )  # a point beside decimal commas is a cell that could be read in two ways
-        try:
-            frame = pl.read_csv(
-                block.text,
-                has_header=False,
-                columns=wanted,
-                separator=self.layout.between,
-                decimal_comma=fast and comma,
-                schema_overrides=[pl.Float64 if fast else pl.String] * len(self.layout.columns),
-                null_values=NULLS,
-                encoding="utf8-lossy",
-            )
-        except pl.exceptions.PolarsError:
-            return self._cell_by_cell(block)
-        if frame.height != len(block.lines) or frame.width != len(wanted):
+        frame = self._parsed(block, wanted, fast=fast, comma=comma)
+        if frame is None or frame.height != len(block.lines) or frame.width != len(wanted):
             return self._cell_by_cell(block)
         by_index = dict(zip(wanted, frame.get_columns(), strict=True))
         if fast:
-            return [by_index[c.index].cast(pl.Float64).fill_null(np.nan).to_numpy() for c in self.columns]
+            return [_with_nan(by_index[column.index]) for column in self.columns]
         values: dict[int, FloatArray] = {}
         for column in sorted(self.columns, key=lambda c: c.index in self.stamps):  # which remember, so last
             numbers = self._written(column).values(by_index[column.index].fill_null(""))
@@ -82,6 +70,27 @@ class CellReader:
                 return self._cell_by_cell(block)
             values[column.index] = numbers
         return [values[column.index] for column in self.columns]
+
+    def _parsed(self, block: Block, wanted: list[int], *, fast: bool, comma: bool) -> pl.DataFrame | None:
+        """The columns as polars reads them, or None where it stumbles.
+
+        Words for what is missing take most of its time, so it first tries without them.
+        """
+        for nulls in [None, NULLS] if fast else [NULLS]:
+            try:
+                return pl.read_csv(
+                    block.text,
+                    has_header=False,
+                    columns=wanted,
+                    separator=self.layout.between,
+                    decimal_comma=fast and comma,
+                    schema_overrides=[pl.Float64 if fast else pl.String] * len(self.layout.columns),
+                    null_values=nulls,
+                    encoding="utf8-lossy",
+                )
+            except pl.exceptions.PolarsError:
+                continue
+        return None
 
     def _written(self, column: Column) -> NumberStyle | Stamps:
         return self.stamps.get(column.index, self.layout.style)
@@ -122,3 +131,10 @@ class CellReader:
                     else "",
                 )
         return values
+
+
+def _with_nan(numbers: pl.Series) -> FloatArray:
+    """The numbers of a column, NaN where one is missing."""
+    if numbers.dtype != pl.Float64:  # of a column without any
+        numbers = numbers.cast(pl.Float64)
+    return (numbers.fill_null(np.nan) if numbers.null_count() else numbers).to_numpy()

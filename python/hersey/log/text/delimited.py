@@ -31,6 +31,7 @@ from hersey.log.rows import LeftOut, runs_with_records
 from hersey.log.text.blocks import Block, blocks
 from hersey.log.text.cells import CellReader
 from hersey.log.text.column import Column
+from hersey.log.text.filling import Filling
 from hersey.log.text.footer import end_of_table
 from hersey.log.text.layout import SNIFFED, Layout, find_layout
 from hersey.log.text.numbers import is_missing
@@ -227,7 +228,7 @@ class _Table:
         self.reader = CellReader(name, layout, self.columns, strict=strict)
         self.slow: frozenset[str] = frozenset()  # roles that a row may lack until the whole is known
         self.lacking: dict[str, LeftOut] = {}  # rows that lack such a role alone
-        self.parts: dict[str, list[FloatArray]] = {}
+        self.parts: dict[str, Filling] = {}
         self.digest = hashlib.sha256()
         self.left_out = LeftOut()
         self.rows = 0  # so far, those that were left out among them
@@ -238,7 +239,7 @@ class _Table:
     def read(self, opened: OpenFile, end: int, progress: Progress | None) -> None:
         """Read the table, which ends at byte ``end``."""
         for block, done in self._blocks(opened, end):
-            self._add(block)
+            self._add(block, done / max(1, end))
             if progress:
                 progress(done, opened.size)
 
@@ -263,9 +264,7 @@ class _Table:
 
     def arrays(self) -> tuple[dict[str, FloatArray], tuple[Impossible, ...]]:
         """What the rows hold, by role, as a log has it, and readings that cannot be right, left out."""
-        arrays = {}
-        for role in tuple(self.parts):  # one after another, so that only one is held twice
-            arrays[role] = np.concatenate(self.parts.pop(role))
+        arrays = {role: part.whole() for role, part in self.parts.items()}
         readings = [
             Reading(role, *self.channels[role], values)
             for role, values in arrays.items()
@@ -294,7 +293,7 @@ class _Table:
         first, lines, kept = self._lines[bisect_right(self._lines, row, key=lambda block: block[0]) - 1]
         return f"line {lines[row - first if kept is None else int(kept[row - first])]}"
 
-    def _add(self, block: Block) -> None:
+    def _add(self, block: Block, done: float) -> None:
         values = self.reader.numbers(block)
         by_role = self._in_si(values)
         needed = [numbers for role, numbers in by_role.items() if role not in self.slow]
@@ -314,7 +313,7 @@ class _Table:
         self._kept_last = len(block.lines) if kept is None else kept.size
         self._lines.append((first, block.lines, kept))
         for role, numbers in by_role.items():
-            self.parts.setdefault(role, []).append(numbers if kept is None else numbers[kept])
+            self.parts.setdefault(role, Filling()).add(numbers if kept is None else numbers[kept], done)
         self.rows += len(block.lines)
 
     def _in_si(self, values: list[FloatArray]) -> dict[str, FloatArray]:

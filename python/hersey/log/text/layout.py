@@ -8,7 +8,7 @@ import re
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import lru_cache, partial
 
 import numpy as np
 
@@ -28,6 +28,8 @@ from hersey.schema.warning import Warning
 SNIFFED = 1 << 17
 #: Lines that a quoted cell of a header has at the most.
 _LINES_OF_A_CELL = 10
+#: Layouts kept, each with the bytes that were looked at.
+_KEPT = 8
 _COMMENTS = ("#", "~", "//")
 
 
@@ -77,6 +79,12 @@ def find_layout(start: bytes, name: str, *, separators: str = SEPARATORS) -> Lay
     UnreadableLogError
         If the bytes are no text, or hold no header followed by rows of numbers.
     """
+    return _layout(start, name, separators, way_in())
+
+
+@lru_cache(maxsize=_KEPT)
+def _layout(start: bytes, name: str, separators: str, _way_in: str) -> Layout:
+    """The layout, kept because each who opens a file looks for it; its words suit the way in."""
     encoding = encoding_of(start, name)
     lines = _lines(start, encoding, name, separators)
     _refuse_json("\n".join(lines), name)

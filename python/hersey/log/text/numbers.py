@@ -24,6 +24,7 @@ MISSING = (
 NULLS = sorted({s for word in MISSING for s in (word, word.upper(), word.capitalize())} | {"NaN"})
 #: Thousands marks: no-break, narrow and thin spaces are written for a blank.
 BLANKS = " \u00a0\u202f\u2009"
+_MISSING = frozenset(MISSING)
 _EXPONENT = r"([eE][-+]?[0-9]+)?"  # \d would take the digits of every script
 
 
@@ -80,7 +81,7 @@ class NumberStyle:
 
 def is_missing(cell: str) -> bool:
     """Return whether a cell stands for a value that was not measured."""
-    return cell.lower() in MISSING
+    return cell.lower() in _MISSING
 
 
 def _missing(text: pl.Series) -> pl.Series:

@@ -24,6 +24,8 @@ def split(line: str, separator: str) -> list[str]:
     """Return the cells of a line, without surrounding blanks."""
     if separator == BLANKS:
         return line.split()
+    if '"' not in line:  # as the csv module would, several times as fast
+        return [cell.strip() for cell in line.split(separator)] if line else []
     try:
         return [cell.strip() for cell in next(csv.reader([line], delimiter=separator), [])]
     except csv.Error:  # a cell beyond the limit of the csv module
