@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import shlex
+from functools import lru_cache
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -14,6 +15,7 @@ from hersey.damping.no_load import no_load_torque
 from hersey.damping.no_load_torque import NoLoadTorque
 from hersey.damping.recipe import Recipe
 from hersey.errors import HerseyError, ParameterError
+from hersey.files.reading import hash_of
 from hersey.files.text import shown
 from hersey.files.toml import Quantity, Share, Table, Text
 from hersey.machine.finding import named_log
@@ -86,7 +88,10 @@ class RestTable(Table):
     def _of_log(self, path: Path) -> NoLoadTorque:
         named = named_log(path, "rest", "log", str(self.log))
         try:
-            return no_load_torque(Recipe(logs=(named,), tare=self.tare or "none").points())
+            mapping = Recipe(logs=(named,)).chosen.source
+            return _fitted(
+                named, self.tare or "none", hash_of(named), "" if mapping is None else hash_of(mapping)
+            )
         except HerseyError as error:
             refusal = error.within(f"{path.name}: [rest] log")
             refusal.setting = None
@@ -95,3 +100,9 @@ class RestTable(Table):
                 f'{named.stem}.hersey.toml beside it, or replace log by a number, torque = "20 mN*m"'
             )
             raise refusal from None
+
+
+@lru_cache(maxsize=8)
+def _fitted(log: Path, tare: str, _log: str, _mapping: str) -> NoLoadTorque:
+    """The no-load torque of a log, kept by the hashes of its files: campaigns read it many times."""
+    return no_load_torque(Recipe(logs=(log,), tare=tare).points())
