@@ -129,7 +129,7 @@ def measure_machine() -> list[tuple[float, float, float, float]]:
     rows, exact = [], all_draws(1e-14)
     for tolerance in BEFORE:
         seconds, upper = best_of(5, lambda t=tolerance: all_draws(t))
-        one, _ = best_of(100, lambda t=tolerance: _core.band(*arguments, t, MOST_STEPS))
+        one, _ = best_of(100, lambda t=tolerance: _core.band(*arguments, True, t, MOST_STEPS))
         rows.append((tolerance, seconds, one, float(np.max(np.abs(upper / exact - 1)))))
     return rows
 

@@ -76,18 +76,19 @@ fn few(laps: usize) -> u32 {
     u32::try_from(laps).unwrap_or(u32::MAX)
 }
 
-/// The band of one belt, for any law.
+/// The band of one belt, for any law; its lower edge is not a number unless it is asked for.
 #[pyfunction]
 pub fn band(
     py: Python<'_>,
     train: TrainArguments,
     drag: &Law,
+    lower: bool,
     tolerance: f64,
     most_steps: u64,
 ) -> PyResult<Band> {
     let belt = [(drivetrain_from(train)?, drag.0.clone())];
     let found = interruptible(py, most_steps, |work| {
-        stability::bands(&belt, true, tolerance, work).and_then(|mut bands| bands.remove(0))
+        stability::bands(&belt, lower, tolerance, work).and_then(|mut bands| bands.remove(0))
     })?;
     Ok(Band {
         lower: found.lower,

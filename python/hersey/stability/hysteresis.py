@@ -237,7 +237,7 @@ def hysteresis(
     """
     train, drag, temperature = belt_of(train, drag, temperature)
     steps = whole("most_steps", most_steps)
-    band = _core.band(train._arguments, drag.law_at(temperature), float(tolerance), steps)
+    band = _core.band(train._arguments, drag.law_at(temperature), True, float(tolerance), steps)
     plain = drag.at(temperature) if isinstance(drag, Drag) else None
     closure = str(getattr(drag, "closure", "retained"))
     if sensitivity is None:
@@ -258,6 +258,20 @@ def hysteresis(
         lower_sensitivity=changes[1],
         **drawn,
     )
+
+
+def fold(
+    train: Drivetrain, drag: BeltDrag, *, tolerance: float = TOLERANCE, most_steps: int = MOST_STEPS
+) -> tuple[float, float]:
+    """Return transition speed and V* (m/s) of a drag at one temperature: `hysteresis` without its slow lower edge.
+
+    Raises
+    ------
+    ParameterError, UnfinishedError
+        As `hysteresis` does.
+    """
+    found = _core.band(train._arguments, drag.law_at(None), False, tolerance, most_steps)
+    return float(found.transition), float(found.upper)
 
 
 def _drawn(name: str, values: Any) -> Any:

@@ -126,7 +126,12 @@ pub fn bands(
             (fold.drive_speed * transition, MEETING * tolerance * far)
         } else {
             let from = uppers[i].map_or(1.0, |fold| fold.drive_speed * (1.0 + ABOVE));
-            let near = if drag.closure().is_smooth() { HALVED_SMOOTH } else { HALVED };
+            // so near to the fold that steps decide, a motion may stick now and then for thousands of laps
+            let near = if drag.closure().is_smooth() {
+                HALVED_SMOOTH
+            } else {
+                HALVED.max(10.0 * tolerance)
+            };
             let start = if stalls { released(train, drag) } else { Start::REST };
             let (upper, near) = match motions.smooth() {
                 Some(belt) => {

@@ -22,7 +22,7 @@ from hersey.life.indicator import NOT_JUDGED, Indicator
 from hersey.life.indicators.at_states import AtStates, Curves
 from hersey.motion.drag import DragTable
 from hersey.schema.warning import Warning
-from hersey.stability.hysteresis import hysteresis
+from hersey.stability.hysteresis import fold
 
 if TYPE_CHECKING:
     from hersey.damping.no_load_torque import NoLoadTorque
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 #: Runs whose fold is sought at the most, those whose draws give its error, and draws of each.
 MOST_FOLDS, DRAWN_RUNS, _DRAWS = 24, 3, 3
 #: Work and tolerance of a fold: of thousands, one that takes long is left out.
-_STEPS, _TOLERANCE = 2e6, 1e-8
+_STEPS, _TOLERANCE = 2_000_000, 1e-8
 #: Folds of draws that give an error.
 _FEWEST = 5
 #: Standard deviations that enclose 95 % of a normal distribution on either side.
@@ -177,10 +177,10 @@ def edges(train: Drivetrain, drag: DragTable | None) -> tuple[float, float]:
     if drag is None:
         return np.nan, np.nan
     try:
-        band = hysteresis(train, drag, sensitivity=False, tolerance=_TOLERANCE, most_steps=_STEPS)
+        transition, upper = fold(train, drag, tolerance=_TOLERANCE, most_steps=_STEPS)
     except (UnfinishedError, ParameterError):
         return float(drag.speeds[int(np.argmin(drag.forces))]), np.nan
-    return band.transition, band.upper if 0.0 < band.upper < np.inf else np.nan
+    return transition, upper if 0.0 < upper < np.inf else np.nan
 
 
 def static_force(machine: Machine) -> float | None:
