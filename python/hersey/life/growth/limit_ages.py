@@ -193,8 +193,8 @@ def ages_of_sum(drawn: Specimens, level: FloatArray) -> FloatArray:
 
 def heavy_tailed(random: np.random.Generator, shape: tuple[int, int]) -> FloatArray:
     """Draws of Student's t of four degrees of freedom, none beyond five, evenly spread in each column."""
-    ranks = random.permuted(np.tile(np.arange(shape[0])[:, None], (1, shape[1])), axis=0)
-    return np.asarray(np.clip(special.stdtrit(4.0, (ranks + 0.5) / shape[0]), -5.0, 5.0))
+    spread = np.clip(special.stdtrit(4.0, (np.arange(shape[0]) + 0.5) / shape[0]), -5.0, 5.0)
+    return np.asarray(spread[random.permuted(np.tile(np.arange(shape[0])[:, None], (1, shape[1])), axis=0)])
 
 
 def beyond(random: np.random.Generator, share: float, *columns: int) -> tuple[FloatArray, ...]:

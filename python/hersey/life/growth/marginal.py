@@ -114,6 +114,12 @@ def _over_nodes(
     return density + _constants(points, shared, weight)[..., None], size, width
 
 
+def _log_sum(density: FloatArray) -> FloatArray:
+    """Log of the sum over nodes: that of scipy takes ten times as long for so few numbers."""
+    most = density.max(axis=2, keepdims=True)
+    return np.asarray(np.log(np.exp(density - most).sum(axis=2)) + most[..., 0])
+
+
 def likelihood(law: Law, points: Points, shared: FloatArray, start: FloatArray) -> FloatArray:
     """Return the log likelihood of draws of what all specimens share."""
     if not law.grows:
@@ -124,7 +130,7 @@ def likelihood(law: Law, points: Points, shared: FloatArray, start: FloatArray) 
     parts = []
     for i in range(0, len(shared), many):
         density, _, width = _over_nodes(law, points, shared[i : i + many], start, _NODES)
-        parts.append((special.logsumexp(density, axis=2) + np.log(width)).sum(axis=1))
+        parts.append((_log_sum(density) + np.log(width)).sum(axis=1))
     return np.concatenate(parts)
 
 
