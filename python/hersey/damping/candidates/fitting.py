@@ -314,7 +314,9 @@ def search(
         free[held[0]], base[held[0]] = False, held[1]
     modes = columns.shape[1]
     size = start.size - modes
-    prior = np.eye(modes, start.size, size)
+    # what no step of the search moves
+    fixed = np.vstack([np.zeros((len(data), start.size)), np.eye(modes, start.size, size)])
+    fixed[: len(data), size:] = -columns / sigma[:, None]
     centre = np.zeros(modes) if expected is None else expected
 
     def whole(some: FloatArray) -> FloatArray:
@@ -327,9 +329,9 @@ def search(
         return np.append(_residuals(law, data, columns, full) / sigma, full[size:] - centre)
 
     def jacobian(some: FloatArray) -> FloatArray:
-        full = whole(some)
-        slopes = np.column_stack([law.jacobian(full[:size], data.inputs), columns])
-        return np.asarray(np.vstack([-slopes / sigma[:, None], prior])[:, free])
+        slopes = fixed.copy()
+        slopes[: len(data), :size] = -law.jacobian(whole(some)[:size], data.inputs) / sigma[:, None]
+        return slopes if held is None else slopes[:, free]
 
     minimum = minimise(residual, jacobian, base[free], precision=effort.precision, calls=effort.calls)
     rows = np.zeros((minimum.jacobian.shape[0], start.size))

@@ -89,17 +89,28 @@ def minimise(
         If there are fewer residuals than parameters.
     """
     slopes = jacobian or central_differences(residual)
+    last: tuple[bytes, FloatArray] = (b"", np.empty(0))
+
+    def remembered(values: FloatArray) -> FloatArray:
+        # slopes are asked for where residuals have just been
+        nonlocal last
+        if (at := values.tobytes()) != last[0]:
+            last = at, residual(values)
+        return last[1]
 
     def shrunk(values: FloatArray) -> FloatArray:
-        u = residual(values)
-        with np.errstate(invalid="ignore"):
-            return np.asarray(np.where(np.abs(u) <= limit, u, np.sign(u) * np.sqrt(loss(u, limit))))
+        u = remembered(values)
+        if np.abs(u).max() <= limit:
+            return u
+        return np.asarray(np.where(np.abs(u) <= limit, u, np.sign(u) * np.sqrt(loss(u, limit))))
 
     def weighted(values: FloatArray) -> FloatArray:
-        u = residual(values)
+        u, by = remembered(values), slopes(values)
+        if np.abs(u).max() <= limit:
+            return by
         root = np.maximum(np.sqrt(loss(u, limit)), 1e-300)
         share = np.where(np.abs(u) <= limit, 1.0, limit / root)
-        return np.asarray(share[:, None] * slopes(values))
+        return np.asarray(share[:, None] * by)
 
     if (count := residual(start).size) < start.size:
         raise InsufficientDataError(f"{count} points are too few for {start.size} parameters")
@@ -116,7 +127,7 @@ def minimise(
             maxfev=calls * (start.size + 1),
         )
     values = np.asarray(solution, dtype=np.float64)
-    u = residual(values)
+    u = remembered(values)
     kept = np.sqrt(np.clip(limit / np.maximum(np.abs(u), 1e-300), 0.0, 1.0))
     return Minimum(values, float(np.sum(loss(u, limit))), np.asarray(kept[:, None] * slopes(values)))
 
