@@ -14,13 +14,14 @@ import hersey
 from hersey.charts.hysteresis import band_chart
 from hersey.errors import ParameterError
 from hersey.machine.uncertainty import Uncertainty
+from hersey.stability.hysteresis import fold
 
 TRAIN = hersey.Drivetrain(1000, 1)
 DRAG = hersey.Drag(50, 1, ehl_exponent=-0.7, mixed_exponent=-1.2, stick_speed=0.01)
 
 
 @pytest.mark.parametrize(
-    ("change", "fold"),
+    ("change", "known"),
     [
         ({}, 2.173493478),
         ({"stiffness": 500}, 2.228999261),
@@ -32,12 +33,12 @@ DRAG = hersey.Drag(50, 1, ehl_exponent=-0.7, mixed_exponent=-1.2, stick_speed=0.
         ({"closure": "stiction"}, 9.958031686),
     ],
 )
-def test_folds_of_reference(change: dict[str, float], fold: float) -> None:
+def test_folds_of_reference(change: dict[str, float], known: float) -> None:
     """The folds of physics.md, section 5."""
     train = replace(TRAIN, **{k: v for k, v in change.items() if hasattr(TRAIN, k)})
     drag = replace(DRAG, **{k: v for k, v in change.items() if hasattr(DRAG, k)})
     band = hersey.hysteresis(train, drag)
-    assert band.upper == pytest.approx(fold, rel=1e-8 if change.get("closure") else 1e-9)
+    assert band.upper == pytest.approx(known, rel=1e-8 if change.get("closure") else 1e-9)
     assert band.method == "half laps"
     assert not band.deeper
     assert band.bistable
@@ -577,3 +578,22 @@ def test_a_sweep_over_temperature_takes_the_rest_of_the_drive() -> None:
         band = hersey.hysteresis(TRAIN, rest, sensitivity=False)
         assert float(swept.upper[i]) == pytest.approx(band.upper, rel=1e-9)
     assert float(swept.upper[1]) != pytest.approx(float(swept.upper[0]), rel=0.01)
+
+
+def measured(stick_speed: float) -> hersey.DragTable:
+    """A belt's drag as a log gives it: points, a rest that rises with speed, and a rounded minimum."""
+    speed = np.geomspace(0.006, 0.4, 47)
+    force = 0.55 * (speed / 0.03) ** -0.9 + 0.38 * (speed / 0.03) ** 0.6
+    return hersey.DragTable(
+        tuple(speed.tolist()), tuple(force.tolist()), stick_speed, rest_force=12.0, rest_damping=4.6
+    )
+
+
+@pytest.mark.parametrize("stick_speed", np.geomspace(0.0025, 0.0035, 20).tolist())
+def test_the_fold_of_a_measured_drag_is_found_in_few_steps(stick_speed: float) -> None:
+    """Nearer to V* than steps are accurate a motion may stick now and then for ever: halving ends before."""
+    train, drag = hersey.Drivetrain(11_000, 11, grip=400.0), measured(stick_speed)
+    transition, upper = fold(train, drag, tolerance=1e-8, most_steps=20_000)
+    assert transition == drag.speeds[int(np.argmin(drag.forces))]
+    for factor, kind in ((1.0 - 1e-5, "stick_slip"), (1.0 + 1e-5, "steady_sliding")):
+        assert hersey.stick_slip(train, drag, drive_speed=factor * upper).kind == kind

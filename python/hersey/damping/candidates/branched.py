@@ -211,13 +211,20 @@ class Law(Named):
                 return law, np.column_stack(columns), z * 0.0, e * ds_dt
             spread = self._one_hot(inputs) * z[:, None]
             return law, np.column_stack([*columns, spread]), 1.0 + c, e * ds_dt
-        return self._evaluate_broken(values, inputs, law, c, derivatives)
+        return self._evaluate_broken(values, inputs, law, c, (e, s, ds_dt, ds_dq), derivatives=derivatives)
 
     def _evaluate_broken(
-        self, values: FloatArray, inputs: Inputs, law: FloatArray, c: FloatArray, derivatives: bool
+        self,
+        values: FloatArray,
+        inputs: Inputs,
+        law: FloatArray,
+        c: FloatArray,
+        thermal: tuple[float, FloatArray, FloatArray, FloatArray],
+        *,
+        derivatives: bool,
     ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         z = inputs.log_speed
-        e, s, ds_dt, ds_dq = self._thermal_term(values, inputs)
+        e, s, ds_dt, ds_dq = thermal
         at = self._transition(values, e, s)
         reach, share = self.bend.reach(np.asarray(z - at))
         change = values[self.index("c_mixed")] - c
