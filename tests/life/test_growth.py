@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy import stats
 
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.life.growth import fit as growth_module
@@ -18,7 +19,7 @@ from hersey.life.growth import peaks
 from hersey.life.growth import posterior as growth_posterior
 from hersey.life.growth.fit import Growth, fit_growth
 from hersey.life.growth.laws import LAWS
-from hersey.life.growth.limit_ages import quantiles
+from hersey.life.growth.limit_ages import heavy_tailed, quantiles
 from hersey.life.growth.marginal import likelihood
 from hersey.life.growth.points import Points
 
@@ -300,3 +301,11 @@ def test_specimens_of_one_age_are_counted() -> None:
     warnings = growth_of(unit[cut], age[cut], value[cut]).warnings
     (once,) = (each for each in warnings if each.kind == "growth of one age")
     assert (once.severity, once.values) == ("watch", {"count": 1})
+
+
+def test_heavy_tails_spread_evenly_in_each_column() -> None:
+    """The quantiles of Student's t with four degrees of freedom at (i + 1/2)/n, in an order of their own."""
+    drawn = heavy_tailed(np.random.default_rng(3), (2000, 3))
+    even = np.clip(stats.t.ppf((np.arange(2000) + 0.5) / 2000, 4.0), -5.0, 5.0)
+    np.testing.assert_allclose(np.sort(drawn, axis=0), np.tile(even[:, None], 3), rtol=1e-9, atol=1e-12)
+    assert not np.array_equal(drawn[:, 0], drawn[:, 1])

@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+import shutil
 from dataclasses import replace
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 import pytest
 
 import hersey
+from hersey.damping.dwells import SteadyPoints
+from hersey.damping.no_load import no_load_torque
+from hersey.damping.no_load_torque import NoLoadTorque
 from hersey.errors import ParameterError
 from hersey.log.torque_log import Correction
+from hersey.machine import no_load
 from hersey.machine.machine import Machine
 from tests.conftest import ROOT
 from tests.machines import machine_of
@@ -144,3 +150,27 @@ def test_points_of_the_whole_torque_are_refused() -> None:
     mapped = replace(points.log, corrections=(Correction("no-load torque", (), ()),))
     with pytest.raises(ParameterError, match=r"already subtracted\. Remove no_load from the mapping"):
         hersey.study(replace(points, log=mapped), machine)
+
+
+def test_the_no_load_log_is_fitted_once_until_it_is_another(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("machine.toml", "no-load.csv"):
+        shutil.copy(EXAMPLES / name, tmp_path)
+    fits: list[SteadyPoints] = []
+
+    def counted(points: SteadyPoints) -> NoLoadTorque:
+        fits.append(points)
+        return no_load_torque(points)
+
+    monkeypatch.setattr(no_load, "no_load_torque", counted)
+    log = tmp_path / "no-load.csv"
+    rests = [hersey.read_machine(tmp_path / "machine.toml").rest for _ in range(3)]
+    assert len(fits) == 1
+    assert rests[0] == rests[2]
+    log.write_text("".join(log.read_text().splitlines(keepends=True)[:-2000]))
+    assert hersey.read_machine(tmp_path / "machine.toml").rest != rests[0]
+    (tmp_path / "no-load.hersey.toml").write_text("[sign]\ntorque = -1\n[tare]\n")
+    with pytest.raises(ParameterError):
+        hersey.read_machine(tmp_path / "machine.toml")
+    assert len(fits) == 2
