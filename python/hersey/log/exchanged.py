@@ -151,7 +151,9 @@ def _exchanged(run: Run) -> dict[str, str]:
 
 def _of_few_drives(torque: FloatArray, speed: FloatArray) -> bool:
     """Whether a great torque at almost no speed is held more closely than the speed."""
-    if torque.size < 3 or np.quantile(torque, _USUAL) < _GREAT or np.quantile(speed, _USUAL) > _SLOW:
+    if torque.size < 3 or torque.max() < _GREAT:  # before the quantiles, which take long
+        return False
+    if np.quantile(torque, _USUAL) < _GREAT or np.quantile(speed, _USUAL) > _SLOW:
         return False
     return _unrest(torque) < _STEADIER * _unrest(speed)
 

@@ -95,7 +95,7 @@ def drop_outs(values: FloatArray, zero: float, least: float) -> BoolArray:
     """Return rows that read zero, which is ``zero`` in SI, between steady rows that are further from it."""
     none_read = values == zero if zero == 0.0 else np.abs(values - zero) <= 1e-12 * abs(zero)
     starts = np.flatnonzero(none_read[1:] & ~none_read[:-1]) + 1
-    from_zero = np.where(none_read, 0.0, values - zero) if starts.size else values
+    from_zero = np.where(none_read, 0.0, values - zero) if starts.size and zero else values
 
     def none(inside: FloatArray, _level: FloatArray) -> BoolArray:
         return np.asarray(inside == 0.0)

@@ -14,6 +14,8 @@ _JUMP = 10.0
 _ON, _MORE = 3.0, 2.0
 #: Stray rows in one place, at the most, as a share; and jumps looked at to find their end.
 _LONGEST, _LOOKED_AT = 0.2, 2000
+#: Rows whose steps are looked at together.
+_AT_ONCE = 1 << 16
 
 _SECONDS = Conversion("s", 1.0, 0.0)
 
@@ -34,14 +36,12 @@ def stray_times(time: FloatArray) -> BoolArray:
     stray = np.zeros(time.size, dtype=bool)
     if time.size < 3:
         return stray
+    if _goes_on(time):
+        return stray
     steps = np.diff(time)
-    greatest = float(steps.max())
-    if greatest <= 0.0:
-        return stray
-    # even clocks need no median: if it is a tenth of the greatest step, none is a jump
-    if steps.min() >= 0.0 and 2 * np.count_nonzero(steps > greatest / _JUMP) > np.count_nonzero(steps > 0.0):
-        return stray
     forward = steps[steps > 0]
+    if not forward.size:
+        return stray
     usual = float(np.median(forward))
     jumps = np.flatnonzero((steps < 0) | (steps > _JUMP * usual)) + 1
     done = 0
@@ -62,6 +62,24 @@ def stray_times(time: FloatArray) -> BoolArray:
                 done = end
                 break
     return stray | _at_the_ends(time, jumps)
+
+
+def _goes_on(time: FloatArray) -> bool:
+    """Whether a clock never steps back nor jumps, as most do: seen without the median of its steps.
+
+    If most steps forward are longer than a tenth of the greatest, that one is no jump.
+    """
+    parts = [slice(i, i + _AT_ONCE + 1) for i in range(0, time.size - 1, _AT_ONCE)]  # which stay in the cache
+    ends = [(steps.min(), steps.max()) for part in parts if (steps := np.diff(time[part])).size]
+    greatest = max(most for _, most in ends)
+    if min(least for least, _ in ends) < 0.0:
+        return False
+    long = forward = 0
+    for part in parts:
+        steps = np.diff(time[part])
+        long += np.count_nonzero(steps > greatest / _JUMP)
+        forward += np.count_nonzero(steps > 0.0)
+    return 2 * long > forward
 
 
 def _at_the_ends(time: FloatArray, jumps: np.ndarray) -> BoolArray:

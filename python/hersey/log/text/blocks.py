@@ -48,19 +48,24 @@ def blocks(
         If a line is longer than any of a log, or a row looks like a comment.
     """
     opened.file.seek(0)
-    for text, line, done in _whole_lines(opened.file, end, layout, name, hashed):
-        block = _cleaned(tabbed(text) if layout.separator == BLANKS else text, line, layout, name)
+    line = layout.first_line
+    for text, done in _whole_lines(opened.file, end, layout, name, hashed):
+        if layout.separator == BLANKS:
+            text = tabbed(text)
+        ends = np.frombuffer(text, np.uint8) == _END  # faster than to count and search in the text
+        block = _cleaned(text, ends, line, layout, name)
         if block.lines:
             yield block, done
+        line += int(np.count_nonzero(ends))
     left = opened.size - end
     while left and (chunk := opened.file.read(min(left, BLOCK))):
         hashed(chunk)
         left -= len(chunk)
 
 
-def _cleaned(text: bytes, line: int, layout: Layout, name: str) -> Block:
-    """The block without blank lines and comments."""
-    comment, ends = layout.comment.encode(), _line_ends(text)
+def _cleaned(text: bytes, ends: BoolArray, line: int, layout: Layout, name: str) -> Block:
+    """The block without blank lines and comments; ``ends`` are the bytes that end a line."""
+    comment = layout.comment.encode()
     commented = comment in text and (text.startswith(comment) or b"\n" + comment in text)
     if not commented and not _has_blank_line(text, ends):
         return Block(text, range(line, line + int(np.count_nonzero(ends)) + (not ends[-1])))
@@ -89,11 +94,11 @@ def _is_comment(row: bytes, number: int, layout: Layout, name: str) -> bool:
 
 def _whole_lines(
     file: BinaryIO, end: int, layout: Layout, name: str, hashed: Callable[[bytes], None]
-) -> Iterator[tuple[bytes, int, int]]:
-    """Yield whole lines of UTF-8 text, the line number of the first, and bytes read so far."""
+) -> Iterator[tuple[bytes, int]]:
+    """Yield whole lines of UTF-8 text from the first row on, and bytes read so far."""
     plain = layout.encoding == "utf-8-sig"
     decoder = None if plain else codecs.getincrementaldecoder(layout.encoding)(errors="replace")
-    skip, line, rest, done, more = layout.first_line - 1, 1, b"", 0, True
+    skip, rest, done, more = layout.first_line - 1, b"", 0, True
     while more:
         chunk = file.read(min(BLOCK, end - done))
         more = bool(chunk)
@@ -111,16 +116,10 @@ def _whole_lines(
         rest = chunk[last:] if whole else rest + chunk
         if skip:
             above = _end_of_lines(block, skip)
-            passed = block.count(b"\n", 0, above)
-            skip, line, block = skip - passed, line + passed, block[above:]
-        if block and not block.isspace():
-            yield block, line, done
-        line += int(np.count_nonzero(_line_ends(block)))
-
-
-def _line_ends(text: bytes) -> BoolArray:
-    """Which bytes end a line: several times as fast as counting or searching them in the text."""
-    return np.frombuffer(text, np.uint8) == _END
+            skip -= block.count(b"\n", 0, above)
+            block = block[above:]
+        if block:
+            yield block, done
 
 
 def _has_blank_line(text: bytes, ends: BoolArray) -> bool:
