@@ -263,7 +263,7 @@ def hysteresis(
 def fold(
     train: Drivetrain, drag: BeltDrag, *, tolerance: float = TOLERANCE, most_steps: int = MOST_STEPS
 ) -> tuple[float, float]:
-    """Return transition speed and V* (m/s) of a drag at one temperature: `hysteresis` without its slow lower edge.
+    """Return transition speed and V* (m/s) of a drag at one temperature, without the slow lower edge.
 
     Raises
     ------

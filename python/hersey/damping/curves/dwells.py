@@ -69,6 +69,26 @@ class Dwells:
         each = _CONSTANT - np.log(sigma) - 0.5 * (TAIL + 1.0) * np.log1p((off / sigma) ** 2 / TAIL)
         return np.asarray(each.sum(axis=1))
 
+    def slopes_of(
+        self, predicted: FloatArray, log_scatter: float
+    ) -> tuple[FloatArray, FloatArray, float, float]:
+        """Return how the log-likelihood of one draw changes, for least squares weighed anew at each step.
+
+        Returns
+        -------
+        Its slope by each prediction, and the weight of each dwell, shape (points,); its slope by ln scatter,
+        and what the dwells tell of that (Fisher's information).
+        """
+        scatter = np.exp(2.0 * np.clip(log_scatter, -20.0, 2.0))
+        variance = self.error**2 + scatter
+        sigma = np.sqrt(variance) / _SPREAD
+        u = (self.log_torque - predicted) / sigma
+        weight = (TAIL + 1.0) / (TAIL + u**2)
+        share = scatter / variance
+        by_scatter = float(np.sum(share * (weight * u**2 - 1.0)))
+        told = float(np.sum(share**2)) * 2.0 * TAIL / (TAIL + 3.0)
+        return np.asarray(weight * u / sigma), np.asarray(weight / sigma**2), by_scatter, told
+
 
 def dwells_of(points: SteadyPoints, surface: DampingSurface) -> Dwells:
     """Return steady points as the laws of curves see them; errors of inputs by the slopes of the surface."""

@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy import optimize
 
 from hersey.arrays import FloatArray
 from hersey.damping.curves.dwells import Dwells
@@ -31,6 +30,10 @@ _WIDE = {"level": 3.0, "at": 1.5, "move": 8.0, "bend": 1.0, "force": 0.3}
 _SCATTER = 1.0
 #: Steps of derivatives, over the standard deviation of the prior.
 _STEP = 1e-4
+#: Damping of the first step to the likeliest numbers, and that at which none is better any more.
+_DAMPED, _STUCK = 1e-2, 1e10
+#: Steps at the most, and the gain in ln posterior at which they end.
+_MOST_STEPS, _GAINED = 300, 1e-9
 #: Draws are wider than the curvature of the posterior by this factor, so that none of its tail is missed.
 INFLATED = 1.2
 #: Draws and seed that the mean weight of the draws of a law is taken from.
@@ -127,24 +130,80 @@ class FittedLaw:
 def fit_shape(shape: Shape, dwells: Dwells, starts: list[FloatArray]) -> FittedLaw:
     """Return the likeliest of the fits from ``starts``: numbers before those that dwells share."""
     mean, deviation = priors(shape, dwells)
-
-    def cost(scaled: FloatArray) -> tuple[float, FloatArray]:
-        moved = np.vstack([np.zeros(mean.size), np.eye(mean.size), -np.eye(mean.size)]) * _STEP
-        values = -log_posterior(shape, dwells, mean + deviation * (scaled + moved))
-        slopes = (values[1 : mean.size + 1] - values[mean.size + 1 :]) / (2.0 * _STEP)
-        return float(values[0]), np.asarray(slopes)
-
-    best = None
+    found = []
     for start in starts:
         begin = mean.copy()
         begin[: start.size] = start
-        found = optimize.minimize(
-            cost, (begin - mean) / deviation, jac=True, method="BFGS", options={"maxiter": 200, "gtol": 1e-3}
-        )
-        if best is None or found.fun < best.fun:
-            best = found
-    assert best is not None
-    return _fitted(shape, dwells, mean + deviation * best.x, deviation)
+        found.append(_climbed(shape, dwells, begin, mean, deviation))
+    return _fitted(shape, dwells, min(found, key=lambda each: each[1])[0], deviation)
+
+
+def _climbed(
+    shape: Shape, dwells: Dwells, numbers: FloatArray, mean: FloatArray, deviation: FloatArray
+) -> tuple[FloatArray, float]:
+    """Numbers where the posterior is highest, and minus its logarithm there, by damped Gauss-Newton steps."""
+    damping, cost = _DAMPED, -float(log_posterior(shape, dwells, numbers[None])[0])
+    for _ in range(_MOST_STEPS):
+        gradient, curvature = _slopes(shape, dwells, numbers, mean, deviation)
+        diagonal = np.diag(np.diag(curvature))
+        while damping < _STUCK:
+            step = np.linalg.solve(curvature + damping * diagonal, gradient)
+            tried = numbers + deviation * step
+            there = -float(log_posterior(shape, dwells, tried[None])[0])
+            if there < cost:
+                break
+            damping *= 4.0
+        else:
+            break
+        gained, numbers, cost, damping = cost - there, tried, there, 0.2 * damping
+        if gained < _GAINED and float(gradient @ step) < _GAINED:
+            break
+    return numbers, cost
+
+
+def _slopes(
+    shape: Shape, dwells: Dwells, numbers: FloatArray, mean: FloatArray, deviation: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Gradient of the log-posterior, and about minus its second derivatives, in deviations of the priors."""
+    many = dwells.shared.shape[1]
+    scatter = numbers.size - many - 1
+    curve, slopes = _curve_and_slopes(shape, dwells, numbers, deviation)
+    pull, weight, by_scatter, told = dwells.slopes_of(
+        curve + dwells.shared @ numbers[scatter + 1 :], float(numbers[scatter])
+    )
+    slopes *= deviation[:, None]
+    gradient = slopes @ pull - (numbers - mean) / deviation
+    gradient[scatter] += deviation[scatter] * by_scatter
+    curvature = (slopes * weight) @ slopes.T + np.eye(numbers.size)
+    curvature[scatter, scatter] += deviation[scatter] ** 2 * told
+    return gradient, curvature
+
+
+def _curve_and_slopes(
+    shape: Shape, dwells: Dwells, numbers: FloatArray, deviation: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Ln torque at the dwells without shared effects, and its derivatives, shape (numbers, points).
+
+    Those by numbers that bend the curve are central differences.
+    """
+    own = len(_COMMON) + len(shape.priors)
+    bent = [_COMMON.index("at"), _COMMON.index("move"), _COMMON.index("bend"), *range(len(_COMMON), own)]
+    aside = np.diag(_STEP * deviation)[bent]
+    spots = numbers + np.vstack([np.zeros(numbers.size), aside, -aside])
+    curves = predicted(shape, dwells, spots, dwells.log_speed, dwells.temperature)
+    slopes = np.zeros((numbers.size, len(dwells)))
+    up, down = np.split(curves[1:], 2)
+    slopes[bent] = (up - down) / (2.0 * _STEP * deviation[bent, None])
+    slopes[_COMMON.index("level")] = 1.0
+    slopes[_COMMON.index("force")] = dwells.temperature
+    if shape.residual:
+        scaled = _scaled(numbers[None], dwells.log_speed, dwells.temperature)
+        near = shape.residual * _near(dwells, scaled)[0].T
+        slopes[own : own + len(near)] = near
+        slopes[own + len(near) : own + 2 * len(near)] = near * _tilt(dwells, dwells.temperature)
+    if many := dwells.shared.shape[1]:
+        slopes[-many:] = dwells.shared.T
+    return curves[0], slopes
 
 
 def _fitted(shape: Shape, dwells: Dwells, numbers: FloatArray, deviation: FloatArray) -> FittedLaw:
@@ -229,16 +288,23 @@ def predicted(
     out = numbers[:, :1] + numbers[:, 4:5] * temperature + shape.curve(scaled - numbers[:, 1:2], own)
     if not shape.residual:
         return np.asarray(out)
-    bumps = _bumps(dwells)
+    near = _near(dwells, scaled)
+    bumps = near.shape[2]
     first += len(shape.priors)
-    weights = numbers[:, first : first + bumps.size]
-    tilted = numbers[:, first + bumps.size : first + 2 * bumps.size]
-    reach = max(float(np.ptp(dwells.temperature)), 1e-9)
-    both = (
-        weights[:, None, :] + 0.5 * tilted[:, None, :] * (np.atleast_1d(temperature) / reach)[None, :, None]
-    )
-    near = np.exp(-0.5 * ((scaled[:, :, None] - bumps) / _SPACING) ** 2)
+    weights = numbers[:, first : first + bumps]
+    tilted = numbers[:, first + bumps : first + 2 * bumps]
+    both = weights[:, None, :] + tilted[:, None, :] * np.atleast_1d(_tilt(dwells, temperature))[None, :, None]
     return np.asarray(out + shape.residual * np.sum(near * both, axis=2))
+
+
+def _near(dwells: Dwells, scaled: FloatArray) -> FloatArray:
+    """The bumps of the smooth curve at scaled speeds, shape (draws, points, bumps)."""
+    return np.asarray(np.exp(-0.5 * ((scaled[:, :, None] - _bumps(dwells)) / _SPACING) ** 2))
+
+
+def _tilt(dwells: Dwells, temperature: FloatArray) -> FloatArray:
+    """How much of a tilted bump there is at temperatures."""
+    return np.asarray(0.5 * temperature / max(float(np.ptp(dwells.temperature)), 1e-9))
 
 
 def _scaled(numbers: FloatArray, log_speed: FloatArray, temperature: FloatArray) -> FloatArray:
