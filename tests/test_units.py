@@ -81,7 +81,7 @@ def test_temperatures_have_an_offset(unit: str, boiling: float) -> None:
     [
         ("speed", "Hz", "revolutions or radians"),
         ("speed", "1/s", "revolutions or radians"),
-        ("speed", "mm/s", "not a unit of speed"),
+        ("speed", "mm/s", "is that of a belt speed, not of a speed"),
         ("torque", "%", "9.84 mN"),
         ("torque", "rpm", "not a unit of torque"),
         ("torque", "furlongz", "unknown unit"),
@@ -298,7 +298,7 @@ def test_other_spellings_of_the_pen_are_read() -> None:
 
 
 @pytest.mark.parametrize(
-    ("kind", "unit"), [("torque", "rpm"), ("torque", "N"), ("speed", "mm/s"), ("mass", "s")]
+    ("kind", "unit"), [("torque", "rpm"), ("torque", "N"), ("speed", "mm"), ("mass", "s")]
 )
 def test_a_unit_of_another_kind_is_no_slip(kind: str, unit: str) -> None:
     with pytest.raises(WrongKindError, match=f"Write one such as {KINDS[kind][1]}".replace("*", "[*]")):
@@ -345,3 +345,22 @@ def test_a_specific_quantity_is_named_with_what_it_must_be_multiplied_by(
 ) -> None:
     with pytest.raises(WrongKindError, match=f"(?i){said}"):
         parse(kind, text)
+
+
+@pytest.mark.parametrize(
+    ("text", "written"),
+    [
+        ("0.045", "'0.045 N*m'"),  # nothing groups thousands behind a zero
+        ("0,045", "'0.045 N*m'"),
+        ("-0.500", "'-0.500 N*m'"),
+        ("1.500", "'1.500 N*m' or '1500 N*m'"),
+        ("1,500", "'1.500 N*m' or '1500 N*m'"),
+        ("1234.500", "'1234.500 N*m'"),
+        ("1.234.567", "'1234567 N*m'"),
+        ("1,234.5", "'1234.5 N*m'"),
+    ],
+)
+def test_a_number_without_unit_keeps_its_decimals_in_the_example(text: str, written: str) -> None:
+    with pytest.raises(UnitError) as refused:
+        parse("torque", text)
+    assert str(refused.value).endswith(f"Write e.g. {written}")

@@ -100,6 +100,9 @@ _MISTAKEN = {
     "belt speed": (
         ("rad/s", "speed of rotation", "multiply by the radius of the roll: 10 rad/s x 15 mm = '150 mm/s'"),
     ),
+    "speed": (
+        ("m/s", "belt speed", "divide by the radius of the roll: 150 mm/s / 15 mm = '10 rad/s'"),
+    ),
     "power": (("W/m^2", "heat flux", "multiply by the area: 18000 W/m^2 x 0.05 m^2 = '900 W'"),),
 }  # fmt: skip
 #: How alike (`difflib`) a usual unit must be to an unknown one, and to one of another kind, to be proposed.
@@ -415,10 +418,12 @@ def _written(kind: str, text: str) -> str:
     example = KINDS[kind][1]
     plain = re.sub(r"^(?:[^\w.+-]+|(?i:ca\.?|about|approx\.?)\s)\s*", "", text.strip())
     comma = re.fullmatch(r"([-+]?[0-9]+),([0-9]+)([^\d.,].*)?", plain)
-    grouped = re.fullmatch(r"([-+]?[0-9]{1,3}(?:[,.'\s][0-9]{3})+)(?:[.,]([0-9]+))?([^\d.,].*)?", plain)
-    if comma:  # three digits behind it could be thousands
-        numbers, rest = [f"{comma[1]}.{comma[2]}"], comma[3]
-        numbers += [comma[1] + comma[2]] if len(comma[2]) == 3 and len(comma[1]) < 4 else []
+    grouped = re.fullmatch(r"([-+]?[1-9][0-9]{0,2}(?:[,.'\s][0-9]{3})+)(?:[.,]([0-9]+))?([^\d.,].*)?", plain)
+    mark = comma or re.fullmatch(r"([-+]?[1-9][0-9]{0,2})\.([0-9]{3})([^\d.,].*)?", plain)
+    if mark:  # three digits behind it could be thousands
+        numbers, rest = [f"{mark[1]}.{mark[2]}"], mark[3]
+        grouping = len(mark[2]) == 3 and re.fullmatch(r"[-+]?[1-9][0-9]{0,2}", mark[1])
+        numbers += [mark[1] + mark[2]] if grouping else []
     elif grouped:
         whole = re.sub(r"[,.'\s]", "", grouped[1])
         numbers, rest = [f"{whole}.{grouped[2]}" if grouped[2] else whole], grouped[3]

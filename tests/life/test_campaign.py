@@ -423,3 +423,13 @@ def test_a_log_that_is_overwritten_is_named_with_the_age_it_had(campaign: Campai
     (stays,) = added.warnings
     assert (stays.kind, stays.severity) == ("log overwritten", "watch")
     assert stays.values == {"run": 1, "unit": "F12", "age": 1000.0, "age_unit": "pages"}
+
+
+def test_a_run_of_many_dwells_is_added_and_read_again(campaign: Campaign) -> None:
+    """A table of means may have as many rows as a log: what a statement may take grows with the file."""
+    entry = sample()
+    many = replace(entry, dwells=(entry.dwells * (40_000 // len(entry.dwells) + 1))[:40_000])
+    (added,) = campaign.add_entries([(many, "F12", Age.parse("1000 pages"))])
+    assert added.dwells == 40_000
+    with Campaign.open(campaign.path) as again:
+        assert again.runs()["dwells"].to_list() == [40_000]

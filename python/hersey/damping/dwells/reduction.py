@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -57,7 +58,8 @@ def steady_points(
         If no dwell is found, or there is no standing stretch to tare with.
     """
     if tare not in TARES:
-        known = f'write tare = "{tare}" under [torque] in hersey.toml beside the log'
+        value = f"{tare} N*m" if re.fullmatch(r"[-+]?[0-9.]+", tare.strip()) else tare
+        known = f'write tare = "{value}" under [torque] in hersey.toml beside the log, with its unit'
         offset = f". To subtract a known offset, {known}" if any(map(str.isdigit, tare)) else ""
         raise ParameterError(f"tare '{tare}' is not known. Use none or standing{offset}")
     if rotation not in ROTATIONS:

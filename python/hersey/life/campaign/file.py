@@ -161,6 +161,7 @@ class Campaign:
         """Add several runs with specimen and age in one transaction (all or none); errors as `add`."""
         with transaction(self._database, self.path):
             added = [add_entry(self._database, self._home, *each, force=force) for each in entries]
+            self._database.allow_what_the_size_needs()  # which has grown
             refuse_unsound_runs(self._database, self.path)  # what is added can be read again
             for each in added:
                 refuse_unsound_dwells(self._database, self.path, each.run)
