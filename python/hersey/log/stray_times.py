@@ -77,8 +77,8 @@ def _goes_on(time: FloatArray) -> bool:
     long = forward = 0
     for part in parts:
         steps = np.diff(time[part])
-        long += np.count_nonzero(steps > greatest / _JUMP)
-        forward += np.count_nonzero(steps > 0.0)
+        long += int(np.count_nonzero(steps > greatest / _JUMP))
+        forward += int(np.count_nonzero(steps > 0.0))
     return 2 * long > forward
 
 

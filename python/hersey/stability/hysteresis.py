@@ -20,7 +20,7 @@ from hersey.arguments.frozen import explained
 from hersey.arrays import FloatArray, numbers_of, together
 from hersey.errors import ParameterError
 from hersey.motion.belt import BeltDrag, Drivetrain, Train, belt_of
-from hersey.motion.drag import Drag
+from hersey.motion.drag import AnyDrag, Drag
 from hersey.motion.parameters import MOST_STEPS, OF_THE_BELT, whole
 from hersey.result import OPEN, Means, Result, table_of
 from hersey.stability.hysteresis_sweep import PARAMETER_KINDS, TOLERANCE, BandRules
@@ -261,7 +261,7 @@ def hysteresis(
 
 
 def fold(
-    train: Drivetrain, drag: BeltDrag, *, tolerance: float = TOLERANCE, most_steps: int = MOST_STEPS
+    train: Drivetrain, drag: AnyDrag, *, tolerance: float = TOLERANCE, most_steps: int = MOST_STEPS
 ) -> tuple[float, float]:
     """Return transition speed and V* (m/s) of a drag at one temperature, without the slow lower edge.
 
