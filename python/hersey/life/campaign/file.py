@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import shlex
-import sqlite3
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -16,6 +15,7 @@ from hersey.life.campaign.adding import Added, add_entry, age_unit, is_there, li
 from hersey.life.campaign.checks import CampaignCheck, check
 from hersey.life.campaign.content import damaged, refuse_unsound_dwells, refuse_unsound_runs
 from hersey.life.campaign.entry import COLUMNS, Entry
+from hersey.life.campaign.guarded import GuardedConnection
 from hersey.life.campaign.store import PATIENCE, open_store, refuse_no_place, sqlite_errors, transaction
 from hersey.units import takes_si
 
@@ -43,7 +43,7 @@ class Campaign:
     stay where they are. Get one with `create` or `open`; it is a context manager.
     """
 
-    def __init__(self, path: Path, database: sqlite3.Connection) -> None:
+    def __init__(self, path: Path, database: GuardedConnection) -> None:
         """Take an open file: see `open` and `create`."""
         self.path, self._database = path, database
         self._home = path.absolute().parent

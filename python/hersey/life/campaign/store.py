@@ -67,7 +67,7 @@ MIGRATIONS: dict[int, Callable[[sqlite3.Connection], None]] = {1: lambda _databa
 
 def open_store(
     path: Path, *, create: bool = False, write: bool = True, wait: float = PATIENCE
-) -> sqlite3.Connection:
+) -> GuardedConnection:
     """Open a campaign, or make it; bring one of an older version up to date where it may be written.
 
     Raises
