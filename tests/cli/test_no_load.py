@@ -160,7 +160,8 @@ def test_the_no_load_log_of_the_machine_is_no_log_of_the_film(folder: Path) -> N
     alone = run("fit", "copy.csv", *tail, cwd=folder)
     assert (
         alone.stderr.splitlines()[-1] == f"{said} of the film. Give the log that was recorded with the film"
-    )
+    said += " of the film. Give the log that was recorded with the film"
+    assert alone.stderr.splitlines()[-1] == said
 
 
 def test_a_dwell_without_a_film_is_named_by_its_own_log() -> None:
