@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from hersey.arrays import FloatArray
 from hersey.damping.dwells import SteadyPoints, distinct_speeds, groups_of_temperature
-from hersey.damping.dwells.constant import constant_torque
+from hersey.damping.dwells.constant import constant_torque, dead_temperature
 from hersey.damping.dwells.least_duration import speeds_lost, temperatures_lost
 from hersey.damping.dwells.reasons import Kind
 from hersey.damping.estimate import Estimate, rounded
@@ -137,7 +137,10 @@ def _temperature(levels: tuple[float, ...], points: SteadyPoints, fitted: Dampin
     if len(levels) == 1 and (lost := temperatures_lost(points)):
         return [], [f"exponent b (temperature): all dwells are at {temperatures}: {lost}"]
     if len(levels) == 1:
-        return [], [f"exponent b (temperature): all dwells are at {temperatures}. Record other temperatures"]
+        dead = dead_temperature(points)
+        said = f"{temperatures}: {dead}. Check it and" if dead else f"{temperatures}."
+        record = "record again" if dead else "Record other temperatures"
+        return [], [f"exponent b (temperature): all dwells are at {said} {record}"]
     kelvin, speed = points.column("temperature"), np.abs(points.column("speed"))
     if distinct_speeds(speed) > 1 and abs(np.corrcoef(np.log(speed), kelvin)[0, 1]) > TOGETHER:
         return [], [
