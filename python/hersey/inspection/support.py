@@ -60,8 +60,13 @@ class Support(Record):
     cannot: tuple[str, ...]
 
 
-def support_of_points(points: SteadyPoints, *, temperature_scale: str = "degC") -> Support:
-    """Return what dwells support; ``temperature_scale`` is that of the fit to come."""
+def support_of_points(
+    points: SteadyPoints, *, temperature_scale: str = "degC", no_temperature: str = "none was recorded"
+) -> Support:
+    """Return what dwells support; ``temperature_scale`` is that of the fit to come.
+
+    ``no_temperature`` is why the dwells have no temperature, where they have none.
+    """
     log = points.log
     speed = np.abs(points.column("speed"))
     kelvin = points.column("temperature") if log.has_temperature else None
@@ -75,7 +80,7 @@ def support_of_points(points: SteadyPoints, *, temperature_scale: str = "degC") 
         *(
             (
                 _speed(speed, points),
-                _temperature(levels, points, fitted),
+                _temperature(levels, points, fitted) if levels else _no_temperature(no_temperature),
                 _branches(points, groups or [np.arange(speed.size)], speed, fitted),
             )
             if constant is None
@@ -130,9 +135,11 @@ def _speed(speed: FloatArray, points: SteadyPoints) -> Said:
     return [f"exponent c (speed): {count} speeds, {span}"], []
 
 
+def _no_temperature(why: str) -> Said:
+    return [], [f"any dependence on temperature: {why}"]
+
+
 def _temperature(levels: tuple[float, ...], points: SteadyPoints, fitted: DampingSurface | str) -> Said:
-    if not levels:
-        return [], ["any dependence on temperature: none was recorded"]
     temperatures = _levels(levels)
     if len(levels) == 1 and (lost := temperatures_lost(points)):
         return [], [f"exponent b (temperature): all dwells are at {temperatures}: {lost}"]

@@ -36,6 +36,7 @@ from hersey.log.text.footer import end_of_table
 from hersey.log.text.layout import SNIFFED, Layout, find_layout
 from hersey.log.text.numbers import is_missing
 from hersey.log.text.stamps import refuse_whole_minutes
+from hersey.log.text.units_in_cells import numbers_only
 from hersey.log.torque_log import NO_CLOCK, Channel, LogFile, Run
 from hersey.log.wanted import Wanted
 from hersey.log.without_units import naming_all
@@ -343,5 +344,8 @@ class _Table:
                 if is_missing(cell):
                     what = f"'{cell[:40]}'" if cell else "an empty cell"
                     return f"{in_column}{what} instead of a number"
+                if remedy := numbers_only(column, cell):
+                    self.left_out.units = self.left_out.units or remedy
+                    return f"{in_column}the cell holds its unit, '{cell[:40]}'"
                 return f"{in_column}'{cell[:40]}' is not a {self.reader.what(column)}"
         return f"{place}: torque and speed need a radius greater than zero"
