@@ -24,7 +24,8 @@ from hersey.log.channels import (
     refuse_two_roles,
     taken_columns,
 )
-from hersey.log.friction import beside, computed, in_rotation, slow_roles, unused
+from hersey.log.constant_temperature import constant_temperature
+from hersey.log.friction import Chosen, beside, computed, in_rotation, slow_roles, unused
 from hersey.log.impossible import Impossible, Reading, impossible_rows
 from hersey.log.replaced import replaced_units
 from hersey.log.rows import LeftOut, runs_with_records
@@ -59,6 +60,7 @@ def read_delimited(path: Path, wanted: Wanted, progress: Progress | None = None)
         layout, end, size = file.layout, file.end, file.opened.size
         dead = _Dead(file)
         channels = _channels(layout, wanted, name, dead)
+        excluded = _excluded(file, channels) if wanted.isothermal else []
         table = _Table(name, layout, channels, wanted.drop_missing, stated)
         table.slow = slow_roles(channels)
         table.read(file.opened, end.byte, progress)
@@ -85,6 +87,7 @@ def read_delimited(path: Path, wanted: Wanted, progress: Progress | None = None)
             *computed(channels, stated),
             *replaced_units(table.channels),
             *dead.warnings,
+            *excluded,
             *unused(layout.named, channels, stated),
             *end.warnings,
             *growth,
@@ -162,6 +165,16 @@ def open_delimited(path: Path) -> Iterator[DelimitedFile]:
     """
     with appended(path) as opened:
         yield DelimitedFile(opened)
+
+
+def _excluded(file: DelimitedFile, channels: Chosen) -> list[Warning]:
+    """What is to be known of a temperature that is excluded."""
+
+    def numbers(column: Column) -> FloatArray:
+        (values,) = file.numbers([column], complete=False, odd_as_missing=True)
+        return values
+
+    return constant_temperature(file.layout.named, channels, file.opened.path.name, numbers)
 
 
 class _Dead:
