@@ -9,6 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from hersey import NoLoadTorque, TorqueLog
+from hersey.errors import InsufficientDataError
+from hersey.log.torque_log import LogFile, Run
 from hersey.machine import read_machine
 from tests.cli.command import run
 from tests.conftest import ROOT
@@ -142,3 +145,31 @@ def test_the_printed_text_of_a_fit_is_met_with_the_line_that_saves_one(
     words = line.replace("LOG", "log.csv").split()[1:]
     (folder / "fit.json").write_text(run(*words, cwd=folder).stdout)
     assert run(*map_of, "fit.json", cwd=folder).stderr.startswith("The no-load torque comes from the fit")
+
+
+@pytest.mark.usefixtures("roughly")
+def test_the_no_load_log_of_the_machine_is_no_log_of_the_film(folder: Path) -> None:
+    (folder / "copy.csv").write_bytes((folder / "free.csv").read_bytes())
+    tail = ("--machine", "with-log.toml", "--json")
+    refused = run("fit", "log.csv", "copy.csv", *tail, cwd=folder)
+    assert refused.returncode == 2
+    said = "hersey: copy.csv is the no-load log of the machine file ([rest] log), so its torque has no part"
+    line = f"hersey fit log.csv {' '.join(tail)}"
+    assert refused.stderr.splitlines()[-1] == f"{said} of the film. Leave it out: {line}"
+    assert run(*line.split()[1:], cwd=folder).returncode == 0
+    alone = run("fit", "copy.csv", *tail, cwd=folder)
+    said += " of the film. Give the log that was recorded with the film"
+    assert alone.stderr.splitlines()[-1] == said
+
+
+def test_a_dwell_without_a_film_is_named_by_its_own_log() -> None:
+    def recorded(name: str, scale: float) -> Run:
+        speed = np.repeat([5.0, 10.0, 20.0, 40.0], 200)
+        torque = scale * (0.05 + 0.001 * speed) * (1 + 1e-3 * np.sin(np.arange(speed.size)))
+        return Run(name, 0.05 * np.arange(speed.size), torque, speed, None)
+
+    runs = (recorded("film.csv", 2.0), recorded("free.csv", 0.9))
+    log = TorqueLog(runs, tuple(LogFile(run.name, "0", 0, run.time.size, 0, (), ()) for run in runs))
+    rest = NoLoadTorque.stated(constant=0.05, per_speed=0.001, uncertainty=0.01)
+    with pytest.raises(InsufficientDataError, match=r"^free\.csv: at .* leaves nothing for the film"):
+        log.steady().without(rest)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import polars as pl
@@ -75,3 +76,24 @@ def test_a_log_at_one_speed_is_not_helped_by_a_shorter_duration() -> None:
     one = log(lambda speed, hot: 40.0 if (speed, hot) == (10.0, 100.0) else 0.0)
     with pytest.raises(InsufficientDataError, match=r"at 10 rpm\. Record dwells at three or more speeds$"):
         hersey.fit(one.steady(min_dwell=30.0))
+
+
+def test_a_temperature_that_never_changes_is_called_so() -> None:
+    recorded = log(lambda *_: 12.0)
+    [run] = recorded.runs
+    dead = replace(recorded, runs=(replace(run, temperature=np.full(run.time.size, 298.15)),))
+    said = (
+        "all dwells are at one temperature (25.0 degC), so exponent b cannot be estimated: 'Temp' reads "
+        "25 degC in every row, so the sensor may be dead. Check it and record again, or fit without b by "
+        "isothermal=True"
+    )
+    with pytest.raises(InsufficientDataError, match=f"^{re.escape(said)}$"):
+        hersey.fit(dead.steady())
+    [cannot] = [each for each in support_of_points(dead.steady()).cannot if "exponent b" in each]
+    assert "'Temp' reads 25 degC in every row, so the sensor may be dead" in cannot
+    read = run.temperature
+    assert read is not None
+    held = 298.15 + 0.05 * np.sign(np.sin(np.arange(read.size)))
+    alive = replace(recorded, runs=(replace(run, temperature=held),))
+    with pytest.raises(InsufficientDataError, match=r"cannot be estimated\. Record other temperatures"):
+        hersey.fit(alive.steady())

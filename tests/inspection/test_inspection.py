@@ -468,3 +468,70 @@ def test_the_row_of_a_fault_is_counted_from_one(tmp_path: Path) -> None:
     (spike,) = (w for c in file.channels for w in c.warnings if w.kind == "spikes")
     assert (spike.severity, spike.values["row"], spike.values["rows"]) == ("watch", 1001, 1)
     assert "from row 1001" in str(spike)
+
+
+SPEEDS = [10, 10, 20, 20, 40, 40, 80, 80]
+HELD = [(50.0 * step, rpm, 30.0 + 20.0 * (step % 2)) for step, rpm in enumerate(SPEEDS)]
+ROWS = [(t + i, 0.1 * rpm**0.3, float(rpm), hot) for t, rpm, hot in HELD for i in range(50)]
+
+
+def log_of(path: Path, temperature: str, cells: str, *more: str) -> Path:
+    """A log whose temperature is written as ``cells`` say, and further columns with it."""
+    head = ",".join(["Time [s]", "Torque [N*m]", "Speed [rpm]", temperature, *more])
+    rows = [
+        ",".join([f"{t:g},{torque:.4f},{rpm:g}", *[cells.format(hot + 0.1 * (t % 3))] * (1 + len(more))])
+        for t, torque, rpm, hot in ROWS
+    ]
+    path.write_text("\n".join([head, *rows]) + "\n")
+    return path
+
+
+@pytest.mark.parametrize(
+    ("header", "remedy", "mended"),
+    [
+        ("Temp [degC]", "Write only numbers in the cells", "Temp [degC]"),
+        (
+            "Temp",
+            "Write the unit in the header, 'Temp [°C]', and only numbers in the cells",
+            "Temp [°C]",
+        ),
+    ],
+)
+def test_a_temperature_with_its_unit_in_the_cells_is_named(
+    tmp_path: Path, header: str, remedy: str, mended: str
+) -> None:
+    file = log_of(tmp_path / "log.csv", header, "{:.2f} °C")
+    found = inspect(file)
+    assert found.files[0].without == {
+        "temperature": f"column 'Temp': the cells hold units, e.g. '30.00 °C'. {remedy}"
+    }
+    assert found.support is not None
+    assert "any dependence on temperature: the temperature column of log.csv cannot be used" in (
+        found.support.cannot
+    )
+    assert "isothermal" not in found.summary()
+    with pytest.raises(HerseyError) as refused:
+        hersey.read(file, units={"temperature": "degC"})
+    assert str(refused.value) == (
+        "log.csv, line 2, column 'Temp': the cell holds its unit, '30.00 °C' (the first of 400 such rows, "
+        f"of 400). {remedy}"
+    )
+    seen = inspect(log_of(file, mended, "{:.2f}"))
+    assert seen.files[0].without == {}
+    assert hersey.read(file).has_temperature
+
+
+def test_of_two_temperatures_one_is_to_be_chosen(tmp_path: Path) -> None:
+    file = log_of(tmp_path / "log.csv", "Heater temperature [degC]", "{:.2f}", "Roll temperature [degC]")
+    found = inspect(file)
+    assert found.support is not None
+    why = "any dependence on temperature: the temperature column of log.csv cannot be used"
+    assert why in found.support.cannot
+    assert "isothermal" not in found.summary()
+    assert "choose one with" in found.files[0].without["temperature"].lower()
+    excluded = inspect(file, isothermal=True).support
+    assert excluded is not None
+    assert "any dependence on temperature: isothermal=True excludes it" in excluded.cannot
+    assert inspect(file, channels={"temperature": "Roll temperature"}).files[0].without == {}
+    shown = run("inspect", file.name, cwd=tmp_path).stdout
+    assert "--isothermal" not in shown

@@ -95,8 +95,9 @@ def _lines(inspection: Inspection) -> list[str]:
         "a number is missing or impossible"
         for name, rows in inspection.dropped.items()
     ]
-    if inspection.needed:
-        lines.append(f"To fit it, add {' '.join(Setting(each, 'switch').to() for each in inspection.needed)}")
+    if inspection.advised:
+        switches = (Setting(each, "switch").to() for each in inspection.advised)
+        lines.append(f"To fit it, add {' '.join(switches)}")
     found = [each.sentence for each in (*inspection.warnings, *inspection.channel_warnings)]
     for file in inspection.files:
         found += [each.sentence for each in file.warnings]

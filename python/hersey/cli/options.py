@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 from hersey.cli.groups import argument, option
+from hersey.cli.no_load import refuse_no_load_log
 from hersey.cli.progress import bar, working
 from hersey.cli.quantities import amount_of, amounts_in
 from hersey.cli.recipe_file import ROLES, read_recipe
@@ -202,6 +203,8 @@ class Reading:
         self, paths: list[Path], log: TorqueLog | MeansTable, machine: Machine | None = None
     ) -> SteadyPoints:
         """Reduce the log of these files to dwells; print what the no-load log shows."""
+        if machine is not None and machine.rest is not None:
+            refuse_no_load_log(paths, machine.rest)
         points = self.recipe(paths).dwells(log, machine)
         if self.no_load and points.rest is not None:
             note(f"No-load torque subtracted: {points.rest}.")

@@ -18,6 +18,7 @@ from hersey.damping.candidates.likelihood import minimise, scatter_beyond
 from hersey.damping.candidates.observations import Observations
 from hersey.damping.candidates.thermal import scaled_temperature
 from hersey.damping.dwells import SteadyPoints, groups_of_temperature
+from hersey.damping.dwells.constant import dead_temperature
 from hersey.damping.dwells.least_duration import temperatures_lost
 from hersey.damping.dwells.reduced import require_points
 from hersey.damping.estimate import Estimate, estimate
@@ -82,10 +83,12 @@ def _require_temperatures(data: Observations, scale: str, points: SteadyPoints) 
         at = " to ".join(ends)
         if lost := temperatures_lost(points):
             raise InsufficientDataError(f"all dwells are at one temperature ({at} degC): {lost}")
-        raise InsufficientDataError(
-            f"all dwells are at one temperature ({at} degC), so exponent b cannot be estimated. "
-            f"Record other temperatures, or fit without b by {ISOTHERMAL.to()}"
-        )
+        said = f"all dwells are at one temperature ({at} degC), so exponent b cannot be estimated"
+        if dead := dead_temperature(points):
+            said, record = f"{said}: {dead}", "Check it and record again"
+        else:
+            record = "Record other temperatures"
+        raise InsufficientDataError(f"{said}. {record}, or fit without b by {ISOTHERMAL.to()}")
     if np.any(scaled_temperature(kelvin, scale) <= 0):
         raise InsufficientDataError(
             f"T^b is not defined at or below 0 degC, but the coldest dwell is at {_lowest(kelvin)}"

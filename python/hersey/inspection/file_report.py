@@ -64,6 +64,11 @@ class FileReport(Record):
         """Why there is no channel, by role."""
         return {role: why.text for role, why in self.lacking.items()}
 
+    @property
+    def temperature_unread(self) -> bool:
+        """Whether there is a temperature, but no column that can be taken for it."""
+        return "temperature" in self.lacking and not self.lacking["temperature"].absent
+
 
 @np.errstate(all="ignore")  # numbers of a damaged file may be beyond all bounds: they are shown
 def file_report(log: RawLog, choices: dict[str, ChannelChoice], stated: Stated) -> FileReport:

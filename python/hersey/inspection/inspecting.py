@@ -130,8 +130,8 @@ class Inspection(Result):
             "because a number is missing or impossible"
             for name, rows in self.dropped.items()
         ]
-        if self.needed:
-            lines.append(f"this log can be read with {_switches(self.needed)}")
+        if self.advised:
+            lines.append(f"this log can be read with {_switches(self.advised)}")
         lines += [f"! {warning.sentence}" for warning in self.warnings]
         if self.support is None:
             return "\n".join([*lines, f"No fit is possible: {self._hindrance()}"])
@@ -140,6 +140,12 @@ class Inspection(Result):
         lines += [f"  can determine     {said}" for said in self.support.can]
         lines += [f"  cannot determine  {said}" for said in self.support.cannot]
         return "\n".join(lines)
+
+    @property
+    def advised(self) -> tuple[str, ...]:
+        """The switches to advise: a temperature that was recorded is mended rather than excluded."""
+        unread = any(file.temperature_unread for file in self.files)
+        return tuple(each for each in self.needed if not (unread and each == ISOTHERMAL.name))
 
     def _hindrance(self) -> str:
         """Why there can be no fit; that a log has no torque comes first."""
@@ -246,7 +252,8 @@ def inspect(
 
     reports = tuple(_with_warnings(report, log.files) for report in reports)
     dropped = {file.name: file.missing_rows for file in log.files if file.missing_rows}
-    support, doubts = _supported(dwells, temperature_scale)
+    left_out = reading.get("isothermal", False)
+    support, doubts = _supported(dwells, temperature_scale, _no_temperature(reports, excluded=left_out))
     return Inspection(reports, "", needed, dropped, done, support, (*doubtful_units(log), *doubts))
 
 
@@ -265,7 +272,7 @@ def _said(mapping: LogMapping, reading: Reading) -> tuple[dict[str, ChannelChoic
 
 
 def _supported(
-    reduce: Callable[[], SteadyPoints], temperature_scale: str
+    reduce: Callable[[], SteadyPoints], temperature_scale: str, no_temperature: str
 ) -> tuple[Support, tuple[Warning, ...]]:
     """What dwells support, and what is doubtful of them; a log without a dwell supports nothing."""
     try:
@@ -274,7 +281,16 @@ def _supported(
         return Support(0, 0, None, (), {}, (), (str(error),)), ()
     notes = () if isinstance(points.log, MeansTable) else points.warnings  # what a table lacks, support says
     found = (*doubtful_tare(points), *notes, *doubtful_order(points), *misleading(points))
-    return support_of_points(points, temperature_scale=temperature_scale), found
+    support = support_of_points(points, temperature_scale=temperature_scale, no_temperature=no_temperature)
+    return support, found
+
+
+def _no_temperature(reports: Sequence[FileReport], *, excluded: bool) -> str:
+    """Why a log has no temperature; that it holds none is only one reason."""
+    unread = [report.name for report in reports if report.temperature_unread]
+    if excluded and (unread or any("temperature" not in report.lacking for report in reports)):
+        return f"{ISOTHERMAL.to()} excludes it"
+    return f"the temperature column of {unread[0]} cannot be used" if unread else "none was recorded"
 
 
 def _table(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Set
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -10,8 +11,16 @@ import numpy as np
 import polars as pl
 
 from hersey.arrays import FloatArray
-from hersey.errors import ChannelError, HerseyError, UnitError, printable
-from hersey.log.channels import ChannelChoice, Stated, find_channel, is_dead, no_channel, taken_columns
+from hersey.errors import ChannelError, HerseyError, UnitError, followed_by, printable
+from hersey.log.channels import (
+    ChannelChoice,
+    Stated,
+    find_channel,
+    find_column,
+    is_dead,
+    no_channel,
+    taken_columns,
+)
 from hersey.log.formats import format_of, opened
 from hersey.log.friction import Chosen, beside
 from hersey.log.roles import ROLES
@@ -19,9 +28,10 @@ from hersey.log.slow_channels import FEWEST
 from hersey.log.text.column import Column, refuse_ragged
 from hersey.log.text.delimited import open_delimited
 from hersey.log.text.layout import Layout
-from hersey.log.text.numbers import NULLS
+from hersey.log.text.numbers import NULLS, is_missing
 from hersey.log.text.separators import BLANKS, split, tabbed
 from hersey.log.text.stamps import Stamps, counted_unit, numbers_in
+from hersey.log.text.units_in_cells import numbers_only
 from hersey.schema.warning import Warning
 
 
@@ -50,6 +60,7 @@ class RawLog:
     comments: tuple[str, ...]
     warnings: tuple[Warning, ...]
     cut_off: bool
+    texts: tuple[tuple[Column, str], ...] = ()  #: columns of text alone, each with its first cell
 
 
 def raw_channels(path: str | Path) -> RawLog:
@@ -138,6 +149,7 @@ def roles_of(
         if channel is None:
             error = no_channel(role, columns, log.name)
             said = Lacking(f"there is no {role} channel", absent=True, remedy=error.remedy)
+            said = _of_text_alone(role, log, choices[role]) or said
             without[role] = said if error.absent else _lacking(error, log)
         else:
             chosen[role] = channel
@@ -146,6 +158,23 @@ def roles_of(
     except HerseyError as error:
         without.setdefault("torque", _lacking(error, log))
     return {role: column for role, (column, _) in chosen.items()}, without
+
+
+def _of_text_alone(role: str, log: RawLog, choice: ChannelChoice) -> Lacking | None:
+    """Why a column of temperature is of no use whose cells are text; None if there is none."""
+    if role != "temperature":
+        return None
+    try:
+        column = find_column(role, tuple(column for column, _ in log.texts), choice, log.name)
+    except HerseyError:
+        return None
+    if column is None:
+        return None
+    cell = dict(log.texts)[column]
+    remedy = numbers_only(column, cell)
+    holds = "the cells hold units" if remedy else "no cell is a number"
+    reason = f"column '{column.name}': {holds}, e.g. '{cell[:40]}'"
+    return Lacking(followed_by(reason, remedy), reason=reason, remedy=remedy)
 
 
 def _lacking(error: HerseyError, log: RawLog) -> Lacking:
@@ -170,7 +199,20 @@ def _of_text(path: Path) -> RawLog:
         and (channel := _text_channel(layout, column, frame[f"{column.index}"])) is not None
     ]
     warnings = (*layout.warnings, *end.warnings, *growth)
-    return RawLog(printable(path.name), "text", tuple(channels), layout.comments, warnings, end.cut_off)
+    texts, name = _texts(layout, frame, {channel.column for channel in channels}), printable(path.name)
+    return RawLog(name, "text", tuple(channels), layout.comments, warnings, end.cut_off, texts)
+
+
+def _texts(layout: Layout, frame: pl.DataFrame, used: Set[Column]) -> tuple[tuple[Column, str], ...]:
+    """The columns of text alone, each with its first cell that is not missing."""
+    found = []
+    for column in layout.named:
+        if column in used or f"{column.index}" not in frame.columns:
+            continue
+        cells = frame[f"{column.index}"].cast(pl.String).fill_null("")
+        if first := next((cell.strip() for cell in cells if not is_missing(cell)), ""):
+            found.append((column, printable(first)))
+    return tuple(found)
 
 
 def _frame(text: bytes, layout: Layout) -> pl.DataFrame:

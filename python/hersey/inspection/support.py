@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from hersey.arrays import FloatArray
 from hersey.damping.dwells import SteadyPoints, distinct_speeds, groups_of_temperature
-from hersey.damping.dwells.constant import constant_torque
+from hersey.damping.dwells.constant import constant_torque, dead_temperature
 from hersey.damping.dwells.least_duration import speeds_lost, temperatures_lost
 from hersey.damping.dwells.reasons import Kind
 from hersey.damping.estimate import Estimate, rounded
@@ -60,8 +60,13 @@ class Support(Record):
     cannot: tuple[str, ...]
 
 
-def support_of_points(points: SteadyPoints, *, temperature_scale: str = "degC") -> Support:
-    """Return what dwells support; ``temperature_scale`` is that of the fit to come."""
+def support_of_points(
+    points: SteadyPoints, *, temperature_scale: str = "degC", no_temperature: str = "none was recorded"
+) -> Support:
+    """Return what dwells support; ``temperature_scale`` is that of the fit to come.
+
+    ``no_temperature`` is why the dwells have no temperature, where they have none.
+    """
     log = points.log
     speed = np.abs(points.column("speed"))
     kelvin = points.column("temperature") if log.has_temperature else None
@@ -75,7 +80,7 @@ def support_of_points(points: SteadyPoints, *, temperature_scale: str = "degC") 
         *(
             (
                 _speed(speed, points),
-                _temperature(levels, points, fitted),
+                _temperature(levels, points, fitted) if levels else _no_temperature(no_temperature),
                 _branches(points, groups or [np.arange(speed.size)], speed, fitted),
             )
             if constant is None
@@ -130,14 +135,19 @@ def _speed(speed: FloatArray, points: SteadyPoints) -> Said:
     return [f"exponent c (speed): {count} speeds, {span}"], []
 
 
+def _no_temperature(why: str) -> Said:
+    return [], [f"any dependence on temperature: {why}"]
+
+
 def _temperature(levels: tuple[float, ...], points: SteadyPoints, fitted: DampingSurface | str) -> Said:
-    if not levels:
-        return [], ["any dependence on temperature: none was recorded"]
     temperatures = _levels(levels)
     if len(levels) == 1 and (lost := temperatures_lost(points)):
         return [], [f"exponent b (temperature): all dwells are at {temperatures}: {lost}"]
     if len(levels) == 1:
-        return [], [f"exponent b (temperature): all dwells are at {temperatures}. Record other temperatures"]
+        dead = dead_temperature(points)
+        said = f"{temperatures}: {dead}. Check it and" if dead else f"{temperatures}."
+        record = "record again" if dead else "Record other temperatures"
+        return [], [f"exponent b (temperature): all dwells are at {said} {record}"]
     kelvin, speed = points.column("temperature"), np.abs(points.column("speed"))
     if distinct_speeds(speed) > 1 and abs(np.corrcoef(np.log(speed), kelvin)[0, 1]) > TOGETHER:
         return [], [

@@ -1,46 +1,47 @@
 """A `TorqueLog` from any file, or from frames in memory.
 
-=============  =======================================================================
-torque_log     `TorqueLog`: channels in SI, with where they came from
-sensors        what the sensors do not know
-text           CSV and its relatives
-recording      what a file of any other format holds: channels with clocks of their own
-formats        one reader per format, and which one opens a file
-signals        currents, voltages and percentages, and how much one of them stands for
-roles          roles of columns: their names, and the kinds of units that they may have
-role_units     the unit of a column with a role
-channels       which column plays which role
-without_units  columns without units: named at once
-friction       friction forces and coefficients as torques, sliding speeds as those of a rotation
-stating        a radius or a load: proposed, used once a person states it
-slow_channels  a temperature or a load that is slower than the rows: interpolated between its values
-clock          rate, gaps and unevenness of a clock
-rows           which rows can be used, and where one run ends and the next begins
-replaced       units of a file that a person replaced
-believed       what a channel of a drive can read at all, and codes for no reading
-impossible     readings that cannot be right: found, named, left out
-neighbours     rows that their neighbours rule out
-stray_times    rows whose time lies off the clock around them
-wanted         what the user wants of a log, checked
-columns        columns as they stand, for readers with roles of their own
-assembly       from a recording to a run on the clock of the torque
-given_twice    a measurement that a log holds twice: refused
-not_a_log      what is neither a file nor a table: refused
-own_tables     tables that hersey wrote: refused as logs
-exchanged      columns under each other's names: refused
-reading        `read`: from files to a log
-many           many files, each a log of its own: in turn, in threads, or by workers
-corrections    what lies between sensor and film, subtracted with a record
-cell_table     a table as it stands: cells of text or numbers
-mean_roles     which column of a table of means plays which role
-means          a table of means: a row per dwell, no clock
-doubtful       numbers that would be ordinary in another unit
-quantities     quantities that no log holds
-sensor_tables  what a file says of the errors of the sensors
-role_tables    the tables of a mapping: what it says of each role
-mapping        which channel plays which role, kept beside the data
-proposal       a mapping proposed for a log
-=============  =======================================================================
+====================  =======================================================================
+torque_log            `TorqueLog`: channels in SI, with where they came from
+sensors               what the sensors do not know
+text                  CSV and its relatives
+recording             what a file of any other format holds: channels with clocks of their own
+formats               one reader per format, and which one opens a file
+signals               currents, voltages and percentages, and how much one of them stands for
+roles                 roles of columns: their names, and the kinds of units that they may have
+role_units            the unit of a column with a role
+channels              which column plays which role
+without_units         columns without units: named at once
+friction              friction forces and coefficients as torques, sliding speeds as those of a rotation
+stating               a radius or a load: proposed, used once a person states it
+slow_channels         a temperature or a load that is slower than the rows: interpolated between its values
+clock                 rate, gaps and unevenness of a clock
+rows                  which rows can be used, and where one run ends and the next begins
+replaced              units of a file that a person replaced
+believed              what a channel of a drive can read at all, and codes for no reading
+impossible            readings that cannot be right: found, named, left out
+neighbours            rows that their neighbours rule out
+stray_times           rows whose time lies off the clock around them
+wanted                what the user wants of a log, checked
+columns               columns as they stand, for readers with roles of their own
+assembly              from a recording to a run on the clock of the torque
+constant_temperature  a temperature that is excluded and never changes: its sensor may be dead
+given_twice           a measurement that a log holds twice: refused
+not_a_log             what is neither a file nor a table: refused
+own_tables            tables that hersey wrote: refused as logs
+exchanged             columns under each other's names: refused
+reading               `read`: from files to a log
+many                  many files, each a log of its own: in turn, in threads, or by workers
+corrections           what lies between sensor and film, subtracted with a record
+cell_table            a table as it stands: cells of text or numbers
+mean_roles            which column of a table of means plays which role
+means                 a table of means: a row per dwell, no clock
+doubtful              numbers that would be ordinary in another unit
+quantities            quantities that no log holds
+sensor_tables         what a file says of the errors of the sensors
+role_tables           the tables of a mapping: what it says of each role
+mapping               which channel plays which role, kept beside the data
+proposal              a mapping proposed for a log
+====================  =======================================================================
 
 A further format is one more context manager that yields a `Recording`, entered in `formats.READERS`.
 """

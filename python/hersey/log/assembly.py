@@ -28,6 +28,7 @@ from hersey.log.channels import (
     refuse_two_roles,
     taken_columns,
 )
+from hersey.log.constant_temperature import constant_temperature
 from hersey.log.formats.frame import FRAME
 from hersey.log.friction import Chosen, beside, computed, in_rotation, slow_roles, unused
 from hersey.log.impossible import Impossible, Reading, impossible_rows, marked_rows
@@ -89,11 +90,11 @@ class Assembly:
         self._timed: Chosen = {}
         self.parts: dict[str, _Part] = {}
         try:
-            self._choose(wanted.roles)
+            self._choose(wanted.roles, isothermal=wanted.isothermal)
         except UnitError as error:
             raise self._naming_all(error, wanted.roles) from None
 
-    def _choose(self, roles: tuple[str, ...]) -> None:
+    def _choose(self, roles: tuple[str, ...], *, isothermal: bool) -> None:
         """Find the channel of each role, and load it."""
         for role in roles:
             if role != "time":  # which is that of the channel
@@ -102,6 +103,8 @@ class Assembly:
         near = tuple(c for c in self.columns if c.group == torque.group)
         self.chosen |= beside(near, self.choices, self.stated, self.chosen, self.source.name)
         self._unused = [*clocks_passed_over(near, self.stated), *unused(near, self.chosen, self.stated)]
+        if isothermal:
+            self._unused += constant_temperature(near, self.chosen, self.source.name, self._numbers)
         self.parts = {role: self._part(role) for role in self.chosen}
 
     def _naming_all(self, error: UnitError, roles: tuple[str, ...]) -> UnitError:
@@ -241,10 +244,14 @@ class Assembly:
         marked = None if signal.marked is None else signal.marked()
         return _Part(role, column, unit, in_si(values, unit), time, tick, np.arange(values.size), marked)
 
+    def _numbers(self, column: Column) -> FloatArray:
+        """The numbers of a channel as written."""
+        return self.recording.signals[column.index].load()
+
     def _says_nothing(self, column: Column) -> bool:
         """Whether a channel holds one value throughout, or none; there is a warning then."""
         if column.index not in self._dead:
-            dead = is_dead(self.recording.signals[column.index].load())
+            dead = is_dead(self._numbers(column))
             self._dead[column.index] = constant_channel(column) if dead else None
         return self._dead[column.index] is not None
 

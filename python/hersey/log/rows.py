@@ -36,6 +36,7 @@ class LeftOut:
     rows: int = 0
     words: list[str] = field(default_factory=list)  #: for the first of them: place, and what is wrong there
     out_of_order: int = 0  #: those among them whose time is
+    units: str = ""  #: what to do about cells that hold a number with its unit
     dates: str = ""  #: a column in which a spreadsheet has made dates of numbers
 
     def add(self, rows: int, words: Iterable[str], *, out_of_order: bool = False) -> None:
@@ -60,7 +61,7 @@ class LeftOut:
             return
         how_many = f" (the first of {self.rows} such rows, of {rows})" if self.rows > 1 else ""
         few = f"too few rows remain. {f'{without}. Otherwise n' if without else 'N'}ame another column, or "
-        way_out = f"{few}correct the file" if most else _way_out()
+        way_out = (self.units or f"{few}correct the file") if most else _way_out()
         said = f"{file}, {self.words[0]}{how_many}"
         if self.dates:
             way_out = numbers_lost(self.dates)

@@ -1,4 +1,4 @@
-"""Whether the torque of dwells varies at all: a channel that stands still measures nothing."""
+"""Whether torque and temperature of dwells vary at all: a channel that stands still measures nothing."""
 
 from __future__ import annotations
 
@@ -7,6 +7,8 @@ import numpy as np
 from hersey.arrays import FloatArray
 from hersey.damping.dwells.points import SteadyPoints
 from hersey.errors import InsufficientDataError, Setting
+from hersey.log.channels import is_dead
+from hersey.units import celsius
 
 #: Differences below this share of a reading are rounding of the arithmetic.
 ROUNDING = 1e-9
@@ -40,8 +42,8 @@ def refuse_constant_torque(points: SteadyPoints) -> None:
     torque = constant_torque(points)
     if torque is not None:
         raise InsufficientDataError(
-            f"{points.log.files[0].name}: torque ({_name(points)}) reads {1e3 * torque:.4g} mN m at "
-            "all speeds, within its resolution, so it does not measure friction. Check the sensor, "
+            f"{points.log.files[0].name}: torque ({_name(points, 'torque')}) reads {1e3 * torque:.4g} mN m "
+            "at all speeds, within its resolution, so it does not measure friction. Check the sensor, "
             f"or name another column with {Setting('torque', 'channel').to()}"
         )
 
@@ -58,6 +60,15 @@ def _readings(points: SteadyPoints) -> list[FloatArray]:
     return parts
 
 
-def _name(points: SteadyPoints) -> str:
-    """The channel of the torque as the file has it."""
-    return next((f"'{c.name}'" for c in points.log.files[0].channels if c.role == "torque"), "torque")
+def dead_temperature(points: SteadyPoints) -> str:
+    """Return that the temperature is the same in every row of a recorded log; empty if it is not."""
+    recorded = [run.temperature for run in points.log.runs if run.temperature is not None]
+    if not recorded or not is_dead(np.concatenate(recorded)):
+        return ""
+    reads = f"{celsius(float(recorded[0][0])):.4g} degC"
+    return f"{_name(points, 'temperature')} reads {reads} in every row, so the sensor may be dead"
+
+
+def _name(points: SteadyPoints, role: str) -> str:
+    """The channel of a role as the file has it."""
+    return next((f"'{c.name}'" for c in points.log.files[0].channels if c.role == role), role)

@@ -226,8 +226,9 @@ class SteadyPoints(Result):
         unsure = np.sqrt(error**2 + np.sum(self.tare_errors**2, axis=1) + np.sum(errors**2, axis=1))
         worst = int(np.argmin(np.sign(speed) * film - _BEYOND * unsure))
         if not np.sign(speed[worst]) * film[worst] > _BEYOND * unsure[worst]:
+            of = self.log.runs[int(self.column("run")[worst])].name if self.log.runs else name
             raise InsufficientDataError(
-                f"{name}: at {rpm(abs(float(speed[worst]))):.3g} rpm torque is "
+                f"{of}: at {rpm(abs(float(speed[worst]))):.3g} rpm torque is "
                 f"{1e3 * abs(float(torque[worst])):.3g} mN m and no-load torque "
                 f"{1e3 * abs(float(taken[worst])):.3g} mN m ({rest.source}), which leaves nothing for "
                 "the film. Check its unit, and that it was recorded without the film"

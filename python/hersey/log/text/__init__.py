@@ -8,6 +8,7 @@ decimal_commas   commas between the columns that are decimal marks too
 separators       what stands between cells, and the rows of numbers that it makes
 header           names and units of the columns, from the lines above
 dated_numbers    dates that a spreadsheet has made of numbers
+units_in_cells   numbers with their unit, where the header should have it
 orientation      tables whose channels are not columns, which are refused
 layout           where the table starts, and what its columns are
 footer           where it ends

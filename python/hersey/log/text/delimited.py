@@ -24,7 +24,8 @@ from hersey.log.channels import (
     refuse_two_roles,
     taken_columns,
 )
-from hersey.log.friction import beside, computed, in_rotation, slow_roles, unused
+from hersey.log.constant_temperature import constant_temperature
+from hersey.log.friction import Chosen, beside, computed, in_rotation, slow_roles, unused
 from hersey.log.impossible import Impossible, Reading, impossible_rows
 from hersey.log.replaced import replaced_units
 from hersey.log.rows import LeftOut, runs_with_records
@@ -36,6 +37,7 @@ from hersey.log.text.footer import end_of_table
 from hersey.log.text.layout import SNIFFED, Layout, find_layout
 from hersey.log.text.numbers import is_missing
 from hersey.log.text.stamps import refuse_whole_minutes
+from hersey.log.text.units_in_cells import numbers_only
 from hersey.log.torque_log import NO_CLOCK, Channel, LogFile, Run
 from hersey.log.wanted import Wanted
 from hersey.log.without_units import naming_all
@@ -58,6 +60,7 @@ def read_delimited(path: Path, wanted: Wanted, progress: Progress | None = None)
         layout, end, size = file.layout, file.end, file.opened.size
         dead = _Dead(file)
         channels = _channels(layout, wanted, name, dead)
+        excluded = _excluded(file, channels) if wanted.isothermal else []
         table = _Table(name, layout, channels, wanted.drop_missing, stated)
         table.slow = slow_roles(channels)
         table.read(file.opened, end.byte, progress)
@@ -84,6 +87,7 @@ def read_delimited(path: Path, wanted: Wanted, progress: Progress | None = None)
             *computed(channels, stated),
             *replaced_units(table.channels),
             *dead.warnings,
+            *excluded,
             *unused(layout.named, channels, stated),
             *end.warnings,
             *growth,
@@ -161,6 +165,16 @@ def open_delimited(path: Path) -> Iterator[DelimitedFile]:
     """
     with appended(path) as opened:
         yield DelimitedFile(opened)
+
+
+def _excluded(file: DelimitedFile, channels: Chosen) -> list[Warning]:
+    """What is to be known of a temperature that is excluded."""
+
+    def numbers(column: Column) -> FloatArray:
+        (values,) = file.numbers([column], complete=False, odd_as_missing=True)
+        return values
+
+    return constant_temperature(file.layout.named, channels, file.opened.path.name, numbers)
 
 
 class _Dead:
@@ -343,5 +357,8 @@ class _Table:
                 if is_missing(cell):
                     what = f"'{cell[:40]}'" if cell else "an empty cell"
                     return f"{in_column}{what} instead of a number"
+                if remedy := numbers_only(column, cell):
+                    self.left_out.units = self.left_out.units or remedy
+                    return f"{in_column}the cell holds its unit, '{cell[:40]}'"
                 return f"{in_column}'{cell[:40]}' is not a {self.reader.what(column)}"
         return f"{place}: torque and speed need a radius greater than zero"

@@ -22,6 +22,7 @@ from hersey.log.text.numbers import NumberStyle, is_missing, looks_numeric, styl
 from hersey.log.text.orientation import refuse_long, refuse_transposed
 from hersey.log.text.separators import BLANKS, SEPARATORS, NumberRows, number_rows, split
 from hersey.log.text.stamps import OF_WINCC, StampStyle, clock_without_unit, counted_unit, stamp_style
+from hersey.log.text.units_in_cells import WITH_UNIT, numbers_only
 from hersey.schema.warning import Warning
 
 #: Bytes looked at; preambles of data loggers are far shorter.
@@ -36,8 +37,6 @@ _COMMENTS = ("#", "~", "//")
 #: How JSON of objects begins, and what a result of this package in JSON states.
 _JSON = re.compile(r'\s*\[?\s*\{\s*"')
 _RESULT = '"hersey_version"'
-#: A number with its unit.
-_WITH_UNIT = re.compile(r"([-+]?[0-9][0-9.,]*(?:[eE][-+]?[0-9]+)?) ?([A-Za-zµμ°%][A-Za-z0-9µμ°%*/·^]*)")
 
 
 @dataclass(frozen=True)
@@ -226,16 +225,16 @@ def _refuse_units_in_cells(numbered: list[Numbered], separator: str, name: str) 
     """Raise if the cells of the rows are numbers with their units."""
     number, last = numbered[-1]
     cells = split(last, separator)
-    found = [(i, match) for i, cell in enumerate(cells) if (match := _WITH_UNIT.fullmatch(cell))]
+    found = [(i, match) for i, cell in enumerate(cells) if (match := WITH_UNIT.fullmatch(cell))]
     if len(cells) < 2 or 2 * len(found) < len(cells):
         return
     rows = [row for _, line in numbered if len(row := split(line, separator)) == len(cells)]
-    names = next((row for row in rows if not any(map(_WITH_UNIT.fullmatch, row))), cells)
-    index, match = found[0]
-    named = split_unit(names[index])[0]
+    names = next((row for row in rows if not any(map(WITH_UNIT.fullmatch, row))), cells)
+    index, _ = found[0]
+    named = Column(index, split_unit(names[index])[0], "")
     raise UnreadableLogError(
         f"{name}, line {number}: the cells hold units, e.g. '{cells[index]}'",
-        remedy=f"write the unit in the header, '{named} [{match[2]}]', and only numbers in the cells",
+        remedy=numbers_only(named, cells[index]),
     )
 
 

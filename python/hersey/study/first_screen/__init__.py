@@ -10,6 +10,7 @@ instruction the sentence, its interval, and what happens otherwise
 points      what is said of each operating point
 advice      the next measurement, in words
 questions   a question in the place of a conclusion
+temperature operating points far from the one temperature of a dead sensor
 flags       what stands against it, and the section that holds the evidence
 missing     lines to add to a file, ready to copy
 decision    all of it together

@@ -21,6 +21,7 @@ from hersey.schema.warning import Warning
 from hersey.stability.operating_map import OperatingMap
 from hersey.study.findings import Findings
 from hersey.study.first_screen.reasons import in_words
+from hersey.study.first_screen.temperature import temperature_unknown
 from hersey.study.first_screen.words import (
     at,
     between,
@@ -56,6 +57,7 @@ def flags(known: Findings) -> list[Warning]:
     out = [*_replaced(points, known.comparison), *([] if found is None else _unused(found))]
     turns = found is None or map_ is None or edges_of(found.posterior, found.temperature).turns
     out += [*_contradictions(known.nip, known.torque_budget), *_of_log(points, surface, asked=not turns)]
+    out += temperature_unknown(points, known.machine)
     if known.why:
         out.append(Warning("no band", "{why}", severity="act", title="No band", where="band", why=known.why))
     if found is not None and map_ is not None:
