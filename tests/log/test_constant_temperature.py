@@ -46,7 +46,7 @@ def test_only_points_at_another_temperature_are_warned_of(tmp_path: Path) -> Non
     machine = read_machine(ROOT / "examples" / "machine.toml")
     surface = hersey.fit(points)
     known = Findings(points=points, surface=surface, regime=regime(points, surface), machine=machine)
-    [found] = [each for each in flags(known) if each.kind == CONSTANT_TEMPERATURE]
+    [found] = [each for each in flags(known) if each.kind == "temperature of the log unknown"]
     assert found.text == (
         f"log.csv: {SAID}, and full speed is at 180 degC. Check the sensor and record again."
     )

@@ -36,7 +36,9 @@ def held_values(points: SteadyPoints) -> list[Warning]:
 def _stuck(name: str, fault: Fault, file: str) -> Warning:
     return Warning(
         fault.kind,
-        f"{_found(name)} for {{rows}} rows, so its true value there is unknown",
+        "{channel} is {fault} at "
+        + ("{value:.4g degC}" if name == "temperature" else "{value:.4g} N m")
+        + " for {rows} rows, so its true value there is unknown",
         severity="watch",
         where=file,
         channel=name,
@@ -48,17 +50,22 @@ def _stuck(name: str, fault: Fault, file: str) -> Warning:
 
 def _clipped(name: str, fault: Fault, file: str, dwells: list[str]) -> Warning:
     """A channel at the end of its range, with the dwells that reach it."""
-    words = f"{_found(name)} in {{rows}} rows, where the range of sensor or logger ends"
-    remedy = "no dwell reaches this value"
-    if dwells:
-        words += ". {dwells} {dwells:dwell reaches this value and is|dwells reach this value and are} wrong: "
-        words += "{first}" + (" and {others} more" if len(dwells) > _LISTED else "")
-        remedy = "record {dwells:it|them} again with a wider range, or delete {dwells:its|their} rows"
     return Warning(
         fault.kind,
-        words,
+        "{channel} is {fault} at "
+        + ("{value:.4g degC}" if name == "temperature" else "{value:.4g} N m")
+        + " in {rows} rows, where the range of sensor or logger ends"
+        + (
+            ". {dwells} {dwells:dwell reaches this value and is|dwells reach this value and are} wrong: "
+            "{first}"
+            if dwells
+            else ""
+        )
+        + (" and {others} more" if len(dwells) > _LISTED else ""),
         severity="act" if dwells else "watch",
-        remedy=remedy,
+        remedy="record {dwells:it|them} again with a wider range, or delete {dwells:its|their} rows"
+        if dwells
+        else "no dwell reaches this value",
         where=file,
         channel=name,
         fault=fault.kind,
@@ -68,11 +75,6 @@ def _clipped(name: str, fault: Fault, file: str, dwells: list[str]) -> Warning:
         first=", ".join(dwells[:_LISTED]),
         others=max(0, len(dwells) - _LISTED),
     )
-
-
-def _found(name: str) -> str:
-    """The words for a channel that keeps a value."""
-    return "{channel} is {fault} at " + ("{value:.4g degC}" if name == "temperature" else "{value:.4g} N m")
 
 
 def _dwells_at(points: SteadyPoints, number: int, name: str, end: float) -> list[str]:

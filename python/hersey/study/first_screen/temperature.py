@@ -29,8 +29,9 @@ def temperature_unknown(points: SteadyPoints, machine: Machine | None) -> Iterat
     far = max(machine.points, key=lambda point: abs(point.temperature - read))
     if abs(far.temperature - read) > FAR:
         yield Warning(
-            CONSTANT_TEMPERATURE,
-            f"{{concerns}}: {first.words}, and {{point}} is at {{of_point:.4g degC}}",
+            "temperature of the log unknown",
+            "{concerns}: '{column}' reads {temperature:.4g degC} in every row, so the sensor may be dead, "
+            "and {point} is at {of_point:.4g degC}",
             severity="act",
             title="The temperature of the log is not known",
             where="data",
@@ -38,5 +39,6 @@ def temperature_unknown(points: SteadyPoints, machine: Machine | None) -> Iterat
             concerns=first.where,
             point=far.name,
             of_point=far.temperature,
-            **first.values,
+            column=str(first.values["column"]),
+            temperature=read,
         )
