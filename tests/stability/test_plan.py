@@ -202,7 +202,7 @@ def test_motor_torque_is_a_limit_at_the_roll() -> None:
     [
         ({"target_speed": -1.0}, "target_speed is -1"),
         ({"target_speed": math.nan}, "target_speed is NaN"),
-        ({"confidence": 1.0}, "confidence is 1.0"),
+        ({"confidence": 1.0}, "confidence is 1: it must be from 0.5 to 0.999"),
         ({"seed": -1}, "seed is -1"),
         ({"uncertainty": {"colour": Uncertainty(share=0.1)}}, "unknown parameter 'colour'"),
         ({"samples": {"stiffness": [1.0, 2.0], "mass": [1.0]}}, "must have equal lengths"),

@@ -24,7 +24,7 @@ async function regimeSection(parent) {
   const more = add(part, "div", "", "columns");
   await chart(more, "transition");
   await chart(more, "torque_budget");
-  const all = fold(part, "Full verdict, all regimes tested");
+  const all = fold(part, "All regimes tested");
   const verdict = add(all, "div");
   verdict.id = "verdict";
   data.verdict.forEach((text) => add(verdict, "p", pretty(text), "text"));
