@@ -34,7 +34,8 @@ NAMES = re.compile(
 TOPICS = re.compile(
     r"exponent|\w\^|slope|^\W*(?:[abc]|c_mixed|c below .*)\b"  # powers
     r"|\bp [=<]|\bC\(|squared|chi-square|AICc|[Cc]orrelat|variables +=|data points +="  # statistics
-    r"|ratio|factor|friction = |B/A|B over A|Hersey number|Uncertainty|\u00d7|weight|treated as correlated"  # ratios
+    r"|friction = |ratio|factor|B/A|B over A|Hersey number|Uncertainty|\u00d7|weight"  # ratios
+    r"|treated as correlated"
     r"|^\s*dwells\s"  # a count, its label in front
 )
 _CELL = re.compile(rf"[\[(]?{_NUMBER}(?:,? [\[(]?{_NUMBER}[\])]?)*[\])]?|-|none|x {_NUMBER}.*")

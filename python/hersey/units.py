@@ -307,10 +307,18 @@ def _parsed(text: str) -> Any:
         return None
 
 
+def _alike(text: str, si: str) -> bool:
+    """Whether two units have one dimension, but for angles; pint, which loads slowly, is asked last."""
+    line, standard = _from_table(text), _from_table(si)
+    if line and standard:
+        return line[2][:-1] == standard[2][:-1]
+    parsed = _parsed(text)
+    return parsed is not None and bool(parsed.dimensionality == registry.parse_units(si).dimensionality)
+
+
 def _wrong_kind(kind: str, unit: str, text: str) -> WrongKindError:
-    parsed = _parsed(text) if kind in _MISTAKEN else None
     for si, what, how in _MISTAKEN.get(kind, ()):
-        if parsed is not None and parsed.dimensionality == registry.parse_units(si).dimensionality:
+        if _alike(text, si):
             return WrongKindError(f"unit '{unit}' is that of a {what}, not of a {kind}", remedy=how)
     meant = _meant(kind, unit, _ALIKE_OF_ANOTHER_KIND)
     return WrongKindError(f"unit '{unit}' is not a unit of {kind}", remedy=meant)
