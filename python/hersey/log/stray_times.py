@@ -34,9 +34,7 @@ def stray_times(time: FloatArray) -> BoolArray:
     [3, 4]
     """
     stray = np.zeros(time.size, dtype=bool)
-    if time.size < 3:
-        return stray
-    if _goes_on(time):
+    if time.size < 3 or _goes_on(time):
         return stray
     steps = np.diff(time)
     forward = steps[steps > 0]

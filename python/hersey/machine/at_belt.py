@@ -31,7 +31,7 @@ _INSTEAD: dict[str, tuple[tuple[str, str, float, int], ...]] = {
     "torque": (("force", "a force, but the torque at the roll is needed", 1.0, 1),),
 }
 
-#: Units by which a torsional stiffness is told from a torque.
+#: Units that make a torque a torsional stiffness.
 _ANGLES = ("rad", "deg", "°", "rev")
 #: What leads from the other kind, by the power of the radius.
 _BY_RADIUS = {

@@ -112,7 +112,7 @@ def minimise(
         share = np.where(np.abs(u) <= limit, 1.0, limit / root)
         return np.asarray(share[:, None] * by)
 
-    if (count := residual(start).size) < start.size:
+    if (count := remembered(start).size) < start.size:
         raise InsufficientDataError(f"{count} points are too few for {start.size} parameters")
     with np.errstate(over="ignore", invalid="ignore"):  # of a covariance that is not used
         solution, *_ = optimize.leastsq(

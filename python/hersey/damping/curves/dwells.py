@@ -77,7 +77,7 @@ class Dwells:
         Returns
         -------
         Its slope by each prediction, and the weight of each dwell, shape (points,); its slope by ln scatter,
-        and what the dwells tell of that (Fisher's information).
+        and Fisher's information of that.
         """
         scatter = np.exp(2.0 * np.clip(log_scatter, -20.0, 2.0))
         variance = self.error**2 + scatter
@@ -86,8 +86,8 @@ class Dwells:
         weight = (TAIL + 1.0) / (TAIL + u**2)
         share = scatter / variance
         by_scatter = float(np.sum(share * (weight * u**2 - 1.0)))
-        told = float(np.sum(share**2)) * 2.0 * TAIL / (TAIL + 3.0)
-        return np.asarray(weight * u / sigma), np.asarray(weight / sigma**2), by_scatter, told
+        information = float(np.sum(share**2)) * 2.0 * TAIL / (TAIL + 3.0)
+        return np.asarray(weight * u / sigma), np.asarray(weight / sigma**2), by_scatter, information
 
 
 def dwells_of(points: SteadyPoints, surface: DampingSurface) -> Dwells:

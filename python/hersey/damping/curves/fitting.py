@@ -168,14 +168,14 @@ def _slopes(
     many = dwells.shared.shape[1]
     scatter = numbers.size - many - 1
     curve, slopes = _curve_and_slopes(shape, dwells, numbers, deviation)
-    pull, weight, by_scatter, told = dwells.slopes_of(
+    pull, weight, by_scatter, information = dwells.slopes_of(
         curve + dwells.shared @ numbers[scatter + 1 :], float(numbers[scatter])
     )
     slopes *= deviation[:, None]
     gradient = slopes @ pull - (numbers - mean) / deviation
     gradient[scatter] += deviation[scatter] * by_scatter
     curvature = (slopes * weight) @ slopes.T + np.eye(numbers.size)
-    curvature[scatter, scatter] += deviation[scatter] ** 2 * told
+    curvature[scatter, scatter] += deviation[scatter] ** 2 * information
     return gradient, curvature
 
 
