@@ -162,7 +162,8 @@ impl<'a> Laps<'a> {
         if now >= self.until {
             return Ok(self.whole.or_else(|| Some(self.cycle(CycleKind::Unsettled, now))));
         }
-        let (piece, event) = self.motion.advance(self.until - now)?;
+        let mut piece = self.motion.no_piece();
+        let event = self.motion.advance(self.until - now, &mut piece)?;
         self.lap.add(&piece, self.smooth);
         self.pieces += 1;
         if let Some(end) = self.end_without_lap(&piece, event.is_none()) {

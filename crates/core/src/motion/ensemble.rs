@@ -380,6 +380,7 @@ impl Member {
         let work = work.apart(work.allowed());
         let mut motion =
             Motion::new(&system, start, tolerance, Integrator::Adaptive, &work).ok()?;
+        let mut piece = motion.no_piece();
         for _ in 0..MAX_PIECES {
             if matches!(motion.phase().mode, Mode::Ehl | Mode::Mixed)
                 && motion.phase().direction > 0.0
@@ -388,7 +389,7 @@ impl Member {
                 self.load(&motion, lanes, l);
                 return Some(Verdict::Rides);
             }
-            let (piece, event) = motion.advance(f64::INFINITY).ok()?;
+            let event = motion.advance(f64::INFINITY, &mut piece).ok()?;
             self.all_steps += 1;
             if piece.duration.is_infinite() {
                 return None;

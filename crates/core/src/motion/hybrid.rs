@@ -39,12 +39,13 @@ pub(crate) fn first_slide(
     work: &Work,
 ) -> Option<(f64, f64)> {
     let mut motion = Motion::new(system, start, tolerance, Integrator::Adaptive, work).ok()?;
+    let mut piece = motion.no_piece();
     for _ in 0..1000 {
         let phase = motion.phase();
         if matches!(phase.mode, Mode::Ehl | Mode::Mixed) && phase.direction > 0.0 {
             return Some((phase.pull, phase.speed));
         }
-        motion.advance(f64::INFINITY).ok()?;
+        motion.advance(f64::INFINITY, &mut piece).ok()?;
     }
     None
 }
@@ -177,17 +178,25 @@ impl<'a> Motion<'a> {
         self.now.time
     }
 
-    /// The next piece, no longer than `longest`, and the event that ends it, if one does.
-    pub(super) fn advance(&mut self, longest: f64) -> Result<(Piece<'a>, Option<Event>), Error> {
-        let (mut piece, guard) = self.look_ahead(longest)?;
-        let event = self.follow(&mut piece, guard)?;
-        Ok((piece, event))
+    /// Make the next `piece`, no longer than `longest`, and go on to its end; the event that ends it, if one does.
+    ///
+    /// A piece is large, so that it is made where it is wanted.
+    pub(super) fn advance(
+        &mut self,
+        longest: f64,
+        piece: &mut Piece<'a>,
+    ) -> Result<Option<Event>, Error> {
+        let guard = self.look_ahead(longest, piece)?;
+        self.follow(piece, guard)
     }
 
-    /// The next piece, no longer than `longest`, and when it meets a guard, if it does.
-    #[inline(always)]
-    #[allow(clippy::inline_always)] // a piece is large, and to be made where it is wanted
-    pub(super) fn look_ahead(&mut self, longest: f64) -> Result<(Piece<'a>, Option<Met>), Error> {
+    /// Make the next `piece`, no longer than `longest`; when it meets a guard, if it does.
+    #[inline]
+    pub(super) fn look_ahead(
+        &mut self,
+        longest: f64,
+        piece: &mut Piece<'a>,
+    ) -> Result<Option<Met>, Error> {
         self.steps += 1;
         self.work.take(1).map_err(|error| error.at_time(self.now.time))?;
         self.now.take_temperature()?;
@@ -195,20 +204,18 @@ impl<'a> Motion<'a> {
             self.creep_on();
         }
         let longest = longest.min(self.now.until_change());
-        let piece = if self.now.heat.is_some() {
-            self.warmed_piece(longest)?
+        if self.now.heat.is_some() {
+            self.warmed_piece(longest, piece)?;
         } else if self.now.system.is_open {
-            self.piece_within_law(longest)?
+            self.piece_within_law(longest, piece)?;
         } else {
-            self.piece(longest)?
-        };
-        let guard = self.first_guard(&piece);
-        Ok((piece, guard))
+            self.piece(longest, piece)?;
+        }
+        Ok(self.first_guard(piece))
     }
 
     /// To the end of the piece, which is where it meets a guard, and into what follows.
-    #[inline(always)]
-    #[allow(clippy::inline_always)]
+    #[inline]
     pub(super) fn follow(
         &mut self,
         piece: &mut Piece,
@@ -248,14 +255,14 @@ impl<'a> Motion<'a> {
 
     /// The next piece at the temperature that its own friction makes: made anew until it is.
     #[cold]
-    fn warmed_piece(&mut self, mut longest: f64) -> Result<Piece<'a>, Error> {
+    fn warmed_piece(&mut self, mut longest: f64, piece: &mut Piece<'a>) -> Result<(), Error> {
         let (step, tolerance) = (self.next_step, self.tolerance);
         for _ in 0..MAX_ROUNDS {
             self.next_step = step;
-            let mut piece = self.piece(longest)?;
+            self.piece(longest, piece)?;
             let power = piece.power_of_contact(&self.now.rest_course());
             let time = self.now.time;
-            let Some(heat) = &mut self.now.heat else { return Ok(piece) };
+            let Some(heat) = &mut self.now.heat else { return Ok(()) };
             let (warming, until) = heat.heating_part(&power, piece.duration);
             let assumed = heat.courses; // those to come take their slope already
             // steps follow a cubic
@@ -279,7 +286,7 @@ impl<'a> Motion<'a> {
             if off <= SAME_TEMPERATURE && piece.duration <= good {
                 self.check_law(end)?;
                 self.temperatures = courses;
-                return Ok(piece);
+                return Ok(());
             }
         }
         Err(self.stalled())
@@ -287,19 +294,25 @@ impl<'a> Motion<'a> {
 
     /// The next piece, over which the temperature keeps to where there is a law of drag.
     #[cold]
-    fn piece_within_law(&mut self, mut longest: f64) -> Result<Piece<'a>, Error> {
-        let Some((course, _)) = self.now.temperature_law() else { return self.piece(longest) };
+    fn piece_within_law(
+        &mut self,
+        mut longest: f64,
+        piece: &mut Piece<'a>,
+    ) -> Result<(), Error> {
+        let Some((course, _)) = self.now.temperature_law() else {
+            return self.piece(longest, piece);
+        };
         for (c, n) in course.iter().zip(0..).skip(1).filter(|(c, _)| **c != 0.0) {
             longest = longest.min(rough_root(course[0] / c.abs(), n));
         }
         let (step, mut rounds) = (self.next_step, 0);
         loop {
             self.next_step = step;
-            let piece = self.piece(longest)?;
+            self.piece(longest, piece)?;
             match self.check_law(piece.duration) {
                 Err(error) if rounds == MAX_ROUNDS => return Err(error),
                 Err(_) => longest = 0.5 * piece.duration,
-                Ok(()) => return Ok(piece),
+                Ok(()) => return Ok(()),
             }
             rounds += 1;
         }

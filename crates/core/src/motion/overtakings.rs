@@ -50,8 +50,9 @@ impl<'a> Overtakings<'a> {
     pub(crate) fn next(&mut self) -> Result<Option<Overtaking>, Error> {
         let below = |mode| matches!(mode, Mode::Stuck | Mode::Microslip);
         let (mut stuck, mut slowest) = (false, f64::INFINITY);
+        let mut piece = self.motion.no_piece();
         for _ in 0..MOST_PIECES {
-            let (piece, event) = self.motion.advance(f64::INFINITY)?;
+            let event = self.motion.advance(f64::INFINITY, &mut piece)?;
             stuck |= below(piece.start.mode);
             slowest = slowest.min(piece.start.direction * piece.start.speed);
             if let Some((time, pull)) = self.met(&piece, event)

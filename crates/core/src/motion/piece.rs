@@ -54,6 +54,18 @@ pub(super) enum Path {
     },
 }
 
+impl Path {
+    /// A series to be written.
+    pub(super) fn series(&mut self) -> &mut Series {
+        loop {
+            match self {
+                Self::Series(series) => return series,
+                Self::Steps { .. } => *self = Self::Series(Series::still(0.0, 0.0)),
+            }
+        }
+    }
+}
+
 /// A stretch of smooth motion from `time` on, `duration` long.
 #[derive(Debug)]
 pub(super) struct Piece<'a> {

@@ -55,6 +55,38 @@ pub(super) fn value(c: &Polynomial, t: f64) -> f64 {
     c.iter().rev().fold(0.0, |sum, ci| sum * t + ci)
 }
 
+/// Times at which polynomials are evaluated at once.
+pub(super) const BLOCK: usize = 8;
+
+/// Values of several polynomials at several times.
+#[inline(always)]
+#[allow(clippy::inline_always)] // so that it is compiled for the instruction set it is dispatched to
+pub(super) fn values<S: pulp::Simd, const N: usize>(
+    simd: S,
+    of: [&Polynomial; N],
+    times: &[f64; BLOCK],
+) -> [[f64; BLOCK]; N] {
+    let mut out = [[0.0; BLOCK]; N];
+    let (registers, _) = S::as_simd_f64s(times);
+    for (r, t) in registers.iter().enumerate() {
+        let mut sums = of.map(|c| simd.splat_f64s(c[ORDER]));
+        for n in (0..ORDER).rev() {
+            for (sum, c) in sums.iter_mut().zip(of) {
+                let next = simd.splat_f64s(c[n]);
+                *sum = if cfg!(target_arch = "wasm32") {
+                    simd.add_f64s(simd.mul_f64s(*sum, *t), next)
+                } else {
+                    simd.mul_add_f64s(*sum, *t, next)
+                };
+            }
+        }
+        for (out, sum) in out.iter_mut().zip(sums) {
+            S::as_mut_simd_f64s(out).0[r] = sum;
+        }
+    }
+    out
+}
+
 /// `constant - c`.
 pub(super) fn subtracted_from(constant: f64, c: &Polynomial) -> Polynomial {
     let mut out = c.map(|ci| -ci);

@@ -41,8 +41,9 @@ pub(crate) fn next_return(
     let mut motion = Motion::new(system, start, tolerance, Integrator::Adaptive, work)?;
     let begun = BEGUN * train.time_scale();
     let mut stuck = false;
+    let mut piece = motion.no_piece();
     for _ in 0..MOST_PIECES {
-        let (piece, event) = motion.advance(f64::INFINITY)?;
+        let event = motion.advance(f64::INFINITY, &mut piece)?;
         let found = overtaking(&piece, drive_speed).or_else(|| gripping_again(event, train));
         if let Some(section) = found.filter(|section| section.time > begun) {
             let (time, pull) = (section.time, section.pull);

@@ -78,10 +78,11 @@ pub fn start_up(
     let (mut held, mut released, mut peak) = (true, f64::INFINITY, 0.0_f64);
     let mut judged = asked.peak || !still;
     let mut watch = WATCH * lap;
+    let mut piece = motion.no_piece();
     for _ in 0..DOUBLINGS {
         let end = (asked.ramps + watch).max(asked.until);
         while motion.time() < end {
-            let (piece, event) = motion.advance(end - motion.time())?;
+            let event = motion.advance(end - motion.time(), &mut piece)?;
             if asked.peak {
                 peak = peak.max(greatest_pull(&piece));
             }

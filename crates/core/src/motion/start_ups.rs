@@ -464,6 +464,7 @@ impl<'a> Rider<'a> {
         else {
             return Next::Leaves;
         };
+        let mut piece = motion.no_piece();
         for _ in 0..MAX_PIECES {
             let phase = motion.phase();
             let time = scaled(motion.time());
@@ -478,7 +479,9 @@ impl<'a> Rider<'a> {
                 let state = (time, pull, phase.speed / self.speed_scale);
                 return self.hold(lanes, l, state, tolerance, &work);
             }
-            let Ok((piece, event)) = motion.advance(f64::INFINITY) else { return Next::Leaves };
+            let Ok(event) = motion.advance(f64::INFINITY, &mut piece) else {
+                return Next::Leaves;
+            };
             if piece.duration.is_infinite() {
                 return Next::Leaves;
             }

@@ -257,7 +257,11 @@ impl Stepper {
         let (elapsed, work) = (self.moment.time - self.moment.start, Work::default());
         let piece = match &self.ahead {
             Some(ahead) => self.piece(ahead, &work),
-            None => self.motion(&work)?.look_ahead(f64::INFINITY).map(|(piece, _)| piece),
+            None => {
+                let mut motion = self.motion(&work)?;
+                let mut piece = motion.no_piece();
+                motion.look_ahead(f64::INFINITY, &mut piece).map(|_| piece)
+            }
         }?;
         if piece.start.mode == Mode::Stuck {
             return Ok(pull);
@@ -292,7 +296,8 @@ impl Stepper {
     /// Make the piece under way, and see where it leads.
     fn look(&mut self, work: &Work) -> Result<Ahead, Error> {
         let mut motion = self.motion(work)?;
-        let (mut piece, guard) = motion.look_ahead(f64::INFINITY)?;
+        let mut piece = motion.no_piece();
+        let guard = motion.look_ahead(f64::INFINITY, &mut piece)?;
         let (start, path) = (piece.start, piece.path);
         let (end, next) = if piece.duration.is_finite() {
             let event = motion.follow(&mut piece, guard);

@@ -33,24 +33,33 @@ const MAX_SHORTENINGS: usize = 20;
 const MAX_TRIES: usize = 200;
 
 impl<'a> Motion<'a> {
-    /// The smooth motion from here, `longest` at most, with its own length; guards are not looked at.
-    pub(super) fn piece(&mut self, longest: f64) -> Result<Piece<'a>, Error> {
-        let start = self.phase;
-        if start.mode == Mode::Stuck {
-            return Ok(self.held_piece(longest));
+    /// Make the smooth motion from here, `longest` at most, with its own length; guards are not looked at.
+    pub(super) fn piece(&mut self, longest: f64, piece: &mut Piece<'a>) -> Result<(), Error> {
+        if self.phase.mode == Mode::Stuck {
+            *piece = self.held_piece(longest);
+        } else if self.on_a_corner() {
+            *piece = self.still_piece(longest);
+        } else if self.phase.creeping {
+            *piece = self.creep_piece(longest);
+        } else if self.needs_steps(longest) {
+            *piece = self.steps_piece(longest)?;
+        } else {
+            self.series_piece(longest, piece);
         }
-        if self.on_a_corner() {
-            let still = Series::still(start.pull, start.speed);
-            let reach = self.reach(&still);
-            return Ok(self.along(still, longest.min(reach)));
-        }
-        if start.creeping {
-            return Ok(self.creep_piece(longest));
-        }
-        if !self.needs_steps(longest) {
-            return Ok(self.series_piece(longest));
-        }
-        self.steps_piece(longest)
+        Ok(())
+    }
+
+    /// A piece to be made.
+    pub(super) fn no_piece(&self) -> Piece<'a> {
+        self.along(Series::still(0.0, 0.0), 0.0)
+    }
+
+    /// The belt rests on a corner of the law.
+    #[cold]
+    fn still_piece(&self, longest: f64) -> Piece<'a> {
+        let still = Series::still(self.phase.pull, self.phase.speed);
+        let reach = self.reach(&still);
+        self.along(still, longest.min(reach))
     }
 
     /// Whether the belt rests on a corner of the drag law, where rounding would switch modes for ever.
@@ -295,19 +304,20 @@ impl<'a> Motion<'a> {
         }
     }
 
-    fn series_piece(&self, longest: f64) -> Piece<'a> {
+    fn series_piece(&self, longest: f64, piece: &mut Piece<'a>) {
         let [pull_scale, speed_scale, _] = self.scales();
-        let series = self.arch.dispatch(Slip(self.slip_start()));
+        let series = piece.path.series();
+        self.arch.dispatch(Slip(&self.slip_start(), series));
         let good = series
             .step_size(self.tolerance, pull_scale, speed_scale)
             .min(LONGEST_STEP * self.now.system.train.time_scale());
-        let good = if good.is_finite() { good } else { self.reach(&series) };
-        let duration = good.min(longest);
-        let mut piece = self.along(series, duration);
+        let good = if good.is_finite() { good } else { self.reach(series) };
+        (piece.time, piece.duration) = (self.now.time, good.min(longest));
+        (piece.start, piece.flow) = (self.phase, self.flow());
+        piece.heated = self.now.heat.is_some();
         if self.now.system.drag.mixed_contact().is_some() {
-            self.keep_to_law(&mut piece, speed_scale);
+            self.keep_to_law(piece, speed_scale);
         }
-        piece
     }
 
     /// Shorten a piece until its series is still true at its end: the share of asperities that begin to touch may grow

@@ -59,65 +59,121 @@ impl SlipStart<'_> {
     }
 }
 
-/// A slip series, as work for the best instruction set.
-pub(super) struct Slip<'a>(pub SlipStart<'a>);
+/// A slip series and where to write it, as work for the best instruction set.
+pub(super) struct Slip<'a>(pub &'a SlipStart<'a>, pub &'a mut Series);
 
 impl pulp::WithSimd for Slip<'_> {
-    type Output = Series;
+    type Output = ();
 
     #[inline(always)]
     #[allow(clippy::inline_always)] // so that it is compiled for the instruction set it is dispatched to
-    fn with_simd<S: pulp::Simd>(self, _: S) -> Series {
-        slip_series(&self.0)
+    fn with_simd<S: pulp::Simd>(self, _: S) {
+        slip_series(self.0, self.1);
     }
 }
 
 /// Series of `p' = rate(t) - k u`, `m u' = p - F(u, t)`.
 #[inline(always)]
 #[allow(clippy::inline_always)] // so that it is compiled for the instruction set it is dispatched to
-fn slip_series(start: &SlipStart) -> Series {
+fn slip_series(start: &SlipStart, series: &mut Series) {
     match start.thermal {
-        None if start.sharing.is_none() => plain_series(start),
-        _ => full_series(start),
+        None if start.sharing.is_none() => plain_series(start, series),
+        _ => *series = full_series(start),
     }
 }
 
-/// The recurrence is sorted so that each coefficient waits for the one before through two operations only.
+/// Without temperature, and by one law of drag.
 #[inline(always)]
 #[allow(clippy::inline_always)]
-fn plain_series(start: &SlipStart) -> Series {
-    let (mut p, mut u, mut f) = ([0.0; ORDER + 1], [0.0; ORDER + 1], [0.0; ORDER + 1]);
-    let (mut rate, mut all) = ([0.0; ORDER + 1], [0.0; ORDER + 1]);
-    let Recurrence { weight, back, inverse } = start.law;
-    let (weight, back) = (weight * inverse, back * inverse);
-    let per_mass = 1.0 / start.mass;
-    let damping = start.rest.damping;
-    (p[0], u[0], all[0]) = (start.pull, start.speed, start.total);
-    // the drag of the contact, beside all of it
-    f[0] = start.total - start.rest.at(start.speed);
-    // not fused: at a release the two forces are equal, and their difference is exactly nil
-    rate[1] = (p[0] - all[0]) * per_mass;
-    u[1] = rate[1];
-    p[1] = start.rate[0] - start.stiffness * u[0];
-    f[1] = (weight - back) * f[0] * u[1];
-    all[1] = fused(damping, u[1], f[1]);
-    for n in 2..=ORDER {
-        let (mut weighted, mut plain) = (0.0, 0.0);
-        for ((q, rate), f) in u[2..n].iter().zip(&rate[2..n]).zip(f[1..n - 1].iter().rev()) {
-            weighted = fused(*rate, *f, weighted);
-            plain = fused(*q, *f, plain);
-        }
-        let share = weight * INVERSE[n];
-        let early = share * weighted - back * plain;
-        let (from_last, from_rate) = (u[1] * (share - back), f[0] * (share - back * INVERSE[n]));
-        rate[n] = (p[n - 1] - all[n - 1]) * per_mass;
-        u[n] = rate[n] * INVERSE[n];
-        let driven = if n < 5 { start.rate[n - 1] } else { 0.0 };
-        p[n] = (driven - start.stiffness * u[n - 1]) * INVERSE[n];
-        f[n] = fused(from_rate, rate[n], fused(from_last, f[n - 1], early));
-        all[n] = fused(damping, u[n], f[n]);
+fn plain_series(start: &SlipStart, series: &mut Series) {
+    let mut series = PlainSeries::starting(start, series);
+    // each by itself, so that all of a series is in registers
+    macro_rules! coefficients {
+        ($($n:literal)*) => { $(series.add::<$n>();)* };
     }
-    Series { pull: p, speed: u, drag: all }
+    coefficients!(2 3 4 5 6 7 8 9 10 11 12 13 14);
+    const { assert!(ORDER == 14) };
+    let PlainSeries { series, contact, damping, .. } = series;
+    for n in 1..=ORDER {
+        series.drag[n] = fused(damping, series.speed[n], contact[n]);
+    }
+}
+
+/// As far as it is known.
+struct PlainSeries<'s> {
+    series: &'s mut Series,
+    driven: Cubic,
+    stiffness: f64,
+    per_mass: f64,
+    /// Of the law, with its inverse.
+    weight: f64,
+    back: f64,
+    /// What the rest of the drive drags per speed.
+    damping: f64,
+    /// Coefficients of the speed times their power.
+    rate: Polynomial,
+    /// Drag of the contact.
+    contact: Polynomial,
+}
+
+impl<'s> PlainSeries<'s> {
+    #[inline(always)]
+    #[allow(clippy::inline_always)]
+    fn starting(start: &SlipStart, series: &'s mut Series) -> Self {
+        let Recurrence { weight, back, inverse } = start.law;
+        let (weight, back) = (weight * inverse, back * inverse);
+        let per_mass = 1.0 / start.mass;
+        let (mut rate, mut contact) = ([0.0; ORDER + 1], [0.0; ORDER + 1]);
+        (series.pull[0], series.speed[0], series.drag[0]) = (start.pull, start.speed, start.total);
+        contact[0] = start.total - start.rest.at(start.speed);
+        // not fused: at a release the two forces are equal, and their difference is exactly nil
+        rate[1] = (start.pull - start.total) * per_mass;
+        series.speed[1] = rate[1];
+        series.pull[1] = start.rate[0] - start.stiffness * start.speed;
+        contact[1] = (weight - back) * contact[0] * rate[1];
+        let (driven, stiffness, damping) = (start.rate, start.stiffness, start.rest.damping);
+        Self { series, driven, stiffness, per_mass, weight, back, damping, rate, contact }
+    }
+
+    /// Coefficient `N`. It waits for the one before through two operations only: what else it takes is summed before,
+    /// from the middle outwards, for the terms at the ends are the last to be known.
+    #[inline(always)]
+    #[allow(clippy::inline_always)]
+    fn add<const N: usize>(&mut self) {
+        let (weight, back) = (self.weight, self.back);
+        let (per_mass, damping) = (self.per_mass, self.damping);
+        let (pull, speed) = (&self.series.pull, &self.series.speed);
+        let (rate, contact) = (&self.rate, &self.contact);
+        let driven = if N < 5 { self.driven[N - 1] } else { 0.0 };
+        let share = weight * INVERSE[N];
+        let mut sums = [[0.0; 2]; 2];
+        let middle = usize::midpoint(N, 1);
+        for i in (2..middle).rev() {
+            sums[0][0] = fused(rate[i], contact[N - i], sums[0][0]);
+            sums[0][1] = fused(speed[i], contact[N - i], sums[0][1]);
+        }
+        for i in middle.max(2)..N - 1 {
+            sums[1][0] = fused(rate[i], contact[N - i], sums[1][0]);
+            sums[1][1] = fused(speed[i], contact[N - i], sums[1][1]);
+        }
+        let early = share * (sums[0][0] + sums[1][0]) - back * (sums[0][1] + sums[1][1]);
+        let early = if N == 2 {
+            early // its one term is that with the last drag
+        } else {
+            fused(contact[1] * (share - back * INVERSE[N - 1]), rate[N - 1], early)
+        };
+        let undriven = fused(
+            -damping * per_mass * INVERSE[N - 1],
+            rate[N - 1],
+            per_mass * pull[N - 1],
+        );
+        let now = fused(-per_mass, contact[N - 1], undriven);
+        let late = fused(speed[1] * (share - back), contact[N - 1], early);
+        let pulled = (driven - self.stiffness * speed[N - 1]) * INVERSE[N];
+        self.contact[N] = fused(contact[0] * (weight - back) * INVERSE[N], now, late);
+        self.rate[N] = now;
+        (self.series.pull[N], self.series.speed[N]) = (pulled, now * INVERSE[N]);
+    }
 }
 
 /// The same with a law that moves with temperature, or whose load film and asperities share.
@@ -238,11 +294,6 @@ impl Series {
         Self { pull: constant(pull), speed: constant(speed), drag: constant(pull) }
     }
 
-    /// Whether nothing moves.
-    pub(super) fn is_still(&self) -> bool {
-        [&self.pull, &self.speed].iter().all(|series| series[1..].iter().all(|c| *c == 0.0))
-    }
-
     /// Longest step for which the last two terms stay below `tolerance` times the scales.
     #[inline(always)]
     #[allow(clippy::inline_always)]
@@ -283,7 +334,8 @@ mod tests {
                 thermal: None,
                 below: false,
             };
-            let (quick, full) = (plain_series(&start), full_series(&start));
+            let (mut quick, full) = (Series::still(0.0, 0.0), full_series(&start));
+            plain_series(&start, &mut quick);
             for (a, b) in
                 [(quick.pull, full.pull), (quick.speed, full.speed), (quick.drag, full.drag)]
             {

@@ -3,7 +3,8 @@
 use super::event::Event;
 use super::hybrid::Motion;
 use super::piece::{GAUSS, Path, Piece};
-use super::polynomial::{ORDER, Polynomial, fused, value};
+use super::polynomial::{BLOCK, ORDER, POWERS, Polynomial, value, values};
+use super::runge_kutta::horner;
 use super::schedule::Cubic;
 use super::system::{Drive, Integrator, Start, System};
 use super::taylor::Series;
@@ -61,9 +62,6 @@ impl Energy {
     }
 }
 
-/// Longest panel of the quadrature of the energies, in units of `sqrt(m/k)`.
-const LONGEST_PANEL: f64 = 0.5;
-
 /// Samples of one motion: their arrays fit in a gigabyte.
 const MOST_SAMPLES: usize = 20_000_000;
 
@@ -99,8 +97,9 @@ pub fn simulate(
     // what the spring pulls beyond the grip is lost before anything moves
     let mut end_state = (start.belt_speed, motion.phase().direction * motion.phase().pull);
     let initial = stored(system, end_state, 0.0);
+    let mut piece = motion.no_piece();
     while motion.time() < duration {
-        let (piece, event) = motion.advance(duration - motion.time())?;
+        let event = motion.advance(duration - motion.time(), &mut piece)?;
         let last = motion.time() >= duration;
         let end = if last { f64::INFINITY } else { piece.time + piece.duration };
         let begin = mode.len();
@@ -123,7 +122,9 @@ pub fn simulate(
         }
         let course = piece.heated.then(|| motion.law_temperature());
         energy.add(&piece, system, arch, course.as_ref());
-        end_state = piece.at(piece.duration);
+        if last {
+            end_state = piece.at(piece.duration);
+        }
         if let Some(event) = event {
             events.push(event);
             end_state.0 = event.belt_speed;
@@ -155,66 +156,135 @@ impl Energy {
         arch: pulp::Arch,
         course: Option<&Polynomial>,
     ) {
-        let panels = match piece.path {
-            _ if piece.start.mode == Mode::Stuck => 1.0,
-            // nothing changes on the way
-            Path::Series(ref series) if series.is_still() => 1.0,
-            // each state inside a Runge-Kutta step costs a step, and a step is smooth however long it is
-            Path::Steps { .. } => 2.0,
-            Path::Series(_) => {
-                (piece.duration / (LONGEST_PANEL * system.train.time_scale())).ceil().max(1.0)
-            }
-        };
-        let panel = piece.duration / panels;
         let schedule = system.drive.schedule();
         let segment = schedule.segment(piece.time + 0.5 * piece.duration);
-        let driven = schedule.about(segment, piece.time);
-        if piece.start.creeping {
-            let (start, end) = (piece.at(0.0).0, piece.at(piece.duration).0);
-            self.dissipated -= 0.5 * piece.flow.mass * (end - start) * (end + start);
-        }
-        let mut begin = 0.0;
-        while begin < piece.duration * (1.0 - 1e-9) {
-            self.add_panel(piece, system, arch, &driven, course, begin, panel);
-            begin += panel;
+        let given = Given { drive: &system.drive, course: schedule.about(segment, piece.time) };
+        match &piece.path {
+            Path::Series(series) => self.add_series(piece, series, &given, arch, course),
+            Path::Steps { .. } => self.add_steps(piece, &given),
         }
     }
 
-    #[allow(clippy::too_many_arguments)] // one place calls it
-    fn add_panel(
+    /// By quadrature of the series, which is smooth however long the piece is. That the series departs from the law of
+    /// drag, by a power more than its last, is seen where the departure is largest, at the end.
+    fn add_series(
         &mut self,
         piece: &Piece,
-        system: &System,
+        series: &Series,
+        given: &Given,
         arch: pulp::Arch,
-        driven: &Cubic,
         course: Option<&Polynomial>,
-        begin: f64,
-        panel: f64,
     ) {
-        let times = GAUSS.map(|(x, _)| begin + x * panel);
-        let (mut speed, mut pull) = ([0.0; GAUSS.len()], [0.0; GAUSS.len()]);
-        sample(arch, piece, &times, &mut speed, &mut pull);
-        for (i, (t, (_, weight))) in times.into_iter().zip(GAUSS).enumerate() {
-            let (speed, pull) = (speed[i], pull[i]);
-            // a held belt is braked by just the pull, and a creeping one by that and its own slowing down
-            let held = piece.start.mode == Mode::Stuck || piece.start.creeping;
-            let friction = match course {
-                _ if held => pull,
-                Some(course) => piece.friction_at(value(course, t), t, pull, speed),
-                None => piece.friction(t, pull, speed),
-            };
-            let given = driven[0] + t * (driven[1] + t * (driven[2] + t * driven[3]));
-            let power = match system.drive {
-                Drive::Speed(_) => pull * given,
-                Drive::Force(_) => speed * given,
-            };
-            let span = weight * panel;
-            self.work += span * power;
-            self.dissipated += span * friction * speed;
-            let slip = if piece.start.slipping { pull * (given - speed) } else { 0.0 };
-            self.slipped += span * slip;
-            self.turnover += span * (power.abs() + (friction * speed).abs() + slip.abs());
+        let end = piece.duration;
+        // a held belt is braked by just the pull, and a creeping one by that and its own slowing down
+        let held = piece.start.mode == Mode::Stuck || piece.start.creeping;
+        let (done, [pull, speed, drag]) = arch.dispatch(Quadrature { piece, series, given, held });
+        self.work += done.work;
+        self.dissipated += done.dissipated;
+        self.slipped += done.slipped;
+        self.turnover += done.turnover;
+        if piece.start.creeping {
+            let start = piece.at(0.0).0;
+            self.dissipated -= 0.5 * piece.flow.mass * (speed - start) * (speed + start);
         }
+        if !held {
+            let law = match course {
+                Some(course) => piece.friction_at(value(course, end), end, pull, speed),
+                None => piece.friction(end, pull, speed),
+            };
+            self.dissipated += (law - drag) * speed * end * LATE;
+        }
+    }
+
+    /// By values inside the steps, each of which costs a step.
+    fn add_steps(&mut self, piece: &Piece, given: &Given) {
+        let span = 0.5 * piece.duration;
+        for begin in [0.0, span] {
+            for (x, weight) in GAUSS {
+                let t = begin + x * span;
+                let (speed, pull) = piece.at(t);
+                let friction = piece.friction(t, pull, speed);
+                let [power, braked, slip] = given.powers(piece, t, [speed, pull, friction]);
+                let span = weight * span;
+                self.work += span * power;
+                self.dissipated += span * braked;
+                self.slipped += span * slip;
+                self.turnover += span * (power.abs() + braked.abs() + slip.abs());
+            }
+        }
+    }
+}
+
+/// The drive along a piece, in time since its start.
+struct Given<'a> {
+    drive: &'a Drive,
+    course: Cubic,
+}
+
+impl Given<'_> {
+    /// Power of the drive, of the drag and of the roll that slips, at one time.
+    #[inline(always)]
+    #[allow(clippy::inline_always)]
+    fn powers(&self, piece: &Piece, t: f64, [speed, pull, friction]: [f64; 3]) -> [f64; 3] {
+        let driven = horner(&self.course, t);
+        let power = match self.drive {
+            Drive::Speed(_) => pull * driven,
+            Drive::Force(_) => speed * driven,
+        };
+        let slip = if piece.start.slipping { pull * (driven - speed) } else { 0.0 };
+        [power, friction * speed, slip]
+    }
+}
+
+/// Nodes and weights of Gauss's quadrature with seven points on the unit interval, and its end, which has no weight.
+const NODES: [(f64, f64); BLOCK] = [
+    (0.025_446_043_828_620_7, 0.064_742_483_084_434_87),
+    (0.129_234_407_200_302_77, 0.139_852_695_744_638_32),
+    (0.297_077_424_311_301_43, 0.190_915_025_252_559_46),
+    (0.5, 0.208_979_591_836_734_7),
+    (0.702_922_575_688_698_5, 0.190_915_025_252_559_46),
+    (0.870_765_592_799_697_2, 0.139_852_695_744_638_32),
+    (0.974_553_956_171_379_3, 0.064_742_483_084_434_87),
+    (1.0, 0.0),
+];
+
+/// Integral over the unit interval of the first power that a series leaves out.
+const LATE: f64 = 1.0 / (POWERS[ORDER] + 2.0);
+
+/// What is done along a series, as work for the best instruction set, and its pull, speed and drag at the end, signed.
+struct Quadrature<'a> {
+    piece: &'a Piece<'a>,
+    series: &'a Series,
+    given: &'a Given<'a>,
+    held: bool,
+}
+
+impl pulp::WithSimd for Quadrature<'_> {
+    type Output = (Energy, [f64; 3]);
+
+    #[inline(always)]
+    #[allow(clippy::inline_always)] // so that it is compiled for the instruction set it is dispatched to
+    fn with_simd<S: pulp::Simd>(self, simd: S) -> Self::Output {
+        let Self { piece, series, given, held } = self;
+        let Series { pull, speed, drag } = series;
+        let times = NODES.map(|(x, _)| x * piece.duration);
+        let values = values(simd, [pull, speed, drag], &times);
+        let [pull, speed, drag] = values.map(|of| of.map(|value| piece.start.direction * value));
+        let mut done = [[0.0; BLOCK]; 4];
+        for i in 0..BLOCK {
+            let friction = if held { pull[i] } else { drag[i] };
+            let powers = given.powers(piece, times[i], [speed[i], pull[i], friction]);
+            let span = NODES[i].1 * piece.duration;
+            let [power, braked, slip] = powers.map(|power| span * power);
+            done[0][i] = power;
+            done[1][i] = braked;
+            done[2][i] = slip;
+            done[3][i] = power.abs() + braked.abs() + slip.abs();
+        }
+        let [work, dissipated, slipped, turnover] =
+            done.map(|d| ((d[0] + d[4]) + (d[2] + d[6])) + ((d[1] + d[5]) + (d[3] + d[7])));
+        let done = Energy { work, dissipated, slipped, turnover, ..Energy::default() };
+        (done, [pull, speed, drag].map(|of| of[BLOCK - 1]))
     }
 }
 
@@ -244,31 +314,21 @@ impl pulp::WithSimd for Sampling<'_> {
 
     #[inline(always)]
     #[allow(clippy::inline_always)] // so that it is compiled for the instruction set it is dispatched to
-    fn with_simd<S: pulp::Simd>(self, _: S) {
-        let (u, p) = (&self.series.speed, &self.series.pull);
+    fn with_simd<S: pulp::Simd>(self, simd: S) {
+        let of = [&self.series.speed, &self.series.pull];
         let outputs = self.speed.chunks_mut(BLOCK).zip(self.pull.chunks_mut(BLOCK));
         for (times, (speed, pull)) in self.times.chunks(BLOCK).zip(outputs) {
             let mut t = [0.0; BLOCK];
             t[..times.len()].copy_from_slice(times);
-            let (mut v, mut q) = ([u[ORDER]; BLOCK], [p[ORDER]; BLOCK]);
-            for i in (0..ORDER).rev() {
-                for l in 0..BLOCK {
-                    v[l] = fused(v[l], t[l], u[i]);
-                    q[l] = fused(q[l], t[l], p[i]);
-                }
-            }
-            for l in 0..times.len() {
-                (speed[l], pull[l]) = (self.direction * v[l], self.direction * q[l]);
-            }
+            let [v, q] = values(simd, of, &t).map(|of| of.map(|value| self.direction * value));
+            speed.copy_from_slice(&v[..times.len()]);
+            pull.copy_from_slice(&q[..times.len()]);
         }
     }
 }
 
 /// Samples between two looks at whether to stop.
 const AT_ONCE: usize = 64;
-
-/// Samples that are evaluated at once.
-const BLOCK: usize = 8;
 
 #[allow(clippy::cast_precision_loss)] // more samples than 2^53 do not fit in memory
 fn sample_times(duration: f64, samples: usize) -> Vec<f64> {
