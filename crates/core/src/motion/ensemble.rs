@@ -167,7 +167,7 @@ impl Member {
         let scale = Scale {
             time: train.time_scale(),
             speed: drag.transition_speed(),
-            pull: drag.transition_speed() * (train.stiffness() * train.mass()).sqrt(),
+            pull: drag.transition_speed() * train.impedance(),
         };
         let damping = drag.transition_force() / scale.pull;
         let (stick_speed, drive) = (drag.stick_speed() / scale.speed, drive_speed / scale.speed);

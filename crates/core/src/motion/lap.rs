@@ -26,8 +26,7 @@ impl Section {
         near: f64,
     ) -> bool {
         let speed_scale = drag.stick_speed().max(self.belt_speed.abs());
-        let impedance = (train.stiffness() * train.mass()).sqrt();
-        let pull_scale = self.pull.abs().max(speed_scale * impedance);
+        let pull_scale = self.pull.abs().max(speed_scale * train.impedance());
         self.stuck == previous.stuck
             && (self.belt_speed - previous.belt_speed).abs() <= near * speed_scale
             && (self.pull - previous.pull).abs() <= near * pull_scale

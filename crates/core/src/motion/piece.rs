@@ -319,11 +319,13 @@ impl Piece<'_> {
 
 /// Values between which the polynomial stays up to `end`.
 fn bounds(c: &Polynomial, end: f64) -> (f64, f64) {
-    let (mut reach, mut power) = (0.0, 1.0);
-    for c in &c[1..] {
-        power *= end;
-        reach += c.abs() * power;
+    // by odd and even powers, which shortens the chain
+    let (mut odd, mut even, square) = (0.0, 0.0, end * end);
+    for pair in c[1..].chunks_exact(2).rev() {
+        odd = odd * square + pair[0].abs();
+        even = even * square + pair[1].abs();
     }
+    let reach = end * odd + square * even;
     (c[0] - reach, c[0] + reach)
 }
 

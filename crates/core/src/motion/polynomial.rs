@@ -50,9 +50,15 @@ pub(super) type Polynomial = [f64; ORDER + 1];
 /// Halvings before an interval counts as a point.
 const MAX_DEPTH: u32 = 60;
 
-/// Value at `t`.
+/// Value at `t`, by even and odd powers apart, which shortens the chain: with `x = t^2`, `c = e(x) + t o(x)`.
 pub(super) fn value(c: &Polynomial, t: f64) -> f64 {
-    c.iter().rev().fold(0.0, |sum, ci| sum * t + ci)
+    let square = t * t;
+    let (mut even, mut odd) = (c[ORDER], 0.0);
+    for pair in c[..ORDER].chunks_exact(2).rev() {
+        even = even * square + pair[0];
+        odd = odd * square + pair[1];
+    }
+    even + t * odd
 }
 
 /// Times at which polynomials are evaluated at once.
@@ -199,7 +205,7 @@ fn falling_root(c: &Polynomial, end: f64) -> f64 {
     t
 }
 
-/// Even and odd powers apart, which shortens the chain: with `x = t^2`, `c = e(x) + t o(x)`.
+/// Value and slope at `t`, by even and odd powers apart too.
 fn value_and_slope(c: &Polynomial, t: f64) -> (f64, f64) {
     let square = t * t;
     let (mut even, mut odd, mut even_slope, mut odd_slope) = (c[ORDER], 0.0, 0.0, 0.0);

@@ -185,7 +185,7 @@ impl<'a> Rider<'a> {
         let Starting { belt: belt @ BeltAtRest { train, drag, .. }, drive, asked } = each;
         let exponents = drag.two_branches()?;
         let (time_scale, speed_scale) = (train.time_scale(), drag.transition_speed());
-        let pull_scale = speed_scale * (train.stiffness() * train.mass()).sqrt();
+        let pull_scale = speed_scale * train.impedance();
         let damping = drag.transition_force() / pull_scale;
         let rest = Rest {
             force: drag.rest().force / pull_scale,

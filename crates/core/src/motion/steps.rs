@@ -217,8 +217,7 @@ impl<'a> Motion<'a> {
         let drag = &self.now.system.drag;
         let train = &self.now.system.train;
         let speed = self.phase.speed.max(self.now.speed(drag.stick_speed()));
-        let impedance = (train.stiffness() * train.mass()).sqrt();
-        let pull = self.phase.pull.abs().max(speed * impedance).max(1e-9 * drag.transition_force());
+        let pull = self.phase.pull.abs().max(speed * train.impedance()).max(1e-9 * drag.transition_force());
         let bristle = match drag.closure() {
             Closure::LuGre { bristle_stiffness, .. } => drag.transition_force() / bristle_stiffness,
             _ => 1.0,
@@ -245,7 +244,7 @@ impl<'a> Motion<'a> {
             drag.branch_exponent(self.phase.branch) * force / self.phase.speed
         };
         let slope = rising + drag.rest().damping;
-        slope / self.now.system.train.mass() * horizon > STIFF
+        slope * horizon > STIFF * self.now.system.train.mass()
     }
 
     fn slip_start(&self) -> SlipStart<'_> {

@@ -12,6 +12,9 @@ pub struct Drivetrain {
     stiffness: f64,
     mass: f64,
     grip: f64,
+    // of the two above, so that no step takes a root
+    time_scale: f64,
+    impedance: f64,
 }
 
 impl Drivetrain {
@@ -20,11 +23,10 @@ impl Drivetrain {
     /// # Errors
     /// If a value is not finite, `stiffness` is negative, or `mass` is not positive.
     pub fn new(stiffness: f64, mass: f64) -> Result<Self, Error> {
-        Ok(Self {
-            stiffness: at_least("stiffness", stiffness, 0.0)?,
-            mass: above("mass", mass, 0.0)?,
-            grip: f64::INFINITY,
-        })
+        let stiffness = at_least("stiffness", stiffness, 0.0)?;
+        let mass = above("mass", mass, 0.0)?;
+        let (time_scale, impedance) = ((mass / stiffness).sqrt(), (stiffness * mass).sqrt());
+        Ok(Self { stiffness, mass, grip: f64::INFINITY, time_scale, impedance })
     }
 
     /// The same, of a roll that grips the belt no harder than with the force `grip` (Eq. 11 assumes that it always does).
@@ -59,7 +61,12 @@ impl Drivetrain {
     /// Time scale `sqrt(m/k)` of the free oscillation.
     #[must_use]
     pub fn time_scale(&self) -> f64 {
-        (self.mass / self.stiffness).sqrt()
+        self.time_scale
+    }
+
+    /// Impedance `sqrt(k m)`: force over speed of the free oscillation.
+    pub(crate) fn impedance(&self) -> f64 {
+        self.impedance
     }
 }
 
@@ -314,6 +321,7 @@ impl System {
     }
 
     /// Spring stretch that goes with `pull` at `time`; without a spring, zero.
+    #[inline]
     pub(super) fn stretch(&self, pull: f64, time: f64) -> f64 {
         if self.train.stiffness == 0.0 {
             return 0.0;

@@ -298,8 +298,8 @@ impl Series {
     #[inline(always)]
     #[allow(clippy::inline_always)]
     pub(super) fn step_size(&self, tolerance: f64, pull_scale: f64, speed_scale: f64) -> f64 {
-        let relative =
-            |n: usize| (self.pull[n].abs() / pull_scale).max(self.speed[n].abs() / speed_scale);
+        let (per_pull, per_speed) = (1.0 / pull_scale, 1.0 / speed_scale);
+        let relative = |n: usize| (self.pull[n] * per_pull).abs().max((self.speed[n] * per_speed).abs());
         let (last, before) = (relative(ORDER), relative(ORDER - 1));
         let by_last =
             if last > 0.0 { rough_root(tolerance / last, ORDER as u64) } else { f64::INFINITY };

@@ -86,11 +86,13 @@ pub fn simulate(
     at_most("samples", samples as f64, MOST_SAMPLES as f64)?;
     let mut motion = Motion::new(system, start, tolerance, integrator, work)?;
     let arch = pulp::Arch::new();
-    let time = sample_times(duration, samples);
-    let (mut speed, mut pull) = (vec![0.0; samples], vec![0.0; samples]);
+    let mut time = sample_times(duration, samples);
+    // samples are written in blocks, of which the last may run on: what it writes there the next piece writes anew
+    time.resize(samples + BLOCK, duration);
+    let (mut speed, mut pull) = (vec![0.0; time.len()], vec![0.0; time.len()]);
     let (mut mode, mut slipping) = (Vec::with_capacity(samples), Vec::with_capacity(samples));
     let mut temperature = Vec::new();
-    let (mut events, mut elapsed) = (Vec::new(), Vec::new());
+    let mut events = Vec::new();
     let mut energy = Energy::default();
     // what was asked for is read, however much it is
     let reading = work.apart(u64::MAX);
@@ -103,22 +105,19 @@ pub fn simulate(
         let last = motion.time() >= duration;
         let end = if last { f64::INFINITY } else { piece.time + piece.duration };
         let begin = mode.len();
-        let count = time[begin..].iter().take_while(|t| **t < end).count();
+        let count = time[begin..samples].iter().take_while(|t| **t < end).count();
         let range = begin..begin + count;
-        elapsed.clear();
-        elapsed.extend(time[range.clone()].iter().map(|t| t - piece.time));
-        let (speeds, pulls) = (&mut speed[range.clone()], &mut pull[range]);
-        let blocks = speeds.chunks_mut(AT_ONCE).zip(pulls.chunks_mut(AT_ONCE));
-        for (times, (speeds, pulls)) in elapsed.chunks(AT_ONCE).zip(blocks) {
+        for at in range.clone().step_by(AT_ONCE) {
             reading.take(1)?;
-            sample(arch, &piece, times, speeds, pulls);
+            let count = AT_ONCE.min(range.end - at);
+            sample(arch, &piece, count, &time[at..], &mut speed[at..], &mut pull[at..]);
         }
-        mode.resize(begin + count, piece.start.mode);
-        slipping.resize(begin + count, piece.start.slipping);
+        mode.resize(range.end, piece.start.mode);
+        slipping.resize(range.end, piece.start.slipping);
         if piece.heated {
             let courses = &motion.temperatures;
-            temperature
-                .extend(elapsed.iter().map(|t| [value(&courses[0], *t), value(&courses[1], *t)]));
+            let elapsed = time[range].iter().map(|t| t - piece.time);
+            temperature.extend(elapsed.map(|t| [value(&courses[0], t), value(&courses[1], t)]));
         }
         let course = piece.heated.then(|| motion.law_temperature());
         energy.add(&piece, system, arch, course.as_ref());
@@ -135,7 +134,13 @@ pub fn simulate(
     energy.owed = motion.owed();
     energy.stored = (end.0 - initial.0) + (end.1 - initial.1);
     energy.turnover += energy.stored.abs();
-    let stretch = time.iter().zip(&pull).map(|(t, p)| system.stretch(*p, *t)).collect();
+    for padded in [&mut time, &mut speed, &mut pull] {
+        padded.truncate(samples);
+    }
+    let mut stretch = pull;
+    for (stretch, t) in stretch.iter_mut().zip(&time) {
+        *stretch = system.stretch(*stretch, *t);
+    }
     let steps = motion.steps;
     let belt_speed = speed;
     Ok(Trajectory { time, belt_speed, stretch, mode, slipping, temperature, events, energy, steps })
@@ -288,22 +293,29 @@ impl pulp::WithSimd for Quadrature<'_> {
     }
 }
 
-/// Speed and pull of a piece at `times` since its start, signed.
-fn sample(arch: pulp::Arch, piece: &Piece, times: &[f64], speed: &mut [f64], pull: &mut [f64]) {
+/// Speed and pull of a piece at the first `count` of `times`, signed; at some more where they come in blocks.
+fn sample(
+    arch: pulp::Arch,
+    piece: &Piece,
+    count: usize,
+    times: &[f64],
+    speed: &mut [f64],
+    pull: &mut [f64],
+) {
     if let Path::Series(series) = &piece.path {
-        let direction = piece.start.direction;
-        arch.dispatch(Sampling { series, direction, times, speed, pull });
+        arch.dispatch(Sampling { piece, series, count, times, speed, pull });
         return;
     }
-    for (i, t) in times.iter().enumerate() {
-        (speed[i], pull[i]) = piece.at(*t);
+    for (i, t) in times[..count].iter().enumerate() {
+        (speed[i], pull[i]) = piece.at(t - piece.time);
     }
 }
 
 /// Samples of a series, as work for the best instruction set.
 struct Sampling<'a> {
+    piece: &'a Piece<'a>,
     series: &'a Series,
-    direction: f64,
+    count: usize,
     times: &'a [f64],
     speed: &'a mut [f64],
     pull: &'a mut [f64],
@@ -316,13 +328,12 @@ impl pulp::WithSimd for Sampling<'_> {
     #[allow(clippy::inline_always)] // so that it is compiled for the instruction set it is dispatched to
     fn with_simd<S: pulp::Simd>(self, simd: S) {
         let of = [&self.series.speed, &self.series.pull];
-        let outputs = self.speed.chunks_mut(BLOCK).zip(self.pull.chunks_mut(BLOCK));
-        for (times, (speed, pull)) in self.times.chunks(BLOCK).zip(outputs) {
-            let mut t = [0.0; BLOCK];
-            t[..times.len()].copy_from_slice(times);
-            let [v, q] = values(simd, of, &t).map(|of| of.map(|value| self.direction * value));
-            speed.copy_from_slice(&v[..times.len()]);
-            pull.copy_from_slice(&q[..times.len()]);
+        let (direction, begin) = (self.piece.start.direction, self.piece.time);
+        let (speeds, pulls) = (self.speed.as_chunks_mut().0, self.pull.as_chunks_mut().0);
+        let blocks = self.times.as_chunks::<BLOCK>().0.iter().zip(speeds.iter_mut().zip(pulls));
+        for (times, (speed, pull)) in blocks.take(self.count.div_ceil(BLOCK)) {
+            let found = values(simd, of, &times.map(|time| time - begin));
+            [*speed, *pull] = found.map(|of| of.map(|value| direction * value));
         }
     }
 }

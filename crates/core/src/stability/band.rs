@@ -290,7 +290,7 @@ fn gripped_folds(
         .enumerate()
         .filter(|(_, (train, drag))| train.grip().is_finite() && !holds_for_good(train, drag, true))
         .filter_map(|(i, (train, drag))| {
-            let impedance = (train.stiffness() * train.mass()).sqrt();
+            let impedance = train.impedance();
             let grip = (train.grip() - drag.rest().force) / (drag.transition_speed() * impedance);
             Some((i, Gripped { lap: laps[i]?, grip, free: free[i]? }))
         })
@@ -320,7 +320,7 @@ fn leaving_stick_speed(
     let start = Start { belt_speed: 0.0, stretch: drag.holding_force(0.0) / train.stiffness() };
     let (pull, belt_speed) = first_slide(&system, start, tolerance, &work.apart(work.allowed()))?;
     let pull = pull - drag.rest().force;
-    let impedance = (train.stiffness() * train.mass()).sqrt();
+    let impedance = train.impedance();
     Some((pull / (speed * impedance), belt_speed / speed))
 }
 

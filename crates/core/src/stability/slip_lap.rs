@@ -98,7 +98,7 @@ pub fn slip_lap(train: &Drivetrain, drag: &Drag) -> Option<SlipLap> {
     if memory || mixed >= 0.0 || ehl <= 0.0 {
         return None;
     }
-    let impedance = (train.stiffness() * train.mass()).sqrt();
+    let impedance = train.impedance();
     let lap = SlipLap {
         damping: drag.transition_force() / (drag.transition_speed() * impedance),
         slowest: drag.stick_speed() / drag.transition_speed(),

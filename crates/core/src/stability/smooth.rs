@@ -274,7 +274,7 @@ impl SmoothBelt<'_> {
     /// What becomes of a swing of this size: its second lap against the first, in which bristles fall in with it.
     fn growth(&self, drive_speed: f64, size: f64, work: &Work) -> Result<Growth, Error> {
         let system = System::at_speed(*self.train, self.drag, drive_speed)?;
-        let impedance = (self.train.stiffness() * self.train.mass()).sqrt();
+        let impedance = self.train.impedance();
         let excess = size * self.drag.transition_speed() * impedance;
         let pull = self.drag.force(drive_speed) + excess;
         let start = Start { belt_speed: drive_speed, stretch: pull / self.train.stiffness() };

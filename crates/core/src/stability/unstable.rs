@@ -103,7 +103,7 @@ fn between(
     most: f64,
     way: impl Fn(f64) -> Result<Way, Error>,
 ) -> Result<Option<Bracket>, Error> {
-    let mut swing = SMALLEST * drive_speed * (train.stiffness() * train.mass()).sqrt();
+    let mut swing = SMALLEST * drive_speed * train.impedance();
     let mut falls: Option<(f64, f64)> = None;
     for _ in 0..DOUBLINGS {
         let reached = swing.min(most);
