@@ -68,6 +68,8 @@ pub(super) struct Motion<'a> {
     unit: f64,
     /// Least and greatest temperature at which the law is known to be one.
     pub checked: Option<(f64, f64)>,
+    /// Whether the last piece ended for its accuracy only: the next one begins with its law, where it ended.
+    pub goes_on: bool,
     /// Pieces made.
     pub steps: usize,
     pub work: &'a Work<'a>,
@@ -113,6 +115,7 @@ impl<'a> Motion<'a> {
             events_at_once: 0,
             crawled: 0,
             unit: Some(system.train.time_scale()).filter(|unit| unit.is_finite()).unwrap_or(0.0),
+            goes_on: false,
             steps: 0,
             work,
             stopped: 0.0,
@@ -365,7 +368,8 @@ impl<'a> Motion<'a> {
         [self.phase.pull, self.phase.speed, self.phase.bristle] = piece.state(piece.duration);
         self.phase.released = false;
         self.now.pass(piece.duration);
-        if piece.duration < until_change || until_change.is_infinite() {
+        self.goes_on = piece.duration < until_change || until_change.is_infinite();
+        if self.goes_on {
             return Ok(None);
         }
         self.now.time = self.now.next_change;
@@ -392,6 +396,7 @@ impl<'a> Motion<'a> {
     #[inline]
     fn meet(&mut self, guard: Guard, piece: &Piece) -> Result<Option<Event>, Error> {
         let before = self.now.time;
+        self.goes_on = false;
         self.now.pass(piece.duration);
         [self.phase.pull, self.phase.speed, self.phase.bristle] = piece.state(piece.duration);
         let from = self.phase.mode;

@@ -93,7 +93,7 @@ pub fn simulate(
     let (mut mode, mut slipping) = (Vec::with_capacity(samples), Vec::with_capacity(samples));
     let mut temperature = Vec::new();
     let mut events = Vec::new();
-    let mut energy = Energy::default();
+    let mut account = Account { energy: Energy::default(), departure: None };
     // what was asked for is read, however much it is
     let reading = work.apart(u64::MAX);
     // what the spring pulls beyond the grip is lost before anything moves
@@ -120,7 +120,7 @@ pub fn simulate(
             temperature.extend(elapsed.map(|t| [value(&courses[0], t), value(&courses[1], t)]));
         }
         let course = piece.heated.then(|| motion.law_temperature());
-        energy.add(&piece, system, arch, course.as_ref());
+        account.add(&piece, system, arch, course.as_ref(), motion.goes_on && !last);
         if last {
             end_state = piece.at(piece.duration);
         }
@@ -130,6 +130,7 @@ pub fn simulate(
         }
     }
     let end = stored(system, end_state, duration);
+    let mut energy = account.energy;
     energy.dissipated += motion.stopped;
     energy.owed = motion.owed();
     energy.stored = (end.0 - initial.0) + (end.1 - initial.1);
@@ -153,20 +154,39 @@ fn stored(system: &System, (speed, pull): (f64, f64), time: f64) -> (f64, f64) {
     (0.5 * system.train.mass() * speed * speed, spring)
 }
 
-impl Energy {
+/// The energies so far.
+struct Account {
+    energy: Energy,
+    /// The series of the last piece may depart from the law: its drag at the end, and what a difference there comes to.
+    departure: Option<(f64, f64)>,
+}
+
+impl Account {
+    /// Add a piece; whether the next one goes on where it ends.
     fn add(
         &mut self,
         piece: &Piece,
         system: &System,
         arch: pulp::Arch,
         course: Option<&Polynomial>,
+        goes_on: bool,
     ) {
+        if let Some((drag, weight)) = self.departure.take() {
+            let law = match &piece.path {
+                Path::Series(series) => piece.start.direction * series.drag[0],
+                Path::Steps { .. } => {
+                    let (speed, pull) = piece.at(0.0);
+                    piece.friction(0.0, pull, speed)
+                }
+            };
+            self.energy.dissipated += (law - drag) * weight;
+        }
         let schedule = system.drive.schedule();
         let segment = schedule.segment(piece.time + 0.5 * piece.duration);
         let given = Given { drive: &system.drive, course: schedule.about(segment, piece.time) };
         match &piece.path {
-            Path::Series(series) => self.add_series(piece, series, &given, arch, course),
-            Path::Steps { .. } => self.add_steps(piece, &given),
+            Path::Series(series) => self.add_series(piece, series, &given, arch, course, goes_on),
+            Path::Steps { .. } => self.add_steps(piece, &given, course),
         }
     }
 
@@ -179,42 +199,51 @@ impl Energy {
         given: &Given,
         arch: pulp::Arch,
         course: Option<&Polynomial>,
+        goes_on: bool,
     ) {
         let end = piece.duration;
         // a held belt is braked by just the pull, and a creeping one by that and its own slowing down
         let held = piece.start.mode == Mode::Stuck || piece.start.creeping;
         let (done, [pull, speed, drag]) = arch.dispatch(Quadrature { piece, series, given, held });
-        self.work += done.work;
-        self.dissipated += done.dissipated;
-        self.slipped += done.slipped;
-        self.turnover += done.turnover;
+        let energy = &mut self.energy;
+        energy.work += done.work;
+        energy.dissipated += done.dissipated;
+        energy.slipped += done.slipped;
+        energy.turnover += done.turnover;
         if piece.start.creeping {
             let start = piece.at(0.0).0;
-            self.dissipated -= 0.5 * piece.flow.mass * (speed - start) * (speed + start);
+            energy.dissipated -= 0.5 * piece.flow.mass * (speed - start) * (speed + start);
         }
-        if !held {
+        let weight = speed * end * LATE;
+        if goes_on && !held {
+            self.departure = Some((drag, weight));
+        } else if !held {
             let law = match course {
                 Some(course) => piece.friction_at(value(course, end), end, pull, speed),
                 None => piece.friction(end, pull, speed),
             };
-            self.dissipated += (law - drag) * speed * end * LATE;
+            energy.dissipated += (law - drag) * weight;
         }
     }
 
     /// By values inside the steps, each of which costs a step.
-    fn add_steps(&mut self, piece: &Piece, given: &Given) {
+    fn add_steps(&mut self, piece: &Piece, given: &Given, course: Option<&Polynomial>) {
+        let energy = &mut self.energy;
         let span = 0.5 * piece.duration;
         for begin in [0.0, span] {
             for (x, weight) in GAUSS {
                 let t = begin + x * span;
                 let (speed, pull) = piece.at(t);
-                let friction = piece.friction(t, pull, speed);
+                let friction = match course {
+                    Some(course) => piece.friction_at(value(course, t), t, pull, speed),
+                    None => piece.friction(t, pull, speed),
+                };
                 let [power, braked, slip] = given.powers(piece, t, [speed, pull, friction]);
                 let span = weight * span;
-                self.work += span * power;
-                self.dissipated += span * braked;
-                self.slipped += span * slip;
-                self.turnover += span * (power.abs() + braked.abs() + slip.abs());
+                energy.work += span * power;
+                energy.dissipated += span * braked;
+                energy.slipped += span * slip;
+                energy.turnover += span * (power.abs() + braked.abs() + slip.abs());
             }
         }
     }
