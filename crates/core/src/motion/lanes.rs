@@ -13,7 +13,7 @@
 //! Lanes with `STARTS` start a belt besides: the speed of their drive moves, a step ends at a time of its schedule too,
 //! below the stick speed the contact drags as `exp(-u/scale)`, and how hard the spring pulls at most is kept.
 
-use super::polynomial::fused;
+use super::polynomial::{fused, fused_in};
 use crate::error::Error;
 use crate::work::Work;
 
@@ -90,6 +90,7 @@ pub(crate) struct Lanes {
 /// One step of every lane, as work for the best instruction set.
 struct LaneStep<'a, const STARTS: bool> {
     lanes: &'a mut Lanes,
+    series: &'a mut LaneSeries,
     tolerance: f64,
 }
 
@@ -98,8 +99,8 @@ impl<const STARTS: bool> pulp::WithSimd for LaneStep<'_, STARTS> {
 
     #[inline(always)]
     #[allow(clippy::inline_always)] // all of a step is compiled for the instruction set it is dispatched to
-    fn with_simd<S: pulp::Simd>(self, _: S) {
-        self.lanes.step::<STARTS>(self.tolerance);
+    fn with_simd<S: pulp::Simd>(self, simd: S) {
+        self.lanes.step::<S, STARTS>(simd, self.series, self.tolerance);
     }
 }
 
@@ -115,7 +116,7 @@ pub(crate) fn run_lanes<const STARTS: bool, R>(
 ) -> Result<(), Error> {
     let work = work.apart(u64::MAX);
     let arch = pulp::Arch::new();
-    let mut lanes = Lanes::idle();
+    let (mut lanes, mut series) = (Lanes::idle(), LaneSeries::blank());
     let mut members: [Option<R>; LANES] = std::array::from_fn(|_| None);
     loop {
         for (l, member) in members.iter_mut().enumerate() {
@@ -127,7 +128,7 @@ pub(crate) fn run_lanes<const STARTS: bool, R>(
             return Ok(());
         }
         work.take(1)?;
-        arch.dispatch(LaneStep::<STARTS> { lanes: &mut lanes, tolerance });
+        arch.dispatch(LaneStep::<STARTS> { lanes: &mut lanes, series: &mut series, tolerance });
         for (l, seat) in members.iter_mut().enumerate() {
             if seat.as_mut().is_some_and(|member| !follow(member, &mut lanes, l)) {
                 *seat = None;
@@ -170,8 +171,14 @@ impl Lanes {
     /// One step of every lane.
     #[inline(always)]
     #[allow(clippy::inline_always, clippy::float_cmp)] // the time that is left was assigned
-    pub(crate) fn step<const STARTS: bool>(&mut self, tolerance: f64) {
-        let series = self.series::<STARTS>();
+    fn step<S: pulp::Simd, const STARTS: bool>(
+        &mut self,
+        simd: S,
+        series: &mut LaneSeries,
+        tolerance: f64,
+    ) {
+        self.expand::<S, STARTS>(simd, series);
+        let series = &*series;
         let mut h = step_size(&series.pull, &series.speed, &self.floor, tolerance);
         let mut left = [f64::INFINITY; LANES];
         if STARTS {
@@ -180,12 +187,12 @@ impl Lanes {
                 h[l] = if h[l] < left[l] { h[l] } else { left[l] };
             }
         }
-        let turning = self.end_at_extreme(&series, &mut h);
+        let (turning, rate) = self.end_at_extreme(series, &mut h);
         let mut end = value(&series.speed, 0, &h);
-        let (crossing, lost) = self.end_at_level(&series, &mut h, &mut end);
+        let (crossing, lost) = self.end_at_level(series, &rate, &mut h, &mut end);
         let (pull, drag) = (value(&series.pull, 0, &h), value(&series.drag, 0, &h));
         if STARTS {
-            self.keep_pull(&series, &h, &end, &pull);
+            self.keep_pull(series, &h, &end, &pull);
         }
         let mut impulse = [0.0; LANES];
         for n in (0..=ORDER).rev() {
@@ -210,62 +217,97 @@ impl Lanes {
     /// The motion from the present state on; `u f' = e f u'` gives the drag `f` of the contact.
     #[inline(always)]
     #[allow(clippy::inline_always, clippy::needless_range_loop)]
-    fn series<const STARTS: bool>(&self) -> LaneSeries {
-        let (mut p, mut u) = ([[0.0; LANES]; ORDER + 1], [[0.0; LANES]; ORDER + 1]);
-        let (mut iu, mut f) = (p, u);
-        (p[0], u[0], f[0]) = (self.pull, self.speed, self.drag);
-        let (mut inverse, mut weight, mut back) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
+    fn expand<S: pulp::Simd, const STARTS: bool>(&self, simd: S, series: &mut LaneSeries) {
+        (series.pull[0], series.speed[0], series.drag[0]) = (self.pull, self.speed, self.drag);
+        let (mut weight, mut back) = ([0.0; LANES], [0.0; LANES]);
         for l in 0..LANES {
             // an exponential `f' = -f u'/decay` beside the power
             let power = !STARTS || self.decay[l] == 0.0;
-            inverse[l] = 1.0 / if power { self.speed[l] } else { self.decay[l] };
-            weight[l] = if power { self.exponent[l] + 1.0 } else { -1.0 };
-            back[l] = if power { inverse[l] } else { 0.0 };
+            let inverse = 1.0 / if power { self.speed[l] } else { self.decay[l] };
+            weight[l] = if power { (self.exponent[l] + 1.0) * inverse } else { -inverse };
+            back[l] = if power { inverse } else { 0.0 };
         }
-        // sorted so that each coefficient waits for the one before through two operations only
-        for n in 1..=ORDER {
-            let per = INVERSE[n];
-            let (mut weighted, mut plain) = ([0.0; LANES], [0.0; LANES]);
-            for i in 2..n {
+        // each by itself, so that all indices are known
+        macro_rules! coefficients {
+            ($($n:literal)*) => { $(self.add::<S, STARTS, $n>(simd, [&weight, &back], series);)* };
+        }
+        coefficients!(1 2 3 4 5 6 7 8 9 10 11 12);
+        const { assert!(ORDER == 12) };
+        if self.sense == [1.0; LANES] {
+            return;
+        }
+        let LaneSeries { pull, speed, weighted_speed, drag } = series;
+        for n in (1..=ORDER).step_by(2) {
+            for rows in [&mut *pull, &mut *speed, &mut *weighted_speed, &mut *drag] {
                 for l in 0..LANES {
-                    weighted[l] = fused(iu[i][l], f[n - i][l], weighted[l]);
-                    plain[l] = fused(u[i][l], f[n - i][l], plain[l]);
+                    rows[n][l] *= self.sense[l];
                 }
             }
-            for l in 0..LANES {
-                let share = weight[l] * inverse[l] * per;
-                let early = share * weighted[l] - back[l] * plain[l];
-                let from_last = if n > 1 { u[1][l] * (share - back[l]) } else { 0.0 };
-                let from_rate = f[0][l] * (share - back[l] * per);
-                let net = fused(-self.rest[l], u[n - 1][l], p[n - 1][l]) - f[n - 1][l];
-                iu[n][l] = net;
-                u[n][l] = net * per;
-                let driven = match n {
-                    1 => self.drive[l] - self.speed[l],
-                    2 if STARTS => self.ramp[l] - u[1][l],
-                    _ => -u[n - 1][l],
-                };
-                p[n][l] = driven * per;
-                f[n][l] = fused(from_rate, net, fused(from_last, f[n - 1][l], early));
-            }
         }
-        for n in (1..=ORDER).step_by(2) {
-            for l in 0..LANES {
-                p[n][l] *= self.sense[l];
-                u[n][l] *= self.sense[l];
-                iu[n][l] *= self.sense[l];
-                f[n][l] *= self.sense[l];
-            }
-        }
-        LaneSeries { pull: p, speed: u, weighted_speed: iu, drag: f }
     }
 
-    /// End steps over an extreme of the speed there; one for each lane that does.
+    /// Coefficient `N`, which waits for the one before through two operations only: what else it takes is summed before,
+    /// from the middle outwards, for the terms at the ends are the last to be known.
+    #[inline(always)]
+    #[allow(clippy::inline_always)]
+    fn add<S: pulp::Simd, const STARTS: bool, const N: usize>(
+        &self,
+        simd: S,
+        [weight, back]: [&Row; 2],
+        series: &mut LaneSeries,
+    ) {
+        let per = simd.splat_f64s(INVERSE[N]);
+        for r in 0..LANES / S::F64_LANES {
+            let of = |row: &Row| S::as_simd_f64s(row).0[r];
+            let LaneSeries { pull: p, speed: u, weighted_speed: iu, drag: f } = &*series;
+            let mut sums = [[simd.splat_f64s(0.0); 2]; 2];
+            let middle = usize::midpoint(N, 1);
+            for i in (2..middle).rev() {
+                sums[0][0] = fused_in(simd, of(&iu[i]), of(&f[N - i]), sums[0][0]);
+                sums[0][1] = fused_in(simd, of(&u[i]), of(&f[N - i]), sums[0][1]);
+            }
+            for i in middle.max(2)..N {
+                sums[1][0] = fused_in(simd, of(&iu[i]), of(&f[N - i]), sums[1][0]);
+                sums[1][1] = fused_in(simd, of(&u[i]), of(&f[N - i]), sums[1][1]);
+            }
+            let weighted = simd.add_f64s(sums[0][0], sums[1][0]);
+            let plain = simd.add_f64s(sums[0][1], sums[1][1]);
+            let (share, back) = (simd.mul_f64s(of(weight), per), of(back));
+            let early = simd.sub_f64s(simd.mul_f64s(share, weighted), simd.mul_f64s(back, plain));
+            let rate = simd.sub_f64s(share, simd.mul_f64s(back, per));
+            let from_rate = simd.mul_f64s(of(&f[0]), rate);
+            let still = fused_in(simd, simd.neg_f64s(of(&self.rest)), of(&u[N - 1]), of(&p[N - 1]));
+            let net = simd.sub_f64s(still, of(&f[N - 1]));
+            let late = if N > 1 {
+                let from_last = simd.mul_f64s(of(&u[1]), simd.sub_f64s(share, back));
+                fused_in(simd, from_last, of(&f[N - 1]), early)
+            } else {
+                early
+            };
+            let driven = match N {
+                1 => simd.sub_f64s(of(&self.drive), of(&self.speed)),
+                2 if STARTS => simd.sub_f64s(of(&self.ramp), of(&u[1])),
+                _ => simd.neg_f64s(of(&u[N - 1])),
+            };
+            let drag = fused_in(simd, from_rate, net, late);
+            for (rows, value) in [
+                (&mut series.weighted_speed, net),
+                (&mut series.speed, simd.mul_f64s(net, per)),
+                (&mut series.pull, simd.mul_f64s(driven, per)),
+                (&mut series.drag, drag),
+            ] {
+                S::as_mut_simd_f64s(&mut rows[N]).0[r] = value;
+            }
+        }
+    }
+
+    /// End steps over an extreme of the speed there: one for each lane that does, and how fast the speed changes at the
+    /// end of each step.
     #[inline(always)]
     #[allow(clippy::inline_always, clippy::needless_range_loop)]
-    fn end_at_extreme(&self, series: &LaneSeries, h: &mut Row) -> Row {
+    fn end_at_extreme(&self, series: &LaneSeries, h: &mut Row) -> (Row, Row) {
         let LaneSeries { speed: u, weighted_speed: iu, .. } = series;
-        let slope = value(iu, 1, h);
+        let mut slope = value(iu, 1, h);
         let mut turning: Row = [0.0; LANES];
         let mut any = 0;
         for l in 0..LANES {
@@ -274,7 +316,7 @@ impl Lanes {
             any |= turning[l].to_bits();
         }
         if any == 0 {
-            return turning;
+            return (turning, slope);
         }
         let mut t = [0.0; LANES];
         for l in 0..LANES {
@@ -296,8 +338,9 @@ impl Lanes {
         }
         for l in 0..LANES {
             h[l] = if turning[l] > 0.0 { t[l] } else { h[l] };
+            slope[l] = if turning[l] > 0.0 { 0.0 } else { slope[l] };
         }
-        turning
+        (turning, slope)
     }
 
     /// Keep the greatest and the least pull over a step to where the belt has the speed `end`, and bring its drive there.
@@ -341,7 +384,13 @@ impl Lanes {
     /// whose crossing was not found.
     #[inline(always)]
     #[allow(clippy::inline_always)]
-    fn end_at_level(&self, series: &LaneSeries, h: &mut Row, end: &mut Row) -> (Row, Row) {
+    fn end_at_level(
+        &self,
+        series: &LaneSeries,
+        rate: &Row,
+        h: &mut Row,
+        end: &mut Row,
+    ) -> (Row, Row) {
         let mut crossing: Row = [0.0; LANES];
         let mut lost: Row = [0.0; LANES];
         let mut any = 0;
@@ -357,7 +406,15 @@ impl Lanes {
         let (mut t, mut level) = ([0.0; LANES], [0.0; LANES]);
         for l in 0..LANES {
             level[l] = if crossing[l] > 0.0 { self.upper[l] } else { self.lower[l] };
-            t[l] = h[l] * (level[l] - self.speed[l]) / (end[l] - self.speed[l]);
+            // time as a cubic of the speed between the ends; a straight line where one of them is an extreme
+            let rise = end[l] - self.speed[l];
+            let share = (level[l] - self.speed[l]) / rise;
+            let left = 1.0 - share;
+            let (first, last) = (rise / series.speed[1][l], rise / rate[l]);
+            let bent = share * left * (left * first - share * last + (2.0 * share - 1.0) * h[l]);
+            let line = h[l] * share;
+            let cubic = line + bent;
+            t[l] = if cubic > 0.0 && cubic < h[l] { cubic } else { line };
         }
         let (mut before, mut after) = ([0.0; LANES], *h);
         for _ in 0..MAX_NEWTON {
@@ -397,6 +454,14 @@ struct LaneSeries {
     /// Coefficients of the speed, each times its power.
     weighted_speed: Rows,
     drag: Rows,
+}
+
+impl LaneSeries {
+    /// To be written.
+    fn blank() -> Self {
+        let none = [[0.0; LANES]; ORDER + 1];
+        Self { pull: none, speed: none, weighted_speed: none, drag: none }
+    }
 }
 
 /// The powers, as numbers.

@@ -10,6 +10,17 @@ pub(super) fn fused(a: f64, b: f64, c: f64) -> f64 {
     if cfg!(target_arch = "wasm32") { a * b + c } else { a.mul_add(b, c) }
 }
 
+/// The same for each of a register.
+#[inline(always)]
+#[allow(clippy::inline_always)]
+pub(super) fn fused_in<S: pulp::Simd>(simd: S, a: S::f64s, b: S::f64s, c: S::f64s) -> S::f64s {
+    if cfg!(target_arch = "wasm32") {
+        simd.add_f64s(simd.mul_f64s(a, b), c)
+    } else {
+        simd.mul_add_f64s(a, b, c)
+    }
+}
+
 /// The powers, as numbers.
 #[allow(clippy::cast_precision_loss)] // at most ORDER
 pub(super) const POWERS: [f64; ORDER + 1] = {
@@ -78,12 +89,7 @@ pub(super) fn values<S: pulp::Simd, const N: usize>(
         let mut sums = of.map(|c| simd.splat_f64s(c[ORDER]));
         for n in (0..ORDER).rev() {
             for (sum, c) in sums.iter_mut().zip(of) {
-                let next = simd.splat_f64s(c[n]);
-                *sum = if cfg!(target_arch = "wasm32") {
-                    simd.add_f64s(simd.mul_f64s(*sum, *t), next)
-                } else {
-                    simd.mul_add_f64s(*sum, *t, next)
-                };
+                *sum = fused_in(simd, *sum, *t, simd.splat_f64s(c[n]));
             }
         }
         for (out, sum) in out.iter_mut().zip(sums) {
