@@ -297,11 +297,7 @@ impl<'a> Motion<'a> {
 
     /// The next piece, over which the temperature keeps to where there is a law of drag.
     #[cold]
-    fn piece_within_law(
-        &mut self,
-        mut longest: f64,
-        piece: &mut Piece<'a>,
-    ) -> Result<(), Error> {
+    fn piece_within_law(&mut self, mut longest: f64, piece: &mut Piece<'a>) -> Result<(), Error> {
         let Some((course, _)) = self.now.temperature_law() else {
             return self.piece(longest, piece);
         };

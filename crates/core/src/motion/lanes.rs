@@ -216,7 +216,7 @@ impl Lanes {
 
     /// The motion from the present state on; `u f' = e f u'` gives the drag `f` of the contact.
     #[inline(always)]
-    #[allow(clippy::inline_always, clippy::needless_range_loop)]
+    #[allow(clippy::inline_always, clippy::needless_range_loop, clippy::float_cmp)] // senses are assigned
     fn expand<S: pulp::Simd, const STARTS: bool>(&self, simd: S, series: &mut LaneSeries) {
         (series.pull[0], series.speed[0], series.drag[0]) = (self.pull, self.speed, self.drag);
         let (mut weight, mut back) = ([0.0; LANES], [0.0; LANES]);

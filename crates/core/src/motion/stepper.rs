@@ -255,14 +255,14 @@ impl Stepper {
     /// Drag now, where pull and speed are these, signed.
     fn drag(&self, pull: f64, belt_speed: f64) -> Result<f64, Error> {
         let (elapsed, work) = (self.moment.time - self.moment.start, Work::default());
-        let piece = match &self.ahead {
-            Some(ahead) => self.piece(ahead, &work),
-            None => {
-                let mut motion = self.motion(&work)?;
-                let mut piece = motion.no_piece();
-                motion.look_ahead(f64::INFINITY, &mut piece).map(|_| piece)
-            }
-        }?;
+        let piece = if let Some(ahead) = &self.ahead {
+            self.piece(ahead, &work)?
+        } else {
+            let mut motion = self.motion(&work)?;
+            let mut piece = motion.no_piece();
+            motion.look_ahead(f64::INFINITY, &mut piece)?;
+            piece
+        };
         if piece.start.mode == Mode::Stuck {
             return Ok(pull);
         }

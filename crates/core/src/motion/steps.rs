@@ -217,7 +217,12 @@ impl<'a> Motion<'a> {
         let drag = &self.now.system.drag;
         let train = &self.now.system.train;
         let speed = self.phase.speed.max(self.now.speed(drag.stick_speed()));
-        let pull = self.phase.pull.abs().max(speed * train.impedance()).max(1e-9 * drag.transition_force());
+        let pull = self
+            .phase
+            .pull
+            .abs()
+            .max(speed * train.impedance())
+            .max(1e-9 * drag.transition_force());
         let bristle = match drag.closure() {
             Closure::LuGre { bristle_stiffness, .. } => drag.transition_force() / bristle_stiffness,
             _ => 1.0,

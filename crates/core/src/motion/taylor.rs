@@ -94,8 +94,9 @@ fn plain_series(start: &SlipStart, series: &mut Series) {
     coefficients!(2 3 4 5 6 7 8 9 10 11 12 13 14);
     const { assert!(ORDER == 14) };
     let PlainSeries { series, contact, damping, .. } = series;
-    for n in 1..=ORDER {
-        series.drag[n] = fused(damping, series.speed[n], contact[n]);
+    let all = series.drag.iter_mut().zip(&series.speed).zip(contact);
+    for ((drag, speed), contact) in all.skip(1) {
+        *drag = fused(damping, *speed, contact);
     }
 }
 
@@ -162,11 +163,8 @@ impl<'s> PlainSeries<'s> {
         } else {
             fused(contact[1] * (share - back * INVERSE[N - 1]), rate[N - 1], early)
         };
-        let undriven = fused(
-            -damping * per_mass * INVERSE[N - 1],
-            rate[N - 1],
-            per_mass * pull[N - 1],
-        );
+        let undriven =
+            fused(-damping * per_mass * INVERSE[N - 1], rate[N - 1], per_mass * pull[N - 1]);
         let now = fused(-per_mass, contact[N - 1], undriven);
         let late = fused(speed[1] * (share - back), contact[N - 1], early);
         let pulled = (driven - self.stiffness * speed[N - 1]) * INVERSE[N];
@@ -299,7 +297,8 @@ impl Series {
     #[allow(clippy::inline_always)]
     pub(super) fn step_size(&self, tolerance: f64, pull_scale: f64, speed_scale: f64) -> f64 {
         let (per_pull, per_speed) = (1.0 / pull_scale, 1.0 / speed_scale);
-        let relative = |n: usize| (self.pull[n] * per_pull).abs().max((self.speed[n] * per_speed).abs());
+        let relative =
+            |n: usize| (self.pull[n] * per_pull).abs().max((self.speed[n] * per_speed).abs());
         let (last, before) = (relative(ORDER), relative(ORDER - 1));
         let by_last =
             if last > 0.0 { rough_root(tolerance / last, ORDER as u64) } else { f64::INFINITY };
