@@ -1,8 +1,9 @@
-"""The lines of the table of ratios: what is asked of each, and whether it is met."""
+"""The lines of the table of ratios, what is asked of each and whether it is met; slopes of growth."""
 
 from __future__ import annotations
 
 import pytest
+from benchmarks.growth_of_time import slope
 from benchmarks.lines import HEAD, Line, in_turn, table
 
 
@@ -37,3 +38,7 @@ def test_works_are_run_in_turn_and_medians_taken() -> None:
     found = in_turn({"own": lambda: run("own"), "peer": lambda: run("peer")}, 3)
     assert found == {"own": 2.0, "peer": 6.0}
     assert order == ["own", "peer"] * 3
+
+
+def test_a_slope_is_that_of_the_upper_half() -> None:
+    assert slope([(10, 7.0), (100, 7.0), (1000, 2.0), (10_000, 20.0), (100_000, 200.0)]) == pytest.approx(1.0)
