@@ -150,14 +150,9 @@ mutants-rust: ## the same in the core's lubrication
 	PATH="$(CURDIR)/build/tools/bin:$$PATH" cargo mutants --output build --jobs $(CORES) \
 	  --file 'crates/core/src/lubrication/**' || true
 
-benchmark: build ## ratios against peers, printed and written to benchmarks/RESULTS.md
+benchmark: build ## ratios against peers and limits, printed and written to benchmarks/RESULTS.md (10 minutes)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt --group benchmark
-	$(BIN)/python benchmarks/read_csv.py
-	$(BIN)/python -m benchmarks.motion
-	$(BIN)/python -m benchmarks.fold
-	$(BIN)/python -m benchmarks.reynolds
-	$(BIN)/python -m benchmarks.candidates
-	$(BIN)/python benchmarks/start.py
+	$(BIN)/python -m benchmarks.table
 
 # With MANYLINUX=1 a wheel runs where glibc is 2.17 (2014) or later: zig links it. Else it runs where glibc is as new as here.
 ifdef MANYLINUX

@@ -11,6 +11,8 @@ from __future__ import annotations
 import argparse
 import tempfile
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import lmfit
@@ -18,6 +20,7 @@ import numpy as np
 import polars as pl
 
 import hersey
+from benchmarks.lines import Line, in_turn
 from hersey import testbench
 
 BOOTSTRAP = 300
@@ -39,23 +42,50 @@ def by_hand(path: Path) -> tuple[float, float, int]:
     return read, time.perf_counter() - begin, int(turns.sum())
 
 
-def main() -> None:
-    """Print a table in Markdown."""
-    parser = argparse.ArgumentParser()
-    parser.add_argument("--size", type=float, default=270.0, help="MB; 270 are some 10 million samples")
-    size = int(1e6 * parser.parse_args().size)
+@contextmanager
+def long_log(size: int) -> Iterator[Path]:
+    """Write a log of so many bytes, for a while."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "log.csv"
         with path.open("w") as file:
             file.writelines(testbench.long_log(bytes_wanted=size, seed=1))
-        begin = time.perf_counter()
-        log = hersey.read(path)
-        read = time.perf_counter() - begin
-        found = hersey.compare_models(log.steady(tare="standing"), bootstrap=BOOTSTRAP)
-        ours = time.perf_counter() - begin
+        yield path
+
+
+def chosen(path: Path) -> tuple[float, float, hersey.ModelComparison, int]:
+    """Return seconds to read, seconds to the chosen law, the comparison and the rows."""
+    begin = time.perf_counter()
+    log = hersey.read(path)
+    read = time.perf_counter() - begin
+    found = hersey.compare_models(log.steady(tare="standing"), bootstrap=BOOTSTRAP)
+    return read, time.perf_counter() - begin, found, log.rows
+
+
+def lines(runs: int, size: int = 27_000_000) -> list[Line]:
+    """Return the way to the chosen law beside that by hand."""
+    with long_log(size) as path:
+        *_, compared, rows = chosen(path)
+        fits = len(compared.candidates) + BOOTSTRAP
+
+        def peer() -> float:
+            read, one, _ = by_hand(path)
+            return read + one * fits
+
+        found = in_turn({"own": lambda: chosen(path)[1], "by hand": peer}, runs)
+    work = f"models of {rows / 1e6:.1f} million rows, {BOOTSTRAP} resampled logs"
+    peer_name = f"polars and lmfit, one fit times {fits}"
+    return [Line(work, found["own"], peer_name, found["by hand"])]
+
+
+def main() -> None:
+    """Print a table in Markdown."""
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--size", type=float, default=270.0, help="MB; 270 are some 10 million samples")
+    with long_log(int(1e6 * parser.parse_args().size)) as path:
+        read, ours, found, rows = chosen(path)
         table, one, samples = by_hand(path)
     fits = len(found.candidates) + BOOTSTRAP
-    print(f"{log.rows / 1e6:.1f} million samples, {samples / 1e6:.1f} million of them turning.\n")
+    print(f"{rows / 1e6:.1f} million samples, {samples / 1e6:.1f} million of them turning.\n")
     print("| way | read | to the chosen law with its bootstrap | ratio |\n|---|---|---|---|")
     print(
         f"| hersey, {len(found.candidates)} laws, {BOOTSTRAP} resampled logs "

@@ -1,4 +1,6 @@
-"""Fold maps beside brute force: workload W3, single thread, one run. Writes FOLD.md.
+"""Fold maps beside brute force: workload W3, single thread, one run.
+
+Run by itself it writes FOLD.md, with slower peers than those of the table of all ratios.
 
 W3: the fold speed V*(k, B0) on 64 x 64 points (k 500 to 2000, B0 25 to 100). Peers halve the drive speed
 between 1.01 and 4 with 15 runs of 5 s each, on some of the points, scaled to all.
@@ -17,39 +19,73 @@ from typing import Any
 import numpy as np
 
 import hersey
+from benchmarks.lines import Line, in_turn, timed
 from benchmarks.motion import DRAG, TRAIN, best_of, machine
 from hersey import _core
 from hersey.motion.parameters import MOST_STEPS
 
 SIDE, RUNS, DURATION = 64, 15, 5.0
+#: Points that numba runs, spread over all.
+FEW = 100
+#: Tolerance at which V* is within 8e-9, which is asked.
+ASKED = 3e-9
 #: Temperatures (K) and draws of the machine's law.
 LEVELS, DRAWS = np.linspace(363.15, 455.15, 13), 200
 #: Seconds for the same before half laps knew a no-load torque: all draws (from 5 at each level), one belt.
 BEFORE = {1e-13: (15.3, 8.9e-3), 1e-11: (27.0, 6.7e-3), 1e-8: (69.0, 4.8e-3)}
 
 
-def folds(side: int, tolerance: float) -> Any:
+def folds(side: int, tolerance: float, lower: bool = False) -> Any:
     """Return hersey's map of folds."""
     return hersey.hysteresis_sweep(
         TRAIN,
         DRAG,
         stiffness=np.linspace(500, 2000, side),
         transition_force=np.linspace(25, 100, side),
-        lower=False,
+        lower=lower,
         work=hersey.Work(tolerance=tolerance),
     )
+
+
+def exact_folds() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return stiffness, B0 and V* of every point."""
+    exact = folds(SIDE, 1e-13)
+    k, b0 = (
+        np.broadcast_to(axis, exact.upper.shape).ravel()
+        for axis in (exact.stiffness.values[:, None], exact.transition_force.values[None, :])
+    )
+    return k, b0, exact.upper.values.ravel()
+
+
+def lines(runs: int) -> list[Line]:
+    """Return W3 beside numba."""
+    from benchmarks.peers import numba_dp45
+
+    k, b0, reference = exact_folds()
+    some = np.linspace(0, k.size - 1, FEW).astype(int)
+    numba_dp45.folds(k[:1], b0[:1], 1, DURATION, 1e-6)  # compile
+    found = in_turn(
+        {
+            "upper": lambda: timed(lambda: folds(SIDE, ASKED)),
+            "both": lambda: timed(lambda: folds(SIDE, ASKED, lower=True)),
+            "numba": lambda: timed(lambda: numba_dp45.folds(k[some], b0[some], RUNS, DURATION, 1e-6)),
+        },
+        runs,
+    )
+    error = np.max(np.abs(folds(SIDE, ASKED).upper.values.ravel() / reference - 1))
+    work, peer = f"W3, V* of {SIDE} x {SIDE} points", f"numba, 1e-6, {FEW} points scaled"
+    numba = found["numba"] * k.size / FEW
+    return [
+        Line(f"{work}, upper edge", found["upper"], peer, numba, faster=250, beside=f"{error:.0e}"),
+        Line(f"{work}, lower edge too", found["both"], peer, numba, limit=0.15),
+    ]
 
 
 def measure() -> list[tuple[str, float, int, float]]:
     """Return (tool, seconds for all points, points run, greatest relative error)."""
     from benchmarks.peers import numba_dp45, scipy_events
 
-    exact = folds(SIDE, 1e-13)
-    k, b0 = (
-        np.broadcast_to(axis, exact.upper.shape).ravel()
-        for axis in (exact.stiffness.values[:, None], exact.transition_force.values[None, :])
-    )
-    reference = exact.upper.values.ravel()
+    k, b0, reference = exact_folds()
     points = reference.size
     rows = []
     for tolerance in (3e-10, 1e-11):
@@ -60,13 +96,13 @@ def measure() -> list[tuple[str, float, int, float]]:
 
     numba_dp45.folds(k[:1], b0[:1], 1, DURATION, 1e-6)  # compile
     for tolerance in (1e-6, 1e-8):
-        some = np.linspace(0, points - 1, 100).astype(int)
+        some = np.linspace(0, points - 1, FEW).astype(int)
         seconds, found = best_of(
             1, lambda t=tolerance, i=some: numba_dp45.folds(k[i], b0[i], RUNS, DURATION, t)
         )
         error = float(np.max(np.abs(found / reference[some] - 1)))
         rows.append(
-            (f"numba DP45, {RUNS} runs a fold ({tolerance:g})", seconds / some.size * points, 100, error)
+            (f"numba DP45, {RUNS} runs a fold ({tolerance:g})", seconds / some.size * points, FEW, error)
         )
 
     def scipy_fold(i: int) -> float:

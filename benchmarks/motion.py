@@ -1,4 +1,6 @@
-"""The motion core beside general tools: workloads W1 and W2, single thread, one run. Writes MOTION.md.
+"""The motion core beside general tools: workloads W1 and W2, single thread, one run.
+
+Run by itself it writes MOTION.md, with slower peers than those of the table of all ratios.
 
 W1: one trajectory of the paper's baseline, 20 s. W2: 10,000 random parameter sets, 10 s each; wanted are
 frequency, greatest speed and stuck fraction of the last lap. Slow peers run a part of W2, scaled to all.
@@ -17,8 +19,11 @@ from typing import Any
 import numpy as np
 
 import hersey
+from benchmarks.lines import Line, in_turn, timed
 
 SETS, DURATION = 10_000, 10.0
+#: Sets of W2 that a peer runs for the table of all ratios, where it runs many times.
+FEW = 2000
 EXACT = 3.940313951318513  # independent solution at 1e-12
 TRAIN = hersey.Drivetrain(1000, 1)
 DRAG = hersey.Drag(50, 1, ehl_exponent=-0.7, mixed_exponent=-1.2, stick_speed=0.01)
@@ -57,6 +62,16 @@ def swept(duration: float | None, tolerance: float) -> Any:
     )
 
 
+def single(tolerance: float, samples: int = 20_000) -> hersey.Trajectory:
+    """Return hersey's W1."""
+    return hersey.simulate(TRAIN, DRAG, drive_speed=1.0, duration=20.0, samples=samples, tolerance=tolerance)
+
+
+def single_error(run: hersey.Trajectory) -> float:
+    """Return the relative error of the frequency of W1."""
+    return abs(frequency_of(run) / EXACT - 1)
+
+
 def frequency_of(run: hersey.Trajectory) -> float:
     """Return the frequency between the last two releases."""
     releases = [e.time for e in run.events if e.from_mode == "stuck"]
@@ -80,13 +95,8 @@ def measure(quick: bool = False) -> list[dict[str, Any]]:
         )
 
     def w1(tolerance: float) -> tuple[float, float]:
-        def run() -> hersey.Trajectory:
-            return hersey.simulate(
-                TRAIN, DRAG, drive_speed=1.0, duration=20.0, samples=20_000, tolerance=tolerance
-            )
-
-        seconds, trajectory = best_of(100, run)
-        return seconds, abs(frequency_of(trajectory) / EXACT - 1)
+        seconds, trajectory = best_of(100, lambda: single(tolerance))
+        return seconds, single_error(trajectory)
 
     def w2(duration: float | None, tolerance: float) -> tuple[float, float, int]:
         seconds, grid = best_of(5, lambda: swept(duration, tolerance))
@@ -155,6 +165,41 @@ def measure(quick: bool = False) -> list[dict[str, Any]]:
     ]
     print(f"reference (hersey at 1e-13) against scipy DOP853 at 1e-12 on two sets: {max(check):.1e}")
     return rows
+
+
+def lines(runs: int) -> list[Line]:
+    """Return W1 and W2 beside numba."""
+    from benchmarks.peers import numba_dp45
+
+    few = [each[:FEW] for each in sets()]
+    numba_dp45.laps(*(each[:1] for each in few), DURATION, 1e-6)  # compile
+    one = in_turn(
+        {
+            "sampled": lambda: timed(lambda: single(1e-6), 20),
+            "bare": lambda: timed(lambda: single(1e-8, 2), 20),
+            "numba": lambda: timed(lambda: numba_dp45.lap(1000.0, 50.0, 1.0, 20.0, 1e-6), 20),
+        },
+        runs,
+    )
+    many = in_turn(
+        {
+            "every": lambda: timed(lambda: swept(DURATION, 7e-8)),
+            "reuse": lambda: timed(lambda: swept(None, 7e-8)),
+            "numba": lambda: timed(lambda: numba_dp45.laps(*few, DURATION, 1e-6)) * SETS / FEW,
+        },
+        runs,
+    )
+    exact = swept(None, 1e-13).frequency.values
+    every, reuse = (np.max(np.abs(swept(t, 7e-8).frequency.values / exact - 1)) for t in (DURATION, None))
+    numba = "numba, 1e-6"
+    errors = [f"{single_error(single(1e-6)):.0e}", f"{single_error(single(1e-8, 2)):.0e}"]
+    scaled = f"{numba}, {FEW:,} sets scaled"
+    return [
+        Line("W1, 20 s, 20,000 samples, 1e-6", one["sampled"], numba, one["numba"], 4, beside=errors[0]),
+        Line("W1 without samples, 1e-8", one["bare"], numba, one["numba"], 5, beside=errors[1]),
+        Line("W2, every lap", many["every"], scaled, many["numba"], 20, beside=f"{every:.0e}"),
+        Line("W2, lap reuse", many["reuse"], scaled, many["numba"], 150, beside=f"{reuse:.0e}"),
+    ]
 
 
 def table(rows: list[dict[str, Any]]) -> str:

@@ -1,4 +1,4 @@
-"""The film solver beside SciPy on the same discrete equations, in one run. Writes REYNOLDS.md.
+"""The film solver beside SciPy on the same discrete equations, in one run. By itself it writes REYNOLDS.md.
 
 The SciPy version is written the straightforward way: NumPy arrays, influence coefficients built anew for each
 outlet, `scipy.optimize.root` with differences for the Jacobian. It starts from the film of a speed 5 %
@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from scipy.optimize import root
 
+from benchmarks.lines import Line, in_turn, timed
 from benchmarks.motion import best_of, machine
 from hersey.lubrication.reynolds import LineContactSolution, solve_line_contact
 
@@ -63,6 +64,20 @@ def by_scipy(speed: float, shares: np.ndarray, inlet: float, guess: LineContactS
     unknowns[-1] = guess.minimum_thickness / film_unit - film(unknowns)[2].min()
     result = root(residual, unknowns, method="hybr", tol=1e-11)
     return float(film(result.x)[2].min() * film_unit), result
+
+
+def lines(runs: int, nodes: int = 201) -> list[Line]:
+    """Return one film beside SciPy."""
+    own, guess = solve(0.1, nodes), solve(0.105, nodes)
+    shares = (own.x - own.x[0]) / (own.x[-1] - own.x[0])
+
+    def peer() -> tuple[float, Any]:
+        return by_scipy(0.1, shares, own.x[0], guess)
+
+    found = in_turn({"own": lambda: timed(lambda: solve(0.1, nodes)), "scipy": lambda: timed(peer)}, runs)
+    difference = f"{abs(peer()[0] / own.film_thickness.min() - 1):.0e}"
+    work = f"film of a line contact, {nodes} nodes"
+    return [Line(work, found["own"], "scipy.optimize.root", found["scipy"], beside=difference)]
 
 
 def measure() -> list[tuple[int, float, float, float, bool]]:

@@ -35,6 +35,12 @@ def loaded(*typed: str, cwd: Path) -> set[str]:
     return set(json.loads(done.stderr[done.stderr.index("[") :]))
 
 
+#: What typer loads for Markdown, tracebacks and the conversion of options, none of which a help has.
+VAIN = {"attr", "markdown_it", "pydantic", "pygments", "rich.markdown", "rich.traceback"}
+#: Most modules of ours behind the help of a command.
+OURS = 36
+
+
 def rooms(modules: set[str]) -> set[str]:
     """Rooms of the package of which something is loaded, but for the command line's own and light ones."""
     opened = {name for name in modules if name.startswith("hersey.")} - {"hersey.charts"}  # a header alone
@@ -49,7 +55,7 @@ def test_the_version_loads_no_program() -> None:
 
 def test_the_list_of_verbs_loads_no_verb() -> None:
     modules = loaded("--help", cwd=ROOT)
-    assert not modules & HEAVY - {"pydantic"}  # typer checks options with it
+    assert not modules & (HEAVY | VAIN)
     assert not rooms(modules)
     assert not {f"hersey.cli.{name}" for name in VERBS} & modules
 
@@ -94,9 +100,33 @@ def loaded_by_help() -> dict[str, list[str]]:
 @pytest.mark.parametrize("verb", VERBS)
 def test_the_help_of_a_verb_loads_no_room(verb: str) -> None:
     modules = set(loaded_by_help()[verb])
-    assert not modules & HEAVY - {"pydantic"}
+    assert not modules & (HEAVY | VAIN)
     assert not rooms(modules)
     assert f"hersey.cli.{verb}" in modules
+
+
+@pytest.mark.parametrize("typed", ["fit", "sweep", "campaign add", "export fmu"])
+def test_the_help_of_a_verb_loads_little(typed: str) -> None:
+    modules = loaded(*typed.split(), "--help", cwd=ROOT)
+    assert not modules & (HEAVY | VAIN)
+    assert sum(name.startswith("hersey.") for name in modules) <= OURS
+
+
+def test_what_stands_in_for_markdown_loads_it_where_it_is_used() -> None:
+    asked = """
+import sys
+from hersey.cli.light_help import LightHelp
+class Helped: format_help = lambda self, context, formatter: None
+type("Command", (LightHelp, Helped), {})().format_help(None, None)
+import typer.rich_utils
+assert "rich.markdown" not in sys.modules
+shown = typer.rich_utils.Markdown("*a*")
+import rich.markdown, rich.traceback
+assert isinstance(shown, rich.markdown.Markdown)
+assert typer.rich_utils.Traceback.from_exception == rich.traceback.Traceback.from_exception
+"""
+    done = run_apart("-c", asked, cwd=ROOT, command=[sys.executable])
+    assert done.returncode == 0, done.stderr
 
 
 LOG = "examples/bench.csv --tare standing"

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import sys
+
 import pytest
 
 from hersey.errors import ParameterError, UnitError
-from hersey.life.age import Age
+from hersey.life.age import COUNTS, Age
+from hersey.units import conversion
+from tests.cli.command import run_apart
+from tests.conftest import ROOT
 
 
 @pytest.mark.parametrize(
@@ -74,3 +79,22 @@ def test_what_reads_in_one_way_is_read() -> None:
         ("1234.125 pages", 1234.125),
     ):
         assert Age.parse(text).value == value
+
+
+@pytest.mark.parametrize("word", sorted(COUNTS | {f"{each}s" for each in COUNTS}))
+def test_what_is_counted_is_no_time(word: str) -> None:
+    with pytest.raises(UnitError):
+        conversion("time", word)
+
+
+def test_ages_that_count_alike_are_compared_without_pint() -> None:
+    asked = """
+import sys
+from hersey.life.age import Age, one_of
+assert Age(7.0, "bananas").as_unit("bananas") == Age(7.0, "bananas")
+assert Age(7.0, "page").as_unit("pages") == Age(7.0, "pages")
+assert one_of("pages") == "page"
+assert "pint" not in sys.modules
+"""
+    done = run_apart("-c", asked, cwd=ROOT, command=[sys.executable])
+    assert done.returncode == 0, done.stderr

@@ -12,6 +12,7 @@ columns       columns of a small CSV: a drive speed over time, a drag curve
 groups        an option with its help, and options that belong together as a data class
 options       options that several commands share, and the reading of a log by them
 mistyped      what to type instead of a command line that cannot be understood
+light_help    help without what typer loads for it in vain
 long_dashes   the same where a word processor has joined the dashes of an option
 completed     the options that an export cannot do without, for a line that is proposed
 recipe_file   a recipe file as options
@@ -56,11 +57,12 @@ def _run() -> None:
         print(f"hersey {__version__}")
         return
     from hersey.cli.interruption import comes_of_interrupt, end, interruptible
+    from hersey.cli.loading import loading
 
     try:
         with interruptible():
-            from hersey.cli.application import main as run
-
+            with loading():
+                from hersey.cli.application import main as run
             run()
     except KeyboardInterrupt:
         end()

@@ -13,6 +13,7 @@ from typer.core import TyperCommand, TyperGroup
 from hersey.cli.arranged import refuse_disorder
 from hersey.cli.groups import option
 from hersey.cli.interruption import INTERRUPTED
+from hersey.cli.light_help import LightGroup, LightHelp
 from hersey.cli.long_dashes import long_dashed
 from hersey.cli.mistyped import (
     Commands,
@@ -81,12 +82,14 @@ def load(name: str) -> Any:
     verbs = getattr(module, name, None)
     if isinstance(verbs, typer.Typer):  # a command with subcommands
         verbs.info.context_settings, verbs.info.cls = _CONTEXT, Subcommands
+        for subcommand in verbs.registered_commands:
+            subcommand.cls = Command
         group = typer.main.get_command(verbs)
         for each in (group, *getattr(group, "commands", {}).values()):
             each.help = _paragraphs(each.help)
         return group
     verb = typer.Typer(add_completion=False, rich_markup_mode="rich", context_settings=_CONTEXT)
-    verb.command(name)(verbs or getattr(module, f"{name}_"))
+    verb.command(name, cls=Command)(verbs or getattr(module, f"{name}_"))
     loaded = typer.main.get_command(verb)
     loaded.help = _paragraphs(loaded.help)
     return loaded
@@ -98,6 +101,10 @@ def _paragraphs(text: str | None) -> str:
 
 
 COMMANDS = Commands(tuple(VERBS), load)
+
+
+class Command(LightHelp, TyperCommand):
+    """A command with all its options."""
 
 
 class Verb(TyperCommand):
@@ -114,7 +121,7 @@ class Verb(TyperCommand):
         return context
 
 
-class Verbs(TyperGroup):
+class Verbs(LightGroup, TyperGroup):
     """The commands, of which only the one that is called is loaded."""
 
     def __init__(self, **settings: Any) -> None:
@@ -131,7 +138,7 @@ class Verbs(TyperGroup):
         return super().resolve_command(ctx, args)
 
 
-class Subcommands(TyperGroup):
+class Subcommands(LightGroup, TyperGroup):
     """The subcommands of a command."""
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:

@@ -7,7 +7,6 @@ first bytes are hashed once more: that tells a logger which appends from a progr
 from __future__ import annotations
 
 import glob
-import hashlib
 import os
 import time
 import unicodedata
@@ -129,6 +128,8 @@ class OpenFile:
 
     def sha256(self) -> str:
         """Hash of the first ``size`` bytes as they are now."""
+        import hashlib  # which loads OpenSSL
+
         digest, left = hashlib.sha256(), self.size
         self.file.seek(0)
         while left and (chunk := self.file.read(min(_CHUNK, left))):

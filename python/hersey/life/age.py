@@ -13,6 +13,8 @@ _AGE = re.compile(r"\s*([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?)\s
 _WORD = re.compile(r"[^\W\d_][\w-]{0,39}")
 #: A number whose point may stand between thousands, as in German.
 _THOUSANDS = re.compile(r"[1-9][0-9]{0,2}\.[0-9]{3}")
+#: What ages usually count and is no time, which takes pint a second to find out.
+COUNTS = frozenset(["cycle", "lap", "page", "print", "revolution", "sheet", "start", "stop", "stroke"])
 _WAY_OUT = "Write a number and what it counts, e.g. '120000 pages', '310 h' or '2e6 cycles'"
 
 
@@ -69,6 +71,8 @@ class Age:
         UnitError
             If the units count different things.
         """
+        if self.unit == unit:
+            return self
         mine, other = _seconds(self.unit), _seconds(unit)
         if mine is not None and other is not None:
             return Age(self.value if mine == other else self.value * mine / other, unit)
@@ -117,6 +121,8 @@ def one_of(unit: str) -> str:
 
 def _seconds(unit: str) -> float | None:
     """Seconds of one unit, or None if it is no time."""
+    if unit.removesuffix("s") in COUNTS:
+        return None
     try:
         return conversion("time", unit).scale
     except UnitError:
