@@ -125,6 +125,13 @@ def test_what_a_verb_loads(typed: str, examples_here: Path) -> None:
     assert modules & HEAVY - {"pydantic"} == set(LOADS[typed].split())
 
 
+@pytest.mark.parametrize("verb", ["fit", "models"])
+def test_a_conclusion_loads_no_document(verb: str, examples_here: Path) -> None:
+    modules = loaded(verb, *LOG.split(), cwd=examples_here)
+    assert not rooms(modules) & {"decision", "document", "posterior", "stability", "study"}
+    assert "hersey.damping.curves" not in modules
+
+
 def test_what_a_report_loads() -> None:
     """Of SciPy only what its fits need, and nothing of what reads other files or draws other pictures."""
     code = "import sys, hersey.document.assembly, hersey.report.page; print(*sys.modules)"
