@@ -132,6 +132,13 @@ def test_a_conclusion_loads_no_document(verb: str, examples_here: Path) -> None:
     assert "hersey.damping.curves" not in modules
 
 
+def test_cycles_of_a_log_load_little_of_scipy(examples_here: Path) -> None:
+    asked = f"posterior {LOG} --machine {MACHINE} --draws 40"
+    modules = loaded(*asked.split(), cwd=examples_here)
+    assert "hersey.identification.cycle_record" in modules
+    assert not {"scipy.integrate", "scipy.signal", "scipy.stats"} & modules
+
+
 def test_what_a_report_loads() -> None:
     """Of SciPy only what its fits need, and nothing of what reads other files or draws other pictures."""
     code = "import sys, hersey.document.assembly, hersey.report.page; print(*sys.modules)"
