@@ -149,10 +149,13 @@ def test_what_a_report_loads() -> None:
     assert not {"h5py", "openpyxl", "pandas", "matplotlib", "uvicorn", "starlette"} & modules
 
 
-def test_the_collector_rests_while_much_is_loaded() -> None:
+def test_the_collector_rests_while_much_is_loaded(examples_here: Path) -> None:
     with loading():
         assert not gc.isenabled()
     assert gc.isenabled()
+    counted = WATCHED.replace("sorted(sys.modules)", "__import__('gc').get_freeze_count()")
+    done = run_apart("fit", *LOG.split(), cwd=examples_here, command=[sys.executable, "-c", counted])
+    assert int(done.stderr.split()[-1]) > 50_000  # what was loaded is not looked through again
 
 
 @pytest.mark.parametrize(
