@@ -9,11 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from hersey.arrays import BoolArray, FloatArray, IntArray
-from hersey.damping.candidates.likelihood import FIRST_STEP, HUBER, loss
+from hersey.damping.candidates.likelihood import FIRST_STEP, HUBER, loss, minimise
 
 #: Residuals in standard errors, or their derivatives, of values of problems: (values, which) to shape
 #: (problems, residuals) or (problems, residuals, parameters).
@@ -24,6 +25,8 @@ _TAKEN, _SHORTER, _LONGER = 1e-4, 0.25, 0.75
 _NEAR = 0.1
 #: Rounds in which the damping that makes it so long is found.
 _ROUNDS = 10
+#: Slope along a parameter, over the greatest that was met, below which a search goes on alone.
+_VANISHES = 1e-6
 #: Least square of a slope: what a step is divided by, so that its own square is a number.
 _LEAST = 1e-150
 _SMALL = float(np.finfo(np.float64).eps)
@@ -57,6 +60,7 @@ def minimise_each(
     precision, calls
         As of `likelihood.minimise`.
     """
+    effort = {"precision": precision, "calls": calls}
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):  # of slopes that all but vanish
         searches = _Searches(residual, np.sqrt(times), start, precision, calls * (start.shape[1] + 1))
         running = np.arange(len(start))
@@ -65,8 +69,28 @@ def minimise_each(
             u, root = residual(values, running), searches.root[running]
             slopes = (root * _share(u))[:, :, None] * jacobian(values, running)
             running = running[~searches.step(running, slopes, root * _shrunk(u))]
+        for each in np.flatnonzero(searches.lost).tolist():
+            searches.values[each] = _alone(residual, jacobian, start[each], times[each], each, **effort)
         u = residual(searches.values, np.arange(len(start)))
     return Minima(searches.values, np.asarray(np.sum(times * loss(u, HUBER), axis=1)))
+
+
+def _alone(
+    residual: OfEach,
+    jacobian: OfEach,
+    start: FloatArray,
+    times: FloatArray,
+    each: int,
+    **effort: Any,
+) -> FloatArray:
+    """One problem by MINPACK itself, which pivots where slopes all but vanish."""
+    rows, which = np.repeat(np.arange(times.size), times.astype(np.intp)), np.array([each])
+    return minimise(
+        lambda values: residual(values[None], which)[0][rows],
+        lambda values: jacobian(values[None], which)[0][rows],
+        start,
+        **effort,
+    ).values
 
 
 def _shrunk(u: FloatArray) -> FloatArray:
@@ -98,6 +122,7 @@ class _Searches:
         self.limit = np.full(len(start), np.nan)  #: longest step, in scales
         self.damping = np.zeros(len(start))
         self.calls = np.ones(len(start), dtype=np.intp)
+        self.lost = np.zeros(len(start), dtype=bool)  #: whose slopes all but vanish along a parameter
 
     def _size(self, values: FloatArray, which: IntArray) -> FloatArray:
         return _norm(self.root[which] * _shrunk(self.residual(values, which)))
@@ -112,7 +137,10 @@ class _Searches:
         longest = FIRST_STEP * np.where(length > 0.0, length, 1.0)
         self.limit[which] = np.where(first, longest, self.limit[which])
         problem = _Linear.of(slopes, u, self.scale[which])
-        ends = np.asarray(~np.any(problem.gradient, axis=1))  # without a slope there is no way on
+        self.lost[which] = np.any(norms < _VANISHES * self.scale[which], axis=1)
+        ends: BoolArray = self.lost[which] | ~np.any(
+            problem.gradient, axis=1
+        )  # without a slope there is no way on
         waiting = np.flatnonzero(~ends)
         while waiting.size:
             taken, done = self._tried(which[waiting], problem.take(waiting), first[waiting])
@@ -172,17 +200,23 @@ class _Linear:
     right: FloatArray  #: shape (problems, parameters)
     gradient: FloatArray  #: in scales
     scale: FloatArray
+    full: BoolArray  #: whether every parameter has a slope, shape (problems,)
 
     @classmethod
     def of(cls, slopes: FloatArray, u: FloatArray, scale: FloatArray) -> _Linear:
-        scaled = slopes / scale[:, None, :]
-        both: FloatArray = np.linalg.qr(np.concatenate([scaled, u[:, :, None]], axis=2), mode="r")  # type: ignore[assignment]
-        parameters = scale.shape[1]
+        scaled, parameters = slopes / scale[:, None, :], scale.shape[1]
+        flat, rows = ~np.any(scaled, axis=1), np.concatenate([scaled, u[:, :, None]], axis=2)
+        if np.any(flat):  # held by a row of its own: without a slope it would take the place of another
+            holds = np.eye(parameters, parameters + 1) * flat[:, :, None]
+            rows = np.concatenate([rows, holds], axis=1)
+        both: FloatArray = np.linalg.qr(rows, mode="r")  # type: ignore[assignment]
         factor, right = both[:, :parameters, :parameters], both[:, :parameters, parameters]
-        return cls(factor, right, np.einsum("brp,br->bp", scaled, u), scale)
+        return cls(factor, right, np.einsum("brp,br->bp", scaled, u), scale, ~np.any(flat, axis=1))
 
     def take(self, index: IntArray) -> _Linear:
-        return _Linear(self.factor[index], self.right[index], self.gradient[index], self.scale[index])
+        return _Linear(
+            self.factor[index], self.right[index], self.gradient[index], self.scale[index], self.full[index]
+        )
 
     def along(self, step: FloatArray) -> FloatArray:
         """Return how a step changes the residuals, as long as the law is straight."""
@@ -199,7 +233,7 @@ class _Linear:
         return -step / self.scale, found
 
     def _undamped(self) -> FloatArray:
-        """The step to the minimum of the linear problem; nothing along a parameter without a slope."""
+        """The step to the minimum of the linear problem; nothing along what has no slope."""
         flat = np.diagonal(self.factor, axis1=1, axis2=2) == 0.0
         factor = self.factor + np.eye(flat.shape[1]) * flat[:, None, :]
         return np.asarray(np.linalg.solve(factor, np.where(flat, 0.0, self.right)[:, :, None])[:, :, 0])
@@ -210,8 +244,8 @@ class _Linear:
         """The step of about the length of its limit, by Newton's method on the damping."""
         left, singular, axes = np.linalg.svd(self.factor)
         shape = _Damped(singular**2, singular * np.einsum("bij,bi->bj", left, self.right))
-        full = np.all(np.diagonal(self.factor, axis1=1, axis2=2) != 0.0, axis=1)
-        low = np.where(full, (length - limit) / limit / shape.falls(np.zeros_like(limit)), 0.0)
+        bounded = self.full & np.isfinite(length)  # a slope that all but vanishes bounds no damping
+        low = np.where(bounded, (length - limit) / limit / shape.falls(np.zeros_like(limit)), 0.0)
         slope = _norm(self.gradient)
         high = slope / limit
         damping = np.minimum(np.maximum(damping, low), high)
