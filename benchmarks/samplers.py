@@ -163,7 +163,9 @@ def hersey_smc(problem: Problem, seed: int, draws: int = DRAWS, moves: Moves | N
             random.standard_normal((FIRST * count, problem.size)),
         )
         moves = moves or Moves()
-        found = sample(start, problem.target, CHANCES, problem.laws, random, moves, count=count)
+        found = sample(
+            start, lambda drives, _: problem.target(drives), CHANCES, problem.laws, random, moves, count=count
+        )
         parts.append(found.drives)
         evidence.append(found.log_evidence)
     law, closure, latent = (

@@ -6,10 +6,13 @@ import json
 import re
 import shlex
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from hersey import testbench
+from hersey.damping import curves
+from hersey.damping.candidates import comparison
 from tests.cli.command import run
 from tests.conftest import ROOT
 
@@ -32,6 +35,23 @@ def test_models_of_a_log(bench_csv: Path) -> None:
     assert "20 fits resampled by level, seed 9" in text
     assert "cal/mol" in text
     assert "collapse onto one" in " ".join(text.split())
+
+
+@pytest.mark.parametrize(("flags", "fits"), [((), 0), (("--verbose",), 1), (("--json",), 1)])
+def test_what_is_not_printed_is_not_computed(
+    flags: tuple[str, ...], fits: int, bench_csv: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    called: list[str] = []
+    for module, name in ((curves, "fit_curves"), (comparison, "bootstrap_draws")):
+        of = getattr(module, name)
+
+        def counted(*given: Any, of: Any = of, name: str = name, **named: Any) -> Any:
+            called.append(name)
+            return of(*given, **named)
+
+        monkeypatch.setattr(module, name, counted)
+    printed("models", bench_csv, *BENCH, "--bootstrap", "2", *flags)
+    assert called == ["bootstrap_draws", "fit_curves"] * fits
 
 
 def test_models_as_json(bench_csv: Path, tmp_path: Path) -> None:

@@ -155,6 +155,20 @@ def test_what_a_verb_loads(typed: str, examples_here: Path) -> None:
     assert modules & HEAVY - {"pydantic"} == set(LOADS[typed].split())
 
 
+@pytest.mark.parametrize("verb", ["fit", "models"])
+def test_a_conclusion_loads_no_document(verb: str, examples_here: Path) -> None:
+    modules = loaded(verb, *LOG.split(), cwd=examples_here)
+    assert not rooms(modules) & {"decision", "document", "posterior", "stability", "study"}
+    assert "hersey.damping.curves" not in modules
+
+
+def test_cycles_of_a_log_load_little_of_scipy(examples_here: Path) -> None:
+    asked = f"posterior {LOG} --machine {MACHINE} --draws 40"
+    modules = loaded(*asked.split(), cwd=examples_here)
+    assert "hersey.identification.cycle_record" in modules
+    assert not {"scipy.integrate", "scipy.signal", "scipy.stats"} & modules
+
+
 def test_what_a_report_loads() -> None:
     """Of SciPy only what its fits need, and nothing of what reads other files or draws other pictures."""
     code = "import sys, hersey.document.assembly, hersey.report.page; print(*sys.modules)"
@@ -165,10 +179,13 @@ def test_what_a_report_loads() -> None:
     assert not {"h5py", "openpyxl", "pandas", "matplotlib", "uvicorn", "starlette"} & modules
 
 
-def test_the_collector_rests_while_much_is_loaded() -> None:
+def test_the_collector_rests_while_much_is_loaded(examples_here: Path) -> None:
     with loading():
         assert not gc.isenabled()
     assert gc.isenabled()
+    counted = WATCHED.replace("sorted(sys.modules)", "__import__('gc').get_freeze_count()")
+    done = run_apart("fit", *LOG.split(), cwd=examples_here, command=[sys.executable, "-c", counted])
+    assert int(done.stderr.split()[-1]) > 50_000  # what was loaded is not looked through again
 
 
 @pytest.mark.parametrize(

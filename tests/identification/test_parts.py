@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from scipy import stats
+from scipy.signal import savgol_filter
 
 import hersey
 from hersey.charts.cycles import trace_chart
@@ -297,6 +298,9 @@ def test_least_turn_and_running_values() -> None:
     assert smoothed(value, 1) is value
     square = np.arange(12.0) ** 2
     np.testing.assert_allclose(curved(square, 5)[2:-2], square[2:-2], rtol=1e-12)
+    for window in (5, 7, 51):
+        expected = savgol_filter(value, window, 2, mode="nearest")
+        np.testing.assert_allclose(curved(value, window), expected, atol=1e-12)
     assert running_width(np.array([10.0, 20.0, 90.0])) == 9
     assert running_width(np.array([1.0])) == 1
 

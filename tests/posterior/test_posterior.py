@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -16,8 +17,9 @@ from hersey.log.text.column import split_unit
 from hersey.log.torque_log import Run
 from hersey.machine.uncertainty import Uncertainty
 from hersey.posterior import BreakAway, Posterior, Start, StickSlip
+from hersey.posterior.drives import DriveModel, Drives
 from hersey.posterior.evidence import CycleFigures
-from hersey.posterior.likelihood import break_away_force, misfit
+from hersey.posterior.likelihood import break_away_force, log_likelihood, misfit
 from hersey.posterior.priors import CLOSURES, DrivePriors
 from hersey.posterior.result import edges_at
 from hersey.posterior.sampling import decision_temperature, posterior
@@ -126,6 +128,26 @@ def test_a_break_away_force_is_that_of_the_draws(alone: Posterior, demo: hersey.
     assert np.median(break_away_force(found.model, found.drives, HOT)) == pytest.approx(
         0.8 * before, rel=0.03
     )
+
+
+def test_the_motion_of_draws_that_are_not_likely_enough_is_not_computed(
+    whole: Posterior, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    model, drives, evidence = whole.model, whole.drives.take(np.arange(60)), whole.evidence
+    found = log_likelihood(model, drives, evidence)
+    moved: list[int] = []
+    starts = DriveModel.starts
+
+    def counted(self: DriveModel, some: Drives, *given: Any, **named: Any) -> Any:
+        moved.append(len(some))
+        return starts(self, some, *given, **named)
+
+    monkeypatch.setattr(DriveModel, "starts", counted)
+    least = np.where(np.arange(60) < 40, found - 0.1, np.inf)
+    again = log_likelihood(model, drives, evidence, least)
+    assert again[:40] == pytest.approx(found[:40], rel=1e-9)
+    assert np.all(again[40:] == -np.inf)
+    assert moved == [40]
 
 
 def test_evidence_of_another_machine_does_not_count(whole: Posterior, demo: hersey.SteadyPoints) -> None:

@@ -24,7 +24,7 @@ def _drawn(target: object, *, size: int = 3, count: int = 2000, seed: int = 1) -
 def test_a_normal_likelihood_gives_the_product_of_both() -> None:
     """Prior N(0, 1), likelihood N(2, 0.1): mean 2/(1 + 0.01), deviation 0.1/sqrt(1.01), evidence by hand."""
 
-    def target(drives: Drives) -> np.ndarray:
+    def target(drives: Drives, _: np.ndarray) -> np.ndarray:
         return -0.5 * ((drives.latent[:, 0] - 2.0) / 0.1) ** 2 - np.log(0.1 * np.sqrt(2.0 * np.pi))
 
     found = _drawn(target)
@@ -40,7 +40,7 @@ def test_a_normal_likelihood_gives_the_product_of_both() -> None:
 def test_both_modes_are_found_with_their_weights() -> None:
     """Two narrow modes, three to one."""
 
-    def target(drives: Drives) -> np.ndarray:
+    def target(drives: Drives, _: np.ndarray) -> np.ndarray:
         x = drives.latent[:, 0]
         modes = [-0.5 * ((x - at) / 0.05) ** 2 + np.log(share) for at, share in ((-1.5, 0.75), (1.5, 0.25))]
         return np.logaddexp(*modes)
@@ -52,7 +52,7 @@ def test_both_modes_are_found_with_their_weights() -> None:
 def test_closures_have_the_odds_of_their_evidence() -> None:
     """A likelihood nine times as great for the first."""
 
-    def target(drives: Drives) -> np.ndarray:
+    def target(drives: Drives, _: np.ndarray) -> np.ndarray:
         return np.where(drives.closure == 0, np.log(9.0), 0.0)
 
     found = _drawn(target)
@@ -62,7 +62,7 @@ def test_closures_have_the_odds_of_their_evidence() -> None:
 def test_correlated_numbers_are_drawn() -> None:
     """A likelihood that knows the sum of two numbers to 1 % and not their difference."""
 
-    def target(drives: Drives) -> np.ndarray:
+    def target(drives: Drives, _: np.ndarray) -> np.ndarray:
         return -0.5 * ((drives.latent[:, 0] + drives.latent[:, 1] - 1.0) / 0.01) ** 2
 
     found = _drawn(target).drives.latent
@@ -71,8 +71,27 @@ def test_correlated_numbers_are_drawn() -> None:
 
 
 def test_the_same_seed_gives_the_same_bits() -> None:
-    def target(drives: Drives) -> np.ndarray:
+    def target(drives: Drives, _: np.ndarray) -> np.ndarray:
         return -0.5 * (drives.latent[:, 0] / 0.1) ** 2
 
     first, again = (_drawn(target, count=200).drives.latent for _ in range(2))
     assert np.array_equal(first, again)
+
+
+def test_draws_that_are_not_taken_need_no_target() -> None:
+    asked, spared = [0], [0]
+
+    def whole(drives: Drives, _: np.ndarray) -> np.ndarray:
+        return -0.5 * ((drives.latent[:, 0] - 2.0) / 0.1) ** 2 - 0.1 * drives.closure
+
+    def bounded(drives: Drives, least: np.ndarray) -> np.ndarray:
+        value = whole(drives, least)
+        asked[0] += value.size
+        spared[0] += np.count_nonzero(value < least)
+        return np.where(value < least, -np.inf, value)
+
+    all_, some = (_drawn(target, count=400) for target in (whole, bounded))
+    assert np.array_equal(all_.drives.latent, some.drives.latent)
+    assert np.array_equal(all_.drives.closure, some.drives.closure)
+    assert (all_.log_evidence, all_.accepted) == (some.log_evidence, some.accepted)
+    assert spared[0] > 0.4 * asked[0]

@@ -15,6 +15,8 @@ from hersey.errors import ParameterError
 from hersey.files.tables import TABLES
 
 if TYPE_CHECKING:
+    from hersey.damping.curves import CurveMixture
+    from hersey.damping.dwells import SteadyPoints
     from hersey.damping.estimate import Estimate
     from hersey.damping.surface import DampingSurface
     from hersey.machine.machine import Machine
@@ -63,25 +65,33 @@ def _fit_one(logs: list[Path], reading: Reading, machine: Machine | None, printi
     """Fit all logs together."""
     log = reading.log(logs, machine)
 
-    from hersey.damping.curves import fit_curves
-    from hersey.damping.curves.words import drag_curves
     from hersey.damping.fit import fit as fitted
-    from hersey.document.assembly import fit_document
     from hersey.verdict.regime import regime
     from hersey.verdict.warnings import warnings_of
 
     with working("fitting the surface"):
         points = reading.points(logs, log, machine)
         surface = fitted(points, temperature_scale=reading.temperature_scale)
-        curves = fit_curves(points, surface, None if machine is None else machine.mixed)
+        curves = _curves(points, surface, machine) if printing.in_full else None
     if printing.as_json:
+        from hersey.document.assembly import fit_document
+
         print_json(fit_document(log, points, surface, curves))
         return
     printing.text(regime(points, surface).verdict)
-    if not printing.verbose:
+    if curves is None:
         printing.text("", *_estimates(surface))
-    printing.details("", surface.summary(), drag_curves(curves.table))
+    else:
+        from hersey.damping.curves.words import drag_curves
+
+        printing.text("", surface.summary(), drag_curves(curves.table))
     printing.warnings(*warnings_of(points, surface))
+
+
+def _curves(points: SteadyPoints, surface: DampingSurface, machine: Machine | None) -> CurveMixture:
+    from hersey.damping.curves import fit_curves
+
+    return fit_curves(points, surface, None if machine is None else machine.mixed)
 
 
 def _estimates(surface: DampingSurface) -> list[str]:

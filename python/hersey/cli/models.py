@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -14,6 +15,7 @@ from hersey.cli.terminal import note
 if TYPE_CHECKING:
     from hersey.damping.candidates.intervals import ParameterEstimate
     from hersey.damping.candidates.model_comparison import ModelComparison
+    from hersey.damping.curves import LawWeight
 
 _MACHINE = "Also compare the contact model of this machine file."
 _BOOTSTRAP = "Number of resampled fits for the bootstrap interval; 0 skips it."
@@ -36,8 +38,6 @@ def models(
     Example: [bold]hersey models examples/bench.csv --tare standing[/bold]
     """
     from hersey.damping.candidates import compare_models
-    from hersey.damping.curves import fit_curves
-    from hersey.damping.curves.words import drag_curves
     from hersey.damping.fit import fit
     from hersey.errors import InsufficientDataError
     from hersey.machine.machine import read_machine
@@ -51,21 +51,32 @@ def models(
     log = reading.log(logs, machine)
     with working("reducing to dwells"):
         points = reading.points(logs, log, machine)
+    resampled = bootstrap if printing.in_full else 0  # nothing else prints that interval
     with bar("fitting", unit="models") as progress:
-        compared = compare_models(points, contact=contact, bootstrap=bootstrap, seed=seed, progress=progress)
+        compared = compare_models(points, contact=contact, bootstrap=resampled, seed=seed, progress=progress)
     try:
         surface = fit(points, temperature_scale=reading.temperature_scale)
     except InsufficientDataError:  # another model may hold where the surface cannot be fitted
         surface = None
     doubts = warnings_of(points, surface)
-    curves = () if surface is None else fit_curves(points, surface, contact).table
+    curves: tuple[LawWeight, ...] = ()
+    if printing.in_full and surface is not None:
+        from hersey.damping.curves import fit_curves
+
+        curves = fit_curves(points, surface, contact).table
     if printing.json(compared, warnings=doubts, drag_curves=curves):
         return
-    printing.text(*compared.reasons)
-    if not printing.verbose:
-        printing.text(*_table(compared))
-    printing.details("", compared.summary(), *([drag_curves(curves)] if curves else []))
+    printing.text(
+        *compared.reasons, *(_statistics(compared, curves) if printing.verbose else _table(compared))
+    )
     printing.warnings(*doubts)
+
+
+def _statistics(compared: ModelComparison, curves: Sequence[LawWeight]) -> list[str]:
+    """Every model and parameter with all statistics, and the drag curves."""
+    from hersey.damping.curves.words import drag_curves
+
+    return ["", compared.summary(), *([drag_curves(curves)] if curves else [])]
 
 
 def _table(compared: ModelComparison) -> list[str]:

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 from hersey.cli.groups import argument, option
+from hersey.cli.loading import loading
 from hersey.cli.no_load import refuse_no_load_log
 from hersey.cli.progress import bar, working
 from hersey.cli.quantities import amount_of, amounts_in
@@ -137,7 +138,8 @@ class Reading:
 
     def recipe(self, logs: Sequence[Path] = ()) -> Recipe:
         """Return how these logs become dwells."""
-        from hersey.damping.recipe import Recipe
+        with loading():
+            from hersey.damping.recipe import Recipe
 
         amounts = {role: amounts_in(getattr(self, role)) for role in ("load", "radius")}
         names = {role: name for role in ROLES if (name := getattr(self, role)) and not amounts.get(role)}

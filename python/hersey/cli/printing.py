@@ -65,6 +65,11 @@ class Printing(Quiet):
             raise ParameterError("--quiet and --verbose exclude each other: give one of them")
         super().prepare()
 
+    @property
+    def in_full(self) -> bool:
+        """Whether more than the conclusion is printed: all statistics, or JSON."""
+        return self.verbose or self.as_json
+
     def json(self, result: Any, **beside: Any) -> bool:
         """Print the result as JSON if that is asked for, and return whether it is."""
         if self.as_json:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -70,6 +71,15 @@ class DriveModel:
 
         They end ``above`` times the fastest dwell.
         """
+        if (kelvin, above) not in self._speeds:
+            self._speeds[kelvin, above] = self._spread(kelvin, above)
+        return self._speeds[kelvin, above]
+
+    @cached_property
+    def _speeds(self) -> dict[tuple[float | None, float], FloatArray]:
+        return {}
+
+    def _spread(self, kelvin: float | None, above: float) -> FloatArray:
         radius = self.machine.roll_radius
         stick = self.priors.range_of("stick_speed")[0] * min(self._moves_stick_speed(kelvin), 1.0)
         low = BELOW * min(stick, self.surface.speed_range[0] * radius)
@@ -98,17 +108,21 @@ class DriveModel:
         """
         latent = drives.latent[:, len(NUMBERS) :]
         fastest = self.machine.roll_radius * self.curves.fastest(drives.law, latent, kelvin)
-        before = self.force_at(drives, kelvin, fastest / _LAST)
-        falls = np.log(self.force_at(drives, kelvin, fastest) / before) < -_FALLS
+        curve = self.log_force(drives, kelvin)
+        before = self._on(curve, kelvin, fastest / _LAST)
+        falls = np.log(self._on(curve, kelvin, fastest) / before) < -_FALLS
         return np.where(falls, fastest, np.inf)
 
     def force_at(self, drives: Drives, kelvin: float | None, speed: FloatArray | float) -> FloatArray:
         """Return the drag of the film (N) of each draw at a speed (m/s), common or of its own, (draws,)."""
-        grid, curve = np.log(self.speeds(kelvin)), self.log_force(drives, kelvin)
-        at = np.broadcast_to(np.log(speed), (len(drives),))
+        return self._on(self.log_force(drives, kelvin), kelvin, speed)
+
+    def _on(self, curve: FloatArray, kelvin: float | None, speed: FloatArray | float) -> FloatArray:
+        grid = np.log(self.speeds(kelvin))
+        at = np.broadcast_to(np.log(speed), (len(curve),))
         place = np.clip((at - grid[0]) / STEP, 0.0, None)
         left = np.minimum(place.astype(np.intp), grid.size - 2)
-        row = np.arange(len(drives))
+        row = np.arange(len(curve))
         # beyond the last point the curve goes on straight
         low, high = curve[row, left], curve[row, left + 1]
         return np.asarray(np.exp(low + (place - left) * (high - low)))

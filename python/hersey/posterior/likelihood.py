@@ -20,17 +20,32 @@ MISREAD = 0.005
 OF_CYCLES, OF_PEAKS = 0.02, 0.02
 #: ln-likelihood of each figure of a draw that has no cycle to compare.
 _NO_CYCLE = -12.0
+#: Rounding of a sum of logarithms.
+_ROUNDING = 1e-6
 #: Deviations beyond which a figure counts no more: one bad figure must not rule.
 _FARTHEST = 8.0
 
 
 def log_likelihood(
-    model: DriveModel, drives: Drives, evidence: Sequence[Evidence], threads: int = 1
+    model: DriveModel,
+    drives: Drives,
+    evidence: Sequence[Evidence],
+    least: FloatArray | float = -np.inf,
+    *,
+    threads: int = 1,
 ) -> FloatArray:
-    """Return ln of the likelihood of all evidence for each draw, shape (draws,)."""
-    out = np.zeros(len(drives))
+    """Return ln of the likelihood of all evidence for each draw, shape (draws,).
+
+    That of a draw which cannot come to its ``least``, shape (draws,), is minus infinity: its motion is not
+    computed then.
+    """
+    out, left = np.zeros(len(drives)), sum(map(_most, evidence))
     for each in evidence:
-        out += _of_one(model, drives, each, threads)
+        out[out + left < least - _ROUNDING] = -np.inf
+        able = np.flatnonzero(np.isfinite(out))
+        if able.size:
+            out[able] += _of_one(model, drives.take(able), each, threads)
+        left -= _most(each)
     return out
 
 

@@ -17,8 +17,9 @@ import numpy as np
 from hersey.arrays import FloatArray, IntArray
 from hersey.posterior.drives import Drives
 
-#: ln weight of dwells and of evidence of each draw.
-Target = Callable[[Drives], FloatArray]
+#: ln weight of dwells and of evidence of each draw; anything below the least given beside it, where it cannot
+#: come to that, as such a draw is not taken.
+Target = Callable[[Drives, FloatArray], FloatArray]
 #: Share of the draws kept that must stay effective from one degree of evidence to the next.
 _EFFECTIVE = 0.5
 #: Most degrees, and the least by which each brings evidence in.
@@ -73,7 +74,7 @@ def sample(
     count
         How many are kept, as many as there are by default; with more at first fewer are equal later.
     target
-        ln of the likelihood of everything for each draw.
+        ln of the likelihood of everything for each draw, if it comes to a least.
     closures
         Prior probability of each closure, shape (closures,).
     laws
@@ -81,7 +82,7 @@ def sample(
     progress
         Called with the share of the evidence that is in.
     """
-    value, kept_count = target(draws), count or len(draws)
+    value, kept_count = target(draws, np.full(len(draws), -np.inf)), count or len(draws)
     beta, log_evidence, stage, accepted = 0.0, 0.0, 0, 1.0
     part = _PART
     while beta < 1.0 and stage < _STAGES:
@@ -155,11 +156,14 @@ def _moved(
     changes = ~along & ~alone & (random.random(count) < 0.2)
     law = np.where(changes, random.integers(0, laws.size, count), draws.law).astype(np.intp)
     proposed = Drives(law, closure.astype(np.intp), latent)
-    new = target(proposed)
     # moves about the prior leave it as it is; those along differences do not
     likelier = np.where(along, 0.5 * np.sum(draws.latent**2 - latent**2, axis=1), 0.0)
     likelier += np.log(closures[closure] / closures[draws.closure]) + np.log(laws[law] / laws[draws.law])
-    takes = np.log(random.random(count)) < beta * (new - value) + likelier
+    chance = np.log(random.random(count))
+    stays = alone & (closure == draws.closure)
+    least = np.where(stays, np.inf, value + (chance - likelier) / beta)
+    new = np.where(stays, value, target(proposed, least))
+    takes = chance < beta * (new - value) + likelier
     kept = Drives(
         np.where(takes, law, draws.law).astype(np.intp),
         np.where(takes, closure, draws.closure).astype(np.intp),

@@ -296,10 +296,10 @@ def _population(
         random.standard_normal((many, model.size)),
     )
 
-    def target(drives: Drives) -> FloatArray:
+    def target(drives: Drives, least: FloatArray) -> FloatArray:
         value = model.log_weight(drives)
         if evidence:
-            value = value + log_likelihood(model, drives, evidence, threads)
+            value = value + log_likelihood(model, drives, evidence, least - value, threads=threads)
         # a draw whose motion cannot be followed does not count
         return np.where(np.isnan(value), -np.inf, value)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from statistics import median
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -108,11 +109,12 @@ def _stretches(run: Run) -> list[_Stretch]:
     blocks = np.add.reduceat(np.abs(run.speed), np.arange(0, run.speed.size, step))
     sizes = np.diff(np.append(np.arange(0, run.speed.size, step), run.speed.size))
     means, out, first = blocks / sizes, [], 0
+    each = means.tolist()  # of so few numbers Python finds the median sooner than NumPy
     while first < means.size:
         last = first + 1
         while (
             last < means.size
-            and abs(means[last] - np.median(means[max(last - _RECENT, first) : last])) <= SAME * means[first]
+            and abs(each[last] - median(each[max(last - _RECENT, first) : last])) <= SAME * each[first]
         ):
             last += 1
         rows = first * step, min(last * step, run.speed.size)

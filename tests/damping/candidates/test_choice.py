@@ -23,9 +23,10 @@ from hersey.damping.candidates.comparison import (
 from hersey.damping.candidates.constant_plus import ConstantPlusLaw
 from hersey.damping.candidates.energy import activation_energies
 from hersey.damping.candidates.errors_in_variables import OrthogonalFit, orthogonal_fit
-from hersey.damping.candidates.fitting import fit_law, left_out, resampled
+from hersey.damping.candidates.fitting import fit_law
 from hersey.damping.candidates.intervals import ParameterEstimate, band, estimates
 from hersey.damping.candidates.lack_of_fit import LackOfFit, lack_of_fit
+from hersey.damping.candidates.refits import left_out, resampled
 from hersey.damping.candidates.thermal import ARRHENIUS, KELVIN, Thermal
 from hersey.errors import InsufficientDataError, ParameterError
 from tests.damping.candidates.cases import even, hand_fit, inputs

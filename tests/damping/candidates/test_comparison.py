@@ -13,8 +13,9 @@ from hersey.damping.candidates import Candidate, Observations, compare_models
 from hersey.damping.candidates.branched import FREE, HELD, ONE, Law
 from hersey.damping.candidates.candidate import all_candidates
 from hersey.damping.candidates.errors_in_variables import orthogonal_fit
-from hersey.damping.candidates.fitting import AnyLaw, fit_law, left_out
+from hersey.damping.candidates.fitting import AnyLaw, fit_law
 from hersey.damping.candidates.observations import Inputs
+from hersey.damping.candidates.refits import left_out
 from hersey.damping.candidates.stribeck import StribeckLaw
 from hersey.damping.candidates.thermal import ARRHENIUS, CELSIUS, GAS_CONSTANT, KELVIN, VFT, Thermal
 from hersey.errors import InsufficientDataError, ParameterError

@@ -9,9 +9,10 @@ import pytest
 from scipy import integrate, optimize, stats
 
 from hersey.damping.candidates.branched import FREE, HELD, ONE, Law
-from hersey.damping.candidates.fitting import LawFit, fit_law, left_out, resampled, search
+from hersey.damping.candidates.fitting import LawFit, fit_law, search
 from hersey.damping.candidates.identifiability import not_identified
-from hersey.damping.candidates.observations import Observations
+from hersey.damping.candidates.observations import Inputs, Observations
+from hersey.damping.candidates.refits import left_out, resampled
 from hersey.damping.candidates.stribeck import StribeckLaw
 from hersey.damping.candidates.thermal import ARRHENIUS, KELVIN, VFT, Thermal
 from tests.damping.candidates.cases import even, hand_fit
@@ -174,6 +175,27 @@ def test_left_out_dwells_come_from_explicit_refits(data: Observations, fit: LawF
         out = data.cluster == label
         linear = solved(x[~out], data.log_torque[~out], fit.sigma[~out])
         assert missed[out] == pytest.approx(data.log_torque[out] - x[out] @ linear, abs=2e-6)
+
+
+@pytest.mark.parametrize("clusters", [9, 36])
+def test_left_out_dwells_are_predicted_together(
+    clusters: int, data: Observations, fit: LawFit, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    called: list[int] = []
+    predict = Law.predict
+
+    def counted(self: Law, values: np.ndarray, inputs: Inputs) -> np.ndarray:
+        called.append(values[0].size)
+        return predict(self, values, inputs)
+
+    monkeypatch.setattr(Law, "predict", counted)
+    left_out(fit, replace(data, cluster=data.cluster % clusters))
+    assert len(called) < 12
+    assert called[0] == clusters
+    called.clear()
+    resampled(fit, data, 100, seed=1)
+    assert len(called) < 20
+    assert called[0] == 100
 
 
 def test_left_out_dwells_keep_the_tare_of_the_others(tared: Observations) -> None:

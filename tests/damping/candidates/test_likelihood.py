@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 import pytest
 from scipy import integrate, optimize, stats
@@ -99,6 +101,25 @@ def test_as_many_residuals_as_parameters_are_enough_and_fewer_are_not() -> None:
     assert minimise(line, None, np.zeros(2)).values == pytest.approx([2.0, 1.0], abs=1e-7)
     with pytest.raises(InsufficientDataError, match=r"^1 points are too few for 2 parameters$"):
         minimise(lambda v: v[:1] - 1.0, None, np.zeros(2))
+
+
+def test_nothing_is_computed_twice_in_a_row() -> None:
+    x, asked = np.linspace(0.0, 2.0, 20), {"residual": list[bytes](), "jacobian": list[bytes]()}
+
+    def residual(values: np.ndarray) -> np.ndarray:
+        asked["residual"].append(values.tobytes())
+        return values[0] * np.exp(-values[1] * x) - np.exp(-x)
+
+    def jacobian(values: np.ndarray) -> np.ndarray:
+        asked["jacobian"].append(values.tobytes())
+        decay = np.exp(-values[1] * x)
+        return np.column_stack([decay, -values[0] * x * decay])
+
+    found = minimise(residual, jacobian, np.array([0.3, 2.0]))
+    assert found.values == pytest.approx([1.0, 1.0], rel=1e-6)
+    for calls in asked.values():
+        assert len(calls) > 2
+        assert all(one != other for one, other in itertools.pairwise(calls))
 
 
 def test_a_search_ends_after_the_calls_it_is_allowed() -> None:

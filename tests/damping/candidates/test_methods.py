@@ -9,7 +9,7 @@ import pytest
 from scipy import stats
 
 from hersey.damping.candidates.branched import FREE, HELD, ONE, Law
-from hersey.damping.candidates.fitting import LawFit, fit_law, resampled
+from hersey.damping.candidates.fitting import LawFit, fit_law
 from hersey.damping.candidates.intervals import (
     METHODS,
     ParameterEstimate,
@@ -21,6 +21,7 @@ from hersey.damping.candidates.intervals import (
     quantities,
 )
 from hersey.damping.candidates.observations import Observations
+from hersey.damping.candidates.refits import resampled
 from hersey.damping.candidates.stribeck import StribeckLaw
 from hersey.damping.candidates.thermal import ARRHENIUS, CELSIUS, KELVIN, VFT, Thermal
 from tests.damping.candidates.cases import even, hand_fit, inputs

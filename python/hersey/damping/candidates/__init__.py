@@ -13,7 +13,9 @@ candidate             which laws there are, and which the data cannot carry
 shared_errors         errors that dwells share: of the zero, of visits and runs
 likelihood            robust likelihood and its least-squares solution
 clustered             the covariance whatever the points of a cluster have in common
-fitting               one law fitted; left-out and resampled fits
+fitting               one law fitted
+simultaneous          many least-squares problems of one kind at once
+refits                a law fitted without some of its dwells in turn, or to clusters drawn anew
 identifiability       which parameters the data do not determine, and what would
 errors_in_variables   the same fit by orthogonal distance regression
 lack_of_fit           whether a law holds at all

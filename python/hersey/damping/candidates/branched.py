@@ -16,13 +16,15 @@ from functools import cached_property
 
 import numpy as np
 
-from hersey.arrays import BoolArray, FloatArray
-from hersey.damping.candidates.named import Named
+from hersey.arrays import BoolArray, FloatArray, IntArray
+from hersey.damping.candidates.named import Named, stacked
 from hersey.damping.candidates.observations import Inputs
 from hersey.damping.candidates.thermal import Thermal
 
 #: Least 1 + c by which a transition at one Hersey number is computed; nearer 0 torque tells no viscosity.
 LEAST_POWER = 0.05
+#: In the place of derivatives that nobody asked for.
+_NONE = np.empty((0, 0))
 
 # Branches of a law, as they are called in words.
 NO_SPEED = "no speed"
@@ -41,7 +43,11 @@ def transition_exponent(e: float, c: float) -> float:
     Torque varies as viscosity^(1 + c), so viscosity as exp(e s/(1 + c)) and the transition speed as its
     inverse. Near c = -1 torque tells nothing of viscosity, and the denominator is bounded.
     """
-    return -e / max(1.0 + c, LEAST_POWER)
+    return float(_held(e, c))
+
+
+def _held(e: FloatArray | float, c: FloatArray | float) -> FloatArray:
+    return np.asarray(-e / np.maximum(1.0 + c, LEAST_POWER))
 
 
 @dataclass(frozen=True)
@@ -63,7 +69,7 @@ class Bend:
 
 @dataclass(frozen=True)
 class Law(Named):
-    """A candidate about reference values.
+    """A candidate about reference values; values are those of `Named`.
 
     ``branches`` is one of the constants above; ``groups`` is how many temperatures have an exponent of
     their own, 1 if it is common.
@@ -96,7 +102,7 @@ class Law(Named):
         return self._evaluate(values, inputs)[0]
 
     def jacobian(self, values: FloatArray, inputs: Inputs) -> FloatArray:
-        """Return its derivatives with respect to the parameters, shape (points, parameters)."""
+        """Return its derivatives with respect to the parameters, shape (..., points, parameters)."""
         return self._evaluate(values, inputs, derivatives=True)[1]
 
     def slopes(self, values: FloatArray, inputs: Inputs) -> tuple[FloatArray, FloatArray]:
@@ -117,7 +123,7 @@ class Law(Named):
             q = self.thermal.start()[1:]
             shape, _, _ = self._shape(inputs, *q)
             e_row = [shape]
-        speeds = [] if self.branches == NO_SPEED else list((self._one_hot(inputs) * z[:, None]).T)
+        speeds = [] if self.branches == NO_SPEED else list(self._members(inputs) * z)
         plain = [np.ones_like(z), *e_row, *speeds]
         one, *_ = np.linalg.lstsq(np.column_stack(plain) * root[:, None], log_torque * root, rcond=None)
         if not self.broken:
@@ -141,7 +147,7 @@ class Law(Named):
         if not self.thermal:
             return [0.0]
         e = float(values[1])
-        c = float(np.mean(values[2 : 2 + self.groups] - 1.0)) if first else self._mean_exponent(values)
+        c = float(np.mean(values[2 : 2 + self.groups] - 1.0)) if first else float(self._mean_exponent(values))
         held = transition_exponent(e, c)
         return [held, 3.3 * -e] if first else [held]
 
@@ -155,20 +161,23 @@ class Law(Named):
 
     def _broken_start(self, linear: FloatArray, q: list[float], at: float, d: float) -> FloatArray:
         one = self._assembled(linear[:-1], q, [])
-        mixed = self._mean_exponent(one) + float(linear[-1])
+        mixed = float(self._mean_exponent(one)) + float(linear[-1])
         free = [d] if self.branches == FREE and self.thermal else []
         return np.append(one, [mixed, at, *free])
 
-    def _mean_exponent(self, values: FloatArray) -> float:
+    def _mean_exponent(self, values: FloatArray) -> FloatArray:
         first = 1 + (len(self.thermal.names) if self.thermal else 0)
-        return float(np.mean(values[first : first + self.groups]))
+        return np.asarray(values[first : first + self.groups].mean(axis=0))
 
-    def _one_hot(self, inputs: Inputs) -> FloatArray:
+    def _members(self, inputs: Inputs) -> FloatArray:
+        """Whether a point has each exponent, 1 or 0, shape (groups, points) or (1, 1)."""
         if self.groups == 1:
-            return np.ones((inputs.log_speed.size, 1))
-        return np.asarray(inputs.group[:, None] == np.arange(self.groups)[None, :], dtype=np.float64)
+            return np.ones((1, 1))
+        return np.asarray(inputs.group == np.arange(self.groups)[:, None], dtype=np.float64)
 
-    def _shape(self, inputs: Inputs, q: float = 0.0) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def _shape(
+        self, inputs: Inputs, q: FloatArray | float = 0.0
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
         if self.thermal is None or inputs.kelvin is None:
             nothing = np.zeros_like(inputs.log_speed)
             return nothing, nothing, nothing
@@ -176,17 +185,24 @@ class Law(Named):
 
     def _thermal_term(
         self, values: FloatArray, inputs: Inputs
-    ) -> tuple[float, FloatArray, FloatArray, FloatArray]:
+    ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         if self.thermal is None:
-            return 0.0, *self._shape(inputs)
-        q = float(values[2]) if "q" in self.thermal.names else 0.0
-        return float(values[1]), *self._shape(inputs, q)
+            return np.zeros(()), *self._shape(inputs)
+        return values[1], *self._shape(inputs, values[2] if "q" in self.thermal.names else 0.0)
 
-    def _transition(self, values: FloatArray, e: float, s: FloatArray) -> FloatArray:
-        at = float(values[self.index("at")])
+    def _transition(self, values: FloatArray, e: FloatArray, s: FloatArray) -> FloatArray:
+        at = values[self.index("at")]
         if self.branches == FREE:
-            return np.asarray(at + (float(values[-1]) * s if self.thermal else 0.0 * s))
-        return np.asarray(at + transition_exponent(e, self._mean_exponent(values)) * s)
+            return np.asarray(at + (values[-1] * s if self.thermal else 0.0 * s))
+        return np.asarray(at + _held(e, self._mean_exponent(values)) * s)
+
+    def _exponents(self, values: FloatArray, group: IntArray) -> FloatArray:
+        """The exponent above the transition, or of the only branch, at each point."""
+        if self.groups == 1:
+            return np.asarray(values[self.index("c")])
+        first = self.index("c1")
+        each = values[first : first + self.groups]
+        return np.asarray(each[group] if each.ndim == 1 else each[group, ..., 0].T)
 
     def _evaluate(
         self, values: FloatArray, inputs: Inputs, *, derivatives: bool = False
@@ -197,20 +213,18 @@ class Law(Named):
         if self.branches == NO_SPEED:
             law, c = values[0] + e * s, np.zeros_like(z)
         else:
-            first = self.index("c1" if self.groups > 1 else "c")
-            c = values[first : first + self.groups][inputs.group if self.groups > 1 else 0] + 0.0 * z
+            c = self._exponents(values, inputs.group) + 0.0 * z
             law = values[0] + e * s + (1.0 + c) * z
         if not self.broken:
-            empty = np.empty((z.size, 0))
             if not derivatives:
-                return law, empty, z, z
-            columns = [np.ones_like(z), *([s] if self.thermal else [])]
+                return law, _NONE, z, z
+            columns: list[FloatArray | float] = [1.0, *([s] if self.thermal else [])]
             if self.thermal and "q" in self.thermal.names:
                 columns.append(e * ds_dq)
             if self.branches == NO_SPEED:
-                return law, np.column_stack(columns), z * 0.0, e * ds_dt
-            spread = self._one_hot(inputs) * z[:, None]
-            return law, np.column_stack([*columns, spread]), 1.0 + c, e * ds_dt
+                return law, stacked(columns, law.shape), z * 0.0, e * ds_dt
+            columns += [member * z for member in self._members(inputs)]
+            return law, stacked(columns, law.shape), 1.0 + c, e * ds_dt
         return self._evaluate_broken(values, inputs, law, c, (e, s, ds_dt, ds_dq), derivatives=derivatives)
 
     def _evaluate_broken(
@@ -219,7 +233,7 @@ class Law(Named):
         inputs: Inputs,
         law: FloatArray,
         c: FloatArray,
-        thermal: tuple[float, FloatArray, FloatArray, FloatArray],
+        thermal: tuple[FloatArray, FloatArray, FloatArray, FloatArray],
         *,
         derivatives: bool,
     ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
@@ -230,25 +244,26 @@ class Law(Named):
         change = values[self.index("c_mixed")] - c
         law = law + change * reach
         if not derivatives:
-            return law, np.empty((z.size, 0)), z, z
+            return law, _NONE, z, z
         drop = change * share  # times minus the derivative of the transition
         power = 1.0 + self._mean_exponent(values)
-        held = self.branches == HELD
         # one Hersey number: d = -e/(1 + c), as long as that is not bounded
-        d = transition_exponent(e, power - 1.0) if held else (float(values[-1]) if self.thermal else 0.0)
-        moved_by_e = -1.0 / max(power, LEAST_POWER) if held else 0.0
-        moved_by_c = e / power**2 / self.groups if held and power > LEAST_POWER else 0.0
-        columns = [np.ones_like(z)]
+        nothing = np.zeros(())
+        d, moved_by_e, moved_by_c = values[-1] if self.thermal else nothing, nothing, nothing
+        if self.branches == HELD:
+            d, moved_by_e = _held(e, power - 1.0), -1.0 / np.maximum(power, LEAST_POWER)
+            moved_by_c = np.where(power > LEAST_POWER, e / power**2 / self.groups, 0.0)
+        columns: list[FloatArray | float] = [1.0]
         if self.thermal:
             columns.append(s - drop * moved_by_e * s)
             if "q" in self.thermal.names:
                 columns.append(e * ds_dq - drop * d * ds_dq)
-        spread = self._one_hot(inputs) * (z - reach)[:, None] - (drop * moved_by_c * s)[:, None]
-        columns += [*spread.T, reach, -drop]
+        above, moved = z - reach, drop * moved_by_c * s
+        columns += [*(member * above - moved for member in self._members(inputs)), reach, -drop]
         if self.branches == FREE and self.thermal:
             columns.append(-drop * s)
         temperature = e * ds_dt - drop * d * ds_dt
-        return law, np.column_stack(columns), 1.0 + c + drop, temperature
+        return law, stacked(columns, law.shape), 1.0 + c + drop, temperature
 
 
 def _corners(reach: FloatArray, count: int = 14) -> FloatArray:

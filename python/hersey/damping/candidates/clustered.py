@@ -35,15 +35,23 @@ def clustered_covariance(jacobian: FloatArray, u: FloatArray, cluster: IntArray)
 def _cr3(
     rows: FloatArray, u: FloatArray, bread: FloatArray, cluster: IntArray, prior: FloatArray
 ) -> FloatArray:
-    out = np.zeros_like(bread)
     # the rows carry the root of Huber's weight already, so the residual carries the other root
     weighted = np.sign(u) * np.sqrt(np.minimum(np.abs(u), HUBER) * np.abs(u))
-    labels = np.unique(cluster)
-    for label in labels:
-        members = np.flatnonzero(cluster == label)
-        part = rows[members]
-        leverage = np.eye(members.size) - part @ bread @ part.T
-        push = part.T @ np.linalg.pinv(leverage) @ weighted[members]
-        out += np.outer(push, push)
-    shrink = (labels.size - 1) / labels.size
-    return np.asarray(bread @ (shrink * out + prior) @ bread)
+    pushes = np.vstack([_pushes(rows[of], weighted[of], bread) for of in _alike(cluster)])
+    shrink = (len(pushes) - 1) / len(pushes)
+    return np.asarray(bread @ (shrink * pushes.T @ pushes + prior) @ bread)
+
+
+def _alike(cluster: IntArray) -> list[IntArray]:
+    """Members of the clusters of each size, shape (clusters, size)."""
+    _, label, sizes = np.unique(cluster, return_inverse=True, return_counts=True)
+    members = np.split(np.argsort(label, kind="stable"), np.cumsum(sizes)[:-1])
+    return [
+        np.array([each for each in members if each.size == size], dtype=np.intp) for size in np.unique(sizes)
+    ]
+
+
+def _pushes(rows: FloatArray, residuals: FloatArray, bread: FloatArray) -> FloatArray:
+    """By how much each cluster of one size moves the values, shape (clusters, parameters)."""
+    leverage = np.eye(rows.shape[1]) - rows @ bread @ rows.swapaxes(1, 2)
+    return np.asarray(np.einsum("cmp,cmn,cn->cp", rows, np.linalg.pinv(leverage), residuals))

@@ -18,13 +18,14 @@ from hersey.damping.candidates.candidate import Candidate, all_candidates, conta
 from hersey.damping.candidates.collapse import HerseyCollapse, temperature_collapse
 from hersey.damping.candidates.energy import ActivationEnergies, activation_energies, usable_for_transition
 from hersey.damping.candidates.errors_in_variables import orthogonal_fit
-from hersey.damping.candidates.fitting import LawFit, fit_law, left_out
+from hersey.damping.candidates.fitting import LawFit, fit_law
 from hersey.damping.candidates.identifiability import not_identified
 from hersey.damping.candidates.intervals import bootstrap_draws, estimates
 from hersey.damping.candidates.lack_of_fit import lack_of_fit
 from hersey.damping.candidates.likelihood import EVIDENCE
 from hersey.damping.candidates.model_comparison import CandidateFit, ModelComparison
 from hersey.damping.candidates.observations import Observations
+from hersey.damping.candidates.refits import left_out
 from hersey.damping.candidates.shared_errors import shared_variance
 from hersey.damping.candidates.shared_load import SharedLoad
 from hersey.damping.candidates.thermal import ARRHENIUS

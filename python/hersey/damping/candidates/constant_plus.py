@@ -16,7 +16,7 @@ import numpy as np
 from scipy import optimize
 
 from hersey.arrays import FloatArray
-from hersey.damping.candidates.named import Named
+from hersey.damping.candidates.named import Named, stacked
 from hersey.damping.candidates.observations import Inputs
 from hersey.damping.candidates.thermal import Thermal
 
@@ -57,12 +57,12 @@ class ConstantPlusLaw(Named):
         return np.asarray(values[0] + np.logaddexp.reduce(self._logarithms(values, inputs)))
 
     def jacobian(self, values: FloatArray, inputs: Inputs) -> FloatArray:
-        """Return its derivatives with respect to the parameters, shape (points, parameters)."""
+        """Return its derivatives with respect to the parameters, shape (..., points, parameters)."""
         share, constant, viscous = self._shares(values, inputs)
         s, _, by_q = self._shape(values, inputs)
-        e, r = self._value(values, "e"), self._value(values, "r")
-        columns = {
-            "level": np.ones_like(share),
+        e, r = self.value(values, "e"), self.value(values, "r")
+        columns: dict[str, FloatArray | float] = {
+            "level": 1.0,
             "e": share * s,
             "q": (share * e + (1.0 - share) * r) * by_q,
             "c": share * inputs.log_speed,
@@ -70,13 +70,13 @@ class ConstantPlusLaw(Named):
             "viscous": viscous,
             "r": (1.0 - share) * s,
         }
-        return np.column_stack([columns[name] for name in self.names])
+        return stacked([columns[name] for name in self.names], share.shape)
 
     def slopes(self, values: FloatArray, inputs: Inputs) -> tuple[FloatArray, FloatArray]:
         """Return its derivatives with respect to ln w and to T (1/K)."""
         share, _, viscous = self._shares(values, inputs)
         _, by_heat, _ = self._shape(values, inputs)
-        e, r = self._value(values, "e"), self._value(values, "r")
+        e, r = self.value(values, "e"), self.value(values, "r")
         return share * (1.0 + self._exponent(values)) + viscous, (share * e + (1.0 - share) * r) * by_heat
 
     def film_share(self, values: FloatArray, inputs: Inputs) -> FloatArray:
@@ -109,30 +109,28 @@ class ConstantPlusLaw(Named):
         ranked.sort(key=lambda f: f[0])
         return [values for _, values in ranked[:3]]
 
-    def _exponent(self, values: FloatArray) -> float:
-        return self._value(values, "c") if self.exponent is None else self.exponent
-
-    def _value(self, values: FloatArray, name: str) -> float:
-        return float(values[self.index(name)]) if name in self.names else 0.0
+    def _exponent(self, values: FloatArray) -> FloatArray | float:
+        return self.value(values, "c") if self.exponent is None else self.exponent
 
     def _shape(self, values: FloatArray, inputs: Inputs) -> tuple[FloatArray, FloatArray, FloatArray]:
         if self.thermal is None or inputs.kelvin is None:
             nothing = np.zeros_like(inputs.log_speed)
             return nothing, nothing, nothing
-        return self.thermal.shape(inputs.kelvin, self._value(values, "q"))
+        return self.thermal.shape(inputs.kelvin, self.value(values, "q"))
 
     def _shares(self, values: FloatArray, inputs: Inputs) -> FloatArray:
-        """Shares of film, constant and viscous part in the torque, shape (3, points)."""
+        """Shares of film, constant and viscous part in the torque, shape (3, ..., points)."""
         parts = self._logarithms(values, inputs)
         return np.asarray(np.exp(parts - np.logaddexp.reduce(parts)))
 
     def _logarithms(self, values: FloatArray, inputs: Inputs) -> FloatArray:
-        """Logarithms of film, constant and viscous part over F, shape (3, points)."""
+        """Logarithms of film, constant and viscous part over F, shape (3, ..., points)."""
         s, z = self._shape(values, inputs)[0], inputs.log_speed
-        film = self._value(values, "e") * s + (1.0 + self._exponent(values)) * z
-        factor = self._value(values, "r") * s
-        rest = np.clip(self._value(values, "rest"), -_LOG_BOUND, _LOG_BOUND) + factor + np.zeros_like(z)
-        viscous = np.full_like(z, -np.inf)
+        factor = self.value(values, "r") * s
+        rest = np.clip(self.value(values, "rest"), -_LOG_BOUND, _LOG_BOUND) + factor + np.zeros_like(z)
+        out = np.empty((3, *rest.shape))
+        out[0] = self.value(values, "e") * s + (1.0 + self._exponent(values)) * z
+        out[1], out[2] = rest, -np.inf
         if self.viscous:
-            viscous = np.clip(self._value(values, "viscous"), -_LOG_BOUND, _LOG_BOUND) + factor + z
-        return np.array([film, rest, viscous])
+            out[2] = np.clip(self.value(values, "viscous"), -_LOG_BOUND, _LOG_BOUND) + factor + z
+        return out

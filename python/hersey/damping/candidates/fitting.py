@@ -49,10 +49,6 @@ _WIDE_SCATTER = 0.3
 #: Variance of a value by a scatter of groups that is unknown, over that by as much of dwells, that is
 #: little: groups may scatter several times as much as dwells.
 _LITTLE = 0.1
-#: Resamples tried for one that holds every temperature.
-_MOST_TRIES = 300
-#: Largest number of parts in which data are excluded in turn.
-MOST_FOLDS = 40
 
 
 @dataclass(frozen=True)
@@ -337,64 +333,6 @@ def search(
     rows = np.zeros((minimum.jacobian.shape[0], start.size))
     rows[:, free] = minimum.jacobian
     return Minimum(whole(minimum.values), minimum.cost, rows)
-
-
-def left_out(fit: LawFit, data: Observations) -> FloatArray:
-    """Return residuals of dwells predicted without their own cluster; NaN where a law cannot say.
-
-    A law with an exponent per temperature cannot predict a temperature that was excluded.
-    """
-    start = np.append(fit.values, fit.effects)
-    parts = data.cluster % MOST_FOLDS
-    out = np.full(len(data), np.nan)
-    for part in np.unique(parts):
-        kept, missing = np.flatnonzero(parts != part), np.flatnonzero(parts == part)
-        groups = getattr(fit.law, "groups", 1)
-        if groups > 1 and np.unique(data.inputs.group[kept]).size < groups:
-            return out
-        columns = fit.disturbances[kept]
-        minimum = search(fit.law, data.take(kept), columns, fit.sigma[kept], start, effort=Effort(1e-6))
-        out[missing] = _residuals(fit.law, data.take(missing), fit.disturbances[missing], minimum.values)
-    return out
-
-
-def resampled(fit: LawFit, data: Observations, count: int, seed: int) -> FloatArray:
-    """Return values fitted to data drawn cluster by cluster with replacement, shape (count, parameters).
-
-    None, shape (0, parameters), where hardly a draw holds all the temperatures that the law has exponents of.
-    """
-    random = np.random.default_rng(seed)
-    clusters = [np.flatnonzero(data.cluster == label) for label in np.unique(data.cluster)]
-    starts = [np.append(fit.values, fit.effects)]
-    if fit.law.broken:  # the cost has several minima in a corner
-        at, error = fit.law.index("at"), min(fit.error("at"), 0.5)
-        for aside in (-error, error):
-            moved = starts[0].copy()
-            moved[at] += aside
-            starts.append(moved)
-    draws = np.empty((count, fit.values.size))
-    groups = getattr(fit.law, "groups", 1)
-    for row in range(count):
-        for _ in range(_MOST_TRIES):
-            drawn = random.integers(0, len(clusters), len(clusters))
-            sample = np.concatenate([clusters[i] for i in drawn]).astype(np.intp)
-            if np.unique(data.inputs.group[sample]).size >= min(2, data.temperatures.size, 2) and (
-                groups == 1 or np.unique(data.inputs.group[sample]).size == groups
-            ):
-                break
-        else:
-            return np.empty((0, fit.values.size))
-        refit = partial(
-            search,
-            fit.law,
-            data.take(sample),
-            fit.disturbances[sample],
-            fit.sigma[sample],
-            expected=random.standard_normal(fit.effects.size),
-            effort=Effort(1e-6),
-        )
-        draws[row] = min((refit(s) for s in starts), key=lambda m: m.cost).values[: fit.values.size]
-    return draws
 
 
 def _residuals(law: AnyLaw, data: Observations, columns: FloatArray, values: FloatArray) -> FloatArray:

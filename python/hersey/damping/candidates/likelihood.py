@@ -89,14 +89,7 @@ def minimise(
         If there are fewer residuals than parameters.
     """
     slopes = jacobian or central_differences(residual)
-    last: tuple[bytes, FloatArray] = (b"", np.empty(0))
-
-    def remembered(values: FloatArray) -> FloatArray:
-        # slopes are asked for where residuals have just been
-        nonlocal last
-        if (at := values.tobytes()) != last[0]:
-            last = at, residual(values)
-        return last[1]
+    remembered, sloping = _remembered(residual), _remembered(slopes)
 
     def shrunk(values: FloatArray) -> FloatArray:
         u = remembered(values)
@@ -105,13 +98,14 @@ def minimise(
         return np.asarray(np.where(np.abs(u) <= limit, u, np.sign(u) * np.sqrt(loss(u, limit))))
 
     def weighted(values: FloatArray) -> FloatArray:
-        u, by = remembered(values), slopes(values)
+        u, by = remembered(values), sloping(values)
         if np.abs(u).max() <= limit:
             return by
         root = np.maximum(np.sqrt(loss(u, limit)), 1e-300)
         share = np.where(np.abs(u) <= limit, 1.0, limit / root)
         return np.asarray(share[:, None] * by)
 
+    # slopes are asked for where residuals have just been, and twice where the search begins
     if (count := remembered(start).size) < start.size:
         raise InsufficientDataError(f"{count} points are too few for {start.size} parameters")
     with np.errstate(over="ignore", invalid="ignore"):  # of a covariance that is not used
@@ -129,7 +123,20 @@ def minimise(
     values = np.asarray(solution, dtype=np.float64)
     u = remembered(values)
     kept = np.sqrt(np.clip(limit / np.maximum(np.abs(u), 1e-300), 0.0, 1.0))
-    return Minimum(values, float(np.sum(loss(u, limit))), np.asarray(kept[:, None] * slopes(values)))
+    return Minimum(values, float(np.sum(loss(u, limit))), np.asarray(kept[:, None] * sloping(values)))
+
+
+def _remembered(of: Residual) -> Residual:
+    """The same function, which knows what it returned last."""
+    last: tuple[bytes, FloatArray] = (b"", np.empty(0))
+
+    def called(values: FloatArray) -> FloatArray:
+        nonlocal last
+        if (at := values.tobytes()) != last[0]:
+            last = at, of(values)
+        return last[1]
+
+    return called
 
 
 def central_differences(residual: Residual) -> Jacobian:

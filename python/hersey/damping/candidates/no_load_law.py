@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hersey.arrays import FloatArray
-from hersey.damping.candidates.named import Named
+from hersey.damping.candidates.named import Named, stacked
 from hersey.damping.candidates.observations import Inputs
 
 #: Unit of temperature, K, in which the slope is of the size of the others.
@@ -38,21 +38,21 @@ class RestLaw(Named):
         return np.asarray(self._level(values, inputs) * self._at_temperature(values, inputs))
 
     def jacobian(self, values: FloatArray, inputs: Inputs) -> FloatArray:
-        """Return its derivatives with respect to the parameters, shape (points, parameters)."""
-        factor = self._at_temperature(values, inputs)
+        """Return its derivatives with respect to the parameters, shape (..., points, parameters)."""
+        level, factor = self._level(values, inputs), self._at_temperature(values, inputs)
         columns = {
             "constant": factor,
             "per_speed": np.exp(inputs.log_speed) * factor,
-            "temperature_slope": self._level(values, inputs) * self._away(inputs),
+            "temperature_slope": level * self._away(inputs),
         }
-        return np.column_stack([columns[name] for name in self.names])
+        return stacked([columns[name] for name in self.names], level.shape)
 
     def slopes(self, values: FloatArray, inputs: Inputs) -> tuple[FloatArray, FloatArray]:
         """Return its derivatives with respect to ln w and to T (1/K)."""
         by_speed = (
-            self._value(values, "per_speed") * np.exp(inputs.log_speed) * self._at_temperature(values, inputs)
+            self.value(values, "per_speed") * np.exp(inputs.log_speed) * self._at_temperature(values, inputs)
         )
-        by_heat = self._level(values, inputs) * self._value(values, "temperature_slope") / KELVIN
+        by_heat = self._level(values, inputs) * self.value(values, "temperature_slope") / KELVIN
         return by_speed, by_heat
 
     def starts(self, inputs: Inputs, torque: FloatArray, weights: FloatArray) -> list[FloatArray]:
@@ -64,15 +64,12 @@ class RestLaw(Named):
         return [start]
 
     def _level(self, values: FloatArray, inputs: Inputs) -> FloatArray:
-        return np.asarray(values[0] + self._value(values, "per_speed") * np.exp(inputs.log_speed))
+        return np.asarray(values[0] + self.value(values, "per_speed") * np.exp(inputs.log_speed))
 
     def _at_temperature(self, values: FloatArray, inputs: Inputs) -> FloatArray:
-        return np.asarray(1.0 + self._value(values, "temperature_slope") * self._away(inputs))
+        return np.asarray(1.0 + self.value(values, "temperature_slope") * self._away(inputs))
 
     def _away(self, inputs: Inputs) -> FloatArray:
         if self.reference is None or inputs.kelvin is None:
             return np.zeros_like(inputs.log_speed)
         return np.asarray((inputs.kelvin - self.reference) / KELVIN)
-
-    def _value(self, values: FloatArray, name: str) -> float:
-        return float(values[self.index(name)]) if name in self.names else 0.0

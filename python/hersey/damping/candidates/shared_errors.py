@@ -174,18 +174,17 @@ def _column_space(matrix: FloatArray) -> FloatArray:
 def _likeliest(spread: FloatArray, along: FloatArray) -> float:
     """Variance at which the restricted deviance of independent normal coordinates is least; 0 if nowhere."""
 
-    def deviance(variance: float) -> float:
+    def deviance(variance: FloatArray | float) -> FloatArray:
         inflated = 1.0 + variance * spread
-        return float(np.sum(np.log(inflated) - variance * along**2 / inflated))
+        return np.asarray(np.sum(np.log(inflated) - variance * along**2 / inflated, axis=-1))
 
     grid = np.geomspace(*_SEARCHED, _TRIED) / float(np.mean(spread))
-    values = [deviance(v) for v in grid]
-    best = int(np.argmin(values))
+    best = int(np.argmin(deviance(grid[:, None])))
     low, high = grid[max(best - 1, 0)], grid[min(best + 1, grid.size - 1)]
     refined = optimize.minimize_scalar(
-        lambda log: deviance(float(np.exp(log))), bounds=(np.log(low), np.log(high)), method="bounded"
+        lambda log: float(deviance(float(np.exp(log)))), bounds=(np.log(low), np.log(high)), method="bounded"
     )
-    return float(np.exp(refined.x)) if refined.fun < min(deviance(0.0), 0.0) else 0.0
+    return float(np.exp(refined.x)) if refined.fun < min(float(deviance(0.0)), 0.0) else 0.0
 
 
 @dataclass(frozen=True)

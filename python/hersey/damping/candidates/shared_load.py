@@ -18,8 +18,8 @@ from typing import Any, Protocol
 import numpy as np
 
 from hersey import _core
-from hersey.arrays import FloatArray
-from hersey.damping.candidates.named import Named
+from hersey.arrays import FloatArray, pointwise
+from hersey.damping.candidates.named import Named, stacked
 from hersey.damping.candidates.observations import Inputs
 
 #: Logarithm of the largest factor on what is stated.
@@ -91,17 +91,18 @@ class SharedLoadLaw(Named):
         return np.log(self._parts(values, inputs)["torque"])
 
     def jacobian(self, values: FloatArray, inputs: Inputs) -> FloatArray:
-        """Return its derivatives with respect to the parameters, shape (points, parameters)."""
+        """Return its derivatives with respect to the parameters, shape (..., points, parameters)."""
         parts, n, r = self._parts(values, inputs), self.contact.film_exponent, self.contact.rolling_exponent
         rise = parts["rise"]
-        columns = {
+        columns: dict[str, FloatArray | float] = {
             "viscosity": rise,
             "roughness": (r * parts["rolling"] + (1.0 - n) * parts["shear"] - rise) / n
             - parts["by_edge"] / 3.0,
             "boundary": parts["boundary"],
-            "rest": np.full_like(rise, self.torque),
+            "rest": self.torque,
         }
-        return np.column_stack([columns[name] / parts["torque"] for name in self.names])
+        torque = parts["torque"]
+        return stacked([columns[name] / torque for name in self.names], torque.shape)
 
     def slopes(self, values: FloatArray, inputs: Inputs) -> tuple[FloatArray, FloatArray]:
         """Return its derivatives with respect to ln w and to T (1/K)."""
@@ -133,7 +134,7 @@ class SharedLoadLaw(Named):
         return [values for _, values in ranked[:3]]
 
     def _parts(self, values: FloatArray, inputs: Inputs) -> dict[str, FloatArray]:
-        """Torque, its parts and d torque/d ln(viscosity speed), N m, each of shape (points,)."""
+        """Torque, its parts and d torque/d ln(viscosity speed), N m, each of shape (..., points)."""
         if self._last.inputs is not inputs:
             self._last.inputs, self._last.values = inputs, None
             self._last.product, self._last.numbers = self._stated(inputs)
@@ -150,9 +151,8 @@ class SharedLoadLaw(Named):
         return product, [np.array(np.broadcast_to(number, product.shape)) for number in numbers]
 
     def _computed(self, values: FloatArray) -> dict[str, FloatArray]:
-        named = dict(zip(self.names, values.tolist(), strict=True))
         viscosity, roughness, friction = (
-            float(np.clip(named.get(name, 0.0), -BOUND, BOUND))
+            np.clip(self.value(values, name), -BOUND, BOUND)
             for name in ("viscosity", "roughness", "boundary")
         )
         n, r = self.contact.film_exponent, self.contact.rolling_exponent
@@ -168,9 +168,9 @@ class SharedLoadLaw(Named):
             for name, number in zip(_core.SHARING, self._last.numbers, strict=True)
         ]
         product = self._last.product * np.exp(viscosity)
-        state = _core.mixed_contact([product, *numbers])
+        state = pointwise(_core.mixed_contact, product, *numbers)
         lever = self.contact.lever
         parts = {name: lever * getattr(state, name) for name in ("boundary", "shear", "rolling", "by_edge")}
         contact = parts["boundary"] + parts["shear"] + parts["rolling"]
-        torque = np.maximum(contact + self.torque * named["rest"], _LEAST * contact)
+        torque = np.maximum(contact + self.torque * self.value(values, "rest"), _LEAST * contact)
         return parts | {"torque": torque, "rise": lever * product * state.slope}

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hersey.arrays import FloatArray
-from hersey.damping.candidates.named import Named
+from hersey.damping.candidates.named import Named, stacked
 from hersey.damping.candidates.observations import Inputs
 from hersey.damping.candidates.thermal import Thermal
 
@@ -36,11 +36,11 @@ class StribeckLaw(Named):
         return np.asarray(values[0] + np.log(total))
 
     def jacobian(self, values: FloatArray, inputs: Inputs) -> FloatArray:
-        """Return its derivatives with respect to the parameters, shape (points, parameters)."""
+        """Return its derivatives with respect to the parameters, shape (..., points, parameters)."""
         total, peak, viscous, h = self._parts(values, inputs)
         by_h = (viscous - 2.0 * h**2 * peak) / total
         s = [by_h * self._shape(inputs)[0]] if self.thermal else []
-        return np.column_stack([np.ones_like(h), *s, peak / total, viscous / total, -by_h])
+        return stacked([1.0, *s, peak / total, viscous / total, -by_h], h.shape)
 
     def slopes(self, values: FloatArray, inputs: Inputs) -> tuple[FloatArray, FloatArray]:
         """Return its derivatives with respect to ln w and to T (1/K)."""

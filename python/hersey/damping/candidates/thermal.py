@@ -50,7 +50,9 @@ class Thermal:
         """Return where a search for the parameters may begin."""
         return [0.0, 1.2 / self.reference] if self.kind == VFT else [0.0]
 
-    def shape(self, kelvin: FloatArray, q: float = 0.0) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def shape(
+        self, kelvin: FloatArray, q: FloatArray | float = 0.0
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return s, ds/dT (1/K) and ds/dq at temperatures, K."""
         nothing = np.zeros_like(kelvin)
         if self.kind in (CELSIUS, KELVIN):
