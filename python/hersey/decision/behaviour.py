@@ -11,6 +11,7 @@ from typing import Annotated, Any, TypeVar
 import numpy as np
 
 from hersey.arrays import FloatArray
+from hersey.cache.kept import kept
 from hersey.damping.curves import CurveMixture
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.surface import DampingSurface
@@ -128,7 +129,7 @@ class Working:
         self._posterior = self._begin(self._drawn)
         self._judged = [self._begin(self._of_point, point) for point in machine.points]
         self._map = self._begin(self._mapped)
-        self._band = self._begin(self._at_the_band)
+        self._band = self._begin(lambda: _at_the_band(self._posterior.result(), machine))
         self._next = self._begin(lambda: next_measurement(self._posterior.result()))
 
     def __enter__(self) -> Working:
@@ -192,14 +193,6 @@ class Working:
         kinds = [each.verdict.kind if each is not None else None for each in found]
         return map_of(self._posterior.result(), judged=kinds, threads=os.cpu_count() or 1)
 
-    def _at_the_band(self) -> tuple[HysteresisBand, StickSpeeds]:
-        found = self._posterior.result()
-        train, drag = typical_drag(found, found.temperature)
-        band = hysteresis(train, drag, sensitivity=False)
-        value, low, high = found.fold_interval(found.temperature)
-        band = replace(band, upper=value, interval=(low, high), sensitivity=_sensitivity(found))
-        return band, _against_stick_speed(found, self._machine)
-
     def _at(self, point: OperatingPoint) -> float | None:
         return None if self._surface.b is None else point.temperature
 
@@ -253,6 +246,15 @@ class Working:
             if speed >= drag.law_at(None).transition_speed
         ]
         return disturbance(train, drag, drive_speed=point.speed), tuple(steps)
+
+
+@kept()
+def _at_the_band(found: Posterior, machine: Machine) -> tuple[HysteresisBand, StickSpeeds]:
+    train, drag = typical_drag(found, found.temperature)
+    band = hysteresis(train, drag, sensitivity=False)
+    value, low, high = found.fold_interval(found.temperature)
+    band = replace(band, upper=value, interval=(low, high), sensitivity=_sensitivity(found))
+    return band, _against_stick_speed(found, machine)
 
 
 def _typical(found: Posterior, kelvin: float | None, count: int) -> Drives:
