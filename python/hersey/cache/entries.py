@@ -118,6 +118,8 @@ def entries_of(folder: Path) -> Entries:
 
 def _content(path: Path) -> Array:
     """The bytes of an entry, which may be written to: arrays are views of them."""
+    if not path.is_file():  # a pipe would keep its reader waiting
+        raise FileNotFoundError(path)
     with path.open("rb") as file:
         size = os.fstat(file.fileno()).st_size
         if size > _LARGEST:

@@ -16,6 +16,7 @@ from hersey.cache.encoding import Encoder, UnstorableError
 from hersey.cache.entries import Entries, entries_of
 from hersey.cache.origin import origin
 from hersey.cache.switch import cache_folder, spoilt
+from hersey.errors import way_in
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -75,7 +76,12 @@ def kept(
 
 def _key(name: str, arguments: dict[str, Any], encoder: Encoder) -> str:
     """The hash of all that a result follows from."""
-    written = [origin(), name, [[each, encoder.encoded(value)] for each, value in arguments.items()]]
+    written = [
+        origin(),
+        way_in(),
+        name,
+        [[each, encoder.encoded(value)] for each, value in arguments.items()],
+    ]
     digest = hashlib.sha256(json.dumps(written).encode())
     for array in encoder.arrays:
         digest.update(_hash_of(array).encode())

@@ -11,8 +11,6 @@ from functools import cache
 from importlib import import_module
 from pathlib import Path
 
-from hersey.errors import way_in
-
 _PACKAGE = Path(__file__).parents[1]
 
 
@@ -28,7 +26,7 @@ def origin() -> str:
     OSError
         If the package is not a folder.
     """
-    parts = [sys.version, platform.machine(), way_in(), *_libraries(), *_processor(), *_files(_PACKAGE)]
+    parts = [sys.version, platform.machine(), *_libraries(), *_processor(), *_files(_PACKAGE)]
     return hashlib.sha256("\0".join(parts).encode(errors="surrogateescape")).hexdigest()
 
 

@@ -43,5 +43,8 @@ def _found() -> Path | None:
         return None if stated.strip().lower() in _NONE else Path(stated).absolute()
     from platformdirs import user_cache_path
 
-    folder = user_cache_path("hersey")
-    return folder / "results" if folder.is_absolute() else None  # it is not where nobody knows the home
+    try:
+        folder = user_cache_path("hersey")
+    except RuntimeError:  # nobody knows the home; older versions return a relative path
+        return None
+    return folder / "results" if folder.is_absolute() else None

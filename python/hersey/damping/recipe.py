@@ -17,13 +17,11 @@ import pydantic.dataclasses
 from pydantic import ValidationInfo
 
 from hersey.arguments.frozen import explained
-from hersey.cache.kept import kept
-from hersey.cache.switch import cache_folder
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.no_load import no_load_torque
 from hersey.damping.no_load_torque import NoLoadTorque
+from hersey.damping.once import read_once, reduced_once
 from hersey.errors import SIGN, TARE, HerseyError, InsufficientDataError, ParameterError, Setting, turned
-from hersey.files.reading import open_once
 from hersey.files.toml import Quantity, Table, quoted, read_tables
 from hersey.log import TorqueLog
 from hersey.log.mapping import LogMapping, mapping_of, read_with_mapping
@@ -167,7 +165,7 @@ class Recipe:
         HerseyError
             As `hersey.read` does, and if a mapping states corrections for a table of means.
         """
-        log = self._read(progress)
+        log = read_once(self, progress)
         return log if drive is None else replace(log, sensors=log.sensors.or_else(drive.sensors))
 
     def dwells(self, log: TorqueLog | MeansTable, drive: KnownDrive | None = None) -> SteadyPoints:
@@ -294,26 +292,9 @@ class Recipe:
         """Return all values that differ from the default as JSON, in SI."""
         return json_record({name: _plain(value) for name, value in self.stated().items()})
 
-    def _read(self, progress: Progress | None) -> TorqueLog | MeansTable:
-        """The log as its files hold it, which are not read again if they were."""
-        hashes = self._hashes()
-        if not hashes:
-            return _read(self, progress)
-        usual = vars(Recipe())
-        how = replace(self, **{name: usual[name] for name in _OF_DWELLS})
-        return _read_again(how, self.chosen, hashes, progress)
-
-    def _hashes(self) -> tuple[str, ...]:
-        """Hashes of the files that are read, if it is worth while to keep what they hold."""
-        if cache_folder() is None:
-            return ()
-        try:
-            beside = self.chosen.torque.no_load
-            found = [_hash(path) for path in (*self.logs, *([beside] if isinstance(beside, Path) else []))]
-        except (HerseyError, OSError):  # which reading it says, too
-            return ()
-        long = sum(size for _, size in found) >= _WORTH_KEEPING
-        return tuple(digest for digest, _ in found) if long and all(digest for digest, _ in found) else ()
+    def read_files(self, progress: Progress | None = None) -> TorqueLog | MeansTable:
+        """Read the logs as they are now."""
+        return self._means() if self.are_means else self._trace(progress)
 
     def _trace(self, progress: Progress | None) -> TorqueLog:
         done = read_with_mapping(
@@ -354,40 +335,7 @@ class Recipe:
                     "the zero in the table"
                 )
             return SteadyPoints.from_table(log, rotation=self.rotation)
-        return _reduced(log, self.min_dwell, self.tare, self.rotation)
-
-
-def _hash(path: Path) -> tuple[str, int]:
-    """Hash and size of a file; no hash if it changed meanwhile."""
-    with open_once(path) as file:
-        digest = file.sha256()
-        return "" if file.change() else digest, file.size
-
-
-def _read(recipe: Recipe, progress: Progress | None) -> TorqueLog | MeansTable:
-    return recipe._means() if recipe.are_means else recipe._trace(progress)
-
-
-def _is_of(log: TorqueLog | MeansTable, how: Mapping[str, Any]) -> bool:
-    """Whether what was read is what was hashed before."""
-    return {file.sha256 for file in log.files} <= set(how["hashes"])
-
-
-@kept(apart=("progress",), sound=_is_of)
-def _read_again(
-    recipe: Recipe,
-    mapping: LogMapping,  # noqa: ARG001 - content of the file that the recipe names, or finds
-    hashes: tuple[str, ...],  # noqa: ARG001 - of all files
-    progress: Progress | None,
-) -> TorqueLog | MeansTable:
-    """What files of these hashes hold."""
-    return _read(recipe, progress)
-
-
-@kept()
-def _reduced(log: TorqueLog, min_dwell: float, tare: str, rotation: str) -> SteadyPoints:
-    """The dwells of a log."""
-    return log.steady(min_dwell=min_dwell, tare=tare, rotation=rotation)
+        return reduced_once(log, min_dwell=self.min_dwell, tare=self.tare, rotation=self.rotation)
 
 
 @contextmanager
@@ -406,10 +354,6 @@ class _RecipeFile(Table, Recipe):
     """A recipe as its file holds it."""
 
 
-#: Settings of which what is read does not depend.
-_OF_DWELLS = ("min_dwell", "tare", "rotation", "temperature_scale", "no_load")
-#: Bytes of logs from which reading takes longer than finding what was read.
-_WORTH_KEEPING = 1 << 16
 #: Fields that name one file each.
 _FILES = ("mapping", "no_load")
 #: Kind of unit of each amount.
