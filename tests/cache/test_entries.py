@@ -37,7 +37,7 @@ def keep(folder: Path, value: Any, key: str = KEY) -> Path:
     """Keep a value, and return its file."""
     encoder = Encoder()
     Entries(folder).write(key, encoder.encoded(value), encoder.arrays)
-    return folder / f"{key}.hersey"
+    return folder / f"{key}.kept"
 
 
 def kept(folder: Path, key: str = KEY) -> Any:
@@ -78,7 +78,7 @@ def test_nothing_kept_is_not_the_same_as_absent(tmp_path: Path) -> None:
 
 def test_a_changed_byte_is_seen_wherever_it_is(tmp_path: Path) -> None:
     content = keep(tmp_path, ["a", 0.5, np.arange(3.0)]).read_bytes()
-    file = tmp_path / f"{KEY}.hersey"
+    file = tmp_path / f"{KEY}.kept"
     for place in range(len(content)):
         file.write_bytes(content[:place] + bytes([content[place] ^ 1]) + content[place + 1 :])
         assert kept(tmp_path) is None, place
@@ -87,7 +87,7 @@ def test_a_changed_byte_is_seen_wherever_it_is(tmp_path: Path) -> None:
 
 def test_a_file_that_was_cut_off_is_absent(tmp_path: Path) -> None:
     content = keep(tmp_path, ["a", 0.5, np.arange(3.0)]).read_bytes()
-    file = tmp_path / f"{KEY}.hersey"
+    file = tmp_path / f"{KEY}.kept"
     for size in range(len(content)):
         file.write_bytes(content[:size])
         assert kept(tmp_path) is None, size
@@ -96,15 +96,15 @@ def test_a_file_that_was_cut_off_is_absent(tmp_path: Path) -> None:
 
 
 def test_an_entry_of_another_key_is_absent(tmp_path: Path) -> None:
-    keep(tmp_path, 1).rename(tmp_path / f"{OTHER}.hersey")
+    keep(tmp_path, 1).rename(tmp_path / f"{OTHER}.kept")
     assert kept(tmp_path, OTHER) is None
 
 
 def test_a_pipe_or_a_folder_in_its_place_is_absent(tmp_path: Path) -> None:
-    os.mkfifo(tmp_path / f"{KEY}.hersey")
+    os.mkfifo(tmp_path / f"{KEY}.kept")
     assert kept(tmp_path) is None
     assert keep(tmp_path, 1).is_file()
-    (tmp_path / f"{OTHER}.hersey").mkdir()
+    (tmp_path / f"{OTHER}.kept").mkdir()
     assert kept(tmp_path, OTHER) is None
     keep(tmp_path, 1, OTHER)
     assert kept(tmp_path, OTHER) is None
@@ -152,7 +152,7 @@ def test_the_least_recently_used_go_first(tmp_path: Path, monkeypatch: pytest.Mo
         if number == 2:  # used last, although it was written first
             assert kept(tmp_path, keys[0]) is not None
     keep(tmp_path, np.zeros(1000), keys[5])
-    left = [key for key in keys if (tmp_path / f"{key}.hersey").exists()]
+    left = [key for key in keys if (tmp_path / f"{key}.kept").exists()]
     assert left == [keys[0], keys[4], keys[5]]
     assert sum(file.stat().st_size for file in tmp_path.iterdir()) <= 25_000
 
@@ -166,11 +166,11 @@ def test_there_are_so_many_entries_at_the_most(tmp_path: Path, monkeypatch: pyte
 
 def test_files_of_others_stay(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(entries, "LIMIT", 0)
-    others = [tmp_path / name for name in ("notes.txt", "x.hersey", f".{KEY}.hersey.part", ".notes.part")]
+    others = [tmp_path / name for name in ("notes.txt", "x.kept", f".{KEY}.kept.part", ".notes.part")]
     for other in others:
         other.write_text("mine")
         os.utime(other, (0, 0))
-    abandoned, busy = (tmp_path / f".{key}.hersey.{'0' * 16}.part" for key in (KEY, OTHER))
+    abandoned, busy = (tmp_path / f".{key}.kept.{'0' * 16}.part" for key in (KEY, OTHER))
     for part in (abandoned, busy):
         part.write_text("half")
     os.utime(abandoned, (0, 0))

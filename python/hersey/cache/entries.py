@@ -40,8 +40,8 @@ _ABANDONED = 3600.0
 _HASH, _LENGTH = 65, 12
 #: Arrays begin at multiples of this.
 _STEP = 64
-_NAME = re.compile(r"[0-9a-f]{64}\.hersey")
-_PART = re.compile(rf"\.[0-9a-f]{{64}}\.hersey\.[0-9a-f]+{re.escape(SUFFIX)}")
+_NAME = re.compile(r"[0-9a-f]{64}\.kept")
+_PART = re.compile(rf"\.[0-9a-f]{{64}}\.kept\.[0-9a-f]+{re.escape(SUFFIX)}")
 
 Array = np.ndarray[Any, Any]
 
@@ -90,7 +90,7 @@ class Entries:
                 self._bound()
 
     def _path(self, key: str) -> Path:
-        return self._folder / f"{key}.hersey"
+        return self._folder / f"{key}.kept"
 
     def _bound(self) -> None:
         """Delete the entries that were not used for longest, and what processes left that were killed."""

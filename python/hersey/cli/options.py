@@ -81,7 +81,7 @@ _MAPPING = "File with roles, units and corrections.  [default: hersey.toml besid
 _DROP_MISSING = "Drop rows with a missing or impossible number, however many."
 _MEANS = "Read a table of means: one row per dwell, no time column."
 _NO_LOAD = "Log of the drive without the lubricated contact; its torque is subtracted."
-_NO_CACHE = "Read and fit again what the cache holds from an earlier command, and keep nothing."
+_NO_CACHE = "Read and compute everything again, without the cache."
 _RECIPE = "Use the logs and settings of a recipe; options typed here override it."
 
 
