@@ -207,7 +207,7 @@ class Working:
         except HerseyError as error:
             errors.append(error)
         try:
-            withstands, steps = self._withstood(found, kelvin, point)
+            withstands, steps = _withstood(found, kelvin, point, self._machine.points)
         except HerseyError as error:
             withstands, steps = None, ()
             errors.append(error)
@@ -225,27 +225,29 @@ class Working:
         drive: Schedule | float = Schedule([0.0, rise], [0.0, speed]) if rise else speed
         return plan, response(found, kelvin, drive, float(plan.response.time[-1]))
 
-    def _withstood(
-        self, found: Posterior, kelvin: float | None, point: OperatingPoint
-    ) -> tuple[Disturbance | None, tuple[SafeStep, ...]]:
-        """What sliding at a point withstands, and how to come there from others, of the typical draw."""
-        train, drag = typical_drag(found, kelvin)
-        turn = float(np.median(found.edges(kelvin).transition))
-        if point.speed < turn:
-            return None, ()
-        others = [
-            other.speed
-            for other in self._machine.points
-            if other.speed >= turn
-            and other.speed != point.speed
-            and (kelvin is None or abs(other.temperature - point.temperature) < _ALIKE)
-        ]
-        steps = [
-            safe_step(train, drag, from_speed=speed, to_speed=point.speed)
-            for speed in dict.fromkeys(others)
-            if speed >= drag.law_at(None).transition_speed
-        ]
-        return disturbance(train, drag, drive_speed=point.speed), tuple(steps)
+
+@kept()
+def _withstood(
+    found: Posterior, kelvin: float | None, point: OperatingPoint, points: tuple[OperatingPoint, ...]
+) -> tuple[Disturbance | None, tuple[SafeStep, ...]]:
+    """What sliding at a point withstands, and how to come there from others, of the typical draw."""
+    train, drag = typical_drag(found, kelvin)
+    turn = float(np.median(found.edges(kelvin).transition))
+    if point.speed < turn:
+        return None, ()
+    others = [
+        other.speed
+        for other in points
+        if other.speed >= turn
+        and other.speed != point.speed
+        and (kelvin is None or abs(other.temperature - point.temperature) < _ALIKE)
+    ]
+    steps = [
+        safe_step(train, drag, from_speed=speed, to_speed=point.speed)
+        for speed in dict.fromkeys(others)
+        if speed >= drag.law_at(None).transition_speed
+    ]
+    return disturbance(train, drag, drive_speed=point.speed), tuple(steps)
 
 
 @kept()

@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from math import inf, pi, sqrt
 from typing import Annotated
 
-from hersey.cache.kept import kept
 from hersey.errors import ParameterError
 from hersey.motion.belt import BeltDrag, Drivetrain, Train, belt_of
 from hersey.motion.drag import AnyDrag
@@ -62,7 +61,6 @@ class Disturbance(Record):
 
 
 @takes_si(from_speed="belt speed", to_speed="belt speed", temperature="temperature")
-@kept()
 def safe_step(
     train: Train, drag: BeltDrag, *, from_speed: float, to_speed: float, temperature: float | None = None
 ) -> SafeStep:
@@ -120,7 +118,6 @@ def safe_step(
 
 
 @takes_si(drive_speed="belt speed", temperature="temperature")
-@kept()
 def disturbance(
     train: Train, drag: BeltDrag, *, drive_speed: float, temperature: float | None = None
 ) -> Disturbance:
