@@ -26,6 +26,8 @@ from hersey.posterior import sampling
 from hersey.study import study
 from hersey.verdict import explanations
 
+os.environ["HERSEY_CACHE"] = "off"  # tests ask for results that are computed; those of the cache set it
+
 Made = TypeVar("Made")
 ROOT = Path(__file__).parents[1]
 SHARED = ROOT.parent / "shared"

@@ -32,6 +32,7 @@ ROOMS = (
     "schema",
     "result",
     "files",
+    "cache",
     "processes",
     "scale",
     "log",

@@ -15,8 +15,8 @@ from website.text import joined, sections, table, wrapped
 TEMPLATE = Path(__file__).parent / "templates" / "commands.md"
 #: Groups of options that several commands share: the class that holds them, and the title of their section.
 SHARED = {"Reading": "Reading a log", "Belt": "Describing a belt", "Printing": "What is printed"}
-#: A section of the template that stands before the groups.
-EXIT_CODES = "Exit codes"
+#: Sections of the template that stand before the groups.
+BESIDE_OPTIONS = ("Exit codes", "The cache")
 #: What an option takes, where it does not say so itself.
 _TAKES = {int: "N", float: "NUMBER", str: "TEXT", Path: "FILE"}
 _EXAMPLE = re.compile(r"^Example: \[bold\](.+?)\[/bold\]$", re.DOTALL | re.MULTILINE)
@@ -39,7 +39,7 @@ def page() -> str:
             parts += [f"## {title}", beside.pop(title, ""), *_tables(options)]
     for verb, command in loaded.items():
         parts += _section(f"hersey {verb}", command, beside.pop(f"hersey {verb}", ""))
-    parts[2:2] = [f"## {EXIT_CODES}", beside.pop(EXIT_CODES)]
+    parts[2:2] = [part for title in BESIDE_OPTIONS for part in (f"## {title}", beside.pop(title))]
     if beside:
         raise ValueError(f"{TEMPLATE.name} has sections for nothing: {', '.join(beside)}")
     return joined(parts)

@@ -10,6 +10,7 @@ arrays          numbers or arrays as arguments
 schema          the schema of what the document and every ``--json`` hold, from the fields of the results
 result          what every result can do
 files           text, TOML with units, writing whole or not at all
+cache           what commands read and fitted, kept on disk for the next one
 processes       processes of our own for libraries that may break down
 scale           work cut into tasks: for threads, or for the workers of a cluster
 log             a `TorqueLog` from any file

@@ -43,7 +43,8 @@ OURS = 36
 
 def rooms(modules: set[str]) -> set[str]:
     """Rooms of the package of which something is loaded, but for the command line's own and light ones."""
-    opened = {name for name in modules if name.startswith("hersey.")} - {"hersey.charts"}  # a header alone
+    light = {"hersey.charts", "hersey.cache", "hersey.cache.switch"}  # two headers, and a switch
+    opened = {name for name in modules if name.startswith("hersey.")} - light
     return {name.split(".")[1] for name in opened} - {"cli", "errors", "files", "_core"}
 
 

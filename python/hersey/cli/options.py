@@ -82,6 +82,7 @@ _MAPPING = "File with roles, units and corrections.  [default: hersey.toml besid
 _DROP_MISSING = "Drop rows with a missing or impossible number, however many."
 _MEANS = "Read a table of means: one row per dwell, no time column."
 _NO_LOAD = "Log of the drive without the lubricated contact; its torque is subtracted."
+_NO_CACHE = "Read and compute everything again, without the cache."
 _RECIPE = "Use the logs and settings of a recipe; options typed here override it."
 
 
@@ -116,6 +117,13 @@ class Reading:
     temperature_scale: Annotated[str, reduced("Scale of T in B = a T^b w^c: degC or K.")] = "degC"
     no_load: Annotated[str, reduced(_NO_LOAD, metavar="LOG")] = ""
     recipe_file: Annotated[str, read(_RECIPE, "--recipe", metavar="TOML")] = ""
+    no_cache: Annotated[bool, read(_NO_CACHE, "--no-cache")] = False
+
+    def prepare(self) -> None:
+        """Keep what is computed for the next command, and find what the last ones kept."""
+        from hersey.cache.switch import use_cache
+
+        use_cache(not self.no_cache)
 
     def completed(self, typed: Set[str]) -> tuple[Reading, list[Path]]:
         """Return the same with the settings of the recipe file, except options ``typed``, and its logs.
@@ -244,16 +252,24 @@ class Reading:
         """Read a saved fit, or fit a log and draw from its posterior; there are no draws without a log."""
         if fit_file is not None or not paths:
             return self.surface(paths, fit_file, machine, machine_file), None
+        from hersey.damping.curves import fit_curves
         from hersey.damping.fit import fit
         from hersey.posterior.sampling import posterior
 
         recorded = [self.trace(path, machine) for path in traces or []]
         points = self.points(paths, self.log(paths, machine), machine)
         surface = fit(points, temperature_scale=self.temperature_scale)
+        curves = fit_curves(points, surface, machine.mixed)
         threads = os.cpu_count() or 1
         with working("drawing from the posterior"):
             return surface, posterior(
-                points, machine, surface=surface, traces=recorded, seed=seed, threads=threads
+                points,
+                machine,
+                surface=surface,
+                curves=curves,
+                traces=recorded,
+                seed=seed,
+                threads=threads,
             )
 
     def surface(

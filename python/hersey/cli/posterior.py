@@ -42,6 +42,8 @@ def posterior(
     """
     table = may_write(out, force, reading.inputs(logs, machine_file, trace), ends=[*TABLES, ".nc"])
 
+    from hersey.damping.curves import fit_curves
+    from hersey.damping.fit import fit
     from hersey.machine.machine import read_machine
     from hersey.posterior.sampling import posterior as drawn
 
@@ -49,10 +51,14 @@ def posterior(
     log = reading.log(logs, machine)
     traces = [reading.trace(path, machine) for path in trace or []]
     points = reading.points(logs, log, machine)
+    surface = fit(points)
+    curves = fit_curves(points, surface, machine.mixed)
     with bar("drawing", "%") as progress:
         found = drawn(
             points,
             machine,
+            surface=surface,
+            curves=curves,
             traces=traces,
             draws=draws,
             seed=seed,

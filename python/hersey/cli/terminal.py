@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any, TextIO
 
+from hersey.cache.switch import spoil
 from hersey.errors import ExtrapolationWarning, PlausibilityWarning, SandboxWarning, UntoldWarning, printable
 
 #: Replacements of characters that a terminal lacks.
@@ -130,6 +131,7 @@ def warnings_said() -> Iterator[None]:
     usual = warnings.formatwarning
 
     def formatted(message: Warning | str, *about: Any, **more: Any) -> str:
+        spoil()
         if isinstance(message, ExtrapolationWarning | PlausibilityWarning | UntoldWarning):
             return f"hersey: warning: {printable(str(message))}\n"
         if isinstance(message, SandboxWarning):  # about the system, not about a line of the program

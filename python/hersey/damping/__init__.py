@@ -1,6 +1,7 @@
 """From a log to the law of its damping.
 
 ==============  =========================================================
+once            logs that are read and reduced once for all commands
 recipe          how logs become dwells: files, channels, corrections, the search for dwells
 dwells          dwells, reduced to steady points with honest errors
 distributions   Student's t and the like, from scipy.special

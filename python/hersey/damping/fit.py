@@ -9,6 +9,7 @@ import numpy as np
 
 from hersey.arguments.door import Words
 from hersey.arrays import FloatArray
+from hersey.cache.kept import kept
 from hersey.damping.branches import Transition, fit_branches, transition, why_no_transition
 from hersey.damping.candidates.branched import ONE, Law
 from hersey.damping.candidates.candidate import Candidate
@@ -37,6 +38,7 @@ _ROUNDS = 12
 
 
 @takes_si(temperature_scale=Words(("degC", "K")))
+@kept()
 def fit(points: SteadyPoints, *, temperature_scale: str = "degC") -> DampingSurface:
     """Fit the damping surface to steady points.
 

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from hersey.cache.kept import kept
 from hersey.damping.candidates.fitting import LawFit, fit_law
 from hersey.damping.candidates.lack_of_fit import DOES_NOT_HOLD, lack_of_fit
 from hersey.damping.candidates.no_load_law import KELVIN, RestLaw
@@ -32,6 +33,7 @@ _SEEN = 1e-3
 
 
 @takes_si()
+@kept()
 def no_load_torque(points: SteadyPoints) -> NoLoadTorque:
     """Fit the no-load torque: a constant part, a part proportional to speed, and its temperature slope.
 

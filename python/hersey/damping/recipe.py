@@ -20,6 +20,7 @@ from hersey.arguments.frozen import explained
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.no_load import no_load_torque
 from hersey.damping.no_load_torque import NoLoadTorque
+from hersey.damping.once import read_once, reduced_once
 from hersey.errors import SIGN, TARE, HerseyError, InsufficientDataError, ParameterError, Setting, turned
 from hersey.files.toml import Quantity, Table, quoted, read_tables
 from hersey.log import TorqueLog
@@ -164,7 +165,7 @@ class Recipe:
         HerseyError
             As `hersey.read` does, and if a mapping states corrections for a table of means.
         """
-        log = self._means() if self.are_means else self._trace(progress)
+        log = read_once(self, progress)
         return log if drive is None else replace(log, sensors=log.sensors.or_else(drive.sensors))
 
     def dwells(self, log: TorqueLog | MeansTable, drive: KnownDrive | None = None) -> SteadyPoints:
@@ -291,6 +292,10 @@ class Recipe:
         """Return all values that differ from the default as JSON, in SI."""
         return json_record({name: _plain(value) for name, value in self.stated().items()})
 
+    def read_files(self, progress: Progress | None = None) -> TorqueLog | MeansTable:
+        """Read the logs as they are now."""
+        return self._means() if self.are_means else self._trace(progress)
+
     def _trace(self, progress: Progress | None) -> TorqueLog:
         done = read_with_mapping(
             self.logs,
@@ -330,7 +335,7 @@ class Recipe:
                     "the zero in the table"
                 )
             return SteadyPoints.from_table(log, rotation=self.rotation)
-        return log.steady(min_dwell=self.min_dwell, tare=self.tare, rotation=self.rotation)
+        return reduced_once(log, min_dwell=self.min_dwell, tare=self.tare, rotation=self.rotation)
 
 
 @contextmanager

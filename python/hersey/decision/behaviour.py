@@ -11,6 +11,7 @@ from typing import Annotated, Any, TypeVar
 import numpy as np
 
 from hersey.arrays import FloatArray
+from hersey.cache.kept import kept
 from hersey.damping.curves import CurveMixture
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.surface import DampingSurface
@@ -128,7 +129,7 @@ class Working:
         self._posterior = self._begin(self._drawn)
         self._judged = [self._begin(self._of_point, point) for point in machine.points]
         self._map = self._begin(self._mapped)
-        self._band = self._begin(self._at_the_band)
+        self._band = self._begin(lambda: _at_the_band(self._posterior.result(), machine))
         self._next = self._begin(lambda: next_measurement(self._posterior.result()))
 
     def __enter__(self) -> Working:
@@ -192,14 +193,6 @@ class Working:
         kinds = [each.verdict.kind if each is not None else None for each in found]
         return map_of(self._posterior.result(), judged=kinds, threads=os.cpu_count() or 1)
 
-    def _at_the_band(self) -> tuple[HysteresisBand, StickSpeeds]:
-        found = self._posterior.result()
-        train, drag = typical_drag(found, found.temperature)
-        band = hysteresis(train, drag, sensitivity=False)
-        value, low, high = found.fold_interval(found.temperature)
-        band = replace(band, upper=value, interval=(low, high), sensitivity=_sensitivity(found))
-        return band, _against_stick_speed(found, self._machine)
-
     def _at(self, point: OperatingPoint) -> float | None:
         return None if self._surface.b is None else point.temperature
 
@@ -214,7 +207,7 @@ class Working:
         except HerseyError as error:
             errors.append(error)
         try:
-            withstands, steps = self._withstood(found, kelvin, point)
+            withstands, steps = _withstood(found, kelvin, point, self._machine.points)
         except HerseyError as error:
             withstands, steps = None, ()
             errors.append(error)
@@ -232,27 +225,38 @@ class Working:
         drive: Schedule | float = Schedule([0.0, rise], [0.0, speed]) if rise else speed
         return plan, response(found, kelvin, drive, float(plan.response.time[-1]))
 
-    def _withstood(
-        self, found: Posterior, kelvin: float | None, point: OperatingPoint
-    ) -> tuple[Disturbance | None, tuple[SafeStep, ...]]:
-        """What sliding at a point withstands, and how to come there from others, of the typical draw."""
-        train, drag = typical_drag(found, kelvin)
-        turn = float(np.median(found.edges(kelvin).transition))
-        if point.speed < turn:
-            return None, ()
-        others = [
-            other.speed
-            for other in self._machine.points
-            if other.speed >= turn
-            and other.speed != point.speed
-            and (kelvin is None or abs(other.temperature - point.temperature) < _ALIKE)
-        ]
-        steps = [
-            safe_step(train, drag, from_speed=speed, to_speed=point.speed)
-            for speed in dict.fromkeys(others)
-            if speed >= drag.law_at(None).transition_speed
-        ]
-        return disturbance(train, drag, drive_speed=point.speed), tuple(steps)
+
+@kept()
+def _withstood(
+    found: Posterior, kelvin: float | None, point: OperatingPoint, points: tuple[OperatingPoint, ...]
+) -> tuple[Disturbance | None, tuple[SafeStep, ...]]:
+    """What sliding at a point withstands, and how to come there from others, of the typical draw."""
+    train, drag = typical_drag(found, kelvin)
+    turn = float(np.median(found.edges(kelvin).transition))
+    if point.speed < turn:
+        return None, ()
+    others = [
+        other.speed
+        for other in points
+        if other.speed >= turn
+        and other.speed != point.speed
+        and (kelvin is None or abs(other.temperature - point.temperature) < _ALIKE)
+    ]
+    steps = [
+        safe_step(train, drag, from_speed=speed, to_speed=point.speed)
+        for speed in dict.fromkeys(others)
+        if speed >= drag.law_at(None).transition_speed
+    ]
+    return disturbance(train, drag, drive_speed=point.speed), tuple(steps)
+
+
+@kept()
+def _at_the_band(found: Posterior, machine: Machine) -> tuple[HysteresisBand, StickSpeeds]:
+    train, drag = typical_drag(found, found.temperature)
+    band = hysteresis(train, drag, sensitivity=False)
+    value, low, high = found.fold_interval(found.temperature)
+    band = replace(band, upper=value, interval=(low, high), sensitivity=_sensitivity(found))
+    return band, _against_stick_speed(found, machine)
 
 
 def _typical(found: Posterior, kelvin: float | None, count: int) -> Drives:

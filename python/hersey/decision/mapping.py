@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from hersey.cache.kept import kept
 from hersey.decision.judge import Kind, judge, meaningless
 from hersey.errors import HerseyError
 from hersey.posterior import Posterior
@@ -13,6 +14,7 @@ from hersey.schema.warning import Warning
 from hersey.stability.operating_map import OperatingMap, given_map
 
 
+@kept(apart=("threads",))
 def map_of(
     found: Posterior, *, judged: Sequence[Kind | None] | None = None, threads: int = 1
 ) -> OperatingMap:

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from hersey.arrays import FloatArray
+from hersey.cache.kept import kept
 from hersey.decision.judge import drive_limit
 from hersey.errors import ParameterError
 from hersey.machine.limits import Limits
@@ -86,6 +87,7 @@ class _Asked:
         return started.slides & soon & (started.peak <= self.limit), np.asarray(started.peak)
 
 
+@kept()
 def plan_start_up(
     found: Posterior, kelvin: float | None, target_speed: float, *, confidence: float = VERIFIED
 ) -> Plan:

@@ -9,6 +9,7 @@ from typing import NamedTuple, TypedDict, Unpack
 import numpy as np
 
 from hersey.arrays import FloatArray, refuse_unknown
+from hersey.cache.kept import kept
 from hersey.damping.curves import CurveMixture, fit_curves
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.dwells.reduced import require_film, require_points
@@ -67,6 +68,7 @@ class Sampling(TypedDict, total=False):
 
 
 @takes_si(temperature="temperature")
+@kept(apart=("threads", "progress"))
 def posterior(
     points: SteadyPoints,
     machine: Machine,

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hersey import _core
+from hersey.cache.kept import kept
 from hersey.damping.estimate import Estimate
 from hersey.damping.surface import DampingSurface
 from hersey.errors import ParameterError, UnfinishedError
@@ -108,6 +109,7 @@ def verdict(
     )
 
 
+@kept()
 def solved_exponent(contact: Contact, lubricant: Lubricant, speed: float, temperature: float) -> float | None:
     """Return the exponent of damping in speed of this contact, by its numerical solution.
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from hersey.arrays import FloatArray
+from hersey.cache.kept import kept
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.dwells.resolution import quantisation_step
 from hersey.inspection.faults import Fault, clipping, stuck
@@ -88,6 +89,7 @@ def _dwells_at(points: SteadyPoints, number: int, name: str, end: float) -> list
     ]
 
 
+@kept()
 def _faults(run: Run) -> list[tuple[str, Fault]]:
     """Name of the channel, and the fault."""
     torque = [("torque", each) for each in _of(run.torque, stands=True)]

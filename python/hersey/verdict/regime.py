@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import numpy as np
 
 from hersey.arrays import FloatArray
+from hersey.cache.kept import kept
 from hersey.damping.candidates.lack_of_fit import LackOfFit
 from hersey.damping.candidates.observations import Observations
 from hersey.damping.dwells import SteadyPoints, distinct_speeds, groups_of_temperature
@@ -97,6 +98,7 @@ class Regime(Result):
 
 
 @takes_si(temperature="temperature")
+@kept()
 def regime(
     points: SteadyPoints,
     surface: DampingSurface,

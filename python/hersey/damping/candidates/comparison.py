@@ -13,6 +13,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from hersey.cache.kept import kept
 from hersey.damping.candidates.branched import Law
 from hersey.damping.candidates.candidate import Candidate, all_candidates, contact_candidates
 from hersey.damping.candidates.collapse import HerseyCollapse, temperature_collapse
@@ -39,6 +40,7 @@ TIED = 2.0
 
 
 @takes_si()
+@kept(apart=("progress",))
 def compare_models(
     points: SteadyPoints | Observations,
     *,

@@ -13,6 +13,7 @@ from functools import cached_property
 import numpy as np
 
 from hersey.arrays import FloatArray
+from hersey.cache.kept import kept
 from hersey.damping.curves.dwells import Dwells
 from hersey.damping.curves.shapes import Shape
 
@@ -127,6 +128,7 @@ class FittedLaw:
         return float(np.log(np.mean(np.exp(every - every.max()))) + every.max())
 
 
+@kept()
 def fit_shape(shape: Shape, dwells: Dwells, starts: list[FloatArray]) -> FittedLaw:
     """Return the likeliest of the fits from ``starts``: numbers before those that dwells share."""
     mean, deviation = priors(shape, dwells)

@@ -7,6 +7,8 @@ other viscosity, roughness and boundary friction would.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from hersey import _core
@@ -35,13 +37,24 @@ def shared_load_shape(contact: SharedLoad, kelvin: float) -> Shape:
     most = float(np.max(state.boundary))
     asperities, film = state.boundary / most, np.log((state.shear + state.rolling) / most)
 
-    def curve(x: FloatArray, own: FloatArray) -> FloatArray:
-        at = np.clip(x, grid[0], grid[-1])
-        carried = np.interp(at, grid, asperities)
-        return np.asarray(np.log(carried + np.exp(np.interp(at, grid, film) + own[:, :1])))
-
     prior = Prior("ln film", 0.0, _FILM)
+    curve = _Drag(grid, asperities, film)
     return Shape("mixed", "film and asperities of the machine's contact", (prior,), curve)
+
+
+@dataclass(frozen=True)
+class _Drag:
+    """Drag of asperities, and ln of that of the film, over boundary friction."""
+
+    grid: FloatArray
+    asperities: FloatArray
+    film: FloatArray
+
+    def __call__(self, x: FloatArray, own: FloatArray) -> FloatArray:
+        """Return ln of the drag of both at places, for draws of the film's part."""
+        at = np.clip(x, self.grid[0], self.grid[-1])
+        carried = np.interp(at, self.grid, self.asperities)
+        return np.asarray(np.log(carried + np.exp(np.interp(at, self.grid, self.film) + own[:, :1])))
 
 
 def least(shape: Shape) -> tuple[float, float]:

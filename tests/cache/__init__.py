@@ -1,0 +1,1 @@
+"""What commands keep on disk: never stale, never trusted, never in the way."""
