@@ -10,8 +10,8 @@ import polars as pl
 import pytest
 
 import hersey
+from hersey.log.long_arrays import Filling
 from hersey.log.text import blocks, cells, layout
-from hersey.log.text.filling import Filling
 
 HEADER = "Time [s],Torque [N*m],Speed [rpm],Temperature [degC]\n"
 
