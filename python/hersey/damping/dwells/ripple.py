@@ -12,9 +12,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from hersey.arrays import FloatArray
+from hersey.arrays import FloatArray, IntArray
 from hersey.damping.dwells.noise import thinned
 from hersey.damping.dwells.segments import BLOCK_DURATION, Segment
+from hersey.log.long_arrays import blocks, passed
 from hersey.log.torque_log import Run
 
 #: Neighbouring pieces of one rippling dwell differ in speed by less than this share.
@@ -27,6 +28,8 @@ TURNS = 3
 WHOLE = 0.9
 #: Harmonics of the revolution that are subtracted.
 HARMONICS = 4
+#: Angle of a revolution, rad, and revolutions that are averaged at once.
+_TURN, _AT_ONCE = 2.0 * np.pi, 64
 
 
 def joined_over_turns(run: Run, segments: list[Segment]) -> list[Segment]:
@@ -57,14 +60,10 @@ def _may_be_one(before: Segment, after: Segment) -> bool:
 
 def _rejoined(run: Run, chain: list[Segment]) -> list[Segment]:
     start, end = chain[0].start, chain[-1].end
-    angle = turned(run.time[start:end], run.speed[start:end])
-    edges = np.searchsorted(angle, 2.0 * np.pi * np.arange(1 + int(angle[-1] / (2.0 * np.pi))))
-    edges = np.unique(edges)
+    edges = np.unique(_turns(run.time[start:end], run.speed[start:end]))
     if edges.size <= TURNS:
         return chain
-    means = np.add.reduceat(run.speed[start:end], edges[:-1])[: edges.size - 1] / np.diff(edges)
-    # the last sum runs on to the end of the chain: only whole revolutions count
-    means[-1] = float(np.mean(run.speed[start + edges[-2] : start + edges[-1]]))
+    means = _means_between(run.speed[start:end], edges)
     for first, last in _held(means):
         rows = (start + int(edges[first]), start + int(edges[last]))
         largest = max(min(s.end, rows[1]) - max(s.start, rows[0]) for s in chain)
@@ -91,16 +90,43 @@ def _held(means: FloatArray) -> list[tuple[int, int]]:
 def _replaced(run: Run, chain: list[Segment], rows: tuple[int, int]) -> list[Segment]:
     """Replace what lies in these rows by one dwell that ripples; what is left of its ends is no dwell."""
     speed = float(np.mean(run.speed[slice(*rows)]))
+    run.passed(*rows)
     before = [replace(s, end=min(s.end, rows[0])) for s in chain if s.start < rows[0]]
     after = [replace(s, start=max(s.start, rows[1])) for s in chain if s.end > rows[1]]
     cut = [replace(s, steady=s.steady and s in chain) for s in (*before, *after)]
     return [*cut[: len(before)], Segment(*rows, speed, True, False, ripple=True), *cut[len(before) :]]
 
 
-def turned(time: FloatArray, speed: FloatArray) -> FloatArray:
-    """Return the angle of the shaft from the first row on, rad, without its sign."""
+def _turns(time: FloatArray, speed: FloatArray) -> IntArray:
+    """The first row of each revolution, the first of all among them."""
+    found: list[IntArray] = []
+    count, angle = 0, np.zeros(1)
+    for block in blocks(time.size, time, speed):
+        rows = slice(max(block.start - 1, 0), block.stop)
+        angle = turned(time[rows], speed[rows], float(angle[-1]))[block.start - rows.start :]
+        ahead = _TURN * np.arange(count, 2 + max(count, int(angle[-1] / _TURN)))
+        found.append(block.start + np.searchsorted(angle, ahead[ahead <= angle[-1]]))
+        count += found[-1].size
+    count = 1 + int(angle[-1] / _TURN)  # which, rounded, may be one more than were found
+    return np.append(np.concatenate(found), time.size)[:count]
+
+
+def _means_between(values: FloatArray, edges: IntArray) -> FloatArray:
+    """Means of the rows from each edge to the next."""
+    means = []
+    for first in range(0, edges.size - 1, _AT_ONCE):
+        some = edges[first : first + _AT_ONCE + 1]
+        sums = np.add.reduceat(values[some[0] : some[-1]], some[:-1] - some[0])
+        means.append(sums / np.diff(some))
+        passed(int(some[0]), int(some[-1]), values)
+    means[-1][-1] = float(np.mean(values[edges[-2] : edges[-1]]))
+    return np.concatenate(means)
+
+
+def turned(time: FloatArray, speed: FloatArray, before: float = 0.0) -> FloatArray:
+    """Return the angle of the shaft, rad, without its sign; it is ``before`` in the first row."""
     steps = np.diff(time) * (np.abs(speed[1:]) + np.abs(speed[:-1])) / 2.0
-    return np.concatenate([[0.0], np.cumsum(steps)])
+    return np.cumsum(np.concatenate([[before], steps]))
 
 
 def without_ripple(angle: FloatArray, values: FloatArray) -> FloatArray:

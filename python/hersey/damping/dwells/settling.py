@@ -92,6 +92,7 @@ def _beside_level(run: Run, start: int, end: int, tare: float, step: float, coun
     with np.errstate(divide="ignore", invalid="ignore"):
         means = np.where(rows > 0, sums / rows, np.nan) / level
     known = np.isfinite(means)
+    run.passed(start, end)
     return np.asarray(np.interp(np.arange(count), np.flatnonzero(known), means[known]))
 
 
