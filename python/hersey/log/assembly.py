@@ -32,7 +32,7 @@ from hersey.log.constant_temperature import constant_temperature
 from hersey.log.formats.frame import FRAME
 from hersey.log.friction import Chosen, beside, computed, in_rotation, slow_roles, unused
 from hersey.log.impossible import Impossible, Reading, impossible_rows, marked_rows
-from hersey.log.long_arrays import rows_before, rows_where, without
+from hersey.log.long_arrays import HELD, each_block, ends, rows_before, rows_where, without
 from hersey.log.recording import INVALID, INVALID_TIME, Recording, Signal, columns, nothing_to_read
 from hersey.log.replaced import replaced_units
 from hersey.log.roles import EVERY, OTHER_ROLES, ROLES, role_conversion
@@ -248,7 +248,7 @@ class Assembly:
                 f"has {time.size}. The file is damaged or cut off"
             )
         marked = None if signal.marked is None else signal.marked()
-        return _Part(role, column, unit, in_si(values, unit), time, tick, marked)
+        return _Part(role, column, unit, _in_si(values, unit), time, tick, marked)
 
     def _numbers(self, column: Column) -> FloatArray:
         """The numbers of a channel as written."""
@@ -316,7 +316,7 @@ class Assembly:
         self._timed["time"] = clock
         tick = f"column {chosen.index}"
         if tick not in self._clocks:
-            values = in_si(self.recording.signals[chosen.index].load(), unit)
+            values = _in_si(self.recording.signals[chosen.index].load(), unit)
             self._clocks[tick] = (values, tick, Channel("time", chosen.path, unit.unit))
         return self._clocks[tick]
 
@@ -426,6 +426,15 @@ class Assembly:
 
     def _spans(self) -> str:
         return ", ".join(f"{p.role} from {p.time[0]:.6g} to {p.time[-1]:.6g} s" for p in self.parts.values())
+
+
+def _in_si(values: FloatArray, unit: Conversion) -> FloatArray:
+    """Numbers as written in SI, a block at a time where they are many; the same array if nothing changes."""
+    if values.size <= HELD:
+        return in_si(values, unit)
+    if unit.scale == 1.0 and unit.offset == 0.0 and np.isfinite(ends(values)).all():
+        return values
+    return each_block(lambda part: in_si(part, unit), values)
 
 
 def _unknown(channels: list[FloatArray]) -> IntArray:
