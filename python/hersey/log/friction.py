@@ -85,7 +85,7 @@ def in_rotation(arrays: dict[str, FloatArray], chosen: Chosen, stated: Stated) -
     A row without a number that is needed gets none.
     """
     kinds, rows = _kinds(chosen), arrays["torque"].size
-    if kinds == _OF_ROTATION and stated.load is None:
+    if is_rotation(chosen) and stated.load is None:
         arrays.pop("radius", None)
         return arrays
     if rows <= HELD:
@@ -96,6 +96,11 @@ def in_rotation(arrays: dict[str, FloatArray], chosen: Chosen, stated: Stated) -
         for role, values in _in_rotation(part, kinds, stated).items():
             made.setdefault(role, Filling()).add(values, block.stop / rows)
     return {role: each.whole() for role, each in made.items()}
+
+
+def is_rotation(chosen: Chosen) -> bool:
+    """Return whether torque and speed are those of a rotation as they were recorded."""
+    return _kinds(chosen) == _OF_ROTATION
 
 
 def _kinds(chosen: Chosen) -> dict[str, str]:

@@ -25,7 +25,7 @@ from hersey.log.channels import (
     taken_columns,
 )
 from hersey.log.constant_temperature import constant_temperature
-from hersey.log.friction import Chosen, beside, computed, in_rotation, slow_roles, unused
+from hersey.log.friction import Chosen, beside, computed, in_rotation, is_rotation, slow_roles, unused
 from hersey.log.impossible import Impossible, Reading, impossible_rows
 from hersey.log.long_arrays import Filling, rows_before, without
 from hersey.log.replaced import replaced_units
@@ -311,7 +311,8 @@ class _Table:
         by_role = self._in_si(values)
         needed = [numbers for role, numbers in by_role.items() if role not in self.slow]
         gone = ~np.logical_and.reduce([np.isfinite(numbers) for numbers in needed])
-        gone |= ~self._has_radius(by_role)
+        if not is_rotation(self.channels):
+            gone |= ~self._has_radius(by_role)
         for role in self.slow & by_role.keys():
             known = np.isfinite(by_role[role])
             rows = np.flatnonzero(~known & ~gone)
