@@ -14,9 +14,19 @@ import pytest
 
 import hersey
 from hersey.arrays import FloatArray
-from hersey.damping.dwells import segments
+from hersey.damping.dwells import noise, ripple, segments
 from hersey.log import exchanged, friction, impossible, long_arrays, middle
-from hersey.log.long_arrays import Filling, blocks, every, let_go, means_of, rows_before, without
+from hersey.log.long_arrays import (
+    Filling,
+    blocks,
+    deviation,
+    every,
+    let_go,
+    mean,
+    means_of,
+    rows_before,
+    without,
+)
 from hersey.log.middle import median_step
 from hersey.log.text import blocks as text
 from tests.conftest import ROOT
@@ -119,6 +129,26 @@ def test_passes_over_blocks_are_those_over_the_whole() -> None:
             starts = np.arange(0, size, step)
             sums = np.add.reduceat(values, starts) / np.diff(starts, append=size)
             np.testing.assert_array_equal(means_of(values, step), sums)
+
+
+@pytest.mark.usefixtures("short")
+def test_sums_over_blocks_round_as_those_of_numpy(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(noise, "AT_ONCE", 256)
+    monkeypatch.setattr(noise, "THINNED", 100)
+    random = np.random.default_rng(4)
+    for size in (1, 256, 257, 1000, 12_345, 99_999):
+        values = 3.0 + random.standard_normal(size)
+        assert mean(values) == float(np.mean(values))
+        assert deviation(values) == float(np.std(values))
+        wide = max(1, size // 100)
+        thin = values[: size // wide * wide].reshape(-1, wide).mean(axis=1)
+        np.testing.assert_array_equal(noise.thinned(values), thin)
+    time, speed = np.cumsum(random.exponential(0.01, 5000)), random.standard_normal(5000)
+    steps = np.diff(time) * (np.abs(speed[1:]) + np.abs(speed[:-1])) / 2.0
+    angle = np.concatenate([[0.0], np.cumsum(steps)])
+    np.testing.assert_array_equal(ripple.turned(time, speed), angle)
+    turns = np.searchsorted(angle, 2.0 * np.pi * np.arange(1 + int(angle[-1] / (2.0 * np.pi))))
+    np.testing.assert_array_equal(ripple._turns(time, speed), turns)
 
 
 CLOCKS: dict[str, Callable[[int], FloatArray]] = {

@@ -151,11 +151,11 @@ def without(values: FloatArray, rows: IntArray) -> FloatArray:
     return kept.whole()
 
 
-def each_block(function: Callable[[FloatArray], FloatArray], values: FloatArray) -> FloatArray:
-    """Return what a function makes of every number, taken a block at a time."""
-    made = Filling()
-    for block in blocks(values.size, values):
-        made.add(function(values[block]), block.stop / values.size)
+def each_block(function: Callable[..., FloatArray], *arrays: FloatArray) -> FloatArray:
+    """Return what a function makes of every number of arrays, taken a block at a time."""
+    made, rows = Filling(), arrays[0].size
+    for block in blocks(rows, *arrays):
+        made.add(function(*(values[block] for values in arrays)), block.stop / rows)
     return made.whole()
 
 
@@ -164,6 +164,38 @@ def ends(values: FloatArray) -> tuple[float, float]:
     parts = [(values[block].min(), values[block].max()) for block in blocks(values.size, values)]
     least, most = np.array(parts).T
     return float(least.min()), float(most.max())
+
+
+def mean(values: FloatArray) -> float:
+    """Return the mean, to the bit that of NumPy."""
+    return _sum(lambda rows: values[rows], 0, values.size, values) / values.size
+
+
+def deviation(values: FloatArray) -> float:
+    """Return the standard deviation, to the bit that of NumPy."""
+    return float(np.sqrt(variance(values)))
+
+
+def variance(values: FloatArray) -> float:
+    """Return the variance, to the bit that of NumPy."""
+    middle = mean(values)
+
+    def squares(rows: slice) -> FloatArray:
+        away = values[rows] - middle
+        return away * away
+
+    return _sum(squares, 0, values.size, values) / values.size
+
+
+def _sum(terms: Callable[[slice], FloatArray], start: int, end: int, values: FloatArray) -> float:
+    """The sum of terms, halved as NumPy halves it, so that rounding is the same."""
+    if end - start <= BLOCK:
+        total = float(np.add.reduce(terms(slice(start, end))))
+        passed(start, end, values)
+        return total
+    half = (end - start) // 2
+    middle = start + half - half % 8
+    return _sum(terms, start, middle, values) + _sum(terms, middle, end, values)
 
 
 def means_of(values: FloatArray, rows: int) -> FloatArray:

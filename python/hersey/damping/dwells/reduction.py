@@ -23,9 +23,10 @@ from hersey.damping.dwells.ripple import joined_over_turns, turned, without_ripp
 from hersey.damping.dwells.segments import Segment, segments_of
 from hersey.damping.dwells.settling import common_settling
 from hersey.damping.dwells.shared_noise import Powers, SharedNoise, shared_noise
-from hersey.damping.dwells.steadiness import MAX_TEMPERATURE_DRIFT, drift_over, straightened
+from hersey.damping.dwells.steadiness import MAX_TEMPERATURE_DRIFT, drift_over, straightened, subtracted
 from hersey.damping.dwells.zero import Zero, standing_stretches, starts_of
 from hersey.errors import TARE, InsufficientDataError, ParameterError, Setting
+from hersey.log.long_arrays import deviation, mean, variance
 from hersey.log.roles import MEANS
 from hersey.log.torque_log import ROTATIONS, TARES, Run, TorqueLog
 
@@ -316,7 +317,9 @@ def _row(noise: SharedNoise | None, run: Run, dwell: Dwell, tare: float) -> dict
     """One row of the table of steady points."""
     rows = slice(dwell.start, dwell.end)
     speed_mean, speed_error, _ = mean_and_error(run.speed[rows])
-    torque_mean, torque_error, independent = _torque(run.time[rows], _calm_torque(run, dwell) - tare, noise)
+    torque_mean, torque_error, independent = _torque(
+        run.time[rows], subtracted(_calm_torque(run, dwell), tare), noise
+    )
     torque_error = float(np.hypot(torque_error, _curvature(run.speed[rows]) * torque_mean))
     hot = mean_and_error(run.temperature[rows]) if run.temperature is not None else (None, None)
     return {
@@ -370,8 +373,8 @@ def _trend(run: Run, dwell: Dwell, tare: float, isothermal: bool) -> Trend:
     """How the torque of a dwell runs since the speed changed."""
     before, after = dwell.previous or 0.0, abs(dwell.segment.speed)
     step = float(np.log(after / before)) if before > STANDS * after else 0.0
-    since = run.time[dwell.start : dwell.end] - run.time[dwell.segment.start]
-    return Trend.of(since, _calm_torque(run, dwell) - tare, step, isothermal=isothermal)
+    since = subtracted(run.time[dwell.start : dwell.end], float(run.time[dwell.segment.start]))
+    return Trend.of(since, subtracted(_calm_torque(run, dwell), tare), step, isothermal=isothermal)
 
 
 def _temperature_rate(run: Run, dwell: Dwell) -> float:
@@ -396,7 +399,7 @@ def _curvature(speed: FloatArray) -> float:
     w^p over a swing of relative deviation s is p (p - 1)/2 s^2 more than at the mean: under s^2/2 for any p
     between -0.6 and 1.6. Small oscillations may be noise of the encoder: the mean is right.
     """
-    swing = float(np.std(speed)) / abs(float(np.mean(speed)))
+    swing = deviation(speed) / abs(mean(speed))
     return 0.5 * swing**2 if swing > NOTABLE_SWING else 0.0
 
 
@@ -410,5 +413,5 @@ def _torque(time: FloatArray, torque: FloatArray, noise: SharedNoise | None) -> 
     if noise is not None and error > 0.0:
         steady = straightened(time, torque) if rise else torque
         error = noise.mean_error(Powers.of(steady, _interval(time)))
-        independent = float(np.clip(np.var(steady) / error**2, 1.0, torque.size))
+        independent = float(np.clip(variance(steady) / error**2, 1.0, torque.size))
     return mean, float(np.hypot(error, rise / np.sqrt(12.0))), independent

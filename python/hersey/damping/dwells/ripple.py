@@ -8,6 +8,7 @@ and noise are judged.
 from __future__ import annotations
 
 import itertools
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -15,7 +16,7 @@ import numpy as np
 from hersey.arrays import FloatArray, IntArray
 from hersey.damping.dwells.noise import thinned
 from hersey.damping.dwells.segments import BLOCK_DURATION, Segment
-from hersey.log.long_arrays import blocks, passed
+from hersey.log.long_arrays import Filling, blocks, each_block, mean, passed
 from hersey.log.torque_log import Run
 
 #: Neighbouring pieces of one rippling dwell differ in speed by less than this share.
@@ -101,9 +102,7 @@ def _turns(time: FloatArray, speed: FloatArray) -> IntArray:
     """The first row of each revolution, the first of all among them."""
     found: list[IntArray] = []
     count, angle = 0, np.zeros(1)
-    for block in blocks(time.size, time, speed):
-        rows = slice(max(block.start - 1, 0), block.stop)
-        angle = turned(time[rows], speed[rows], float(angle[-1]))[block.start - rows.start :]
+    for block, angle in _angles(time, speed):
         ahead = _TURN * np.arange(count, 2 + max(count, int(angle[-1] / _TURN)))
         found.append(block.start + np.searchsorted(angle, ahead[ahead <= angle[-1]]))
         count += found[-1].size
@@ -123,10 +122,23 @@ def _means_between(values: FloatArray, edges: IntArray) -> FloatArray:
     return np.concatenate(means)
 
 
-def turned(time: FloatArray, speed: FloatArray, before: float = 0.0) -> FloatArray:
-    """Return the angle of the shaft, rad, without its sign; it is ``before`` in the first row."""
-    steps = np.diff(time) * (np.abs(speed[1:]) + np.abs(speed[:-1])) / 2.0
-    return np.cumsum(np.concatenate([[before], steps]))
+def turned(time: FloatArray, speed: FloatArray) -> FloatArray:
+    """Return the angle of the shaft from the first row on, rad, without its sign."""
+    angles = Filling()
+    for block, angle in _angles(time, speed):
+        angles.add(angle, block.stop / time.size)
+    return angles.whole()
+
+
+def _angles(time: FloatArray, speed: FloatArray) -> Iterator[tuple[slice, FloatArray]]:
+    """The angle of the shaft in one block of rows after another."""
+    before = 0.0
+    for block in blocks(time.size, time, speed):
+        rows = slice(max(block.start - 1, 0), block.stop)
+        steps = np.diff(time[rows]) * (np.abs(speed[rows][1:]) + np.abs(speed[rows][:-1])) / 2.0
+        angle = np.cumsum(np.append(before, steps))
+        before = float(angle[-1])
+        yield block, angle[block.start - rows.start :]
 
 
 def without_ripple(angle: FloatArray, values: FloatArray) -> FloatArray:
@@ -135,10 +147,16 @@ def without_ripple(angle: FloatArray, values: FloatArray) -> FloatArray:
     waves = [wave(k * at) for k, wave in _WAVES]
     columns = np.column_stack([np.ones_like(at), at - at.mean(), *waves])
     sizes = np.linalg.lstsq(columns, means, rcond=None)[0][2:]
-    ripple = np.zeros_like(values)
-    for (k, wave), size in zip(_WAVES, sizes, strict=True):
-        ripple += size * wave(k * angle)
-    return np.asarray(values - ripple + ripple.mean())
+
+    def rippling(part: FloatArray) -> FloatArray:
+        ripple = np.zeros_like(part)
+        for (k, wave), size in zip(_WAVES, sizes, strict=True):
+            ripple += size * wave(k * part)
+        return ripple
+
+    ripple = each_block(rippling, angle)
+    middle = mean(ripple)
+    return each_block(lambda value, part: value - part + middle, values, ripple)
 
 
 _WAVES = tuple(itertools.product(range(1, HARMONICS + 1), (np.cos, np.sin)))
