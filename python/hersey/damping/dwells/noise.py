@@ -15,10 +15,14 @@ AT_ONCE = 1 << 17
 
 def thinned(values: FloatArray) -> FloatArray:
     """Means over blocks, so many that a dwell has at most about `THINNED` of them."""
-    size = max(1, values.size // THINNED)
+    return means_of_whole(values, max(1, values.size // THINNED))
+
+
+def means_of_whole(values: FloatArray, size: int) -> FloatArray:
+    """Means of so many samples each; those at the end that are fewer are left out."""
     rows = values.size // size * size
     if not rows:
-        return values
+        return values[:0]
     parts = blocks(rows, values, size=max(1, AT_ONCE // size) * size)
     return np.concatenate([values[part].reshape(-1, size).mean(axis=1) for part in parts])
 

@@ -240,7 +240,9 @@ class _Reduction:
         before = [s for s in self.segments[dwell.run] if s.steady and s.end <= dwell.segment.start]
         if kelvin is None or not before:
             return True
-        change = np.mean(kelvin[dwell.start : dwell.end]) - np.mean(kelvin[before[-1].start : before[-1].end])
+        last = before[-1]
+        change = mean(kelvin[dwell.start : dwell.end]) - mean(kelvin[last.start : last.end])
+        run.passed(last.start, last.end)
         return bool(abs(change) <= MAX_TEMPERATURE_DRIFT)
 
     def _zero(self, noise: SharedNoise | None) -> Zero | None:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from hersey.arrays import FloatArray
+from hersey.damping.dwells.noise import means_of_whole
 from hersey.damping.dwells.segments import BLOCK_DURATION, SPEED_NOISE, Segment
 from hersey.damping.dwells.shared_noise import Powers, SharedNoise
 from hersey.damping.dwells.steadiness import MAX_SPEED_DRIFT, SIGNIFICANT, subtracted
@@ -28,10 +29,10 @@ def settled(run: Run, segment: Segment, noise: SharedNoise | None = None) -> tup
     rows = segment.end - segment.start
     size = max(1, rows // 200)
     count = rows // size
-    blocks = slice(segment.start, segment.start + count * size)
+    whole = slice(segment.start, segment.start + count * size)
     # the first and last block of a dwell may hold the end of a ramp, a slow ramp many more
     edge = -(-round(BLOCK_DURATION / run.sampling_interval) // size) if count > 20 else 0
-    held = run.speed[blocks].reshape(count, size).mean(axis=1)
+    held = means_of_whole(run.speed[whole], size)
     jitter = float(np.median(np.abs(np.diff(held)))) if count > 1 else 0.0
     away = np.abs(held - np.median(held))
     near = np.flatnonzero(away <= max(MAX_SPEED_DRIFT * abs(segment.speed), SPEED_NOISE * jitter))
@@ -40,7 +41,7 @@ def settled(run: Run, segment: Segment, noise: SharedNoise | None = None) -> tup
     cut, interval = first, size * run.sampling_interval
     for channel in (run.torque, run.temperature):
         if channel is not None:
-            means = channel[blocks].reshape(count, size).mean(axis=1)[first : count - last]
+            means = means_of_whole(channel[whole], size)[first : count - last]
             dropped = _settling_blocks(means)
             if channel is run.torque and noise is not None and _is_chance(means, dropped, noise, interval):
                 continue
