@@ -105,7 +105,7 @@ def test_disturbances_make_up_the_covariance() -> None:
     stretches = tuple(Standing(0, t, 0.02 * random.standard_normal(), 0.001) for t in range(0, 101, 20))
     zero = Zero(stretches, 100.0)
     times = np.linspace(2.0, 98.0, 60)
-    whole = zero._predicted(times)[1]
+    whole = zero._covariance(times)
     modes, left = zero.disturbances(times, np.zeros(60))
     assert modes.shape == (60, MOST_DISTURBANCES)
     assert np.sum(modes**2, axis=1) + left**2 == pytest.approx(np.diag(whole), rel=1e-6)

@@ -10,8 +10,8 @@ import polars as pl
 import pytest
 
 import hersey
+from hersey.log.long_arrays import Filling
 from hersey.log.text import blocks, cells, layout
-from hersey.log.text.filling import Filling
 
 HEADER = "Time [s],Torque [N*m],Speed [rpm],Temperature [degC]\n"
 
@@ -87,3 +87,13 @@ def test_an_array_that_is_filled_part_by_part_holds_them_all() -> None:
         filling.add(part, done / len(parts))
     np.testing.assert_array_equal(filling.whole(), np.concatenate(parts))
     assert Filling().whole().size == 0
+
+
+@pytest.mark.parametrize("between", ["\n", "\r\n", "\n\n", "\r\n\r\n", "\n\r\n", "\r\r\n", "\n \n"])
+def test_an_empty_line_is_seen_wherever_a_block_is_cut(between: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(blocks, "_AT_ONCE", 8)
+    for first in range(20):
+        text = "1" * first + between + "1" * (20 - first) + "\n"
+        lines = text.split("\n")[:-1]
+        empty = any(line in ("", "\r") for line in lines)
+        assert blocks._line_ends(text.encode()) == (len(lines), empty)

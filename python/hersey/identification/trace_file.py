@@ -117,12 +117,12 @@ def _runs(whole: TraceFile, file: str) -> tuple[TraceFile, ...]:
     runs = runs_of(whole.time, None, file, lambda row: f"row {row + 1} of the table", left_out)
     left = tuple(left_out.warnings())
     if len(runs) == 1:
-        return (replace(whole, time=whole.time[runs[0]], value=whole.value[runs[0]], warnings=left),)
+        return (replace(whole, time=runs[0].of(whole.time), value=runs[0].of(whole.value), warnings=left),)
     return tuple(
         replace(
             whole,
-            time=whole.time[rows],
-            value=whole.value[rows],
+            time=rows.of(whole.time),
+            value=rows.of(whole.value),
             warnings=(*(left if number == 1 else ()), _one_of(number, len(runs))),
         )
         for number, rows in enumerate(runs, start=1)

@@ -14,6 +14,8 @@ without_units         columns without units: named at once
 friction              friction forces and coefficients as torques, sliding speeds as those of a rotation
 stating               a radius or a load: proposed, used once a person states it
 slow_channels         a temperature or a load that is slower than the rows: interpolated between its values
+long_arrays           numbers of long logs: on disk, and gone over a block at a time
+middle                the median of the steps of a clock
 clock                 rate, gaps and unevenness of a clock
 rows                  which rows can be used, and where one run ends and the next begins
 replaced              units of a file that a person replaced

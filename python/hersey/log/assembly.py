@@ -8,7 +8,7 @@ from functools import partial
 
 import numpy as np
 
-from hersey.arrays import BoolArray, FloatArray, IntArray
+from hersey.arrays import FloatArray, IntArray
 from hersey.errors import (
     ChannelError,
     HerseyError,
@@ -32,6 +32,7 @@ from hersey.log.constant_temperature import constant_temperature
 from hersey.log.formats.frame import FRAME
 from hersey.log.friction import Chosen, beside, computed, in_rotation, slow_roles, unused
 from hersey.log.impossible import Impossible, Reading, impossible_rows, marked_rows
+from hersey.log.long_arrays import HELD, each_block, ends, rows_before, rows_where, without
 from hersey.log.recording import INVALID, INVALID_TIME, Recording, Signal, columns, nothing_to_read
 from hersey.log.replaced import replaced_units
 from hersey.log.roles import EVERY, OTHER_ROLES, ROLES, role_conversion
@@ -55,14 +56,23 @@ class _Part:
     values: FloatArray
     time: FloatArray
     tick: str
-    rows: IntArray
     marked: FloatArray | None  #: what the file itself says of each sample: see `Signal.marked`
+    lost: tuple[IntArray, ...] = ()  #: samples that were left out, step by step
 
-    def keep(self, rows: BoolArray) -> None:
-        """Leave out all other samples."""
-        self.values, self.time = self.values[rows], self.time[rows]
-        self.rows = self.rows[rows]
-        self.marked = None if self.marked is None else self.marked[rows]
+    def recorded(self, row: int) -> int:
+        """Where a sample that is left stood among all, counted from 0."""
+        for rows in reversed(self.lost):
+            row = rows_before(row, rows)
+        return row
+
+
+def _leave_out(parts: list[_Part], rows: IntArray) -> None:
+    """Leave out samples, which are in order, of the channels on one clock."""
+    time = without(parts[0].time, rows)
+    for part in parts if rows.size else ():
+        part.values, part.time = without(part.values, rows), time
+        part.marked = None if part.marked is None else without(part.marked, rows)
+        part.lost = (*part.lost, rows)
 
 
 class Assembly:
@@ -133,23 +143,17 @@ class Assembly:
         """
         left_out, torque = LeftOut(), self.parts["torque"]
         warnings = [*self.recording.warnings, *self._counted.values()]
-        marked, rows_marked = self._leave_out(self._marked)
+        marked, rows_marked = self._judged(self._marked)
         self._leave_out_missing(left_out)
-        impossible, rows_impossible = self._leave_out(self._impossible)
+        impossible, rows_impossible = self._judged(self._impossible)
         impossible = (*marked, *impossible)
         warnings += [each.warning() for each in impossible]
-        arrays, rows = self._on_one_clock(warnings)
+        arrays, first = self._on_one_clock(warnings)
         arrays = in_rotation(arrays, self.chosen, self.stated)
-        needed = [values for role, values in arrays.items() if role not in self._lacking]
-        usable = np.logical_and.reduce([np.isfinite(values) for values in needed])
-        if not usable.all():
-            bad = rows[~usable]
-            left_out.add(
-                bad.size,
-                (f"{self._place(torque, int(row))}: the radius is not greater than zero" for row in bad),
-            )
-            arrays = {role: values[usable] for role, values in arrays.items()}
-            rows = rows[usable]
+        bad = _unknown([values for role, values in arrays.items() if role not in self._lacking])
+        places = (self._place(torque, first + row) for row in bad.tolist())
+        left_out.add(bad.size, (f"{each}: the radius is not greater than zero" for each in places))
+        arrays = {role: without(values, bad) for role, values in arrays.items()}
         warnings += computed(self.chosen, self.stated)
         warnings += replaced_units(self._timed | self.chosen)
         warnings += [*filter(None, self._dead.values()), *self._unused]
@@ -157,20 +161,22 @@ class Assembly:
         log = replace(log, missing_rows=rows_marked + rows_impossible, impossible=impossible)
 
         def place(row: int) -> str:
-            return self._place(torque, int(rows[row]))
+            return self._place(torque, first + rows_before(row, bad))
 
         return runs_with_records(log, arrays, place, left_out, self._lacking, drop_missing=self.drop_missing)
 
-    def _on_one_clock(self, warnings: list[Warning]) -> tuple[dict[str, FloatArray], IntArray]:
-        """Every channel at the times of the torque that all clocks span, and the rows of these times."""
+    def _on_one_clock(self, warnings: list[Warning]) -> tuple[dict[str, FloatArray], int]:
+        """Every channel at the times of the torque that all clocks span, and the first of these samples."""
         torque = self.parts["torque"]
-        kept = np.ones(torque.time.size, dtype=bool)
+        first, end = 0, torque.time.size
         others = [part for part in self.parts.values() if part.tick != torque.tick]
         for part in others:
             self._check_time(torque)
             self._check_time(part)
-            kept &= (torque.time >= part.time[0]) & (torque.time <= part.time[-1])
-        if not kept.all() and kept.sum() < 2:
+            first = max(first, int(np.searchsorted(torque.time, part.time[0])))
+            end = min(end, int(np.searchsorted(torque.time, part.time[-1], side="right")))
+        kept, dropped = slice(first, max(first, end)), torque.time.size - max(0, end - first)
+        if dropped and end - first < 2:
             raise UnreadableLogError(
                 f"{self.source.name}: the channels share fewer than two torque samples in time "
                 f"({self._spans()})"
@@ -180,18 +186,18 @@ class Assembly:
             same = part.tick == torque.tick
             arrays[role] = part.values[kept] if same else np.interp(arrays["time"], part.time, part.values)
         warnings += [_aligned(part, torque) for part in others]
-        if not kept.all():
+        if dropped:
             warnings.append(
                 Warning(
                     "samples outside another channel",
                     "{samples} of {all} torque samples were dropped because another channel has no "
                     "values at their times ({spans})",
-                    samples=int((~kept).sum()),
-                    all=kept.size,
+                    samples=dropped,
+                    all=torque.time.size,
                     spans=self._spans(),
                 )
             )
-        return arrays, torque.rows[kept]
+        return arrays, first
 
     def _record(self, warnings: tuple[Warning, ...]) -> LogFile:
         used = {"time": self._clocks[self.parts["torque"].tick][2]} | {
@@ -210,8 +216,8 @@ class Assembly:
         )
 
     def _place(self, part: _Part, row: int) -> str:
-        """A sample in words, counted from 0, by its row where the file has rows."""
-        line = self.recording.signals[part.column.index].line
+        """One of the samples that are left, counted from 0, in words: by its row where the file has rows."""
+        line, row = self.recording.signals[part.column.index].line, part.recorded(row)
         return f"row {line + row}" if line else f"sample {row + 1}"
 
     def _channel(self, role: str) -> tuple[Column, Conversion]:
@@ -242,7 +248,7 @@ class Assembly:
                 f"has {time.size}. The file is damaged or cut off"
             )
         marked = None if signal.marked is None else signal.marked()
-        return _Part(role, column, unit, in_si(values, unit), time, tick, np.arange(values.size), marked)
+        return _Part(role, column, unit, _in_si(values, unit), time, tick, marked)
 
     def _numbers(self, column: Column) -> FloatArray:
         """The numbers of a channel as written."""
@@ -310,7 +316,7 @@ class Assembly:
         self._timed["time"] = clock
         tick = f"column {chosen.index}"
         if tick not in self._clocks:
-            values = in_si(self.recording.signals[chosen.index].load(), unit)
+            values = _in_si(self.recording.signals[chosen.index].load(), unit)
             self._clocks[tick] = (values, tick, Channel("time", chosen.path, unit.unit))
         return self._clocks[tick]
 
@@ -339,56 +345,52 @@ class Assembly:
             own = parts[0].tick == torque.tick
             slow = [p for p in parts if own and p.role in slow_roles(self.chosen)]
             needed = [p for p in parts if p not in slow]
-            gone = ~np.logical_and.reduce([np.isfinite(p.time) & np.isfinite(p.values) for p in needed])
+            gone = _unknown([parts[0].time, *(p.values for p in needed)])
             for part in slow:
                 self._set_apart(part, gone)
             here = left_out if own else LeftOut()
-            here.add(int(gone.sum()), (self._fault(needed, int(row)) for row in np.flatnonzero(gone)))
+            here.add(gone.size, (self._fault(needed, row) for row in gone.tolist()))
             here.dates = next((p.column.name for p in parts if p.column.path in self.recording.dates), "")
-            here.refuse_many(self.source.name, gone.size, allowed=self.drop_missing)
+            here.refuse_many(self.source.name, parts[0].time.size, allowed=self.drop_missing)
             if not own:
                 left_out.add(here.rows, here.words)
-            for part in parts:
-                part.keep(~gone)
+            _leave_out(parts, gone)
             if parts[0].time.size < 2:
                 name, count = parts[0].column.path, parts[0].time.size
                 raise UnreadableLogError(
                     f"{self.source.name}: channel '{name}' has only {count} samples with a number"
                 )
 
-    def _set_apart(self, part: _Part, gone: BoolArray) -> None:
+    def _set_apart(self, part: _Part, gone: IntArray) -> None:
         """Count the samples that lack only what may be slow, and keep the first of them in words."""
-        known = np.isfinite(part.values)
-        rows = np.flatnonzero(~known & ~gone)
+        rows = np.setdiff1d(_unknown([part.values]), gone, assume_unique=True)
         lacking = LeftOut()
-        lacking.add(rows.size, (self._fault([part], int(row)) for row in rows))
+        lacking.add(rows.size, (self._fault([part], row) for row in rows.tolist()))
         self._lacking[part.role] = lacking
-        part.values = np.where(known, part.values, np.nan)
 
-    def _leave_out(
-        self, judged: Callable[[list[_Part]], tuple[BoolArray, tuple[Impossible, ...]]]
+    def _judged(
+        self, judged: Callable[[list[_Part]], tuple[IntArray, tuple[Impossible, ...]]]
     ) -> tuple[tuple[Impossible, ...], int]:
         """Leave out samples that are judged to be no readings; what they were, and how many."""
         found: tuple[Impossible, ...] = ()
         rows = 0
         for parts in self._by_clock():
             gone, here = judged(parts)
-            for part in parts if gone.any() else ():
-                part.keep(~gone)
-            found, rows = (*found, *here), rows + int(gone.sum())
+            _leave_out(parts, gone)
+            found, rows = (*found, *here), rows + gone.size
         return found, rows
 
-    def _marked(self, parts: list[_Part]) -> tuple[BoolArray, tuple[Impossible, ...]]:
+    def _marked(self, parts: list[_Part]) -> tuple[IntArray, tuple[Impossible, ...]]:
         """Samples that the file itself marks as invalid."""
         judged = [(part, part.marked) for part in parts if part.marked is not None]
         if not judged:
-            return np.zeros(parts[0].time.size, dtype=bool), ()
+            return np.empty(0, dtype=np.intp), ()
         clock = self._clocks[parts[0].tick][2]
         marks = [("time", Column(-1, clock.name, clock.unit), clock.unit, judged[0][1] == INVALID_TIME)]
         marks += [(part.role, part.column, part.unit.unit, marked == INVALID) for part, marked in judged]
         return marked_rows(marks, self.source.name, partial(self._where, parts[0]), allowed=self.drop_missing)
 
-    def _impossible(self, parts: list[_Part]) -> tuple[BoolArray, tuple[Impossible, ...]]:
+    def _impossible(self, parts: list[_Part]) -> tuple[IntArray, tuple[Impossible, ...]]:
         """Samples that cannot be right."""
         readings = [Reading(part.role, part.column, part.unit, part.values) for part in parts]
         if (clock := self._clocks[parts[0].tick][2]).name != NO_CLOCK:
@@ -400,28 +402,48 @@ class Assembly:
 
     def _where(self, part: _Part, row: int, column: Column) -> str:
         """A channel and one of its samples that are left, in words."""
-        return f"channel '{column.path}', {self._place(part, int(part.rows[row]))}"
+        return f"channel '{column.path}', {self._place(part, row)}"
 
     def _fault(self, parts: list[_Part], row: int) -> str:
         """The channel of the first number of a sample that is missing, in words."""
-        place = self._place(parts[0], int(parts[0].rows[row]))
+        place = self._place(parts[0], row)
         bad = next((part for part in parts if not np.isfinite(part.values[row])), None)
         name = bad.column.path if bad else self._clocks[parts[0].tick][2].name
         return f"channel '{name}', {place}: the number is missing"
 
     def _check_time(self, part: _Part) -> None:
         file, name = self.source.name, part.column.path
-        steps = np.diff(part.time)
-        if (steps < 0).any():
-            row = int(np.argmax(steps < 0))
+        time = part.time
+        back = rows_where(lambda rows: np.diff(time[rows.start : rows.stop + 1]) < 0, time.size - 1, time)
+        if back.size:
+            row = int(back[0])
+            by = time[row] - time[row + 1]
             raise TimeOrderError(
-                f"{file}, channel '{name}', sample {row + 2}: time runs backwards by {-steps[row]:.6g} s",
+                f"{file}, channel '{name}', sample {row + 2}: time runs backwards by {by:.6g} s",
                 remedy="split the file there, or sort its rows",
                 setting=Setting("time", "channel"),
             )
 
     def _spans(self) -> str:
         return ", ".join(f"{p.role} from {p.time[0]:.6g} to {p.time[-1]:.6g} s" for p in self.parts.values())
+
+
+def _in_si(values: FloatArray, unit: Conversion) -> FloatArray:
+    """Numbers as written in SI, a block at a time where they are many; the same array if nothing changes."""
+    if values.size <= HELD:
+        return in_si(values, unit)
+    if unit.scale == 1.0 and unit.offset == 0.0 and np.isfinite(ends(values)).all():
+        return values
+    return each_block(lambda part: in_si(part, unit), values)
+
+
+def _unknown(channels: list[FloatArray]) -> IntArray:
+    """Samples in which a number is missing."""
+    return rows_where(
+        lambda rows: ~np.logical_and.reduce([np.isfinite(values[rows]) for values in channels]),
+        channels[0].size,
+        *channels,
+    )
 
 
 def _aligned(part: _Part, torque: _Part) -> Warning:

@@ -68,14 +68,16 @@ _CODES_DEGC = np.sort(_NO_SENSOR_DEGC)
 def in_si(values: FloatArray, unit: Conversion) -> FloatArray:
     """Return numbers as written in SI: NaN where none is finite, and no overflow of one that is."""
     unknown = ~np.isfinite(values)
-    if unit.scale == 1.0 and unit.offset == 0.0 and not unknown.any():
+    missing = bool(unknown.any())
+    if unit.scale == 1.0 and unit.offset == 0.0 and not missing:
         return values
     largest = float(np.finfo(float).max)
     with np.errstate(over="ignore", invalid="ignore"):
         converted = values * unit.scale
         converted += unit.offset
     np.clip(converted, -largest, largest, out=converted)  # in place: a channel may fill much of the memory
-    converted[unknown] = np.nan
+    if missing:
+        converted[unknown] = np.nan
     return converted
 
 

@@ -19,6 +19,7 @@ from hersey.errors import (
     printable,
     way_in,
 )
+from hersey.log.long_arrays import ends
 from hersey.log.own_tables import not_a_log, own_table
 from hersey.log.role_units import with_unit
 from hersey.log.roles import (
@@ -172,6 +173,8 @@ def _choose(role: str, path: str) -> dict[str, Any]:
 
 def is_dead(values: FloatArray) -> bool:
     """Return whether a channel says nothing: no number (NaN stands for a missing one), or one throughout."""
+    if values.size and np.isfinite(span := ends(values)).all():
+        return values.size >= _TELLING and span[0] == span[1]
     known = values[np.isfinite(values)]
     return not known.size or (known.size >= _TELLING and float(known.min()) == float(known.max()))
 

@@ -15,6 +15,7 @@ import numpy as np
 from hersey.arrays import BoolArray, FloatArray
 from hersey.errors import ChannelError, Setting, way_in
 from hersey.log.channels import ChannelChoice
+from hersey.log.long_arrays import blocks, ends, means_of
 from hersey.log.torque_log import Run, TorqueLog
 
 #: Length of the blocks whose means are compared, s, and how many there are in a run at the least and most.
@@ -133,29 +134,44 @@ def exchanged(runs: tuple[Run, ...]) -> dict[str, str]:
 def _exchanged(run: Run) -> dict[str, str]:
     rows = run.time.size
     size = max(1, round(_BLOCK / run.sampling_interval), -(-rows // _MOST))
-    starts = np.arange(0, rows, size)
-    if starts.size < _FEWEST:
+    if -(-rows // size) < _FEWEST:
         return {}
-    counts = np.diff(starts, append=rows)
-    torque, speed = (np.abs(np.add.reduceat(each, starts) / counts) for each in (run.torque, run.speed))
+    torque, speed = (np.abs(means_of(each, size)) for each in (run.torque, run.speed))
     over = max(1, round(_OVER / (size * run.sampling_interval)))
     moves = {"torque": _Moves.of(torque, over), "speed": _Moves.of(speed, over)}
     if run.temperature is not None:
-        hot = _Moves.of(np.add.reduceat(run.temperature, starts) / counts, over)
+        hot = _Moves.of(means_of(run.temperature, size), over)
         if found := _with_temperature(hot, **moves):
             return found
     closer = moves["torque"].stairs and moves["speed"].unrest > _CLOSER * moves["torque"].unrest
     wider = closer and _range(torque, speed) > _range(speed, torque)
-    return dict(_TWO) if wider or _of_few_drives(np.abs(run.torque), np.abs(run.speed)) else {}
+    return dict(_TWO) if wider or _of_few_drives(run.torque, run.speed) else {}
 
 
 def _of_few_drives(torque: FloatArray, speed: FloatArray) -> bool:
     """Whether a great torque at almost no speed is held more closely than the speed."""
-    if torque.size < 3 or torque.max() < _GREAT:  # before the quantiles, which take long
+    if torque.size < 3 or max(map(abs, ends(torque))) < _GREAT:  # before the quantiles, which take long
         return False
+    if _surely_above(speed, _SLOW) or _surely_below(torque, _GREAT):
+        return False
+    torque, speed = np.abs(torque), np.abs(speed)
     if np.quantile(torque, _USUAL) < _GREAT or np.quantile(speed, _USUAL) > _SLOW:
         return False
     return _unrest(torque) < _STEADIER * _unrest(speed)
+
+
+def _surely_above(values: FloatArray, limit: float) -> bool:
+    """Whether the usual size of values is surely above a limit: too few are not."""
+    return _not_above(values, limit) <= _USUAL * (values.size - 1) - 1.0
+
+
+def _surely_below(values: FloatArray, limit: float) -> bool:
+    return _not_above(values, np.nextafter(limit, 0.0)) >= _USUAL * (values.size - 1) + 2.0
+
+
+def _not_above(values: FloatArray, limit: float) -> int:
+    """How many values are of no greater size than the limit."""
+    return sum(int(np.count_nonzero(np.abs(values[rows]) <= limit)) for rows in blocks(values.size, values))
 
 
 def _unrest(values: FloatArray) -> float:

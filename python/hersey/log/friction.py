@@ -15,6 +15,7 @@ import numpy as np
 from hersey.arrays import FloatArray
 from hersey.errors import ParameterError
 from hersey.log.channels import ChannelChoice, Stated, find_channel
+from hersey.log.long_arrays import HELD, Filling, blocks
 from hersey.log.roles import role_conversion
 from hersey.log.stating import proposals, unstated
 from hersey.log.text.column import Column
@@ -23,6 +24,8 @@ from hersey.schema.warning import Warning
 from hersey.units import Conversion
 
 Chosen = dict[str, tuple[Column, Conversion]]
+#: Kinds of torque and speed that are those of a rotation already.
+_OF_ROTATION = {"torque": "torque", "speed": "speed"}
 
 
 def beside(
@@ -81,7 +84,32 @@ def in_rotation(arrays: dict[str, FloatArray], chosen: Chosen, stated: Stated) -
 
     A row without a number that is needed gets none.
     """
-    kinds = {role: role_conversion(role, chosen[role][1].unit)[0] for role in ("torque", "speed")}
+    kinds, rows = _kinds(chosen), arrays["torque"].size
+    if is_rotation(chosen) and stated.load is None:
+        arrays.pop("radius", None)
+        return arrays
+    if rows <= HELD:
+        return _in_rotation(arrays, kinds, stated)
+    made: dict[str, Filling] = {}
+    for block in blocks(rows, *arrays.values()):
+        part = {role: values[block] for role, values in arrays.items()}
+        for role, values in _in_rotation(part, kinds, stated).items():
+            made.setdefault(role, Filling()).add(values, block.stop / rows)
+    return {role: each.whole() for role, each in made.items()}
+
+
+def is_rotation(chosen: Chosen) -> bool:
+    """Return whether torque and speed are those of a rotation as they were recorded."""
+    return _kinds(chosen) == _OF_ROTATION
+
+
+def _kinds(chosen: Chosen) -> dict[str, str]:
+    return {role: role_conversion(role, chosen[role][1].unit)[0] for role in ("torque", "speed")}
+
+
+def _in_rotation(
+    arrays: dict[str, FloatArray], kinds: dict[str, str], stated: Stated
+) -> dict[str, FloatArray]:
     rows = arrays["torque"].shape
     known = {role: arrays[role] for role in ("load", "radius") if role in arrays}
     for role in ("load", "radius"):
@@ -105,7 +133,7 @@ def in_rotation(arrays: dict[str, FloatArray], chosen: Chosen, stated: Stated) -
 def computed(chosen: Chosen, stated: Stated) -> list[Warning]:
     """Return what torque and speed were computed from, and where the load is from."""
     known = _source("radius", "m", chosen, stated) | _source("load", "N", chosen, stated)
-    kinds = {role: role_conversion(role, chosen[role][1].unit)[0] for role in ("torque", "speed")}
+    kinds = _kinds(chosen)
     torque, speed = (chosen[role][0].path for role in ("torque", "speed"))
     out = []
     if kinds["torque"] != "torque":

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from hersey.arrays import FloatArray
 from hersey.errors import ParameterError, Setting, TimeOrderError
+from hersey.log.long_arrays import blocks, ends, rows_where
 from hersey.log.torque_log import Run
 
 #: Fewer rows than these may be equal by chance.
@@ -28,7 +29,7 @@ def refuse_given_twice(runs: Sequence[Run]) -> None:
     """
     seen: dict[bytes, Run] = {}
     for run in runs if len(runs) > 1 else ():
-        if run.time.size < _FEW or np.ptp(run.torque) == 0.0:
+        if run.time.size < _FEW or not _varies(run.torque):
             continue
         earlier = seen.setdefault(_rows(run), run)
         if earlier is not run:
@@ -54,9 +55,9 @@ def refuse_rows_shared(runs: Sequence[Run]) -> None:
         for number in map(int, np.flatnonzero((run.time[at] == starts) & (run.torque[at] == torques))):
             later, row = runs[number], int(at[number])
             rows = min(run.time.size - row, later.time.size)
-            if later is run or rows < _FEW or not np.ptp(later.torque[:rows]):
+            if later is run or rows < _FEW or not _varies(later.torque[:rows]):
                 continue
-            if np.array_equal(_bits(run, row, row + rows), _bits(later, 0, rows)):
+            if _first_other(_channels(run, row, row + rows), _channels(later, 0, rows)) is None:
                 raise ParameterError(
                     f"the first {rows} rows of {later.name}, {later.time[0]:.6g} to "
                     f"{later.time[rows - 1]:.6g} s, are also in {run.name}",
@@ -77,7 +78,7 @@ def refuse_rows_repeated(arrays: Mapping[str, FloatArray], file: str, place: Cal
     time, torque = arrays["time"], arrays["torque"]
     for row, earlier, rows in _repeated(arrays):
         end = row + rows
-        if not np.ptp(torque[row:end]) or (end < time.size and time[end] < time[row - 1]):
+        if not _varies(torque[row:end]) or (end < time.size and time[end] < time[row - 1]):
             continue
         pasted = f"from {place(row)} to {place(end - 1)}"
         raise TimeOrderError(
@@ -90,22 +91,46 @@ def refuse_rows_repeated(arrays: Mapping[str, FloatArray], file: str, place: Cal
 def _repeated(arrays: Mapping[str, FloatArray]) -> Iterator[tuple[int, int, int]]:
     """Where time falls back to rows that are there already: the row, the earlier one, and how many agree."""
     time = arrays["time"]
-    back = np.append(False, np.diff(time) < 0)
-    if not back.any():
+    behind = rows_where(lambda rows: np.diff(time[rows.start : rows.stop + 1]) < 0, time.size - 1, time) + 1
+    if not behind.size:
         return
-    rows = _as_bits([values for role, values in arrays.items() if role != "run"])
+    back, stamps = set(behind.tolist()), np.unique(time[behind])
+    channels = [values for role, values in arrays.items() if role != "run"]
     seen: dict[bytes, int] = {}
-    for row in map(int, np.flatnonzero(np.isin(time, time[back]))):
-        earlier = seen.setdefault(rows[row : row + _FEW].tobytes(), row)
-        if back[row] and earlier < row <= time.size - _FEW:
-            most = min(row - earlier, time.size - row)
-            differ = np.any(rows[earlier : earlier + most] != rows[row : row + most], axis=1)
-            yield row, earlier, int(np.argmax(differ)) if differ.any() else most
+    for block in blocks(time.size, *channels):
+        same = np.flatnonzero(np.isin(time[block], stamps))
+        if not same.size:
+            continue
+        bits = _as_bits([values[block.start : block.stop + _FEW] for values in channels])
+        for row in (same + block.start).tolist():
+            near = bits[row - block.start : row - block.start + _FEW]
+            earlier = seen.setdefault(near.tobytes(), row)
+            if row in back and earlier < row <= time.size - _FEW:
+                most = min(row - earlier, time.size - row)
+                before, here = ([v[first : first + most] for v in channels] for first in (earlier, row))
+                other = _first_other(before, here)
+                yield row, earlier, most if other is None else other
 
 
-def _bits(run: Run, first: int, end: int) -> NDArray[np.int64]:
+def _varies(values: FloatArray) -> bool:
+    least, most = ends(values)
+    return most - least != 0.0
+
+
+def _first_other(some: Sequence[FloatArray], others: Sequence[FloatArray]) -> int | None:
+    """The first row in which channels differ from others of the same length; None if in none."""
+    if len(some) != len(others):
+        return 0
+    for rows in blocks(some[0].size, *some, *others):
+        differ = np.any(_as_bits([v[rows] for v in some]) != _as_bits([v[rows] for v in others]), axis=1)
+        if differ.any():
+            return int(rows.start + np.argmax(differ))
+    return None
+
+
+def _channels(run: Run, first: int, end: int) -> list[FloatArray]:
     channels = (run.time, run.torque, run.speed, run.temperature)
-    return _as_bits([each[first:end] for each in channels if each is not None])
+    return [each[first:end] for each in channels if each is not None]
 
 
 def _as_bits(channels: Sequence[FloatArray]) -> NDArray[np.int64]:
@@ -117,5 +142,7 @@ def _rows(run: Run) -> bytes:
     """Hash of the rows of a run without their times."""
     hashed = sha256()
     for channel in (run.torque, run.speed, run.temperature):
-        hashed.update(b"" if channel is None else np.ascontiguousarray(channel).data)
+        if channel is not None:
+            for rows in blocks(channel.size, channel):
+                hashed.update(np.ascontiguousarray(channel[rows]).data)
     return hashed.digest()

@@ -18,6 +18,7 @@ import numpy as np
 from hersey.arrays import BoolArray, FloatArray, IntArray
 from hersey.errors import DROP_MISSING, ISOTHERMAL, Setting, TimeOrderError, UnreadableLogError
 from hersey.log.believed import BELIEVED, TENTHS, Believed, as_written, in_si, is_code, is_wrapped
+from hersey.log.long_arrays import each_block, ends, every, joined, rows_where
 from hersey.log.neighbours import LEAST_JUMP, NEAREST_BURST, bursts, drop_outs, flips, on_its_way, pulses
 from hersey.log.roles import role_conversion
 from hersey.log.stray_times import stray_times
@@ -140,8 +141,8 @@ class Reading:
 
 def impossible_rows(
     readings: list[Reading], file: str, where: Callable[[int, Column], str], *, allowed: bool
-) -> tuple[BoolArray, tuple[Impossible, ...]]:
-    """Return which rows hold a reading that cannot be right, and what was found, by channel and reason.
+) -> tuple[IntArray, tuple[Impossible, ...]]:
+    """Return the rows that hold a reading that cannot be right, and what was found, by channel and reason.
 
     Parameters
     ----------
@@ -159,25 +160,34 @@ def impossible_rows(
     """
     time = next((each.values for each in readings if each.role == "time"), None)
     rows = readings[0].values.size
-    gone = np.zeros(rows, dtype=bool)
+    gone = np.empty(0, dtype=np.intp)
     found: list[Impossible] = []
     for each in readings:
-        if each.role == "run":
+        if each.role == "run" or not rows:
             continue
         kind = role_conversion(each.role, each.unit.unit)[0]
-        known = np.isfinite(each.values)
-        sound = each if known.all() else replace(each, values=each.values[known])
-        masks = _of_clock(sound.values) if each.role == "time" else _of_channel(sound, kind, time, known)
-        masks = {
-            reason: _at(np.flatnonzero(known)[mask], rows) for reason, mask in masks.items() if mask.any()
+        sound, known = each, None
+        if not np.isfinite(span := ends(each.values)).all():
+            known = np.flatnonzero(np.isfinite(each.values))
+            if not known.size:
+                continue
+            sound = replace(each, values=each.values[known])
+            span = ends(sound.values)
+        if each.role == "time":
+            by_reason = _of_clock(sound.values, span)
+        else:
+            clock = time if time is None or known is None else time[known]
+            by_reason = _of_channel(sound, kind, clock, span)
+        by_reason = {
+            reason: bad if known is None else known[bad] for reason, bad in by_reason.items() if bad.size
         }
-        if not masks:
+        if not by_reason:
             continue
-        here = [_record(each, kind, reason, mask, where) for reason, mask in masks.items()]
-        bad = np.logical_or.reduce(list(masks.values()))
+        here = [_record(each, kind, reason, bad, where) for reason, bad in by_reason.items()]
+        bad = _united(*by_reason.values())
         found += here
-        _refuse_many(here, each, kind, int(bad.sum()), rows, file, allowed=allowed)
-        gone |= bad
+        _refuse_many(here, each, kind, bad.size, rows, file, allowed=allowed)
+        gone = _united(gone, bad)
     return gone, tuple(found)
 
 
@@ -187,8 +197,8 @@ def marked_rows(
     where: Callable[[int, Column], str],
     *,
     allowed: bool,
-) -> tuple[BoolArray, tuple[Impossible, ...]]:
-    """Return which rows a file itself marks as invalid, and what was found, by channel.
+) -> tuple[IntArray, tuple[Impossible, ...]]:
+    """Return the rows that a file itself marks as invalid, and what was found, by channel.
 
     Parameters
     ----------
@@ -217,7 +227,7 @@ def marked_rows(
                 f"{file}, {found[-1]}; {share}", remedy=f"{_way_out(rows, mask.size)}{leave}"
             )
         gone |= mask
-    return gone, tuple(found)
+    return np.flatnonzero(gone), tuple(found)
 
 
 def _way_out(bad: int, rows: int) -> str:
@@ -226,64 +236,69 @@ def _way_out(bad: int, rows: int) -> str:
     return f"{_OTHER_FILE}{drop}"
 
 
-def _of_clock(time: FloatArray) -> dict[Reason, BoolArray]:
+def _of_clock(time: FloatArray, span: tuple[float, float]) -> dict[Reason, IntArray]:
     believed = BELIEVED["time"]
-    if not time.size or (time.min() >= believed.low and time.max() <= believed.high):
+    if span[0] >= believed.low and span[1] <= believed.high:
         return {Reason.CLOCK: stray_times(time)}
     beyond = (time < believed.low) | (time > believed.high)
-    stray = np.zeros(time.size, dtype=bool)
-    stray[~beyond] = stray_times(time[~beyond])
-    return {Reason.RANGE: beyond, Reason.CLOCK: stray}
+    ordinary = np.flatnonzero(~beyond)
+    return {Reason.RANGE: np.flatnonzero(beyond), Reason.CLOCK: ordinary[stray_times(time[ordinary])]}
 
 
 def _of_channel(
-    reading: Reading, kind: str, time: FloatArray | None, known: BoolArray
-) -> dict[Reason, BoolArray]:
-    """Rows that cannot be right by reason, each row under one; ``known`` are its rows among those of time."""
+    reading: Reading, kind: str, time: FloatArray | None, span: tuple[float, float]
+) -> dict[Reason, IntArray]:
+    """Rows that cannot be right by reason, each row under one; ``span`` is the least and greatest value."""
     values, believed = reading.values, BELIEVED[kind]
-    if not values.size:
-        return {}
-    least, most = float(values.min()), float(values.max())  # most channels need no further look
-    masks: dict[Reason, BoolArray] = {}
+    least, most = span  # most channels need no further look
+    found: dict[Reason, IntArray] = {}
     if least < believed.low or most > believed.high:
-        values = np.clip(values, -_NO_LARGER, _NO_LARGER)
-        masks[Reason.RANGE] = (values < believed.low) | (values > believed.high)
+        values = each_block(lambda part: np.clip(part, -_NO_LARGER, _NO_LARGER), values)
+        found[Reason.RANGE] = _beyond(values, believed.low, believed.high)
     ordinary = _ordinary(reading, kind, believed) if values.size >= FEWEST else None
     if ordinary is None:
-        return masks
+        return found
     low, high, size = ordinary
-    taken = np.zeros(values.size, dtype=bool) | masks.get(Reason.RANGE, False)
+    taken = found.get(Reason.RANGE, np.empty(0, dtype=np.intp))
 
-    def take(reason: Reason, mask: BoolArray) -> None:
-        masks[reason] = masks.get(reason, np.zeros(values.size, dtype=bool)) | (mask & ~taken)
-        taken[:] |= mask
+    def take(reason: Reason, rows: IntArray) -> None:
+        nonlocal taken
+        found[reason] = _united(found.get(reason, rows[:0]), _but(rows, taken))
+        taken = _united(taken, rows)
 
     def some_beyond(sizes: float) -> bool:
         return most > high + sizes * size or least < low - sizes * size
 
     if some_beyond(_CODE):
-        far = np.flatnonzero((values > high + _CODE * size) | (values < low - _CODE * size))
+        far = _beyond(values, low - _CODE * size, high + _CODE * size)
         beyond = np.maximum(values[far] - high, low - values[far]) / size if size > 0 else np.inf
         wrapped = is_wrapped(values[far], reading.unit) & (beyond > _WRAP)
-        take(Reason.CODE, _at(far[is_code(values[far], reading.unit, kind) | wrapped], values.size))
+        take(Reason.CODE, far[is_code(values[far], reading.unit, kind) | wrapped])
     if size > 0 and some_beyond(NEAREST_BURST):
-        take(Reason.OUTLIER, _few(bursts(values, low, high, size) & ~taken))
+        take(Reason.OUTLIER, _few(_but(bursts(values, low, high, size), taken), values))
     zero = reading.unit.offset
     if least <= zero + _ROUNDING * zero and most >= zero - _ROUNDING * zero:
         nearest = _NEAR_ZERO if kind == "temperature" else 0.0
-        take(Reason.DROP_OUT, _few(drop_outs(values, zero, nearest) & ~taken))
+        take(Reason.DROP_OUT, _few(_but(drop_outs(values, zero, nearest), taken), values))
     if kind == "temperature" and time is not None and most - least > LEAST_JUMP:
-        take(Reason.JUMP, pulses(values, time[known], high - low, MOST))
-    if size > 0 and taken.any():
-        take(Reason.OUTLIER, on_its_way(values, taken, low, high, size) & ~taken)
+        take(Reason.JUMP, pulses(values, time, high - low, MOST))
+    if size > 0 and taken.size:
+        take(Reason.OUTLIER, _but(on_its_way(values, taken, low, high, size), taken))
     if least < 0.0 <= most and kind in ("torque", "force", "friction coefficient", "speed", "belt speed"):
-        take(Reason.SIGN, _few(flips(values) & ~taken))
-    return masks
+        take(Reason.SIGN, _few(_but(flips(values), taken), values))
+    return found
+
+
+def _beyond(values: FloatArray, low: float, high: float) -> IntArray:
+    """Rows with a value below the one or above the other."""
+    return rows_where(
+        lambda block: np.asarray((values[block] < low) | (values[block] > high)), values.size, values
+    )
 
 
 def _ordinary(reading: Reading, kind: str, believed: Believed) -> tuple[float, float, float] | None:
     """Ends of the ordinary range and its size, SI, or None if most readings are codes."""
-    values = reading.values[:: max(1, reading.values.size // _LOOKED_AT)]
+    values = every(reading.values, max(1, reading.values.size // _LOOKED_AT))
     values = values[np.isfinite(values) & (values >= believed.low) & (values <= believed.high)]
     sound = values[~is_code(values, reading.unit, kind) & ~is_wrapped(values, reading.unit)]
     if not sound.size or sound.size < _LEAST_SOUND * values.size:
@@ -293,21 +308,25 @@ def _ordinary(reading: Reading, kind: str, believed: Believed) -> tuple[float, f
     return low, high, size
 
 
-def _few(mask: BoolArray) -> BoolArray:
+def _few(rows: IntArray, values: FloatArray) -> IntArray:
     """Rows if they are few, else none: what is frequent is the signal."""
-    return mask if mask.sum() <= _FEW * mask.size else np.zeros_like(mask)
+    return rows if rows.size <= _FEW * values.size else rows[:0]
 
 
-def _at(rows: IntArray, size: int) -> BoolArray:
-    mask = np.zeros(size, dtype=bool)
-    mask[rows] = True
-    return mask
+def _united(*parts: IntArray) -> IntArray:
+    """The rows of all parts in order."""
+    return np.unique(joined(parts))
+
+
+def _but(rows: IntArray, taken: IntArray) -> IntArray:
+    """The rows that are not taken."""
+    return rows[~np.isin(rows, taken, assume_unique=True)] if taken.size else rows
 
 
 def _record(
-    reading: Reading, kind: str, reason: Reason, mask: BoolArray, where: Callable[[int, Column], str]
+    reading: Reading, kind: str, reason: Reason, rows: IntArray, where: Callable[[int, Column], str]
 ) -> Impossible:
-    written = as_written(reading.values[mask], reading.unit)
+    written = as_written(reading.values[rows], reading.unit)
     distinct, counts = np.unique(np.array([float(f"{v:.10g}") for v in written[:10_000]]), return_counts=True)
     most = np.argsort(-counts, kind="stable")[:_NAMED]
     return Impossible(
@@ -315,11 +334,11 @@ def _record(
         reading.column.path,
         reading.unit.unit,
         reason,
-        int(mask.sum()),
+        rows.size,
         tuple((float(distinct[i]), int(counts[i])) for i in most),
         float(written.min()),
         float(written.max()),
-        where(int(np.argmax(mask)), reading.column),
+        where(int(rows[0]), reading.column),
         str(BELIEVED[kind]) if reason is Reason.RANGE else "",
     )
 

@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from hersey.arrays import BoolArray, FloatArray, IntArray
+from hersey.log.long_arrays import blocks, joined, rows_where
 
 #: A burst lies so many sizes (span, or greatest value) beyond the ordinary range, for at most so many rows.
 _BURSTS = ((5.0, 2), (20.0, 20), (1000.0, 1_000_000_000))
@@ -30,36 +31,64 @@ def runs_of_true(mask: BoolArray) -> list[tuple[int, int]]:
     return [(start, end) for start, end in edges.reshape(-1, 2).tolist()]
 
 
-def bursts(values: FloatArray, low: float, high: float, size: float) -> BoolArray:
+def _runs(rows: IntArray) -> list[tuple[int, int]]:
+    """First row of each run of neighbours, and the row behind its last; ``rows`` are in order."""
+    ends = np.flatnonzero(np.diff(rows) != 1)
+    first, last = rows[np.append(0, ends + 1)], rows[np.append(ends, -1)]
+    return list(zip(first.tolist(), (last + 1).tolist(), strict=True))
+
+
+def _from_to(stretches: list[tuple[int, int]]) -> IntArray:
+    """The rows of stretches that follow each other."""
+    return joined(np.arange(start, end) for start, end in stretches)
+
+
+def bursts(values: FloatArray, low: float, high: float, size: float) -> IntArray:
     """Return runs of rows so far beyond the ordinary range as no drive goes and comes back from so soon."""
-    found = np.zeros(values.size, dtype=bool)
+
+    def beyond(part: FloatArray, far: float) -> BoolArray:
+        return np.asarray((part > high + far * size) | (part < low - far * size))
+
+    rows = rows_where(lambda block: beyond(values[block], NEAREST_BURST), values.size, values)
+    found = []
     for far, longest in _BURSTS:
-        beyond = (values > high + far * size) | (values < low - far * size)
-        for start, end in runs_of_true(beyond):
+        rows = rows[beyond(values[rows], far)]
+        for start, end in _runs(rows) if rows.size else ():
             if end - start <= longest and start > 0 and end < values.size:
-                found[start:end] = True
-    return found
+                found.append((start, end))
+    return np.unique(_from_to(found))
 
 
-def on_its_way(values: FloatArray, seeds: BoolArray, low: float, high: float, size: float) -> BoolArray:
+def on_its_way(values: FloatArray, seeds: IntArray, low: float, high: float, size: float) -> IntArray:
     """Return rows beside impossible ones that lead there: beyond the ordinary range, and changing fast."""
-    near = (values > high + _BESIDE * size) | (values < low - _BESIDE * size)
-    found = np.zeros(values.size, dtype=bool)
-    for start, end in runs_of_true(seeds):
+    found = []
+    runs = _runs(seeds)
+    behind = [0, *(end for _, end in runs)]
+    before = [*(start for start, _ in runs), values.size]
+    for (start, end), least, most in zip(runs, behind[:-1], before[1:], strict=True):
         for row, step in ((start - 1, -1), (end, 1)):
-            while 0 <= row < values.size and near[row] and not seeds[row]:
+            while least <= row < most and _is_beside(values[row], low, high, size):
                 if abs(values[row] - values[row - step]) < _ON_ITS_WAY * size:
                     break
-                found[row] = True
+                found.append(row)
                 row += step  # walks on
-    return found
+    return np.unique(np.array(found, dtype=np.intp))
 
 
-def pulses(values: FloatArray, time: FloatArray, size: float, most: float) -> BoolArray:
+def _is_beside(value: float, low: float, high: float, size: float) -> bool:
+    return bool(value > high + _BESIDE * size or value < low - _BESIDE * size)
+
+
+def pulses(values: FloatArray, time: FloatArray, size: float, most: float) -> IntArray:
     """Return rows between a jump and the one that leads back to the level before it."""
-    jump, steps = max(LEAST_JUMP, size), np.diff(values)
-    jumps = np.flatnonzero((np.abs(steps) > jump) & (np.diff(time) <= _ROWS_APART)) + 1
-    found = np.zeros(values.size, dtype=bool)
+    jump = max(LEAST_JUMP, size)
+
+    def far(block: slice) -> BoolArray:
+        return np.asarray(np.abs(np.diff(values[block.start : block.stop + 1])) > jump)
+
+    jumps = rows_where(far, values.size - 1, values) + 1
+    jumps = jumps[time[jumps] - time[jumps - 1] <= _ROWS_APART]
+    found = []
     longest, i = most * values.size, 0
     while i < jumps.size:
         start = jumps[i]
@@ -75,47 +104,81 @@ def pulses(values: FloatArray, time: FloatArray, size: float, most: float) -> Bo
         if back is None or jumps[back] - start > longest:
             i += 1
             continue
-        found[start : jumps[back]] = True
+        found.append((start, jumps[back]))
         i = back + 1
-    return found
+    return _from_to(found)
 
 
-def flips(values: FloatArray) -> BoolArray:
+def flips(values: FloatArray) -> IntArray:
     """Return rows of the sign opposite to that of steady rows before and after, and about as large."""
-    negative = values < 0.0
-    starts = np.flatnonzero(negative[1:] != negative[:-1]) + 1
+
+    def starts(part: FloatArray) -> BoolArray:
+        negative = part < 0.0
+        return np.asarray(negative[1:] != negative[:-1])
 
     def opposite(inside: FloatArray, level: FloatArray) -> BoolArray:
         return np.asarray(np.abs(inside + level[:, None]) <= _STEADY_FLIP * np.abs(level)[:, None])
 
-    return _between_steady(values, starts, _STEADY_FLIP, 0.0, opposite)
+    return _between_steady(values, starts, lambda part: part, _STEADY_FLIP, 0.0, opposite)
 
 
-def drop_outs(values: FloatArray, zero: float, least: float) -> BoolArray:
+def drop_outs(values: FloatArray, zero: float, least: float) -> IntArray:
     """Return rows that read zero, which is ``zero`` in SI, between steady rows that are further from it."""
-    none_read = values == zero if zero == 0.0 else np.abs(values - zero) <= 1e-12 * abs(zero)
-    starts = np.flatnonzero(none_read[1:] & ~none_read[:-1]) + 1
-    from_zero = np.where(none_read, 0.0, values - zero) if starts.size and zero else values
+
+    def none_read(part: FloatArray) -> BoolArray:
+        return np.asarray(part == zero if zero == 0.0 else np.abs(part - zero) <= 1e-12 * abs(zero))
+
+    def starts(part: FloatArray) -> BoolArray:
+        none = none_read(part)
+        return np.asarray(none[1:] & ~none[:-1])
+
+    def from_zero(part: FloatArray) -> FloatArray:
+        return np.where(none_read(part), 0.0, part - zero) if zero else part
 
     def none(inside: FloatArray, _level: FloatArray) -> BoolArray:
         return np.asarray(inside == 0.0)
 
-    return _between_steady(from_zero, starts, _STEADY_DROP, least, none)
+    return _between_steady(values, starts, from_zero, _STEADY_DROP, least, none)
 
 
 def _between_steady(
+    values: FloatArray,
+    starting: Callable[[FloatArray], BoolArray],
+    beside: Callable[[FloatArray], FloatArray],
+    steady: float,
+    least: float,
+    odd: Callable[[FloatArray, FloatArray], BoolArray],
+) -> IntArray:
+    """Rows of short runs that are odd between rows that are steady, and larger than the least.
+
+    ``starting`` tells which rows start a run, from the second on, ``beside`` how far values are from zero.
+    """
+    found, starts = [], 0
+    for block in blocks(values.size, values):
+        before = max(block.start - 1, 0)
+        at = np.flatnonzero(starting(values[before : block.stop])) + before + 1
+        starts += at.size
+        if starts > _MOST_STARTS * values.size:
+            return np.empty(0, dtype=np.intp)
+        if at.size:
+            first = max(before - _AROUND, 0)
+            near = beside(values[first : block.stop + _SHORT + _AROUND])
+            at = at[(at >= _AROUND) & (at + 1 + _AROUND <= values.size)]
+            found.append(_odd_rows(near, at - first, steady, least, odd) + first)
+    return np.unique(joined(found))
+
+
+def _odd_rows(
     values: FloatArray,
     starts: IntArray,
     steady: float,
     least: float,
     odd: Callable[[FloatArray, FloatArray], BoolArray],
-) -> BoolArray:
-    """Rows of short runs that are odd between rows that are steady, and larger than the least."""
-    found = np.zeros(values.size, dtype=bool)
-    if not starts.size or starts.size > _MOST_STARTS * values.size:
-        return found
+) -> IntArray:
+    """Of runs that start in these rows, those that are odd between steady rows; five rows are before each."""
+    found = []
     for length in range(1, _SHORT + 1):
-        at = starts[(starts >= _AROUND) & (starts + length + _AROUND <= values.size)]
+        at = starts[starts + length + _AROUND <= values.size]
         before = values[at[:, None] - 1 - np.arange(_AROUND)]
         after = values[at[:, None] + length + np.arange(_AROUND)]
         around = np.hstack([before, after])
@@ -123,6 +186,5 @@ def _between_steady(
         inside = values[at[:, None] + np.arange(length)]
         calm = np.ptp(around, axis=1) <= steady * np.abs(level)
         hit = at[calm & (np.abs(level) > least) & odd(inside, level).all(axis=1)]
-        for row in range(length):
-            found[hit + row] = True
-    return found
+        found += [hit + row for row in range(length)]
+    return joined(found)

@@ -36,7 +36,7 @@ class Signal:
     holds the time. ``tick`` names the clock: two signals with the same tick need no alignment. ``line`` is
     the row of the file in which the first sample stands, 0 where a file has none. ``marked`` returns for each
     sample whether the file itself marks it as invalid: `SOUND`, `INVALID` or `INVALID_TIME`; None if it
-    marks none.
+    marks none. ``parts`` yields what ``load`` returns, part by part, where that needs less memory.
     """
 
     name: str
@@ -48,6 +48,7 @@ class Signal:
     group: str = ""
     line: int = 0
     marked: Callable[[], FloatArray] | None = None
+    parts: Callable[[], Iterator[FloatArray]] | None = None
 
 
 @dataclass(frozen=True)

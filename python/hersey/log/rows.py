@@ -11,13 +11,11 @@ import numpy as np
 from hersey.arrays import BoolArray, FloatArray, IntArray
 from hersey.errors import DROP_MISSING, ISOTHERMAL, Setting, TimeOrderError, UnreadableLogError
 from hersey.log.given_twice import refuse_rows_repeated
+from hersey.log.long_arrays import rows_before, rows_where, without
 from hersey.log.slow_channels import LONGEST_INTERVAL, SlowChannel, is_slow
 from hersey.log.text.dated_numbers import numbers_lost
 from hersey.log.torque_log import LogFile, Run
 from hersey.schema.warning import Warning
-
-#: Rows of a run.
-Rows = slice | IntArray
 
 #: Rows that may be left out unasked, as a share of a file; one may be in any.
 FEW = 0.02
@@ -27,6 +25,23 @@ _LISTED = 10
 _START = 0.1
 #: Runs in a file at the most.
 _MOST_RUNS = 10_000
+
+
+@dataclass(frozen=True)
+class Rows:
+    """Rows of a run: those from the first to that before the end, but those left out, which are in order."""
+
+    first: int
+    end: int
+    left_out: IntArray
+
+    def of(self, values: FloatArray) -> FloatArray:
+        """Return the numbers of the run from those of the whole."""
+        return without(values[self.first : self.end], self.left_out - self.first)
+
+    def among(self, place: Callable[[int], str]) -> Callable[[int], str]:
+        """Return what puts a row of the run in words, where ``place`` does so with one of the whole."""
+        return lambda row: place(self.first + rows_before(row, self.left_out - self.first))
 
 
 @dataclass
@@ -117,25 +132,26 @@ def runs_of(
     UnreadableLogError
         If time runs backwards in any other way.
     """
-    kept = np.ones(time.size, dtype=bool)
+    gone: set[int] = set()
     starts = [0]
-    change = np.zeros(time.size, dtype=bool)
-    if numbers is not None and time.size:
-        change[1:] = np.diff(numbers) != 0
-    for row in map(int, np.flatnonzero(change | np.append(False, np.diff(time) < 0))):
-        last = _last_kept(kept, row, starts[-1])
-        if change[row]:
+
+    def changes(row: int) -> bool:
+        return numbers is not None and row < time.size and numbers[row] - numbers[row - 1] != 0
+
+    for row in _breaks(time, numbers):
+        last = _last_kept(gone, row, starts[-1])
+        if changes(row):
             starts.append(row)
         elif time[row] >= time[last]:  # the row before was the odd one
             continue
-        elif row + 1 < time.size and time[row + 1] >= time[last] and not change[row + 1]:
-            kept[row] = False
+        elif row + 1 < time.size and time[row + 1] >= time[last] and not changes(row + 1):
+            gone.add(row)
             by = time[last] - time[row]
             left_out.add(
                 1, [f"{place(row)}: time runs backwards by {by:.6g} s in this row"], out_of_order=True
             )
-        elif last > starts[-1] and time[row] >= time[_last_kept(kept, last, starts[-1])]:
-            kept[last] = False
+        elif last > starts[-1] and time[row] >= time[_last_kept(gone, last, starts[-1])]:
+            gone.add(last)
             by = time[last] - time[row]
             left_out.add(1, [f"{place(last)}: time runs ahead by {by:.6g} s in this row"], out_of_order=True)
         elif time[row] <= time[starts[-1]] + _START * (time[last] - time[starts[-1]]):
@@ -156,7 +172,22 @@ def runs_of(
                 f"{Setting('time', 'channel').to()}",
                 setting=Setting("time", "channel"),
             )
-    return [_rows(kept, start, end) for start, end in itertools.pairwise([*starts, kept.size])]
+    left = np.array(sorted(gone), dtype=np.intp)
+    edges = [*starts, time.size]
+    parts = np.split(left, np.searchsorted(left, edges[1:-1]))
+    return [Rows(*run, part) for run, part in zip(itertools.pairwise(edges), parts, strict=True)]
+
+
+def _breaks(time: FloatArray, numbers: FloatArray | None) -> list[int]:
+    """Rows in which time falls back, or the number of the run changes."""
+
+    def broken(block: slice) -> BoolArray:
+        rows = slice(block.start, block.stop + 1)
+        back = np.diff(time[rows]) < 0
+        return np.asarray(back if numbers is None else back | (np.diff(numbers[rows]) != 0))
+
+    channels = (time,) if numbers is None else (time, numbers)
+    return [row + 1 for row in rows_where(broken, time.size - 1, *channels).tolist()]
 
 
 def runs_with_records(
@@ -181,10 +212,10 @@ def runs_with_records(
     """
     rows = arrays["time"].size + left_out.rows
     slow, gone = _slow(file, arrays, lacking)
-    if gone.any():
-        left_out.add(int(gone.sum()), itertools.chain.from_iterable(each.words for each in lacking.values()))
-        arrays = {role: values[~gone] for role, values in arrays.items()}
-        place = _among(place, np.flatnonzero(~gone))
+    if gone.size:
+        left_out.add(gone.size, itertools.chain.from_iterable(each.words for each in lacking.values()))
+        whole = Rows(0, arrays["time"].size, gone)
+        arrays, place = {role: whole.of(values) for role, values in arrays.items()}, whole.among(place)
     time = arrays["time"]
     refuse_rows_repeated(arrays, file.name, place)
     parts = runs_of(time, arrays.pop("run", None), file.name, place, left_out)
@@ -195,12 +226,12 @@ def runs_with_records(
         raise UnreadableLogError(
             f"{file.name} has only {time.size} row(s) with a number in every required column"
         )
-    runs = [{role: values[part] for role, values in arrays.items()} for part in parts]
-    runs = [_bridged(run, slow, _among(place, part)) for run, part in zip(runs, parts, strict=True)]
+    runs = [{role: part.of(values) for role, values in arrays.items()} for part in parts]
+    runs = [_bridged(run, slow, part.among(place)) for run, part in zip(runs, parts, strict=True)]
     for channel in slow:
         gaps = LeftOut(channel.in_gaps, [f"{channel.first_gap}: {channel.role} '{channel.name}' has a gap"])
         gaps.refuse_many(file.name, rows, allowed=drop_missing)
-    begins = [place(_first(part)) for part in parts]
+    begins = [part.among(place)(0) for part in parts]
     long = [i for i, run in enumerate(runs) if run["time"].size > 1 and run["time"][-1] > run["time"][0]]
     warnings = [each for channel in slow for each in channel.warnings()]
     if not long:
@@ -243,19 +274,18 @@ def _recorded(
 
 def _slow(
     file: LogFile, arrays: dict[str, FloatArray], lacking: Mapping[str, LeftOut]
-) -> tuple[list[SlowChannel], BoolArray]:
+) -> tuple[list[SlowChannel], IntArray]:
     """The slow channels, and the rows that lack a number of a channel that is not slow."""
-    time, slow = arrays["time"], []
-    gone = np.zeros(time.size, dtype=bool)
+    time, slow, gone = arrays["time"], [], np.empty(0, dtype=np.intp)
     names = {channel.role: channel.name for channel in file.channels}
-    for role in lacking:
+    for role in (role for role, of_role in lacking.items() if of_role.rows):
         known = np.isfinite(arrays[role])
         if is_slow(known.size, int(known.sum())):
             channel = SlowChannel.of(role, names[role], time, known)
             if channel.interval <= LONGEST_INTERVAL:
                 slow.append(channel)
                 continue
-        gone |= ~known
+        gone = np.union1d(gone, np.flatnonzero(~known))
     return slow, gone
 
 
@@ -271,25 +301,9 @@ def _bridged(
     return {role: values[kept] for role, values in run.items()}
 
 
-def _among(place: Callable[[int], str], rows: Rows) -> Callable[[int], str]:
-    """What puts a row in words that is counted among these."""
-    if isinstance(rows, slice):
-        start = _first(rows)
-        return lambda row: place(start + row)
-    return lambda row: place(int(rows[row]))
-
-
-def _first(rows: Rows) -> int:
-    return int(rows.start) if isinstance(rows, slice) else int(rows[0])
-
-
-def _last_kept(kept: BoolArray, row: int, start: int) -> int:
+def _last_kept(gone: set[int], row: int, start: int) -> int:
     """The row before this one that is used, in the run that begins at ``start``."""
     before = row - 1
-    while before > start and not kept[before]:
+    while before > start and before in gone:
         before -= 1
     return max(before, start)
-
-
-def _rows(kept: BoolArray, start: int, end: int) -> Rows:
-    return slice(start, end) if kept[start:end].all() else start + np.flatnonzero(kept[start:end])

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
-from hersey.arrays import BoolArray, FloatArray
+from hersey.arrays import BoolArray, FloatArray, IntArray
 from hersey.log.believed import is_code
+from hersey.log.long_arrays import blocks, joined, rows_where
+from hersey.log.middle import median_step
 from hersey.units import Conversion
 
 #: A step of the clock is a jump if it is negative, or longer than so many usual ones.
@@ -14,14 +18,12 @@ _JUMP = 10.0
 _ON, _MORE = 3.0, 2.0
 #: Stray rows in one place, at the most, as a share; and jumps looked at to find their end.
 _LONGEST, _LOOKED_AT = 0.2, 2000
-#: Rows whose steps are looked at together.
-_AT_ONCE = 1 << 16
 
 _SECONDS = Conversion("s", 1.0, 0.0)
 
 
-def stray_times(time: FloatArray) -> BoolArray:
-    """Return which rows are off a clock (s, finite) that goes on behind them as if they had kept to it.
+def stray_times(time: FloatArray) -> IntArray:
+    """Return the rows that are off a clock (s, finite) that goes on behind them as if they had kept to it.
 
     A clock that starts anew never goes on as before, and a gap leads nowhere else: neither is stray. At the
     start and the end, where nothing comes before or after, rows that stand at a code of the logger are.
@@ -30,18 +32,21 @@ def stray_times(time: FloatArray) -> BoolArray:
     --------
     >>> time = np.arange(20.0)
     >>> time[3:5] = 65535.0
-    >>> np.flatnonzero(stray_times(time)).tolist()
+    >>> stray_times(time).tolist()
     [3, 4]
     """
-    stray = np.zeros(time.size, dtype=bool)
     if time.size < 3 or _goes_on(time):
-        return stray
-    steps = np.diff(time)
-    forward = steps[steps > 0]
-    if not forward.size:
-        return stray
-    usual = float(np.median(forward))
-    jumps = np.flatnonzero((steps < 0) | (steps > _JUMP * usual)) + 1
+        return np.empty(0, dtype=np.intp)
+    usual = median_step(time, forward=True)
+    if usual is None:
+        return np.empty(0, dtype=np.intp)
+
+    def jumping(block: slice) -> BoolArray:
+        steps = np.diff(time[block.start : block.stop + 1])
+        return np.asarray((steps < 0) | (steps > _JUMP * usual))
+
+    jumps = rows_where(jumping, time.size - 1, time) + 1
+    stray: list[IntArray] = []
     done = 0
     for i, start in enumerate(jumps):
         if start < done:
@@ -56,10 +61,10 @@ def stray_times(time: FloatArray) -> BoolArray:
                 continue
             inside = time[start:end]
             if np.all((inside < before) | (inside > time[end])):
-                stray[start:end] = True
+                stray.append(np.arange(start, end))
                 done = end
                 break
-    return stray | _at_the_ends(time, jumps)
+    return np.unique(joined([*stray, *_at_the_ends(time, jumps)]))
 
 
 def _goes_on(time: FloatArray) -> bool:
@@ -67,25 +72,28 @@ def _goes_on(time: FloatArray) -> bool:
 
     If most steps forward are longer than a tenth of the greatest, that one is no jump.
     """
-    parts = [slice(i, i + _AT_ONCE + 1) for i in range(0, time.size - 1, _AT_ONCE)]  # which stay in the cache
-    ends = [(steps.min(), steps.max()) for part in parts if (steps := np.diff(time[part])).size]
+    ends = [(steps.min(), steps.max()) for steps in _steps(time)]
     greatest = max(most for _, most in ends)
     if min(least for least, _ in ends) < 0.0:
         return False
     long = forward = 0
-    for part in parts:
-        steps = np.diff(time[part])
+    for steps in _steps(time):
         long += int(np.count_nonzero(steps > greatest / _JUMP))
         forward += int(np.count_nonzero(steps > 0.0))
     return 2 * long > forward
 
 
-def _at_the_ends(time: FloatArray, jumps: np.ndarray) -> BoolArray:
+def _steps(time: FloatArray) -> Iterator[FloatArray]:
+    """The steps of a clock, block by block."""
+    for block in blocks(time.size - 1, time):
+        yield np.diff(time[block.start : block.stop + 1])
+
+
+def _at_the_ends(time: FloatArray, jumps: IntArray) -> Iterator[IntArray]:
     """Rows before the first jump, or from the last on, that all stand at one code."""
-    found = np.zeros(time.size, dtype=bool)
     if jumps.size:
-        for part in (slice(0, int(jumps[0])), slice(int(jumps[-1]), time.size)):
-            same = np.all(time[part] == time[part][0])
-            if same and is_code(time[part][:1], _SECONDS, "time")[0]:
-                found[part] = True
-    return found
+        for first, end in ((0, int(jumps[0])), (int(jumps[-1]), time.size)):
+            if is_code(time[first : first + 1], _SECONDS, "time")[0] and np.all(
+                time[first:end] == time[first]
+            ):
+                yield np.arange(first, end)

@@ -12,6 +12,8 @@ from hersey.arguments.door import Words
 from hersey.arrays import FloatArray
 from hersey.log.clock import Clock, clock_of
 from hersey.log.impossible import Impossible
+from hersey.log.long_arrays import passed
+from hersey.log.middle import median_step
 from hersey.log.sensors import Sensors
 from hersey.result import Means, Record, Result
 from hersey.schema.warning import Warning
@@ -88,11 +90,14 @@ class Run(Record):
             **{name: None if values is None else list(_ends(values)) for name, values in channels.items()},
         }
 
+    def passed(self, start: int, end: int) -> None:
+        """Note that these rows were seen: of a long run no more is held in memory than was seen lately."""
+        passed(start, end, *(values for name in _COLUMNS if (values := getattr(self, name)) is not None))
+
     @cached_property
     def sampling_interval(self) -> float:
         """Median time between rows in s; where clocks are coarse and stamps repeat, the mean."""
-        median = float(np.median(np.diff(self.time)))
-        return median or float(self.time[-1] - self.time[0]) / (self.time.size - 1)
+        return median_step(self.time) or float(self.time[-1] - self.time[0]) / (self.time.size - 1)
 
     @cached_property
     def clock(self) -> Clock:

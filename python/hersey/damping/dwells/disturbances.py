@@ -12,6 +12,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from hersey.arrays import FloatArray
 from hersey.damping.dwells.noise import thinned
+from hersey.log.long_arrays import blocks
 
 #: Rows over which the median of the neighbourhood is taken: a spike lasts two of them at most.
 _SURROUNDINGS = 5
@@ -48,7 +49,8 @@ def without_spikes(torque: FloatArray) -> tuple[FloatArray, Spikes] | None:
     if torque.size < _SURROUNDINGS:
         return None
     around = np.pad(torque, _SURROUNDINGS // 2, mode="symmetric")
-    middle = np.median(sliding_window_view(around, _SURROUNDINGS), axis=1)
+    windows = sliding_window_view(around, _SURROUNDINGS)
+    middle = np.concatenate([np.median(windows[rows], axis=1) for rows in blocks(torque.size)])
     away = np.abs(torque - middle)
     noise = float(np.median(away[away > 0])) / _MAD if np.any(away > 0) else 0.0
     spiky = away > max(_BEYOND * noise, _NOTABLE * abs(float(np.median(torque))))

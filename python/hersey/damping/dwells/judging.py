@@ -13,6 +13,7 @@ from hersey.damping.dwells.segments import Segment
 from hersey.damping.dwells.settling import settled
 from hersey.damping.dwells.shared_noise import SharedNoise
 from hersey.damping.dwells.steadiness import unsteady
+from hersey.log.long_arrays import mean
 from hersey.log.torque_log import Run
 
 #: Where a dwell that drifts is tried again, as shares of it cut from its start.
@@ -87,7 +88,7 @@ def judged(
     start, end, reason = judge.steady_rows()
     if reason:
         return reject(_spoilt(judge, reason) or reason)
-    if np.mean(run.speed[start:end]) * (np.mean(run.torque[start:end]) - tare) <= 0:
+    if mean(run.speed[start:end]) * (mean(run.torque[start:end]) - tare) <= 0:
         return reject(Reason("opposite signs"))
     return Dwell(stretch.run, segment, stretch.previous, start, end)
 

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
+from typing import Any, TypeVar
 
 import numpy as np
 import polars as pl
@@ -20,12 +23,14 @@ from hersey.damping.dwells.ripple import joined_over_turns, turned, without_ripp
 from hersey.damping.dwells.segments import Segment, segments_of
 from hersey.damping.dwells.settling import common_settling
 from hersey.damping.dwells.shared_noise import Powers, SharedNoise, shared_noise
-from hersey.damping.dwells.steadiness import MAX_TEMPERATURE_DRIFT, drift_over, straightened
+from hersey.damping.dwells.steadiness import MAX_TEMPERATURE_DRIFT, drift_over, straightened, subtracted
 from hersey.damping.dwells.zero import Zero, standing_stretches, starts_of
 from hersey.errors import TARE, InsufficientDataError, ParameterError, Setting
+from hersey.log.long_arrays import deviation, mean, variance
 from hersey.log.roles import MEANS
 from hersey.log.torque_log import ROTATIONS, TARES, Run, TorqueLog
 
+T = TypeVar("T")
 #: Rounds in which dwells are judged again by the noise of those kept, at the most.
 ROUNDS = 3
 #: Clocks that a log may have instead of one in seconds: seconds, unit and name of one count.
@@ -141,28 +146,31 @@ class _Reduction:
 
     def _judged(self, noise: SharedNoise | None, asked: Asked | None = None) -> list[Dwell | Rejection]:
         tares = self._tares(self._middles([(s.run, s.segment.start, s.segment.end) for s in self.stretches]))
-        return [
-            judged(
-                self.log.runs[stretch.run],
-                stretch,
-                asked or self.asked,
-                float(tare),
-                noise,
-                self.settling.get(stretch.approach, 0.0),
-                self.steps[stretch.run]["torque"],
-            )
-            for stretch, tare in zip(self.stretches, tares, strict=True)
-        ]
+
+        def judge(run: Run, stretch: Stretch, tare: float) -> Dwell | Rejection:
+            settling, step = self.settling.get(stretch.approach, 0.0), self.steps[stretch.run]["torque"]
+            return judged(run, stretch, asked or self.asked, tare, noise, settling, step)
+
+        return self._each(judge, self.stretches, tares.tolist())
+
+    def _each(self, made: Callable[..., T], stretches: Sequence[Stretch], *given: Sequence[Any]) -> list[T]:
+        """What a function makes of each stretch and its run, and of what is given with it.
+
+        Of a long log no more is in memory than the stretch and a few before it.
+        """
+        out = []
+        for stretch, *others in zip(stretches, *given, strict=True):
+            run = self.log.runs[stretch.run]
+            out.append(made(run, stretch, *others))
+            run.passed(stretch.segment.start, stretch.segment.end)
+        return out
 
     def _reduced(
         self, dwells: list[Dwell], rejected: tuple[Rejection, ...], noise: SharedNoise | None
     ) -> SteadyPoints:
         times = self._middles([(d.run, d.start, d.end) for d in dwells])
         tares = self._tares(times)
-        rows = [
-            _row(self.log.runs[dwell.run], dwell, float(tare), noise)
-            for dwell, tare in zip(dwells, tares, strict=True)
-        ]
+        rows = self._each(partial(_row, noise), dwells, tares.tolist())
         resolutions = self._resolutions(dwells)
         for resolution in resolutions:
             _widen(rows, resolution.quantity, resolution.errors)
@@ -190,7 +198,7 @@ class _Reduction:
             resolutions=resolutions,
             relaxation=relaxing,
             relaxation_errors=_left(relaxing, table),
-            temperature_rates=np.array([_temperature_rate(self.log.runs[d.run], d) for d in dwells]),
+            temperature_rates=np.array(self._each(_temperature_rate, dwells)),
         )
 
     def _steps(self, index: int) -> dict[str, float]:
@@ -209,10 +217,8 @@ class _Reduction:
         out = []
         for name in ("torque", "speed", "temperature"):
             if step := max(steps[name] for steps in self.steps):
-                errors = [
-                    rounding_error(_values(self.log.runs[d.run], name, d), self.steps[d.run][name])
-                    for d in dwells
-                ]
+                steps = [self.steps[d.run][name] for d in dwells]
+                errors = self._each(partial(_rounding, name), dwells, steps)
                 out.append(Resolution(name, step, np.array(errors) * alike))
         return tuple(out)
 
@@ -221,26 +227,22 @@ class _Reduction:
         speed = np.array([d.segment.speed for d in dwells])
         if not self.log.has_temperature:
             return repeats(speed, None)
-        return repeats(
-            speed, np.array([np.mean(_values(self.log.runs[d.run], "temperature", d)) for d in dwells])
-        )
+        kelvin = self._each(lambda run, d: np.mean(_values(run, "temperature", d)), dwells)
+        return repeats(speed, np.array(kelvin))
 
     def _relaxation(self, dwells: list[Dwell], tares: FloatArray) -> Relaxation | None:
         """The relaxation that the dwells show together after each change of speed."""
-        return relaxation(
-            [
-                _trend(self.log.runs[d.run], d, float(tare), isothermal=self._isothermal(d))
-                for d, tare in zip(dwells, tares, strict=True)
-            ]
-        )
+        return relaxation(self._each(_trend, dwells, tares.tolist(), self._each(self._isothermal, dwells)))
 
-    def _isothermal(self, dwell: Dwell) -> bool:
+    def _isothermal(self, run: Run, dwell: Dwell) -> bool:
         """Whether a dwell has the temperature of the speed held before it."""
-        kelvin = self.log.runs[dwell.run].temperature
+        kelvin = run.temperature
         before = [s for s in self.segments[dwell.run] if s.steady and s.end <= dwell.segment.start]
         if kelvin is None or not before:
             return True
-        change = np.mean(kelvin[dwell.start : dwell.end]) - np.mean(kelvin[before[-1].start : before[-1].end])
+        last = before[-1]
+        change = mean(kelvin[dwell.start : dwell.end]) - mean(kelvin[last.start : last.end])
+        run.passed(last.start, last.end)
         return bool(abs(change) <= MAX_TEMPERATURE_DRIFT)
 
     def _zero(self, noise: SharedNoise | None) -> Zero | None:
@@ -276,16 +278,13 @@ class _Reduction:
 
     def _noise(self, dwells: list[Dwell]) -> SharedNoise | None:
         """The noise of the dwells, without the drifts that are more than it."""
-        series = [_calm_torque(self.log.runs[d.run], d) for d in dwells]
-        times = [self.log.runs[d.run].time[d.start : d.end] for d in dwells]
-        powers = [Powers.of(v, _interval(t)) for v, t in zip(series, times, strict=True)]
+        powers = self._each(_powers, dwells)
         noise = shared_noise(powers)
         if noise is None:
             return None
-        drifting = [i for i, time in enumerate(times) if drift_over(time, series[i], noise)[0]]
-        for i in drifting:
-            powers[i] = Powers.of(straightened(times[i], series[i]), _interval(times[i]))
-        return shared_noise(powers) if drifting else noise
+        straight = self._each(partial(_powers_if_drifting, noise), dwells)
+        both = zip(straight, powers, strict=True)
+        return shared_noise([new or old for new, old in both]) if any(straight) else noise
 
 
 def _in_order(index: int, segments: list[Segment]) -> list[Stretch]:
@@ -303,11 +302,26 @@ def _interval(time: FloatArray) -> float:
     return float(time[-1] - time[0]) / (time.size - 1)
 
 
-def _row(run: Run, dwell: Dwell, tare: float, noise: SharedNoise | None) -> dict[str, object]:
+def _powers(run: Run, dwell: Dwell) -> Powers:
+    """The torque of a dwell in cosines."""
+    return Powers.of(_calm_torque(run, dwell), _interval(run.time[dwell.start : dwell.end]))
+
+
+def _powers_if_drifting(noise: SharedNoise, run: Run, dwell: Dwell) -> Powers | None:
+    """The torque of a dwell in cosines without its drift, or None if it is no more than noise."""
+    time, torque = run.time[dwell.start : dwell.end], _calm_torque(run, dwell)
+    if not drift_over(time, torque, noise)[0]:
+        return None
+    return Powers.of(straightened(time, torque), _interval(time))
+
+
+def _row(noise: SharedNoise | None, run: Run, dwell: Dwell, tare: float) -> dict[str, object]:
     """One row of the table of steady points."""
     rows = slice(dwell.start, dwell.end)
     speed_mean, speed_error, _ = mean_and_error(run.speed[rows])
-    torque_mean, torque_error, independent = _torque(run.time[rows], _calm_torque(run, dwell) - tare, noise)
+    torque_mean, torque_error, independent = _torque(
+        run.time[rows], subtracted(_calm_torque(run, dwell), tare), noise
+    )
     torque_error = float(np.hypot(torque_error, _curvature(run.speed[rows]) * torque_mean))
     hot = mean_and_error(run.temperature[rows]) if run.temperature is not None else (None, None)
     return {
@@ -335,6 +349,11 @@ def _values(run: Run, name: str, dwell: Dwell) -> FloatArray:
     return np.empty(0) if values is None else values[dwell.start : dwell.end]
 
 
+def _rounding(name: str, run: Run, dwell: Dwell, step: float) -> float:
+    """The error that the step of a sensor leaves in the mean of a dwell, SI."""
+    return rounding_error(_values(run, name, dwell), step)
+
+
 def _widen(rows: list[dict[str, object]], quantity: str, errors: FloatArray) -> None:
     """Add errors to the standard error of each dwell."""
     name = f"{quantity}_error"
@@ -352,12 +371,12 @@ def _left(relaxing: Relaxation | None, table: pl.DataFrame) -> FloatArray:
     return np.asarray(relaxing.left * table["torque"].to_numpy())[:, None]
 
 
-def _trend(run: Run, dwell: Dwell, tare: float, *, isothermal: bool) -> Trend:
+def _trend(run: Run, dwell: Dwell, tare: float, isothermal: bool) -> Trend:
     """How the torque of a dwell runs since the speed changed."""
     before, after = dwell.previous or 0.0, abs(dwell.segment.speed)
     step = float(np.log(after / before)) if before > STANDS * after else 0.0
-    since = run.time[dwell.start : dwell.end] - run.time[dwell.segment.start]
-    return Trend.of(since, _calm_torque(run, dwell) - tare, step, isothermal=isothermal)
+    since = subtracted(run.time[dwell.start : dwell.end], float(run.time[dwell.segment.start]))
+    return Trend.of(since, subtracted(_calm_torque(run, dwell), tare), step, isothermal=isothermal)
 
 
 def _temperature_rate(run: Run, dwell: Dwell) -> float:
@@ -382,7 +401,7 @@ def _curvature(speed: FloatArray) -> float:
     w^p over a swing of relative deviation s is p (p - 1)/2 s^2 more than at the mean: under s^2/2 for any p
     between -0.6 and 1.6. Small oscillations may be noise of the encoder: the mean is right.
     """
-    swing = float(np.std(speed)) / abs(float(np.mean(speed)))
+    swing = deviation(speed) / abs(mean(speed))
     return 0.5 * swing**2 if swing > NOTABLE_SWING else 0.0
 
 
@@ -396,5 +415,5 @@ def _torque(time: FloatArray, torque: FloatArray, noise: SharedNoise | None) -> 
     if noise is not None and error > 0.0:
         steady = straightened(time, torque) if rise else torque
         error = noise.mean_error(Powers.of(steady, _interval(time)))
-        independent = float(np.clip(np.var(steady) / error**2, 1.0, torque.size))
+        independent = float(np.clip(variance(steady) / error**2, 1.0, torque.size))
     return mean, float(np.hypot(error, rise / np.sqrt(12.0))), independent

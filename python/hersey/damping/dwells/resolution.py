@@ -15,6 +15,7 @@ import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.damping.dwells.groups import SAME_SPEED
+from hersey.log.long_arrays import variance
 
 #: Share of the differences between values that must be multiples of a step.
 STEP_SHARE = 0.98
@@ -104,6 +105,6 @@ def rounding_error(values: FloatArray, step: float) -> float:
     """Return the standard error that rounding to a step leaves in the mean of values."""
     if not step or not values.size:
         return 0.0
-    blur = max(float(np.var(values)) / step**2 - 1.0 / 12.0, 0.0)  # variance before rounding, in steps
+    blur = max(variance(values) / step**2 - 1.0 / 12.0, 0.0)  # variance before rounding, in steps
     damped = np.exp(-4.0 * np.pi**2 * _SINES**2 * blur) / (2.0 * np.pi**2 * _SINES**2)
     return step * float(np.sqrt(np.sum(damped)))

@@ -8,13 +8,15 @@ and noise are judged.
 from __future__ import annotations
 
 import itertools
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
 
-from hersey.arrays import FloatArray
+from hersey.arrays import FloatArray, IntArray
 from hersey.damping.dwells.noise import thinned
 from hersey.damping.dwells.segments import BLOCK_DURATION, Segment
+from hersey.log.long_arrays import Filling, blocks, each_block, mean, passed
 from hersey.log.torque_log import Run
 
 #: Neighbouring pieces of one rippling dwell differ in speed by less than this share.
@@ -27,6 +29,8 @@ TURNS = 3
 WHOLE = 0.9
 #: Harmonics of the revolution that are subtracted.
 HARMONICS = 4
+#: Angle of a revolution, rad, and revolutions that are averaged at once.
+_TURN, _AT_ONCE = 2.0 * np.pi, 64
 
 
 def joined_over_turns(run: Run, segments: list[Segment]) -> list[Segment]:
@@ -57,14 +61,10 @@ def _may_be_one(before: Segment, after: Segment) -> bool:
 
 def _rejoined(run: Run, chain: list[Segment]) -> list[Segment]:
     start, end = chain[0].start, chain[-1].end
-    angle = turned(run.time[start:end], run.speed[start:end])
-    edges = np.searchsorted(angle, 2.0 * np.pi * np.arange(1 + int(angle[-1] / (2.0 * np.pi))))
-    edges = np.unique(edges)
+    edges = np.unique(_turns(run.time[start:end], run.speed[start:end]))
     if edges.size <= TURNS:
         return chain
-    means = np.add.reduceat(run.speed[start:end], edges[:-1])[: edges.size - 1] / np.diff(edges)
-    # the last sum runs on to the end of the chain: only whole revolutions count
-    means[-1] = float(np.mean(run.speed[start + edges[-2] : start + edges[-1]]))
+    means = _means_between(run.speed[start:end], edges)
     for first, last in _held(means):
         rows = (start + int(edges[first]), start + int(edges[last]))
         largest = max(min(s.end, rows[1]) - max(s.start, rows[0]) for s in chain)
@@ -91,16 +91,54 @@ def _held(means: FloatArray) -> list[tuple[int, int]]:
 def _replaced(run: Run, chain: list[Segment], rows: tuple[int, int]) -> list[Segment]:
     """Replace what lies in these rows by one dwell that ripples; what is left of its ends is no dwell."""
     speed = float(np.mean(run.speed[slice(*rows)]))
+    run.passed(*rows)
     before = [replace(s, end=min(s.end, rows[0])) for s in chain if s.start < rows[0]]
     after = [replace(s, start=max(s.start, rows[1])) for s in chain if s.end > rows[1]]
     cut = [replace(s, steady=s.steady and s in chain) for s in (*before, *after)]
     return [*cut[: len(before)], Segment(*rows, speed, True, False, ripple=True), *cut[len(before) :]]
 
 
+def _turns(time: FloatArray, speed: FloatArray) -> IntArray:
+    """The first row of each revolution, the first of all among them."""
+    found: list[IntArray] = []
+    count, angle = 0, np.zeros(1)
+    for block, angle in _angles(time, speed):
+        ahead = _TURN * np.arange(count, 2 + max(count, int(angle[-1] / _TURN)))
+        found.append(block.start + np.searchsorted(angle, ahead[ahead <= angle[-1]]))
+        count += found[-1].size
+    count = 1 + int(angle[-1] / _TURN)  # which, rounded, may be one more than were found
+    return np.append(np.concatenate(found), time.size)[:count]
+
+
+def _means_between(values: FloatArray, edges: IntArray) -> FloatArray:
+    """Means of the rows from each edge to the next."""
+    means = []
+    for first in range(0, edges.size - 1, _AT_ONCE):
+        some = edges[first : first + _AT_ONCE + 1]
+        sums = np.add.reduceat(values[some[0] : some[-1]], some[:-1] - some[0])
+        means.append(sums / np.diff(some))
+        passed(int(some[0]), int(some[-1]), values)
+    means[-1][-1] = float(np.mean(values[edges[-2] : edges[-1]]))
+    return np.concatenate(means)
+
+
 def turned(time: FloatArray, speed: FloatArray) -> FloatArray:
     """Return the angle of the shaft from the first row on, rad, without its sign."""
-    steps = np.diff(time) * (np.abs(speed[1:]) + np.abs(speed[:-1])) / 2.0
-    return np.concatenate([[0.0], np.cumsum(steps)])
+    angles = Filling()
+    for block, angle in _angles(time, speed):
+        angles.add(angle, block.stop / time.size)
+    return angles.whole()
+
+
+def _angles(time: FloatArray, speed: FloatArray) -> Iterator[tuple[slice, FloatArray]]:
+    """The angle of the shaft in one block of rows after another."""
+    before = 0.0
+    for block in blocks(time.size, time, speed):
+        rows = slice(max(block.start - 1, 0), block.stop)
+        steps = np.diff(time[rows]) * (np.abs(speed[rows][1:]) + np.abs(speed[rows][:-1])) / 2.0
+        angle = np.cumsum(np.append(before, steps))
+        before = float(angle[-1])
+        yield block, angle[block.start - rows.start :]
 
 
 def without_ripple(angle: FloatArray, values: FloatArray) -> FloatArray:
@@ -109,10 +147,16 @@ def without_ripple(angle: FloatArray, values: FloatArray) -> FloatArray:
     waves = [wave(k * at) for k, wave in _WAVES]
     columns = np.column_stack([np.ones_like(at), at - at.mean(), *waves])
     sizes = np.linalg.lstsq(columns, means, rcond=None)[0][2:]
-    ripple = np.zeros_like(values)
-    for (k, wave), size in zip(_WAVES, sizes, strict=True):
-        ripple += size * wave(k * angle)
-    return np.asarray(values - ripple + ripple.mean())
+
+    def rippling(part: FloatArray) -> FloatArray:
+        ripple = np.zeros_like(part)
+        for (k, wave), size in zip(_WAVES, sizes, strict=True):
+            ripple += size * wave(k * part)
+        return ripple
+
+    ripple = each_block(rippling, angle)
+    middle = mean(ripple)
+    return each_block(lambda value, part: value - part + middle, values, ripple)
 
 
 _WAVES = tuple(itertools.product(range(1, HARMONICS + 1), (np.cos, np.sin)))

@@ -9,6 +9,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from hersey.arrays import FloatArray
 from hersey.damping.dwells.groups import MIN_SAMPLES
+from hersey.log.long_arrays import means_of
 from hersey.log.torque_log import STANDING, Run
 
 #: Length of the blocks in which speed is judged, s, and how many a run may have at most.
@@ -40,9 +41,7 @@ def segments_of(run: Run) -> list[Segment]:
     duration = float(run.time[-1] - run.time[0])
     per_second = rows / duration if duration > 0 else rows
     block = max(1, round(per_second * BLOCK_DURATION), -(-rows // MAX_BLOCKS))
-    starts = np.arange(0, rows, block)
-    counts = np.diff(starts, append=rows)
-    means = np.add.reduceat(run.speed, starts) / counts
+    means = means_of(run.speed, block)
     noise = local_noise(means)
     cuts = [0]
     total, count = means[0], 1
@@ -55,8 +54,9 @@ def segments_of(run: Run) -> list[Segment]:
             total, count = means[i], 1
     segments = []
     for first, last in zip(cuts, [*cuts[1:], means.size], strict=True):
-        start, end = int(starts[first]), int(starts[last - 1] + counts[last - 1])
+        start, end = first * block, min(last * block, rows)
         speed = float(np.mean(run.speed[start:end]))
+        run.passed(start, end)
         long = run.time[end - 1] - run.time[start] >= 5 * BLOCK_DURATION and end - start >= MIN_SAMPLES
         chance = 3.0 * float(np.median(noise[first:last])) / (last - first) ** 0.5
         still = abs(speed) <= max(STANDING, chance)
@@ -98,6 +98,7 @@ def _joined(run: Run, segments: list[Segment]) -> list[Segment]:
             if len(joined) >= apart and _same_dwell(run, joined[-apart], segment):
                 first = joined[-apart]
                 speed = float(np.mean(run.speed[first.start : segment.end]))
+                run.passed(first.start, segment.end)
                 joined[-apart:] = [replace(first, end=segment.end, speed=speed)]
                 break
     return joined

@@ -9,9 +9,11 @@ from __future__ import annotations
 import numpy as np
 
 from hersey.arrays import FloatArray
+from hersey.damping.dwells.noise import means_of_whole
 from hersey.damping.dwells.segments import BLOCK_DURATION, SPEED_NOISE, Segment
 from hersey.damping.dwells.shared_noise import Powers, SharedNoise
-from hersey.damping.dwells.steadiness import MAX_SPEED_DRIFT, SIGNIFICANT
+from hersey.damping.dwells.steadiness import MAX_SPEED_DRIFT, SIGNIFICANT, subtracted
+from hersey.log.long_arrays import blocks, mean
 from hersey.log.torque_log import Run
 
 #: Fewest dwells that show a settling in common, and the steps in which it is reported.
@@ -27,10 +29,10 @@ def settled(run: Run, segment: Segment, noise: SharedNoise | None = None) -> tup
     rows = segment.end - segment.start
     size = max(1, rows // 200)
     count = rows // size
-    blocks = slice(segment.start, segment.start + count * size)
+    whole = slice(segment.start, segment.start + count * size)
     # the first and last block of a dwell may hold the end of a ramp, a slow ramp many more
     edge = -(-round(BLOCK_DURATION / run.sampling_interval) // size) if count > 20 else 0
-    held = run.speed[blocks].reshape(count, size).mean(axis=1)
+    held = means_of_whole(run.speed[whole], size)
     jitter = float(np.median(np.abs(np.diff(held)))) if count > 1 else 0.0
     away = np.abs(held - np.median(held))
     near = np.flatnonzero(away <= max(MAX_SPEED_DRIFT * abs(segment.speed), SPEED_NOISE * jitter))
@@ -39,7 +41,7 @@ def settled(run: Run, segment: Segment, noise: SharedNoise | None = None) -> tup
     cut, interval = first, size * run.sampling_interval
     for channel in (run.torque, run.temperature):
         if channel is not None:
-            means = channel[blocks].reshape(count, size).mean(axis=1)[first : count - last]
+            means = means_of_whole(channel[whole], size)[first : count - last]
             dropped = _settling_blocks(means)
             if channel is run.torque and noise is not None and _is_chance(means, dropped, noise, interval):
                 continue
@@ -83,15 +85,19 @@ def _still_settling(each: FloatArray) -> int:
 
 def _beside_level(run: Run, start: int, end: int, tare: float, step: float, count: int) -> FloatArray:
     """Torque over its level in the second half of a dwell, in steps of time from its start."""
-    since = run.time[start:end] - run.time[start]
-    torque = run.torque[start:end] - tare
-    level = float(np.mean(torque[torque.size // 2 :]))
-    bins = np.minimum((since / step).astype(np.intp), count)
-    rows = np.bincount(bins, minlength=count + 1)[:count]
-    sums = np.bincount(bins, torque, count + 1)[:count]
+    time, torque = run.time[start:end], run.torque[start:end]
+    level = mean(subtracted(torque[torque.size // 2 :], tare))
+    rows, sums = np.zeros(count + 1, dtype=np.intp), np.zeros(count + 1)
+    for block in blocks(time.size, time, torque):
+        bins = np.minimum(((time[block] - time[0]) / step).astype(np.intp), count)
+        rows += np.bincount(bins, minlength=count + 1)
+        first = bins[0]  # whose sum goes on
+        begun, added = np.append(first, bins), np.append(sums[first], torque[block] - tare)
+        sums[first:] = np.bincount(begun, added, count + 1)[first:]
     with np.errstate(divide="ignore", invalid="ignore"):
-        means = np.where(rows > 0, sums / rows, np.nan) / level
+        means = np.where(rows > 0, sums / rows, np.nan)[:count] / level
     known = np.isfinite(means)
+    run.passed(start, end)
     return np.asarray(np.interp(np.arange(count), np.flatnonzero(known), means[known]))
 
 

@@ -6,10 +6,11 @@ import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.damping.dwells.groups import MIN_SAMPLES
-from hersey.damping.dwells.noise import mean_and_error, thinned
+from hersey.damping.dwells.noise import AT_ONCE, mean_and_error, thinned
 from hersey.damping.dwells.reasons import Reason
 from hersey.damping.dwells.ripple import turned, without_ripple
 from hersey.damping.dwells.shared_noise import Powers, SharedNoise
+from hersey.log.long_arrays import blocks, deviation, each_block, mean
 from hersey.log.torque_log import Run
 from hersey.units import rpm
 
@@ -47,18 +48,18 @@ def unsteady(
     step: float = 0.0,
 ) -> Reason | None:
     """Why rows [start, end) are not a steady dwell, or None; ``step`` is that of the torque, N m."""
-    time, speed, torque = run.time[start:end], run.speed[start:end], run.torque[start:end] - tare
+    time, speed, torque = run.time[start:end], run.speed[start:end], subtracted(run.torque[start:end], tare)
     if end - start < MIN_SAMPLES or time[-1] - time[0] < min_dwell:
         lasted = float(time[-1] - time[0]) if end > start else 0.0
         return Reason("too short", lasts=lasted, rows=end - start, needed=min_dwell)
-    if np.mean(torque) == 0.0:
+    if mean(torque) == 0.0:
         return Reason("zero torque")
     temperature = None if run.temperature is None else run.temperature[start:end]
-    if np.std(speed) > MAX_SPEED_SWING * abs(np.mean(speed)):
+    if deviation(speed) > MAX_SPEED_SWING * abs(mean(speed)):
         slow, fast = sorted(abs(rpm(float(end))) for end in np.quantile(speed, (0.01, 0.99)))
-        share = float(np.std(speed) / abs(np.mean(speed)))
+        share = deviation(speed) / abs(mean(speed))
         return Reason("speed not held", share=share, slow=slow, fast=fast)
-    swing = float(np.std(torque)) / abs(float(np.mean(torque)))
+    swing = deviation(torque) / abs(mean(torque))
     if swing > STICK_SLIP_SWING and _rises_slowly_and_drops(torque):
         return Reason("stick-slip", share=swing)
     if swing > MAX_TORQUE_SWING:
@@ -66,24 +67,26 @@ def unsteady(
     if ripple:
         angle = turned(time, speed)
         speed, torque = without_ripple(angle, speed), without_ripple(angle, torque)
-    drift, _ = drift_over(time, speed, least=MAX_SPEED_DRIFT * abs(float(np.mean(speed))))
+    drift, _ = drift_over(time, speed, least=MAX_SPEED_DRIFT * abs(mean(speed)))
     if drift:
-        return Reason("speed drift", share=drift / float(np.mean(speed)))
+        return Reason("speed drift", share=drift / mean(speed))
     if temperature is not None and (drift := drift_over(time, temperature, least=MAX_TEMPERATURE_DRIFT)[0]):
         return Reason("temperature drift", kelvin=drift)
-    least = max(MAX_TORQUE_DRIFT * abs(float(np.mean(torque))), MAX_STEP_DRIFT * step)
-    drift, deviation = drift_over(time, torque, noise, least=least)
-    if abs(drift) > MAX_DRIFT_TO_NOISE * deviation:
-        return Reason("torque drift", share=drift / float(np.mean(torque)))
+    least = max(MAX_TORQUE_DRIFT * abs(mean(torque)), MAX_STEP_DRIFT * step)
+    drift, scatter = drift_over(time, torque, noise, least=least)
+    if abs(drift) > MAX_DRIFT_TO_NOISE * scatter:
+        return Reason("torque drift", share=drift / mean(torque))
     return None
 
 
 def _rises_slowly_and_drops(torque: FloatArray) -> bool:
     """Whether the changes of torque (taken positive) from block to block say so, at some block length."""
-    load = torque * np.sign(torque.mean())
-    for blocks in (100, 400, 1600):
-        size = max(1, load.size // blocks)
-        changes = np.diff(load[: load.size // size * size].reshape(-1, size).mean(axis=1))
+    direction = np.sign(mean(torque))
+    for count in (100, 400, 1600):
+        size = max(1, torque.size // count)
+        parts = blocks(torque.size // size * size, torque, size=max(1, AT_ONCE // size) * size)
+        loads = [(torque[part] * direction).reshape(-1, size).mean(axis=1) for part in parts]
+        changes = np.diff(np.concatenate(loads))
         changes -= changes.mean()
         variance = float(np.mean(changes**2))
         if variance <= 0.0:
@@ -107,20 +110,26 @@ def drift_over(
     time, values = thinned(time), thinned(values)
     slope = _slope(time, values)
     residual = values - values.mean() - slope * (time - time.mean())
-    deviation = float(np.std(residual))
+    scatter = float(np.std(residual))
     rise = slope * float(time[-1] - time[0])
     if abs(rise) <= least:
-        return 0.0, deviation
-    if noise is not None and deviation > 1e-12 * abs(float(values.mean())):
+        return 0.0, scatter
+    if noise is not None and scatter > 1e-12 * abs(float(values.mean())):
         error = noise.rise_error(Powers.of(every, interval))
     else:
         error = mean_and_error(residual)[1] * np.sqrt(12.0)  # of a line's rise, uniform times
-    return (rise if abs(rise) > SIGNIFICANT * error else 0.0), deviation
+    return (rise if abs(rise) > SIGNIFICANT * error else 0.0), scatter
+
+
+def subtracted(values: FloatArray, constant: float) -> FloatArray:
+    """Return values without a constant."""
+    return each_block(lambda part: part - constant, values) if constant else values
 
 
 def straightened(time: FloatArray, values: FloatArray) -> FloatArray:
     """Return values without the straight line through them, mean kept."""
-    return np.asarray(values - _slope(time, values) * (time - time.mean()))
+    slope, middle = _slope(time, values), mean(time)
+    return each_block(lambda t, value: value - slope * (t - middle), time, values)
 
 
 def _slope(time: FloatArray, values: FloatArray) -> float:

@@ -78,6 +78,7 @@ def standing_stretches(
                 if steps is not None:
                     error = float(np.hypot(error, rounding_error(run.torque[first:last], steps[index])))
                 middle = float(run.time[first] + run.time[last - 1]) / 2.0 - float(run.time[0])
+                run.passed(s.start, s.end)
                 stretches.append(Standing(index, float(starts[index]) + middle, mean, error))
     return stretches
 
@@ -116,7 +117,11 @@ class Zero:
 
     def at(self, times: FloatArray) -> FloatArray:
         """Return the zero at these times, shape (times,)."""
-        return self._predicted(np.asarray(times, dtype=np.float64))[0]
+        times = np.asarray(times, dtype=np.float64)
+        if len(self.stretches) == 1:
+            return np.full(times.size, self._torque[0])
+        each = [weight * self._kriged(times, drift) for weight, drift in self._drifts]
+        return np.asarray(np.sum(each, axis=0))
 
     def disturbances(self, times: FloatArray, errors: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return what one standard error of each disturbance does at these times, and the error left over.
@@ -127,7 +132,7 @@ class Zero:
         known = np.unique(times)
         if known.size > MOST_TIMES:
             known = np.unique(np.quantile(known, np.linspace(0.0, 1.0, MOST_TIMES)))
-        covariance = self._predicted(known)[1]
+        covariance = self._covariance(known)
         values, vectors = linalg.eigh(covariance)
         large = np.flatnonzero(values > SMALL * values[-1])[::-1][:MOST_DISTURBANCES]
         modes = vectors[:, large] * np.sqrt(values[large])
@@ -162,16 +167,15 @@ class Zero:
         kept = np.flatnonzero(weight > 1e-6 * weight.sum())
         return tuple((float(weight[i] / weight[kept].sum()), drifts[i]) for i in kept)
 
-    def _predicted(self, times: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """The zero at these times and its covariance, averaged over sizes of line and walk."""
+    def _covariance(self, times: FloatArray) -> FloatArray:
+        """The covariance of the zero at these times, averaged over sizes of line and walk."""
         if len(self.stretches) == 1:
-            return np.full(times.size, self._torque[0]), np.full((times.size,) * 2, self._errors[0] ** 2)
-        each = [(weight, *self._kriged(times, drift)) for weight, drift in self._drifts]
-        mean = np.sum([weight * values for weight, values, _ in each], axis=0)
-        covariance = np.zeros((times.size, times.size))
-        for weight, values, spread in each:
-            covariance += weight * (spread + np.outer(values - mean, values - mean))
-        return np.asarray(mean), covariance
+            return np.full((times.size,) * 2, self._errors[0] ** 2)
+        mean, covariance = self.at(times), np.zeros((times.size, times.size))
+        for weight, drift in self._drifts:
+            away = self._kriged(times, drift) - mean
+            covariance += weight * (self._spread(times, drift) + np.outer(away, away))
+        return covariance
 
     def _drift(self, line: float, walk: float) -> _Drift:
         """What the stretches say, if line and walk have these sizes (N m) over the log."""
@@ -185,14 +189,22 @@ class Zero:
         likelihood -= 0.5 * float(np.log(of_ones.sum()))
         return _Drift(line, walk, inverse, level, solved, likelihood)
 
-    def _kriged(self, times: FloatArray, drift: _Drift) -> tuple[FloatArray, FloatArray]:
-        """The zero at these times and its covariance, for one size of line and of walk."""
-        own = np.array([s.time for s in self.stretches])
-        across = self._kernel(times, own, drift.line, drift.walk)
+    def _kriged(self, times: FloatArray, drift: _Drift) -> FloatArray:
+        """The zero at these times, for one size of line and of walk."""
+        return np.asarray(drift.level + self._across(times, drift) @ drift.solved)
+
+    def _spread(self, times: FloatArray, drift: _Drift) -> FloatArray:
+        """The covariance of that."""
+        across = self._across(times, drift)
         of_ones = drift.inverse.sum(axis=1)
         left = 1.0 - across @ of_ones
         spread = self._kernel(times, times, drift.line, drift.walk) - across @ drift.inverse @ across.T
-        return drift.level + across @ drift.solved, spread + np.outer(left, left) / float(of_ones.sum())
+        return np.asarray(spread + np.outer(left, left) / float(of_ones.sum()))
+
+    def _across(self, times: FloatArray, drift: _Drift) -> FloatArray:
+        """Covariance between these times and those of the stretches."""
+        own = np.array([s.time for s in self.stretches])
+        return self._kernel(times, own, drift.line, drift.walk)
 
     def _kernel(self, first: FloatArray, second: FloatArray, line: float, walk: float) -> FloatArray:
         """Covariance of line and walk between times."""

@@ -2,7 +2,8 @@
 
 Run by `hersey.processes.server`. Requests: ``prepare`` (a format: loads its library, and says what the
 sandbox lacks on this system), ``open`` (a file, its format and name, bounds of memory and time), ``load``,
-``clock`` and ``marked`` (the numbers of one signal), ``cells`` (the text of one column), ``close``.
+``clock`` and ``marked`` (the numbers of one signal, a part for each time it is asked), ``cells`` (the text of
+one column), ``close``.
 """
 
 from __future__ import annotations
@@ -10,18 +11,25 @@ from __future__ import annotations
 import importlib
 import math
 import warnings
+from collections.abc import Iterator
 from contextlib import AbstractContextManager, suppress
 from typing import TYPE_CHECKING, Any, BinaryIO
+
+import numpy as np
 
 from hersey.errors import UnreadableLogError
 from hersey.processes.confinement import only_read_libraries
 from hersey.processes.limits import limit
 
 if TYPE_CHECKING:
+    from hersey.arrays import FloatArray
     from hersey.log.recording import Recording
 
 #: Channels of a file at the most.
 _MOST_SIGNALS = 100_000
+
+#: Numbers in a reply at the most.
+PART = 1 << 20
 
 #: What this system lacks for the sandbox.
 _missing: tuple[str, ...] = ()
@@ -36,6 +44,7 @@ class _Open:
         self.file: BinaryIO | None = None
         self.context: AbstractContextManager[Recording] | None = None
         self.recording: Recording | None = None
+        self.parts: Iterator[FloatArray] = iter(())
 
     def open(self, request: dict[str, Any]) -> dict[str, Any]:
         """Open a file and say what it holds."""
@@ -71,13 +80,24 @@ class _Open:
         state = {"warnings": warnings, "cut_off": self.recording.cut_off}
         return state | {"dates": sorted(self.recording.dates)}
 
-    def numbers(self, what: str, index: int) -> bytes:
-        """The values of a signal, its clock, or what the file says of each sample, as float64."""
+    def numbers(self, what: str, index: int, *, begin: bool) -> bytes:
+        """The next values of a signal, its clock, or what the file says of each sample, as float64.
+
+        There are none when all were sent.
+        """
+        if begin:
+            self.parts = self.all_parts(what, index)
+        return next(self.parts, np.empty(0)).tobytes()
+
+    def all_parts(self, what: str, index: int) -> Iterator[FloatArray]:
+        """All of them, part by part."""
         assert self.recording is not None
         signal = self.recording.signals[index]
         source = {"clock": signal.clock, "marked": signal.marked}.get(what, signal.load)
         assert source is not None
-        return source().tobytes()
+        for values in signal.parts() if signal.parts and what == "load" else [source()]:
+            for first in range(0, values.size, PART):
+                yield values[first : first + PART]
 
     def cells(self, index: int) -> bytes:
         """The text of a column: its cells with a zero between them."""
@@ -114,5 +134,8 @@ def answer(request: dict[str, Any], _payload: bytes) -> tuple[dict[str, Any], by
             closing.close()
             return {}, b""
         index = request["index"]
-        content = _open.cells(index) if request["do"] == "cells" else _open.numbers(request["do"], index)
+        if request["do"] == "cells":
+            content = _open.cells(index)
+        else:
+            content = _open.numbers(request["do"], index, begin=request["begin"])
     return _open.state(), content

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
 from datetime import datetime
 from typing import Any
 
@@ -105,24 +105,43 @@ def _held(series: pl.Series) -> str:
 
 
 def column_signal(
-    name: str, kind: pl.DataType, rows: int, load: Callable[[], pl.Series], unit: str = ""
+    name: str,
+    kind: pl.DataType,
+    rows: int,
+    load: Callable[[], pl.Series],
+    unit: str = "",
+    parts: Callable[[], Iterator[pl.Series]] | None = None,
 ) -> Signal:
-    """Return a column as a signal; time stamps and durations come in s."""
+    """Return a column as a signal; time stamps and durations come in s.
+
+    ``parts`` yields what ``load`` returns, part by part, if a column can be had so.
+    """
     plain, stated = (name, unit) if unit else split_unit(name)
     if name == OF_WINCC:  # what it counts shows by its size
         plain = name
 
-    def numbers() -> FloatArray:
-        series = load()
-        if len(series) != rows:
-            raise UnreadableLogError(f"column '{name}' has {len(series)} values instead of {rows}")
-        if kind.is_temporal():
-            if kind == pl.Duration or kind == pl.Time:
-                return floats(series.to_physical().cast(pl.Float64).fill_null(np.nan)) * _tick(kind)
-            return seconds(series.cast(pl.Datetime("ns")).to_numpy())
-        return floats(series.cast(pl.Float64).fill_null(np.nan).to_numpy())
+    def numbers(series: Iterable[pl.Series]) -> Iterator[FloatArray]:
+        found, start = 0, None
+        for each in series:
+            found += len(each)
+            if kind.is_temporal() and kind not in (pl.Duration, pl.Time):
+                stamps = each.cast(pl.Datetime("ns")).to_numpy()
+                known = stamps[~np.isnat(stamps)]
+                start = known[0] if start is None and known.size else start
+                yield seconds(stamps, start)
+            elif kind.is_temporal():
+                yield floats(each.to_physical().cast(pl.Float64).fill_null(np.nan)) * _tick(kind)
+            else:
+                yield floats(each.cast(pl.Float64).fill_null(np.nan).to_numpy())
+        if found != rows:
+            raise UnreadableLogError(f"column '{name}' has {found} values instead of {rows}")
 
-    return Signal(plain, "s" if kind.is_temporal() else stated, rows, numbers)
+    def whole() -> FloatArray:
+        (values,) = numbers([load()])
+        return values
+
+    by_parts = None if parts is None else lambda: numbers(parts())
+    return Signal(plain, "s" if kind.is_temporal() else stated, rows, whole, parts=by_parts)
 
 
 def _tick(kind: pl.DataType) -> float:

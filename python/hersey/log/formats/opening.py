@@ -33,6 +33,7 @@ from hersey.errors import (
 )
 from hersey.files.reading import OpenFile, unchanged
 from hersey.log.formats.recognition import called
+from hersey.log.long_arrays import Filling
 from hersey.log.recording import LONGEST_CELL, Cells, Recording, Signal, Source
 from hersey.processes.child import Child, FailedError, LostError
 from hersey.processes.limits import FROM_OUTSIDE
@@ -233,15 +234,22 @@ class _Reader:
         self.left -= _BYTES_PER_NUMBER * rows
         if self.left < 0:
             raise self._too_large()
-        about, content = self._asked({"do": what, "index": index}, most=8 * rows)
-        if len(content) % 8:
-            raise UnreadableLogError(
-                f"{self.file.path.name} cannot be read: only part of its numbers arrived"
-            )
+        filling, begin = Filling(), True
+        while True:
+            left = 8 * (rows - filling.size)
+            about, content = self._asked({"do": what, "index": index, "begin": begin}, most=left)
+            if len(content) % 8:
+                raise UnreadableLogError(
+                    f"{self.file.path.name} cannot be read: only part of its numbers arrived"
+                )
+            if not content:
+                break
+            filling.add(np.frombuffer(content, dtype=float), min(1.0, len(content) / left))
+            begin = False
         recording.warnings[:] = map(_warning, about["warnings"])
         recording.cut_off = about["cut_off"]
         recording.dates = {_plain(each, _LONGEST_NAME) for each in about["dates"]}
-        return np.frombuffer(content, dtype=float)
+        return filling.whole()
 
     def _texts(self, index: int, rows: int) -> list[str]:
         self.left -= _BYTES_PER_CELL * rows

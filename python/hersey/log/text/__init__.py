@@ -15,7 +15,6 @@ footer           where it ends
 repeated_header  a header that stands again among the rows
 unit_pairs       two units given for one column
 blocks           its lines, a block at a time
-filling          an array that is filled block by block
 cells            the cells of a block as numbers
 delimited        the table of a file: its channels, and the rows that can be used
 ===============  ================================================

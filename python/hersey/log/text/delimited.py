@@ -25,14 +25,14 @@ from hersey.log.channels import (
     taken_columns,
 )
 from hersey.log.constant_temperature import constant_temperature
-from hersey.log.friction import Chosen, beside, computed, in_rotation, slow_roles, unused
+from hersey.log.friction import Chosen, beside, computed, in_rotation, is_rotation, slow_roles, unused
 from hersey.log.impossible import Impossible, Reading, impossible_rows
+from hersey.log.long_arrays import Filling, rows_before, without
 from hersey.log.replaced import replaced_units
 from hersey.log.rows import LeftOut, runs_with_records
 from hersey.log.text.blocks import Block, blocks
 from hersey.log.text.cells import CellReader
 from hersey.log.text.column import Column
-from hersey.log.text.filling import Filling
 from hersey.log.text.footer import end_of_table
 from hersey.log.text.layout import SNIFFED, Layout, find_layout
 from hersey.log.text.numbers import is_missing
@@ -247,7 +247,7 @@ class _Table:
         self.left_out = LeftOut()
         self.rows = 0  # so far, those that were left out among them
         self._kept_last = 0
-        self._believed: IntArray | None = None  # rows that were kept and believed, None for all
+        self._disbelieved = np.empty(0, dtype=np.intp)  # rows that were kept and are not believed
         self._lines: list[tuple[int, Sequence[int], IntArray | None]] = []  # first row, lines, those kept
 
     def read(self, opened: OpenFile, end: int, progress: Progress | None) -> None:
@@ -279,6 +279,7 @@ class _Table:
     def arrays(self) -> tuple[dict[str, FloatArray], tuple[Impossible, ...]]:
         """What the rows hold, by role, as a log has it, and readings that cannot be right, left out."""
         arrays = {role: part.whole() for role, part in self.parts.items()}
+        self.parts.clear()
         readings = [
             Reading(role, *self.channels[role], values)
             for role, values in arrays.items()
@@ -290,20 +291,18 @@ class _Table:
             lambda row, column: f"{self.place(row)}, column '{column.name}'",
             allowed=self.drop_missing,
         )
-        if gone.any():
-            self._believed = np.flatnonzero(~gone)
-            arrays = {role: values[self._believed] for role, values in arrays.items()}
+        self._disbelieved = gone
+        arrays = {role: without(values, gone) for role, values in arrays.items()}
         return in_rotation(arrays, self.channels, self.stated), found
 
     @property
     def impossible_rows(self) -> int:
         """Rows that were left out because a reading cannot be right."""
-        kept = self._lines[-1][0] + self._kept_last if self._lines else 0
-        return 0 if self._believed is None else kept - self._believed.size
+        return self._disbelieved.size
 
     def place(self, row: int) -> str:
         """Where a row that was kept stands in the file."""
-        row = row if self._believed is None else int(self._believed[row])
+        row = rows_before(row, self._disbelieved)
         first, lines, kept = self._lines[bisect_right(self._lines, row, key=lambda block: block[0]) - 1]
         return f"line {lines[row - first if kept is None else int(kept[row - first])]}"
 
@@ -312,10 +311,10 @@ class _Table:
         by_role = self._in_si(values)
         needed = [numbers for role, numbers in by_role.items() if role not in self.slow]
         gone = ~np.logical_and.reduce([np.isfinite(numbers) for numbers in needed])
-        gone |= ~self._has_radius(by_role)
+        if not is_rotation(self.channels):
+            gone |= ~self._has_radius(by_role)
         for role in self.slow & by_role.keys():
             known = np.isfinite(by_role[role])
-            by_role[role] = np.where(known, by_role[role], np.nan)
             rows = np.flatnonzero(~known & ~gone)
             faults = (self._fault(block, values, int(row)) for row in rows)
             self.lacking.setdefault(role, LeftOut()).add(rows.size, faults)
