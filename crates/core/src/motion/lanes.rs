@@ -227,12 +227,20 @@ impl Lanes {
             weight[l] = if power { (self.exponent[l] + 1.0) * inverse } else { -inverse };
             back[l] = if power { inverse } else { 0.0 };
         }
-        // each by itself, so that all indices are known
-        macro_rules! coefficients {
-            ($($n:literal)*) => { $(self.add::<S, STARTS, $n>(simd, [&weight, &back], series);)* };
+        let law = [&weight, &back];
+        if cfg!(target_arch = "wasm32") {
+            // small rather than quick
+            for n in 1..=ORDER {
+                self.add::<S, STARTS>(simd, n, law, series);
+            }
+        } else {
+            // each by itself, so that all indices are known
+            macro_rules! coefficients {
+                ($($n:literal)*) => { $(self.add::<S, STARTS>(simd, $n, law, series);)* };
+            }
+            coefficients!(1 2 3 4 5 6 7 8 9 10 11 12);
+            const { assert!(ORDER == 12) };
         }
-        coefficients!(1 2 3 4 5 6 7 8 9 10 11 12);
-        const { assert!(ORDER == 12) };
         if self.sense == [1.0; LANES] {
             return;
         }
@@ -246,29 +254,30 @@ impl Lanes {
         }
     }
 
-    /// Coefficient `N`, which waits for the one before through two operations only: what else it takes is summed before,
+    /// Coefficient `n`, which waits for the one before through two operations only: what else it takes is summed before,
     /// from the middle outwards, for the terms at the ends are the last to be known.
     #[inline(always)]
     #[allow(clippy::inline_always)]
-    fn add<S: pulp::Simd, const STARTS: bool, const N: usize>(
+    fn add<S: pulp::Simd, const STARTS: bool>(
         &self,
         simd: S,
+        n: usize,
         [weight, back]: [&Row; 2],
         series: &mut LaneSeries,
     ) {
-        let per = simd.splat_f64s(INVERSE[N]);
+        let per = simd.splat_f64s(INVERSE[n]);
         for r in 0..LANES / S::F64_LANES {
             let of = |row: &Row| S::as_simd_f64s(row).0[r];
             let LaneSeries { pull: p, speed: u, weighted_speed: iu, drag: f } = &*series;
             let mut sums = [[simd.splat_f64s(0.0); 2]; 2];
-            let middle = usize::midpoint(N, 1);
+            let middle = usize::midpoint(n, 1);
             for i in (2..middle).rev() {
-                sums[0][0] = fused_in(simd, of(&iu[i]), of(&f[N - i]), sums[0][0]);
-                sums[0][1] = fused_in(simd, of(&u[i]), of(&f[N - i]), sums[0][1]);
+                sums[0][0] = fused_in(simd, of(&iu[i]), of(&f[n - i]), sums[0][0]);
+                sums[0][1] = fused_in(simd, of(&u[i]), of(&f[n - i]), sums[0][1]);
             }
-            for i in middle.max(2)..N {
-                sums[1][0] = fused_in(simd, of(&iu[i]), of(&f[N - i]), sums[1][0]);
-                sums[1][1] = fused_in(simd, of(&u[i]), of(&f[N - i]), sums[1][1]);
+            for i in middle.max(2)..n {
+                sums[1][0] = fused_in(simd, of(&iu[i]), of(&f[n - i]), sums[1][0]);
+                sums[1][1] = fused_in(simd, of(&u[i]), of(&f[n - i]), sums[1][1]);
             }
             let weighted = simd.add_f64s(sums[0][0], sums[1][0]);
             let plain = simd.add_f64s(sums[0][1], sums[1][1]);
@@ -276,18 +285,18 @@ impl Lanes {
             let early = simd.sub_f64s(simd.mul_f64s(share, weighted), simd.mul_f64s(back, plain));
             let rate = simd.sub_f64s(share, simd.mul_f64s(back, per));
             let from_rate = simd.mul_f64s(of(&f[0]), rate);
-            let still = fused_in(simd, simd.neg_f64s(of(&self.rest)), of(&u[N - 1]), of(&p[N - 1]));
-            let net = simd.sub_f64s(still, of(&f[N - 1]));
-            let late = if N > 1 {
+            let still = fused_in(simd, simd.neg_f64s(of(&self.rest)), of(&u[n - 1]), of(&p[n - 1]));
+            let net = simd.sub_f64s(still, of(&f[n - 1]));
+            let late = if n > 1 {
                 let from_last = simd.mul_f64s(of(&u[1]), simd.sub_f64s(share, back));
-                fused_in(simd, from_last, of(&f[N - 1]), early)
+                fused_in(simd, from_last, of(&f[n - 1]), early)
             } else {
                 early
             };
-            let driven = match N {
+            let driven = match n {
                 1 => simd.sub_f64s(of(&self.drive), of(&self.speed)),
                 2 if STARTS => simd.sub_f64s(of(&self.ramp), of(&u[1])),
-                _ => simd.neg_f64s(of(&u[N - 1])),
+                _ => simd.neg_f64s(of(&u[n - 1])),
             };
             let drag = fused_in(simd, from_rate, net, late);
             for (rows, value) in [
@@ -296,7 +305,7 @@ impl Lanes {
                 (&mut series.pull, simd.mul_f64s(driven, per)),
                 (&mut series.drag, drag),
             ] {
-                S::as_mut_simd_f64s(&mut rows[N]).0[r] = value;
+                S::as_mut_simd_f64s(&mut rows[n]).0[r] = value;
             }
         }
     }

@@ -87,12 +87,19 @@ fn slip_series(start: &SlipStart, series: &mut Series) {
 #[allow(clippy::inline_always)]
 fn plain_series(start: &SlipStart, series: &mut Series) {
     let mut series = PlainSeries::starting(start, series);
-    // each by itself, so that all of a series is in registers
-    macro_rules! coefficients {
-        ($($n:literal)*) => { $(series.add::<$n>();)* };
+    if cfg!(target_arch = "wasm32") {
+        // small rather than quick
+        for n in 2..=ORDER {
+            series.add(n);
+        }
+    } else {
+        // each by itself, so that all indices are known
+        macro_rules! coefficients {
+            ($($n:literal)*) => { $(series.add($n);)* };
+        }
+        coefficients!(2 3 4 5 6 7 8 9 10 11 12 13 14);
+        const { assert!(ORDER == 14) };
     }
-    coefficients!(2 3 4 5 6 7 8 9 10 11 12 13 14);
-    const { assert!(ORDER == 14) };
     let PlainSeries { series, contact, damping, .. } = series;
     let all = series.drag.iter_mut().zip(&series.speed).zip(contact);
     for ((drag, speed), contact) in all.skip(1) {
@@ -136,41 +143,41 @@ impl<'s> PlainSeries<'s> {
         Self { series, driven, stiffness, per_mass, weight, back, damping, rate, contact }
     }
 
-    /// Coefficient `N`. It waits for the one before through two operations only: what else it takes is summed before,
+    /// Coefficient `n`. It waits for the one before through two operations only: what else it takes is summed before,
     /// from the middle outwards, for the terms at the ends are the last to be known.
     #[inline(always)]
     #[allow(clippy::inline_always)]
-    fn add<const N: usize>(&mut self) {
+    fn add(&mut self, n: usize) {
         let (weight, back) = (self.weight, self.back);
         let (per_mass, damping) = (self.per_mass, self.damping);
         let (pull, speed) = (&self.series.pull, &self.series.speed);
         let (rate, contact) = (&self.rate, &self.contact);
-        let driven = if N < 5 { self.driven[N - 1] } else { 0.0 };
-        let share = weight * INVERSE[N];
+        let driven = if n < 5 { self.driven[n - 1] } else { 0.0 };
+        let share = weight * INVERSE[n];
         let mut sums = [[0.0; 2]; 2];
-        let middle = usize::midpoint(N, 1);
+        let middle = usize::midpoint(n, 1);
         for i in (2..middle).rev() {
-            sums[0][0] = fused(rate[i], contact[N - i], sums[0][0]);
-            sums[0][1] = fused(speed[i], contact[N - i], sums[0][1]);
+            sums[0][0] = fused(rate[i], contact[n - i], sums[0][0]);
+            sums[0][1] = fused(speed[i], contact[n - i], sums[0][1]);
         }
-        for i in middle.max(2)..N - 1 {
-            sums[1][0] = fused(rate[i], contact[N - i], sums[1][0]);
-            sums[1][1] = fused(speed[i], contact[N - i], sums[1][1]);
+        for i in middle.max(2)..n - 1 {
+            sums[1][0] = fused(rate[i], contact[n - i], sums[1][0]);
+            sums[1][1] = fused(speed[i], contact[n - i], sums[1][1]);
         }
         let early = share * (sums[0][0] + sums[1][0]) - back * (sums[0][1] + sums[1][1]);
-        let early = if N == 2 {
+        let early = if n == 2 {
             early // its one term is that with the last drag
         } else {
-            fused(contact[1] * (share - back * INVERSE[N - 1]), rate[N - 1], early)
+            fused(contact[1] * (share - back * INVERSE[n - 1]), rate[n - 1], early)
         };
         let undriven =
-            fused(-damping * per_mass * INVERSE[N - 1], rate[N - 1], per_mass * pull[N - 1]);
-        let now = fused(-per_mass, contact[N - 1], undriven);
-        let late = fused(speed[1] * (share - back), contact[N - 1], early);
-        let pulled = (driven - self.stiffness * speed[N - 1]) * INVERSE[N];
-        self.contact[N] = fused(contact[0] * (weight - back) * INVERSE[N], now, late);
-        self.rate[N] = now;
-        (self.series.pull[N], self.series.speed[N]) = (pulled, now * INVERSE[N]);
+            fused(-damping * per_mass * INVERSE[n - 1], rate[n - 1], per_mass * pull[n - 1]);
+        let now = fused(-per_mass, contact[n - 1], undriven);
+        let late = fused(speed[1] * (share - back), contact[n - 1], early);
+        let pulled = (driven - self.stiffness * speed[n - 1]) * INVERSE[n];
+        self.contact[n] = fused(contact[0] * (weight - back) * INVERSE[n], now, late);
+        self.rate[n] = now;
+        (self.series.pull[n], self.series.speed[n]) = (pulled, now * INVERSE[n]);
     }
 }
 
