@@ -6,6 +6,7 @@ use hersey_core::motion::{
 };
 use numpy::{IntoPyArray, PyArray1};
 use pyo3::prelude::*;
+use pyo3::types::PyString;
 
 use crate::drag::Law;
 use crate::ensemble::KINDS;
@@ -19,24 +20,39 @@ pub type ScheduleArguments = (Vec<f64>, Vec<f64>, Option<Vec<[f64; 4]>>);
 #[pyclass(frozen, get_all, module = "hersey._core")]
 pub struct Events {
     time: Vec<f64>,
-    from_mode: Vec<&'static str>,
-    to_mode: Vec<&'static str>,
-    guard: Vec<&'static str>,
+    from_mode: Vec<Py<PyString>>,
+    to_mode: Vec<Py<PyString>>,
+    guard: Vec<Py<PyString>>,
     stretch: Vec<f64>,
     belt_speed: Vec<f64>,
 }
 
-impl From<&[motion::Event]> for Events {
-    fn from(events: &[motion::Event]) -> Self {
+impl Events {
+    fn new(py: Python<'_>, events: &[motion::Event]) -> Self {
+        let names = |of: fn(&motion::Event) -> &'static str| named(py, events.iter().map(of));
         Self {
             time: events.iter().map(|e| e.time).collect(),
-            from_mode: events.iter().map(|e| mode_name(e.from)).collect(),
-            to_mode: events.iter().map(|e| mode_name(e.to)).collect(),
-            guard: events.iter().map(|e| e.guard.name()).collect(),
+            from_mode: names(|e| mode_name(e.from)),
+            to_mode: names(|e| mode_name(e.to)),
+            guard: names(|e| e.guard.name()),
             stretch: events.iter().map(|e| e.stretch).collect(),
             belt_speed: events.iter().map(|e| e.belt_speed).collect(),
         }
     }
+}
+
+/// Names of which there are few, each made once.
+fn named(py: Python<'_>, names: impl Iterator<Item = &'static str>) -> Vec<Py<PyString>> {
+    let mut known: Vec<(&str, Py<PyString>)> = Vec::new();
+    names
+        .map(|name| {
+            let place = known.iter().position(|(each, _)| *each == name).unwrap_or_else(|| {
+                known.push((name, PyString::intern(py, name).unbind()));
+                known.len() - 1
+            });
+            known[place].1.clone_ref(py)
+        })
+        .collect()
 }
 
 /// Where the work of the drive went.
@@ -205,7 +221,7 @@ pub fn simulate(
         temperature: (!run.temperature.is_empty()).then(|| {
             [0, 1].map(|i| PyArray1::from_iter(py, run.temperature.iter().map(|t| t[i])).unbind())
         }),
-        events: Py::new(py, Events::from(run.events.as_slice()))?,
+        events: Py::new(py, Events::new(py, &run.events))?,
         energy: Py::new(py, Energy { work, dissipated, slipped, owed, stored, residual })?,
         steps: run.steps,
     })

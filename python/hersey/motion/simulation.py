@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, fields
+from functools import partial
 from operator import attrgetter
 from typing import Annotated, Any, TypedDict, Unpack
 
@@ -209,6 +210,7 @@ def _trajectory(run: Callable[[str], _core.Trajectory], stiffness: float, *, che
     """The motion by the usual integrator, and its check by the other if that is asked for."""
     found = run("adaptive")
     film, roll = (None, None) if found.temperature is None else found.temperature
+    columns = attrgetter(*Event._fields)(found.events)
     return Trajectory(
         time=found.time,
         belt_speed=found.belt_speed,
@@ -218,7 +220,8 @@ def _trajectory(run: Callable[[str], _core.Trajectory], stiffness: float, *, che
         slipping=found.slipping,
         film_temperature=film,
         roll_temperature=roll,
-        events=tuple(map(Event._make, zip(*attrgetter(*Event._fields)(found.events), strict=True))),
+        # as Event._make, of which there are hundreds
+        events=tuple(map(partial(tuple.__new__, Event), zip(*columns, strict=True))),
         energy=Energy(**{field.name: getattr(found.energy, field.name) for field in fields(Energy)}),
         steps=found.steps,
         check=_self_check(lambda: run("dormand-prince"), found) if check else None,
