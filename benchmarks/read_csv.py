@@ -1,7 +1,7 @@
 """Reading and reducing a large CSV, beside plain `polars.read_csv` of the same file in the same run.
 
-Each part runs in a process of its own, so that its peak memory is its own, and times its imports too; the
-file is read once before, so that all find it in the page cache.
+Each part runs in a process of its own on one core, so that its peak memory is its own, and times its imports
+too; the file is read once before, so that all find it in the page cache.
 
 Usage: python -m benchmarks.table read [--size "1 GB"]
 """
@@ -41,7 +41,9 @@ assert points.table["rows"].sum() + points.table["settling_rows"].sum() + sum(
 """,
 }
 MEASURED = """
-import json, resource, sys, time
+import json, os, resource, sys, time
+if hasattr(os, "sched_setaffinity"):
+    os.sched_setaffinity(0, {{min(os.sched_getaffinity(0))}})
 path = sys.argv[1]
 begin = time.perf_counter()
 {part}
@@ -78,7 +80,7 @@ def lines(runs: int, size: str = "275 MB") -> list[Line]:
     peer = "polars.read_csv"
     return [
         Line(
-            f"{name}, {megabytes:.0f} MB at {megabytes / found[name]:.0f} MB/s",
+            f"{name}, one core, {megabytes:.0f} MB at {megabytes / found[name]:.0f} MB/s",
             found[name],
             peer,
             found[peer],
