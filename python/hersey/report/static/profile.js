@@ -14,7 +14,7 @@ function profile(place, chart, { change, leave, written, refused }) {
   const cells = add(box, "div", "", "rows");
   cells.setAttribute("role", "group");
   cells.setAttribute("aria-label", "Rows of the profile");
-  let rows = null, armed = false, sheet = null;
+  let rows = null, armed = false, sheet = null, points = null; // points of what is being drawn by hand
   const neat = ([t, v]) => [Math.round(t * 1000) / 1000, Number(v.toPrecision(3))];
   const emit = (next) => change(next.map(neat));
 
@@ -52,6 +52,7 @@ function profile(place, chart, { change, leave, written, refused }) {
   }
   // Handles in the chart; while drawing by hand, a sheet over it instead.
   function handles() {
+    if (points) return; // an answer that comes meanwhile must not take the sheet away
     const active = document.activeElement?.dataset?.row;
     chart.over.replaceChildren();
     sheet = null;
@@ -98,7 +99,6 @@ function profile(place, chart, { change, leave, written, refused }) {
     const left = scales.t(0);
     sheet = svg("rect", { x: left, y: 0, width: scales.right - left, height: scales.bottom, class: "sheet drawing" }, chart.over);
     const line_drawn = svg("path", { class: "drive" }, chart.over);
-    let points = null;
     sheet.addEventListener("pointerdown", (event) => {
       points = [[0, chart.at(event)[1]], chart.at(event)];
       sheet.setPointerCapture(event.pointerId);
@@ -119,6 +119,7 @@ function profile(place, chart, { change, leave, written, refused }) {
       arm(false);
       emit(drawn);
     });
+    sheet.addEventListener("pointercancel", () => { points = null; handles(); });
   }
   // The fewest rows within 3 pixels of what was drawn.
   function simpler(points, scales) {
