@@ -1,6 +1,6 @@
 """Fold maps beside brute force: workload W3, single thread, one run.
 
-Run by itself it writes FOLD.md, with slower peers than those of the table of all ratios.
+Run alone, it writes FOLD.md, with slower peers than those of the table of all ratios.
 
 W3: the fold speed V*(k, B0) on 64 x 64 points (k 500 to 2000, B0 25 to 100). Peers halve the drive speed
 between 1.01 and 4 with 15 runs of 5 s each, on some of the points, scaled to all.

@@ -1,6 +1,6 @@
 """The motion core beside general tools: workloads W1 and W2, single thread, one run.
 
-Run by itself it writes MOTION.md, with slower peers than those of the table of all ratios.
+Run alone, it writes MOTION.md, with slower peers than those of the table of all ratios.
 
 W1: one trajectory of the paper's baseline, 20 s. W2: 10,000 random parameter sets, 10 s each; wanted are
 frequency, greatest speed and stuck fraction of the last lap. Slow peers run a part of W2, scaled to all.

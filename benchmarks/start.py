@@ -1,7 +1,7 @@
 """How long the command takes to start, against the import of what it stands on.
 
 Each line is a process of its own, run ``RUNS`` times in turn with the others; medians of its processor time
-(user and system) and of its wall time. Run by itself it writes START.md.
+(user and system) and of its wall time. Run alone, it writes START.md.
 
 Usage: python -m benchmarks.start
 """

@@ -7,7 +7,7 @@ import re
 import shlex
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -315,7 +315,8 @@ def test_a_profile_is_followed_and_edited(page: Page, tmp_path: Path) -> None:
     assert page.locator("#profile").is_hidden()
 
 
-def test_a_profile_is_drawn_by_hand(page: Page) -> None:
+def draw(page: Page, meanwhile: Callable[[], object] = lambda: None) -> None:
+    """Draw a profile of a rise and a fall by hand, and do something while it is drawn."""
     page.click("#panel button:text-is('Profile')")
     page.click("text=Draw by hand")
     rested(page)
@@ -324,30 +325,27 @@ def test_a_profile_is_drawn_by_hand(page: Page) -> None:
     page.mouse.move(sheet["x"] + 4, sheet["y"] + 0.9 * sheet["height"])
     page.mouse.down()
     page.mouse.move(sheet["x"] + 0.3 * sheet["width"], sheet["y"] + 0.3 * sheet["height"], steps=12)
+    meanwhile()
     page.mouse.move(sheet["x"] + 0.8 * sheet["width"], sheet["y"] + 0.6 * sheet["height"], steps=12)
     page.mouse.up()
     rested(page)
+
+
+def test_a_profile_is_drawn_by_hand(page: Page) -> None:
+    draw(page)
     assert 3 <= page.locator("#panel .rows input").count() / 2 <= 8
     assert "profile" in verdict(page)
 
 
 def test_an_answer_that_comes_while_a_profile_is_drawn_does_not_lose_it(page: Page) -> None:
-    page.click("#panel button:text-is('Profile')")
-    page.click("text=Draw by hand")
-    rested(page)
-    sheet = page.locator("#panel .sheet").bounding_box()
-    assert sheet is not None
-    page.mouse.move(sheet["x"] + 4, sheet["y"] + 0.9 * sheet["height"])
-    page.mouse.down()
-    page.mouse.move(sheet["x"] + 0.3 * sheet["width"], sheet["y"] + 0.3 * sheet["height"], steps=12)
-    page.evaluate(
-        "() => { const field = document.querySelector('#try-stiffness'); field.value = '12';"
-        " field.dispatchEvent(new Event('change', { bubbles: true })); }"
-    )
-    rested(page)
-    page.mouse.move(sheet["x"] + 0.8 * sheet["width"], sheet["y"] + 0.6 * sheet["height"], steps=12)
-    page.mouse.up()
-    rested(page)
+    def answered() -> None:
+        page.evaluate(
+            "() => { const field = document.querySelector('#try-stiffness'); field.value = '12';"
+            " field.dispatchEvent(new Event('change', { bubbles: true })); }"
+        )
+        rested(page)
+
+    draw(page, answered)
     assert page.input_value("#try-stiffness") == "12"
     assert 3 <= page.locator("#panel .rows input").count() / 2 <= 8
 
