@@ -102,9 +102,9 @@ def style_of(cells: list[str]) -> NumberStyle:
     is a blank or an apostrophe.
     """
     plain = NumberStyle(decimal_comma(cells))
-    telling = [cell for cell in cells if _THOUSANDS_SURELY.search(cell)]
-    if not telling:
+    if not _THOUSANDS_SURELY.search("\n".join(cells)):
         return plain
+    telling = [cell for cell in cells if _THOUSANDS_SURELY.search(cell)]
     readable = sum(plain.is_number(cell) for cell in cells)
     for style in _THOUSANDS:
         if any(style.is_number(cell) for cell in telling):
@@ -123,9 +123,11 @@ def with_thousands(style: NumberStyle, cells: list[str]) -> NumberStyle:
 
 def looks_numeric(cell: str) -> bool:
     """Return whether a cell is a number in some style."""
+    if _POINT.is_number(cell):  # as most are
+        return True
     if len(cell) > LONGEST_NUMBER or not _LIKELY.fullmatch(cell):
         return False
-    return any(style.is_number(cell) for style in (_POINT, _COMMA, *_THOUSANDS))
+    return any(style.is_number(cell) for style in (_COMMA, *_THOUSANDS))
 
 
 def _decimal_comma_beside(style: NumberStyle, cells: list[str]) -> bool:

@@ -29,6 +29,8 @@ def refuse_transposed(place: str, lines: list[str], separators: str, *, whole: b
         It names the first channels, and how to turn the table.
     """
     for separator in separators:
+        if all(line.count(separator) < _LEAST for line in lines):
+            continue
         rows = [[cell for cell in split(line, separator) if cell] for line in lines]
         rows = [row for row in rows if len(row) > 1]  # without a title
         names = [row[0] for row in rows]

@@ -70,7 +70,7 @@ def number_rows(numbered: list[tuple[int, str]], separator: str) -> NumberRows:
 
 
 def _may_be_number(cell: str) -> bool:
-    return is_missing(cell) or looks_numeric(cell) or is_stamp(cell)
+    return looks_numeric(cell) or is_missing(cell) or is_stamp(cell)
 
 
 def _mostly_numbers(row: list[str], numeric: list[bool]) -> bool:
