@@ -19,10 +19,10 @@ def thinned(values: FloatArray) -> FloatArray:
 
 
 def means_of_whole(values: FloatArray, size: int) -> FloatArray:
-    """Means of so many samples each; those at the end that are fewer are left out."""
+    """Means of so many samples each, of one as they are; those at the end that are fewer are left out."""
     rows = values.size // size * size
-    if not rows:
-        return values[:0]
+    if size == 1 or not rows:
+        return values[:rows]
     parts = blocks(rows, values, size=max(1, AT_ONCE // size) * size)
     return np.concatenate([values[part].reshape(-1, size).mean(axis=1) for part in parts])
 
