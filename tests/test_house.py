@@ -124,7 +124,7 @@ def test_no_circle() -> None:
 
 
 def test_the_root_holds_only_what_every_room_needs() -> None:
-    needed = {"arrays", "errors", "result", "units"}
+    needed = {"arrays", "errors", "result"}
     assert {path.stem for path in PACKAGE.glob("*.py")} == {"__init__", *needed}
 
 

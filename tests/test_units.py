@@ -11,9 +11,21 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hersey import units
 from hersey.errors import UnitError, WrongKindError
-from hersey.units import KINDS, Conversion, argument, conversion, convert, parse
+from hersey.units import (
+    KINDS,
+    Conversion,
+    argument,
+    celsius,
+    conversion,
+    convert,
+    kinds,
+    others,
+    parse,
+    rpm,
+    spelling,
+    table,
+)
 
 OUNCE_INCH = 0.45359237 / 16 * 9.80665 * 0.0254
 
@@ -134,8 +146,8 @@ def no_registry(monkeypatch: pytest.MonkeyPatch) -> None:
     def forbidden() -> None:
         raise AssertionError("the registry is asked")
 
-    monkeypatch.setattr(units, "_full_registry", forbidden)
-    for cached in (conversion, units._from_table):
+    monkeypatch.setattr(others, "_full_registry", forbidden)
+    for cached in (conversion, table.from_table):
         cached.cache_clear()
 
 
@@ -143,9 +155,9 @@ def base(dimension: tuple[int, ...]) -> str:
     return "*".join(f"{unit}**{n}" for unit, n in zip(("m", "kg", "s", "K", "rad"), dimension, strict=True))
 
 
-@pytest.mark.parametrize("name", [*units._TABLE, *units._OFFSETS])
+@pytest.mark.parametrize("name", [*table.TABLE, *table.OFFSETS])
 def test_a_unit_of_the_table_is_that_of_pint(name: str, theirs: Any) -> None:
-    scale, offset, dimension = units._from_table(name) or pytest.fail(name)
+    scale, offset, dimension = table.from_table(name) or pytest.fail(name)
     zero, one = (float(theirs.Quantity(x, name).to(base(dimension)).magnitude) for x in (0.0, 1.0))
     assert offset == pytest.approx(zero, rel=1e-14, abs=1e-300)
     assert scale == pytest.approx(one - zero, rel=1e-12)
@@ -158,14 +170,14 @@ def products(draw: st.DrawFn) -> str:
     for i in range(draw(st.integers(1, 4))):
         sign = draw(st.sampled_from("*/")) if i else ""
         power = draw(st.sampled_from(["", "", "^2", "**3", "^-1", "**-2"]))
-        text += sign + draw(st.sampled_from(sorted(units._TABLE))) + power
+        text += sign + draw(st.sampled_from(sorted(table.TABLE))) + power
     return text
 
 
 @settings(max_examples=300, deadline=None, derandomize=True)
 @given(products())
 def test_a_product_is_that_of_pint(theirs: Any, text: str) -> None:
-    line = units._from_table(text)
+    line = table.from_table(text)
     if line is None:  # beyond what any unit could be
         assert abs(math.log10(theirs.Quantity(1.0, text).to_base_units().magnitude)) > 90
         return
@@ -206,7 +218,7 @@ def test_units_of_drives_need_no_registry(kind: str, unit: str, theirs: Any) -> 
     if kind != "temperature":
         assert convert(line.scale, KINDS[kind][0], KINDS[kind][0]) == line.scale
         assert line.offset == 0.0
-        plain = units._split_factor(unit, unit, "")[1]
+        plain = spelling.split_factor(unit, unit, "")[1]
         assert line.scale == pytest.approx(float(theirs.Quantity(1.0, plain).to(KINDS[kind][0]).m), rel=1e-12)
 
 
@@ -224,7 +236,7 @@ def test_units_of_drives_need_no_registry(kind: str, unit: str, theirs: Any) -> 
     ],
 )
 def test_any_other_unit_is_read_by_pint(kind: str, unit: str, one: float) -> None:
-    assert units._from_table(unit) is None
+    assert table.from_table(unit) is None
     assert conversion(kind, unit).scale == pytest.approx(one, rel=1e-12)
 
 
@@ -260,8 +272,8 @@ def test_units_for_people() -> None:
     assert convert(273.15, "K", "degC") == 0.0
     assert convert(20.0, "degC", "degF") == pytest.approx(68.0, abs=1e-12)
     assert convert(1000.0, "J/mol", "kcal/mol") == pytest.approx(1 / 4.184)
-    assert units.rpm(math.pi) == 30.0
-    assert units.celsius(373.15) == 100.0
+    assert rpm(math.pi) == 30.0
+    assert celsius(373.15) == 100.0
 
 
 @pytest.mark.parametrize(
@@ -325,8 +337,8 @@ def test_a_frequency_in_place_of_a_time_becomes_its_period(text: str, period: st
 
 
 def test_every_unit_that_is_proposed_can_be_read() -> None:
-    assert set(units._USUAL) == set(KINDS)
-    for kind, usual in units._USUAL.items():
+    assert set(kinds._USUAL) == set(KINDS)
+    for kind, usual in kinds._USUAL.items():
         for unit in usual.split():
             assert conversion(kind, unit).scale > 0
 
