@@ -42,7 +42,8 @@ class Line:
         ratio = asked = ""
         if self.peer:
             fast, slow = self.peer_seconds / self.seconds, self.seconds / self.peer_seconds
-            ratio = f"{fast:.3g} x as fast" if self.slower is None else f"{slow:.2f} x its time"
+            longer = self.slower is not None or (self.faster is None and slow > 1.0)
+            ratio = f"{slow:.2f} x its time" if longer else f"{fast:.3g} x as fast"
         if self.faster is not None:
             asked = f"at least {self.faster:g} x"
         elif self.slower is not None:

@@ -26,6 +26,8 @@ VERBS: dict[str, tuple[list[str], float]] = {
     "inspect": (["inspect", LOG], 0.4),
     "map": (["map", MACHINE, LOG, *TARE, "--out", "map.html", "--force"], 0.8),
 }
+#: What commands stand on: none can be faster than its import.
+LIBRARIES = "import typer, pydantic, polars, scipy.optimize"
 CAMPAIGN = "life.hersey"
 ADD = ["--table", str(EXAMPLES / "life" / "runs.csv"), "--means", "--machine", MACHINE]
 LIFE = ["life", CAMPAIGN, "--machine", MACHINE, "--out", "life.html", "--force"]
@@ -35,6 +37,11 @@ def typed(words: list[str], folder: Path, cache: str = "off") -> float:
     """Return the wall time of a command, s, without what others have kept unless there is a ``cache``."""
     command, around = [sys.executable, "-m", "hersey.cli", *words], os.environ | {"HERSEY_CACHE": cache}
     return timed(lambda: subprocess.run(command, cwd=folder, capture_output=True, check=True, env=around))
+
+
+def imported() -> float:
+    """Return the wall time of importing what commands stand on, in a process of its own, s."""
+    return timed(lambda: subprocess.run([sys.executable, "-c", LIBRARIES], check=True))
 
 
 def added(folder: Path) -> float:
@@ -55,12 +62,16 @@ def lines(runs: int) -> list[Line]:
         for words, _ in VERBS.values():
             typed(words, folder, "kept")  # everything is compiled and in the page cache
         fitted()
-        found = in_turn({name: partial(typed, words, folder) for name, (words, _) in VERBS.items()}, runs)
+        verbs = {name: partial(typed, words, folder) for name, (words, _) in VERBS.items()}
+        found = in_turn(verbs | {LIBRARIES: imported}, runs)
         again = in_turn({"fit": partial(typed, VERBS["fit"][0], folder, "kept")}, runs)["fit"]
         second = in_turn({"fit": fitted}, runs)["fit"]
         life = in_turn({"add": partial(added, folder), "life": partial(typed, LIFE, folder)}, runs)
     return [
-        *(Line(f"`hersey {name}`, demo", found[name], limit=limit) for name, (_, limit) in VERBS.items()),
+        *(
+            Line(f"`hersey {name}`, demo", found[name], f"`{LIBRARIES}`", found[LIBRARIES], limit=limit)
+            for name, (_, limit) in VERBS.items()
+        ),
         Line("`hersey fit`, demo, from the cache", again),
         Line("a second log of 35,000 rows in one process, read and fitted", second, limit=0.3),
         Line("`hersey campaign add`, means of 48 runs", life["add"], limit=5),

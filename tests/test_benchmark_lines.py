@@ -17,6 +17,7 @@ from benchmarks.lines import HEAD, Line, in_turn, table
         (Line("fit", 0.7, limit=0.7), "", "at most 0.7 s", "yes"),
         (Line("W3", 0.2, "numba", 20.0, limit=0.15), "100 x as fast", "at most 0.15 s", "no"),
         (Line("film", 0.2, "scipy", 0.4), "2 x as fast", "", ""),
+        (Line("fit", 0.9, "imports", 0.6, limit=0.7), "1.50 x its time", "at most 0.7 s", "no"),
     ],
 )
 def test_a_line_says_what_is_asked_and_whether_it_is_met(
