@@ -234,7 +234,7 @@ impl Lanes {
                 self.add::<S, STARTS>(simd, n, law, series);
             }
         } else {
-            // each by itself, so that all indices are known
+            // one at a time, so that all indices are known
             macro_rules! coefficients {
                 ($($n:literal)*) => { $(self.add::<S, STARTS>(simd, $n, law, series);)* };
             }

@@ -93,7 +93,7 @@ fn plain_series(start: &SlipStart, series: &mut Series) {
             series.add(n);
         }
     } else {
-        // each by itself, so that all indices are known
+        // one at a time, so that all indices are known
         macro_rules! coefficients {
             ($($n:literal)*) => { $(series.add($n);)* };
         }

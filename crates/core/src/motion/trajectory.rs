@@ -60,6 +60,14 @@ impl Energy {
         let missing = self.work - self.dissipated - self.slipped - self.stored;
         if missing == 0.0 { 0.0 } else { missing / self.turnover }
     }
+
+    /// Add the works of drive, drag and roll.
+    fn take(&mut self, [work, dissipated, slipped, turnover]: [f64; 4]) {
+        self.work += work;
+        self.dissipated += dissipated;
+        self.slipped += slipped;
+        self.turnover += turnover;
+    }
 }
 
 /// Samples of one motion: their arrays fit in a gigabyte.
@@ -206,10 +214,7 @@ impl Account {
         let held = piece.start.mode == Mode::Stuck || piece.start.creeping;
         let (done, [pull, speed, drag]) = arch.dispatch(Quadrature { piece, series, given, held });
         let energy = &mut self.energy;
-        energy.work += done.work;
-        energy.dissipated += done.dissipated;
-        energy.slipped += done.slipped;
-        energy.turnover += done.turnover;
+        energy.take(done);
         if piece.start.creeping {
             let start = piece.at(0.0).0;
             energy.dissipated -= 0.5 * piece.flow.mass * (speed - start) * (speed + start);
@@ -218,35 +223,40 @@ impl Account {
         if goes_on && !held {
             self.departure = Some((drag, weight));
         } else if !held {
-            let law = match course {
-                Some(course) => piece.friction_at(value(course, end), end, pull, speed),
-                None => piece.friction(end, pull, speed),
-            };
+            let law = law_along(piece, course, end, pull, speed);
             energy.dissipated += (law - drag) * weight;
         }
     }
 
     /// By values inside the steps, each of which costs a step.
     fn add_steps(&mut self, piece: &Piece, given: &Given, course: Option<&Polynomial>) {
-        let energy = &mut self.energy;
         let span = 0.5 * piece.duration;
         for begin in [0.0, span] {
             for (x, weight) in GAUSS {
                 let t = begin + x * span;
                 let (speed, pull) = piece.at(t);
-                let friction = match course {
-                    Some(course) => piece.friction_at(value(course, t), t, pull, speed),
-                    None => piece.friction(t, pull, speed),
-                };
-                let [power, braked, slip] = given.powers(piece, t, [speed, pull, friction]);
-                let span = weight * span;
-                energy.work += span * power;
-                energy.dissipated += span * braked;
-                energy.slipped += span * slip;
-                energy.turnover += span * (power.abs() + braked.abs() + slip.abs());
+                let friction = law_along(piece, course, t, pull, speed);
+                let powers = given.powers(piece, t, [speed, pull, friction]);
+                self.energy.take(works(weight * span, powers));
             }
         }
     }
+}
+
+/// Friction of the law at one time of a piece, on the course of its temperature if that is a state.
+fn law_along(piece: &Piece, course: Option<&Polynomial>, t: f64, pull: f64, speed: f64) -> f64 {
+    match course {
+        Some(course) => piece.friction_at(value(course, t), t, pull, speed),
+        None => piece.friction(t, pull, speed),
+    }
+}
+
+/// Works of drive, drag and roll over a time at constant power, and the sum of their magnitudes.
+#[inline(always)]
+#[allow(clippy::inline_always)]
+fn works(span: f64, powers: [f64; 3]) -> [f64; 4] {
+    let [power, braked, slip] = powers.map(|power| span * power);
+    [power, braked, slip, power.abs() + braked.abs() + slip.abs()]
 }
 
 /// The drive along a piece, in time since its start.
@@ -294,7 +304,7 @@ struct Quadrature<'a> {
 }
 
 impl pulp::WithSimd for Quadrature<'_> {
-    type Output = (Energy, [f64; 3]);
+    type Output = ([f64; 4], [f64; 3]);
 
     #[inline(always)]
     #[allow(clippy::inline_always)] // so that it is compiled for the instruction set it is dispatched to
@@ -308,16 +318,12 @@ impl pulp::WithSimd for Quadrature<'_> {
         for i in 0..BLOCK {
             let friction = if held { pull[i] } else { drag[i] };
             let powers = given.powers(piece, times[i], [speed[i], pull[i], friction]);
-            let span = NODES[i].1 * piece.duration;
-            let [power, braked, slip] = powers.map(|power| span * power);
-            done[0][i] = power;
-            done[1][i] = braked;
-            done[2][i] = slip;
-            done[3][i] = power.abs() + braked.abs() + slip.abs();
+            let works = works(NODES[i].1 * piece.duration, powers);
+            for (of, work) in done.iter_mut().zip(works) {
+                of[i] = work;
+            }
         }
-        let [work, dissipated, slipped, turnover] =
-            done.map(|d| ((d[0] + d[4]) + (d[2] + d[6])) + ((d[1] + d[5]) + (d[3] + d[7])));
-        let done = Energy { work, dissipated, slipped, turnover, ..Energy::default() };
+        let done = done.map(|d| ((d[0] + d[4]) + (d[2] + d[6])) + ((d[1] + d[5]) + (d[3] + d[7])));
         (done, [pull, speed, drag].map(|of| of[BLOCK - 1]))
     }
 }
