@@ -13,6 +13,7 @@ import argparse
 import contextlib
 import fnmatch
 import importlib
+import itertools
 import multiprocessing
 import re
 import sys
@@ -204,7 +205,7 @@ def row_of(line: Line, files: list[Path]) -> Row:
         if said == before:
             wrong = f"advice changes nothing: {one_line(said)}"
     if code == 0:
-        verdict = first_sentence(said)
+        verdict = first_sentences(said)
         told = [
             *(f"refused: {reason(t)}" for t in told[:1]),
             *([f"{FOLLOWED}{verdict}"] if told else [verdict]),
@@ -287,14 +288,14 @@ def reason(line: str) -> str:
     line = re.sub(r"^\S+\.\w+[:,]? |^hersey: ", "", line)
     line = re.sub(r"^line \d+(, column '[^']*')?: ", "", line)
     line = re.sub(r"'[^']*'", "'...'", line)
-    return re.split(r": |; | \(| among |, only |, such ", line)[0]
+    return re.split(r": |; | \(| among |, only |, such |[.] (?=[A-Z])", line)[0]
 
 
-def first_sentence(said: str) -> str:
-    """Return the first sentences of a report: of its instruction, and of the verdict on the next line."""
-    lines = [line for line in said.splitlines()[:2] if line and line[0] not in "-["]
-    found = [(re.match(r".*?[a-z0-9)%\]][.](?= [A-Z]|$)", line), line) for line in lines]
-    return " ".join(cut(match[0] if match else line) for match, line in found)
+def first_sentences(said: str) -> str:
+    """Return the first two sentences of a report."""
+    lines = itertools.takewhile(lambda line: line and line[0] not in "-[", said.splitlines())
+    found = re.match(r"(?:.*?[a-z0-9)%\]][.](?= [A-Z]|$)){1,2}", " ".join(lines))
+    return cut(found[0]) if found else ""
 
 
 def cut(text: str) -> str:
@@ -311,12 +312,12 @@ def inspected(text: str) -> str:
     if not any(re.match(r"\d+ dwells", x) for x in lines):
         return one_line(text)
     dwells = next(x for x in lines if re.match(r"\d+ dwells", x))
-    can = [x.removeprefix("  can determine").strip() for x in lines if x.startswith("  can determine")]
-    lost = "  cannot determine"
+    can = [x.removeprefix("  can show").strip() for x in lines if x.startswith("  can show")]
+    lost = "  cannot show"
     cannot = [x.removeprefix(lost).strip() for x in lines if x.startswith(lost)]
-    told = f"{dwells}. Can determine {'; '.join(can) or 'nothing'}"
+    told = f"{dwells}. Can show {'; '.join(can) or 'nothing'}"
     told = cut(told)
-    return f"{told}. Cannot determine {len(cannot)} things" if cannot else told
+    return f"{told}. Cannot show {len(cannot)} things" if cannot else told
 
 
 def by_reason(rows: list[Row]) -> dict[tuple[str, ...], dict[str, int]]:
