@@ -14,7 +14,7 @@ import pytest
 
 import hersey
 from hersey.arrays import FloatArray
-from hersey.damping.dwells import noise, ripple, segments
+from hersey.damping.dwells import noise, resolution, ripple, segments
 from hersey.log import exchanged, friction, impossible, long_arrays, middle
 from hersey.log.long_arrays import (
     Filling,
@@ -219,3 +219,33 @@ def test_memory_does_not_grow_with_the_log(
         held[cycles] = most_memory(lambda path=path: work(path))  # type: ignore[misc]
     per_row = (held[9] - held[3]) / (6 * len(SPEEDS) * HELD)
     assert per_row < 8.0, held  # which one channel takes of the four
+
+
+def in_memory(values: FloatArray) -> int:
+    """Bytes of an array on disk that are in the memory of this process."""
+    start = values.__array_interface__["data"][0]
+    found, within = 0, False
+    for line in Path("/proc/self/smaps").read_text().splitlines():
+        if "-" in line.split()[0]:
+            first, last = (int(end, 16) for end in line.split()[0].split("-"))
+            within = first < start + values.nbytes and last > start
+        elif within and line.startswith("Rss:"):
+            found += 1024 * int(line.split()[1])
+    return found
+
+
+@pytest.mark.skipif(
+    not Path("/proc/self/smaps").exists(), reason="the system does not tell what is in memory"
+)
+@pytest.mark.usefixtures("short")
+def test_a_look_at_each_dwell_leaves_none_in_memory() -> None:
+    """The system brings up to 2 MB into memory for a few numbers, so that all of a log may come."""
+    rows = 1 << 17
+    values = filled([np.arange(float(rows))] * 16)
+    let_go(values)
+    dwells = [values[at : at + rows] for at in range(0, values.size, rows)]
+    looked_at = sum(8 * resolution.MOST_ROWS for _ in dwells)
+    assert resolution.step_of(dwells) == 1.0
+    assert in_memory(values) < looked_at
+    assert sum(dwell[0] for dwell in dwells) == 0.0
+    assert in_memory(values) >= 16 * mmap.PAGESIZE

@@ -26,7 +26,7 @@ from hersey.damping.dwells.shared_noise import Powers, SharedNoise, shared_noise
 from hersey.damping.dwells.steadiness import MAX_TEMPERATURE_DRIFT, drift_over, straightened, subtracted
 from hersey.damping.dwells.zero import Zero, standing_stretches, starts_of
 from hersey.errors import TARE, InsufficientDataError, ParameterError, Setting
-from hersey.log.long_arrays import deviation, mean, variance
+from hersey.log.long_arrays import deviation, let_go, mean, variance
 from hersey.log.roles import MEANS
 from hersey.log.torque_log import ROTATIONS, TARES, Run, TorqueLog
 
@@ -265,6 +265,7 @@ class _Reduction:
         for index, start, end in parts:
             time = self.log.runs[index].time
             middles.append(self.starts[index] + (time[start] + time[end - 1]) / 2.0 - time[0])
+            let_go(time[start:end])  # two numbers bring whole pages into memory
         return np.array(middles)
 
     def _settling(self, dwells: list[Dwell]) -> dict[str, float]:

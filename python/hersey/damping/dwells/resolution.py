@@ -15,7 +15,7 @@ import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.damping.dwells.groups import SAME_SPEED
-from hersey.log.long_arrays import variance
+from hersey.log.long_arrays import let_go, variance
 
 #: Share of the differences between values that must be multiples of a step.
 STEP_SHARE = 0.98
@@ -82,7 +82,11 @@ def step_of(dwells: Sequence[FloatArray]) -> float:
 
     Constant readings alone may be set points: they show a step only if many dwells read the same.
     """
-    parts = [each[:MOST_ROWS] for each in dwells if each.size]
+    parts = []
+    for each in dwells:
+        if each.size:
+            parts.append(each[:MOST_ROWS].copy())
+            let_go(each)
     if not parts:
         return 0.0
     pooled = np.concatenate(parts)
