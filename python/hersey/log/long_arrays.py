@@ -24,6 +24,8 @@ HELD = 1 << 22
 BLOCK = 1 << 16
 #: Rows after which what was seen is let go.
 _LET_GO = 1 << 20
+#: Bytes that one number may bring into memory with it: the pages around it.
+_PAGES = 1 << 21
 #: Room for so many times the rows that are expected.
 _ROOM = 1.05
 #: Where temporary files may be large: the other folder is often in memory.
@@ -108,10 +110,11 @@ def blocks(rows: int, *arrays: FloatArray, size: int = 0) -> Iterator[slice]:
 
 
 def passed(start: int, end: int, *arrays: FloatArray) -> None:
-    """Note that these rows were seen: now and then what lies behind is let go."""
-    if end // _LET_GO > start // _LET_GO:
-        for each in arrays:
-            let_go(each[start // _LET_GO * _LET_GO : end])
+    """Note that these rows were seen: what lies behind is let go, now and then and where rows were passed over."""
+    begun = start // _LET_GO * _LET_GO
+    last = end if end // _LET_GO > start // _LET_GO else begun
+    for each in arrays:
+        let_go(each[max(0, begun - _LET_GO) : last])
 
 
 def let_go(values: FloatArray) -> None:
@@ -123,8 +126,9 @@ def let_go(values: FloatArray) -> None:
     if not isinstance(mapped, mmap.mmap) or not values.size or not hasattr(mmap, "MADV_DONTNEED"):
         return
     start = values.__array_interface__["data"][0] - whole.__array_interface__["data"][0]
-    first = start // mmap.PAGESIZE * mmap.PAGESIZE
-    mapped.madvise(mmap.MADV_DONTNEED, first, start + values.nbytes - first)
+    first = start // _PAGES * _PAGES
+    end = min(-(-(start + values.nbytes) // _PAGES) * _PAGES, len(mapped))
+    mapped.madvise(mmap.MADV_DONTNEED, first, end - first)
 
 
 def rows_where(true: Callable[[slice], BoolArray], rows: int, *arrays: FloatArray) -> IntArray:

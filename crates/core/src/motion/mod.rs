@@ -22,6 +22,7 @@
 //! | `stepper`     | the motion from call to call, its drive and temperature given on the way  |
 //! | `trajectory`  | the motion sampled at given times, with its event table and energies      |
 //! | `lanes`       | slip laps of many belts at once, several to a register                    |
+//! | `lane_series` | Taylor series of the belts on all lanes                                   |
 //! | `ensemble`    | what thousands of belts settle to                                         |
 //! | `stick_slip_cycle` | what a motion has settled to: its kind, and the numbers of its lap    |
 //! | `lap`         | one lap: its sections, its extremes, and where the laps are heading       |
@@ -39,6 +40,7 @@ mod ensemble;
 mod event;
 mod heat;
 mod hybrid;
+mod lane_series;
 pub(crate) mod lanes;
 mod lap;
 mod modes;

@@ -98,9 +98,9 @@ def _joined(run: Run, segments: list[Segment]) -> list[Segment]:
             if len(joined) >= apart and _same_dwell(run, joined[-apart], segment):
                 first = joined[-apart]
                 speed = float(np.mean(run.speed[first.start : segment.end]))
-                run.passed(first.start, segment.end)
                 joined[-apart:] = [replace(first, end=segment.end, speed=speed)]
                 break
+        run.passed(joined[-1].start, segment.end)
     return joined
 
 

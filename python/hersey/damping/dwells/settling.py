@@ -13,7 +13,7 @@ from hersey.damping.dwells.noise import means_of_whole
 from hersey.damping.dwells.segments import BLOCK_DURATION, SPEED_NOISE, Segment
 from hersey.damping.dwells.shared_noise import Powers, SharedNoise
 from hersey.damping.dwells.steadiness import MAX_SPEED_DRIFT, SIGNIFICANT, subtracted
-from hersey.log.long_arrays import blocks, mean
+from hersey.log.long_arrays import blocks, let_go, mean
 from hersey.log.torque_log import Run
 
 #: Fewest dwells that show a settling in common, and the steps in which it is reported.
@@ -55,7 +55,10 @@ def common_settling(dwells: list[tuple[Run, int, int, float]]) -> float:
     Each is a run, the first row and that after the last at which the speed was held, settling included, and
     the tare of its torque, N m.
     """
-    lasting = [run.time[end - 1] - run.time[start] for run, start, end, _ in dwells]
+    lasting = []
+    for run, start, end, _ in dwells:
+        lasting.append(run.time[end - 1] - run.time[start])
+        let_go(run.time[start:end])
     if len(dwells) < FEWEST:
         return 0.0
     shown = float(np.quantile(lasting, 1.0 - LONG_ENOUGH))
