@@ -110,7 +110,7 @@ def blocks(rows: int, *arrays: FloatArray, size: int = 0) -> Iterator[slice]:
 
 
 def passed(start: int, end: int, *arrays: FloatArray) -> None:
-    """Note that these rows were seen: what lies behind is let go, now and then and where rows were passed over."""
+    """Note that these rows were seen: what lies behind is let go now and then and where rows were skipped."""
     begun = start // _LET_GO * _LET_GO
     last = end if end // _LET_GO > start // _LET_GO else begun
     for each in arrays:
