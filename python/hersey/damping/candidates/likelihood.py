@@ -46,7 +46,7 @@ class Minimum:
 
 def influence(u: FloatArray, limit: float) -> FloatArray:
     """Return Huber's psi: the residual itself up to a limit, the limit beyond."""
-    return np.clip(u, -limit, limit)
+    return np.minimum(np.maximum(u, -limit), limit)
 
 
 def loss(u: FloatArray, limit: float) -> FloatArray:
@@ -173,8 +173,10 @@ def scatter_beyond(residuals: FloatArray, errors: FloatArray, freedom: float, li
     if np.isfinite(limit):
         expected += 2.0 * limit**2 * outside - 2.0 * limit * float(normal_density(limit))
 
+    variance = errors**2
+
     def excess(scatter: float) -> float:
-        u = residuals / np.sqrt(errors**2 + scatter**2)
+        u = residuals / np.sqrt(variance + scatter**2)
         return float(np.sum(influence(u, limit) ** 2)) - freedom * expected
 
     top = 3.0 * float(np.sqrt(np.mean(residuals**2))) * float(np.sqrt(residuals.size / max(freedom, 1.0)))

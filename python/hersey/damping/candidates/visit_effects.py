@@ -121,6 +121,8 @@ class VisitColumns:
     @classmethod
     def among(cls, columns: FloatArray, visit: IntArray, known: int) -> VisitColumns | None:
         """Return those among the disturbances of dwells, if they are many; ``known`` come before them."""
+        if columns.shape[1] < known + MANY:
+            return None
         visits = Visits.many(visit)
         if visits is None or columns.shape[1] < known + visits.count:  # runs are fewer than visits
             return None
