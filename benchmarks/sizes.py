@@ -24,9 +24,8 @@ EXAMPLES = Path(__file__).parents[1] / "examples"
 GROUPS = ("rows", "dwells", "candidates", "draws", "specimens", "sets")
 #: Why some works grow faster than what they are given.
 _OF_VISITS = (
-    "The dwells of a visit at one temperature share an error of their own, an unknown of the search. Here a "
-    "visit has eight dwells, so unknowns grow with dwells. With a fixed number of visits the slope is about "
-    "1."
+    "How far visits scatter follows from the eigenvalues of a matrix with a row for each visit; a visit has "
+    "eight dwells here. From some thousand dwells on they take most of the time."
 )
 _OF_ZERO = (
     "The error of the torque zero is shared by the dwells: every two have a covariance, for each size of "

@@ -8,6 +8,7 @@ import shutil
 import stat
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -143,6 +144,23 @@ def test_an_interrupt_leaves_no_file(tmp_path: Path, monkeypatch: pytest.MonkeyP
     assert list(tmp_path.iterdir()) == []
 
 
+def test_an_entry_stays_whole_while_it_is_replaced(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whoever reads while another process writes finds what was there before, not a part of what will be."""
+    keep(tmp_path, 1)
+    pieces, seen = entries._pieces, []
+
+    def slowly(text: bytes, arrays: Any) -> Iterator[Any]:
+        for piece in pieces(text, arrays):
+            yield piece
+            seen.append(kept(tmp_path))
+
+    monkeypatch.setattr(entries, "_pieces", slowly)
+    keep(tmp_path, 2)
+    assert len(seen) > 2
+    assert set(seen) == {(1,)}
+    assert kept(tmp_path) == (2,)
+
+
 def test_the_least_recently_used_go_first(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(entries, "LIMIT", 25_000)
     keys = [f"{number:064x}" for number in range(6)]
@@ -180,6 +198,7 @@ def test_files_of_others_stay(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -
 
 _WRITER = """
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 import numpy as np
 from hersey.cache.encoding import Encoder

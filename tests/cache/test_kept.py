@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -199,3 +200,21 @@ def test_another_library_is_another_origin(tmp_path: Path, monkeypatch: pytest.M
     before = origin()
     (tmp_path / "polars-9.9.9.dist-info").mkdir()
     assert origin() != before
+
+
+def test_another_processor_is_another_origin(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Several machines may share a folder, and linear algebra rounds by what a processor can do."""
+    origin = of_origin.origin.__wrapped__
+    before = origin()
+    features = import_module("numpy._core._multiarray_umath").__cpu_features__
+    changed = features | {next(iter(features)): not next(iter(features.values()))}
+    monkeypatch.setattr("numpy._core._multiarray_umath.__cpu_features__", changed)
+    assert origin() != before
+
+
+def test_another_origin_is_another_result(counted: Counted, monkeypatch: pytest.MonkeyPatch) -> None:
+    function, calls = counted
+    for origin, computed in (("before", 1), ("before", 1), ("after an edit", 2)):
+        monkeypatch.setattr("hersey.cache.kept.origin", lambda origin=origin: origin)
+        assert function(1.5) == 3.0
+        assert len(calls) == computed

@@ -8,9 +8,12 @@ from typing import Annotated
 import numpy as np
 
 from hersey.arrays import FloatArray
+from hersey.damping.candidates.bordered import Bordered
 from hersey.damping.candidates.branched import LEAST_POWER
 from hersey.damping.candidates.fitting import LawFit
 from hersey.damping.candidates.observations import Observations
+from hersey.damping.candidates.shared_errors import stated
+from hersey.damping.candidates.visit_effects import VisitColumns
 from hersey.damping.estimate import quantile
 from hersey.damping.scaled import law_of, powers_of, scaled_speed, scaled_torque, temperatures_of
 from hersey.damping.smoothing import MOST_GROUPS, Curve, Least, parabola
@@ -131,7 +134,15 @@ def _move_error(fit: LawFit) -> float:
 
 def _gains(data: Observations, fit: LawFit) -> FloatArray:
     """By how much one unit of each ln torque moves the values of a fit, shape (values, points)."""
+    size, sigma = fit.values.size, fit.sigma
+    own = VisitColumns.among(fit.disturbances, data.visit, stated(data))
+    if own is not None:
+        others = own.others(fit.disturbances)
+        border = np.column_stack([law_of(fit).jacobian(fit.values, data.inputs), others])
+        prior, own_prior = np.eye(others.shape[1], border.shape[1], size), np.ones(own.visits.count)
+        normal = Bordered(own.visits, border / sigma[:, None], own.size / sigma, prior, own_prior)
+        return normal.gains(size) / sigma
     slopes = np.column_stack([law_of(fit).jacobian(fit.values, data.inputs), fit.disturbances])
-    prior = np.diag(np.append(np.zeros(fit.values.size), np.ones(fit.disturbances.shape[1])))
-    weighed = slopes / fit.sigma[:, None] ** 2
-    return np.asarray(np.linalg.pinv(slopes.T @ weighed + prior) @ weighed.T)[: fit.values.size]
+    prior = np.diag(np.append(np.zeros(size), np.ones(fit.disturbances.shape[1])))
+    weighed = slopes / sigma[:, None] ** 2
+    return np.asarray(np.linalg.pinv(slopes.T @ weighed + prior) @ weighed.T)[:size]

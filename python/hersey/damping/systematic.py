@@ -7,8 +7,9 @@ from dataclasses import replace
 import numpy as np
 
 from hersey.arrays import FloatArray
-from hersey.damping.candidates.fitting import LawFit, search
+from hersey.damping.candidates.fitting import LawFit
 from hersey.damping.candidates.observations import Inputs, Observations
+from hersey.damping.candidates.searching import search
 from hersey.log.sensors import HYSTERESIS_OF_LARGEST, SHARE_OF_LARGEST, TEMPERATURE_LAG, Sensors
 
 

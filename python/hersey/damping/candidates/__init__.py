@@ -13,6 +13,10 @@ candidate             which laws there are, and which the data cannot carry
 shared_errors         errors that dwells share: of the zero, of visits and runs
 likelihood            robust likelihood and its least-squares solution
 clustered             the covariance whatever the points of a cluster have in common
+visit_effects         effects of many visits: the likeliest, given everything else
+bordered              the normal equations of a law beside many visits
+reduced_search        a search without the effects of visits
+searching             the least cost of a law at fixed standard errors
 fitting               one law fitted
 simultaneous          many least-squares problems of one kind at once
 refits                a law fitted without some of its dwells in turn, or to clusters drawn anew

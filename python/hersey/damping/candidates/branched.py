@@ -167,6 +167,8 @@ class Law(Named):
 
     def _mean_exponent(self, values: FloatArray) -> FloatArray:
         first = 1 + (len(self.thermal.names) if self.thermal else 0)
+        if self.groups == 1:
+            return np.asarray(values[first])
         return np.asarray(values[first : first + self.groups].mean(axis=0))
 
     def _members(self, inputs: Inputs) -> FloatArray:
@@ -181,7 +183,7 @@ class Law(Named):
         if self.thermal is None or inputs.kelvin is None:
             nothing = np.zeros_like(inputs.log_speed)
             return nothing, nothing, nothing
-        return self.thermal.shape(inputs.kelvin, q)
+        return self.thermal.shape_at(inputs, q)
 
     def _thermal_term(
         self, values: FloatArray, inputs: Inputs

@@ -35,15 +35,19 @@ def clustered_covariance(jacobian: FloatArray, u: FloatArray, cluster: IntArray)
 def _cr3(
     rows: FloatArray, u: FloatArray, bread: FloatArray, cluster: IntArray, prior: FloatArray
 ) -> FloatArray:
-    # the rows carry the root of Huber's weight already, so the residual carries the other root
-    weighted = np.sign(u) * np.sqrt(np.minimum(np.abs(u), HUBER) * np.abs(u))
-    pushes = np.vstack([_pushes(rows[of], weighted[of], bread) for of in _alike(cluster)])
+    weighted = robust_residuals(u)
+    pushes = np.vstack([_pushes(rows[of], weighted[of], bread) for of in alike(cluster)])
     shrink = (len(pushes) - 1) / len(pushes)
     return np.asarray(bread @ (shrink * pushes.T @ pushes + prior) @ bread)
 
 
-def _alike(cluster: IntArray) -> list[IntArray]:
-    """Members of the clusters of each size, shape (clusters, size)."""
+def robust_residuals(u: FloatArray) -> FloatArray:
+    """Return residuals beside rows that carry the root of Huber's weight: they carry the other root."""
+    return np.asarray(np.sign(u) * np.sqrt(np.minimum(np.abs(u), HUBER) * np.abs(u)))
+
+
+def alike(cluster: IntArray) -> list[IntArray]:
+    """Return the members of the clusters of each size, shape (clusters, size)."""
     _, label, sizes = np.unique(cluster, return_inverse=True, return_counts=True)
     members = np.split(np.argsort(label, kind="stable"), np.cumsum(sizes)[:-1])
     return [
@@ -52,6 +56,13 @@ def _alike(cluster: IntArray) -> list[IntArray]:
 
 
 def _pushes(rows: FloatArray, residuals: FloatArray, bread: FloatArray) -> FloatArray:
-    """By how much each cluster of one size moves the values, shape (clusters, parameters)."""
-    leverage = np.eye(rows.shape[1]) - rows @ bread @ rows.swapaxes(1, 2)
+    return pushes_of(rows, rows @ bread @ rows.swapaxes(1, 2), residuals)
+
+
+def pushes_of(rows: FloatArray, hat: FloatArray, residuals: FloatArray) -> FloatArray:
+    """Return by how much each cluster of one size moves the values, shape (clusters, parameters).
+
+    ``hat`` is by how much each point of a cluster moves the fit to the others, shape (clusters, size, size).
+    """
+    leverage = np.eye(rows.shape[1]) - hat
     return np.asarray(np.einsum("cmp,cmn,cn->cp", rows, np.linalg.pinv(leverage), residuals))

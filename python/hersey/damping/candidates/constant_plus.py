@@ -116,7 +116,7 @@ class ConstantPlusLaw(Named):
         if self.thermal is None or inputs.kelvin is None:
             nothing = np.zeros_like(inputs.log_speed)
             return nothing, nothing, nothing
-        return self.thermal.shape(inputs.kelvin, self.value(values, "q"))
+        return self.thermal.shape_at(inputs, self.value(values, "q"))
 
     def _shares(self, values: FloatArray, inputs: Inputs) -> FloatArray:
         """Shares of film, constant and viscous part in the torque, shape (3, ..., points)."""

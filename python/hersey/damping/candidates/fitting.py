@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import partial
-from typing import NamedTuple
 
 import numpy as np
 
@@ -19,20 +18,24 @@ from hersey.arrays import FloatArray
 from hersey.damping.candidates.branched import Law
 from hersey.damping.candidates.clustered import clustered_with_prior
 from hersey.damping.candidates.constant_plus import ConstantPlusLaw
-from hersey.damping.candidates.likelihood import HUBER, Minimum, aicc, bic, deviance, minimise, scatter_beyond
+from hersey.damping.candidates.likelihood import HUBER, aicc, bic, deviance, scatter_beyond
 from hersey.damping.candidates.no_load_law import RestLaw
 from hersey.damping.candidates.observations import Observations
+from hersey.damping.candidates.searching import Effort, Found, residuals_of, search
 from hersey.damping.candidates.shared_errors import (
     Freedom,
     Grouping,
     SharedScatter,
     disturbances,
+    freedom_beside,
     freedom_of,
     groupings,
     shared_scatter,
+    stated,
 )
 from hersey.damping.candidates.shared_load import SharedLoadLaw
 from hersey.damping.candidates.stribeck import StribeckLaw
+from hersey.damping.candidates.visit_effects import Integrated
 from hersey.damping.estimate import Estimate, estimate
 
 AnyLaw = Law | StribeckLaw | ConstantPlusLaw | RestLaw | SharedLoadLaw
@@ -141,15 +144,9 @@ def fit_law(law: AnyLaw, data: Observations, starts: list[FloatArray] | None = N
     """
     tried = starts or starts_of(law, data)
     fit = _fit_from(law, data, tried, _FIRST_SCATTER)
-    stated = _stated(data)
-    if not np.any(np.abs(fit.effects[:stated]) > _STRAINED):
+    if not np.any(np.abs(fit.effects[: stated(data)]) > _STRAINED):
         return fit
     return min((fit, _fit_from(law, data, tried, _WIDE_SCATTER)), key=lambda found: found.deviance)
-
-
-def _stated(data: Observations) -> int:
-    """How many disturbances come first whose size is no guess of the fit: zero, rest and heating."""
-    return int(data.tare.shape[1] + bool(data.heating.size))
 
 
 def _fit_from(law: AnyLaw, data: Observations, tried: list[FloatArray], scatter: float) -> LawFit:
@@ -171,7 +168,7 @@ def _fit_from(law: AnyLaw, data: Observations, tried: list[FloatArray], scatter:
             + (by_speed * data.speed_error) ** 2
             + (by_heat * data.temperature_error) ** 2
         )
-        residuals = _residuals(law, data, columns, best.values)
+        residuals = residuals_of(law, data, columns, best.values)
         before, shared_before, scatter_before = columns, shared, scatter
         taken = _taken_up(best, size)
         scatter = scatter_beyond(residuals, errors, max(len(data) - size - taken, 1.0))
@@ -203,30 +200,37 @@ def _law_fit(
     columns: FloatArray,
     errors: FloatArray,
     scatter: float,
-    best: Minimum,
+    best: Found,
 ) -> LawFit:
-    size, known = len(law.names), _stated(data)
+    size, known = len(law.names), stated(data)
     sigma = np.sqrt(errors**2 + scatter**2 + 1e-20)
-    residuals = _residuals(law, data, columns, best.values)
-    bread = np.asarray(np.linalg.pinv(best.jacobian.T @ best.jacobian, rcond=1e-14), dtype=np.float64)
-    slopes = np.column_stack([law.jacobian(best.values[:size], data.inputs), columns])
+    residuals = residuals_of(law, data, columns, best.values)
     effects = best.values[size:]
-    stated = columns[:, :known] @ effects[:known]
+    of_known = columns[:, :known] @ effects[:known]
+    wide = _widened(residuals, sigma)
+    if best.bordered is not None:
+        clustered = best.bordered.clustered(residuals / sigma, data.cluster, size)
+        freedoms = freedom_beside(grouped, shared, best.bordered, wide, size)
+    else:
+        bread = np.asarray(np.linalg.pinv(best.jacobian.T @ best.jacobian, rcond=1e-14), dtype=np.float64)
+        clustered = clustered_with_prior(best.jacobian, residuals / sigma, bread, data.cluster)[:size, :size]
+        slopes = np.column_stack([law.jacobian(best.values[:size], data.inputs), columns])
+        freedoms = freedom_of(grouped, shared, slopes, wide, bread, size)
     return LawFit(
         law=law,
         values=best.values[:size],
         effects=effects,
         disturbances=columns,
-        covariance=np.asarray(bread[:size, :size]),
-        clustered=clustered_with_prior(best.jacobian, residuals / sigma, bread, data.cluster)[:size, :size],
+        covariance=freedoms.covariance,
+        clustered=clustered,
         scatter=scatter,
         shared=shared,
         errors=errors,
         residuals=residuals,
         cost=best.cost,
-        deviance=_deviance(grouped, shared, residuals, columns @ effects - stated, errors)
+        deviance=_deviance(grouped, shared, residuals, columns @ effects - of_known, errors)
         + float(np.sum(effects[:known] ** 2)),
-        freedoms=freedom_of(grouped, shared, slopes, _widened(residuals, sigma), bread, size),
+        freedoms=freedoms,
     )
 
 
@@ -241,12 +245,18 @@ def _deviance(
     members = [s.deviation * g.member for g, s in zip(grouped, shared, strict=True) if s.deviation > 0]
     if not members:
         return deviance(residuals, errors)[0]
-    return deviance(residuals + common, errors, shared=np.column_stack(members))[0]
+    whole = residuals + common
+    if (visits := grouped[0].visits) is not None and shared[0].deviation > 0:
+        others = np.column_stack([np.empty((residuals.size, 0)), *members[1:]])
+        return deviance(whole, errors, shared=Integrated(visits, shared[0].deviation, others))[0]
+    return deviance(whole, errors, shared=np.column_stack(members))[0]
 
 
-def _taken_up(minimum: Minimum, size: int) -> float:
+def _taken_up(found: Found, size: int) -> float:
     """How many degrees of freedom the effects of the disturbances take up."""
-    bread = np.linalg.pinv(minimum.jacobian.T @ minimum.jacobian, rcond=1e-14)
+    if found.bordered is not None:
+        return found.bordered.taken_up(size)
+    bread = np.linalg.pinv(found.jacobian.T @ found.jacobian, rcond=1e-14)
     return float(bread.shape[0] - size - np.trace(bread[size:, size:]))
 
 
@@ -265,76 +275,3 @@ def _settled(
     least = 1e-5 * max(scatter, largest, 1e-9)
     moved = [abs(a.deviation - b.deviation) for a, b in zip(shared, shared_before, strict=True)]
     return abs(scatter - before) <= least and all(m <= 10.0 * least for m in moved)
-
-
-class Effort(NamedTuple):
-    """When a search ends: at a relative ``precision``, or after so many ``calls`` of the law."""
-
-    precision: float = 1e-9
-    calls: int = 20
-
-
-#: The effort of a search where none is stated.
-USUAL = Effort()
-
-
-def search(
-    law: AnyLaw,
-    data: Observations,
-    columns: FloatArray,
-    sigma: FloatArray,
-    start: FloatArray,
-    *,
-    held: tuple[int, float] | None = None,
-    expected: FloatArray | None = None,
-    effort: Effort = USUAL,
-) -> Minimum:
-    """Return the least cost at fixed standard errors, over the values and the effects of disturbances.
-
-    Parameters
-    ----------
-    columns
-        By how much each disturbance moves ln torque, shape (points, disturbances).
-    start
-        Values and effects.
-    held
-        Index and value of one parameter that is not varied.
-    expected
-        Expectation of the effects, in their standard errors; zeros if not given.
-    effort
-        When it ends.
-    """
-    free = np.ones(start.size, dtype=bool)
-    base = np.array(start)
-    if held is not None:
-        free[held[0]], base[held[0]] = False, held[1]
-    modes = columns.shape[1]
-    size = start.size - modes
-    # what no step of the search moves
-    fixed = np.vstack([np.zeros((len(data), start.size)), np.eye(modes, start.size, size)])
-    fixed[: len(data), size:] = -columns / sigma[:, None]
-    centre = np.zeros(modes) if expected is None else expected
-
-    def whole(some: FloatArray) -> FloatArray:
-        full = base.copy()
-        full[free] = some
-        return full
-
-    def residual(some: FloatArray) -> FloatArray:
-        full = whole(some)
-        return np.append(_residuals(law, data, columns, full) / sigma, full[size:] - centre)
-
-    def jacobian(some: FloatArray) -> FloatArray:
-        slopes = fixed.copy()
-        slopes[: len(data), :size] = -law.jacobian(whole(some)[:size], data.inputs) / sigma[:, None]
-        return slopes if held is None else slopes[:, free]
-
-    minimum = minimise(residual, jacobian, base[free], precision=effort.precision, calls=effort.calls)
-    rows = np.zeros((minimum.jacobian.shape[0], start.size))
-    rows[:, free] = minimum.jacobian
-    return Minimum(whole(minimum.values), minimum.cost, rows)
-
-
-def _residuals(law: AnyLaw, data: Observations, columns: FloatArray, values: FloatArray) -> FloatArray:
-    size = values.size - columns.shape[1]
-    return np.asarray(data.log_torque - law.predict(values[:size], data.inputs) - columns @ values[size:])

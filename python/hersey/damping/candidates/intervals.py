@@ -23,10 +23,11 @@ import numpy as np
 from hersey.arrays import FloatArray
 from hersey.damping.candidates.branched import FREE, Law
 from hersey.damping.candidates.constant_plus import ConstantPlusLaw
-from hersey.damping.candidates.fitting import AnyLaw, Effort, LawFit, search
+from hersey.damping.candidates.fitting import AnyLaw, LawFit
 from hersey.damping.candidates.identifiability import not_identified
 from hersey.damping.candidates.observations import Inputs, Observations
 from hersey.damping.candidates.refits import resampled
+from hersey.damping.candidates.searching import Effort, search
 from hersey.damping.candidates.shared_errors import Freedom, SharedScatter, shared_variance
 from hersey.damping.candidates.shared_load import SharedLoadLaw
 from hersey.damping.candidates.stribeck import StribeckLaw

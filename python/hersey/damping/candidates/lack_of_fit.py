@@ -15,6 +15,8 @@ import numpy as np
 from hersey.arrays import FloatArray
 from hersey.damping.candidates.fitting import LawFit
 from hersey.damping.candidates.observations import Observations
+from hersey.damping.candidates.shared_errors import stated
+from hersey.damping.candidates.visit_effects import VisitColumns
 from hersey.damping.distributions import ratio_above
 from hersey.damping.dwells import distinct_speeds
 from hersey.result import Means, Record
@@ -125,12 +127,7 @@ def _tested(
 
     There is no p-value if the law has such terms already, or no freedom is left.
     """
-    modes = fit.effects.size
-    weigh = (1.0 / fit.sigma)[:, None]
-    known = np.column_stack([fit.law.jacobian(fit.values, data.inputs), fit.disturbances])
-    rows = np.vstack([known * weigh, np.eye(modes, known.shape[1], known.shape[1] - modes)])
-    added = np.vstack([np.column_stack(terms) * weigh, np.zeros((modes, len(terms)))])
-    rest = np.append((fit.residuals + fit.disturbances @ fit.effects) * weigh[:, 0], np.zeros(modes))
+    rows, added, rest = _weighted(fit, data, terms)
     taken_up = np.linalg.lstsq(rows, added, rcond=None)[0]
     left = added - rows @ taken_up
     rest = rest - rows @ np.linalg.lstsq(rows, rest, rcond=None)[0]
@@ -143,4 +140,22 @@ def _tested(
     gain = float(rest @ rest) - after
     ratio = gain / len(terms) / max(after / freedom, 1e-300)
     values = fit.values - (taken_up @ coefficients)[: fit.values.size]
-    return float(ratio_above(ratio, len(terms), freedom)), coefficients, values
+    return float(ratio_above(ratio, len(terms), freedom)), np.asarray(coefficients), values
+
+
+def _weighted(
+    fit: LawFit, data: Observations, terms: list[FloatArray]
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Slopes by the values and effects of a fit, terms, and residuals without effects, in standard errors."""
+    known, columns = fit.law.jacobian(fit.values, data.inputs), fit.disturbances
+    rest = fit.residuals + columns @ fit.effects
+    own = VisitColumns.among(columns, data.visit, stated(data))
+    others = columns if own is None else own.others(columns)
+    modes = others.shape[1]
+    weigh = (1.0 / fit.sigma)[:, None]
+    every = [np.column_stack(each) * weigh for each in ([known, others], terms, [rest])]
+    if own is not None:
+        every = [own.freed(each, fit.sigma) for each in every]
+    rows = np.vstack([every[0], np.eye(modes, every[0].shape[1], known.shape[1])])
+    added = np.vstack([every[1], np.zeros((modes, len(terms)))])
+    return rows, added, np.append(every[2][:, 0], np.zeros(modes))

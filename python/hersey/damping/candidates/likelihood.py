@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from scipy import optimize
@@ -29,6 +30,9 @@ EXACT = 1e-9
 
 Residual = Callable[[FloatArray], FloatArray]
 Jacobian = Callable[[FloatArray], FloatArray]
+#: Of residuals and their variances: by how much the likeliest effects of what points share move them, these
+#: effects, and the logarithm by which they inflate the determinant.
+Integration = Callable[[FloatArray, FloatArray], tuple[FloatArray, FloatArray, float]]
 
 
 @dataclass(frozen=True)
@@ -42,7 +46,7 @@ class Minimum:
 
 def influence(u: FloatArray, limit: float) -> FloatArray:
     """Return Huber's psi: the residual itself up to a limit, the limit beyond."""
-    return np.clip(u, -limit, limit)
+    return np.minimum(np.maximum(u, -limit), limit)
 
 
 def loss(u: FloatArray, limit: float) -> FloatArray:
@@ -50,6 +54,12 @@ def loss(u: FloatArray, limit: float) -> FloatArray:
     size = np.abs(u)
     core = np.minimum(size, limit)
     return np.asarray(core**2 + 2.0 * core * (size - core))
+
+
+def share(u: FloatArray, limit: float) -> FloatArray:
+    """Return the derivative of residuals whose squares are `loss` by the residuals themselves."""
+    size = np.abs(u)
+    return np.where(size <= limit, 1.0, limit / np.maximum(np.sqrt(loss(u, limit)), 1e-300))
 
 
 def log_normalisation(limit: float) -> float:
@@ -101,9 +111,7 @@ def minimise(
         u, by = remembered(values), sloping(values)
         if np.abs(u).max() <= limit:
             return by
-        root = np.maximum(np.sqrt(loss(u, limit)), 1e-300)
-        share = np.where(np.abs(u) <= limit, 1.0, limit / root)
-        return np.asarray(share[:, None] * by)
+        return np.asarray(share(u, limit)[:, None] * by)
 
     # slopes are asked for where residuals have just been, and twice where the search begins
     if (count := remembered(start).size) < start.size:
@@ -165,8 +173,10 @@ def scatter_beyond(residuals: FloatArray, errors: FloatArray, freedom: float, li
     if np.isfinite(limit):
         expected += 2.0 * limit**2 * outside - 2.0 * limit * float(normal_density(limit))
 
+    variance = errors**2
+
     def excess(scatter: float) -> float:
-        u = residuals / np.sqrt(errors**2 + scatter**2)
+        u = residuals / np.sqrt(variance + scatter**2)
         return float(np.sum(influence(u, limit) ** 2)) - freedom * expected
 
     top = 3.0 * float(np.sqrt(np.mean(residuals**2))) * float(np.sqrt(residuals.size / max(freedom, 1.0)))
@@ -179,7 +189,11 @@ def scatter_beyond(residuals: FloatArray, errors: FloatArray, freedom: float, li
 
 
 def deviance(
-    residuals: FloatArray, errors: FloatArray, limit: float = HUBER, *, shared: FloatArray | None = None
+    residuals: FloatArray,
+    errors: FloatArray,
+    limit: float = HUBER,
+    *,
+    shared: FloatArray | Integration | None = None,
 ) -> tuple[float, float]:
     """Return twice the negative log-likelihood at the scatter that makes it least, and that scatter.
 
@@ -189,16 +203,17 @@ def deviance(
         Of ln torque, shape (points,).
     shared
         By how much one standard error of each error that points share moves them, shape (points, errors): its
-        effect, with the standard normal distribution as prior, is integrated out (Laplace).
+        effect, with the standard normal distribution as prior, is integrated out (Laplace). Or what does so.
     """
+    integrated = partial(_integrated, shared) if isinstance(shared, np.ndarray) else shared
     constant = 2.0 * residuals.size * log_normalisation(limit)
 
     def cost(scatter: float) -> float:
         variance = errors**2 + scatter**2 + EXACT**2
-        if shared is None:
+        if integrated is None:
             return float(np.sum(loss(residuals / np.sqrt(variance), limit) + np.log(variance)))
-        effects, inflation = _integrated(residuals, variance, shared)
-        u = (residuals - shared @ effects) / np.sqrt(variance)
+        common, effects, inflation = integrated(residuals, variance)
+        u = (residuals - common) / np.sqrt(variance)
         return float(np.sum(loss(u, limit) + np.log(variance)) + effects @ effects + inflation)
 
     top = 3.0 * float(np.sqrt(np.mean(residuals**2))) + EXACT
@@ -209,12 +224,13 @@ def deviance(
     return best[0] + constant, best[1]
 
 
-def _integrated(residuals: FloatArray, variance: FloatArray, shared: FloatArray) -> tuple[FloatArray, float]:
-    """Likeliest effects of what points share, and the logarithm by which they inflate the determinant."""
+def _integrated(
+    shared: FloatArray, residuals: FloatArray, variance: FloatArray
+) -> tuple[FloatArray, FloatArray, float]:
     weighted = shared / variance[:, None]
     normal = np.eye(shared.shape[1]) + shared.T @ weighted
     effects = np.asarray(np.linalg.solve(normal, weighted.T @ residuals), dtype=np.float64)
-    return effects, float(np.linalg.slogdet(normal)[1])
+    return shared @ effects, effects, float(np.linalg.slogdet(normal)[1])
 
 
 def aicc(deviance_: float, parameters: int, points: int) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -36,6 +37,11 @@ class Inputs:
     log_speed: FloatArray  #: ln(w/w_ref), shape (points,)
     kelvin: FloatArray | None  #: K, shape (points,); None if the log has no temperature
     group: IntArray  #: index of the temperature, coldest first, shape (points,)
+
+    @cached_property
+    def shapes(self) -> dict[object, tuple[FloatArray, FloatArray, FloatArray]]:
+        """What laws of temperature are at these temperatures, as far as they were asked for."""
+        return {}
 
     def take(self, index: IntArray) -> Inputs:
         """Return the inputs at an index."""

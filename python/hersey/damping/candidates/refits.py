@@ -10,7 +10,10 @@ import numpy as np
 from hersey.arrays import FloatArray, IntArray
 from hersey.damping.candidates.fitting import LawFit
 from hersey.damping.candidates.observations import Observations
+from hersey.damping.candidates.reduced_search import ReducedSearch
+from hersey.damping.candidates.shared_errors import stated
 from hersey.damping.candidates.simultaneous import Minima, minimise_each
+from hersey.damping.candidates.visit_effects import VisitColumns
 from hersey.errors import InsufficientDataError
 
 #: Resamples tried for one that holds every temperature.
@@ -103,6 +106,9 @@ def _refitted(
 def _minima(
     fit: LawFit, data: Observations, start: FloatArray, times: FloatArray, expected: FloatArray
 ) -> Minima:
+    own = VisitColumns.among(fit.disturbances, data.visit, stated(data))
+    if own is not None:
+        return _minima_beside(fit, data, own, start, times, expected)
     size, modes, points = fit.values.size, fit.effects.size, len(data)
     prior = np.eye(modes, start.shape[1], size)
 
@@ -119,6 +125,26 @@ def _minima(
 
     every = np.hstack([times, np.ones((len(times), modes))])
     return minimise_each(residual, jacobian, start, every, precision=_PRECISION, calls=_CALLS)
+
+
+def _minima_beside(
+    fit: LawFit,
+    data: Observations,
+    own: VisitColumns,
+    start: FloatArray,
+    times: FloatArray,
+    expected: FloatArray,
+) -> Minima:
+    """The same where many effects are those of visits: they are no unknowns of the searches."""
+    size = fit.values.size
+    problem = ReducedSearch(fit.law, data, fit.disturbances, own, fit.sigma, expected, times)
+    first = np.hstack([start[:, :size], own.split(start[:, size:])[1]])
+    every = np.hstack([times, np.ones((len(times), fit.effects.size))])
+    found = minimise_each(
+        problem.residual, problem.jacobian, first, every, precision=_PRECISION, calls=_CALLS
+    )
+    effects = problem.effects(found.values, np.arange(len(start)))
+    return Minima(np.hstack([found.values[:, :size], effects]), found.cost)
 
 
 def _residuals(fit: LawFit, data: Observations, values: FloatArray) -> FloatArray:

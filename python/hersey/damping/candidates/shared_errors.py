@@ -18,7 +18,9 @@ import numpy as np
 from scipy import optimize
 
 from hersey.arrays import FloatArray, IntArray
+from hersey.damping.candidates.bordered import Bordered
 from hersey.damping.candidates.observations import Observations
+from hersey.damping.candidates.visit_effects import VisitColumns, Visits
 from hersey.damping.distributions import ratio_above
 from hersey.result import Means, Record
 
@@ -39,6 +41,7 @@ class Grouping:
 
     name: str  #: ``visit`` or ``run``
     member: FloatArray
+    visits: Visits | None = None  #: of many visits, which are the groups
 
 
 def groupings(data: Observations) -> tuple[Grouping, ...]:
@@ -49,7 +52,8 @@ def groupings(data: Observations) -> tuple[Grouping, ...]:
     visits, runs = _indicator(data.visit), _indicator(data.run)
     per_run = np.unique(np.column_stack([data.run, data.visit]), axis=0).shape[0] / runs.shape[1]
     name = "run" if data.inputs.kelvin is None and per_run == 1 else "visit"
-    out = [Grouping(name, visits)] if np.count_nonzero(visits.sum(axis=0) > 1) >= 2 else []
+    several = np.count_nonzero(visits.sum(axis=0) > 1) >= 2
+    out = [Grouping(name, visits, Visits.many(data.visit))] if several else []
     if runs.shape[1] > 2 and per_run >= 2:
         out.append(Grouping("run", runs))
     return tuple(out)
@@ -86,13 +90,21 @@ def disturbances(
     They are those of the zero, of the heating of the film (``by_heat`` is the change of ln torque by
     temperature, 1/K, shape (points,)), then of every group whose scatter is not nil.
     """
-    columns = [data.tare]
+    shown = [(g.member, s.deviation) for g, s in zip(grouped, scatter, strict=True) if s.deviation > 0]
+    first = stated(data)
+    columns = np.empty((len(data), first + sum(member.shape[1] for member, _ in shown)))
+    columns[:, : data.tare.shape[1]] = data.tare
     if data.heating.size:
-        columns.append((by_heat * data.heating)[:, None])
-    for grouping, shared in zip(grouped, scatter, strict=True):
-        if shared.deviation > 0:
-            columns.append(shared.deviation * grouping.member)
-    return np.column_stack(columns)
+        columns[:, first - 1] = by_heat * data.heating
+    for member, deviation in shown:
+        np.multiply(deviation, member, out=columns[:, first : first + member.shape[1]])
+        first += member.shape[1]
+    return columns
+
+
+def stated(data: Observations) -> int:
+    """Return how many disturbances come first whose size is no guess of the fit: zero, rest and heating."""
+    return int(data.tare.shape[1] + bool(data.heating.size))
 
 
 def shared_scatter(
@@ -121,7 +133,7 @@ def shared_scatter(
     for number, grouping in enumerate(grouped):
         others = tuple(g for i, g in enumerate(grouped) if i != number)
         rest = tuple(s for i, s in enumerate(out) if i != number)
-        held = disturbances(data, others, rest, by_heat)
+        held = _Held.of(disturbances(data, others, rest, by_heat), data)
         fewest = FEWEST_GROUPS if np.any(by_heat) else 2
         if grouping.member.shape[1] < fewest:
             out[number] = SharedScatter(grouping.name, 0.0, 1.0, estimable=False)
@@ -130,30 +142,38 @@ def shared_scatter(
     return tuple(out)
 
 
+@dataclass(frozen=True)
+class _Held:
+    """Disturbances besides those of a grouping; those of many visits on their own."""
+
+    others: FloatArray
+    visits: VisitColumns | None
+
+    @classmethod
+    def of(cls, columns: FloatArray, data: Observations) -> _Held:
+        visits = VisitColumns.among(columns, data.visit, stated(data))
+        return cls(columns if visits is None else visits.others(columns), visits)
+
+
 def _restricted(
-    grouping: Grouping, slopes: FloatArray, held: FloatArray, residuals: FloatArray, sigma: FloatArray
+    grouping: Grouping, slopes: FloatArray, held: _Held, residuals: FloatArray, sigma: FloatArray
 ) -> SharedScatter:
     """Restricted likelihood of one variance, all that the law and the other errors explain projected out."""
-    modes = held.shape[1]
-    weigh = 1.0 / sigma
-    known = np.vstack(
-        [
-            np.column_stack([slopes, held]) * weigh[:, None],
-            np.eye(modes, slopes.shape[1] + modes, slopes.shape[1]),
-        ]
-    )
-    padded = np.vstack([grouping.member * weigh[:, None], np.zeros((modes, grouping.member.shape[1]))])
+    weigh = (1.0 / sigma)[:, None]
+    others, groups = held.others, grouping.member * weigh
+    rows = np.column_stack([slopes, others, residuals]) * weigh
+    if held.visits is not None:
+        rows, groups = (held.visits.freed(each, sigma) for each in (rows, groups))
+    modes = others.shape[1]
+    known = np.vstack([rows[:, :-1], np.eye(modes, slopes.shape[1] + modes, slopes.shape[1])])
     basis = _column_space(known)
-    groups = padded - basis @ (basis.T @ padded)
-    whole = padded
-    if modes:
-        others = _column_space(known[:, -modes:])
-        whole = padded - others @ (others.T @ padded)
-    rest = np.append(residuals * weigh, np.zeros(modes))
+    rest = np.append(rows[:, -1], np.zeros(modes))
     rest = rest - basis @ (basis.T @ rest)
-    spread, axes = np.linalg.eigh(groups.T @ groups)
-    seen = spread > _LEFT * float(np.max(np.sum(whole**2, axis=0)))
-    spread, along = spread[seen], (axes.T @ (groups.T @ rest))[seen]
+    beside = _column_space(known[:, -modes:]) if modes else np.empty((len(known), 0))
+    squares, along, largest = _contrasts(grouping, groups, basis, beside, rest)
+    spread, axes = np.linalg.eigh(squares)
+    seen = spread > _LEFT * largest
+    spread, along = spread[seen], (axes.T @ along)[seen]
     if not spread.size:
         return SharedScatter(grouping.name, 0.0, 1.0, estimable=False)
     between = float(np.sum(along**2 / spread))
@@ -162,6 +182,26 @@ def _restricted(
     p_value = ratio_above(between / spread.size / (within / max(freedom, 1)), spread.size, max(freedom, 1))
     variance = _likeliest(spread, along)
     return SharedScatter(grouping.name, variance**0.5, float(p_value), estimable=True)
+
+
+def _contrasts(
+    grouping: Grouping, groups: FloatArray, basis: FloatArray, beside: FloatArray, rest: FloatArray
+) -> tuple[FloatArray, FloatArray, float]:
+    """Products of the groups that the law leaves, with one another and with the residuals.
+
+    And the greatest square of a group, only the other errors projected out.
+    """
+    points, count = groups.shape
+    if grouping.visits is not None:  # no two share a dwell
+        sums, weigh = grouping.visits.sums, groups[np.arange(points), grouping.visits.label]
+        explained, taken = (sums(each[:points] * weigh[:, None], axis=0) for each in (basis, beside))
+        whole = sums(weigh**2)
+        left = np.diag(whole) - explained @ explained.T
+        return left, sums(weigh * rest[:points]), float(np.max(whole - np.sum(taken**2, axis=1)))
+    padded = np.vstack([groups, np.zeros((len(rest) - points, count))])
+    left = padded - basis @ (basis.T @ padded)
+    whole = padded - beside @ (beside.T @ padded) if beside.shape[1] else padded
+    return left.T @ left, left.T @ rest, float(np.max(np.sum(whole**2, axis=0)))
 
 
 def _column_space(matrix: FloatArray) -> FloatArray:
@@ -261,3 +301,60 @@ def freedom_of(
     uncertainty = np.asarray(np.linalg.pinv(0.5 * information), dtype=np.float64)
     parts = [gain @ gain.T, *((gain @ m) @ (gain @ m).T for m in members)]
     return Freedom(residual, covariance, tuple(parts), uncertainty, moved)
+
+
+def freedom_beside(
+    grouped: tuple[Grouping, ...],
+    scatter: tuple[SharedScatter, ...],
+    normal: Bordered,
+    sigma: FloatArray,
+    parameters: int,
+) -> Freedom:
+    """Return the same where many effects are those of visits, from their normal equations."""
+    residual = int(sigma.size - parameters)
+    covariance = np.asarray(normal.inverse[:parameters, :parameters])
+    gain = normal.gains(parameters) / sigma
+    moved = np.zeros(parameters)
+    for grouping, shared in zip(grouped, scatter, strict=True):
+        if not shared.estimable:
+            by_dwells = np.maximum(np.sum(gain**2, axis=1), 1e-300)
+            moved += np.sum((gain @ grouping.member) ** 2, axis=1) / by_dwells
+    runs = [g.member for g, s in zip(grouped, scatter, strict=True) if s.deviation > 0 and g.visits is None]
+    information = _information(normal, sigma, runs)
+    uncertainty = np.asarray(np.linalg.pinv(0.5 * information), dtype=np.float64)
+    parts = [gain, normal.visits.sums(gain), *(gain @ m for m in runs)]
+    return Freedom(residual, covariance, tuple(part @ part.T for part in parts), uncertainty, moved)
+
+
+def _information(normal: Bordered, sigma: FloatArray, runs: list[FloatArray]) -> FloatArray:
+    """Restricted information of the variances of dwells, visits and runs, twice (as in `freedom_of`).
+
+    P = N - (N A) S^-1 (N A)^T, with N in blocks of visits, A the border and S its complement.
+    """
+    visits, inverse, label = normal.visits, normal.inverse, normal.visits.label
+    weight, column = 1.0 / sigma**2, normal.by_visit / sigma
+    border = normal.left / sigma[:, None]
+
+    def of_visits(rows: FloatArray) -> FloatArray:  # N rows
+        share = visits.sums(column[:, None] * rows, axis=0) / normal.diagonal[:, None]
+        return np.asarray(weight[:, None] * rows - column[:, None] * share[label])
+
+    square, by_square = border.T @ border, visits.sums(column**2) / normal.diagonal
+    dwells = float(np.sum(weight**2) - 2.0 * np.sum(weight * column**2 / normal.diagonal[label]))
+    dwells += float(np.sum(by_square**2)) - 2.0 * float(np.sum(inverse * (border.T @ of_visits(border))))
+    dwells += float(np.sum((inverse @ square) * (inverse @ square).T))
+    alone = weight * (normal.own_prior**2 / normal.diagonal)[label]  # N times the members of each visit
+    by_border, twice = visits.sums(border, axis=0), visits.sums(border * alone[:, None], axis=0)
+    weighed, sums = by_border @ inverse, visits.sums(alone)
+    by_visits = np.sum(alone**2) - 2.0 * np.sum(weighed * twice) + np.sum((weighed @ square) * weighed)
+    together = inverse @ (by_border.T @ by_border)
+    of_both = np.sum(sums**2) - 2.0 * np.sum(sums * np.sum(weighed * by_border, axis=1))
+    of_both += np.sum(together * together.T)
+    left = [of_visits(run) - border @ (inverse @ (border.T @ run)) for run in runs]
+    information = np.empty((2 + len(runs), 2 + len(runs)))
+    information[0, :2], information[1, :2] = (dwells, by_visits), (by_visits, of_both)
+    for i, each in enumerate(left, start=2):
+        information[0, i] = information[i, 0] = float(np.sum(each**2))
+        information[1, i] = information[i, 1] = float(np.sum(visits.sums(each, axis=0) ** 2))
+        information[i, 2:] = [float(np.sum((run.T @ each) ** 2)) for run in runs]
+    return information

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from hersey.arrays import BoolArray, FloatArray, IntArray
-from hersey.damping.candidates.likelihood import FIRST_STEP, HUBER, loss, minimise
+from hersey.damping.candidates.likelihood import FIRST_STEP, HUBER, loss, minimise, share
 
 #: Residuals in standard errors, or their derivatives, of values of problems: (values, which) to shape
 #: (problems, residuals) or (problems, residuals, parameters).
@@ -67,7 +67,7 @@ def minimise_each(
         while running.size:
             values = searches.values[running]
             u, root = residual(values, running), searches.root[running]
-            slopes = (root * _share(u))[:, :, None] * jacobian(values, running)
+            slopes = (root * share(u, HUBER))[:, :, None] * jacobian(values, running)
             running = running[~searches.step(running, slopes, root * _shrunk(u))]
         for each in np.flatnonzero(searches.lost).tolist():
             searches.values[each] = _alone(residual, jacobian, start[each], times[each], each, **effort)
@@ -100,12 +100,6 @@ def _shrunk(u: FloatArray) -> FloatArray:
 
 def _norm(rows: FloatArray) -> FloatArray:
     return np.asarray(np.linalg.norm(rows, axis=1))
-
-
-def _share(u: FloatArray) -> FloatArray:
-    """Their derivative by the residuals themselves."""
-    size = np.abs(u)
-    return np.where(size <= HUBER, 1.0, HUBER / np.maximum(np.sqrt(loss(u, HUBER)), 1e-300))
 
 
 class _Searches:

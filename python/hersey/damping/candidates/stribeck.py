@@ -81,7 +81,7 @@ class StribeckLaw(Named):
         if self.thermal is None or inputs.kelvin is None:
             nothing = np.zeros_like(inputs.log_speed)
             return nothing, nothing
-        s, slope, _ = self.thermal.shape(inputs.kelvin)
+        s, slope, _ = self.thermal.shape_at(inputs)
         return s, slope
 
     def _parts(

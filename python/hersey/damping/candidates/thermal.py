@@ -20,6 +20,7 @@ import numpy as np
 
 from hersey import _core
 from hersey.arrays import FloatArray
+from hersey.damping.candidates.observations import Inputs
 from hersey.units import ZERO_CELSIUS
 
 #: Molar gas constant, J/(mol K) (exact since 2019).
@@ -69,6 +70,19 @@ class Thermal:
         by_heat = -1.0 / self.reference / below / np.where(held, 1.0, below)
         by_q = np.where(held, 0.0, t / below) ** 2 * self.reference
         return -t / below, by_heat, by_q
+
+    def shape_at(
+        self, inputs: Inputs, q: FloatArray | float = 0.0
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return the same at the temperatures of inputs, computed once where no parameter moves it."""
+        assert inputs.kelvin is not None
+        if self.kind == VFT:
+            return self.shape(inputs.kelvin, q)
+        if self not in inputs.shapes:
+            inputs.shapes[self] = found = self.shape(inputs.kelvin)
+            for each in found:
+                each.flags.writeable = False
+        return inputs.shapes[self]
 
     def energy(self, kelvin: float, q: float = 0.0) -> float:
         """Return the apparent activation energy, J/mol, at a temperature (K) for e = 1."""
