@@ -1,7 +1,9 @@
 //! Taylor series of the belts on all lanes: their values, and how far they hold.
 
-use super::lanes::LANES;
 use super::polynomial::fused;
+
+/// Belts that step together.
+pub(crate) const LANES: usize = 16;
 
 /// Order of the Taylor steps.
 pub(super) const ORDER: usize = 12;

@@ -13,13 +13,11 @@
 //! Lanes with `STARTS` start a belt besides: the speed of their drive moves, a step ends at a time of its schedule too,
 //! below the stick speed the contact drags as `exp(-u/scale)`, and how hard the spring pulls at most is kept.
 
+pub(crate) use super::lane_series::LANES;
 use super::lane_series::{INVERSE, LaneSeries, ORDER, POWERS, Row, step_size, value};
 use super::polynomial::{fused, fused_in};
 use crate::error::Error;
 use crate::work::Work;
-
-/// Belts that step together.
-pub(crate) const LANES: usize = 16;
 
 /// Newton iterations for an extreme, which need not be met exactly for the step to end near it.
 const TURNING_NEWTON: usize = 3;
