@@ -2,9 +2,9 @@
 
 use super::cycles;
 use super::fold::{Fold, capped};
-use super::lower_edge::LowerEdge;
 use super::secant::below_three;
 use super::slip_lap::SlipLap;
+use super::valley::LowerEdge;
 use crate::error::Error;
 use crate::work::Work;
 

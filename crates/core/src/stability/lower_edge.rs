@@ -9,22 +9,13 @@ use super::half_laps::{HalfLaps, Met, step_tolerance};
 use super::looks::{by_looks, where_drag_rises};
 use super::secant::Outcome;
 use super::slip_lap::SlipLap;
-use super::valley::{Step, Trial, Valley};
+use super::valley::{LowerEdge, Step, Trial, Valley};
 use crate::error::Error;
 use crate::motion::lanes::{Lanes, run_lanes};
 use crate::work::Work;
 
 /// Slope of the drag, over that of a node, from which on laps end too close to steady sliding to tell much.
 const ALMOST_A_NODE: f64 = 0.97;
-
-/// A lower edge, and what it took.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct LowerEdge {
-    /// Drive speed over `v_t`.
-    pub drive_speed: f64,
-    /// Laps followed.
-    pub laps: usize,
-}
 
 /// Least drive speed of the cycles of each lap that are no slower than its slowest speed; where drag begins to rise cycles of
 /// no size begin.

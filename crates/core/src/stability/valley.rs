@@ -4,8 +4,6 @@
 //! parabola that is the shortest way. Where swings creep it is flat on one side and steep on the other: then steps
 //! grow until the slope has changed its sign, and halve what lies between.
 
-use super::lower_edge::LowerEdge;
-
 /// Laps after which the bottom is given up.
 const MOST_LAPS: usize = 16;
 /// Error of `w`, foretold from the last laps, at which a search ends.
@@ -21,6 +19,15 @@ const LONGER: f64 = 3.0;
 const LEFT: f64 = 0.3;
 /// Share of the way from the slowest speed to that from which on drag rises below which no cycle's drive is.
 const SLOWEST_DRIVE: f64 = 0.4;
+
+/// A lower edge, and what it took.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct LowerEdge {
+    /// Drive speed over `v_t`.
+    pub drive_speed: f64,
+    /// Laps followed.
+    pub laps: usize,
+}
 
 /// What a lap says of the cycle whose slowest speed is its own.
 #[derive(Clone, Copy)]
