@@ -124,6 +124,22 @@ fn a_nudged_belt_sticks_below_the_lower_edge_and_swings_on_above() {
 }
 
 #[test]
+fn no_start_matters_where_the_slowest_swing_is_the_one_that_just_sticks() {
+    // faster swings ask for a faster drive, so the lower edge is where the upper one is
+    let drag = Drag::new(6.61, 1.0, -0.511, -1.146, 0.197, Closure::Retained).unwrap();
+    let drag = drag.with_rest(Rest { force: 0.0, damping: 0.0036 }).unwrap();
+    let train = Drivetrain::new(1.0, 1.0).unwrap();
+    let band = band_of(train, &drag, true);
+    assert!(band.lower <= band.upper && band.lower > band.upper * (1.0 - 1e-9), "{band:?}");
+    let sticks = |drive_speed: f64| {
+        let start = Start::steady(&train, &drag, drive_speed).unwrap().nudged();
+        stick_slip(&train, &drag, drive_speed, start, TOLERANCE).unwrap().kind
+            == CycleKind::StickSlip
+    };
+    assert!(sticks(band.lower * 0.9999) && !sticks(band.lower * 1.0001), "{band:?}");
+}
+
+#[test]
 fn belts_in_lanes_settle_as_they_do_alone() {
     let mut random = Random(4);
     let belts: Vec<Belt> = (0..200)

@@ -119,13 +119,24 @@ pub(crate) fn run_lanes<const STARTS: bool, R>(
             return Ok(());
         }
         work.take(1)?;
-        arch.dispatch(LaneStep::<STARTS> { lanes: &mut lanes, series: &mut series, tolerance });
+        step_all::<STARTS>(arch, &mut lanes, &mut series, tolerance);
         for (l, seat) in members.iter_mut().enumerate() {
             if seat.as_mut().is_some_and(|member| !follow(member, &mut lanes, l)) {
                 *seat = None;
             }
         }
     }
+}
+
+/// One step of every lane: compiled once for all that run lanes.
+#[inline(never)]
+fn step_all<const STARTS: bool>(
+    arch: pulp::Arch,
+    lanes: &mut Lanes,
+    series: &mut LaneSeries,
+    tolerance: f64,
+) {
+    arch.dispatch(LaneStep::<STARTS> { lanes, series, tolerance });
 }
 
 impl Lanes {

@@ -1,8 +1,7 @@
 //! The band of drive speeds where the past decides whether a belt sticks.
 
-use super::cycles;
 use super::fold::{Fold, Gripped, SlippingFold, folds, gripped};
-use super::secant::below_three;
+use super::lower_edge::lower_edges;
 use super::slip_lap::{SlipLap, slip_lap};
 use super::smooth::SmoothBelt;
 use crate::drag::{Closure, Drag};
@@ -73,8 +72,8 @@ const MOTIONS: u64 = 1;
 /// The same for smooth closures.
 const MOTIONS_SMOOTH: u64 = 6;
 
-/// The band of each belt, without its lower edge (not a number) unless `lower` asks for it: it costs ten times
-/// the fold. What `work` allows is for each motion.
+/// The band of each belt, without its lower edge (not a number) unless `lower` asks for it: it costs a quarter
+/// of the fold. What `work` allows is for each motion.
 ///
 /// # Errors
 /// If `tolerance` is out of range, or `work` is stopped; each belt's may be an error of its own, if its motion cannot
@@ -93,7 +92,8 @@ pub fn bands(
     let uppers: Vec<Option<Fold>> =
         slipping.iter().map(|found| Some(found.as_ref()?.fold)).collect();
     let deeper = deeper_stick_slip(belts, &uppers, tolerance, work)?;
-    let lowers = if lower { lower_edges(&laps, tolerance, work)? } else { vec![None; belts.len()] };
+    let lowers =
+        if lower { lower_edges_of(&laps, tolerance, work)? } else { vec![None; belts.len()] };
     unless_stopped((0..belts.len()).map(|i| {
         let (train, drag) = &belts[i];
         checked_branches(drag)?;
@@ -147,6 +147,8 @@ pub fn bands(
         let sticks_below = match slipping[i].filter(|_| half.is_some()) {
             Some(found) if slips => found.sticks_below * transition,
             None if train.grip().is_finite() => upper,
+            // the lap from the stick speed is one of those that do not stick
+            _ if lowers[i].is_some() => upper,
             _ => f64::INFINITY,
         };
         let (lower, lower_accuracy) = if sticks_below < lower {
@@ -277,6 +279,18 @@ fn half_lap_folds(
     Ok(found)
 }
 
+/// Lower edges by half laps, over the transition speed.
+fn lower_edges_of(
+    laps: &[Option<SlipLap>],
+    tolerance: f64,
+    work: &Work,
+) -> Result<Vec<Option<f64>>, Error> {
+    let known: Vec<SlipLap> = laps.iter().flatten().copied().collect();
+    let mut edges = lower_edges(&known, tolerance, work)?.into_iter();
+    let edge = |lap: &Option<SlipLap>| lap.and_then(|_| edges.next()).map(|e| e.drive_speed);
+    Ok(laps.iter().map(edge).collect())
+}
+
 /// The same under a roll that slips on belts whose laps ask for more than its grip.
 fn gripped_folds(
     belts: &[(Drivetrain, Drag)],
@@ -360,54 +374,6 @@ fn lasts(cycle: &StickSlipCycle, drag: &Drag) -> bool {
     use CycleKind::{GripSlip, Stalled, SteadySliding};
     !matches!(cycle.kind, SteadySliding | GripSlip | Stalled)
         && cycle.speed_min <= drag.stick_speed() * (1.0 + HALVED)
-}
-
-/// Slowest speeds, over the transition speed, between which the slowest unstable cycle is looked for.
-const FIRST_LOOKS: [f64; 6] = [0.3, 0.45, 0.6, 0.75, 0.88, 0.96];
-/// Parabolas drawn through the least of three points.
-const PARABOLAS: usize = 5;
-
-/// Least drive speed, over the transition speed, of any cycle without sticking: where two of them meet.
-fn lower_edges(
-    laps: &[Option<SlipLap>],
-    tolerance: f64,
-    work: &Work,
-) -> Result<Vec<Option<f64>>, Error> {
-    let (places, known): (Vec<usize>, Vec<SlipLap>) =
-        laps.iter().enumerate().filter_map(|(i, lap)| Some((i, (*lap)?))).unzip();
-    // (slowest speed, drive speed) of the cycles looked at, by slowest speed
-    let mut seen: Vec<Vec<(f64, f64)>> = vec![Vec::new(); known.len()];
-    let look = |seen: &mut Vec<Vec<(f64, f64)>>, at: &[(usize, f64)]| {
-        let (which, with): (Vec<usize>, Vec<SlipLap>) =
-            at.iter().map(|(i, slowest)| (*i, SlipLap { slowest: *slowest, ..known[*i] })).unzip();
-        for ((i, lap), fold) in which.iter().zip(&with).zip(cycles(&with, tolerance, work)?) {
-            if let Some(fold) = fold {
-                let place = seen[*i].partition_point(|(slowest, _)| *slowest < lap.slowest);
-                seen[*i].insert(place, (lap.slowest, fold.drive_speed));
-            }
-        }
-        Ok(())
-    };
-    // all at once, so that a single belt has company in the lanes
-    let first = known.iter().enumerate().flat_map(|(i, lap)| {
-        let reach = lap.rising_from() - lap.slowest;
-        FIRST_LOOKS.map(|share| (i, lap.slowest + share * reach))
-    });
-    look(&mut seen, &first.collect::<Vec<_>>())?;
-    for _ in 0..PARABOLAS {
-        let bottoms = seen.iter().enumerate();
-        let at: Vec<(usize, f64)> =
-            bottoms.filter_map(|(i, points)| Some((i, below_three(points)?))).collect();
-        look(&mut seen, &at)?;
-    }
-    let rising_from = |place: usize| laps[place].map_or(1.0, |lap: SlipLap| lap.rising_from());
-    let mut edges = vec![None; laps.len()];
-    for (place, points) in places.into_iter().zip(seen) {
-        // where drag begins to rise cycles of no size begin
-        let none = rising_from(place);
-        edges[place] = Some(points.iter().fold(none, |least: f64, (_, drive)| least.min(*drive)));
-    }
-    Ok(edges)
 }
 
 /// Least drive speed above `from` at which a belt from `start`, at rest or released, ends without sticking and

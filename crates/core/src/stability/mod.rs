@@ -5,7 +5,12 @@
 //! | `slip_lap` | a belt on two power branches in units that suit it                             |
 //! | `secant` | the drive speed at which a lap just comes back, from laps at others              |
 //! | `fold` | drive speed at which a slip lap comes back to its start, many at once              |
+//! | `half_laps` | a slip lap at one drive speed, forward and back in time                      |
 //! | `cycles` | swings that never stick, by their slowest speed                                 |
+//! | `lower_edge` | least drive speed of any of them, many at once                              |
+//! | `deviation` | what becomes of a small deviation along a lap                                |
+//! | `valley` | the bottom of a curve, from laps that do not quite come back                    |
+//! | `looks` | the lower edge from cycles at some slowest speeds                                |
 //! | `band` | lower edge, transition and upper fold of a belt, for every closure                 |
 //! | `smooth` | edges of a belt with a smooth closure, decided by a lap or two                   |
 //! | `curve_laps` | slip laps and fold of a belt whose drag is a smooth curve                    |
@@ -16,11 +21,16 @@ mod band;
 mod curve_laps;
 mod curve_start_up;
 mod cycles;
+mod deviation;
 mod fold;
+mod half_laps;
+mod looks;
+mod lower_edge;
 mod secant;
 mod slip_lap;
 mod smooth;
 mod unstable;
+mod valley;
 
 pub use band::{Band, Method, bands};
 pub use curve_laps::{CurveBelt, CurveCycle, CurveFold, CurveStart, curve_folds, curve_starts};
