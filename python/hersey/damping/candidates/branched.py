@@ -167,6 +167,8 @@ class Law(Named):
 
     def _mean_exponent(self, values: FloatArray) -> FloatArray:
         first = 1 + (len(self.thermal.names) if self.thermal else 0)
+        if self.groups == 1:
+            return np.asarray(values[first])
         return np.asarray(values[first : first + self.groups].mean(axis=0))
 
     def _members(self, inputs: Inputs) -> FloatArray:
