@@ -31,7 +31,6 @@ _OF_ZERO = (
     "The error of the torque zero is shared by the dwells: every two have a covariance, for each size of "
     "drift that the standing stretches allow."
 )
-_OF_CACHE = "The draws behind the interval hold a number per specimen, soon more than fits into the cache."
 #: Dwells of a log whose rows grow, and rows of a dwell where they grow.
 DWELLS, ROWS = 100, 100
 _FOLDER = tempfile.TemporaryDirectory()
@@ -217,7 +216,6 @@ SERIES = (
         decades(10, 3e3),
         lambda n: np.random.default_rng(5).weibull(2.0, n),
         lambda ages: hersey.weibull(ages, [True] * ages.size),
-        why=_OF_CACHE,
     ),
     Series("specimens", "campaign add, six runs each", (2, 4, 8, 16), life_test, add, (32, 64)),
     Series("specimens", "life, six runs each", (2, 4, 8, 16), life_test, follow, (32, 64)),

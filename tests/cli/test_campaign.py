@@ -13,6 +13,7 @@ import hersey
 from hersey.cli import campaign_reading
 from hersey.cli.options import Reading
 from hersey.life.campaign import Entry
+from hersey.machine import machine
 from tests.cli.command import Done, run
 from tests.conftest import ROOT
 from tests.life.test_campaign import means
@@ -70,7 +71,7 @@ def test_a_specimen_that_is_not_there_is_named_with_those_that_are(folder: Path)
 
 def test_hundreds_are_read_in_processes_of_their_own(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Here three in one process."""
-    monkeypatch.setattr(campaign_reading, "_FEW", 0)
+    monkeypatch.setattr(campaign_reading, "FEW", 0)
     monkeypatch.setattr(campaign_reading, "_PROCESSES", 1)
     (folder / "broken.csv").write_text("no log at all\n")
     logs = [(folder / name, '{"a": 1}') for name in ("0.csv", "broken.csv", "1.csv")]
@@ -79,6 +80,40 @@ def test_hundreds_are_read_in_processes_of_their_own(folder: Path, monkeypatch: 
     assert "broken.csv" in str(broken)
     assert isinstance(last, Entry)
     assert last.path == str(folder / "1.csv")
+
+
+def test_what_reads_many_begins_before_it_is_known_what_to_read(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(campaign_reading, "FEW", 2)
+    monkeypatch.setattr(campaign_reading, "_PROCESSES", 1)
+    logs = [(folder / f"{number}.csv", "{}") for number in range(2)]
+    (child,) = campaign_reading.readers(None)
+    child.ask({"machine": None})  # which waits for what it loads
+    assert child.running
+    alone = [campaign_reading.entry(Reading(), log, None, settings) for log, settings in logs]
+    assert list(campaign_reading.entries(Reading(), logs, None, children=[child])) == alone
+    assert not child.running
+    (child,) = campaign_reading.readers(None)
+    child.ask({"machine": None})
+    assert list(campaign_reading.entries(Reading(), logs[:1], None, children=[child])) == alone[:1]
+    assert not child.running  # too few for it
+
+
+def test_the_machine_file_is_read_once_for_all_runs(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (folder / "machine.toml").write_text((ROOT / "tests" / "stand" / "machine.toml").read_text())
+    read, read_machine = [], machine.read_machine
+
+    def counted(path: Path) -> machine.Machine:
+        read.append(path.name)
+        return read_machine(path)
+
+    monkeypatch.setattr(machine, "read_machine", counted)
+    for number in range(3):
+        log = folder / f"{number}.csv"
+        settings = campaign_reading.settings_of(Reading(), log, folder / "machine.toml")
+        campaign_reading.entry(Reading(), log, folder / "machine.toml", settings)
+    assert read == ["machine.toml"]
 
 
 def test_a_table_of_runs_leaves_out_what_fails_and_tells_it(folder: Path) -> None:

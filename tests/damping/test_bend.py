@@ -12,6 +12,7 @@ import pytest
 from scipy import optimize, stats
 
 import hersey
+from hersey.damping import smoothing
 from hersey.damping.smoothing import Curve, parabola
 from hersey.damping.surface import DampingSurface
 from hersey.document.assembly import fit_document
@@ -64,6 +65,25 @@ def hot() -> DampingSurface:
 def curve(at: np.ndarray, values: np.ndarray, noise: float, known: np.ndarray | None = None) -> Curve:
     known = parabola(at) if known is None else known
     return Curve(at, values, noise**2 * np.eye(at.size), 1.0, known, at.size - 3.0)
+
+
+def test_a_minimum_takes_one_covariance_of_each_grid(monkeypatch: pytest.MonkeyPatch) -> None:
+    """And one inverse for each ratio of variance that counts, though it weighs the slopes on two grids."""
+    seen, covariance = [], smoothing._slope_covariance
+
+    def counted(at: np.ndarray, other: np.ndarray) -> np.ndarray:
+        seen.append(at.size)
+        return covariance(at, other)
+
+    monkeypatch.setattr(smoothing, "_slope_covariance", counted)
+    at, noise = np.linspace(-2.0, 3.0, 15), np.random.default_rng(1).standard_normal(15)
+    found = curve(at, 0.3 * (at - 0.7) ** 2 + 0.05 * noise, 0.05)
+    assert found.least() is not None
+    assert seen == [smoothing._SLOPES, smoothing._SLOPES, 1]
+    solved = found._solved
+    first = [solved(ratio) for ratio in found._solutions]
+    assert len(first) > 5
+    assert all(solved(ratio) is kept for ratio, kept in zip(found._solutions, first, strict=True))
 
 
 def test_the_least_of_a_parabola_is_as_uncertain_as_its_slope() -> None:

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy import stats
+from scipy import integrate, stats
 
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.life.growth import fit as growth_module
@@ -19,8 +19,8 @@ from hersey.life.growth import peaks
 from hersey.life.growth import posterior as growth_posterior
 from hersey.life.growth.fit import Growth, fit_growth
 from hersey.life.growth.laws import LAWS
-from hersey.life.growth.limit_ages import heavy_tailed, quantiles
-from hersey.life.growth.marginal import likelihood
+from hersey.life.growth.limit_ages import ages_of_sum, heavy_tailed, quantiles
+from hersey.life.growth.marginal import Specimens, likelihood
 from hersey.life.growth.points import Points
 
 LAW = {law.name: law for law in LAWS}
@@ -176,7 +176,8 @@ def test_a_law_and_its_age_are_inverses_and_its_slope_is_its_own(law: Any) -> No
         y = law.log_growth(x, t, shape)
         assert law.age(x, y, shape) == pytest.approx(t, rel=1e-6)
         up, down = (law.log_growth(x + d, t, shape) for d in (1e-5, -1e-5))
-        assert law.slope(x, t, shape) == pytest.approx((up - down) / 2e-5, rel=1e-4)
+        assert law.sloped(x, t, shape)[0] == pytest.approx(y, rel=1e-12)
+        assert law.sloped(x, t, shape)[1] == pytest.approx((up - down) / 2e-5, rel=1e-4)
 
 
 def test_the_curved_law_holds_the_others() -> None:
@@ -293,6 +294,17 @@ def test_growth_of_new_units_is_doubted_beyond_the_greatest_last_age(
     assert 0.1 < np.mean(new < 40.0) < 0.9
     np.testing.assert_allclose(later_new, np.where(new > 40.0, 2.0 * new - 40.0, new), rtol=1e-12)
     np.testing.assert_allclose(later_units, np.where(units > last, 2.0 * units - last, units), rtol=1e-12)
+
+
+def test_sums_are_found_where_growth_is_steep() -> None:
+    """Newton's method alone may swing between ages far apart; against the integral by fine steps."""
+    law, x, c, sums = LAW["curved"], 1.41, 0.028, np.linspace(9.0, 12.0, 300)
+    one = np.ones((1, sums.size))
+    drawn = Specimens(law, -sums * one, x * one, np.full((1, 1, 1), c), 0.1 * np.ones((1, 1)))
+    for age, goal in zip(ages_of_sum(drawn, np.zeros((1, 1))).ravel().tolist(), sums, strict=True):
+        ages = np.linspace(0.0, age, 4001)
+        value = np.exp(law.log_growth(np.array(x), ages, np.array([[c]])))
+        assert math.log(integrate.trapezoid(value, ages)) == pytest.approx(goal, abs=0.1)  # 0.3 % of the age
 
 
 def test_specimens_of_one_age_are_counted() -> None:

@@ -185,3 +185,39 @@ fn no_swing_stays_where_drag_rises() {
     assert!(found[0].drive_speed > 0.95 * foot && found[0].drive_speed < 1.05 * foot);
     assert!(found[1].drive_speed.is_nan() && !found[1].stable);
 }
+
+/// A table that falls by 9 N s/m about from 0.1 to 0.3 m/s, and by 48 further on.
+fn falling_table() -> Drag {
+    let (speeds, forces) = ([0.01, 0.1, 0.3, 1.0, 3.0], [60.0, 50.0, 48.0, 20.0, 30.0]);
+    Drag::tabulated(&speeds, &forces, 0.02, Closure::Retained).unwrap()
+}
+
+#[test]
+fn a_belt_slides_steadily_where_a_table_that_falls_falls_by_less_than_the_rest_rises() {
+    let drag = falling_table().with_rest(Rest { force: 0.0, damping: 30.0 }).unwrap();
+    let train = Drivetrain::new(1000.0, 1.0).unwrap();
+    let nudged = |drive_speed: f64| {
+        let start = Start::steady(&train, &drag, drive_speed).unwrap().nudged();
+        stick_slip(&train, &drag, drive_speed, start, TOLERANCE).unwrap()
+    };
+    let steady = nudged(0.2);
+    assert_eq!(steady.kind, CycleKind::SteadySliding);
+    assert!(steady.laps < 10, "{}", steady.laps);
+    assert_ne!(nudged(0.5).kind, CycleKind::SteadySliding);
+}
+
+#[test]
+fn a_belt_that_sticks_only_once_in_several_laps_has_settled_to_that() {
+    // so near to the fold that steps decide whether a lap just comes down to the stick speed
+    let (drag, train) = (falling_table(), Drivetrain::new(1000.0, 1.0).unwrap());
+    let (mut low, mut high) = (3.0, 3.2);
+    let mut longest = 1;
+    while high - low > 1e-12 * high {
+        let middle = 0.5 * (low + high);
+        let cycle = stick_slip(&train, &drag, middle, Start::REST, 1e-8).unwrap();
+        assert!(cycle.kind != CycleKind::Unsettled && cycle.laps < 1000, "{middle}: {cycle:?}");
+        longest = longest.max(cycle.laps_per_period);
+        if cycle.kind == CycleKind::StickSlip { low = middle } else { high = middle }
+    }
+    assert!(longest > 1);
+}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -27,6 +27,7 @@ from hersey.files.tables import TABLES
 if TYPE_CHECKING:
     from hersey.cli.workers import AtWork
     from hersey.life.campaign import Added, Campaign, Entry, RunToAdd
+    from hersey.processes.child import Child
 
 campaign = typer.Typer(
     no_args_is_help=True,
@@ -192,6 +193,12 @@ class _Adding:
 
     def each(self, opened: Campaign, wanted: list[RunToAdd], failed: list[str]) -> None:
         """Add the runs that can be added; the others join the ``failed``, and the exit code is 1."""
+        from hersey.cli.campaign_reading import FEW, readers
+
+        # of a campaign without runs all will be read: what reads them loads while settings are found here
+        many = self.client is None and len(wanted) >= FEW and not len(opened)
+        children = readers(self.machine) if many else ()
+
         from hersey.log.many import failure_line
 
         counts: Counter[str] = Counter()
@@ -207,7 +214,7 @@ class _Adding:
             else:
                 counts[_noted(settled)] += 1
         with bar("adding", unit="runs") as progress:
-            for number, (run, result) in enumerate(self._read(new), 1):
+            for number, (run, result) in enumerate(self._read(new, children), 1):
                 try:
                     if isinstance(result, HerseyError):
                         raise result
@@ -227,12 +234,14 @@ class _Adding:
         if failed:
             raise typer.Exit(NOT_FOUND)
 
-    def _read(self, runs: list[tuple[RunToAdd, str]]) -> Iterator[tuple[RunToAdd, Entry | HerseyError]]:
+    def _read(
+        self, runs: list[tuple[RunToAdd, str]], children: Sequence[Child] = ()
+    ) -> Iterator[tuple[RunToAdd, Entry | HerseyError]]:
         """Each run, with its entry or its error."""
         from hersey.cli.campaign_reading import entries
 
         logs = [(run.log, settings) for run, settings in runs]
-        read = entries(self.reading, logs, self.machine, self.client)
+        read = entries(self.reading, logs, self.machine, self.client, children)
         return zip((run for run, _ in runs), read, strict=True)
 
     def _settings(self, run: RunToAdd) -> str:

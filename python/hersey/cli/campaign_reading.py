@@ -9,10 +9,12 @@ import json
 from collections import deque
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import suppress
 from dataclasses import asdict, replace
-from functools import partial
+from functools import lru_cache, partial
 from pathlib import Path
 from queue import SimpleQueue
+from threading import Thread
 from typing import TYPE_CHECKING, Any
 
 from hersey.arrays import one_thread
@@ -20,14 +22,14 @@ from hersey.cli.options import Reading
 from hersey.errors import HerseyError, UnreadableLogError
 from hersey.files.reading import hash_of
 from hersey.life.campaign import Entry
-from hersey.life.campaign.conversion import entry_of
 from hersey.processes.child import Child, FailedError, LostError
 
 if TYPE_CHECKING:
     from hersey.cli.workers import AtWork
+    from hersey.machine import Machine
 
 #: Processes that read, runs that are read ahead of the one that is added, and those that are read here.
-_PROCESSES, _AHEAD, _FEW = 2, 6, 8
+_PROCESSES, _AHEAD, FEW = 2, 6, 8
 
 
 def settings_of(reading: Reading, log: Path, machine: Path | None) -> str:
@@ -41,13 +43,21 @@ def settings_of(reading: Reading, log: Path, machine: Path | None) -> str:
 
 def entry(reading: Reading, log: Path, machine_file: Path | None, settings: str) -> Entry:
     """Read a log, reduce and fit it."""
-    from hersey.machine.machine import read_machine
+    from hersey.life.campaign.conversion import entry_of
 
-    machine = None if machine_file is None else read_machine(machine_file)
+    how = json.loads(settings)
+    machine = None if machine_file is None else _machine_of(machine_file, how["files"]["machine"]["sha256"])
     with one_thread():
         points = reading.points([log], reading.log([log], machine), machine)
-        scale = reading.temperature_scale
-        return entry_of(points, log, temperature_scale=scale, settings=json.loads(settings))
+        return entry_of(points, log, temperature_scale=reading.temperature_scale, settings=how)
+
+
+@lru_cache(maxsize=1)
+def _machine_of(path: Path, sha256: str) -> Machine:  # noqa: ARG001 - another content is another machine
+    """The machine of a file, the same for all runs."""
+    from hersey.machine.machine import read_machine
+
+    return read_machine(path)
 
 
 def _tried(reading: Reading, machine: Path | None, run: tuple[Path, str]) -> Entry | HerseyError:
@@ -59,12 +69,29 @@ def _tried(reading: Reading, machine: Path | None, run: tuple[Path, str]) -> Ent
 
 
 def answer(request: dict[str, Any], _payload: bytes) -> tuple[dict[str, Any], bytes]:
-    """Read a run in a worker process."""
-    machine = request["machine"]
-    read = entry(
-        Reading(**request["reading"]), Path(request["log"]), machine and Path(machine), request["settings"]
-    )
+    """Read a run in a worker process, or load what that takes."""
+    machine = request["machine"] and Path(request["machine"])
+    if "log" not in request:
+        from hersey.life.campaign import conversion  # noqa: F401 - which loads the rest
+
+        if machine is not None:
+            _machine_of(machine, hash_of(machine))
+        return {}, b""
+    read = entry(Reading(**request["reading"]), Path(request["log"]), machine, request["settings"])
     return asdict(read), b""
+
+
+def readers(machine: Path | None) -> list[Child]:
+    """Return the processes that read runs; they begin to load what they need."""
+    children = [Child(Path(__file__)) for _ in range(_PROCESSES)]
+
+    def load(child: Child) -> None:
+        with suppress(FailedError, LostError):  # as reading a run will say
+            child.ask({"machine": machine and str(machine)})
+
+    for child in children:
+        Thread(target=load, args=(child,), daemon=True).start()
+    return children
 
 
 def entries(
@@ -72,8 +99,12 @@ def entries(
     logs: Sequence[tuple[Path, str]],
     machine: Path | None,
     client: AtWork = None,
+    children: Sequence[Child] = (),
 ) -> Iterator[Entry | HerseyError]:
-    """Read logs, each with its settings, and yield the entry or the error of each, in order."""
+    """Read logs, each with its settings, and yield the entry or the error of each, in order.
+
+    ``children`` are the `readers` of this machine, where they have begun already.
+    """
     if client is not None:
         from hersey.log.many import each_of
 
@@ -81,19 +112,21 @@ def entries(
         whole = [(log.absolute(), settings) for log, settings in logs]
         yield from each_of(task, whole, called=lambda run: run[0], client=client)
         return
-    if len(logs) < _FEW:
+    if len(logs) < FEW:
+        for child in children:
+            child.stop()
         yield from (_tried(reading, machine, run) for run in logs)
         return
-    yield from _in_processes(reading, logs, machine)
+    yield from _in_processes(reading, logs, machine, children or readers(machine))
 
 
 def _in_processes(
-    reading: Reading, logs: Sequence[tuple[Path, str]], machine: Path | None
+    reading: Reading, logs: Sequence[tuple[Path, str]], machine: Path | None, started: Sequence[Child]
 ) -> Iterator[Entry | HerseyError]:
     """Read logs in worker processes, a few ahead of the one that is yielded."""
     children: SimpleQueue[Child] = SimpleQueue()
-    for _ in range(_PROCESSES):
-        children.put(Child(Path(__file__)))
+    for child in started:
+        children.put(child)
 
     def read(log: Path, settings: str) -> Entry | HerseyError:
         child = children.get()

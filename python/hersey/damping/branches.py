@@ -249,30 +249,49 @@ def _splits(data: Observations, single: LawFit, exponent: float) -> list[tuple[f
     residuals = _unimodal_residuals(torque[order])
     scatter = scatter_beyond(residuals, single.errors[order], max(scaled.size // 2, 1))
     weights = 1.0 / (single.errors[order] ** 2 + scatter**2 + 1e-18)
+    falling, rising = _falling_and_rising(torque[order], weights)
     splits = []
     for i in np.nonzero(np.diff(scaled[order]) > 0.5 * SAME_SPEED)[0]:
         below = np.asarray(scaled <= 0.5 * (scaled[order][i] + scaled[order][i + 1]))
         if _enough(data, below) and _enough(data, ~below):
-            sides = (slice(None, i + 1), False), (slice(i + 1, None), True)
-            chi = 0.0
-            for side, rising in sides:
-                values = torque[order][side]
-                curve = optimize.isotonic_regression(values, weights=weights[side], increasing=rising)
-                chi += float(np.sum(weights[side] * (values - curve.x) ** 2))
-            splits.append((chi, below))
+            splits.append((float(falling[i] + rising[i + 1]), below))
     return sorted(splits, key=lambda f: f[0])
 
 
 def _unimodal_residuals(torque: FloatArray) -> FloatArray:
     """Residuals of the best curve that falls, then rises."""
-    best: FloatArray = np.asarray(torque - torque.mean())
-    for i in range(1, torque.size):
-        falling = optimize.isotonic_regression(torque[:i], increasing=False).x
-        rising = optimize.isotonic_regression(torque[i:]).x
-        residuals = torque - np.append(falling, rising)
-        if residuals @ residuals < best @ best:
-            best = np.asarray(residuals)
-    return best
+    flat: FloatArray = np.asarray(torque - torque.mean())
+    falling, rising = _falling_and_rising(torque, np.ones(torque.size))
+    i = 1 + int(np.argmin(falling[:-1] + rising[1:])) if torque.size > 1 else 0
+    if i == 0 or falling[i - 1] + rising[i] >= flat @ flat:
+        return flat
+    down = optimize.isotonic_regression(torque[:i], increasing=False).x
+    return np.asarray(torque - np.append(down, optimize.isotonic_regression(torque[i:]).x))
+
+
+def _falling_and_rising(values: FloatArray, weights: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Weighed squares left by the best falling curve up to each value, and the best rising one from it on."""
+    return _left_by_rising(-values, weights), _left_by_rising(-values[::-1], weights[::-1])[::-1]
+
+
+def _left_by_rising(values: FloatArray, weights: FloatArray) -> FloatArray:
+    """Weighed squares left by the best rising curve up to each value.
+
+    Neighbours that would fall are pooled (Barlow et al., Statistical Inference under Order Restrictions,
+    1972); what is pooled up to a value does not depend on those after it.
+    """
+    pools: list[tuple[float, float, float]] = []  # weight, mean, and squares left up to the end of the pool
+    left = np.empty(values.size)
+    for i, (mean, weight) in enumerate(zip(values.tolist(), weights.tolist(), strict=True)):
+        own = 0.0
+        while pools and pools[-1][1] >= mean:
+            other, level, up_to = pools.pop()
+            own += up_to - (pools[-1][2] if pools else 0.0)
+            own += other * weight / (other + weight) * (level - mean) ** 2
+            mean, weight = (other * level + weight * mean) / (other + weight), other + weight
+        left[i] = own + (pools[-1][2] if pools else 0.0)
+        pools.append((weight, mean, float(left[i])))
+    return left
 
 
 def _corner_of(fit: LawFit) -> float:

@@ -62,13 +62,23 @@ class Curve:
         return np.asarray(self.at - self.at.min())
 
     @cached_property
+    def _own(self) -> FloatArray:
+        """Covariance of the curve with itself at the points, for a ratio of 1."""
+        return _covariance(self._away, self._away)
+
+    @cached_property
+    def _solutions(self) -> dict[float, tuple[FloatArray, FloatArray]]:
+        """What `_solved` has returned: the slope is asked for on two grids, with the same ratios."""
+        return {}
+
+    @cached_property
     def _weighed(self) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Ratios of variance, the log-likelihood of each, and the scale of the noise with each."""
         whiten = np.linalg.inv(np.linalg.cholesky(self.noise))
         left, singular, _ = np.linalg.svd(whiten @ self.known)
         rank = int(np.count_nonzero(singular > 1e-10 * singular[0]))
         free = left[:, rank:].T @ whiten
-        spread, axes = np.linalg.eigh(free @ _covariance(self._away, self._away) @ free.T)
+        spread, axes = np.linalg.eigh(free @ self._own @ free.T)
         squares = (axes.T @ (free @ self.values)) ** 2
         spread = np.maximum(spread, 0.0)
         ratios = np.append(0.0, _RATIOS / max(float(spread.mean()), 1e-300))
@@ -120,21 +130,26 @@ class Curve:
         weights[weights < _LEAST_WEIGHT] = 0.0
         weights /= weights.sum()
         slope, falling = np.zeros(grid.size), np.zeros(grid.size)
+        at = grid - self.at.min()
+        parts = _slope_covariance(at, self._away), _slopes_of_known(at), at**3
         for i in np.flatnonzero(weights):
-            mean, deviation = self._slope(grid, float(ratios[i]), float(scale[i]))
+            mean, deviation = self._slope(*parts, float(ratios[i]), float(scale[i]))
             slope += weights[i] * mean
             falling += weights[i] * student_below(-mean / deviation, self.freedom)
         return slope, falling
 
-    def _slope(self, grid: FloatArray, ratio: float, scale: float) -> tuple[FloatArray, FloatArray]:
-        """Slope of the curve with its standard error."""
-        at = grid - self.at.min()
-        cross, known = ratio * _slope_covariance(at, self._away), _slopes_of_known(at)
+    def _slope(
+        self, covariance: FloatArray, known: FloatArray, cubes: FloatArray, ratio: float, scale: float
+    ) -> tuple[FloatArray, FloatArray]:
+        """Slope of the curve with its standard error, from what does not depend on ratio and scale."""
+        cross = ratio * covariance
         inverse, bread = self._solved(ratio)
-        rest = known - cross @ inverse @ self.known
-        gain = cross @ inverse + rest @ bread @ self.known.T @ inverse
-        variance = ratio * at**3 / 3.0 - np.sum((cross @ inverse) * cross, axis=1)
-        variance += np.sum((rest @ bread) * rest, axis=1)
+        pulled = cross @ inverse
+        rest = known - pulled @ self.known
+        left = rest @ bread
+        gain = pulled + left @ self.known.T @ inverse
+        variance = ratio * cubes / 3.0 - np.sum(pulled * cross, axis=1)
+        variance += np.sum(left * rest, axis=1)
         return gain @ self.values, np.sqrt(np.maximum(variance * scale, 1e-30))
 
     def _gains(self, grid: FloatArray, ratio: float) -> tuple[FloatArray, FloatArray]:
@@ -151,10 +166,11 @@ class Curve:
         return gains[0], gains[1]
 
     def _solved(self, ratio: float) -> tuple[FloatArray, FloatArray]:
-        whole = self.noise + ratio * _covariance(self._away, self._away)
-        inverse = np.asarray(np.linalg.inv(whole), dtype=np.float64)
-        bread = np.linalg.inv(self.known.T @ inverse @ self.known)
-        return inverse, np.asarray(bread, dtype=np.float64)
+        if ratio not in self._solutions:
+            inverse = np.asarray(np.linalg.inv(self.noise + ratio * self._own), dtype=np.float64)
+            bread = np.linalg.inv(self.known.T @ inverse @ self.known)
+            self._solutions[ratio] = inverse, np.asarray(bread, dtype=np.float64)
+        return self._solutions[ratio]
 
 
 def parabola(at: FloatArray) -> FloatArray:

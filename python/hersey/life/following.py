@@ -134,7 +134,8 @@ def follow(
     )
     others = (
         tried(
-            "ages in other operating conditions", lambda: other_uses(campaign, machine, indicators, seed=seed)
+            "ages in other operating conditions",
+            lambda: other_uses(campaign, machine, indicators, seed=seed, found=found),
         )
         if uses
         else None

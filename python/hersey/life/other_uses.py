@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import reduce
 from itertools import product
 from typing import TYPE_CHECKING, Annotated
 
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     from hersey.life.campaign import Campaign
     from hersey.life.growth.fit import Growth
     from hersey.life.indicator import Indicator, Indicators
+    from hersey.life.time_to_failure.estimate import TimeToFailure
     from hersey.machine.machine import Machine
 
 #: Limits of the torque that are tried, over the one stated, and coldest starts beside the one as it is, K.
@@ -116,6 +118,7 @@ def other_uses(
     indicators: Indicators,
     *,
     seed: int = 0,
+    found: TimeToFailure | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> OtherUses:
     """Return the times to failure under other operating conditions of the machine.
@@ -129,6 +132,8 @@ def other_uses(
         are taken from here.
     seed
         Random seed, that of `time_to_failure`: the stated conditions then have the same numbers.
+    found
+        `time_to_failure` of these indicators and this seed. Its growths are used; fitted again if omitted.
     progress
         Called with conditions done and their total.
 
@@ -148,6 +153,8 @@ def other_uses(
             "there are no other operating conditions to compare. Set motor_torque in [limits]"
         )
     ways = _Ways({each.name: i for i, each in enumerate(indicators.each)}, seed)
+    if found is not None and found.seed == seed:
+        ways.take(indicators, found)
     uses: list[Use] = []
     total = max(len(limits), 1) * max(len(starts), 1) * len(duties)
     for coldest, duty in product(starts or (None,), duties):
@@ -169,6 +176,11 @@ class _Ways:
         self._growth: dict[tuple[str, bytes], Growth] = {}
         self._known: dict[tuple[str, bytes, float], FittedWay | None] = {}
 
+    def take(self, indicators: Indicators, found: TimeToFailure) -> None:
+        """Take the growths of indicators from what was found of them with the same seed."""
+        growth = {mode.name: mode.growth for mode in found.modes}
+        self._growth |= {_key(each): growth[each.name] for each in indicators.each if each.name in growth}
+
     def ends(self, indicators: Indicators, torque: float | None) -> tuple[UseEnd, ...]:
         """The first ends, drawn as `time_to_failure` does; none where no way can be followed."""
         chosen = sorted(_limited(indicators, torque), key=lambda each: self._place(each.name))
@@ -178,7 +190,7 @@ class _Ways:
         random = np.random.default_rng([self._seed, 2])
         of_runs = correlations([way.residuals for way in ways])
         units, _ = ends_of_specimens(ways, of_runs, indicators.runs.units, last_ages(indicators), random)
-        first = np.sort(ages_of_new(ways, of_runs, random).min(axis=0), axis=1)
+        first = np.sort(reduce(np.minimum, ages_of_new(ways, of_runs, random)), axis=1)
         shares = [share_of_specimens(first, share) for share in (0.1, 0.5)]
         return (
             *(UseEnd(each.unit, each.age.age, each.ways) for each in units),
@@ -189,7 +201,7 @@ class _Ways:
         return self._places.get(name, len(self._places))
 
     def _followed(self, indicators: Indicators, each: Indicator) -> FittedWay | None:
-        grown = each.name, each.value.tobytes() + each.error.tobytes()
+        grown = _key(each)
         key = *grown, each.limit
         if key not in self._known:
             self._known[key] = None
@@ -198,6 +210,11 @@ class _Ways:
                 way = fitted_way(indicators, each, seed, self._growth.get(grown))
                 self._known[key], self._growth[grown] = way, way.mode.growth
         return self._known[key]
+
+
+def _key(each: Indicator) -> tuple[str, bytes]:
+    """What the growth of an indicator depends on, its seed among it."""
+    return each.name, each.value.tobytes() + each.error.tobytes()
 
 
 def _coldest(campaign: Campaign, machine: Machine) -> float | None:

@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 _LEAST, _FEW = 2, 4
 #: Draws behind the intervals: their ends scatter by a percent or two of their width.
 _DRAWS = 4000
+#: Ages of them that are held at a time: as many as a core keeps at hand.
+_HELD = 32_000
 #: Steps of Newton's method at the most, and where it ends; a step is e times at the most.
 _STEPS, _SETTLED = 100, 1e-13
 
@@ -323,8 +325,10 @@ def _fitted(logs: FloatArray, counts: FloatArray, failed: BoolArray) -> tuple[Fl
     for _ in range(_STEPS):
         weights = counts * np.exp(shape[:, None] * below)
         total = weights.sum(axis=1)
-        mean = (weights * below).sum(axis=1) / total
-        spread = (weights * below**2).sum(axis=1) / total - mean**2
+        weights *= below
+        mean = weights.sum(axis=1) / total
+        weights *= below
+        spread = weights.sum(axis=1) / total - mean**2
         step = -(mean - 1.0 / shape + gap) / (shape * spread + 1.0 / shape)
         shape = shape * np.exp(np.clip(step, -1.0, 1.0))
         if np.abs(step).max() < _SETTLED:
@@ -349,10 +353,14 @@ def _estimates_of_standard(plan: tuple[int, ...], seed: int) -> tuple[FloatArray
     Spacings of failures under such a plan are exponential, each over the specimens then at risk (Viveros and
     Balakrishnan, Technometrics 36, 1994, 84-91).
     """
-    counts = np.array(plan, dtype=float)
-    at_risk = counts[::-1].cumsum()[::-1]
-    spacings = np.random.default_rng(seed).exponential(size=(_DRAWS, counts.size)) / at_risk
-    shape, scale = _fitted(np.log(spacings.cumsum(axis=1)), counts, np.ones(counts.size, dtype=bool))
+    counts, random = np.array(plan, dtype=float), np.random.default_rng(seed)
+    at_risk, fails = counts[::-1].cumsum()[::-1], np.ones(counts.size, dtype=bool)
+    rows = max(_HELD // counts.size, 1)
+    shape, scale = np.empty(_DRAWS), np.empty(_DRAWS)
+    for i in range(0, _DRAWS, rows):
+        some = slice(i, min(i + rows, _DRAWS))
+        spacings = random.exponential(size=(some.stop - i, counts.size)) / at_risk
+        shape[some], scale[some] = _fitted(np.log(spacings.cumsum(axis=1)), counts, fails)
     return scale, shape
 
 

@@ -67,22 +67,39 @@ impl Drag {
         }
         let mut from = self.stick_speed;
         for branch in self.branch(self.stick_speed)..self.exponents.len() {
-            let (exponent, end) =
-                (self.exponents[branch], self.upper_knot(branch).unwrap_or(f64::INFINITY));
-            if exponent >= 0.0 {
-                continue;
+            if self.exponents[branch] < 0.0 {
+                let end = self.upper_knot(branch).unwrap_or(f64::INFINITY);
+                from = from.max(self.branch_rising_from(branch).min(end));
             }
-            let (speed, force) = self.knots[branch.saturating_sub(1)];
-            // where exponent F/v = -damping
-            let fall = -exponent * force / speed;
-            let least = if self.rest.damping > 0.0 {
-                speed * (fall / self.rest.damping).powf(1.0 / (1.0 - exponent))
-            } else {
-                f64::INFINITY
-            };
-            from = from.max(least.min(end));
         }
         from
+    }
+
+    /// Speed from which on the drag would rise if all of it were as on `branch`, the rest of the drive counted.
+    fn branch_rising_from(&self, branch: usize) -> f64 {
+        let exponent = self.exponents[branch];
+        if exponent > 0.0 {
+            return 0.0;
+        }
+        if self.rest.damping == 0.0 {
+            return f64::INFINITY;
+        }
+        let (speed, force) = self.knots[branch.saturating_sub(1)];
+        // where exponent F/v = -damping
+        let fall = -exponent * force / speed;
+        speed * (fall / self.rest.damping).powf(1.0 / (1.0 - exponent))
+    }
+
+    /// How far from `speed`, to either side, the drag is sure to rise with speed, the rest of the drive counted: as far as
+    /// its branch of a chain of powers goes. Not positive where it falls.
+    pub(crate) fn rises_about(&self, speed: f64) -> f64 {
+        if self.mixed.is_some() {
+            return 0.0;
+        }
+        let branch = self.branch(speed);
+        let low = self.lower_knot(branch).unwrap_or(self.stick_speed);
+        let high = self.upper_knot(branch).unwrap_or(f64::INFINITY);
+        (speed - low.max(self.branch_rising_from(branch))).min(high - speed)
     }
 
     fn mixed_rising_from(&self) -> f64 {

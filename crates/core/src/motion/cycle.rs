@@ -30,7 +30,7 @@ const CLOSED: f64 = 1e-9;
 const CLOSED_SMOOTH: f64 = 100.0;
 /// Time within which the belt overtakes the drive once, in units of `sqrt(m/k)`.
 const ONCE: f64 = 1e-6;
-/// Laps after which a motion with memory may repeat itself.
+/// Laps after which a motion with memory may repeat itself, or one that sticks only once in several laps.
 const MAX_PERIOD: usize = 16;
 /// Swing of the belt speed, relative to the drive speed, below which it counts as steady.
 pub(super) const STEADY: f64 = 1e-7;
@@ -99,6 +99,8 @@ struct Laps<'a> {
     /// When the motion ends, if it is not followed until its orbit has closed.
     until: f64,
     smooth: bool,
+    /// How far from the drive speed drag is sure to rise with speed; not positive where it falls.
+    room: f64,
     /// Relative change between laps at which the orbit has closed.
     near: f64,
     most: usize,
@@ -107,7 +109,7 @@ struct Laps<'a> {
     previous: Option<Section>,
     /// Swing of the belt speed in the lap before.
     swing: f64,
-    /// Whether the drag remembers, so that laps may repeat in groups; those before, each with its begin.
+    /// Whether the drag remembers, so that laps may repeat in groups; the laps before, each with its begin.
     memory: bool,
     past: VecDeque<(Section, Lap)>,
     /// The last whole lap, of a motion that has an end.
@@ -133,6 +135,9 @@ impl<'a> Laps<'a> {
         let smooth = system.drag.closure().is_smooth();
         let (near, most) =
             if smooth { (CLOSED_SMOOTH * tolerance, MAX_SMOOTH_LAPS) } else { (CLOSED, MAX_LAPS) };
+        // bristles remember: their force lags behind the speed, and can feed a swing
+        let memory = system.drag.closure().has_memory();
+        let room = if memory { 0.0 } else { system.drag.rises_about(drive_speed.abs()) };
         Ok(Self {
             motion: Motion::new(system, start, tolerance, Integrator::Adaptive, work)?,
             train: &system.train,
@@ -140,12 +145,13 @@ impl<'a> Laps<'a> {
             drive_speed,
             until,
             smooth,
+            room,
             near,
             most,
             lap: Lap::starting_at(0.0),
             previous: None,
             swing: f64::NAN,
-            memory: system.drag.closure().has_memory(),
+            memory,
             past: VecDeque::new(),
             whole: None,
             extrapolation: Extrapolation::default(),
@@ -201,7 +207,7 @@ impl<'a> Laps<'a> {
             return Some(StickSlipCycle::slipping(belt_speed, stuck, stretch, self.count));
         }
         let still = piece.duration.is_infinite()
-            || is_steady(&piece.start, self.train, self.drag, self.drive_speed);
+            || is_steady(&piece.start, self.train, self.drag, self.drive_speed, self.room);
         if still {
             let stretch = steady_stretch(piece, self.train, self.drag, self.drive_speed);
             return Some(StickSlipCycle::steady(self.drive_speed, stretch, self.count));
@@ -267,9 +273,11 @@ impl<'a> Laps<'a> {
 
     /// The motion as one that repeats itself with this lap after several, if it does.
     fn closed_period(&mut self, section: &Section) -> Option<StickSlipCycle> {
-        let previous = self.previous.filter(|_| self.memory)?;
-        self.past.push_front((previous, self.lap));
+        self.past.push_front((self.previous?, self.lap));
         self.past.truncate(MAX_PERIOD);
+        if !(self.memory || section.stuck) {
+            return None;
+        }
         let repeats = |p: &Section| section.repeats(p, self.drag, self.train, self.near);
         let laps = 1 + self.past.iter().position(|(begin, _)| repeats(begin)).filter(|i| *i > 0)?;
         let group = self.past.iter().take(laps).map(|(_, lap)| *lap).rev();
@@ -315,12 +323,28 @@ impl<'a> Laps<'a> {
 /// On a rising branch the energy of the deviation, `m (u - v)^2/2 + k (s - s*)^2/2`, falls at the rate
 /// `(F(u) - F(v)) (u - v) >= 0`; once it is too small to carry the belt down to the transition speed, the belt
 /// never leaves the branch again and the deviation dies out.
-fn is_steady(phase: &Phase, train: &Drivetrain, drag: &Drag, drive_speed: f64) -> bool {
+///
+/// The same holds within `room` about the drive speed: the drag of a table may rise, or fall by less than that of the rest
+/// of the drive rises, between points where it falls.
+fn is_steady(phase: &Phase, train: &Drivetrain, drag: &Drag, drive_speed: f64, room: f64) -> bool {
+    let away = (phase.direction * phase.speed - drive_speed).abs();
     if phase.creeping {
-        let belt_speed = phase.direction * phase.speed;
-        return (belt_speed - drive_speed).abs() <= STEADY * drag.stick_speed();
+        return away <= STEADY * drag.stick_speed();
     }
-    swing_that_dies_out(phase, train, drag, drive_speed).is_some()
+    if room <= STEADY * drive_speed.abs() || away >= room {
+        return swing_that_dies_out(phase, train, drag, drive_speed).is_some();
+    }
+    let steady_pull = drag.force(drive_speed);
+    let energy = swing_energy(phase, train, drive_speed, steady_pull);
+    let stays = energy < train.mass() * room * room && steady_pull.abs() <= train.grip();
+    stays || swing_that_dies_out(phase, train, drag, drive_speed).is_some()
+}
+
+/// Twice the energy of the deviation from steady sliding, in which the spring pulls so.
+fn swing_energy(phase: &Phase, train: &Drivetrain, drive_speed: f64, steady_pull: f64) -> f64 {
+    let (belt_speed, pull) = (phase.direction * phase.speed, phase.direction * phase.pull);
+    let off = pull - steady_pull;
+    train.mass() * (belt_speed - drive_speed).powi(2) + off * off / train.stiffness()
 }
 
 /// The most that the spring will ever pull on a belt that slides with the drive for good, by that energy; none if it may not.
@@ -334,20 +358,18 @@ pub(super) fn swing_that_dies_out(
     if phase.mode != Mode::Ehl && drag.rest().damping == 0.0 {
         return None;
     }
-    let (belt_speed, pull) = (phase.direction * phase.speed, phase.direction * phase.pull);
     let (speed, foot) = (drive_speed.abs(), drag.rising_from());
     // bristles remember: their force lags behind the speed, and can feed a swing
     let memory = drag.closure().has_memory();
     let rising = speed >= foot && !memory;
     let margin = speed - if rising { foot } else { drag.transition_speed() };
-    let above = phase.mode == Mode::Ehl || (rising && belt_speed.abs() > foot);
+    let above = phase.mode == Mode::Ehl || (rising && phase.speed.abs() > foot);
     if !above || margin < 0.0 {
         return None;
     }
     let reach = if rising { margin.max(STEADY * speed) } else { STEADY * speed };
     let steady_pull = drag.force(drive_speed);
-    let off = pull - steady_pull;
-    let energy = train.mass() * (belt_speed - drive_speed).powi(2) + off * off / train.stiffness();
+    let energy = swing_energy(phase, train, drive_speed, steady_pull);
     let dies = energy < train.mass() * reach * reach && steady_pull.abs() <= train.grip();
     dies.then(|| steady_pull.abs() + (train.stiffness() * energy).sqrt())
 }

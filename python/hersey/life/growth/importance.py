@@ -57,16 +57,20 @@ def importance_sampled(
         Draws of each round; the last is repeated while all are worth too few.
     """
     spots, density = np.empty((0, mode.size)), np.empty(0)
-    proposed: list[tuple[int, _Kernels]] = []
+    proposed: list[tuple[int, _Kernels, FloatArray]] = []
     kernels = _Kernels(mode[None], _WIDE**2 * covariance)
     for turn in range(len(rounds) + _AGAIN):
         count = rounds[min(turn, len(rounds) - 1)]
         draws = kernels.drawn(count, random)
         spots = np.concatenate([spots, draws])
         density = np.concatenate([density, log_density(draws)])
-        proposed.append((count, kernels))
-        of_all = [math.log(number) + each.log_density(spots) for number, each in proposed]
-        logs = density - special.logsumexp(of_all, axis=0)
+        proposed.append((count, kernels, np.empty(0)))
+        # what earlier rounds make of earlier spots is known
+        proposed = [
+            (number, each, np.append(known, math.log(number) + each.log_density(spots[known.size :])))
+            for number, each, known in proposed
+        ]
+        logs = density - special.logsumexp([of_round for _, _, of_round in proposed], axis=0)
         weight = np.exp(logs - special.logsumexp(logs))
         if turn + 1 >= len(rounds) and 1.0 / np.sum(weight**2) > _WORTH:
             break
@@ -109,8 +113,11 @@ class _Kernels:
         number = at.shape[1]
         factor = np.linalg.cholesky(self.covariance)
         spots, centres = (np.linalg.solve(factor, each.T).T for each in (at, self.centres))
-        square = (spots**2).sum(axis=1)[:, None] + (centres**2).sum(axis=1) - 2.0 * spots @ centres.T
-        tails = -0.5 * (_FREEDOM + number) * np.log1p(np.maximum(square, 0.0) / _FREEDOM)
+        tails = spots @ (-2.0 * centres.T)
+        tails += (spots**2).sum(axis=1)[:, None] + (centres**2).sum(axis=1)
+        np.log1p(np.maximum(tails, 0.0, out=tails) / _FREEDOM, out=tails)
+        tails *= -0.5 * (_FREEDOM + number)
+        np.exp(tails, out=tails)
         constant = special.gammaln(0.5 * (_FREEDOM + number)) - special.gammaln(0.5 * _FREEDOM)
         constant -= 0.5 * number * math.log(_FREEDOM * math.pi) + np.log(np.diag(factor)).sum()
-        return np.asarray(special.logsumexp(tails, axis=1) - math.log(len(self.centres)) + constant)
+        return np.asarray(np.log(tails.mean(axis=1)) + constant)

@@ -25,6 +25,7 @@ _DRY = 1e-12
 _STRAIGHT = 1e-5
 
 Form = Callable[[FloatArray, FloatArray, FloatArray], FloatArray]
+Sloped = Callable[[FloatArray, FloatArray, FloatArray], tuple[FloatArray, FloatArray]]
 
 
 class Law(NamedTuple):
@@ -33,7 +34,7 @@ class Law(NamedTuple):
     name: str
     formula: str
     log_growth: Form  #: ln G
-    slope: Form  #: derivative of ln G by the size
+    sloped: Sloped  #: ln G and its derivative by the size
     age: Form  #: age at which ln G is the second argument; infinite where it never is
     shapes: tuple[tuple[str, float, float], ...] = ()  #: name, mean and standard deviation of each prior
     grows: bool = True
@@ -43,8 +44,14 @@ def _rise(x: FloatArray, t: FloatArray) -> FloatArray:
     return np.asarray(np.exp(np.minimum(x, _GREATEST)) * t)
 
 
-def _share(z: FloatArray) -> FloatArray:
-    return z / (1.0 + z)
+def _linear(z: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Logarithm of 1 + z, and its derivative by that of z."""
+    return np.log1p(z), z / (1.0 + z)
+
+
+def _side_flow(x: FloatArray, t: FloatArray, _: FloatArray) -> tuple[FloatArray, FloatArray]:
+    grown, slope = _linear(_rise(x, t))
+    return 0.5 * grown, 0.5 * slope
 
 
 def _full(t: FloatArray, a: FloatArray) -> FloatArray:
@@ -66,9 +73,10 @@ def _curved(x: FloatArray, t: FloatArray, a: FloatArray) -> FloatArray:
     return np.log(np.maximum(1.0 + bent * z, _DRY)) / bent
 
 
-def _curved_slope(x: FloatArray, t: FloatArray, a: FloatArray) -> FloatArray:
-    z = _rise(x, t)
-    return np.asarray(z / np.maximum(1.0 + a[0] * z, _DRY))
+def _curved_sloped(x: FloatArray, t: FloatArray, a: FloatArray) -> tuple[FloatArray, FloatArray]:
+    z, bent = _rise(x, t), _bent(a)
+    left = np.maximum(1.0 + bent * z, _DRY)
+    return np.log(left) / bent, z / left
 
 
 def _curved_age(x: FloatArray, y: FloatArray, a: FloatArray) -> FloatArray:
@@ -86,10 +94,10 @@ def _dried(x: FloatArray, t: FloatArray, a: FloatArray) -> FloatArray:
     return -log_layer(*_dried_rates(x, a), t)
 
 
-def _dried_slope(x: FloatArray, t: FloatArray, a: FloatArray) -> FloatArray:
+def _dried_sloped(x: FloatArray, t: FloatArray, a: FloatArray) -> tuple[FloatArray, FloatArray]:
     new, side_flow, evaporation = _dried_rates(x, a)
-    layer = np.exp(log_layer(new, side_flow, evaporation, t))
-    return np.asarray(t * (0.5 * side_flow * layer**2 + evaporation))
+    layer = log_layer(new, side_flow, evaporation, t)
+    return -layer, t * (0.5 * side_flow * np.exp(2.0 * layer) + evaporation)
 
 
 def _dried_age(x: FloatArray, y: FloatArray, a: FloatArray) -> FloatArray:
@@ -102,59 +110,63 @@ def _rested(law: Law) -> Law:
     def log_growth(x: FloatArray, t: FloatArray, a: FloatArray) -> FloatArray:
         return np.asarray(np.log1p(special.expit(a[-1]) * np.expm1(law.log_growth(x, t, a))))
 
-    def slope(x: FloatArray, t: FloatArray, a: FloatArray) -> FloatArray:
-        share, grown = special.expit(a[-1]), np.exp(law.log_growth(x, t, a))
-        part = share * grown / (1.0 + share * (grown - 1.0))
-        return np.asarray(part * law.slope(x, t, a))
+    def sloped(x: FloatArray, t: FloatArray, a: FloatArray) -> tuple[FloatArray, FloatArray]:
+        share, (whole, slope) = special.expit(a[-1]), law.sloped(x, t, a)
+        more = share * np.expm1(whole)
+        return np.log1p(more), (share + more) / (1.0 + more) * slope
 
     def age(x: FloatArray, y: FloatArray, a: FloatArray) -> FloatArray:
         return law.age(x, np.log1p(np.expm1(y) / special.expit(a[-1])), a)
 
-    return Law(law.name, law.formula, log_growth, slope, age, (*law.shapes, ("logit p", 1.0, 1.0)))
+    return Law(law.name, law.formula, log_growth, sloped, age, (*law.shapes, ("logit p", 1.0, 1.0)))
 
 
 def _never(x: FloatArray, y: FloatArray, _: FloatArray) -> FloatArray:
     return np.where(np.asarray(y) > 0.0, np.inf, 0.0) + 0.0 * x
 
 
+def _constant(x: FloatArray, t: FloatArray, _: FloatArray) -> FloatArray:
+    return 0.0 * (x + t)
+
+
 LAWS = (
-    Law("constant", "1", lambda x, t, _: 0.0 * (x + t), lambda x, t, _: 0.0 * (x + t), _never, grows=False),
+    Law("constant", "1", _constant, lambda *at: (_constant(*at), _constant(*at)), _never, grows=False),
     Law(
         "side flow",
         "sqrt(1 + r t)",
         lambda x, t, _: 0.5 * np.log1p(_rise(x, t)),
-        lambda x, t, _: 0.5 * _share(_rise(x, t)),
+        _side_flow,
         lambda x, y, _: np.expm1(2.0 * y) * np.exp(-x),
     ),
     Law(
         "linear",
         "1 + r t",
         lambda x, t, _: np.log1p(_rise(x, t)),
-        lambda x, t, _: _share(_rise(x, t)),
+        lambda x, t, _: _linear(_rise(x, t)),
         lambda x, y, _: np.expm1(y) * np.exp(-x),
     ),
     Law(
         "exponential",
         "exp(r t)",
         lambda x, t, _: _rise(x, t),
-        lambda x, t, _: _rise(x, t),
+        lambda x, t, _: (_rise(x, t),) * 2,
         lambda x, y, _: y * np.exp(-x),
     ),
     Law(
         "saturating",
         "1 + s (1 - exp(-t/tau))",
         lambda x, t, a: np.log1p(_rise(x, _full(t, a))),
-        lambda x, t, a: _share(_rise(x, _full(t, a))),
+        lambda x, t, a: _linear(_rise(x, _full(t, a))),
         _saturating_age,
         (("ln(tau/T)", 0.3, 1.0),),
     ),
-    Law("curved", "(1 + c r t)^(1/c)", _curved, _curved_slope, _curved_age, (("c", 0.5, 1.0),)),
+    Law("curved", "(1 + c r t)^(1/c)", _curved, _curved_sloped, _curved_age, (("c", 0.5, 1.0),)),
     _rested(
         Law(
             "drying film",
             "1 - p + p/h, h' = -r ((1 - q) h^3 + q h)",
             _dried,
-            _dried_slope,
+            _dried_sloped,
             _dried_age,
             (("logit q", -1.0, 1.5),),
         )

@@ -33,6 +33,8 @@ _SAID = 0.05
 _NODES, _HEIGHTS = np.polynomial.legendre.leggauss(8)
 _PLACES, _PARTS = 0.5 * (1.0 + _NODES), 0.5 * _HEIGHTS
 _TURNS, _SETTLED, _STEEPEST, _HUGE = 60, 3e-3, 3.0, 300.0
+#: Turns from which on the range is halved: where growth is steep, Newton's method may swing from end to end.
+_HALVING = 30
 
 
 @dataclass(frozen=True)
@@ -172,7 +174,7 @@ def ages_of_sum(drawn: Specimens, level: FloatArray) -> FloatArray:
     # What grows has got there before a constant would; its integral is no steeper than the age itself.
     high, low = goal.copy(), np.full(goal.shape, -np.inf)
     at, open_ = high.copy(), np.arange(goal.size)
-    for _ in range(_TURNS):
+    for turn in range(_TURNS):
         x, a, t = size[open_], shape[:, open_], at[open_]
         with np.errstate(over="ignore"):
             grown = drawn.law.log_growth(x[:, None], np.exp(t)[:, None] * _PLACES, a[:, :, None])
@@ -183,9 +185,10 @@ def ages_of_sum(drawn: Specimens, level: FloatArray) -> FloatArray:
         low[open_] = np.where(left < 0.0, low[open_], t)
         step = t + left / np.exp(np.clip(end - sum_, 0.0, _STEEPEST))
         halved = np.where(np.isfinite(low[open_]), 0.5 * (low[open_] + high[open_]), high[open_] - 1.0)
-        inside = (step > low[open_]) & (step < high[open_])
+        near = ~(np.abs(left) > _SETTLED)
+        inside = (step > low[open_]) & (step < high[open_]) & (near | (turn < _HALVING))
         at[open_] = np.where(inside, step, halved)
-        open_ = open_[(np.abs(left) > _SETTLED) & (high[open_] - low[open_] > _SETTLED)]
+        open_ = open_[~near & (high[open_] - low[open_] > _SETTLED)]
         if not open_.size:
             break
     return np.exp(at).reshape(need.shape)

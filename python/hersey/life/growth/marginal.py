@@ -8,6 +8,7 @@ mode. What all share has the columns m0, ln t0, ln sigma, m1, ln t1 and shapes, 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -48,8 +49,9 @@ def _shape(law: Law, shared: FloatArray) -> FloatArray:
 
 
 def weights_of(points: Points, shared: FloatArray) -> FloatArray:
-    """Return the precision of each value, (draws, specimens, ages)."""
-    return points.given / (points.variance + np.exp(2.0 * shared[:, 2])[:, None, None])
+    """Return the precision of each value, (ages, draws, specimens)."""
+    runs = points.by_run
+    return runs.given[:, None] / (runs.variance[:, None] + np.exp(2.0 * shared[:, 2:3]))
 
 
 def _fit_of(
@@ -59,59 +61,92 @@ def _fit_of(
 
     ``size`` is (draws, specimens, nodes).
     """
-    shape = _shape(law, shared)[:, :, None, None, None]
-    growth = law.log_growth(size[..., None], points.age[None, :, None, :], shape)
-    left = points.value[None, :, None, :] - growth - shared[:, 0][:, None, None, None]
-    first = (left @ weight[..., None])[..., 0]
-    total = weight.sum(axis=2)[..., None] + np.exp(-2.0 * shared[:, 1])[:, None, None]
-    return (left**2 @ weight[..., None])[..., 0] - first**2 / total, first, total
+    runs, shape = points.by_run, _shape(law, shared)[:, None, :, None, None]
+    left = (runs.value[:, None] - shared[:, :1])[..., None]
+    left = left - law.log_growth(size, runs.age[:, None, :, None], shape)
+    weighed = left * weight[..., None]
+    first = weighed.sum(axis=0)
+    total = weight.sum(axis=0)[..., None] + np.exp(-2.0 * shared[:, 1])[:, None, None]
+    weighed *= left
+    return weighed.sum(axis=0) - first**2 / total, first, total
 
 
 def _constants(points: Points, shared: FloatArray, weight: FloatArray) -> FloatArray:
     """The part of the likelihood of each specimen that does not depend on its size."""
-    logs = np.where(points.given, np.log(np.where(points.given, weight, 1.0)), 0.0).sum(axis=2)
+    logs = np.log(np.where(points.by_run.given[:, None], weight, 1.0)).sum(axis=0)
     spread = np.exp(2.0 * shared[:, 1])[:, None]
     number = points.given.sum(axis=1)
-    logs -= np.log1p(spread * weight.sum(axis=2)) + number * math.log(2.0 * math.pi)
+    logs -= np.log1p(spread * weight.sum(axis=0)) + number * math.log(2.0 * math.pi)
     return np.asarray(0.5 * logs)
 
 
 def modes(
-    law: Law, points: Points, shared: FloatArray, weight: FloatArray, start: FloatArray
+    law: Law, points: Points, shared: FloatArray, weight: FloatArray, start: FloatArray, together: int = 1
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the most probable size of each specimen, and its width (Gauss-Newton), (draws, specimens)."""
-    mean, precision = shared[:, 3][:, None], np.exp(-2.0 * shared[:, 4])[:, None]
-    shape = _shape(law, shared)[:, :, None, None]
-    total = weight.sum(axis=2) + np.exp(-2.0 * shared[:, 1])[:, None]
-    size = np.broadcast_to(start, weight.shape[:2]).copy()
-    for turn in range(_POLISH + 1):
-        growth = law.log_growth(size[..., None], points.age, shape)
-        slope = law.slope(size[..., None], points.age, shape)
-        left = points.value - growth - shared[:, 0][:, None, None]
-        weighed = weight * slope
-        across = weighed.sum(axis=2)
-        curvature = (weighed * slope).sum(axis=2) - across**2 / total + precision
-        if turn < _POLISH:
-            gradient = (weighed * left).sum(axis=2) - across * (weight * left).sum(axis=2) / total
-            step = np.clip((gradient - precision * (size - mean)) / curvature, -1.0, 1.0)
-            size += step
-            if (step**2 * curvature).max() < _NEAR**2:
-                break
+    """Return the most probable size of each specimen, and its width (Gauss-Newton), (draws, specimens).
+
+    So many draws ``together``, one after the other, end at the same step.
+    """
+    size = np.broadcast_to(start, weight.shape[1:]).copy()
+    curvature = np.empty_like(size)
+    open_ = np.arange(len(size))
+    for _ in range(_POLISH):
+        step, here = _step(law, points, shared, weight, size[open_])
+        size[open_] += step
+        curvature[open_] = here
+        far = (step**2 * here).max(axis=1)
+        goes_on = ~(np.maximum.reduceat(far, np.arange(0, far.size, together)) < _NEAR**2)
+        if not goes_on.any():
+            break
+        if not goes_on.all():
+            kept = np.repeat(goes_on, together)[: far.size]
+            open_, shared, weight = open_[kept], shared[kept], weight[:, kept]
+    else:
+        curvature[open_] = _step(law, points, shared, weight, size[open_])[1]
     return size, 1.0 / np.sqrt(curvature)
+
+
+def _step(
+    law: Law, points: Points, shared: FloatArray, weight: FloatArray, size: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return a step of Gauss and Newton from sizes of specimens, 1 at most, and the curvature there."""
+    mean, precision = shared[:, 3:4], np.exp(-2.0 * shared[:, 4:5])
+    total = weight.sum(axis=0) + np.exp(-2.0 * shared[:, 1:2])
+    runs = points.by_run
+    growth, slope = law.sloped(size, runs.age[:, None], _shape(law, shared)[:, None, :, None])
+    left = runs.value[:, None] - shared[:, :1] - growth
+    weighed = weight * slope
+    across = weighed.sum(axis=0)
+    curvature = (weighed * slope).sum(axis=0) - across**2 / total + precision
+    gradient = (weighed * left).sum(axis=0) - across * (weight * left).sum(axis=0) / total
+    return np.clip((gradient - precision * (size - mean)) / curvature, -1.0, 1.0), curvature
 
 
 def _over_nodes(
     law: Law, points: Points, shared: FloatArray, start: FloatArray, nodes: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Log density of each specimen's values and size at nodes round its mode, the nodes, and its width."""
-    weight = weights_of(points, shared)
-    mode, width = modes(law, points, shared, weight, start)
-    size = mode[..., None] + width[..., None] * nodes
-    square, _, _ = _fit_of(law, points, shared, weight, size)
-    spread = shared[:, 4][:, None, None]
-    away = (size - shared[:, 3][:, None, None]) * np.exp(-spread)
-    density = -0.5 * (square + away**2 + math.log(2.0 * math.pi)) - spread
-    return density + _constants(points, shared, weight)[..., None], size, width
+) -> Iterator[tuple[FloatArray, FloatArray, FloatArray, FloatArray]]:
+    """Yield log density of each specimen's values and size at nodes round its mode, the nodes, and its width.
+
+    And the weight of the values. So many draws at a time as `_many` says.
+    """
+    many = _many(points, nodes)
+    for i in range(0, len(shared), many * nodes.size):  # a mode takes a number where its nodes take many
+        block = shared[i : i + many * nodes.size]
+        weights = weights_of(points, block)
+        mode, widths = modes(law, points, block, weights, start, many)
+        for j in range(0, len(block), many):
+            part, weight, width = block[j : j + many], weights[:, j : j + many], widths[j : j + many]
+            size = mode[j : j + many, :, None] + width[..., None] * nodes
+            square, _, _ = _fit_of(law, points, part, weight, size)
+            spread = part[:, 4][:, None, None]
+            away = (size - part[:, 3][:, None, None]) * np.exp(-spread)
+            density = -0.5 * (square + away**2 + math.log(2.0 * math.pi)) - spread
+            yield density + _constants(points, part, weight)[..., None], size, width, weight
+
+
+def _many(points: Points, nodes: FloatArray) -> int:
+    """How many draws are held at a time."""
+    return max(1, _AT_ONCE // (points.value.size * nodes.size))
 
 
 def _log_sum(density: FloatArray) -> FloatArray:
@@ -124,28 +159,26 @@ def likelihood(law: Law, points: Points, shared: FloatArray, start: FloatArray) 
     """Return the log likelihood of draws of what all specimens share."""
     if not law.grows:
         weight = weights_of(points, shared)
-        square, _, _ = _fit_of(law, points, shared, weight, np.zeros((*weight.shape[:2], 1)))
+        square, _, _ = _fit_of(law, points, shared, weight, np.zeros((*weight.shape[1:], 1)))
         return np.asarray((_constants(points, shared, weight) - 0.5 * square[..., 0]).sum(axis=1))
-    many = max(1, _AT_ONCE // (points.value.size * _NODES.size))
-    parts = []
-    for i in range(0, len(shared), many):
-        density, _, width = _over_nodes(law, points, shared[i : i + many], start, _NODES)
-        parts.append((_log_sum(density) + np.log(width)).sum(axis=1))
-    return np.concatenate(parts)
+    over = _over_nodes(law, points, shared, start, _NODES)
+    return np.concatenate([(_log_sum(density) + np.log(width)).sum(axis=1) for density, _, width, _ in over])
 
 
 def drawn_specimens(
     law: Law, points: Points, shared: FloatArray, sizes_at_mode: FloatArray, random: np.random.Generator
 ) -> Specimens:
     """Return one draw of all specimens, given their own values, for each draw of what they share."""
-    many = max(1, _AT_ONCE // (points.value.size * _FINE.size))
+    many = _many(points, _FINE)
+    over = _over_nodes(law, points, shared, sizes_at_mode, _FINE) if law.grows else None
     levels, sizes = [], []
     for i in range(0, len(shared), many):
         part = shared[i : i + many]
-        weight = weights_of(points, part)
         size = np.zeros((len(part), len(points.value)))
-        if law.grows:
-            density, nodes, _ = _over_nodes(law, points, part, sizes_at_mode, _FINE)
+        if over is None:
+            weight = weights_of(points, part)
+        else:
+            density, nodes, _, weight = next(over)
             size = _drawn(density, nodes, random.random(size.shape))
         _, first, total = _fit_of(law, points, part, weight, size[..., None])
         normals = random.standard_normal(size.shape)

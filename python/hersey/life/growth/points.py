@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -34,6 +35,12 @@ class Points:
     place: IntArray = field(
         default_factory=lambda: np.zeros((2, 0), dtype=np.intp)
     )  #: row and column of each run
+
+    @cached_property
+    def by_run(self) -> Points:
+        """The same turned over: a row for the first run of each specimen, one for the second, and so on."""
+        age, value, variance = (np.ascontiguousarray(e.T) for e in (self.age, self.value, self.variance))
+        return Points(age, value, variance, np.ascontiguousarray(self.given.T), self.place)
 
     def part(self, units: int) -> Points:
         """The first specimens alone."""

@@ -16,6 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -314,7 +315,14 @@ def shared_kernel(runs: Sequence[RunDwells]) -> Kernel:
     enough = [run for run in runs if run.speed.size >= FEWEST]
     if not enough:
         raise InsufficientDataError(f"no run has {FEWEST} dwells, so torque between them cannot be estimated")
-    layouts = [_Layout(_thinned(enough[i])) for i in _evenly(len(enough), _RUNS)]
+    used = (vars(_thinned(enough[i])).values() for i in _evenly(len(enough), _RUNS))
+    return _kernel_of(tuple(tuple(values.tobytes() for values in run) for run in used))
+
+
+@lru_cache(maxsize=8)
+def _kernel_of(used: tuple[tuple[bytes, ...], ...]) -> Kernel:
+    """The kernel of the arrays of `RunDwells` of some runs: a campaign is asked for it again and again."""
+    layouts = [_Layout(RunDwells(*map(np.frombuffer, run))) for run in used]
     numbers = _START
     for tolerance in (1e-4, 1e-7):  # that about which logarithms are taken depends on the kernel, a little
         abouts = [layout.settled(_kernel(numbers)).settled for layout in layouts]

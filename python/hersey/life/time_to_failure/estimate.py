@@ -221,7 +221,7 @@ def time_to_failure(
     of_runs = correlations([each.residuals for each in ending])
     names, last = indicators.runs.units, last_ages(indicators)
     units, picks = ends_of_specimens(ending, of_runs, names, last, random)
-    new = ages_of_new(ending, of_runs, random)
+    new = np.stack(list(ages_of_new(ending, of_runs, random)))
     greatest = float(indicators.runs.age.max())
     first = np.sort(new.min(axis=0), axis=1)
     b10, b50 = (share_of_specimens(first, share) for share in (0.1, 0.5))

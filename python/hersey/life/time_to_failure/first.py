@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Annotated
 
@@ -93,11 +93,14 @@ def _firsts(ages: FloatArray) -> FloatArray:
     return np.asarray((least / count).reshape(len(ages), -1).mean(axis=1))
 
 
-def ages_of_new(ending: Sequence[FittedWay], of_runs: FloatArray, random: np.random.Generator) -> FloatArray:
-    """Ages of new specimens at each limit, (ways, draws, specimens), specimens side by side."""
+def ages_of_new(
+    ending: Sequence[FittedWay], of_runs: FloatArray, random: np.random.Generator
+) -> Iterator[FloatArray]:
+    """Yield ages of new specimens at each limit, (draws, specimens), specimens side by side."""
     logs = [np.log(np.clip([a.age.value for a in each.mode.ages.units], 1e-9, 1e300)) for each in ending]
     of_specimens = correlations(logs)
-    middle = np.stack([np.median(each.new, axis=1) for each in ending], axis=1)
+    middle = np.stack([each.middle for each in ending], axis=1)
     order = order_by(middle, ranks_of(len(middle), of_runs, random))
     ranks = ranks_of(ending[0].new.shape[1], of_specimens, random)
-    return np.stack([np.sort(each.new[order[:, m]], axis=1)[:, ranks[:, m]] for m, each in enumerate(ending)])
+    for m, each in enumerate(ending):
+        yield each.new[np.ix_(order[:, m], ranks[:, m])]

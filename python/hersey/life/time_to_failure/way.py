@@ -39,10 +39,16 @@ class FittedWay:
 
     mode: Mode
     ages: FloatArray
-    new: FloatArray
+    new: FloatArray  #: ascending in each draw
     residuals: FloatArray  #: per run of the campaign, NaN where it does not show it
     row: dict[str, int]  #: of each specimen that the growth knows
     error: float  #: of a run, typically
+
+    @property
+    def middle(self) -> FloatArray:
+        """Age that half of the new specimens of each draw has reached, (draws,)."""
+        half, odd = divmod(self.new.shape[1], 2)
+        return np.asarray(0.5 * (self.new[:, half - 1 + odd] + self.new[:, half]))
 
 
 def last_ages(indicators: Indicators) -> dict[str, float]:
@@ -76,7 +82,8 @@ def fitted_way(indicators: Indicators, each: Indicator, seed: int, known: Growth
     )
     row = {name: i for i, name in enumerate(growth.units)}
     last = last_ages(indicators)
-    own = _drawn_ages(each, growth, row, list(last), seed)
+    drawn = _drawn_ages(each, growth, row, list(last), seed)
+    own = OwnAges(drawn.known, np.sort(drawn.new, axis=1))
     warnings = [*each.warnings, *growth.warnings]
     missing = [name for name in last if name not in row]
     if missing and each.own_ages is None:
