@@ -45,8 +45,9 @@ _STICK_SPEEDS = 17
 _BELOW = 0.9
 #: Temperatures that are the same, K: points at them can be stepped between.
 _ALIKE = 1.0
-#: Relative step of the sensitivities of V*, and the accuracy that they need.
-_STEP, _FINE = 0.02, 1e-6
+#: Step of the sensitivities of V* in standard deviations of a number, and the accuracy that they need: an error
+#: of V* counts for more, the shorter the step.
+_STEP, _FINE = 0.4, 1e-7
 
 _T = TypeVar("_T")
 #: Called with the name of the step that is being worked on.
