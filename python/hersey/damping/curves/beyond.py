@@ -63,7 +63,9 @@ def log_torque_beyond(
     at_edge = law.log_torque(numbers, low[:, None] + np.array([-_STEP, 0.0, _STEP]), shape)
     edge = (at_edge[:, 2] - at_edge[:, 0]) / (2.0 * _STEP)
     down = at_edge[:, 1:2] - _gone(inside, edge, below, latent, z)
-    down = down + np.where(edge[:, None] > 0.0, _hidden(below, latent), 0.0)
+    rises = edge > 0.0
+    if np.any(rises):
+        down[rises] += _hidden(below[rises], latent[rises])
     return np.asarray(np.where(below > 0.0, down, out))
 
 
