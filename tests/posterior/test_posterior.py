@@ -11,7 +11,8 @@ import pytest
 
 import hersey
 from hersey.damping.no_load_torque import NoLoadTorque
-from hersey.decision.behaviour import _sensitivity
+from hersey.decision import behaviour
+from hersey.decision.behaviour import Working, _sensitivity
 from hersey.log import TorqueLog
 from hersey.log.own_tables import own_table
 from hersey.log.text.column import split_unit
@@ -26,6 +27,7 @@ from hersey.posterior.result import edges_at
 from hersey.posterior.sampling import decision_temperature, posterior
 from hersey.posterior.traces import _stretches, evidence_of_log, evidence_of_trace
 from hersey.posterior.typical import typical_drag, typical_draw, typical_of_all_temperatures
+from hersey.stability import disturbance
 from tests.conftest import ROOT
 
 HOT = 453.15
@@ -181,6 +183,25 @@ def test_edges_draw_the_curves_once(alone: Posterior, monkeypatch: pytest.Monkey
     edges = edges_at(alone.model, few, HOT)
     assert drawn == [30]
     assert edges.fold == pytest.approx(alone.edges(HOT).fold[:30], rel=2e-3)
+
+
+def test_all_that_asks_for_the_band_of_the_typical_belt_shares_one(
+    whole: Posterior, demo: hersey.SteadyPoints, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    bands, hysteresis = [], behaviour.hysteresis
+
+    def counted(*given: Any, **named: Any) -> Any:
+        bands.append(given)
+        return hysteresis(*given, **named)
+
+    for module in (behaviour, disturbance):
+        monkeypatch.setattr(module, "hysteresis", counted)
+    monkeypatch.setattr(behaviour, "posterior", lambda *_, **__: whole)
+    with Working(demo, whole.model.surface, whole.model.machine) as working:
+        found = working.result()
+    assert found.band is not None
+    assert [point.disturbance is not None for point in found.points] == [True, True]
+    assert len(bands) == 1
 
 
 def test_stiffness_and_mass_move_v_star_alike_as_the_impedance_alone_counts(whole: Posterior) -> None:
