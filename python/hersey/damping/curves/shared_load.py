@@ -74,7 +74,8 @@ class _Drag:
     def _slopes(self) -> tuple[FloatArray, FloatArray]:
         """Slopes of asperities and film from each point to the next; the last goes on level."""
         steps = np.diff(self.grid)
-        return tuple(np.append(np.diff(each) / steps, 0.0) for each in (self.asperities, self.film))
+        asperities, film = (np.append(np.diff(each) / steps, 0.0) for each in (self.asperities, self.film))
+        return asperities, film
 
 
 def least(shape: Shape) -> tuple[float, float]:
