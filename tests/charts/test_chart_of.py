@@ -13,6 +13,7 @@ from typing import Any
 import altair as alt
 import numpy as np
 import pytest
+from altair.utils import schemapi
 from benchmarks.drift import other, table
 
 import hersey
@@ -363,6 +364,19 @@ def test_steady_sliding_has_no_lap() -> None:
     text = json.dumps(chart_of(settled).to_dict(validate=True))
     assert "Time in one cycle" not in text
     assert "steady sliding" in text
+
+
+def test_the_layers_of_a_map_are_not_copied(monkeypatch: pytest.MonkeyPatch) -> None:
+    found, copied = belt_map(), []
+    copies = schemapi._deep_copy
+
+    def counted(*given: Any) -> Any:
+        copied.append(given)
+        return copies(*given)
+
+    monkeypatch.setattr(schemapi, "_deep_copy", counted)
+    chart_of(found)
+    assert len(copied) < 100
 
 
 def test_a_band_and_its_three_speeds() -> None:

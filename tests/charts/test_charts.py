@@ -65,6 +65,15 @@ def test_points_have_tooltips_and_log_axes(document: Analysis) -> None:
     assert '"bind": "scales"' in json.dumps(specification_of(charts(document)["residuals"]))
 
 
+def test_the_same_document_has_the_same_charts_wherever_they_lie_in_memory(document: Analysis) -> None:
+    first, second = charts(document), charts(document)
+    zoomed = json.dumps(specification_of(first["residuals"]))
+    assert '"views": ["view_1"]' in zoomed
+    assert zoomed.count('"name": "view_1"') == 1
+    for name, chart in first.items():
+        assert specification_of(chart) == specification_of(second[name]), name
+
+
 @pytest.mark.slow
 def test_figures_are_written(document: Analysis, tmp_path: Path) -> None:
     written = write_figures(document, tmp_path / "figures")

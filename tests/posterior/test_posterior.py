@@ -11,6 +11,8 @@ import pytest
 
 import hersey
 from hersey.damping.no_load_torque import NoLoadTorque
+from hersey.decision import behaviour
+from hersey.decision.behaviour import Working, _sensitivity
 from hersey.log import TorqueLog
 from hersey.log.own_tables import own_table
 from hersey.log.text.column import split_unit
@@ -25,6 +27,7 @@ from hersey.posterior.result import edges_at
 from hersey.posterior.sampling import decision_temperature, posterior
 from hersey.posterior.traces import _stretches, evidence_of_log, evidence_of_trace
 from hersey.posterior.typical import typical_drag, typical_draw, typical_of_all_temperatures
+from hersey.stability import disturbance
 from tests.conftest import ROOT
 
 HOT = 453.15
@@ -166,6 +169,45 @@ def test_evidence_of_another_machine_does_not_count(whole: Posterior, demo: hers
         f"{seen.source}: stick-slip contradicts dwells and machine file. "
         "Check stiffness, mass and stick speed"
     )
+
+
+def test_edges_draw_the_curves_once(alone: Posterior, monkeypatch: pytest.MonkeyPatch) -> None:
+    drawn, log_force = [], DriveModel.log_force
+
+    def counted(model: DriveModel, drives: Drives, *at: Any, **above: Any) -> Any:
+        drawn.append(len(drives))
+        return log_force(model, drives, *at, **above)
+
+    monkeypatch.setattr(DriveModel, "log_force", counted)
+    few = alone.drives.take(np.arange(30))
+    edges = edges_at(alone.model, few, HOT)
+    assert drawn == [30]
+    assert edges.fold == pytest.approx(alone.edges(HOT).fold[:30], rel=2e-3)
+
+
+def test_all_that_asks_for_the_band_of_the_typical_belt_shares_one(
+    whole: Posterior, demo: hersey.SteadyPoints, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    bands, hysteresis = [], behaviour.hysteresis
+
+    def counted(*given: Any, **named: Any) -> Any:
+        bands.append(given)
+        return hysteresis(*given, **named)
+
+    for module in (behaviour, disturbance):
+        monkeypatch.setattr(module, "hysteresis", counted)
+    monkeypatch.setattr(behaviour, "posterior", lambda *_, **__: whole)
+    with Working(demo, whole.model.surface, whole.model.machine) as working:
+        found = working.result()
+    assert found.band is not None
+    assert [point.disturbance is not None for point in found.points] == [True, True]
+    assert len(bands) == 1
+
+
+def test_stiffness_and_mass_move_v_star_alike_as_the_impedance_alone_counts(whole: Posterior) -> None:
+    found = _sensitivity(whole)
+    assert found["stiffness"] == pytest.approx(found["mass"], abs=0.01)
+    assert -0.4 < found["stick_speed"] < -0.2
 
 
 def test_the_same_seed_gives_the_same_bits_and_the_rest_is_told(

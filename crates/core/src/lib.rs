@@ -4,6 +4,7 @@
 //! |---------------------------|------------------------------------------------------------------------------------|
 //! | `error`                   | the closed list of ways an input can be wrong, or a computation can end unfinished |
 //! | `work`                    | how much work a computation may do, and whether anybody still waits for it         |
+//! | `rows`                    | logarithms and exponentials of several numbers at once                             |
 //! | `wire`                    | values by name, as all ways into the core hand them over, and what is wrong with them |
 //! | `lubrication::viscosity`  | viscosity against temperature, pressure and shear rate                             |
 //! | `lubrication::contact`    | moduli, Hertz, rubber hardness                                                     |
@@ -50,6 +51,7 @@ pub mod drag;
 pub mod error;
 pub mod lubrication;
 pub mod motion;
+mod rows;
 pub mod stability;
 pub mod wire;
 pub mod work;

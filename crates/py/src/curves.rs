@@ -13,7 +13,7 @@ use crate::errors::{Failure, raised_at, refused};
 use crate::interrupt::copied;
 
 /// Belts that one thread takes at a time.
-const CHUNK: usize = 16;
+const CHUNK: usize = 128;
 /// Closures by their index.
 const CLOSURES: [Closure; 3] = [Closure::Retained, Closure::Stiction, Closure::Stribeck];
 
@@ -126,10 +126,8 @@ pub fn curve_starts<'py>(
         return Err(refused("drive_speed", "drive speeds and belts differ in number".to_owned()));
     }
     let pairs: Vec<(CurveBelt, f64)> = belts.into_iter().zip(speeds).collect();
-    let starts = |pairs: &[(CurveBelt, f64)], work: &Work| {
-        let (belts, speeds): (Vec<CurveBelt>, Vec<f64>) = pairs.iter().cloned().unzip();
-        stability::curve_starts(&belts, &speeds, accuracy, work)
-    };
+    let starts =
+        |pairs: &[(CurveBelt, f64)], work: &Work| stability::curve_starts(pairs, accuracy, work);
     let found = in_chunks(py, &pairs, CHUNK, threads, None, most_steps, starts)?;
     let of_cycle = |of: fn(&CurveCycle) -> f64| {
         let cycles = found.iter().map(|f| f.as_ref().ok().and_then(|f| f.cycle.as_ref()));

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -76,10 +76,32 @@ def specification_of(chart: Chart) -> Row:
     Altair's check against the schema is left to the tests: it takes longer than all else.
     """
     specification: Row = _rounded(chart.to_dict(validate=False))
+    _number_views(specification)
     config = specification.setdefault("config", {})
     for part, look in _CONFIG.items():
         config[part] = config.get(part, {}) | look
     return specification
+
+
+def _number_views(specification: Row) -> None:
+    """Name views by their order: altair names them by where their rows lie in memory."""
+    views = list(_views(specification))
+    named = dict.fromkeys(view["name"] for view in views if "name" in view)
+    names = {name: f"view_{number}" for number, name in enumerate(named, 1)}
+    for view in views:
+        if "name" in view:
+            view["name"] = names[view["name"]]
+        for selection in view.get("params", ()):
+            if "views" in selection:
+                selection["views"] = [names.get(name, name) for name in selection["views"]]
+
+
+def _views(view: Row) -> Iterator[Row]:
+    """A view and all within it, from the outside in."""
+    yield view
+    within = [*view.get("layer", ()), *view.get("vconcat", ()), *view.get("hconcat", ())]
+    for each in [*within, *([view["spec"]] if "spec" in view else [])]:
+        yield from _views(each)
 
 
 def _page(specification: Row) -> str:

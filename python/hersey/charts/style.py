@@ -66,6 +66,14 @@ class _Plot(alt.Chart):
         return super().copy(deep=False if deep is True else deep, ignore=ignore)
 
 
+class _Layers(alt.LayerChart):
+    """Layers that altair takes as they are: it would copy all of them for whatever they are laid into."""
+
+    def copy(self, deep: Any = True, ignore: list[str] | None = None) -> Any:
+        """Return a copy that shares the layers."""
+        return super().copy(deep=False if deep is True else deep, ignore=ignore)
+
+
 def _channel(name: str, given: Any) -> Any:
     kind = name[0].upper() + name[1:]
     if isinstance(given, str):
@@ -76,6 +84,11 @@ def _channel(name: str, given: Any) -> Any:
 def plot(rows: list[Row]) -> alt.Chart:
     """Return a chart of rows, to which marks and channels are given."""
     return _Plot(alt.Data(values=_Inline(rows)))
+
+
+def layered(*layers: alt.Chart | alt.LayerChart, **properties: Any) -> alt.LayerChart:
+    """Return charts one over another, to be laid into others."""
+    return _Layers(layer=layers, **properties)
 
 
 def temperature_name(kelvin: float | None) -> float:

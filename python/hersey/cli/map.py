@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 from hersey.cli.groups import argument, grouped, option
+from hersey.cli.loading import loading
 from hersey.cli.options import FitFile, Force, Reading, SomeLogs, Traces
 from hersey.cli.outputs import may_draw
 from hersey.cli.printing import Printing
@@ -42,9 +43,10 @@ def map_(
     path = out or (None if printing.as_json else Path("map.html"))
     drawing = may_draw(path, force, reading.inputs(machine_file, logs, fit_file, trace), flag="--out")
 
-    from hersey.decision.mapping import map_of
-    from hersey.machine.machine import read_machine
-    from hersey.stability.operating_map import operating_map
+    with loading():
+        from hersey.decision.mapping import map_of
+        from hersey.machine.machine import read_machine
+        from hersey.stability.operating_map import operating_map
 
     machine = read_machine(machine_file)
     threads = os.cpu_count() or 1

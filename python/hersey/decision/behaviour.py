@@ -34,7 +34,7 @@ from hersey.posterior.result import SAFE
 from hersey.posterior.sampling import DRAWS
 from hersey.posterior.typical import typical_drag, typical_draw
 from hersey.result import Means, Record
-from hersey.stability.disturbance import Disturbance, SafeStep, disturbance, safe_step
+from hersey.stability.disturbance import Disturbance, SafeStep, disturbance_within, step_within
 from hersey.stability.hysteresis import HysteresisBand, hysteresis
 from hersey.stability.operating_map import OperatingMap
 from hersey.stability.plan import Plan
@@ -45,8 +45,9 @@ _STICK_SPEEDS = 17
 _BELOW = 0.9
 #: Temperatures that are the same, K: points at them can be stepped between.
 _ALIKE = 1.0
-#: Relative step of the sensitivities of V*, and the accuracy that they need.
-_STEP, _FINE = 0.02, 1e-6
+#: Step of the sensitivities of V* in standard deviations of a number, and the accuracy of the folds beside.
+#: Where stick-slip dies out is known to some 1e-4, however fine its motion: a short step would show that.
+_STEP, _FINE = 1.0, 1e-6
 
 _T = TypeVar("_T")
 #: Called with the name of the step that is being worked on.
@@ -125,11 +126,14 @@ class Working:
         self._points, self._surface, self._curves = points, surface, curves
         self._machine, self._traces, self._draws = machine, traces, draws
         # each piece waits for the posterior in its own thread
-        self._pool = ThreadPoolExecutor(len(machine.points) + 4)
+        self._pool = ThreadPoolExecutor(len(machine.points) + 5)
         self._posterior = self._begin(self._drawn)
+        self._typical = self._begin(lambda: _typical_band(self._posterior.result()))
         self._judged = [self._begin(self._of_point, point) for point in machine.points]
         self._map = self._begin(self._mapped)
-        self._band = self._begin(lambda: _at_the_band(self._posterior.result(), machine))
+        self._band = self._begin(
+            lambda: _at_the_band(self._posterior.result(), machine, self._typical.result)
+        )
         self._next = self._begin(lambda: next_measurement(self._posterior.result()))
 
     def __enter__(self) -> Working:
@@ -207,7 +211,8 @@ class Working:
         except HerseyError as error:
             errors.append(error)
         try:
-            withstands, steps = _withstood(found, kelvin, point, self._machine.points)
+            same = self._typical.result if kelvin == found.temperature else None
+            withstands, steps = _withstood(found, kelvin, point, self._machine.points, same)
         except HerseyError as error:
             withstands, steps = None, ()
             errors.append(error)
@@ -226,11 +231,18 @@ class Working:
         return plan, response(found, kelvin, drive, float(plan.response.time[-1]))
 
 
-@kept()
+@kept(apart=("known",))
 def _withstood(
-    found: Posterior, kelvin: float | None, point: OperatingPoint, points: tuple[OperatingPoint, ...]
+    found: Posterior,
+    kelvin: float | None,
+    point: OperatingPoint,
+    points: tuple[OperatingPoint, ...],
+    known: Callable[[], HysteresisBand] | None = None,
 ) -> tuple[Disturbance | None, tuple[SafeStep, ...]]:
-    """What sliding at a point withstands, and how to come there from others, of the typical draw."""
+    """What sliding at a point withstands, and how to come there from others, of the typical draw.
+
+    ``known`` tells its band where somebody computes it anyway.
+    """
     train, drag = typical_drag(found, kelvin)
     turn = float(np.median(found.edges(kelvin).transition))
     if point.speed < turn:
@@ -242,18 +254,26 @@ def _withstood(
         and other.speed != point.speed
         and (kelvin is None or abs(other.temperature - point.temperature) < _ALIKE)
     ]
+    band = hysteresis(train, drag, sensitivity=False) if known is None else known()
     steps = [
-        safe_step(train, drag, from_speed=speed, to_speed=point.speed)
+        step_within(band, train, drag, from_speed=speed, to_speed=point.speed)
         for speed in dict.fromkeys(others)
         if speed >= drag.law_at(None).transition_speed
     ]
-    return disturbance(train, drag, drive_speed=point.speed), tuple(steps)
+    return disturbance_within(band, train, drag, drive_speed=point.speed), tuple(steps)
 
 
 @kept()
-def _at_the_band(found: Posterior, machine: Machine) -> tuple[HysteresisBand, StickSpeeds]:
+def _typical_band(found: Posterior) -> HysteresisBand:
     train, drag = typical_drag(found, found.temperature)
-    band = hysteresis(train, drag, sensitivity=False)
+    return hysteresis(train, drag, sensitivity=False)
+
+
+@kept(apart=("known",))
+def _at_the_band(
+    found: Posterior, machine: Machine, known: Callable[[], HysteresisBand]
+) -> tuple[HysteresisBand, StickSpeeds]:
+    band = known()
     value, low, high = found.fold_interval(found.temperature)
     band = replace(band, upper=value, interval=(low, high), sensitivity=_sensitivity(found))
     return band, _against_stick_speed(found, machine)

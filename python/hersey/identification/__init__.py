@@ -23,7 +23,20 @@ A trace is the force of the spring (or the torque of a torsional spring) against
 speed, or the belt speed.
 """
 
+from typing import TYPE_CHECKING, Any
+
 from hersey.identification.cycle_record import CycleRecord, Scatter, cycles
-from hersey.identification.identified_drive import IdentifiedDrive, identify
+
+if TYPE_CHECKING:
+    from hersey.identification.identified_drive import IdentifiedDrive, identify
 
 __all__ = ["CycleRecord", "IdentifiedDrive", "Scatter", "cycles", "identify"]
+
+
+def __getattr__(name: str) -> Any:
+    """Load what fits a drive once it is asked for: a posterior looks for cycles alone."""
+    if name not in ("IdentifiedDrive", "identify"):
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from hersey.identification import identified_drive
+
+    return getattr(identified_drive, name)

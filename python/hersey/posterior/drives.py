@@ -100,15 +100,16 @@ class DriveModel:
         torque = self.curves.log_torque(drives.law, latent, self.speeds(kelvin, above) / radius, kelvin)
         return np.asarray(torque - np.log(radius))
 
-    def turns_by(self, drives: Drives, kelvin: float | None) -> FloatArray:
+    def turns_by(self, drives: Drives, kelvin: float | None, curve: FloatArray) -> FloatArray:
         """Return the speed (m/s) at a temperature (K) up to which drag falls in the dwells, (draws,).
+
+        ``curve`` is their `log_force` there.
 
         It is that of the dwell with the greatest Hersey number if drag still falls there, as nothing bounds
         the speed at which it turns then; otherwise it is infinite.
         """
         latent = drives.latent[:, len(NUMBERS) :]
         fastest = self.machine.roll_radius * self.curves.fastest(drives.law, latent, kelvin)
-        curve = self.log_force(drives, kelvin)
         before = self._on(curve, kelvin, fastest / _LAST)
         falls = np.log(self._on(curve, kelvin, fastest) / before) < -_FALLS
         return np.where(falls, fastest, np.inf)
@@ -154,13 +155,14 @@ class DriveModel:
         threads: int = 1,
         stick_speed: FloatArray | None = None,
         slips: bool = True,
+        curve: FloatArray | None = None,
     ) -> _core.CurveFolds:
         """Return transition, V* and the force that starts a belt (m/s, m/s, N) of each draw.
 
         ``stick_speed`` (m/s, at this temperature) takes the place of those drawn. Unless it ``slips`` the
-        roll grips any force.
+        roll grips any force. ``curve`` is their `log_force` there, where that is known already.
         """
-        curves, columns = self._belts(drives, kelvin)
+        curves, columns = self._belts(drives, kelvin, curve)
         if stick_speed is not None:
             columns[2] = np.ascontiguousarray(stick_speed)
         grip = self.machine.train.grip if slips else None
@@ -196,11 +198,11 @@ class DriveModel:
         return _core.curve_start_ups(curves, columns, profile, grip, accuracy, threads, int(MOST_STEPS))
 
     def _belts(
-        self, drives: Drives, kelvin: float | None
+        self, drives: Drives, kelvin: float | None, curve: FloatArray | None = None
     ) -> tuple[tuple[float, float, FloatArray], list[FloatArray]]:
         """Curves and numbers of the draws, as the core takes them."""
         speeds, numbers = self.speeds(kelvin), self.numbers(drives)
-        log_force = np.ascontiguousarray(self.log_force(drives, kelvin))
+        log_force = np.ascontiguousarray(self.log_force(drives, kelvin) if curve is None else curve)
         stick = self.stick_speed(drives, kelvin)
         force, damping = self.no_load(kelvin)
         one = np.ones(len(drives))

@@ -302,12 +302,14 @@ def edges_at(model: DriveModel, drives: Drives, kelvin: float | None, *, threads
     at the fastest dwell lies beyond all that is looked at.
     """
     model.surface.check_temperature(kelvin)
-    found = model.folds(drives, kelvin, threads=threads)
+    curve = model.log_force(drives, kelvin)
+    found = model.folds(drives, kelvin, threads=threads, curve=curve)
     upper, stalls = np.array(found.upper), np.flatnonzero(found.stalls)
     if stalls.size:
-        upper[stalls] = model.folds(drives.take(stalls), kelvin, threads=threads, slips=False).upper
+        held = model.folds(drives.take(stalls), kelvin, threads=threads, slips=False, curve=curve[stalls])
+        upper[stalls] = held.upper
     upper = np.minimum(upper, _FARTHEST * found.transition)
-    turns_by = model.turns_by(drives, kelvin)
+    turns_by = model.turns_by(drives, kelvin, curve)
     upper = np.where(np.isfinite(turns_by), _FARTHEST * found.transition, upper)
     columns = [found.transition, np.fmax(upper, found.transition), found.holding]
     lost = np.any([np.isnan(each) for each in columns], axis=0)

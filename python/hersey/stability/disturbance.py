@@ -17,7 +17,7 @@ from hersey.motion.drag import AnyDrag
 from hersey.motion.schedule import Schedule
 from hersey.motion.simulation import StickSlipCycle, simulate, steady_start, stick_slip
 from hersey.result import OPEN, Means, Record
-from hersey.stability.hysteresis import hysteresis
+from hersey.stability.hysteresis import HysteresisBand, hysteresis
 from hersey.units import takes_si
 
 #: Ramps looked at per period of the free oscillation, and periods up to which they are.
@@ -89,6 +89,19 @@ def safe_step(
                 f"{name} is {speed}: it must be greater than 0", quantity=name, value=speed, limit=0.0
             )
     band = hysteresis(train, drag, temperature=temperature, sensitivity=False)
+    return step_within(band, train, drag, from_speed=from_speed, to_speed=to_speed, temperature=temperature)
+
+
+def step_within(
+    band: HysteresisBand,
+    train: Drivetrain,
+    drag: AnyDrag,
+    *,
+    from_speed: float,
+    to_speed: float,
+    temperature: float | None = None,
+) -> SafeStep:
+    """Return the same as `safe_step` where the band of the belt is known."""
     if from_speed < band.transition:
         raise ParameterError(
             f"from_speed is {from_speed}, below the transition speed {band.transition:.6g}. Below it the "
@@ -140,6 +153,18 @@ def disturbance(
     if not 0 < drive_speed < inf:
         raise ParameterError(f"drive_speed is {drive_speed}: it must be greater than 0")
     band = hysteresis(train, drag, temperature=temperature, sensitivity=False)
+    return disturbance_within(band, train, drag, drive_speed=drive_speed, temperature=temperature)
+
+
+def disturbance_within(
+    band: HysteresisBand,
+    train: Drivetrain,
+    drag: AnyDrag,
+    *,
+    drive_speed: float,
+    temperature: float | None = None,
+) -> Disturbance:
+    """Return the same as `disturbance` where the band of the belt is known."""
     if drive_speed < band.transition:
         return Disturbance(drive_speed, 0.0, 0.0)
     if drive_speed > band.upper and not band.stalls:

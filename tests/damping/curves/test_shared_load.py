@@ -34,6 +34,17 @@ def test_the_curve_is_the_drag_of_the_contact() -> None:
     assert np.exp(shape.curve(x[None], np.zeros((1, 1)))[0]) == pytest.approx(torque / at_rest, rel=2e-4)
 
 
+def test_places_of_the_table_are_those_that_a_search_finds() -> None:
+    curve = shared_load_shape(_contact(), HOT).curve
+    grid, asperities, film = (getattr(curve, name) for name in ("grid", "asperities", "film"))
+    random = np.random.default_rng(4)
+    beside = np.nextafter(grid, random.choice([-np.inf, np.inf], grid.size))
+    x = np.concatenate([grid, beside, random.uniform(-40.0, 40.0, 10_000)])[None]
+    own = np.array([[0.3]])
+    searched = np.interp(x, grid, asperities), np.interp(x, grid, film)
+    assert np.array_equal(curve(x, own), np.log(searched[0] + np.exp(searched[1] + own)))
+
+
 def test_twice_the_film_is_twice_the_drag_where_the_film_carries_all() -> None:
     shape = shared_load_shape(_contact(), HOT)
     fast, slow = np.array([[6.0]]), np.array([[-9.0]])

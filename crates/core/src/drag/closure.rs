@@ -4,7 +4,7 @@ use crate::error::{Error, above, at_least};
 use crate::wire::{Unreadable, kinds};
 
 /// Width of the smoothed reversal of `Stribeck`, in stick speeds.
-const SMOOTHING: f64 = 0.05;
+pub(crate) const SMOOTHING: f64 = 0.05;
 
 /// What the belt does near zero speed, where nobody has measured.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -71,6 +71,27 @@ impl Curve {
         a + t * (da + t * (3.0 * rise - 2.0 * da - db + t * (da + db - 2.0 * rise)))
     }
 
+    /// The first `ln v`, and how far apart the others are.
+    pub(crate) fn spacing(&self) -> (f64, f64) {
+        (self.first, self.step)
+    }
+
+    /// Write `ln F` as cubics of the place, in steps of `ln v`: from each point to the next, before them what leads to the
+    /// first, and at the end what goes on from the last.
+    pub(crate) fn write_cells(&self, cells: &mut Vec<[f64; 4]>) {
+        let last = self.values.len() - 1;
+        let straight = |i: usize| [self.values[i], self.slopes[i] * self.step, 0.0, 0.0];
+        let cubic = |i: usize| {
+            let (a, rise) = (self.values[i], self.values[i + 1] - self.values[i]);
+            let (da, db) = (self.slopes[i] * self.step, self.slopes[i + 1] * self.step);
+            [a, da, 3.0 * rise - 2.0 * da - db, da + db - 2.0 * rise]
+        };
+        cells.clear();
+        cells.push(straight(0));
+        cells.extend((0..last).map(cubic));
+        cells.push(straight(last));
+    }
+
     /// Force at a speed above zero.
     #[inline]
     #[must_use]
@@ -81,15 +102,29 @@ impl Curve {
     /// Speed from `low` on at which force with `damping` times the speed is least, the slowest of them.
     #[must_use]
     pub fn least(&self, low: f64, damping: f64) -> f64 {
+        self.least_below(low, damping, f64::INFINITY).unwrap_or(low)
+    }
+
+    /// The same; none as soon as it is sure to be no less than `speed`.
+    #[must_use]
+    pub(crate) fn least_below(&self, low: f64, damping: f64, speed: f64) -> Option<f64> {
         #[allow(clippy::cast_precision_loss)]
         let end = self.first + self.step * (self.values.len() - 1) as f64;
         let force = |x: f64| self.at(x).exp() + damping * x.exp();
         let begin = low.ln();
         if begin >= end {
-            return low;
+            return Some(low);
         }
         #[allow(clippy::cast_precision_loss)]
         let look = |i: usize| begin + (end - begin) * i as f64 / LOOKS as f64;
+        // the least is looked for beside the least of the looks
+        let slower = (0..LOOKS).take_while(|i| look(*i) < speed.ln()).count() + 2;
+        if slower <= LOOKS {
+            let least = (0..slower).map(|i| force(look(i))).fold(f64::INFINITY, f64::min);
+            if (slower..=LOOKS).any(|i| force(look(i)) < least) {
+                return None;
+            }
+        }
         let best =
             (0..=LOOKS).min_by(|i, j| force(look(*i)).total_cmp(&force(look(*j)))).unwrap_or(0);
         let (mut a, mut b) = (look(best.saturating_sub(1)), look((best + 1).min(LOOKS)));
@@ -97,7 +132,7 @@ impl Curve {
             let (c, d) = (b - GOLDEN * (b - a), a + GOLDEN * (b - a));
             if force(c) <= force(d) { b = d } else { a = c }
         }
-        (0.5 * (a + b)).exp()
+        Some((0.5 * (a + b)).exp())
     }
 }
 
@@ -125,6 +160,10 @@ mod tests {
         let curve = Curve::new(-2.0, 0.1, &values).unwrap();
         assert!((curve.least(0.2, 0.0) - 1.0).abs() < 1e-7);
         assert!((curve.least(1.5, 0.0) - 1.5).abs() < 1e-6);
+        assert_eq!(curve.least_below(0.2, 0.0, 0.9), None);
+        for speed in [1.01, 2.0, 1e3] {
+            assert_eq!(curve.least_below(0.2, 0.0, speed), Some(curve.least(0.2, 0.0)));
+        }
         // exp(x^2) + exp(x) is least where 2 x exp(x^2) = -exp(x), at x = -0.3250334087
         assert!((curve.least(0.2, 1.0).ln() + 0.325_033_408_7).abs() < 1e-4);
     }

@@ -42,6 +42,7 @@ mod speeds;
 mod strengthening;
 mod temperature;
 
+pub(crate) use closure::SMOOTHING;
 pub use closure::{Closure, ClosureKind};
 pub use curve::Curve;
 pub use form::DragForm;

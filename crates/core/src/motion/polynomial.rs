@@ -1,16 +1,11 @@
 //! Polynomials in local time, as the Taylor steps leave them, and their first root.
 
+pub(super) use crate::rows::fused;
+
 /// Highest power kept.
 pub(super) const ORDER: usize = 14;
 
-/// `a b + c` rounded once, which is one instruction on all machines but the web's.
-#[inline(always)]
-#[allow(clippy::inline_always)]
-pub(super) fn fused(a: f64, b: f64, c: f64) -> f64 {
-    if cfg!(target_arch = "wasm32") { a * b + c } else { a.mul_add(b, c) }
-}
-
-/// The same for each of a register.
+/// `a b + c` rounded once, for each of a register.
 #[inline(always)]
 #[allow(clippy::inline_always)]
 pub(super) fn fused_in<S: pulp::Simd>(simd: S, a: S::f64s, b: S::f64s, c: S::f64s) -> S::f64s {

@@ -14,11 +14,17 @@
 //! | `band` | lower edge, transition and upper fold of a belt, for every closure                 |
 //! | `smooth` | edges of a belt with a smooth closure, decided by a lap or two                   |
 //! | `curve_laps` | slip laps and fold of a belt whose drag is a smooth curve                    |
+//! | `curve_lanes` | many laps of such belts at once, several to a register                         |
+//! | `curve_answers` | what many such belts come to, each by the laps that it asks for               |
+//! | `curve_questions` | which laps say where such a belt begins to stick, or what a start comes to |
 //! | `curve_start_up` | what a profile of drive speed does to such a belt                             |
 //! | `unstable` | the lap between the starts that come to slide and those that come to stick    |
 
 mod band;
+mod curve_answers;
+mod curve_lanes;
 mod curve_laps;
+mod curve_questions;
 mod curve_start_up;
 mod cycles;
 mod deviation;
@@ -33,7 +39,8 @@ mod unstable;
 mod valley;
 
 pub use band::{Band, Method, bands};
-pub use curve_laps::{CurveBelt, CurveCycle, CurveFold, CurveStart, curve_folds, curve_starts};
+pub use curve_laps::{CurveBelt, CurveCycle, CurveFold, CurveStart};
+pub use curve_questions::{curve_folds, curve_starts};
 pub use curve_start_up::{CurveStarted, curve_start_ups};
 pub use cycles::{Swing, cycles, swings};
 pub use fold::Fold;

@@ -17,7 +17,7 @@ from hersey.charts.operating_map.regions import (
     name_regions,
     regions,
 )
-from hersey.charts.style import BLUE, INK, ROLL_SPEED, Chart, Row, logarithmic_axis, plot, rimmed
+from hersey.charts.style import BLUE, INK, ROLL_SPEED, Chart, Row, layered, logarithmic_axis, plot, rimmed
 from hersey.stability.operating_map import OperatingMap
 from hersey.units import rpm
 
@@ -34,10 +34,10 @@ def map_chart(result: OperatingMap, *, tooltips: bool = True) -> Chart:
     """Return the chart of an operating map; without ``tooltips`` files that cannot show them are smaller."""
     frame, labels = Frame.of(result), Labels(WIDTH, HEIGHT)
     layers = _layers(result, frame, labels)
-    texts = alt.layer(*_texts(labels, frame))
-    main = alt.layer(*layers, texts, *([pointer(result, frame)] if tooltips else []))
+    texts = layered(*_texts(labels, frame))
+    main = layered(*layers, texts, *([pointer(result, frame)] if tooltips else []))
     title = alt.Title(_title(result), subtitle=_subtitle(result))
-    chart: Chart = alt.layer(
+    chart: Chart = layered(
         main, _revolutions(result, frame), title=title, width=WIDTH, height=HEIGHT
     ).resolve_scale(y="independent")
     return chart

@@ -33,6 +33,8 @@ PLACE = (3.5, 0.8)
 _MOST = 4.0
 #: Step in ln speed by which the slope at the slowest dwell is taken.
 _STEP = 0.05
+#: Points beside the slower ones that their slopes take.
+_BESIDE = 2
 
 
 def log_torque_beyond(
@@ -50,21 +52,26 @@ def log_torque_beyond(
     inside = law.log_torque(numbers, z, shape)
     shift = law.scaled_speed(numbers, np.zeros(1), shape)[:, 0]
     low, high = (end - shift for end in law.reach)
-    above = np.maximum(z - high[:, None], 0.0)
-    if np.any(above > 0.0):
+    out = inside.copy()
+    fast = z > np.min(high)
+    if fast.any():
+        above = np.maximum(z[fast] - high[:, None], 0.0)
         at_high = law.log_torque(numbers, high[:, None], shape)
         factor = np.exp(STEEPER * np.clip(latent[:, 3:4], -_MOST, _MOST) * -np.expm1(-above))
-        out = np.where(above > 0.0, at_high + (inside - at_high) * factor, inside)
-    else:
-        out = inside
-    below = np.maximum(low[:, None] - z, 0.0)
-    if not np.any(below > 0.0):
-        return np.asarray(out)
+        out[:, fast] = np.where(above > 0.0, at_high + (inside[:, fast] - at_high) * factor, inside[:, fast])
+    slow = int(np.count_nonzero(z < np.max(low)))
+    if not slow:
+        return out
+    slow = min(slow + _BESIDE, z.size)  # the slopes there take their neighbours
+    below = np.maximum(low[:, None] - z[:slow], 0.0)
     at_edge = law.log_torque(numbers, low[:, None] + np.array([-_STEP, 0.0, _STEP]), shape)
     edge = (at_edge[:, 2] - at_edge[:, 0]) / (2.0 * _STEP)
-    down = at_edge[:, 1:2] - _gone(inside, edge, below, latent, z)
-    down = down + np.where(edge[:, None] > 0.0, _hidden(below, latent), 0.0)
-    return np.asarray(np.where(below > 0.0, down, out))
+    down = at_edge[:, 1:2] - _gone(inside[:, :slow], edge, below, latent, z[:slow])
+    rises = edge > 0.0
+    if np.any(rises):
+        down[rises] += _hidden(below[rises], latent[rises])
+    out[:, :slow] = np.where(below > 0.0, down, out[:, :slow])
+    return out
 
 
 def _hidden(below: FloatArray, latent: FloatArray) -> FloatArray:

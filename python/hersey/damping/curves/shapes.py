@@ -81,18 +81,18 @@ def _blend(x: FloatArray, n: FloatArray) -> FloatArray:
 def _stribeck(x: FloatArray, n: FloatArray) -> FloatArray:
     up, peak, film, decay = (n[:, i : i + 1] for i in range(4))
     falling = np.clip(peak, -_BOUND, _BOUND) - _exp(_exp(np.clip(decay, -2.0, 2.0)) * x)
-    parts = [np.zeros_like(x), np.maximum(falling, -300.0), film + _exp(up) * x]
-    return np.asarray(np.logaddexp.reduce(parts))
+    slow = np.logaddexp(0.0, np.maximum(falling, -300.0))
+    return np.asarray(np.logaddexp(slow, film + _exp(up) * x))
 
 
 def _saturating(x: FloatArray, n: FloatArray) -> FloatArray:
     up, fall, film, floor = (n[:, i : i + 1] for i in range(4))
     boundary = -np.logaddexp(0.0, _exp(np.clip(fall, -3.0, 2.0)) * x)
-    return np.asarray(np.logaddexp.reduce([boundary, floor + 0.0 * x, film + _exp(up) * x]))
+    return np.asarray(np.logaddexp(np.logaddexp(boundary, floor), film + _exp(up) * x))
 
 
 def _plus(x: FloatArray, n: FloatArray) -> FloatArray:
-    return np.asarray(np.logaddexp(n[:, 1:2] + 0.0 * x, _exp(n[:, :1]) * x))
+    return np.asarray(np.logaddexp(n[:, 1:2], _exp(n[:, :1]) * x))
 
 
 _FILM, _FLOOR = Prior("ln film", -1.5, 1.5), Prior("ln floor", -2.0, 1.5)

@@ -8,6 +8,7 @@ other viscosity, roughness and boundary friction would.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -53,8 +54,28 @@ class _Drag:
     def __call__(self, x: FloatArray, own: FloatArray) -> FloatArray:
         """Return ln of the drag of both at places, for draws of the film's part."""
         at = np.clip(x, self.grid[0], self.grid[-1])
-        carried = np.interp(at, self.grid, self.asperities)
-        return np.asarray(np.log(carried + np.exp(np.interp(at, self.grid, self.film) + own[:, :1])))
+        # np.interp would search the place of each anew, for either
+        row = ((at - self.grid[0]) / _STEP).astype(np.intp)
+        row -= at < self.grid.take(row)
+        row += at >= self._ends.take(row)
+        beyond = at - self.grid.take(row)
+        carried, film = (
+            slopes.take(row) * beyond + values.take(row)
+            for values, slopes in zip((self.asperities, self.film), self._slopes, strict=True)
+        )
+        return np.asarray(np.log(carried + np.exp(film + own[:, :1])))
+
+    @cached_property
+    def _ends(self) -> FloatArray:
+        """Where each row of the table ends; the last has no end."""
+        return np.append(self.grid[1:], np.inf)
+
+    @cached_property
+    def _slopes(self) -> tuple[FloatArray, FloatArray]:
+        """Slopes of asperities and film from each point to the next; the last goes on level."""
+        steps = np.diff(self.grid)
+        asperities, film = (np.append(np.diff(each) / steps, 0.0) for each in (self.asperities, self.film))
+        return asperities, film
 
 
 def least(shape: Shape) -> tuple[float, float]:
