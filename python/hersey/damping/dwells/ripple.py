@@ -16,7 +16,7 @@ import numpy as np
 from hersey.arrays import FloatArray, IntArray
 from hersey.damping.dwells.noise import thinned
 from hersey.damping.dwells.segments import BLOCK_DURATION, Segment
-from hersey.log.long_arrays import Filling, blocks, each_block, mean, passed
+from hersey.log.long_arrays import Filling, blocks, each_block, let_go, mean, passed
 from hersey.log.torque_log import Run
 
 #: Neighbouring pieces of one rippling dwell differ in speed by less than this share.
@@ -37,7 +37,12 @@ def joined_over_turns(run: Run, segments: list[Segment]) -> list[Segment]:
     """Put together the pieces of dwells whose speed, averaged over revolutions, holds."""
     out: list[Segment] = []
     for chain in _chains(segments):
-        out += _rejoined(run, chain) if len(chain) > 1 else chain
+        if len(chain) == 1:
+            out += chain
+            continue
+        out += _rejoined(run, chain)
+        for seen in (run.time, run.speed):  # the next chain may be far
+            let_go(seen[chain[0].start : chain[-1].end])
     return out
 
 
