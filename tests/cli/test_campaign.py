@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import shlex
+import time
 from pathlib import Path
 
 import polars as pl
@@ -88,16 +89,22 @@ def test_what_reads_many_begins_before_it_is_known_what_to_read(
     monkeypatch.setattr(campaign_reading, "FEW", 2)
     monkeypatch.setattr(campaign_reading, "_PROCESSES", 1)
     logs = [(folder / f"{number}.csv", "{}") for number in range(2)]
-    (child,) = campaign_reading.readers(None)
-    child.ask({"machine": None})  # which waits for what it loads
-    assert child.running
     alone = [campaign_reading.entry(Reading(), log, None, settings) for log, settings in logs]
-    assert list(campaign_reading.entries(Reading(), logs, None, children=[child])) == alone
+    with campaign_reading.readers(None) as (child,):
+        child.ask({"machine": None})  # which waits for what it loads
+        assert child.running
+        assert list(campaign_reading.entries(Reading(), logs, None, children=[child])) == alone
+    with campaign_reading.readers(None) as (child,):
+        assert list(campaign_reading.entries(Reading(), logs[:1], None, children=[child])) == alone[:1]
     assert not child.running
-    (child,) = campaign_reading.readers(None)
-    child.ask({"machine": None})
-    assert list(campaign_reading.entries(Reading(), logs[:1], None, children=[child])) == alone[:1]
-    assert not child.running  # too few for it
+
+
+def test_what_reads_ends_with_the_command_though_it_has_just_begun(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(campaign_reading, "_PROCESSES", 3)
+    with pytest.raises(RuntimeError, match="meanwhile"), campaign_reading.readers(None) as children:
+        raise RuntimeError("meanwhile")
+    time.sleep(0.2)  # a thread that is left would start its process by now
+    assert not any(child.running for child in children)
 
 
 def test_the_machine_file_is_read_once_for_all_runs(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -206,8 +206,20 @@ def test_all_that_asks_for_the_band_of_the_typical_belt_shares_one(
 
 def test_stiffness_and_mass_move_v_star_alike_as_the_impedance_alone_counts(whole: Posterior) -> None:
     found = _sensitivity(whole)
-    assert found["stiffness"] == pytest.approx(found["mass"], abs=0.01)
+    assert found["stiffness"] == pytest.approx(found["mass"], abs=0.003)
     assert -0.4 < found["stick_speed"] < -0.2
+
+
+def test_sensitivities_are_as_exact_where_the_numbers_are_well_known(
+    demo: hersey.SteadyPoints, surface: hersey.DampingSurface, machine: hersey.Machine
+) -> None:
+    """V* is known to 1e-4: steps as small as these uncertainties would show nothing else."""
+    sure = {name: Uncertainty(share=1e-3) for name in ("stick_speed", "stiffness", "mass")}
+    known = posterior(demo, replace(machine, uncertainty=sure), surface=surface, evidence=(), draws=400)
+    found = _sensitivity(known)
+    assert found["stiffness"] == pytest.approx(found["mass"], abs=0.003)
+    assert abs(found["stiffness"]) < 0.01
+    assert -0.3 < found["stick_speed"] < -0.1
 
 
 def test_the_same_seed_gives_the_same_bits_and_the_rest_is_told(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -197,8 +198,12 @@ class _Adding:
 
         # of a campaign without runs all will be read: what reads them loads while settings are found here
         many = self.client is None and len(wanted) >= FEW and not len(opened)
-        children = readers(self.machine) if many else ()
+        with readers(self.machine) if many else nullcontext(()) as children:
+            self._each(opened, wanted, failed, children)
 
+    def _each(
+        self, opened: Campaign, wanted: list[RunToAdd], failed: list[str], children: Sequence[Child]
+    ) -> None:
         from hersey.log.many import failure_line
 
         counts: Counter[str] = Counter()

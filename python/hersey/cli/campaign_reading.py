@@ -9,7 +9,7 @@ import json
 from collections import deque
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
-from contextlib import suppress
+from contextlib import contextmanager, nullcontext, suppress
 from dataclasses import asdict, replace
 from functools import lru_cache, partial
 from pathlib import Path
@@ -81,17 +81,25 @@ def answer(request: dict[str, Any], _payload: bytes) -> tuple[dict[str, Any], by
     return asdict(read), b""
 
 
-def readers(machine: Path | None) -> list[Child]:
-    """Return the processes that read runs; they begin to load what they need."""
+@contextmanager
+def readers(machine: Path | None) -> Iterator[list[Child]]:
+    """Yield the processes that read runs, which begin to load what they need; they end with the context."""
     children = [Child(Path(__file__)) for _ in range(_PROCESSES)]
 
     def load(child: Child) -> None:
         with suppress(FailedError, LostError):  # as reading a run will say
             child.ask({"machine": machine and str(machine)})
 
-    for child in children:
-        Thread(target=load, args=(child,), daemon=True).start()
-    return children
+    loading = [Thread(target=load, args=(child,), daemon=True) for child in children]
+    for thread in loading:
+        thread.start()
+    try:
+        yield children
+    finally:
+        for thread, child in zip(loading, children, strict=True):
+            child.stop()
+            thread.join()  # which may just have started its process
+            child.stop()
 
 
 def entries(
@@ -113,11 +121,10 @@ def entries(
         yield from each_of(task, whole, called=lambda run: run[0], client=client)
         return
     if len(logs) < FEW:
-        for child in children:
-            child.stop()
         yield from (_tried(reading, machine, run) for run in logs)
         return
-    yield from _in_processes(reading, logs, machine, children or readers(machine))
+    with nullcontext(children) if children else readers(machine) as started:
+        yield from _in_processes(reading, logs, machine, started)
 
 
 def _in_processes(

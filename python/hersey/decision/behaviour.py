@@ -10,7 +10,6 @@ from typing import Annotated, Any, TypeVar
 
 import numpy as np
 
-from hersey.arrays import FloatArray
 from hersey.cache.kept import kept
 from hersey.damping.curves import CurveMixture
 from hersey.damping.dwells import SteadyPoints
@@ -45,9 +44,9 @@ _STICK_SPEEDS = 17
 _BELOW = 0.9
 #: Temperatures that are the same, K: points at them can be stepped between.
 _ALIKE = 1.0
-#: Step of the sensitivities of V* in standard deviations of a number, and the accuracy of the folds beside.
-#: Where stick-slip dies out is known to some 1e-4, however fine its motion: a short step would show that.
-_STEP, _FINE = 1.0, 1e-6
+#: Factor by which a number is moved for the sensitivity of V*, and the accuracy of the folds then: V* is
+#: known to 1e-4 at best, and a factor nearer to 1 would show its error.
+_STEP, _FINE = 1.1, 1e-6
 
 _T = TypeVar("_T")
 #: Called with the name of the step that is being worked on.
@@ -284,25 +283,16 @@ def _typical(found: Posterior, kelvin: float | None, count: int) -> Drives:
     return typical_draw(found, kelvin).take(np.zeros(count, dtype=np.intp))
 
 
-def _moved(drives: Drives, latent: FloatArray, closure: int | None = None) -> Drives:
-    kept = drives.closure if closure is None else np.full(len(drives), closure, dtype=np.intp)
-    return Drives(drives.law, kept, latent)
-
-
 def _sensitivity(found: Posterior) -> dict[str, float]:
     """Relative change of V* per relative change of stiffness, mass and stick speed, of the typical draw."""
-    kelvin, size = found.temperature, 2 * len(NUMBERS)
-    drives = _typical(found, kelvin, size)
-    latent = drives.latent.copy()
-    for i in range(len(NUMBERS)):
-        latent[2 * i, i] += _STEP
-        latent[2 * i + 1, i] -= _STEP
-    moved = _moved(drives, latent)
-    fold = np.log(found.model.folds(moved, kelvin, accuracy=_FINE).upper)
-    numbers = np.log(found.model.numbers(moved))
-    rows = range(len(NUMBERS) - 1)
-    slopes = {i: (fold[2 * i] - fold[2 * i + 1]) / (numbers[2 * i, i] - numbers[2 * i + 1, i]) for i in rows}
-    return {NUMBERS[i]: float(slope) for i, slope in slopes.items() if np.isfinite(slope)}
+    names, kelvin = NUMBERS[:3], found.temperature
+    factors = np.ones((2 * len(names), len(names)))
+    for i in range(len(names)):
+        factors[2 * i, i], factors[2 * i + 1, i] = _STEP, 1.0 / _STEP
+    drives = _typical(found, kelvin, len(factors))
+    fold = np.log(found.model.folds(drives, kelvin, accuracy=_FINE, factors=factors).upper)
+    slopes = (fold[::2] - fold[1::2]) / (2.0 * np.log(_STEP))
+    return {name: float(slope) for name, slope in zip(names, slopes, strict=True) if np.isfinite(slope)}
 
 
 def _against_stick_speed(found: Posterior, machine: Machine) -> StickSpeeds:

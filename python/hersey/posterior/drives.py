@@ -154,17 +154,21 @@ class DriveModel:
         accuracy: float = 1e-3,
         threads: int = 1,
         stick_speed: FloatArray | None = None,
+        factors: FloatArray | None = None,
         slips: bool = True,
         curve: FloatArray | None = None,
     ) -> _core.CurveFolds:
         """Return transition, V* and the force that starts a belt (m/s, m/s, N) of each draw.
 
-        ``stick_speed`` (m/s, at this temperature) takes the place of those drawn. Unless it ``slips`` the
-        roll grips any force. ``curve`` is their `log_force` there, where that is known already.
+        ``stick_speed`` (m/s, at this temperature) takes the place of those drawn. ``factors``, shape
+        (draws, 3), multiply stick speed, stiffness and mass. Unless it ``slips`` the roll grips any force.
+        ``curve`` is their `log_force` there, where that is known already.
         """
         curves, columns = self._belts(drives, kelvin, curve)
         if stick_speed is not None:
             columns[2] = np.ascontiguousarray(stick_speed)
+        if factors is not None:
+            columns[2], columns[0], columns[1] = np.stack([columns[2], columns[0], columns[1]]) * factors.T
         grip = self.machine.train.grip if slips else None
         return _core.curve_folds(curves, columns, grip, accuracy, threads, None, int(MOST_STEPS))
 

@@ -43,6 +43,8 @@ def test_places_of_the_table_are_those_that_a_search_finds() -> None:
     own = np.array([[0.3]])
     searched = np.interp(x, grid, asperities), np.interp(x, grid, film)
     assert np.array_equal(curve(x, own), np.log(searched[0] + np.exp(searched[1] + own)))
+    unknown = curve(np.array([[np.nan, 0.0]]), own)
+    assert np.isnan(unknown).tolist() == [[True, False]]
 
 
 def test_twice_the_film_is_twice_the_drag_where_the_film_carries_all() -> None:

@@ -55,7 +55,7 @@ class _Drag:
         """Return ln of the drag of both at places, for draws of the film's part."""
         at = np.clip(x, self.grid[0], self.grid[-1])
         # np.interp would search the place of each anew, for either
-        row = ((at - self.grid[0]) / _STEP).astype(np.intp)
+        row = (np.nan_to_num(at - self.grid[0]) / _STEP).astype(np.intp)
         row -= at < self.grid.take(row)
         row += at >= self._ends.take(row)
         beyond = at - self.grid.take(row)
