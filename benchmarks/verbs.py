@@ -26,7 +26,7 @@ VERBS: dict[str, tuple[list[str], float]] = {
     "inspect": (["inspect", LOG], 0.4),
     "map": (["map", MACHINE, LOG, *TARE, "--out", "map.html", "--force"], 0.8),
 }
-#: What commands stand on: none can be faster than its import.
+#: The libraries that every command imports: none can be faster than that.
 LIBRARIES = "import typer, pydantic, polars, scipy.optimize"
 CAMPAIGN = "life.hersey"
 ADD = ["--table", str(EXAMPLES / "life" / "runs.csv"), "--means", "--machine", MACHINE]

@@ -20,8 +20,8 @@ from hersey.units import (
     conversion,
     convert,
     kinds,
-    others,
     parse,
+    pint_units,
     rpm,
     spelling,
     table,
@@ -146,7 +146,7 @@ def no_registry(monkeypatch: pytest.MonkeyPatch) -> None:
     def forbidden() -> None:
         raise AssertionError("the registry is asked")
 
-    monkeypatch.setattr(others, "_full_registry", forbidden)
+    monkeypatch.setattr(pint_units, "_full_registry", forbidden)
     for cached in (conversion, table.from_table):
         cached.cache_clear()
 

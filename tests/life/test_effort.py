@@ -18,7 +18,7 @@ from hersey.life.growth.laws import LAWS
 from hersey.life.growth.marginal import likelihood
 from hersey.life.growth.points import points_of
 from hersey.life.indicators import torque_surface
-from hersey.life.other_uses import other_uses
+from hersey.life.other_uses import uses_beside
 from hersey.life.time_to_failure import way
 from tests.life import shipped
 
@@ -40,7 +40,7 @@ def test_no_growth_is_fitted_twice(monkeypatch: pytest.MonkeyPatch) -> None:
     indicators = hersey.indicators_of(campaign, machine, signs=False)
     found = hersey.time_to_failure(indicators)
     once = fits.total()
-    uses = other_uses(campaign, machine, indicators, found=found)
+    uses = uses_beside(found, campaign, machine, indicators)
     assert set(fits.values()) == {1}
     assert fits.total() - once == 1  # the motor torque of the colder start
     assert torque_surface._kernel_of.cache_info().misses == 1  # of the colder start too

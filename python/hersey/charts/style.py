@@ -67,7 +67,7 @@ class _Plot(alt.Chart):
 
 
 class _Layers(alt.LayerChart):
-    """Layers that altair takes as they are: it would copy all of them for whatever they are laid into."""
+    """Layers that are not copied when they become part of another chart, as altair does."""
 
     def copy(self, deep: Any = True, ignore: list[str] | None = None) -> Any:
         """Return a copy that shares the layers."""

@@ -13,7 +13,7 @@ from hersey.life.drift.result import Drift, fit_drift
 from hersey.life.film.through_life import FilmLife, film_life
 from hersey.life.indicator import Indicators
 from hersey.life.indicators.of_campaign import indicators_of
-from hersey.life.other_uses import OtherUses, other_uses
+from hersey.life.other_uses import OtherUses, uses_beside
 from hersey.life.time_to_failure.estimate import TimeToFailure, time_to_failure
 from hersey.result import Result
 from hersey.schema.warning import Warning
@@ -135,7 +135,7 @@ def follow(
     others = (
         tried(
             "ages in other operating conditions",
-            lambda: other_uses(campaign, machine, indicators, seed=seed, found=found),
+            lambda: uses_beside(found, campaign, machine, indicators, seed=seed),
         )
         if uses
         else None

@@ -118,7 +118,6 @@ def other_uses(
     indicators: Indicators,
     *,
     seed: int = 0,
-    found: TimeToFailure | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> OtherUses:
     """Return the times to failure under other operating conditions of the machine.
@@ -132,8 +131,6 @@ def other_uses(
         are taken from here.
     seed
         Random seed, that of `time_to_failure`: the stated conditions then have the same numbers.
-    found
-        `time_to_failure` of these indicators and this seed. Its growths are used; fitted again if omitted.
     progress
         Called with conditions done and their total.
 
@@ -142,6 +139,19 @@ def other_uses(
     ParameterError
         If the machine states nothing that other conditions could change.
     """
+    return uses_beside(None, campaign, machine, indicators, seed=seed, progress=progress)
+
+
+def uses_beside(
+    found: TimeToFailure | None,
+    campaign: Campaign,
+    machine: Machine,
+    indicators: Indicators,
+    *,
+    seed: int = 0,
+    progress: Callable[[int, int], None] | None = None,
+) -> OtherUses:
+    """Return `other_uses` with the growths of a `time_to_failure` of these very indicators and this seed."""
     limit = machine.limits.motor_torque
     cold = _coldest(campaign, machine)
     limits = () if limit is None else tuple(limit * factor for factor in _LIMITS)
@@ -153,7 +163,7 @@ def other_uses(
             "there are no other operating conditions to compare. Set motor_torque in [limits]"
         )
     ways = _Ways({each.name: i for i, each in enumerate(indicators.each)}, seed)
-    if found is not None and found.seed == seed:
+    if found is not None:
         ways.take(indicators, found)
     uses: list[Use] = []
     total = max(len(limits), 1) * max(len(starts), 1) * len(duties)
@@ -213,7 +223,7 @@ class _Ways:
 
 
 def _key(each: Indicator) -> tuple[str, bytes]:
-    """What the growth of an indicator depends on, its seed among it."""
+    """What the growth of an indicator depends on; its name stands for its seed."""
     return each.name, each.value.tobytes() + each.error.tobytes()
 
 

@@ -75,7 +75,7 @@ def hysteresis_sweep(
     zip
         As in `sweep`.
     lower
-        Whether to compute the lower edge too. Without it (NaN) the sweep takes three quarters of the time.
+        Whether to compute the lower edge too. Without it (NaN) the sweep takes four fifths of the time.
     work
         As in `sweep`, with a default tolerance of 1e-11; ``most_steps`` is that of `hysteresis`. On one
         machine, threads are as fast as workers.

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 from hersey.errors import UnitError, WrongKindError
 from hersey.units.kinds import KINDS, meant, wrong_kind
-from hersey.units.others import pint_unit, registry
+from hersey.units.pint_units import pint_unit, registry
 from hersey.units.spelling import COUNTS, LONGEST_UNIT, of_encoder, split_factor
 from hersey.units.table import ZERO_CELSIUS, from_table
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from hersey.errors import WrongKindError
-from hersey.units.others import pint_unit, registry
+from hersey.units.pint_units import pint_unit, registry
 from hersey.units.table import from_table
 
 #: Of each kind of quantity that a log or a command carries: the SI unit, an example, and units as people

@@ -19,7 +19,7 @@ def thinned(values: FloatArray) -> FloatArray:
 
 
 def means_of_whole(values: FloatArray, size: int) -> FloatArray:
-    """Means of so many samples each, of one as they are; those at the end that are fewer are left out."""
+    """Means of so many samples each; those at the end that are fewer are left out."""
     rows = values.size // size * size
     if size == 1 or not rows:
         return values[:rows]

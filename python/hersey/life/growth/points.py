@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -24,6 +25,15 @@ _FALLS = 3.0
 _FEW = 3
 
 
+class ByRun(NamedTuple):
+    """`Points` with a row for the first run of each specimen, one for the second, and so on."""
+
+    age: FloatArray
+    value: FloatArray
+    variance: FloatArray
+    given: BoolArray
+
+
 @dataclass(frozen=True)
 class Points:
     """Logarithms of the indicator, one row per specimen, filled up; ages in the greatest age."""
@@ -37,10 +47,10 @@ class Points:
     )  #: row and column of each run
 
     @cached_property
-    def by_run(self) -> Points:
-        """The same turned over: a row for the first run of each specimen, one for the second, and so on."""
+    def by_run(self) -> ByRun:
+        """The same by run."""
         age, value, variance = (np.ascontiguousarray(e.T) for e in (self.age, self.value, self.variance))
-        return Points(age, value, variance, np.ascontiguousarray(self.given.T), self.place)
+        return ByRun(age, value, variance, np.ascontiguousarray(self.given.T))
 
     def part(self, units: int) -> Points:
         """The first specimens alone."""
