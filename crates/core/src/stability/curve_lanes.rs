@@ -18,7 +18,7 @@ type Row = [f64; LANES];
 /// Steps over the time scale: the first, and the longest.
 const FIRST: f64 = 0.01;
 const LONGEST: f64 = 0.2;
-/// A step that is as small a share of the longest is taken, whatever its error.
+/// Share of the longest step down to which a step may be rejected; a shorter one is taken, whatever its error.
 const LEAST: f64 = 1e-9;
 /// Scale of errors of the speed over that of the drive, where the belt hardly moves.
 const SLOW: f64 = 1e-3;
