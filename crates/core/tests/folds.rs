@@ -186,6 +186,17 @@ fn no_swing_stays_where_drag_rises() {
     assert!(found[1].drive_speed.is_nan() && !found[1].stable);
 }
 
+#[test]
+fn the_drag_work_of_a_small_cycle_is_that_of_one_lap() {
+    let train = Drivetrain::new(1.0, 1.0).unwrap();
+    let drag = Drag::new(3.11, 1.0, -0.661, -1.251, 0.183, Closure::Retained).unwrap();
+    let start = Start { belt_speed: 0.85, stretch: drag.force(0.85) };
+    let cycle = stick_slip(&train, &drag, 0.991_338_038_002_153, start, TOLERANCE).unwrap();
+    assert_eq!(cycle.kind, CycleKind::Oscillation);
+    // SciPy's DOP853: drive speed times the integral of the pull over one period
+    assert!((cycle.drag_work - 22.450_588_164).abs() < 1e-6, "{cycle:?}");
+}
+
 /// A table that falls by 9 N s/m about from 0.1 to 0.3 m/s, and by 48 further on.
 fn falling_table() -> Drag {
     let (speeds, forces) = ([0.01, 0.1, 0.3, 1.0, 3.0], [60.0, 50.0, 48.0, 20.0, 30.0]);
@@ -207,17 +218,33 @@ fn a_belt_slides_steadily_where_a_table_that_falls_falls_by_less_than_the_rest_r
 }
 
 #[test]
-fn a_belt_that_sticks_only_once_in_several_laps_has_settled_to_that() {
-    // so near to the fold that steps decide whether a lap just comes down to the stick speed
+fn near_the_fold_rounding_does_not_lengthen_the_period() {
+    // at a loose tolerance rounding decides there whether a lap just comes down to the stick speed
     let (drag, train) = (falling_table(), Drivetrain::new(1000.0, 1.0).unwrap());
     let (mut low, mut high) = (3.0, 3.2);
-    let mut longest = 1;
     while high - low > 1e-12 * high {
         let middle = 0.5 * (low + high);
         let cycle = stick_slip(&train, &drag, middle, Start::REST, 1e-8).unwrap();
         assert!(cycle.kind != CycleKind::Unsettled && cycle.laps < 1000, "{middle}: {cycle:?}");
-        longest = longest.max(cycle.laps_per_period);
+        assert_eq!(cycle.laps_per_period, 1, "{middle}: {cycle:?}");
         if cycle.kind == CycleKind::StickSlip { low = middle } else { high = middle }
     }
-    assert!(longest > 1);
+}
+
+#[test]
+fn a_lap_that_rounding_lets_stick_is_as_long_as_one_of_tight_steps() {
+    let (drag, train) = (falling_table(), Drivetrain::new(1000.0, 1.0).unwrap());
+    let at = |tolerance: f64| {
+        stick_slip(&train, &drag, 3.077_691_523_684_189, Start::REST, tolerance).unwrap()
+    };
+    let (loose, tight) = (at(1e-8), at(1e-9));
+    assert_eq!((loose.kind, tight.kind), (CycleKind::StickSlip, CycleKind::StickSlip));
+    for (a, b) in [
+        (loose.frequency, tight.frequency),
+        (loose.drag_work, tight.drag_work),
+        (loose.speed_min, tight.speed_min),
+        (loose.speed_max, tight.speed_max),
+    ] {
+        assert!((a - b).abs() <= 1e-7 * b, "{loose:?} {tight:?}");
+    }
 }

@@ -30,7 +30,8 @@ const CLOSED: f64 = 1e-9;
 const CLOSED_SMOOTH: f64 = 100.0;
 /// Time within which the belt overtakes the drive once, in units of `sqrt(m/k)`.
 const ONCE: f64 = 1e-6;
-/// Laps after which a motion with memory may repeat itself, or one that sticks only once in several laps.
+/// Laps after which a motion with memory may repeat itself, or a belt without may stick as before, so near to `V*` that
+/// rounding decides whether a lap sticks.
 const MAX_PERIOD: usize = 16;
 /// Swing of the belt speed, relative to the drive speed, below which it counts as steady.
 pub(super) const STEADY: f64 = 1e-7;
@@ -112,6 +113,8 @@ struct Laps<'a> {
     /// Whether the drag remembers, so that laps may repeat in groups; the laps before, each with its begin.
     memory: bool,
     past: VecDeque<(Section, Lap)>,
+    /// Whether the lap under way, from overtaking to overtaking, is the one that sticks between some that do not.
+    rounding_decides: bool,
     /// The last whole lap, of a motion that has an end.
     whole: Option<StickSlipCycle>,
     extrapolation: Extrapolation,
@@ -153,6 +156,7 @@ impl<'a> Laps<'a> {
             swing: f64::NAN,
             memory,
             past: VecDeque::new(),
+            rounding_decides: false,
             whole: None,
             extrapolation: Extrapolation::default(),
             pieces: 0,
@@ -177,11 +181,17 @@ impl<'a> Laps<'a> {
         }
         let Some(section) = self.section(event, &piece) else { return Ok(None) };
         (self.pieces, self.overtakings) = (0, 0);
+        if self.memory || !section.stuck {
+            self.lap.leave_rest_of(&piece, section.time);
+        }
         self.count += 1;
         if self.until.is_finite() {
             self.keep_whole(&section);
             self.begin_lap(section, &piece);
             return Ok(None);
+        }
+        if self.rounding_decides {
+            return Ok(Some(self.cycle(CycleKind::StickSlip, section.time)));
         }
         if let Some(kind) = self.verdict(&section) {
             return Ok(Some(self.cycle(kind, section.time)));
@@ -189,7 +199,7 @@ impl<'a> Laps<'a> {
         if let Some(period) = self.closed_period(&section) {
             return Ok(Some(period));
         }
-        if !self.skip_ahead(&section) {
+        if !self.rounding_decides && !self.skip_ahead(&section) {
             self.begin_lap(section, &piece);
         }
         Ok(None)
@@ -229,6 +239,9 @@ impl<'a> Laps<'a> {
             .filter(|s| s.stuck || s.time - self.overtaken > ONCE * self.train.time_scale());
         if let Some(section) = found.filter(|s| !s.stuck) {
             self.overtaken = section.time;
+        }
+        if self.rounding_decides {
+            return found.filter(|s| !s.stuck);
         }
         let section = found.filter(|s| s.stuck || self.lap.stick_duration == 0.0)?;
         // every slip after a release overtakes the drive once; a second time means that it did not stick
@@ -280,6 +293,11 @@ impl<'a> Laps<'a> {
         }
         let repeats = |p: &Section| section.repeats(p, self.drag, self.train, self.near);
         let laps = 1 + self.past.iter().position(|(begin, _)| repeats(begin)).filter(|i| *i > 0)?;
+        if !self.memory {
+            // it moves in a plane: a lap from the release that does not stick never sticks later, but for rounding
+            self.rounding_decides = true;
+            return None;
+        }
         let group = self.past.iter().take(laps).map(|(_, lap)| *lap).rev();
         let joined = group.reduce(|all, next| all.joined(&next))?;
         if joined.swing() <= GROWING * self.drive_speed.abs() {

@@ -164,13 +164,7 @@ impl Lap {
             return;
         }
         let begin = time - piece.time;
-        let impulse = piece.impulse(begin);
-        self.impulse += impulse;
-        if piece.start.slipping {
-            self.slipping.0 += piece.duration - begin;
-            self.slipping.1 += piece.start.pull * piece.start.direction * piece.way(begin);
-            self.slipping.2 += impulse;
-        }
+        self.count(piece, begin, 1.0);
         let turning = piece.turning_points().map(|t| t.filter(|t| *t >= begin));
         for elapsed in
             [Some(begin), Some(piece.duration), turning[0], turning[1]].into_iter().flatten()
@@ -178,6 +172,23 @@ impl Lap {
             let (belt_speed, pull) = piece.at(elapsed);
             self.speed = (self.speed.0.min(belt_speed), self.speed.1.max(belt_speed));
             self.pull = (self.pull.0.min(pull), self.pull.1.max(pull));
+        }
+    }
+
+    /// Leave out `piece`, its last, from `time` on. Its extremes stay: a closed orbit has passed there before.
+    pub(super) fn leave_rest_of(&mut self, piece: &Piece, time: f64) {
+        self.count(piece, time - piece.time, -1.0);
+    }
+
+    /// Add, or take off, what the pull does over `piece` from `begin` on.
+    fn count(&mut self, piece: &Piece, begin: f64, sign: f64) {
+        let impulse = sign * piece.impulse(begin);
+        self.impulse += impulse;
+        if piece.start.slipping {
+            let force = piece.start.pull * piece.start.direction;
+            self.slipping.0 += sign * (piece.duration - begin);
+            self.slipping.1 += sign * (force * piece.way(begin));
+            self.slipping.2 += impulse;
         }
     }
 

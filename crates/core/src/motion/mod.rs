@@ -11,6 +11,7 @@
 //! | `sharing`     | series of the force of a contact whose load film and asperities share     |
 //! | `shared_by_inlet`, `shared_by_power` | the series of its film, by either law      |
 //! | `taylor`      | one slip step as a Taylor series with its own dense output                |
+//! | `dormand_prince` | coefficients of that Runge-Kutta pair                                  |
 //! | `runge_kutta` | steps for stiff motion (Radau IIA) and for the second opinion             |
 //! | `piece`       | a stretch of smooth motion: state, conditions and turning points along it |
 //! | `event`       | changes of mode and the conditions that cause them                        |
@@ -36,6 +37,7 @@
 //! `LuGre`). A torque on a rotor is the same equation: `J` for the mass, `K` for the stiffness.
 
 mod cycle;
+pub(crate) mod dormand_prince;
 mod ensemble;
 mod event;
 mod heat;

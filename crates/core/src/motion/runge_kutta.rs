@@ -2,9 +2,9 @@
 //!
 //! Both find the state at any time inside a step by a shorter step from its start, so that samples and
 //! events are as accurate as the steps and do not change them. Radau IIA of order 5: E. Hairer,
-//! G. Wanner, "Solving Ordinary Differential Equations II" (1996), IV.5; Dormand and Prince, J. Comput.
-//! Appl. Math. 6 (1980).
+//! G. Wanner, "Solving Ordinary Differential Equations II" (1996), IV.5.
 
+use super::dormand_prince::{ERROR, NODES, STAGES, WEIGHTS};
 use super::schedule::Cubic;
 use crate::drag::{Closure, Drag, TemperatureLaw};
 
@@ -349,36 +349,16 @@ fn solve<const M: usize>(lu: &[[f64; M]; M], rows: &[usize; M], b: &mut [f64; M]
     *b = x;
 }
 
-const DP_C: [f64; 7] = [0.0, 0.2, 0.3, 0.8, 8.0 / 9.0, 1.0, 1.0];
-const DP_A: [[f64; 6]; 7] = [
-    [0.0; 6],
-    [0.2, 0.0, 0.0, 0.0, 0.0, 0.0],
-    [3.0 / 40.0, 9.0 / 40.0, 0.0, 0.0, 0.0, 0.0],
-    [44.0 / 45.0, -56.0 / 15.0, 32.0 / 9.0, 0.0, 0.0, 0.0],
-    [19372.0 / 6561.0, -25360.0 / 2187.0, 64448.0 / 6561.0, -212.0 / 729.0, 0.0, 0.0],
-    [9017.0 / 3168.0, -355.0 / 33.0, 46732.0 / 5247.0, 49.0 / 176.0, -5103.0 / 18656.0, 0.0],
-    [35.0 / 384.0, 0.0, 500.0 / 1113.0, 125.0 / 192.0, -2187.0 / 6784.0, 11.0 / 84.0],
-];
-/// Weights of the fifth order less those of the fourth.
-const DP_E: [f64; 7] = [
-    71.0 / 57600.0,
-    0.0,
-    -71.0 / 16695.0,
-    71.0 / 1920.0,
-    -17253.0 / 339_200.0,
-    22.0 / 525.0,
-    -1.0 / 40.0,
-];
-
 /// One step of Dormand and Prince's pair: the state of order 5 and its difference to order 4.
 fn dormand_prince(flow: &Flow, y: &State, h: f64) -> (State, State) {
-    let mut k = [[0.0; N]; 7];
+    let mut k = [[0.0; N]; STAGES];
     let mut stage = *y;
-    for i in 0..7 {
-        stage =
-            std::array::from_fn(|l| y[l] + h * (0..i).map(|j| DP_A[i][j] * k[j][l]).sum::<f64>());
-        k[i] = flow.rates(DP_C[i] * h, &stage);
+    for i in 0..STAGES {
+        stage = std::array::from_fn(|l| {
+            y[l] + h * (0..i).map(|j| WEIGHTS[i][j] * k[j][l]).sum::<f64>()
+        });
+        k[i] = flow.rates(NODES[i] * h, &stage);
     }
-    let error = std::array::from_fn(|l| h * (0..7).map(|j| DP_E[j] * k[j][l]).sum::<f64>());
+    let error = std::array::from_fn(|l| h * (0..STAGES).map(|j| ERROR[j] * k[j][l]).sum::<f64>());
     (stage, error)
 }

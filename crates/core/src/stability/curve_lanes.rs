@@ -3,10 +3,11 @@
 //! Each lane follows one lap of one belt, from its release until it sticks or has escaped. Every lane's arithmetic is its
 //! own, so results do not depend on the neighbours, on the instruction set, or on the number of threads.
 //!
-//! Steps are those of Dormand and Prince (J. Comput. Appl. Math. 6 (1980) 19), whose last slope is the next one's first.
+//! Steps are those of Dormand and Prince, whose last slope is the next one's first.
 
 use super::curve_laps::{CurveBelt, Lap, Laps, Release, SLOWEST};
 use crate::drag::{Closure, SMOOTHING};
+use crate::motion::dormand_prince::{ERROR, STAGES, WEIGHTS};
 use crate::rows::{exponentials, fused, logarithms};
 
 /// Laps that are followed together.
@@ -14,31 +15,10 @@ pub(super) const LANES: usize = 16;
 
 type Row = [f64; LANES];
 
-/// Slopes of a step, and how those before weigh in the state at which each is taken.
-const STAGES: usize = 7;
-const WEIGHTS: [[f64; STAGES - 1]; STAGES - 1] = [
-    [0.2, 0.0, 0.0, 0.0, 0.0, 0.0],
-    [3.0 / 40.0, 9.0 / 40.0, 0.0, 0.0, 0.0, 0.0],
-    [44.0 / 45.0, -56.0 / 15.0, 32.0 / 9.0, 0.0, 0.0, 0.0],
-    [19372.0 / 6561.0, -25360.0 / 2187.0, 64448.0 / 6561.0, -212.0 / 729.0, 0.0, 0.0],
-    [9017.0 / 3168.0, -355.0 / 33.0, 46732.0 / 5247.0, 49.0 / 176.0, -5103.0 / 18656.0, 0.0],
-    [35.0 / 384.0, 0.0, 500.0 / 1113.0, 125.0 / 192.0, -2187.0 / 6784.0, 11.0 / 84.0],
-];
-/// Weights of the slopes in the error.
-const ERROR: [f64; STAGES] = [
-    71.0 / 57600.0,
-    0.0,
-    -71.0 / 16695.0,
-    71.0 / 1920.0,
-    -17253.0 / 339_200.0,
-    22.0 / 525.0,
-    -1.0 / 40.0,
-];
-
 /// Steps over the time scale: the first, and the longest.
 const FIRST: f64 = 0.01;
 const LONGEST: f64 = 0.2;
-/// A step that is as small a share of the longest is taken, whatever its error.
+/// Share of the longest step down to which a step may be rejected; a shorter one is taken, whatever its error.
 const LEAST: f64 = 1e-9;
 /// Scale of errors of the speed over that of the drive, where the belt hardly moves.
 const SLOW: f64 = 1e-3;
@@ -184,7 +164,7 @@ impl CurveLanes {
         for stage in 1..STAGES {
             let (mut du, mut dp) = ([0.0; LANES], [0.0; LANES]);
             for before in 0..stage {
-                let weight = WEIGHTS[stage - 1][before];
+                let weight = WEIGHTS[stage][before];
                 for l in 0..LANES {
                     du[l] = fused(weight, self.slopes[before][0][l], du[l]);
                     dp[l] = fused(weight, self.slopes[before][1][l], dp[l]);

@@ -1,12 +1,12 @@
 //! Start-ups of belts whose drag is a smooth curve: does a profile of drive speed end in sliding for good?
 //!
 //! The belt is followed from rest, held in closed form wherever it sticks. It slides for good once its slowest speed
-//! grows from one lap to the next after the last ramp. Steps are those of Dormand and Prince (J. Comput. Appl. Math. 6
-//! (1980) 19).
+//! grows from one lap to the next after the last ramp. Steps are those of Dormand and Prince.
 
 use super::curve_laps::{CurveBelt, Laps, Release};
 use crate::drag::Closure;
 use crate::error::{Error, above, unless_stopped};
+use crate::motion::dormand_prince::{ERROR, STAGES, WEIGHTS};
 use crate::work::Work;
 
 /// What came of a start-up.
@@ -261,52 +261,25 @@ struct Step {
 /// One step of Dormand and Prince, of order five, and its error.
 #[inline]
 fn stepped(rate: &impl Fn(f64, f64) -> (f64, f64), u: f64, p: f64, h: f64) -> Step {
-    let a = rate(u, p);
-    let b = rate(u + h * 0.2 * a.0, p + h * 0.2 * a.1);
-    let at = |c: [(f64, (f64, f64)); 5]| {
+    let mut slopes = [rate(u, p); STAGES];
+    slopes[1] = rate(u + h * WEIGHTS[1][0] * slopes[0].0, p + h * WEIGHTS[1][0] * slopes[0].1);
+    let (mut speed, mut pull) = (u, p);
+    for stage in 2..STAGES {
         let (mut du, mut dp) = (0.0, 0.0);
-        for (weight, slope) in c {
+        for (weight, slope) in WEIGHTS[stage].iter().zip(&slopes[..stage]) {
             du += weight * slope.0;
             dp += weight * slope.1;
         }
-        (u + h * du, p + h * dp)
+        (speed, pull) = (u + h * du, p + h * dp);
+        slopes[stage] = rate(speed, pull);
+    }
+    let error = |of: fn(&(f64, f64)) -> f64| {
+        let sum: f64 =
+            ERROR.iter().zip(&slopes[..STAGES - 1]).map(|(w, slope)| w * of(slope)).sum();
+        // the last weight is -1/40: dividing by 40 rounds less
+        h * (sum - of(&slopes[STAGES - 1]) / 40.0)
     };
-    let none = (0.0, a);
-    let (x, y) = at([(3.0 / 40.0, a), (9.0 / 40.0, b), none, none, none]);
-    let c = rate(x, y);
-    let (x, y) = at([(44.0 / 45.0, a), (-56.0 / 15.0, b), (32.0 / 9.0, c), none, none]);
-    let d = rate(x, y);
-    let (x, y) = at([
-        (19372.0 / 6561.0, a),
-        (-25360.0 / 2187.0, b),
-        (64448.0 / 6561.0, c),
-        (-212.0 / 729.0, d),
-        none,
-    ]);
-    let e = rate(x, y);
-    let (x, y) = at([
-        (9017.0 / 3168.0, a),
-        (-355.0 / 33.0, b),
-        (46732.0 / 5247.0, c),
-        (49.0 / 176.0, d),
-        (-5103.0 / 18656.0, e),
-    ]);
-    let f = rate(x, y);
-    let (x, y) = at([
-        (35.0 / 384.0, a),
-        (500.0 / 1113.0, c),
-        (125.0 / 192.0, d),
-        (-2187.0 / 6784.0, e),
-        (11.0 / 84.0, f),
-    ]);
-    let g = rate(x, y);
-    let error = |i: fn((f64, f64)) -> f64| {
-        h * (71.0 / 57600.0 * i(a) - 71.0 / 16695.0 * i(c) + 71.0 / 1920.0 * i(d)
-            - 17253.0 / 339_200.0 * i(e)
-            + 22.0 / 525.0 * i(f)
-            - i(g) / 40.0)
-    };
-    Step { speed: x, pull: y, error: (error(|s| s.0), error(|s| s.1)) }
+    Step { speed, pull, error: (error(|s| s.0), error(|s| s.1)) }
 }
 
 #[cfg(test)]

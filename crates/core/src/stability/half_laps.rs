@@ -15,9 +15,9 @@ const SHARE: f64 = 0.1;
 const TIGHTEST: f64 = 1e-14;
 /// Steps of one lap after which a search is given up.
 const MAX_STEPS: u32 = 20_000;
-/// Halvings, in logarithms, of the range of speeds where the way back may begin: nobody sees more.
+/// Bisections, in logarithms, for the speed where the way back may begin; more would not change the gap.
 const MAX_HALVINGS: usize = 12;
-/// Closeness of laps to the curve of slow motion, in e-folds, from which they are the same.
+/// E-folds by which laps approach the curve of slow motion, after which they are the same.
 const FORGOTTEN: f64 = 45.0;
 /// Tolerance of each step.
 pub(super) fn step_tolerance(tolerance: f64) -> f64 {

@@ -10,7 +10,8 @@
 //! | `lower_edge` | least drive speed of any of them, many at once                              |
 //! | `deviation` | what becomes of a small deviation along a lap                                |
 //! | `valley` | the bottom of a curve, from laps that do not quite come back                    |
-//! | `looks` | the lower edge from cycles at some slowest speeds                                |
+//! | `rising_edge` | lower edges at the speed from which drag rises                             |
+//! | `parabolas` | the lower edge from cycles at some slowest speeds, without slopes            |
 //! | `band` | lower edge, transition and upper fold of a belt, for every closure                 |
 //! | `smooth` | edges of a belt with a smooth closure, decided by a lap or two                   |
 //! | `curve_laps` | slip laps and fold of a belt whose drag is a smooth curve                    |
@@ -30,8 +31,9 @@ mod cycles;
 mod deviation;
 mod fold;
 mod half_laps;
-mod looks;
 mod lower_edge;
+mod parabolas;
+mod rising_edge;
 mod secant;
 mod slip_lap;
 mod smooth;

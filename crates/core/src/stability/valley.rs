@@ -8,9 +8,9 @@
 const MOST_LAPS: usize = 16;
 /// Error of `w`, foretold from the last laps, at which a search ends.
 const FOUND: f64 = 1e-12;
-/// Share of a slope, or of its change, that laps which miss may have spoilt if it is to count.
-const SPOILT: f64 = 0.25;
-/// Share of the room left that is gone where the slope is almost nil, and how it bends not known.
+/// Relative error of a slope, or of its change, up to which it counts.
+const LARGEST_ERROR: f64 = 0.25;
+/// Step over the room left, where the slope is almost nil and the second derivative is not known.
 const STRIDE: f64 = 0.3;
 /// Share of the slope before from which on a step was too small, and by how much the next is longer.
 const STALLED: f64 = 0.25;
@@ -34,8 +34,9 @@ pub(super) struct LowerEdge {
 pub(super) struct Trial {
     pub slowest: f64,
     pub drive_speed: f64,
-    /// How much faster the cycle's drive is, and the relative error of that for the lap's integrals.
-    pub off: f64,
+    /// How much faster the drive of the cycle is than that of the lap, and the relative error of that from the lap's
+    /// integrals.
+    pub correction: f64,
     pub error: f64,
     /// Slope of `w(s)`.
     pub slope: f64,
@@ -83,20 +84,20 @@ impl Valley {
 
     pub(super) fn take(&mut self, trial: &Trial) -> Step {
         self.laps += 1;
-        let unsure = self.learn(trial);
+        let uncertainty = self.learn(trial);
         let near = FOUND * trial.drive_speed;
-        let next = self.next(trial, unsure, near);
-        let Trial { slowest, drive_speed, off, slope, .. } = *trial;
+        let next = self.next(trial, uncertainty, near);
+        let Trial { slowest, drive_speed, correction, slope, .. } = *trial;
         let ends = slowest <= self.least && slope >= 0.0;
         let drop = if ends { 0.0 } else { 0.5 * slope * slope / self.bend };
-        let unsure_drop = drop * unsure.max((next - slowest).abs() / slowest);
-        let unsure_drop = unsure_drop.min(slope.abs() * self.room(trial));
-        if off.abs() * (trial.error + self.missed(trial)) + unsure_drop <= near {
-            let drive_speed = (drive_speed + off - drop).min(self.rises);
+        let drop_error = drop * uncertainty.max((next - slowest).abs() / slowest);
+        let drop_error = drop_error.min(slope.abs() * self.room(trial));
+        if correction.abs() * (trial.error + self.relative_gap(trial)) + drop_error <= near {
+            let drive_speed = (drive_speed + correction - drop).min(self.rises);
             return Step::Found(LowerEdge { drive_speed, laps: self.laps });
         }
         let step = next - slowest;
-        let drive = drive_speed + off + step * (slope + 0.5 * self.bend * step);
+        let drive = drive_speed + correction + step * (slope + 0.5 * self.bend * step);
         if self.laps == MOST_LAPS || !drive.is_finite() {
             return Step::Nowhere;
         }
@@ -105,19 +106,20 @@ impl Valley {
         Step::Try(next, drive.min(1.5 * drive_speed).max(slowest_drive))
     }
 
-    /// Share by which a lap misses, of what is between its drive speed and the greatest.
-    fn missed(&self, trial: &Trial) -> f64 {
-        (trial.off / (self.rises - trial.drive_speed)).abs()
+    /// Correction of a lap over what lies between its drive speed and the greatest.
+    fn relative_gap(&self, trial: &Trial) -> f64 {
+        (trial.correction / (self.rises - trial.drive_speed)).abs()
     }
 
-    /// What of a slope may come from the lap's missing.
-    fn spoilt(&self, trial: &Trial) -> f64 {
-        self.missed(trial) * (trial.slope.abs() + self.bend * (self.rises - trial.slowest))
+    /// Error that the gap of a lap brings into its slope.
+    fn slope_error(&self, trial: &Trial) -> f64 {
+        self.relative_gap(trial) * (trial.slope.abs() + self.bend * (self.rises - trial.slowest))
     }
 
-    /// Learn from a lap and the one before how `w(s)` bends; how unsure that is, one if they do not say it.
+    /// Learn from a lap and the one before how `w(s)` bends; the relative uncertainty of that, one if
+    /// they do not show it.
     fn learn(&mut self, trial: &Trial) -> f64 {
-        if self.spoilt(trial) < SPOILT * trial.slope.abs() {
+        if self.slope_error(trial) < LARGEST_ERROR * trial.slope.abs() {
             let side = if trial.slope < 0.0 { &mut self.falls } else { &mut self.climbs };
             *side = Some(trial.slowest);
             let width = self.above() - self.below();
@@ -125,27 +127,27 @@ impl Valley {
                 if width <= 0.5 * self.width { (width, 0) } else { (self.width, self.since + 1) };
         }
         let Some(last) = self.last else { return 1.0 };
-        let apart = trial.slowest - last.slowest;
+        let distance = trial.slowest - last.slowest;
         let change = trial.slope - last.slope;
-        let spoilt = (self.spoilt(trial) + self.spoilt(&last)) / change.abs();
-        let bend = change / apart;
-        if !(bend > 0.0 && spoilt < SPOILT && apart.abs() < trial.slowest) {
+        let bend_error = (self.slope_error(trial) + self.slope_error(&last)) / change.abs();
+        let bend = change / distance;
+        if !(bend > 0.0 && bend_error < LARGEST_ERROR && distance.abs() < trial.slowest) {
             return 1.0;
         }
         self.bend = bend;
-        apart.abs() / trial.slowest + spoilt
+        distance.abs() / trial.slowest + bend_error
     }
 
     /// Slowest speed of the next lap.
-    fn next(&self, trial: &Trial, unsure: f64, near: f64) -> f64 {
+    fn next(&self, trial: &Trial, uncertainty: f64, near: f64) -> f64 {
         let Trial { slowest, slope, .. } = *trial;
-        let gone = self.last.map_or(0.0, |last| (slowest - last.slowest).abs());
+        let last_step = self.last.map_or(0.0, |last| (slowest - last.slowest).abs());
         let mut step = (slope / self.bend).abs();
         let stalls = self.last.is_some_and(|last| slope / last.slope > STALLED);
-        if stalls && self.spoilt(trial) < SPOILT * slope.abs() {
-            step = step.max(LONGER * gone);
+        if stalls && self.slope_error(trial) < LARGEST_ERROR * slope.abs() {
+            step = step.max(LONGER * last_step);
         }
-        if unsure >= 1.0
+        if uncertainty >= 1.0
             && 0.5 * slope.abs() * step <= near
             && slope.abs() * self.room(trial) > near
         {
@@ -157,7 +159,7 @@ impl Valley {
         let next = match (self.falls, self.climbs) {
             (Some(_), Some(_)) => {
                 let outside = next <= below || next >= above;
-                if outside || self.since > 1 && step > 0.5 * gone { middle } else { next }
+                if outside || self.since > 1 && step > 0.5 * last_step { middle } else { next }
             }
             (Some(_), None) => next.max(0.5 * (slowest + below)).min(0.5 * (slowest + above)),
             _ => next.max(below).min(0.5 * (slowest + above)),
@@ -165,7 +167,7 @@ impl Valley {
         next.clamp(LEFT * slowest, slowest / LEFT)
     }
 
-    /// How far the bottom can be off.
+    /// Greatest distance of the bottom from the slowest speed of a lap.
     fn room(&self, trial: &Trial) -> f64 {
         if trial.slope > 0.0 { trial.slowest - self.below() } else { self.above() - trial.slowest }
     }

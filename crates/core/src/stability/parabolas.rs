@@ -1,49 +1,22 @@
-//! The lower edge from cycles at some slowest speeds, and about the least of them: slow, but it takes no slopes.
+//! The lower edge without slopes: cycles at some slowest speeds, then at the bottoms of parabolas through the least of them.
+//!
+//! Slow, but it needs no laps that almost come back.
 
 use super::cycles;
-use super::fold::{Fold, capped};
+use super::rising_edge::{SHARES, sampled};
 use super::secant::below_three;
 use super::slip_lap::SlipLap;
 use super::valley::LowerEdge;
 use crate::error::Error;
 use crate::work::Work;
 
-/// Slowest speeds, over those there are, at which cycles are looked for.
-const LOOKS: [f64; 7] = [0.0, 0.3, 0.45, 0.6, 0.75, 0.88, 0.96];
-/// Rounds of looks about the least of them, and how close they come to it.
+/// Rounds of cycles about the least.
 const ROUNDS: usize = 24;
+/// Relative distance of slowest speeds below which none is tried between them.
 const CLOSE: f64 = 1e-6;
 
-/// The edges that are where drag begins to rise: one lap there tells of each cycle that it is faster.
-pub(super) fn where_drag_rises(
-    laps: &[SlipLap],
-    tolerance: f64,
-    work: &Work,
-) -> Result<Vec<Option<LowerEdge>>, Error> {
-    let looked = capped(&looks_at(laps).collect::<Vec<_>>(), tolerance, work)?;
-    let (sevens, _) = looked.as_chunks::<{ LOOKS.len() }>();
-    Ok(laps
-        .iter()
-        .zip(sevens)
-        .map(|(lap, seven)| {
-            let drive_speed = lap.rising_from();
-            let above = |fold: &Option<Fold>| fold.is_some_and(|f| f.drive_speed >= drive_speed);
-            let laps = seven.iter().flatten().map(|fold| fold.laps).sum();
-            seven.iter().all(above).then_some(LowerEdge { drive_speed, laps })
-        })
-        .collect())
-}
-
-/// The laps at whose slowest speeds cycles are looked for.
-fn looks_at(laps: &[SlipLap]) -> impl Iterator<Item = SlipLap> {
-    laps.iter().flat_map(|lap| {
-        let reach = lap.rising_from() - lap.slowest;
-        LOOKS.map(|share| SlipLap { slowest: lap.slowest + share * reach, ..*lap })
-    })
-}
-
-/// The same edges without slopes: the least of some cycles, and of those at the bottoms of parabolas through them.
-pub(super) fn by_looks(
+/// The least drive speed of the cycles of each lap.
+pub(super) fn by_parabolas(
     laps: &[SlipLap],
     tolerance: f64,
     work: &Work,
@@ -64,8 +37,8 @@ pub(super) fn by_looks(
         Ok(())
     };
     // all at once, so that a single belt has company in the lanes
-    let which: Vec<usize> = (0..laps.len()).flat_map(|i| [i; LOOKS.len()]).collect();
-    look(&mut seen, &which, &looks_at(laps).collect::<Vec<_>>())?;
+    let which: Vec<usize> = (0..laps.len()).flat_map(|i| [i; SHARES.len()]).collect();
+    look(&mut seen, &which, &sampled(laps).collect::<Vec<_>>())?;
     for round in 0..ROUNDS {
         let (mut which, mut with) = (Vec::new(), Vec::new());
         for (i, points) in seen.iter().enumerate() {
