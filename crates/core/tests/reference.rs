@@ -2,7 +2,7 @@
 
 mod common;
 
-use hersey_core::drag::{Closure, Drag, Mode};
+use hersey_core::drag::{Closure, Drag, Mode, Rest, Strengthening};
 use hersey_core::motion::{CycleKind, Drivetrain, Start, System, stick_slip};
 
 use common::simulate;
@@ -170,4 +170,30 @@ fn an_event_just_at_the_end_leaves_no_sample_out() {
         assert!((run.stretch[4] - event.stretch).abs() < 1e-12, "{event:?}");
         assert!((run.belt_speed[4] - event.belt_speed).abs() < 1e-9, "{event:?}");
     }
+}
+
+/// A static force that has grown for three hours throws the belt so far that it turns back three times, too fast to be
+/// caught by the force that has not grown. Computed with SciPy's DOP853 from rest to rest.
+#[test]
+fn a_belt_that_is_caught_in_its_fourth_swing() {
+    let train = Drivetrain::new(0.084_058_963_594_911_45, 35.508_066_131_046_92).unwrap();
+    let drag = Drag::new(
+        1.927_192_670_601_642_2,
+        0.778_461_043_523_370_9,
+        -0.745_755_568_572_81,
+        -2.050_263_292_666_207_4,
+        0.009_457_265_691_432_366,
+        Closure::Stiction,
+    )
+    .unwrap();
+    let growth =
+        Strengthening { growth: 0.017_916_461_729_098_308, time: 0.011_029_508_259_350_012 };
+    let drag = drag.with_breakaway_force(438.110_484_147_041_75).unwrap();
+    let drag = drag.with_strengthening(growth).unwrap();
+    let rest = Rest { force: 0.269_052_719_096_333_6, damping: 0.0 };
+    let drag = drag.with_rest(rest).unwrap();
+    let cycle = stick_slip(&train, &drag, 1.090_557_288_820_508_6, Start::REST, 1e-9).unwrap();
+    assert_eq!((cycle.kind, cycle.laps_per_period), (CycleKind::StickSlip, 4));
+    assert_close(4.0 * cycle.stick_duration, 10_658.81, 3e-6);
+    assert_close(4.0 / cycle.frequency, 10_658.81 + 452.156_2, 3e-6);
 }

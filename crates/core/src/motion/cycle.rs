@@ -30,8 +30,8 @@ const CLOSED: f64 = 1e-9;
 const CLOSED_SMOOTH: f64 = 100.0;
 /// Time within which the belt overtakes the drive once, in units of `sqrt(m/k)`.
 const ONCE: f64 = 1e-6;
-/// Laps after which a motion with memory may repeat itself, or a belt without may stick as before, so near to `V*` that
-/// rounding decides whether a lap sticks.
+/// Laps after which a motion may repeat itself: one with memory, one that a static force catches after several swings, or
+/// one so near to `V*` that rounding decides whether a lap sticks.
 const MAX_PERIOD: usize = 16;
 /// Swing of the belt speed, relative to the drive speed, below which it counts as steady.
 pub(super) const STEADY: f64 = 1e-7;
@@ -293,7 +293,8 @@ impl<'a> Laps<'a> {
         }
         let repeats = |p: &Section| section.repeats(p, self.drag, self.train, self.near);
         let laps = 1 + self.past.iter().position(|(begin, _)| repeats(begin)).filter(|i| *i > 0)?;
-        if !self.memory {
+        // a static force that grows at rest releases a belt at a greater pull than that at which it catches one
+        if !self.memory && self.drag.strengthening().is_none() {
             // it moves in a plane: a lap from the release that does not stick never sticks later, but for rounding
             self.rounding_decides = true;
             return None;
