@@ -61,7 +61,8 @@ class Setting:
         if self.question == "cycle" and self.drag.closure in ("stribeck", "lugre"):
             return 1e-7
         # a belt whose static force grows may stick once in several laps, and the core closes those to this
-        return 1e-9 if self.question == "cycle" and self.drag.static_growth else 1e-12
+        grows = isinstance(self.drag, Drag) and self.drag.static_growth > 0.0
+        return 1e-9 if self.question == "cycle" and grows else 1e-12
 
     def answered(self) -> list[FloatArray] | str:
         """What the core answers here, each quantity for itself, or says against it."""

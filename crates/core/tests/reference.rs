@@ -173,7 +173,7 @@ fn an_event_just_at_the_end_leaves_no_sample_out() {
 }
 
 /// A static force that has grown for three hours throws the belt so far that it turns back three times, too fast to be
-/// caught by the force that has not grown. Computed with SciPy's DOP853 from rest to rest.
+/// caught by the force that has not grown. Computed with `SciPy`, DOP853, from rest to rest.
 #[test]
 fn a_belt_that_is_caught_in_its_fourth_swing() {
     let train = Drivetrain::new(0.084_058_963_594_911_45, 35.508_066_131_046_92).unwrap();
