@@ -71,9 +71,10 @@ class StickSlipCycle(Result):
 
     ``kind`` is one of `stick_slip`'s. Frequency is in cycles per unit of time, 0 without cycles;
     ``drag_work`` is the work against drag per cycle, ``grip_slip_duration`` the time per cycle during which
-    the roll slips. With bristles, which have memory, the motion may repeat only after ``laps_per_period``
-    cycles; then frequency, durations and work are means over these cycles, and extremes those of all. So
-    near to V* that rounding decides, some cycles may stick and others not: reported is one that sticks.
+    the roll slips. With bristles, or a static force that grows at rest, the motion may repeat only after
+    ``laps_per_period`` cycles; then frequency, durations and work are means over these cycles, and extremes
+    those of all. So near to V* that rounding decides, some cycles may stick and others not: reported is one
+    that sticks.
     With a smooth closure, which never holds the belt, the belt counts as stuck while it creeps below the
     stick speed.
     """
