@@ -106,15 +106,19 @@ def blocks(rows: int, *arrays: FloatArray, size: int = 0) -> Iterator[slice]:
     size = size or BLOCK
     for start in range(0, rows, size):
         yield slice(start, min(start + size, rows))
-        passed(start, start + size, *arrays)
+        end = start + size
+        if end // _LET_GO > start // _LET_GO:
+            for each in arrays:
+                let_go(each[start // _LET_GO * _LET_GO : end])
 
 
 def passed(start: int, end: int, *arrays: FloatArray) -> None:
     """Note that these rows were seen: what lies behind is let go now and then and where rows were skipped."""
     begun = start // _LET_GO * _LET_GO
     last = end if end // _LET_GO > start // _LET_GO else begun
-    for each in arrays:
-        let_go(each[max(0, begun - _LET_GO) : last])
+    if last > max(0, begun - _LET_GO):
+        for each in arrays:
+            let_go(each[max(0, begun - _LET_GO) : last])
 
 
 def let_go(values: FloatArray) -> None:
