@@ -85,7 +85,7 @@ def test_modes_are_sought_for_many_draws_at_a_time(monkeypatch: pytest.MonkeyPat
     shared = middle + 0.1 * np.random.default_rng(2).standard_normal((1000, 5))
     together = likelihood(law, points, shared, np.zeros(8))
     assert steps[0] <= 3 * (marginal._POLISH + 1)  # of 32 stretches
-    # a stretch ends by itself, whatever stands beside it
+    # where a stretch ends does not depend on the others
     alone = [likelihood(law, points, shared[i : i + 32], np.zeros(8)) for i in range(0, 1000, 32)]
     np.testing.assert_array_equal(np.concatenate(alone), together)
 

@@ -1,6 +1,6 @@
 //! Taylor series of the belts on all lanes: their values, and how far they hold.
 
-use super::polynomial::fused;
+use super::polynomial::{counted, fused};
 
 /// Belts that step together.
 pub(crate) const LANES: usize = 16;
@@ -35,16 +35,7 @@ impl LaneSeries {
 }
 
 /// The powers, as numbers.
-#[allow(clippy::cast_precision_loss)] // small
-pub(super) const POWERS: [f64; ORDER + 1] = {
-    let mut powers = [0.0; ORDER + 1];
-    let mut i = 0;
-    while i <= ORDER {
-        powers[i] = i as f64;
-        i += 1;
-    }
-    powers
-};
+pub(super) const POWERS: [f64; ORDER + 1] = counted();
 
 /// One over each power; zero for the first.
 #[allow(clippy::cast_precision_loss)] // small

@@ -17,16 +17,19 @@ pub(super) fn fused_in<S: pulp::Simd>(simd: S, a: S::f64s, b: S::f64s, c: S::f64
 }
 
 /// The powers, as numbers.
-#[allow(clippy::cast_precision_loss)] // at most ORDER
-pub(super) const POWERS: [f64; ORDER + 1] = {
-    let mut powers = [0.0; ORDER + 1];
+pub(super) const POWERS: [f64; ORDER + 1] = counted();
+
+/// The numbers from zero on.
+#[allow(clippy::cast_precision_loss)] // of a few powers
+pub(super) const fn counted<const N: usize>() -> [f64; N] {
+    let mut numbers = [0.0; N];
     let mut i = 0;
-    while i <= ORDER {
-        powers[i] = i as f64;
+    while i < N {
+        numbers[i] = i as f64;
         i += 1;
     }
-    powers
-};
+    numbers
+}
 
 /// One over each power; zero for the first.
 pub(super) const INVERSE: [f64; ORDER + 1] = {

@@ -4,7 +4,7 @@
 //! back in time from the slowest point, where the motion forgets what forward it would blow up.
 //!
 //! Where the roll slips before the belt is as fast as the drive, both meet with just the pull that the grip
-//! bears, whatever came before: the lap then begins there.
+//! can hold, at any speed before: the lap then begins there.
 
 use super::secant::Outcome;
 use super::slip_lap::SlipLap;
