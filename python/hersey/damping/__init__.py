@@ -20,6 +20,7 @@ surface         the same with its transition, and the drag on a belt
 surface_words   what a surface says of itself: summary, record, table
 fit             fitting it: the paper's candidate among all
 candidates      every law fitted to the same dwells, one chosen
+friction_curve  friction of joints and gear motors: Coulomb, viscous, Stribeck
 curves          drag curves that the dwells allow: laws by weight, and how they go on beyond
 no_load         the no-load torque from a log without the film
 rising          the rising branch by itself: whether one exponent holds
