@@ -37,6 +37,6 @@ def test_derivatives(stribeck: bool, apart: bool, reference: float | None) -> No
     speed, kelvin, step = np.linspace(-3.0, 3.0, 14), 290.0 + np.arange(14.0), 1e-6
     ends = [(values + step * each, values - step * each) for each in np.eye(size)]
     numeric = [(law.torque(a, speed, kelvin) - law.torque(b, speed, kelvin)) / (2 * step) for a, b in ends]
-    assert law.jacobian(values, speed, kelvin).T == pytest.approx(np.array(numeric), rel=1e-6, abs=1e-6)
+    assert pytest.approx(np.array(numeric), rel=1e-6, abs=1e-6) == law.jacobian(values, speed, kelvin).T
     slope = (law.torque(values, speed + step, kelvin) - law.torque(values, speed - step, kelvin)) / (2 * step)
     assert law.slope(values, speed, kelvin) == pytest.approx(slope, rel=1e-6, abs=1e-6)
