@@ -101,6 +101,9 @@ class SteadyPoints(Result):
         How torque still relaxes within the dwells after each change of speed, or None if it does not show.
     relaxation_errors
         What is left of it in the torque of each dwell at the most, N m, shape (points, 0 or 1).
+    window_errors
+        What one standard error of each number that all windows of a moving log share (inertia, offset, the
+        moment of inertia of a coast-down) does to the torque of each point, N m, shape (points, errors).
     temperature_rates
         How fast the reading of temperature changes over each dwell, K/s, 0 within its noise, shape (points,).
     recipe
@@ -119,19 +122,20 @@ class SteadyPoints(Result):
     resolutions: tuple[Resolution, ...] = ()
     relaxation: Relaxation | None = None
     relaxation_errors: FloatArray = field(default_factory=lambda: np.empty((0, 0)))
+    window_errors: FloatArray = field(default_factory=lambda: np.empty((0, 0)))
     temperature_rates: FloatArray = field(default_factory=lambda: np.empty(0))
     recipe: HowRead | None = None
 
     def __post_init__(self) -> None:
         """Give what has no tare, no rest subtracted or no relaxation, no disturbances of it."""
-        for name in ("tare_errors", "rest_errors", "relaxation_errors"):
+        for name in ("tare_errors", "rest_errors", "relaxation_errors", "window_errors"):
             if not getattr(self, name).size:
                 object.__setattr__(self, name, np.empty((self.table.height, 0)))
 
     @property
     def zero_errors(self) -> FloatArray:
-        """What each independent error of tare, no-load torque and relaxation does to each torque, N m."""
-        return np.hstack([self.tare_errors, self.rest_errors, self.relaxation_errors])
+        """What each independent error that points share does to each torque, N m, shape (points, errors)."""
+        return np.hstack([self.tare_errors, self.rest_errors, self.relaxation_errors, self.window_errors])
 
     @property
     def tare_error(self) -> float:
