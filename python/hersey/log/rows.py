@@ -79,7 +79,9 @@ class LeftOut:
             return
         how_many = f" (the first of {self.rows} such rows, of {rows})" if self.rows > 1 else ""
         few = f"too few rows remain. {f'{without}. Otherwise n' if without else 'N'}ame another column, or "
-        way_out = (self.units or f"{few}correct the file") if most else _way_out(self.rewrite if misread else "")
+        way_out = (
+            (self.units or f"{few}correct the file") if most else _way_out(self.rewrite if misread else "")
+        )
         said = f"{file}, {self.words[0]}{how_many}"
         if self.dates:
             way_out = numbers_lost(self.dates)
