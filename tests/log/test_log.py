@@ -392,7 +392,7 @@ def test_cells_that_are_no_numbers_cost_their_rows_alone(cell: str, fault: str, 
     assert warning.values == {"rows": 20, "faults": "; ".join(faults), "others": 10, "dates": ""}
     assert np.setdiff1d(np.arange(1000), np.round(10 * log.runs[0].time)).tolist() == list(rows)
     many = damaged(tmp_path / "many.csv", cell, tuple(range(100, 121)))
-    with pytest.raises(UnreadableLogError, match="line 102.*the first of 21 such rows, of 1000") as refused:
+    with pytest.raises(UnreadableLogError, match=r"line 102.*the first of 21 such rows, of 1000") as refused:
         hersey.read(many)
     assert "drop_missing=True" in refused.value.remedy
     assert hersey.read(many, drop_missing=True).rows == 979

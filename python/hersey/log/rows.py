@@ -114,7 +114,8 @@ class LeftOut:
 
 
 def _way_out(rewrite: str) -> str:
-    return f"{rewrite or 'correct the file'}, or exclude such rows with {DROP_MISSING.to()} (they will be counted)"
+    first = rewrite or "correct the file"
+    return f"{first}, or exclude such rows with {DROP_MISSING.to()} (they will be counted)"
 
 
 def runs_of(

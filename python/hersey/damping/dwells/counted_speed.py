@@ -1,7 +1,7 @@
 """Speed from an encoder that counts: below one count per row it reads 0, or one whole step.
 
-At 1 rpm an encoder whose step is 6 rpm reads 0, 0, 0, 0, 0, 6, 0, ... Each count is spread over the rows since
-the one before, which keeps the angle turned, so that such a dwell is judged by its mean speed.
+At 1 rpm an encoder whose step is 6 rpm reads 0, 0, 0, 0, 0, 6, 0, ... Each count is spread over the rows
+since the one before, which keeps the angle turned, so that such a dwell is judged by its mean speed.
 """
 
 from __future__ import annotations
@@ -38,8 +38,7 @@ def with_counts_spread(run: Run) -> tuple[Run, float]:
     if not step:
         return run, 0.0
     speed = run.speed.copy()
-    few = (size <= (_FEW + _NEAR) * step).astype(np.int8) * np.where(run.speed < 0, -1, 1)
-    few = _sign_carried(few, size > 0)
+    few = _directions(run.speed, size <= (_FEW + _NEAR) * step)
     edges = np.flatnonzero(np.diff(few)) + 1
     for first, last in zip([0, *edges], [*edges, speed.size], strict=True):
         if few[first]:
@@ -57,12 +56,12 @@ def _step(size: FloatArray) -> float:
     return step if np.mean(np.abs(ratio - np.round(ratio)) <= _NEAR) >= _SHARE else 0.0
 
 
-def _sign_carried(few: IntArray, counts: BoolArray) -> IntArray:
-    """Directions of the rows: one without a count has that of the next count."""
-    last = few.size - 1
-    at = np.where(counts, np.arange(few.size), last)
-    following = np.minimum.accumulate(at[::-1])[::-1]
-    return np.where((few != 0) & (few[following] != 0), few[following], few)
+def _directions(speed: FloatArray, few: BoolArray) -> IntArray:
+    """Direction of each row of few counts, 0 for others; a row without a count has that of the next."""
+    direction = np.where(few, np.where(speed < 0, -1, 1), 0).astype(np.intp)
+    at = np.where(speed != 0, np.arange(speed.size), speed.size - 1)
+    following = direction[np.minimum.accumulate(at[::-1])[::-1]]
+    return np.where((direction != 0) & (following != 0), following, direction).astype(np.intp)
 
 
 def _spread(time: FloatArray, speed: FloatArray, window: float) -> None:
