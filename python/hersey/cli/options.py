@@ -13,7 +13,7 @@ from hersey.cli.groups import argument, option
 from hersey.cli.loading import loading
 from hersey.cli.no_load import refuse_no_load_log
 from hersey.cli.progress import bar, working
-from hersey.cli.quantities import amount_of, amounts_in
+from hersey.cli.quantities import amount_of, amounts_in, ratio_of
 from hersey.cli.recipe_file import ROLES, read_recipe
 from hersey.cli.several import for_this_log_only
 from hersey.cli.terminal import note
@@ -76,6 +76,11 @@ def reduced(words: str, *flags: str, **more: Any) -> Any:
 
 
 _TORQUE_UNIT = "Unit of torque; of a signal e.g. '35 mN*m/A', or '9.84 mN*m / 100' for %."
+_CURRENT = "Column of the motor current, instead of a torque; needs --torque-constant."
+_TORQUE_CONSTANT = "Torque of the motor per ampere, e.g. '0.11 N*m/A'."
+_GEAR_RATIO = "Turns of the motor, or torque sensor, per turn of the roll or joint, e.g. 50."
+_INERTIA = "Moment of inertia at the roll or joint, e.g. '2e-4 kg*m^2'; its torque is subtracted."
+_SPEED_GEAR_RATIO = "Turns of the speed sensor's shaft per turn of the roll or joint, e.g. 50."
 _RADIUS = "Radius for a log of friction force and sliding speed: '25 mm' or its column."
 _LOAD = "Normal load: '50 N', '10 N, 20 N' for two runs, or its column."
 _MAPPING = "File with roles, units and corrections.  [default: hersey.toml beside the log]"
@@ -93,9 +98,14 @@ class Reading:
     torque: Annotated[str, read("Torque column, e.g. 'Tq' or 'Tq (ozf.in)'.")] = ""
     torque_unit: Annotated[str, read(_TORQUE_UNIT)] = ""
     torque_sign: Annotated[int, read("Use -1 to flip the sign of torque.")] = 1
+    current: Annotated[str, read(_CURRENT)] = ""
+    torque_constant: Annotated[str, read(_TORQUE_CONSTANT)] = ""
+    gear_ratio: Annotated[str, read(_GEAR_RATIO)] = ""
+    inertia: Annotated[str, read(_INERTIA)] = ""
     speed: Annotated[str, read("Speed column.")] = ""
     speed_unit: Annotated[str, read("Unit of speed, e.g. 'rpm'.")] = ""
     speed_sign: Annotated[int, read("Use -1 to flip the sign of speed.")] = 1
+    speed_gear_ratio: Annotated[str, read(_SPEED_GEAR_RATIO)] = ""
     temperature: Annotated[str, read("Temperature column.")] = ""
     temperature_unit: Annotated[str, read("Unit of temperature, e.g. 'degC'.")] = ""
     time: Annotated[str, read("Time column.")] = ""
@@ -152,12 +162,39 @@ class Reading:
         amounts = {role: amounts_in(getattr(self, role)) for role in ("load", "radius")}
         names = {role: name for role in ROLES if (name := getattr(self, role)) and not amounts.get(role)}
         units = {role: unit for role in ROLES if (unit := getattr(self, f"{role}_unit", ""))}
+        if self.current:
+            names["torque"] = self._current()
         signs = {role: sign for role in ("torque", "speed") if (sign := getattr(self, f"{role}_sign")) != 1}
         given = {name: getattr(self, name) or None for name in ("mapping", "every", "no_load")}
         same: dict[str, Any] = {name: getattr(self, name) for name in _AS_GIVEN}
         dwell = amount_of("time", self.min_dwell, "--min-dwell")
         own: dict[str, Any] = {"channels": names, "units": units, "signs": signs, "min_dwell": dwell}
-        return Recipe(logs=tuple(logs), **(own | amounts | given | same))
+        return Recipe(logs=tuple(logs), **(own | amounts | given | same | self._motor()))
+
+    def _current(self) -> str:
+        """The column of the motor current, which plays the part of the torque."""
+        if self.torque:
+            raise ParameterError("--torque and --current both name the torque: omit one of them")
+        if not self.torque_constant:
+            raise ParameterError(
+                "--current needs the constant of the motor: add e.g. --torque-constant '0.11 N*m/A'"
+            )
+        return self.current
+
+    def _motor(self) -> dict[str, float]:
+        """What is said of the motor and its gears, SI."""
+        kinds = {"torque_constant": "motor constant", "inertia": "moment of inertia"}
+        said = {
+            name: amount_of(kind, text, f"--{name.replace('_', '-')}")
+            for name, kind in kinds.items()
+            if (text := getattr(self, name))
+        }
+        ratios = ("gear_ratio", "speed_gear_ratio")
+        return said | {
+            name: ratio_of(f"--{name.replace('_', '-')}", text)
+            for name in ratios
+            if (text := getattr(self, name))
+        }
 
     def inputs(self, *given: Path | list[Path] | None) -> list[Path]:
         """Return the files that a command reads, of which none may be an output."""

@@ -7,7 +7,7 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, TypedDict, Unpack
+from typing import TYPE_CHECKING, Annotated, Any, TypedDict, Unpack, cast
 
 from hersey.arguments.door import Words
 from hersey.arrays import refuse_unknown
@@ -30,7 +30,14 @@ from hersey.inspection.support import Support, support_of_points
 from hersey.log.channels import ChannelChoice, Stated
 from hersey.log.corrections import Corrected
 from hersey.log.doubtful import doubtful_units
-from hersey.log.mapping import LogMapping, as_stated, mapping_of, read_with_mapping, without_what_is_said
+from hersey.log.mapping import (
+    LogMapping,
+    Motor,
+    as_stated,
+    mapping_of,
+    read_with_mapping,
+    without_what_is_said,
+)
 from hersey.log.means import MeansTable, read_means
 from hersey.log.roles import CHANNELS, OTHER_ROLES, ROLES, SIGNS, UNITS
 from hersey.log.torque_log import ROTATIONS, TARES, Correction, LogFile, TorqueLog
@@ -59,6 +66,10 @@ class Reading(TypedDict, total=False):
     every: float | None
     radius: float | Sequence[float] | None
     load: float | Sequence[float] | None
+    torque_constant: float | None
+    gear_ratio: float | None
+    speed_gear_ratio: float | None
+    inertia: float | None
 
 
 @dataclass(frozen=True, repr=False)
@@ -182,6 +193,8 @@ class Inspection(Result):
     every="time",
     radius="length",
     load="force",
+    torque_constant="motor constant",
+    inertia="moment of inertia",
     tare=TARES,
     rotation=ROTATIONS,
     temperature_scale=Words(("degC", "K")),
@@ -213,7 +226,8 @@ def inspect(
         Whether the files are tables of means: one row per dwell, no clock.
     **reading
         Any of ``mapping``, ``channels``, ``units``, ``isothermal``, ``signs``, ``drop_missing``, ``every``,
-        ``radius`` and ``load``, as for `hersey.read_with_mapping`.
+        ``radius``, ``load``, ``torque_constant``, ``gear_ratio``, ``speed_gear_ratio`` and ``inertia``, as
+        for `hersey.read_with_mapping`.
 
     Raises
     ------
@@ -229,6 +243,11 @@ def inspect(
     files = [paths] if isinstance(paths, str | Path) else list(paths)
     mapping = reading.get("mapping")
     chosen = mapping if isinstance(mapping, LogMapping) else mapping_of(files, mapping)
+    said: Mapping[str, Any] = reading
+    motor = Motor(*(said.get(each.name) for each in fields(Motor)))
+    chosen, channels, units = motor.added(chosen, reading.get("channels") or {}, reading.get("units") or {})
+    rest = {name: value for name, value in reading.items() if name not in vars(motor)}
+    reading = cast("Reading", rest | {"channels": channels, "units": units})
     chosen = chosen.turned(reading.get("signs") or {})
     choices, known = _said(chosen, reading)
     reports = tuple(file_report(raw_channels(file), choices, known) for file in files)

@@ -10,6 +10,7 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass as plain_dataclass
 from dataclasses import field, fields, replace
 from pathlib import Path
 from typing import Any
@@ -207,7 +208,16 @@ def find_mapping(path: str | Path) -> Path | None:
     return next((candidate for candidate in beside if os.path.isfile(candidate)), None)  # noqa: PTH113
 
 
-@takes_si(every="time", radius="length", load="force", channels=CHANNELS, units=UNITS, signs=SIGNS)
+@takes_si(
+    every="time",
+    radius="length",
+    load="force",
+    torque_constant="motor constant",
+    inertia="moment of inertia",
+    channels=CHANNELS,
+    units=UNITS,
+    signs=SIGNS,
+)
 def read_with_mapping(
     paths: str | Path | Sequence[str | Path],
     *,
@@ -220,6 +230,10 @@ def read_with_mapping(
     every: float | None = None,
     radius: float | Sequence[float] | None = None,
     load: float | Sequence[float] | None = None,
+    torque_constant: float | None = None,
+    gear_ratio: float | None = None,
+    speed_gear_ratio: float | None = None,
+    inertia: float | None = None,
     progress: Progress | None = None,
 ) -> Corrected:
     """Read one log or several with `hersey.read`, using their mapping, and apply its corrections.
@@ -229,12 +243,18 @@ def read_with_mapping(
     mapping
         A mapping or its file, for all logs. Default: the one that `find_mapping` finds in their folder.
     channels, units
-        By role; they override the mapping. A role whose channel or unit is given here is not corrected for a
-        motor constant.
+        By role; they override the mapping. A role whose channel or unit is given here is not corrected for
+        the motor constant of the mapping.
     signs
         -1 by role, ``torque`` or ``speed``, flips the sign in addition to the mapping.
     isothermal, drop_missing, every, radius, load, progress
         As for `hersey.read`; they override the mapping.
+    torque_constant
+        Torque of the motor per ampere, N m/A, if the torque column is its current.
+    gear_ratio, speed_gear_ratio
+        Turns of the shaft where torque, or speed, is measured per turn of the roll or joint.
+    inertia
+        Moment of inertia at the roll or joint, kg m^2; its torque is subtracted.
 
     Raises
     ------
@@ -249,14 +269,16 @@ def read_with_mapping(
     files = [paths] if isinstance(paths, str | Path) else list(paths)
     needed = _without_temperature if isothermal else dict
     chosen = mapping if isinstance(mapping, LogMapping) else mapping_of(files, mapping)
-    chosen = _outranked(chosen, channels or {}, units or {}).turned(signs or {})
+    motor = Motor(torque_constant, gear_ratio, speed_gear_ratio, inertia)
+    chosen, channels, units = motor.added(chosen, channels or {}, units or {})
+    chosen = chosen.turned(signs or {})
     stated = Stated(every, as_stated(radius), as_stated(load))
-    chosen = without_what_is_said(chosen, channels or {}, stated)
+    chosen = without_what_is_said(chosen, channels, stated)
     try:
         log = read(
             files,
-            channels={**needed(chosen.channels), **(channels or {})},
-            units={**needed(chosen.units), **(units or {})},
+            channels={**needed(chosen.channels), **channels},
+            units={**needed(chosen.units), **units},
             isothermal=isothermal,
             drop_missing=drop_missing,
             **{name: value for name, value in vars(chosen.stated).items() if value is not None}
@@ -292,6 +314,41 @@ def mapping_of(files: Sequence[str | Path], stated: str | Path | None = None) ->
 
 def _without_temperature(stated: Mapping[str, str]) -> dict[str, str]:
     return {role: value for role, value in stated.items() if role != "temperature"}
+
+
+@plain_dataclass(frozen=True)
+class Motor:
+    """What a person says of the motor and its gears, SI, beside a mapping; None where nothing is said."""
+
+    torque_constant: float | None = None
+    gear_ratio: float | None = None
+    speed_gear_ratio: float | None = None
+    inertia: float | None = None
+
+    def added(
+        self, mapping: LogMapping, channels: Mapping[str, str], units: Mapping[str, str]
+    ) -> tuple[LogMapping, dict[str, str], dict[str, str]]:
+        """Return a mapping with it, and the channels and units that are still to be read beside it.
+
+        Raises
+        ------
+        ParameterError, UnitError
+            If a value is not greater than 0, or the unit of the current is none.
+        """
+        for name, value in vars(self).items():
+            if value is not None and not 0 < value < np.inf:
+                raise ParameterError(f"{Setting(name).to()} is {value:g} (SI): it must be greater than 0")
+        mapping = _outranked(mapping, channels, units)
+        torque, speed, left = mapping.torque, mapping.speed, (dict(channels), dict(units))
+        if self.torque_constant is not None:
+            name, unit = left[0].pop("torque", torque.channel), left[1].pop("torque", torque.unit)
+            _ampere(unit)
+            torque = replace(torque, channel=name, unit=unit, motor_constant=self.torque_constant)
+        torque = replace(
+            torque, gear_ratio=self.gear_ratio or torque.gear_ratio, inertia=self.inertia or torque.inertia
+        )
+        speed = replace(speed, gear_ratio=self.speed_gear_ratio or speed.gear_ratio)
+        return replace(mapping, torque=torque, speed=speed), *left
 
 
 def _outranked(mapping: LogMapping, channels: Mapping[str, str], units: Mapping[str, str]) -> LogMapping:
