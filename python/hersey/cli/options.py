@@ -83,6 +83,13 @@ _INERTIA = "Moment of inertia at the roll or joint, e.g. '2e-4 kg*m^2'; its torq
 _SPEED_GEAR_RATIO = "Turns of the speed sensor's shaft per turn of the roll or joint, e.g. 50."
 _RADIUS = "Radius for a log of friction force and sliding speed: '25 mm' or its column."
 _LOAD = "Normal load: '50 N', '10 N, 20 N' for two runs, or its column."
+_POSITION = "Column of a position, instead of a speed; speed is its slope."
+_POSITION_UNIT = "Unit of the position, e.g. 'deg', 'mm', or 'rev/4096' for counts."
+_POSITION_WINDOW = "Time over which the slope of the position is taken.  [default: 0.2 s]"
+_DIRECTION = "Column of the direction of a speed without a sign: 1 and -1, 1 and 0, CW and CCW."
+_NAME_PATTERN = "Pattern of file names that state values, e.g. '{speed} rpm {load} N.txt'."
+_NAME_DECIMAL = "Decimal mark of the numbers in the file names, e.g. '-' for 0-1rps.txt."
+_SCHEDULE = "Table of set points by time: columns 'from [s]', 'to [s]', 'speed [rpm]'."
 _MAPPING = "File with roles, units and corrections.  [default: hersey.toml beside the log]"
 _DROP_MISSING = "Drop rows with a missing or impossible number, however many."
 _MEANS = "Read a table of means: one row per dwell, no time column."
@@ -115,6 +122,13 @@ class Reading:
     radius_unit: Annotated[str, read("Unit of the radius column, e.g. 'mm'.")] = ""
     load: Annotated[str, read(_LOAD)] = ""
     load_unit: Annotated[str, read("Unit of the load column, e.g. 'N'.")] = ""
+    position: Annotated[str, read(_POSITION)] = ""
+    position_unit: Annotated[str, read(_POSITION_UNIT)] = ""
+    position_window: Annotated[str, read(_POSITION_WINDOW)] = ""
+    direction: Annotated[str, read(_DIRECTION)] = ""
+    name_pattern: Annotated[str, read(_NAME_PATTERN)] = ""
+    name_decimal: Annotated[str, read(_NAME_DECIMAL)] = ""
+    schedule: Annotated[str, read(_SCHEDULE, metavar="TABLE")] = ""
     run: Annotated[str, read("Column that numbers the runs in a file.")] = ""
     mapping: Annotated[str, read(_MAPPING, metavar="TOML")] = ""
     isothermal: Annotated[bool, reduced("Ignore temperature: fit B = a w^c.", "--isothermal")] = False
@@ -150,7 +164,7 @@ class Reading:
 
     def anywhere(self) -> Reading:
         """Return the same with absolute paths: workers may have been started in another folder."""
-        given = {name: getattr(self, name) for name in ("mapping", "no_load")}
+        given = {name: getattr(self, name) for name in ("mapping", "schedule", "no_load")}
         whole: dict[str, Any] = {name: str(Path(path).absolute()) for name, path in given.items() if path}
         return replace(self, **whole)
 
@@ -165,7 +179,10 @@ class Reading:
         if self.current:
             names["torque"] = self._current()
         signs = {role: sign for role in ("torque", "speed") if (sign := getattr(self, f"{role}_sign")) != 1}
-        given = {name: getattr(self, name) or None for name in ("mapping", "every", "no_load")}
+        given = {
+            name: getattr(self, name) or None
+            for name in ("mapping", "every", "schedule", "position_window", "no_load")
+        }
         same: dict[str, Any] = {name: getattr(self, name) for name in _AS_GIVEN}
         dwell = amount_of("time", self.min_dwell, "--min-dwell")
         own: dict[str, Any] = {"channels": names, "units": units, "signs": signs, "min_dwell": dwell}
@@ -198,7 +215,7 @@ class Reading:
 
     def inputs(self, *given: Path | list[Path] | None) -> list[Path]:
         """Return the files that a command reads, of which none may be an output."""
-        named = [Path(path) for path in (self.recipe_file, self.mapping, self.no_load) if path]
+        named = [Path(path) for path in (self.recipe_file, self.mapping, self.schedule, self.no_load) if path]
         for paths in given:
             named += [paths] if isinstance(paths, Path) else paths or []
         return named
@@ -329,7 +346,10 @@ class Reading:
             return fit(self.points(logs, log, machine), temperature_scale=self.temperature_scale)
 
 
-_AS_GIVEN = ("isothermal", "drop_missing", "means", "tare", "rotation", "temperature_scale")
+_AS_GIVEN = (
+    *("isothermal", "drop_missing", "means", "tare", "rotation", "temperature_scale"),
+    *("name_pattern", "name_decimal"),
+)
 _NOT_OF_FILE = "not from the machine file"
 
 

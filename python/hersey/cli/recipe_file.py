@@ -12,8 +12,8 @@ if TYPE_CHECKING:
     from hersey.damping.recipe import Recipe
 
 #: Roles that have an option for the column, for its unit and for the sign.
-ROLES = ("time", "torque", "speed", "temperature", "load", "radius", "run")
-_WITH_UNIT, _WITH_SIGN = ROLES[:-1], ("torque", "speed")
+ROLES = ("time", "torque", "speed", "temperature", "load", "radius", "position", "run", "direction")
+_WITH_UNIT, _WITH_SIGN = ROLES[:-2], ("torque", "speed")
 #: Tables of a recipe by role: the ending of the option, and the roles that have it.
 _TABLES = {"channels": ("", ROLES), "units": ("_unit", _WITH_UNIT), "signs": ("_sign", _WITH_SIGN)}
 #: Options that are an amount, and the units in which a recipe holds it.
@@ -22,6 +22,7 @@ _UNITS = {
     "radius": "m",
     "every": "s",
     "min_dwell": "s",
+    "position_window": "s",
     "torque_constant": "N*m/A",
     "inertia": "kg*m^2",
 }

@@ -100,6 +100,15 @@ class Recipe:
         Radius at which a friction force acts, m: one, or one for each run.
     load
         Normal load, N: one, or one for each run.
+    name_pattern
+        Pattern of the file names, e.g. ``"{speed} rpm {load} N.txt"``, if they state speed, load, radius or
+        temperature.
+    name_decimal
+        Decimal mark of the numbers in the names.
+    schedule
+        Table of speed, temperature or load by time, if the log has no channel of it.
+    position_window
+        Time over which speed is the slope of a position column, s.
     torque_constant
         Torque of the motor per ampere, N m/A, if the torque column is its current.
     gear_ratio
@@ -134,6 +143,10 @@ class Recipe:
     every: Annotated[float | None, _OneOrMore("time", 1e-9, 1e6, "2 ms")] = None
     radius: Annotated[Amount, _OneOrMore("length", 1e-6, 1e3, "25 mm")] = None
     load: Annotated[Amount, _OneOrMore("force", 1e-9, 1e9, "50 N")] = None
+    name_pattern: str = ""
+    name_decimal: str = ""
+    schedule: Annotated[Path | None, _Path(None)] = None
+    position_window: Annotated[float | None, _OneOrMore("time", 1e-6, 1e4, "0.2 s")] = None
     torque_constant: Annotated[float | None, _OneOrMore("motor constant", 1e-6, 1e3, "0.11 N*m/A")] = None
     gear_ratio: Annotated[float | None, _OneOrMore(None, 1e-4, 1e4, "50")] = None
     speed_gear_ratio: Annotated[float | None, _OneOrMore(None, 1e-4, 1e4, "50")] = None
@@ -240,9 +253,12 @@ class Recipe:
     @property
     def are_means(self) -> bool:
         """Whether the logs are tables of means, by statement or by their content."""
-        if self.means or self.every is not None or {"time", "run"} & self.channels.keys():
+        rows = {"time", "run", "position", "direction"} & self.channels.keys()
+        if self.means or self.every is not None or self.schedule or rows:
             return self.means
         mapping = self.chosen
+        if mapping.schedule is not None or mapping.position.channel:
+            return False
         if mapping.time.every is not None:
             return False
         channels, units = mapping.channels | self.channels, mapping.units | self.units
@@ -372,18 +388,19 @@ class _RecipeFile(Table, Recipe):
 
 
 #: Fields that name one file each.
-_FILES = ("mapping", "no_load")
+_FILES = ("mapping", "schedule", "no_load")
 #: Kind of unit of each amount.
 _KINDS = {
     "every": "time",
     "radius": "length",
     "load": "force",
     "min_dwell": "time",
+    "position_window": "time",
     "torque_constant": "motor constant",
     "inertia": "moment of inertia",
 }
 #: What is said of a log and a file need not hold.
-_STATED = ("every", "radius", "load")
+_STATED = ("every", "radius", "load", "name_pattern", "name_decimal", "schedule", "position_window")
 
 
 def _distinct(paths: Sequence[Path]) -> tuple[Path, ...]:

@@ -29,6 +29,7 @@ from hersey.inspection.raw import raw_channels
 from hersey.inspection.support import Support, support_of_points
 from hersey.log.channels import ChannelChoice, Stated
 from hersey.log.corrections import Corrected
+from hersey.log.derived.sources import Sources
 from hersey.log.doubtful import doubtful_units
 from hersey.log.mapping import (
     LogMapping,
@@ -66,6 +67,10 @@ class Reading(TypedDict, total=False):
     every: float | None
     radius: float | Sequence[float] | None
     load: float | Sequence[float] | None
+    name_pattern: str | None
+    name_decimal: str | None
+    schedule: Any
+    position_window: float | None
     torque_constant: float | None
     gear_ratio: float | None
     speed_gear_ratio: float | None
@@ -195,6 +200,7 @@ class Inspection(Result):
     load="force",
     torque_constant="motor constant",
     inertia="moment of inertia",
+    position_window="time",
     tare=TARES,
     rotation=ROTATIONS,
     temperature_scale=Words(("degC", "K")),
@@ -225,9 +231,7 @@ def inspect(
     means
         Whether the files are tables of means: one row per dwell, no clock.
     **reading
-        Any of ``mapping``, ``channels``, ``units``, ``isothermal``, ``signs``, ``drop_missing``, ``every``,
-        ``radius``, ``load``, ``torque_constant``, ``gear_ratio``, ``speed_gear_ratio`` and ``inertia``, as
-        for `hersey.read_with_mapping`.
+        How to read the logs, as for `hersey.read_with_mapping`.
 
     Raises
     ------
@@ -250,7 +254,8 @@ def inspect(
     reading = cast("Reading", rest | {"channels": channels, "units": units})
     chosen = chosen.turned(reading.get("signs") or {})
     choices, known = _said(chosen, reading)
-    reports = tuple(file_report(raw_channels(file), choices, known) for file in files)
+    made = _made(chosen, reading)
+    reports = tuple(_without_lacking(file_report(raw_channels(file), choices, known), made) for file in files)
     needed: tuple[str, ...] = ()
     log: TorqueLog | MeansTable
     try:
@@ -288,6 +293,20 @@ def _said(mapping: LogMapping, reading: Reading) -> tuple[dict[str, ChannelChoic
         for role in (*ROLES, *OTHER_ROLES)
     }
     return choices, Stated(*(getattr(stated, f.name) or getattr(said.stated, f.name) for f in fields(Stated)))
+
+
+def _made(mapping: LogMapping, reading: Mapping[str, Any]) -> frozenset[str]:
+    """The roles that no column needs to play: a schedule, file names or a position do."""
+    said = mapping.sources | {name: value for name in mapping.sources if (value := reading.get(name))}
+    names = {name: said[name] for name in ("name_pattern", "name_decimal", "schedule", "position_window")}
+    sources = Sources.of(**names)
+    position = (reading.get("channels") or {}).get("position") or mapping.position.channel
+    return sources.roles | ({"speed"} if position else set())
+
+
+def _without_lacking(report: FileReport, made: frozenset[str]) -> FileReport:
+    """The report of a file without what it says of roles that no column needs to play."""
+    return replace(report, lacking={role: why for role, why in report.lacking.items() if role not in made})
 
 
 def _supported(

@@ -13,7 +13,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass as plain_dataclass
 from dataclasses import field, fields, replace
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from pydantic.dataclasses import dataclass
@@ -23,12 +23,16 @@ from hersey.files.toml import Table, naming, read_tables, read_toml
 from hersey.log import corrections
 from hersey.log.channels import Stated
 from hersey.log.corrections import Corrected
+from hersey.log.derived.set_points import SetPoints
 from hersey.log.reading import read
 from hersey.log.role_tables import (
     LoadMapping,
+    NamesMapping,
+    PositionMapping,
     RadiusMapping,
     RoleMapping,
     SpeedMapping,
+    Steps,
     TemperatureMapping,
     TimeMapping,
     TorqueMapping,
@@ -58,6 +62,10 @@ class _Roles(Table):
     load: LoadMapping = field(default_factory=LoadMapping)
     radius: RadiusMapping = field(default_factory=RadiusMapping)
     run: RoleMapping = field(default_factory=RoleMapping)
+    position: PositionMapping = field(default_factory=PositionMapping)
+    direction: RoleMapping = field(default_factory=RoleMapping)
+    names: NamesMapping = field(default_factory=NamesMapping)
+    schedule: Annotated[SetPoints | None, Steps(None)] = None
 
 
 @dataclass(frozen=True)
@@ -66,8 +74,12 @@ class LogMapping(_Roles):
 
     Attributes
     ----------
-    time, torque, speed, temperature, load, radius, run
+    time, torque, speed, temperature, load, radius, run, position, direction
         One `RoleMapping` each; ``run`` is the number of a run.
+    names
+        What the names of the files state.
+    schedule
+        What was asked for by time, if no channel holds it.
     source
         File that it was read from, or none.
     """
@@ -110,6 +122,16 @@ class LogMapping(_Roles):
             of.value if of.value is not None else of.values or None for of in (self.radius, self.load)
         )
         return Stated(self.time.every, radius, load)
+
+    @property
+    def sources(self) -> dict[str, Any]:
+        """What it says of channels that no column holds, as `hersey.read` takes it."""
+        return {
+            "name_pattern": self.names.pattern or None,
+            "name_decimal": self.names.decimal if self.names.pattern else None,
+            "schedule": self.schedule,
+            "position_window": self.position.window,
+        }
 
     def turned(self, signs: Mapping[str, int]) -> LogMapping:
         """Return the mapping with the signs of torque and speed multiplied by those given by role.
@@ -214,6 +236,7 @@ def find_mapping(path: str | Path) -> Path | None:
     load="force",
     torque_constant="motor constant",
     inertia="moment of inertia",
+    position_window="time",
     channels=CHANNELS,
     units=UNITS,
     signs=SIGNS,
@@ -234,6 +257,10 @@ def read_with_mapping(
     gear_ratio: float | None = None,
     speed_gear_ratio: float | None = None,
     inertia: float | None = None,
+    name_pattern: str | None = None,
+    name_decimal: str | None = None,
+    schedule: Any = None,
+    position_window: float | None = None,
     progress: Progress | None = None,
 ) -> Corrected:
     """Read one log or several with `hersey.read`, using their mapping, and apply its corrections.
@@ -247,7 +274,8 @@ def read_with_mapping(
         the motor constant of the mapping.
     signs
         -1 by role, ``torque`` or ``speed``, flips the sign in addition to the mapping.
-    isothermal, drop_missing, every, radius, load, progress
+    isothermal, drop_missing, every, radius, load, name_pattern, name_decimal, schedule, position_window,
+    progress
         As for `hersey.read`; they override the mapping.
     torque_constant
         Torque of the motor per ampere, N m/A, if the torque column is its current.
@@ -273,6 +301,13 @@ def read_with_mapping(
     chosen, channels, units = motor.added(chosen, channels or {}, units or {})
     chosen = chosen.turned(signs or {})
     stated = Stated(every, as_stated(radius), as_stated(load))
+    said = {
+        "name_pattern": name_pattern,
+        "name_decimal": name_decimal,
+        "schedule": schedule,
+        "position_window": position_window,
+    }
+    sources = chosen.sources | {name: value for name, value in said.items() if value is not None}
     chosen = without_what_is_said(chosen, channels, stated)
     try:
         log = read(
@@ -283,6 +318,7 @@ def read_with_mapping(
             drop_missing=drop_missing,
             **{name: value for name, value in vars(chosen.stated).items() if value is not None}
             | {name: value for name, value in vars(stated).items() if value is not None},
+            **sources,
             progress=progress,
         )
         done = chosen.correct(log)

@@ -51,7 +51,7 @@ def with_unit(
         If there is no unit, an unknown one, or one that the role cannot have.
     """
     unit = given or column.unit or known_unit(role, column)
-    if role == "run":
+    if role in ("run", "direction"):
         return column, Conversion(unit, 1.0, 0.0)
     if not unit:
         example = example_unit(role, column)
@@ -123,5 +123,8 @@ def _right_unit(role: str, unit: str) -> str:
         return f"{turns}. {_INVERTER} {setting.to('rev/s/2')}" if unit.strip() == "Hz" else turns
     if role == "speed" and (counted := of_encoder(unit)):
         return f"use {setting.to(counted)}, with your value instead of {COUNTS}"
+    if role == "position":
+        counts = setting.to("rev/4096")
+        return f"use {setting.to('deg')}, or for counts {counts} with the counts of one turn of your encoder"
     kind = ROLE_KINDS[role][0]
     return f"use {setting.to(nearest_unit(kind, unit) or KINDS[kind][1])}, or correct the header"
