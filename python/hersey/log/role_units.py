@@ -55,12 +55,13 @@ def with_unit(
         return column, Conversion(unit, 1.0, 0.0)
     if not unit:
         example = example_unit(role, column)
+        counts = f", or for counts {Setting(role, 'unit').to('rev/4096')}" if role == "position" else ""
         raise UnitError(
             f"{file}: column '{column.path}' has no unit",
             columns=(column.index,),
             remedy=(
                 f"write '{column.name} [{example}]' in the header, add a row of units, or use "
-                f"{Setting(role, 'unit').to(example)}{of_an_input(role, column.name)}"
+                f"{Setting(role, 'unit').to(example)}{counts}{of_an_input(role, column.name)}"
             ),
             setting=Setting(role, "unit"),
         )

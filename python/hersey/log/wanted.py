@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from hersey.errors import ISOTHERMAL, ChannelError, ParameterError
 from hersey.log.channels import ChannelChoice, Stated
-from hersey.log.derived.sources import Derived
+from hersey.log.derived.given import Derived
 from hersey.log.roles import EVERY, ROLES
 
 
