@@ -46,7 +46,7 @@ _PLUS_MINUS = re.compile(
 
 
 class AtBelt(Quantity):
-    """A quantity at the surface that slides, or turning; the radius of [drivetrain] leads to it from another."""
+    """A quantity at the surface that slides; the radius of [drivetrain] leads to it from a rotational one."""
 
     def _with_unit(self, given: object, info: ValidationInfo[Any]) -> float:
         try:

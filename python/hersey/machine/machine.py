@@ -64,8 +64,9 @@ class Machine:
     """The machine, in SI.
 
     ``part`` names what slides. ``stiffness`` (N/m) and ``mass`` (kg) where it slides, ``roll_radius`` (m) at
-    which torque acts on it, and ``stick_speed`` (m/s) below which it sticks: at ``stick_speed_temperature`` (K; None: the reference
-    of the fit), at others by ``stick_speed_rule`` (see `DampingSurface.stick_speed_at`). ``uncertainty``
+    which torque acts on it, and ``stick_speed`` (m/s) below which it sticks: at
+    ``stick_speed_temperature`` (K; None: the reference of the fit), at others by ``stick_speed_rule`` (see
+    `DampingSurface.stick_speed_at`). ``uncertainty``
     says how far parameters are known. ``contact`` and ``lubricant`` make the film, if they are stated.
     ``sensors`` are those of its logs, so far as a log's own mapping states no errors of them. ``rest`` is
     what the drive takes besides the film, ``heat`` what makes its temperature, from a cold start.
@@ -101,7 +102,7 @@ class Machine:
         stiffness = f"{self.stiffness:.4g} N/m" if soft else f"{self.stiffness / 1e3:.4g} kN/m"
         count = len(self.points)
         return (
-            f"Machine(roll radius {1e3 * self.roll_radius:.4g} mm, stiffness {stiffness}, "
+            f"Machine({self.part}, radius {1e3 * self.roll_radius:.4g} mm, stiffness {stiffness}, "
             f"mass {self.mass:.4g} kg, {count or 'no'} operating point{'' if count == 1 else 's'})"
         )
 

@@ -1,4 +1,4 @@
-"""Rotational quantities in the place of those at the surface that slides; the radius leads from one to other."""
+"""Rotational quantities in the place of those at the surface that slides; the radius leads to these."""
 
 from __future__ import annotations
 

@@ -112,7 +112,7 @@ def belt_of(
         return plain, _warned(drag, temperature, speeds), temperature
     if machine is None:
         raise ParameterError(
-            "a fitted surface needs roll radius and stick speed of the machine. Give read_machine(...) "
+            "a fitted surface needs radius and stick speed of the machine. Give read_machine(...) "
             "instead of its train, or surface.drag(...) instead of the surface"
         )
     if machine.belt["stick_speed_rule"] == "fixed" and isinstance(temperature, int | float):

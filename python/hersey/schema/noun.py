@@ -12,3 +12,8 @@ DRIVE: Noun = "drive"
 BELT: Noun = "belt"
 #: What turns as a whole, so that its stiffness is torsional and its inertia a moment.
 TURNING = frozenset({"joint", "shaft", "bearing", "gear"})
+
+
+def puller_of(part: Noun) -> str:
+    """Return what drives the part, and slips on it where the grip does not suffice."""
+    return "roll" if part == BELT else "drive"
