@@ -172,7 +172,7 @@ def _cycle(cycle: StickSlipCycle, numbers: Amounts) -> list[str]:
     rows = [
         ("frequency", numbers.shown(cycle.frequency, "frequency")),
         ("stuck", f"{three(100 * cycle.stuck_fraction)} % of the time"),
-        ("belt speed", numbers.shown_range(cycle.speed_min, cycle.speed_max, "belt speed")),
+        ("sliding speed", numbers.shown_range(cycle.speed_min, cycle.speed_max, "belt speed")),
         ("stretch", numbers.shown_range(cycle.stretch_min, cycle.stretch_max, "length")),
         ("drag work", f"{numbers.shown(cycle.drag_work, 'energy')} per cycle"),
     ]
