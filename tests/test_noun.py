@@ -1,4 +1,4 @@
-"""No belt, roll, rubber or paper in the words of a machine that has none: results use the word of its file."""
+"""No belt, roll, rubber or paper in the words of other machines: results use the word of the machine file."""
 
 from __future__ import annotations
 

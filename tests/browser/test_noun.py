@@ -38,10 +38,12 @@ temperature = "180 degC"
 _TEXTS = """() => {
   document.querySelectorAll("details").forEach((fold) => { fold.open = true; });
   const texts = [], walk = document.createTreeWalker(document.documentElement, NodeFilter.SHOW_TEXT);
-  while (walk.nextNode())
-    if (!/^(script|style)$/i.test(walk.currentNode.parentElement.tagName)) texts.push(walk.currentNode.textContent);
-  for (const each of document.querySelectorAll("*"))
-    for (const name of ["title", "aria-label", "placeholder"]) if (each.hasAttribute(name)) texts.push(each.getAttribute(name));
+  while (walk.nextNode()) {
+    const { parentElement, textContent } = walk.currentNode;
+    if (!/^(script|style)$/i.test(parentElement.tagName)) texts.push(textContent);
+  }
+  for (const name of ["title", "aria-label", "placeholder"])
+    document.querySelectorAll(`[${name}]`).forEach((each) => texts.push(each.getAttribute(name)));
   return texts;
 }"""
 
