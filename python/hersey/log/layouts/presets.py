@@ -1,0 +1,57 @@
+"""Layouts of instruments that are known, and how their exports begin."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields, replace
+
+from hersey.errors import ParameterError, meant
+from hersey.log.layouts.table import LogLayout
+
+
+@dataclass(frozen=True)
+class Preset:
+    """A layout, what it is for, and words of which all stand in the first lines of such an export."""
+
+    layout: LogLayout
+    of: str
+    words: tuple[str, ...]
+
+
+#: By name, as in ``preset = "umt"``. Those whose comment says so were written after a description or a reader
+#: of the format, the others after its usual form.
+PRESETS: dict[str, Preset] = {
+    # after readers of the format by others
+    "rheocompass": Preset(
+        LogLayout(section="Interval and data points:*", skip=("Result:*", "Test:*", "Project:*")),
+        "Anton Paar RheoCompass, text export",
+        ("Interval and data points:", "Interval data:"),
+    ),
+    "twincat": Preset(
+        LogLayout(header="Name {channel}", paired_clocks="ms"),
+        "Beckhoff TwinCAT Scope, text export with a clock for each channel",
+        ("SampleTime[ms]", "Starttime of export"),
+    ),
+}
+
+
+def with_preset(layout: LogLayout) -> LogLayout:
+    """Return a layout with what its preset says, replaced by what it states itself.
+
+    Raises
+    ------
+    ParameterError
+        If there is no such preset.
+    """
+    if not layout.preset:
+        return layout
+    if layout.preset not in PRESETS:
+        near = meant(layout.preset, list(PRESETS))
+        said = f" Did you mean '{near}'?" if near else ""
+        raise ParameterError(
+            f"[layout] names the unknown preset '{layout.preset[:40]}'.{said} Presets: {', '.join(PRESETS)}"
+        )
+    stated = {each.name: getattr(layout, each.name) for each in fields(layout)}
+    own = {
+        name: value for name, value in stated.items() if value != LogLayout.__dataclass_fields__[name].default
+    }
+    return replace(PRESETS[layout.preset].layout, **{**own, "preset": ""})
