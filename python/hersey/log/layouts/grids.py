@@ -70,7 +70,7 @@ def _table(
     """The table of a section, and the conditions that stand above its columns, by column."""
     separators = layout.separators or ("\t" if layout.transposed else SEPARATORS)
     text, where = _text(section, place)
-    found = find_layout(text, where, separators=separators)
+    found = find_layout(text, where, separators=separators, long=bool(layout.channel_column))
     if layout.decimal_comma is not None:
         found = replace(found, style=NumberStyle(layout.decimal_comma, found.style.thousands))
     rows, lines = _rows(section, found, place)

@@ -22,6 +22,8 @@ _TYPE = re.compile(
     r"(L?REAL|[US]?D?INT|L?INT|D?WORD|BYTE|BOOL|STRING|(DATE_AND_)?TIME|DOUBLE|U?INT\d+|(FLOAT|REAL)\d*)",
     re.IGNORECASE,
 )
+#: What stands between a name and its unit, where it is no bracket (DIN 1313 has a stroke).
+_BEFORE_UNITS = (" / ", " in ", ", ")
 #: A name in a header between blanks, with the unit behind it.
 _NAME = re.compile(r"[^\s\[(]+(?:[ \t]?(?:\[[^\[\]]*\]|\([^()]*\)))?|\S+")
 
@@ -61,14 +63,37 @@ def columns_of(table: NumberRows, numbered: list[Numbered], file: str) -> tuple[
     return _with_endings(tuple(columns)), ""
 
 
+def commented_header(above: str, table: NumberRows) -> str:
+    """Return the header in a comment just above the rows, without its sign; nothing if it is another comment.
+
+    It has a name for each column, no number, and at least two units in brackets or at the ends of names.
+    """
+    line = above.lstrip("#~/ \t")
+    names = _names(line, table)
+    units = sum(_is_unit((name_and_unit(name) or split_unit(name))[1]) for name in names)
+    if len(names) != table.width or units < 2 or any(looks_numeric(name) or not name for name in names):
+        return ""
+    return line
+
+
 def _with_endings(columns: tuple[Column, ...]) -> tuple[Column, ...]:
     """The columns with the units at the end of their names; a name that another has stays whole."""
     split = [split_unit(c.name) if not c.unit else (c.name, c.unit) for c in columns]
+    split = [(name, unit) if unit else _behind_sign(name) for name, unit in split]
     counts = Counter(name for name, _ in split)
     return tuple(
         replace(c, name=name if counts[name] == 1 else c.name, unit=unit)
         for c, (name, unit) in zip(columns, split, strict=True)
     )
+
+
+def _behind_sign(name: str) -> tuple[str, str]:
+    """Name and unit of a column called ``M / Nm``, ``n in 1/min`` or ``Torque, mNm``; no unit otherwise."""
+    for sign in _BEFORE_UNITS:
+        plain, _, unit = name.partition(sign)
+        if plain.strip() and unit.strip() and _is_unit(unit.strip()):
+            return plain.strip(), unit.strip()
+    return name, ""
 
 
 def _names(line: str, table: NumberRows) -> list[str]:
