@@ -108,7 +108,13 @@ def catman(path: Path) -> Made:
 def dewesoft(path: Path) -> Made:
     """Dewesoft text export: information, events, then the table."""
     steps = staircase(8)
-    lines = ["File name: bench_0008.dxd", "Sample rate: 2 Hz", "", "Events", "Event Type\tEvent\tTime\tComment"]
+    lines = [
+        "File name: bench_0008.dxd",
+        "Sample rate: 2 Hz",
+        "",
+        "Events",
+        "Event Type\tEvent\tTime\tComment",
+    ]
     lines += ["1\tstoring started at\t0,000\t", "2\tstoring stopped at\t80,0\t", "", "Data1"]
     lines += ["Time (s)\tTorque (mNm)\tSpeed (rpm)\tOil temp (°C)"]
     lines += [line for step in steps for line in _lines(step.cells(*_ALL))]
@@ -255,5 +261,3 @@ def lvm(path: Path) -> Made:
     lines += [line for step in steps for line in _lines(step.cells(*_ALL))]
     _write(path, lines)
     return Made(truth(steps))
-
-

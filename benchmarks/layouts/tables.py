@@ -128,7 +128,7 @@ def names_apart(path: Path) -> Made:
     """Graphtec: columns CH1, CH2, their names in a list above, units in a row below."""
     steps = staircase(32)
     lines = ["Vendor,GRAPHTEC Corporation", "Sampling interval,500ms", "AMP settings"]
-    lines += ['CH,Signal name,Input', 'CH1,"Torque",DC', 'CH2,"Speed",DC', 'CH3,"Temp",TEMP', "Data"]
+    lines += ["CH,Signal name,Input", 'CH1,"Torque",DC', 'CH2,"Speed",DC', 'CH3,"Temp",TEMP', "Data"]
     lines += ["Number,Date&Time,ms,CH1,CH2,CH3", "NO.,Time,ms,mNm,rpm,degC"]
     for at, (t, m, n, c) in enumerate((row for s in steps for row in s.cells(*_ALL)), 1):
         whole, part = divmod(round(1000 * float(t)), 1000)
@@ -172,9 +172,7 @@ def wide_with_row(path: Path) -> Made:
 def unequal(path: Path) -> Made:
     """Runs side by side, each with a clock of its own, of unequal length."""
     steps = staircase(36, rows=(40, 55, 30, 47), restart=True)
-    lines = [
-        ";".join(f"Time{i} [s];Torque{i} [mN*m];Speed{i} [rpm];Temp{i} [degC]" for i in range(1, 5))
-    ]
+    lines = [";".join(f"Time{i} [s];Torque{i} [mN*m];Speed{i} [rpm];Temp{i} [degC]" for i in range(1, 5))]
     columns = [getattr(s, name) for s in steps for name in _ALL]
     lines += [";".join(row) for row in zip_longest(*columns, fillvalue="")]
     _write(path, lines)

@@ -18,13 +18,13 @@ from hersey.log.torque_log import TorqueLog
 
 #: Commands at the most.
 _MOST = 4
-_TYPED = re.compile(r"[Rr]un (hersey [^.;]*?\S+) (?:and|once|first)|[Rr]un '?(hersey inspect .*?--save-mapping)")
+_TYPED = re.compile(r"run '(hersey inspect .* --save-mapping)'")
 _ROLE_FLAGS = ("time", "torque", "speed", "temperature")
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """Commands that were typed before the log was read, what each said, and what is wrong with what was read."""
+    """Commands that were typed until the log was read, what each said, and what was read wrong."""
 
     commands: tuple[str, ...]
     said: tuple[str, ...]
@@ -54,7 +54,7 @@ def tried(path: Path, made: Made) -> Outcome:
         finally:
             speak("python")
         if match := _TYPED.search(said[-1]):
-            line = next(filter(None, match.groups())).strip("'")
+            line = match[1]
             done = command.run(*shlex.split(line)[1:], cwd=path.parent)
             typed.append(line)
             said.append(done.stdout + done.stderr)
@@ -77,7 +77,7 @@ def _keywords(flags: list[str]) -> dict[str, object]:
     units: dict[str, str] = {}
     others: dict[str, object] = {}
     at = 0
-    while at < len(flags):
+    while at < len(flags) - 1 or flags[at:] in (["--isothermal"], ["--drop-missing"]):
         flag = flags[at].removeprefix("--")
         if flag in ("isothermal", "drop-missing"):
             others[flag.replace("-", "_")] = True

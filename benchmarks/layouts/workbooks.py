@@ -19,9 +19,7 @@ def _numbers(step: Step, *names: str) -> list[list[object]]:
 def sheets(path: Path) -> Made:
     """A sheet for each run, all channels measured."""
     steps = staircase(41, restart=True)
-    path.write_bytes(
-        xlsx({f"Run {i}": [_HEAD, *_numbers(step, *_ALL)] for i, step in enumerate(steps, 1)})
-    )
+    path.write_bytes(xlsx({f"Run {i}": [_HEAD, *_numbers(step, *_ALL)] for i, step in enumerate(steps, 1)}))
     return Made(truth(steps))
 
 
@@ -30,9 +28,7 @@ def named_sheets(path: Path) -> Made:
     steps = staircase(42, restart=True)
     head = [_HEAD[0], _HEAD[1], _HEAD[3]]
     path.write_bytes(
-        xlsx(
-            {f"{s.speed:g} rpm": [head, *_numbers(s, "time", "torque", "temperature")] for s in steps}
-        )
+        xlsx({f"{s.speed:g} rpm": [head, *_numbers(s, "time", "torque", "temperature")] for s in steps})
     )
     return Made(truth(steps, set_point=True))
 

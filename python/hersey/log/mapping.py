@@ -17,13 +17,23 @@ from typing import Any
 import numpy as np
 from pydantic.dataclasses import dataclass
 
-from hersey.errors import MAPPING, ChannelError, ParameterError, Setting, UnitError, printable, turned
+from hersey.errors import (
+    MAPPING,
+    ChannelError,
+    HerseyError,
+    ParameterError,
+    Setting,
+    UnitError,
+    printable,
+    turned,
+)
 from hersey.files.toml import Table, naming, read_tables, read_toml
 from hersey.log import corrections
 from hersey.log.channels import Stated
 from hersey.log.corrections import Corrected
 from hersey.log.layouts.laid_out import reading_by
 from hersey.log.layouts.presets import with_preset
+from hersey.log.layouts.proposing import with_layout
 from hersey.log.layouts.table import LogLayout
 from hersey.log.reading import read
 from hersey.log.role_tables import (
@@ -274,8 +284,12 @@ def read_with_mapping(
                 progress=progress,
             )
         done = chosen.correct(log)
-    except (ChannelError, UnitError) as error:
-        if chosen.source is None:
+    except HerseyError as error:
+        if chosen.layout is None and len(files) == 1:
+            with_advice = with_layout(error, Path(files[0]), channels, units)
+            if with_advice is not error:
+                raise with_advice from None
+        if chosen.source is None or not isinstance(error, ChannelError | UnitError):
             raise
         raise error.saying(f"{error.reason} (channels and units come from {chosen.source.name})") from None
     logged = tuple(_as_written(file, chosen) for file in log.files)

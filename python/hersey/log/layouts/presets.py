@@ -17,8 +17,7 @@ class Preset:
     words: tuple[str, ...]
 
 
-#: By name, as in ``preset = "umt"``. Those whose comment says so were written after a description or a reader
-#: of the format, the others after its usual form.
+#: By name, as in ``preset = "twincat"``: some after readers of the format by others, some after its usual form.
 PRESETS: dict[str, Preset] = {
     # after readers of the format by others
     "rheocompass": Preset(
@@ -27,9 +26,49 @@ PRESETS: dict[str, Preset] = {
         ("Interval and data points:", "Interval data:"),
     ),
     "twincat": Preset(
-        LogLayout(header="Name {channel}", paired_clocks="ms"),
+        LogLayout(
+            header="Name * Name *",
+            paired_clocks="ms",
+            skip=(
+                *("SymbolComment*", "Data-Type*", "SampleTime*", "VariableSize*", "SymbolBased*"),
+                *("IndexGroup*", "IndexOffset*", "SymbolName*", "NetID*", "Port*", "Offset*"),
+                *("ScaleFactor*", "BitMask*", "Unit ScaleFactor*", "Unit Offset*", "EOF*"),
+            ),
+        ),
         "Beckhoff TwinCAT Scope, text export with a clock for each channel",
         ("SampleTime[ms]", "Starttime of export"),
+    ),
+}
+
+
+# from what is known of the format
+PRESETS |= {
+    "yokogawa": Preset(
+        LogLayout(
+            header="TraceName,*",
+            values=("HResolution,{every:s}*",),
+            skip=(
+                *("BlockSize,*", "SampleRate,*", "HOffset,*", "HUnit,*", "DisplayBlockSize,*"),
+                *("DisplayPointNo.,*", "PhaseShift,*", "Date,*", "Time,*", "BlockNumber,*"),
+            ),
+        ),
+        "Yokogawa DL and ScopeCorder, CSV",
+        ("TraceName,", "VUnit,", "HResolution,"),
+    ),
+    "graphtec": Preset(
+        LogLayout(header="Number,*", milliseconds="ms"),
+        "Graphtec GL, CSV",
+        ("GRAPHTEC", "Number,Date&Time,ms"),
+    ),
+    "campbell": Preset(
+        LogLayout(header_line=2, units_line=3, first_row=5),
+        "Campbell Scientific TOA5",
+        ('"TOA5"',),
+    ),
+    "wincc": Preset(
+        LogLayout(header_line=1, channel_column="VarName", value_column="VarValue"),
+        "Siemens WinCC, archive as CSV",
+        ("VarName", "TimeString", "VarValue"),
     ),
 }
 

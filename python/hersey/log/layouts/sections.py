@@ -99,7 +99,9 @@ class _Cutting:
     def _add_row(self, number: int, line: str) -> None:
         if self.now.below:
             other, text = self.now.below[0]
-            if self.section or self.header or self.layout.values:
+            if not (self.section or self.header or self.values):  # a row without numbers: counted as such
+                self.now.rows += self.now.below
+            else:
                 raise UnreadableLogError(
                     f"{self.place}, line {other}: '{text.strip()[:60]}' stands among the rows, and no "
                     "pattern of [layout] matches it",
@@ -118,6 +120,8 @@ class _Cutting:
             return False
         if number == self.layout.units_line:
             return False
+        if self.now.rows and _is_like(line, self.now.rows[-1][1]):
+            return True
         return is_row(line, self.layout.separators, named=bool(self.layout.channel_column))
 
     def _is_passed_over(self, number: int) -> bool:
@@ -151,6 +155,15 @@ class _Cutting:
                     "does above others",
                     remedy="mend section or values of [layout], or add the line",
                 )
+
+
+def _is_like(line: str, row: str) -> bool:
+    """Whether a line begins with a number and has as many cells as a row: some of them may be empty."""
+    for each in SEPARATORS:
+        if each in row and line.count(each) == row.count(each):
+            first = next((cell for cell in split(line, each) if cell), "")
+            return looks_numeric(first) or is_stamp(first)
+    return False
 
 
 def _has_names(head: Sequence[Line], layout: LogLayout) -> bool:

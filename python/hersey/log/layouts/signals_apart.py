@@ -14,7 +14,7 @@ from hersey.log.layouts.grids import Grid
 from hersey.log.layouts.stacking import _called
 from hersey.log.layouts.table import LogLayout
 from hersey.log.recording import Recording, Signal
-from hersey.log.roles import role_conversion
+from hersey.log.roles import could_be, is_called, role_conversion
 from hersey.log.text.column import split_unit
 from hersey.log.text.stamps import Stamps, numbers_in
 
@@ -43,13 +43,11 @@ def recording_of_values(grid: Grid, layout: LogLayout, place: str) -> Recording:
     named, valued = (
         _called(name, grid.columns, place) for name in (layout.channel_column, layout.value_column)
     )
-    if not grid.stamps:
-        raise UnreadableLogError(
-            f"{place}: no column of time stamps was found beside '{layout.value_column}'"
-        )
-    at = next(iter(grid.stamps))
-    stamps = Stamps(grid.stamps[at])
-    time, _ = numbers_in(pl.Series(grid.cells[at], dtype=pl.String), stamps)
+    at = _clock(grid, layout, place)
+    written = Stamps(grid.stamps[at]) if at in grid.stamps else grid.style
+    time, _ = numbers_in(pl.Series(grid.cells[at], dtype=pl.String), written)
+    if at not in grid.stamps:
+        time = time * role_conversion("time", grid.columns[at].unit)[1].scale
     values, _ = numbers_in(pl.Series(grid.cells[valued], dtype=pl.String), grid.style)
     names = np.array(grid.cells[named])
     listed = list(dict.fromkeys(filter(None, grid.cells[named])))
@@ -59,8 +57,22 @@ def recording_of_values(grid: Grid, layout: LogLayout, place: str) -> Recording:
         )
     signals = [_signal(*split_unit(name), time[names == name], values[names == name]) for name in listed]
     recording = Recording("text", tuple(signals), warnings=list(grid.warnings))
-    recording.warnings.append(stamps.warning(grid.columns[at].name))
+    if isinstance(written, Stamps):
+        recording.warnings.append(written.warning(grid.columns[at].name))
     return recording
+
+
+def _clock(grid: Grid, layout: LogLayout, place: str) -> int:
+    """The place of the column of the time that changes most often."""
+    clocks = [
+        at
+        for at, column in enumerate(grid.columns)
+        if at in grid.stamps
+        or (column.unit and is_called("time", column) and could_be("time", column, surely=True))
+    ]
+    if not clocks:
+        raise UnreadableLogError(f"{place}: no column of times was found beside '{layout.value_column}'")
+    return max(clocks, key=lambda at: len(set(grid.cells[at])))
 
 
 def _signal(name: str, unit: str, time: FloatArray, values: FloatArray) -> Signal:

@@ -17,6 +17,7 @@ from hersey.log.recording import Recording, Signal
 from hersey.log.roles import role_conversion
 from hersey.log.text.column import Column
 from hersey.log.text.numbers import NumberStyle
+from hersey.log.text.split_seconds import refuse_split_seconds
 from hersey.log.text.stamps import Stamps, numbers_in
 from hersey.schema.warning import Warning
 from hersey.units import KINDS, conversion
@@ -60,7 +61,12 @@ class Stack:
         self._lines += grid.lines[:1]
         self.warnings += [each for each in grid.warnings if each not in self.warnings]
         numbers = {at: self._numbers(grid, at, place) for at in range(len(grid.columns))}
-        self._with_milliseconds(grid, numbers, place)
+        if self.layout.milliseconds:
+            self._with_milliseconds(grid, numbers, place)
+        else:
+            for at in grid.stamps:
+                where = f"{place}: column '{grid.columns[at].name}'"
+                refuse_split_seconds(where, numbers[at], grid.columns)
         for at, values in numbers.items():
             column = grid.columns[at]
             unit = "s" if at in grid.stamps else column.unit
@@ -116,8 +122,6 @@ class Stack:
 
     def _with_milliseconds(self, grid: Grid, numbers: dict[int, FloatArray], place: str) -> None:
         """Add the column of milliseconds to the time stamps."""
-        if not self.layout.milliseconds:
-            return
         of = _called(self.layout.milliseconds, grid.columns, place)
         if not grid.stamps:
             raise UnreadableLogError(

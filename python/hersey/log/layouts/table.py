@@ -43,6 +43,8 @@ def _patterns(texts: tuple[str, ...]) -> tuple[str, ...]:
 
 
 def _encoding(text: str) -> str:
+    if not text:
+        return text
     try:
         known = codecs.lookup(text).name if _PLAIN_TEXT.match(text) else ""
     except LookupError:
@@ -54,7 +56,7 @@ def _encoding(text: str) -> str:
 
 def _one_of(known: dict[str, object]) -> AfterValidator:
     def checked(text: str) -> str:
-        if text not in known:
+        if text and text not in known:
             raise ParameterError(f"is '{text[:40]}'. Write one of {', '.join(map(quoted, known))}")
         return text
 

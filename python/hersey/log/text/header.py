@@ -44,7 +44,7 @@ def columns_of(table: NumberRows, numbered: list[Numbered], file: str) -> tuple[
         del above[-1]
     line, header = above[-1]
     units: list[str] = []
-    if len(above) > 1 and len(above[-2][1]) == len(header) and _is_units_row(header):
+    if len(above) > 1 and len(above[-2][1]) == len(header) and is_units_row(header):
         units, (line, header) = header, above[-2]
     units = units or _of_oscilloscope([row for _, row in above[:-1]], len(header))
     _require_width(table, numbered, header, line, file)
@@ -153,8 +153,11 @@ def _of_oscilloscope(above: list[list[str]], width: int) -> list[str]:
     return [time[0].lower(), *channels]
 
 
-def _is_units_row(row: list[str]) -> bool:
-    """Units of at least half of the cells that are not blank; no number, no name with a unit of its own."""
+def is_units_row(row: list[str]) -> bool:
+    """Return whether at least half of the cells that are not blank are units.
+
+    None may be a number, or a name with a unit of its own.
+    """
     filled = [cell.strip("[]() ") for cell in row if cell.strip()]
     filled = [cell for cell in filled if cell not in ("1", "-")]  # units of a coefficient
     named = any(name_and_unit(cell) for cell in row if cell[:1] not in "[(")
