@@ -17,12 +17,14 @@ if __name__ == "__main__":
         for name, (write, ending) in CASES.items():
             if chosen != [""] and name not in chosen:
                 continue
-            path = Path(folder) / name / f"log{ending}"
-            path.parent.mkdir()
-            outcome = tried(path, write(path))
-            word = "right" if outcome.right else outcome.wrong or "refused"
-            print(f"{name:18} {len(outcome.commands)} {word}")
-            if not outcome.right or chosen != [""]:
+            for inspected in (False, True):
+                path = Path(folder) / f"{name}{inspected}" / f"log{ending}"
+                path.parent.mkdir()
+                outcome = tried(path, write(path), inspected=inspected)
+                word = "right" if outcome.right else outcome.wrong or "refused"
+                print(f"{name:18} {len(outcome.commands)} {word}")
+                if outcome.right and chosen == [""]:
+                    continue
                 for typed in outcome.commands:
                     print("      $", typed)
                 for said in outcome.said:

@@ -37,11 +37,16 @@ class Outcome:
         return self.read and not self.wrong
 
 
-def tried(path: Path, made: Made) -> Outcome:
-    """Return what comes of a file, its advice followed."""
+def tried(path: Path, made: Made, *, inspected: bool = False) -> Outcome:
+    """Return what comes of a file, its advice followed; ``inspected``: first of `hersey inspect`."""
     flags: list[str] = []
     typed: list[str] = []
     said: list[str] = []
+    if inspected:
+        done = command.run("inspect", path.name, "--save-mapping", cwd=path.parent)
+        typed.append(f"hersey inspect {path.name} --save-mapping")
+        said.append(done.stdout + done.stderr)
+        flags = _with_options(_advised(said[-1], path.name), made)
     while len(typed) < _MOST:
         typed.append(shlex.join(["hersey", "fit", path.name, *flags]))
         speak("terminal")
@@ -64,11 +69,23 @@ def tried(path: Path, made: Made) -> Outcome:
         proposals = followed(["fit", path.name, *flags], f"hersey: {said[-1]}")
         if not proposals:
             break
-        flags = proposals[0][2:]
-        for at, flag in enumerate(flags[:-1]):
-            if flag in made.options:
-                flags[at + 1] = made.options[flag]
+        flags = _with_options(proposals[0][2:], made)
     return Outcome(tuple(typed), tuple(said))
+
+
+def _advised(said: str, name: str) -> list[str]:
+    """The options that the output of inspect says to add."""
+    lines = [line for line in said.splitlines() if "--" in line]
+    proposals = followed(["fit", name], f"hersey: {' '.join(lines)}") if lines else []
+    return proposals[0][2:] if proposals else []
+
+
+def _with_options(flags: list[str], made: Made) -> list[str]:
+    """The options, with what a user knows in the place of examples."""
+    known = list(flags)
+    for at, flag in enumerate(flags[:-1]):
+        known[at + 1] = made.options.get(flag, flags[at + 1])
+    return known
 
 
 def _keywords(flags: list[str]) -> dict[str, object]:

@@ -17,7 +17,7 @@ class Preset:
     words: tuple[str, ...]
 
 
-#: By name, as in ``preset = "twincat"``: some after readers of the format by others, some after its usual form.
+#: By name, as in ``preset = "twincat"``: after readers of the format by others, or after its usual form.
 PRESETS: dict[str, Preset] = {
     # after readers of the format by others
     "rheocompass": Preset(

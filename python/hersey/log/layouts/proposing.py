@@ -10,7 +10,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from hersey.errors import (
-    ChannelError,
     HerseyError,
     MissingFileError,
     ParameterError,
@@ -26,7 +25,7 @@ from hersey.log.layouts.presets import PRESETS, with_preset
 from hersey.log.layouts.seen import LOOKED_AT, Seen, stated_by_all, stated_in
 from hersey.log.layouts.stacking import SECTION
 from hersey.log.layouts.table import LogLayout
-from hersey.log.reading import list_channels, read
+from hersey.log.reading import read
 from hersey.log.roles import OTHER_ROLES, ROLES
 from hersey.log.text.column import split_unit
 from hersey.log.text.header import is_units_row
@@ -110,11 +109,6 @@ def _plain_rank(path: Path, channels: Mapping[str, str], units: Mapping[str, str
             read(path, channels=kept, units=dict(units), isothermal=isothermal, drop_missing=True)
         except UnitError:
             return True, False
-        except ChannelError as error:
-            role = error.setting.name if error.setting else ""
-            if error.columns and role not in channels:  # one of several, which a person can name
-                named = list_channels(path)[error.columns[0]][0]
-                return _plain_rank(path, {**channels, role: named}, units)
         except HerseyError:
             continue
         else:

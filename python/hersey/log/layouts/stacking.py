@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
@@ -47,7 +48,7 @@ class Stack:
         """Take the layout, and the name of the file."""
         self.layout, self.file = layout, file
         self.warnings: list[Warning] = []
-        self._channels: dict[str, _Channel] = {}
+        self._channels: dict[tuple[str, int], _Channel] = {}  # by name, and its number among those of a name
         self._stamps: dict[str, Stamps] = {}
         self._rows: list[int] = []
         self._lines: list[int] = []
@@ -67,10 +68,14 @@ class Stack:
             for at in grid.stamps:
                 where = f"{place}: column '{grid.columns[at].name}'"
                 refuse_split_seconds(where, numbers[at], grid.columns)
+        seen = Counter[str]()
         for at, values in numbers.items():
             column = grid.columns[at]
+            seen[column.name.lower()] += 1
             unit = "s" if at in grid.stamps else column.unit
-            self._put(run, column.name, unit, values, f"{place}, line {grid.lines[0]}")
+            self._put(
+                run, column.name, unit, values, f"{place}, line {grid.lines[0]}", seen[column.name.lower()]
+            )
         for name, value in grid.values.items():
             self._state(run, rows, name, value)
 
@@ -84,8 +89,8 @@ class Stack:
         else:
             self._put(run, SET.format(name), value.unit, np.full(rows, value.number), self.file)
 
-    def _put(self, run: int, name: str, unit: str, values: FloatArray, place: str) -> None:
-        channel = self._channels.setdefault(name.lower(), _Channel(name, unit))
+    def _put(self, run: int, name: str, unit: str, values: FloatArray, place: str, count: int = 1) -> None:
+        channel = self._channels.setdefault((name.lower(), count), _Channel(name, unit))
         if not channel.unit:
             channel.unit = unit
         elif unit and unit != channel.unit:
@@ -154,7 +159,7 @@ class Stack:
             channels.append(Signal(SECTION, "", total, lambda: section, tick="rows"))
         recording = Recording(kind, tuple(channels), warnings=self.warnings)
         for stamps, name in ((each, key) for key, each in self._stamps.items()):
-            recording.warnings.append(stamps.warning(self._channels[name].name))
+            recording.warnings.append(stamps.warning(self._channels[name, 1].name))
         return recording
 
 

@@ -37,6 +37,6 @@ def refuse_split_seconds(place: str, time: FloatArray, columns: Sequence[Column]
         return
     raise UnreadableLogError(
         f"{place} shows whole seconds; column '{beside}' seems to hold the milliseconds",
-        remedy=f'write milliseconds = "{beside}" into [layout] of a mapping, or export the time in one column',
+        remedy=f'write milliseconds = "{beside}" into [layout] of a mapping, or export one column',
         setting=Setting("time", "channel"),
     )
