@@ -21,13 +21,14 @@ from hersey.log.assembly import Assembly
 from hersey.log.channels import ChannelChoice, Stated
 from hersey.log.layouts.laid_out import recording_of
 from hersey.log.layouts.pages import Page, Pages, pages_of
+from hersey.log.layouts.pattern import pattern
 from hersey.log.layouts.presets import PRESETS, with_preset
 from hersey.log.layouts.seen import LOOKED_AT, Seen, stated_by_all, stated_in
 from hersey.log.layouts.stacking import SECTION
 from hersey.log.layouts.table import LogLayout
 from hersey.log.reading import read
-from hersey.log.roles import OTHER_ROLES, ROLES
-from hersey.log.text.column import split_unit
+from hersey.log.roles import OTHER_ROLES, ROLES, is_called, is_of_kind
+from hersey.log.text.column import Column, split_unit
 from hersey.log.text.header import is_units_row
 from hersey.log.text.numbers import looks_numeric
 from hersey.log.text.split_seconds import is_milliseconds
@@ -243,10 +244,15 @@ def _of_wide(seen: Seen) -> Iterator[LogLayout]:
     """Columns that hold one condition each, by their names or by a line above them."""
     above = list(seen.words_above())
     for at in reversed(above):
-        names = [split_unit(cell)[0] for cell in seen.cells(at) if cell]
+        cells = [cell for cell in seen.cells(at) if cell]
+        names = [split_unit(cell)[0] for cell in cells]
         templates = Counter(filter(None, map(_condition, names)))
-        yield from (LogLayout(wide=t) for t, count in templates.most_common(3) if count > 1)
-        if any(count > 1 for count in Counter(names).values()):
+        for template, count in templates.most_common(3):
+            matched = [cell for cell in cells if pattern(template).match(split_unit(cell)[0])]
+            if count > 1 and ("{run}" not in template or _hold_runs(matched)):
+                yield LogLayout(wide=template)
+        counts = Counter(names)
+        if _hold_runs([cell for cell, name in zip(cells, names, strict=True) if counts[name] > 1]):
             yield LogLayout(side_by_side=True)
     if not seen.blocks[0].above:
         return
@@ -254,8 +260,16 @@ def _of_wide(seen: Seen) -> Iterator[LogLayout]:
         cells = [cell for cell in seen.cells(at) if cell]
         templates = Counter(filter(None, (stated_in(cell) or _with_run(cell) for cell in cells)))
         for template, count in templates.most_common(2):
-            if count > 1 and template.strip("{}") not in ("run", ""):
+            runs = "{run}" not in template or _hold_runs([c for i in above for c in seen.cells(i)])
+            if count > 1 and runs and template != "{run}":
                 yield LogLayout(wide=template, condition_line=at + 1)
+
+
+def _hold_runs(headers: list[str]) -> bool:
+    """Whether columns are those of runs, and no second sensor: a clock or a speed is among them."""
+    columns = [Column(0, *split_unit(header)) for header in headers]
+    names = (replace(column, name=column.name.rstrip("0123456789 _.:#-")) for column in columns)
+    return any(is_called("time", c) or is_called("speed", c) or is_of_kind("speed", c.unit) for c in names)
 
 
 def _condition(name: str) -> str:

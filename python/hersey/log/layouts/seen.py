@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -25,6 +24,11 @@ _BEHIND = re.compile(
     rf"(?<![\w.,])({_NUMBER})(\s?)([A-Za-z°µ][A-Za-z°/⁻¹*·^-]{{0,11}}|(?<=\s)1/[a-z]{{1,4}})(?!\w)"
 )
 _BEFORE = re.compile(rf"[(\[]([^()\[\]]{{1,12}})[)\]]\s*[:=;,]?\s*({_NUMBER})(?![\w.])")
+#: Words beside a number that is not what the rows were measured at.
+_NO_SET_POINT = re.compile(
+    r"(?i)\b(max|min|mean|avg|average|limit|alarm|ambient|room|raum|umgebung|grenz|mittel|start|end|initial"
+    r"|final|ramp|accel|fan|range|scale|rated|nenn)"
+)
 #: Roles that a line above a table may state.
 _STATED = ("speed", "temperature")
 
@@ -94,12 +98,14 @@ def stated_in(text: str) -> str:
     Its other numbers may be any.
     """
     plain = " ".join(text.split())
-    if not plain or len(plain) > _LONGEST or set(plain) & set("{}*"):
+    if not plain or len(plain) > _LONGEST or set(plain) & set("{}*") or _NO_SET_POINT.search(plain):
         return ""
     placeholders: dict[tuple[int, int], str] = {}
     roles = set[str]()
     for match in _BEHIND.finditer(plain):
-        if (role := _role_of(match[3])) and role not in roles:
+        if role := _role_of(match[3]):
+            if role in roles:  # from one speed to another: no set point
+                return ""
             roles.add(role)
             alone = plain[match.end() : match.end() + 1] in ("", " ")
             unit = "" if alone else f":{match[3]}"
@@ -135,17 +141,22 @@ def _role_of(unit: str) -> str:
 
 
 def stated_by_all(seen: Sequence[Seen]) -> tuple[str, ...]:
-    """Return the patterns that a line above every block matches, at most one for each role."""
-    blocks = [(each, block) for each in seen for block in each.blocks]
-    found = Counter(
-        template
-        for each, block in blocks
-        for template in {stated_in(each.lines[at]) for at in block.above[-2 * _ABOVE :]}
-        if template
-    )
-    chosen: dict[tuple[str, ...], str] = {}
-    for template, count in found.items():
-        names = pattern(template).names
-        if count == len(blocks) and names not in chosen:
-            chosen[names] = template
-    return tuple(chosen.values())
+    """Return the patterns that a line above every block matches and whose numbers vary, one for each role.
+
+    Where two of a role vary, and differ, neither is returned: which is the set point is not known.
+    """
+    blocks = [[each.lines[at] for at in block.above[-2 * _ABOVE :]] for each in seen for block in each.blocks]
+    templates = {template for lines in blocks for line in lines if (template := stated_in(line))}
+    found: dict[tuple[str, ...], dict[tuple[float, ...], str]] = {}
+    for template in sorted(templates):
+        numbers = [_last_stated(template, lines) for lines in blocks]
+        if None not in numbers and len(set(numbers)) > 1:
+            series = tuple(number for each in numbers for number in each or ())
+            found.setdefault(pattern(template).names, {}).setdefault(series, template)
+    return tuple(next(iter(each.values())) for each in found.values() if len(each) == 1)
+
+
+def _last_stated(template: str, lines: Sequence[str]) -> tuple[float, ...] | None:
+    """The numbers of the last line that a pattern matches."""
+    matches = [match for line in lines if (match := pattern(template).match(line))]
+    return tuple(value.number for value in matches[-1].values.values()) if matches else None
