@@ -258,6 +258,9 @@ def _of_wide(seen: Seen) -> Iterator[LogLayout]:
         return
     for at in reversed(seen.blocks[0].above[-6:]):
         cells = [cell for cell in seen.cells(at) if cell]
+        unit = split_unit(cells[0])[1]
+        if len(cells) > 2 and is_of_kind("speed", unit) and all(map(looks_numeric, cells[1:])):
+            yield LogLayout(wide=f"{{speed:{unit}}}", condition_line=at + 1)
         templates = Counter(filter(None, (stated_in(cell) or _with_run(cell) for cell in cells)))
         for template, count in templates.most_common(2):
             runs = "{run}" not in template or _hold_runs([c for i in above for c in seen.cells(i)])
@@ -269,7 +272,12 @@ def _hold_runs(headers: list[str]) -> bool:
     """Whether columns are those of runs, and no second sensor: a clock or a speed is among them."""
     columns = [Column(0, *split_unit(header)) for header in headers]
     names = (replace(column, name=column.name.rstrip("0123456789 _.:#-")) for column in columns)
-    return any(is_called("time", c) or is_called("speed", c) or is_of_kind("speed", c.unit) for c in names)
+    return any(
+        is_of_kind("speed", c.unit)
+        or is_called("speed", c)
+        or (is_called("time", c) and is_of_kind("time", c.unit))
+        for c in names
+    )
 
 
 def _condition(name: str) -> str:

@@ -77,8 +77,8 @@ class _Cutting:
         elif self._is_header(number, line):
             if self.now.rows:
                 self._begin(number, {})
-            if self.now.head and self.layout.header_line:
-                self.now.head.clear()
+            if self.layout.header_line:
+                self.now.head = [line for line in self.now.head if line[0] == self.layout.units_line]
             self.now.head.append((number, line))
         elif self._is_row(number, line):
             self._add_row(number, line)

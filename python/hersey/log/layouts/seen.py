@@ -21,12 +21,12 @@ _LEAST, _ABOVE = 3, 12
 _NUMBER = r"[-+]?[0-9]{1,15}(?:[.,][0-9]{1,15})?"
 #: A number with a unit behind it, and one with its unit before it.
 _BEHIND = re.compile(
-    rf"(?<![\w.,])({_NUMBER})(\s?)([A-Za-z°µ][A-Za-z°/⁻¹*·^-]{{0,11}}|(?<=\s)1/[a-z]{{1,4}})(?!\w)"
+    rf"(?<![A-Za-z0-9.,])({_NUMBER})([\s;]?)([A-Za-z°µ][A-Za-z°/⁻¹*·^-]{{0,11}}|(?<=\s)1/[a-z]{{1,4}})(?!\w)"
 )
 _BEFORE = re.compile(rf"[(\[]([^()\[\]]{{1,12}})[)\]]\s*[:=;,]?\s*({_NUMBER})(?![\w.])")
 #: Words beside a number that is not what the rows were measured at.
 _NO_SET_POINT = re.compile(
-    r"(?i)\b(max|min|mean|avg|average|limit|alarm|ambient|room|raum|umgebung|grenz|mittel|start|end|initial"
+    r"(?i)(?<!/)\b(max|min(?!-1|\(-1|⁻|\^)|mean|avg|average|limit|alarm|ambient|room|raum|umgebung|grenz|mittel|start|end|initial"
     r"|final|ramp|accel|fan|range|scale|rated|nenn)"
 )
 #: Roles that a line above a table may state.

@@ -11,7 +11,7 @@ from hersey.log.signals import is_signal
 from hersey.log.text.column import Column, name_and_unit, refuse_long_name, split_unit
 from hersey.log.text.decimal_commas import with_decimal_commas
 from hersey.log.text.numbers import is_missing, looks_numeric
-from hersey.log.text.separators import BLANKS, NumberRows, split
+from hersey.log.text.separators import BLANKS, SEPARATORS, NumberRows, split
 from hersey.log.text.unit_pairs import of_one_kind, same_unit
 from hersey.units import KINDS, conversion
 
@@ -97,7 +97,13 @@ def _behind_sign(name: str) -> tuple[str, str]:
 
 
 def _names(line: str, table: NumberRows) -> list[str]:
-    """The cells of a line above the table; between blanks a name may have a unit, or a blank, of its own."""
+    """The cells of a line above the table; between blanks a name may have a unit, or a blank, of its own.
+
+    A header may have another separator than the rows.
+    """
+    if table.separator not in line and table.separator != BLANKS:
+        others = (split(line, each) for each in SEPARATORS if each in line)
+        return next((cells for cells in others if len(cells) == table.width), split(line, table.separator))
     if table.separator != BLANKS:
         return split(line, table.separator)
     splits = (line.split(), _NAME.findall(line), re.split(r"\s{2,}|\t", line.strip()))
