@@ -259,7 +259,7 @@ class Recipe:
         mapping = self.chosen
         if mapping.schedule is not None or mapping.position.channel:
             return False
-        if mapping.time.every is not None:
+        if mapping.time.every is not None or mapping.layout is not None:
             return False
         channels, units = mapping.channels | self.channels, mapping.units | self.units
         return all(is_means_table(path, channels, units) for path in self.logs)

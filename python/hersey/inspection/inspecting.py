@@ -31,6 +31,8 @@ from hersey.log.channels import ChannelChoice, Stated
 from hersey.log.corrections import Corrected
 from hersey.log.derived.sources import Sources
 from hersey.log.doubtful import doubtful_units
+from hersey.log.layouts.laid_out import reading_by
+from hersey.log.layouts.proposing import with_layout
 from hersey.log.mapping import (
     LogMapping,
     Motor,
@@ -255,7 +257,15 @@ def inspect(
     chosen = chosen.turned(reading.get("signs") or {})
     choices, known = _said(chosen, reading)
     made = _made(chosen, reading)
-    reports = tuple(_without_lacking(file_report(raw_channels(file), choices, known), made) for file in files)
+    try:
+        with reading_by(chosen.layout):
+            reports = tuple(
+                _without_lacking(file_report(raw_channels(file), choices, known), made) for file in files
+            )
+    except HerseyError as error:
+        if chosen.layout is not None or len(files) > 1:
+            raise
+        raise with_layout(error, Path(files[0]), reading.get("channels"), reading.get("units")) from None
     needed: tuple[str, ...] = ()
     log: TorqueLog | MeansTable
     try:

@@ -33,17 +33,7 @@ _LAST = 21
 def open_excel(file: BinaryIO, _name: str) -> Iterator[Recording]:
     """Open a workbook: each sheet with a table is a group, named where there are several."""
     prepare()
-    sheets = pl.read_excel(
-        io.BytesIO(file.read()),
-        sheet_id=0,
-        engine="calamine",
-        has_header=False,
-        # as text: a word in a column of numbers costs its row alone
-        read_options={"dtypes": "string", "skip_rows": 0},
-        drop_empty_rows=False,
-        drop_empty_cols=False,
-        raise_if_empty=False,
-    )
+    sheets = sheets_of(file)
     recording = Recording("Excel", ())
     tables: dict[str, tuple[pl.DataFrame, Layout]] = {}
     others = []
@@ -65,6 +55,21 @@ def open_excel(file: BinaryIO, _name: str) -> Iterator[Recording]:
         recording.comments += tuple(comment.rstrip() for comment in layout.comments)
     recording.signals, recording.others, recording.cells = tuple(signals), tuple(others), tuple(columns)
     yield recording
+
+
+def sheets_of(file: BinaryIO) -> dict[str, pl.DataFrame]:
+    """Return the cells of each sheet as text, by its title."""
+    return pl.read_excel(
+        io.BytesIO(file.read()),
+        sheet_id=0,
+        engine="calamine",
+        has_header=False,
+        # as text: a word in a column of numbers costs its row alone
+        read_options={"dtypes": "string", "skip_rows": 0},
+        drop_empty_rows=False,
+        drop_empty_cols=False,
+        raise_if_empty=False,
+    )
 
 
 def prepare() -> None:

@@ -36,6 +36,7 @@ from hersey.log.text.column import Column
 from hersey.log.text.footer import end_of_table
 from hersey.log.text.layout import SNIFFED, Layout, find_layout
 from hersey.log.text.numbers import is_missing
+from hersey.log.text.split_seconds import refuse_split_seconds
 from hersey.log.text.stamps import refuse_whole_minutes
 from hersey.log.text.units_in_cells import numbers_only
 from hersey.log.torque_log import NO_CLOCK, Channel, LogFile, Run
@@ -68,6 +69,7 @@ def read_delimited(path: Path, wanted: Wanted, progress: Progress | None = None)
     arrays, impossible = table.arrays()
     if (time := channels.get("time")) and (stamps := table.reader.stamps.get(time[0].index)):
         refuse_whole_minutes(f"{name}: column '{time[0].name}'", stamps, arrays["time"])
+        refuse_split_seconds(f"{name}: column '{time[0].name}'", arrays["time"], layout.columns)
     used = tuple(Channel(role, column.name, si.unit) for role, (column, si) in table.channels.items())
     if stated.every is not None:
         used = (Channel("time", NO_CLOCK, f"{stated.every:g} s"), *used)
