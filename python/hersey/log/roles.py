@@ -41,6 +41,7 @@ _NAMES = {
     "temperature": r".*temp.*|.*thermistor.*|.*heater.*|.*thermocouple.*|.*film t.*",
     "load": r".*\bload(?! ?cell).*|.*normal ?(force|kraft).*|.*normalkraft.*|f_?n|.*axial ?force",
     "radius": r".*radius.*",
+    "position": r".*(angle|position|encoder|winkel|lage).*|phi|theta|pos",
 }
 #: Names of what stands for a torque, or a speed of rotation, where the radius is known.
 FRICTION_NAMES = {

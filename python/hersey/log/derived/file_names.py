@@ -120,5 +120,26 @@ class NamePattern:
         )
 
 
+def proposed_pattern(name: str) -> tuple[str, str] | None:
+    """Return a pattern and a decimal mark for a file name with a number and a unit of speed, or None."""
+    found = list(_STATED.finditer(name[:_LONGEST]))
+    roles = [_ROLE_OF[match[2].lower()] for match in found]
+    if roles.count("speed") != 1 or len(set(roles)) != len(roles):
+        return None
+    parts, last = [], 0
+    for match, role in zip(found, roles, strict=True):
+        parts += [name[last : match.start()], f"{{{role}}}"]
+        last = match.end(1)
+    marks = {mark for match in found for mark in match[1] if mark in DECIMALS}
+    if len(marks) > 1:
+        return None
+    return "".join([*parts, name[last:]]), next(iter(marks), ".")
+
+
+#: Units in file names, and the role that each shows.
+_ROLE_OF = {"rpm": "speed", "rps": "speed", "n": "load", "degc": "temperature"}
+_STATED = re.compile(r"(?<![0-9.])([0-9]+(?:[.,-][0-9]+)?)[ _]?(rpm|rps|N|degC)(?![A-Za-z])", re.IGNORECASE)
+
+
 def _known() -> str:
     return ", ".join(f"{{{role}}}" for role in ROLES)
