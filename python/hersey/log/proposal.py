@@ -11,6 +11,8 @@ from hersey.errors import HerseyError, printable
 from hersey.files.toml import quoted
 from hersey.log.channels import ChannelChoice, called, find_channel, is_dead
 from hersey.log.columns import open_columns
+from hersey.log.layouts.laid_out import reading_by
+from hersey.log.layouts.proposing import proposed_layout
 from hersey.log.reading import list_channels
 from hersey.log.roles import role_conversion
 from hersey.log.stating import proposed
@@ -37,12 +39,24 @@ def propose_mapping(
     [torque]
     """
     path = Path(path)
+    proposal = proposed_layout(path, channels, units)
+    if proposal is None:
+        return "\n".join(_roles(path, channels or {}, units or {}))
+    with reading_by(proposal.layout):
+        lines = _roles(path, proposal.channels | (channels or {}), units or {})
+    return "\n".join([lines[0], proposal.layout.toml(), "", *lines[1:]])
+
+
+def _roles(path: Path, channels: Mapping[str, str], units: Mapping[str, str]) -> list[str]:
+    """The lines of a mapping that say which channel plays which role."""
     columns = tuple(Column(index, name, unit) for index, (name, unit) in enumerate(list_channels(path)))
     lines = [f"# Channels of {printable(path.name)}, proposed by hersey inspect. Check and correct them."]
     for role in ("torque", "speed", "temperature", "time"):
-        choice = ChannelChoice((channels or {}).get(role, ""), (units or {}).get(role, ""))
+        choice = ChannelChoice(channels.get(role, ""), units.get(role, ""))
         lines += [*_proposed(role, columns, choice, path), ""]
-    return "\n".join(lines)
+    if "run" in channels:
+        lines += ["[run]", f"channel = {quoted(channels['run'])}", ""]
+    return lines
 
 
 _EXAMPLES: dict[str, tuple[str, ...]] = {
