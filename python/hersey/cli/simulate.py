@@ -109,7 +109,7 @@ def simulate(
     printing: Printing,
     force: Force = False,
 ) -> None:
-    """Simulate the belt at a drive speed or over a profile.
+    """Simulate the motion at a drive speed or over a profile.
 
     Give all numbers with units, e.g. '11 N/mm', or all bare in any consistent set of units. The defaults are
     the paper's baseline, in inches, ounces of force and seconds.
