@@ -38,8 +38,8 @@ _KINDS = {
     "steady_sliding": "The {part} slides steadily.",
     "oscillation": "The {part} oscillates without sticking.",
     "unsettled": "The motion has not settled.",
-    "stalled": "The {part} stalls: the grip slips and does not move it.",
-    "grip_slip": "The {part} slides steadily, slower than the drive, whose grip slips.",
+    "stalled": "The {part} stalls: the grip does not suffice to move it.",
+    "grip_slip": "The {part} slides steadily, slower than it is driven: the grip does not suffice.",
 }
 
 
