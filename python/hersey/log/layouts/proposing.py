@@ -32,6 +32,7 @@ from hersey.log.text.column import Column, split_unit
 from hersey.log.text.header import is_units_row
 from hersey.log.text.numbers import looks_numeric
 from hersey.log.text.split_seconds import is_milliseconds
+from hersey.log.torque_log import LogFile, Run
 from hersey.log.wanted import Wanted
 
 #: Lines of a file among which the words of a preset are looked for; names of channels with a number behind.
@@ -145,10 +146,11 @@ def _tried(
                 continue
             if _varies(runs):
                 return Proposal(layout, more, isothermal)
-    return Proposal(layout, {}, lacks_units=True) if lacks_units else None
+    shows_itself = replace(layout, header_line=0, units_line=0, first_row=0) == LogLayout()
+    return Proposal(layout, {}, lacks_units=True) if lacks_units and not shows_itself else None
 
 
-def _varies(runs: list) -> bool:
+def _varies(runs: list[tuple[Run, LogFile]]) -> bool:
     """Whether there are at least two speeds."""
     speeds = [float(run.speed.mean()) for run, _ in runs]
     return max(speeds) > min(speeds) or any(run.speed.min() < run.speed.max() for run, _ in runs)
