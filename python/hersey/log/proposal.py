@@ -64,10 +64,10 @@ _EXAMPLES: dict[str, tuple[str, ...]] = {
         "# sign = -1                     # flips the sign",
         '# tare = "4 mN*m"               # sensor reading without load',
         '# no_load = "4 mN*m"            # torque without the lubricated contact, or a log of it: "free.csv"',
-        "# gear_ratio = 12.5             # turns of the sensor shaft per turn of the roll",
+        "# gear_ratio = 12.5             # turns of the sensor shaft per turn of the output shaft",
         "# efficiency = 0.9              # of the gears",
         (
-            '# inertia = "2e-4 kg*m^2"       # between sensor and contact, referred to the roll; matters '
+            '# inertia = "2e-4 kg*m^2"       # between sensor and contact, referred to the output; matters '
             "in ramps"
         ),
         '# motor_constant = "35 mN*m/A"  # if the channel is the motor current',
@@ -76,7 +76,7 @@ _EXAMPLES: dict[str, tuple[str, ...]] = {
     ),
     "speed": (
         "# sign = -1",
-        "# gear_ratio = 12.5             # turns of the sensor shaft per turn of the roll",
+        "# gear_ratio = 12.5             # turns of the sensor shaft per turn of the output shaft",
         '# gain_error = "0.1 %"          # sensor error, at 95 %',
     ),
     "temperature": (

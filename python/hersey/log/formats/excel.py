@@ -14,7 +14,7 @@ import polars as pl
 
 from hersey.arrays import FloatArray
 from hersey.errors import HerseyError
-from hersey.log.recording import LONGEST_CELL, Cells, Recording, Signal, library
+from hersey.log.recording import LONGEST_CELL, Cells, Recording, Signal, cell_that_is_no_number, library
 from hersey.log.text.column import Column
 from hersey.log.text.dated_numbers import was_number
 from hersey.log.text.footer import summary_lines
@@ -159,18 +159,10 @@ def _numbers(
     if style is None and any(was_number(column.name, cell) for cell in text.filter(odd)):
         recording.dates.add(replace(column, group=group).path)
     for row in odd.arg_true()[:1]:
+        expected = "number" if style is None else "time"
+        at, odd_cells = layout.first_line + row, int(odd.sum())
         recording.warnings.append(
-            Warning(
-                "cell that is no number",
-                "row {row}, column '{column}': '{cell}' is not a {expected}"
-                + (", nor are {others} more {others:cell|cells} in this column" if odd.sum() > 1 else ""),
-                where=sheet,
-                row=layout.first_line + row,
-                column=column.name,
-                cell=text[row][:40],
-                expected="number" if style is None else "time",
-                others=int(odd.sum()) - 1,
-            )
+            cell_that_is_no_number(at, column.name, text[row], odd_cells, where=sheet, expected=expected)
         )
     if isinstance(written, Stamps):
         recording.warnings.append(written.warning(column.name))

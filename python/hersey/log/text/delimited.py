@@ -323,6 +323,7 @@ class _Table:
         words = (self._fault(block, values, int(row)) for row in np.flatnonzero(gone))
         self.left_out.add(int(gone.sum()), words)
         self.left_out.dates = next((column.name for column in self.reader.dates.values()), "")
+        self.left_out.misread, self.left_out.rewrite = self.reader.misread, self.reader.remedy
         kept = np.flatnonzero(~gone) if gone.any() else None
         first = self._lines[-1][0] + self._kept_last if self._lines else 0
         self._kept_last = len(block.lines) if kept is None else kept.size
@@ -350,7 +351,9 @@ class _Table:
     def _fault(self, block: Block, values: list[FloatArray], row: int) -> str:
         """Line and column of the first cell of a row that is of no use, and what is wrong with it."""
         cells = next(block.cells(self.layout.between, slice(row, None)))
-        place = f"line {block.lines[row]}"
+        place, width = f"line {block.lines[row]}", len(self.layout.columns)
+        if any(cells[width:]):
+            return f"{place}: {len(cells)} cells, but the header has {width}"
         for (column, _), numbers in zip(self.channels.values(), values, strict=True):
             cell = cells[column.index] if column.index < len(cells) else ""
             in_column = f"{place}, column '{column.name}': "
