@@ -13,6 +13,7 @@ from hersey.errors import (
     HerseyError,
     MissingFileError,
     ParameterError,
+    Setting,
     TimeOrderError,
     UnitError,
     way_in,
@@ -39,6 +40,8 @@ from hersey.log.wanted import Wanted
 _FIRST = 60
 _NUMBERED = re.compile(r"(.*?[A-Za-z°\u0370-\u9fff])([ _.:#-]{0,3})([0-9]{1,4})")
 _TITLED = re.compile(r"([^0-9{}*]{0,40}?)([0-9]{1,6}(?:[.,][0-9]{1,3})?)([^0-9{}*]{0,20})")
+#: What writes the proposal.
+_SAVE_MAPPING = Setting("save_mapping", "switch")
 #: Layouts that are tried at the most.
 _MOST = 60
 
@@ -76,7 +79,9 @@ def _advice(path: Path) -> str:
             "its layout can be described: write the text of hersey.log.proposal.propose_mapping(path) to "
             "hersey.toml beside it, and use hersey.read_with_mapping"
         )
-    typed = f"hersey inspect {shlex.quote(str(path))} --save-mapping"
+    if way_in() == "app":
+        return "hersey inspect, typed in a terminal, can describe its layout in a hersey.toml. Add that file here"
+    typed = f"hersey inspect {shlex.quote(str(path))} {_SAVE_MAPPING.to()}"
     return f"to describe its layout in hersey.toml, run '{typed}' and try again"
 
 
