@@ -80,7 +80,7 @@ def _advice(path: Path) -> str:
             "hersey.toml beside it, and use hersey.read_with_mapping"
         )
     if way_in() == "app":
-        return "hersey inspect, typed in a terminal, can describe its layout in a hersey.toml. Add that file here"
+        return "type hersey inspect in a terminal to describe its layout in a hersey.toml, and add that"
     typed = f"hersey inspect {shlex.quote(str(path))} {_SAVE_MAPPING.to()}"
     return f"to describe its layout in hersey.toml, run '{typed}' and try again"
 
