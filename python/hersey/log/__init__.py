@@ -31,6 +31,7 @@ constant_temperature  a temperature that is excluded and never changes: its sens
 given_twice           a measurement that a log holds twice: refused
 not_a_log             what is neither a file nor a table: refused
 own_tables            tables that hersey wrote: refused as logs
+derived               channels that no column holds: file names, schedules, positions, directions
 exchanged             columns under each other's names: refused
 reading               `read`: from files to a log
 many                  many files, each a log of its own: in turn, in threads, or by workers
