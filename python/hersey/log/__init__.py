@@ -4,6 +4,7 @@
 torque_log            `TorqueLog`: channels in SI, with where they came from
 sensors               what the sensors do not know
 text                  CSV and its relatives
+layouts               exports that need a layout to be read
 recording             what a file of any other format holds: channels with clocks of their own
 formats               one reader per format, and which one opens a file
 signals               currents, voltages and percentages, and how much one of them stands for
