@@ -22,6 +22,7 @@ from hersey.errors import ChannelError, HerseyError, ParameterError, followed_by
 
 if TYPE_CHECKING:
     from hersey.damping.dwells import SteadyPoints
+    from hersey.damping.moving.result import MovingFit
     from hersey.damping.recipe import Recipe
     from hersey.damping.surface import DampingSurface
     from hersey.log import TorqueLog
@@ -82,6 +83,8 @@ _MAPPING = "File with roles, units and corrections.  [default: hersey.toml besid
 _DROP_MISSING = "Drop rows with a missing or impossible number, however many."
 _MEANS = "Read a table of means: one row per dwell, no time column."
 _NO_LOAD = "Log of the drive without the lubricated contact; its torque is subtracted."
+_MOVING = "Fit every sample of a log whose speed changes all the time."
+_INERTIA = "Moment of inertia for --moving, e.g. '0.01 kg*m^2'; fitted if omitted."
 _NO_CACHE = "Read and compute everything again, without the cache."
 _RECIPE = "Use the logs and settings of a recipe; options typed here override it."
 
@@ -116,6 +119,8 @@ class Reading:
     rotation: Annotated[str, reduced("Use dwells in both, forward or reverse rotation.")] = "both"
     temperature_scale: Annotated[str, reduced("Scale of T in B = a T^b w^c: degC or K.")] = "degC"
     no_load: Annotated[str, reduced(_NO_LOAD, metavar="LOG")] = ""
+    moving: Annotated[bool, reduced(_MOVING, "--moving")] = False
+    inertia: Annotated[str, reduced(_INERTIA)] = ""
     recipe_file: Annotated[str, read(_RECIPE, "--recipe", metavar="TOML")] = ""
     no_cache: Annotated[bool, read(_NO_CACHE, "--no-cache")] = False
 
@@ -157,6 +162,8 @@ class Reading:
         same: dict[str, Any] = {name: getattr(self, name) for name in _AS_GIVEN}
         dwell = amount_of("time", self.min_dwell, "--min-dwell")
         own: dict[str, Any] = {"channels": names, "units": units, "signs": signs, "min_dwell": dwell}
+        if self.inertia:
+            own["inertia"] = amount_of("moment of inertia", self.inertia, "--inertia")
         return Recipe(logs=tuple(logs), **(own | amounts | given | same))
 
     def inputs(self, *given: Path | list[Path] | None) -> list[Path]:
@@ -210,12 +217,16 @@ class Reading:
         return read
 
     def points(
-        self, paths: list[Path], log: TorqueLog | MeansTable, machine: Machine | None = None
+        self,
+        paths: list[Path],
+        log: TorqueLog | MeansTable,
+        machine: Machine | None = None,
+        fit: MovingFit | None = None,
     ) -> SteadyPoints:
         """Reduce the log of these files to dwells; print what the no-load log shows."""
         if machine is not None and machine.rest is not None:
             refuse_no_load_log(paths, machine.rest)
-        points = self.recipe(paths).dwells(log, machine)
+        points = self.recipe(paths).dwells(log, machine, fit)
         if self.no_load and points.rest is not None:
             note(f"No-load torque subtracted: {points.rest}.")
             note(*(f"- {warning.sentence}" for warning in points.rest.warnings))
@@ -292,7 +303,7 @@ class Reading:
             return fit(self.points(logs, log, machine), temperature_scale=self.temperature_scale)
 
 
-_AS_GIVEN = ("isothermal", "drop_missing", "means", "tare", "rotation", "temperature_scale")
+_AS_GIVEN = ("isothermal", "drop_missing", "means", "tare", "rotation", "temperature_scale", "moving")
 _NOT_OF_FILE = "not from the machine file"
 
 

@@ -17,7 +17,7 @@ _WITH_UNIT, _WITH_SIGN = ROLES[:-1], ("torque", "speed")
 #: Tables of a recipe by role: the ending of the option, and the roles that have it.
 _TABLES = {"channels": ("", ROLES), "units": ("_unit", _WITH_UNIT), "signs": ("_sign", _WITH_SIGN)}
 #: Options that are an amount, and the units in which a recipe holds it.
-_UNITS = {"load": "N", "radius": "m", "every": "s", "min_dwell": "s"}
+_UNITS = {"load": "N", "radius": "m", "every": "s", "min_dwell": "s", "inertia": "kg*m^2"}
 
 
 def read_recipe(path: Path) -> tuple[list[Path], dict[str, Any]]:

@@ -18,10 +18,11 @@ from pydantic import ValidationInfo
 
 from hersey.arguments.frozen import explained
 from hersey.damping.dwells import SteadyPoints
+from hersey.damping.moving.result import MovingFit
 from hersey.damping.no_load import no_load_torque
 from hersey.damping.no_load_torque import NoLoadTorque
 from hersey.damping.once import read_once, reduced_once
-from hersey.errors import SIGN, TARE, HerseyError, InsufficientDataError, ParameterError, Setting, turned
+from hersey.errors import MOVING, SIGN, TARE, HerseyError, InsufficientDataError, ParameterError, Setting, turned
 from hersey.files.toml import Quantity, Table, quoted, read_tables
 from hersey.log import TorqueLog
 from hersey.log.mapping import LogMapping, mapping_of, read_with_mapping
@@ -116,6 +117,10 @@ class Recipe:
         Scale of T in the fit: ``degC`` or ``K``.
     no_load
         Log of the drive without the lubricated contact; its torque is subtracted.
+    moving
+        Whether friction is fitted to every sample of a log that moves all the time, instead of to dwells.
+    inertia
+        Moment of inertia of all that the torque of such a log accelerates, kg m^2; None if it is fitted.
     """
 
     logs: Annotated[tuple[Path, ...], _Paths(None)] = ()
@@ -134,6 +139,8 @@ class Recipe:
     rotation: str = "both"
     temperature_scale: str = "degC"
     no_load: Annotated[Path | None, _Path(None)] = None
+    moving: bool = False
+    inertia: Annotated[float | None, Quantity("moment of inertia", 0.0, 1e9, "0.01 kg*m^2")] = None
 
     def __post_init__(self) -> None:
         """Bring amounts to SI and names of files to paths."""
@@ -168,10 +175,13 @@ class Recipe:
         log = read_once(self, progress)
         return log if drive is None else replace(log, sensors=log.sensors.or_else(drive.sensors))
 
-    def dwells(self, log: TorqueLog | MeansTable, drive: KnownDrive | None = None) -> SteadyPoints:
+    def dwells(
+        self, log: TorqueLog | MeansTable, drive: KnownDrive | None = None, fit: MovingFit | None = None
+    ) -> SteadyPoints:
         """Reduce a log, or a table of means, to dwells with the torque of the film.
 
-        The no-load torque is that of ``no_load``, or else of the drive. The dwells keep the recipe.
+        The no-load torque is that of ``no_load``, or else of the drive. The dwells keep the recipe. ``fit``
+        is that of a moving log, whose windows become the dwells; without it, one is made where it is needed.
 
         Raises
         ------
@@ -180,13 +190,26 @@ class Recipe:
         """
         rest = self.rest(None if drive is None else drive.rest)
         try:
-            points = replace(self._dwells(log), recipe=self)
+            found = self._dwells(log) if fit is None else fit.points(rotation=self.rotation)
+            points = replace(found, recipe=self)
         except InsufficientDataError as error:
             flipped = [turned(role) for role, sign in self.signs.items() if sign == -1]
             if error.setting == SIGN and len(flipped) == 1:
                 error.remedy = f"omit {flipped[0]}"
             raise
         return points if rest is None else points.without(rest)
+
+    def moving_fit(self, log: TorqueLog) -> MovingFit:
+        """Fit friction, inertia and offset to every sample of a log.
+
+        Raises
+        ------
+        InsufficientDataError, ParameterError
+            If that cannot be, or a tare is asked for.
+        """
+        if self.tare != "none":
+            raise ParameterError(f"the torque zero of a moving log is fitted. Omit {TARE.to()}")
+        return log.moving(inertia=self.inertia)
 
     def points(self, drive: KnownDrive | None = None, *, progress: Progress | None = None) -> SteadyPoints:
         """Read the logs and reduce them to dwells; errors begin with the name of the log.
@@ -305,7 +328,7 @@ class Recipe:
             signs=self.signs,
             isothermal=self.isothermal,
             drop_missing=self.drop_missing,
-            **{name: given for name in _KINDS if name != "min_dwell" and (given := getattr(self, name))},
+            **{name: given for name in _KINDS if name not in _OF_DWELLS and (given := getattr(self, name))},
             progress=progress,
         )
         return replace(done.log, corrections=done.corrections)
@@ -334,7 +357,11 @@ class Recipe:
                     f"a table of means has no standstill for a tare. Omit {TARE.to()}, and subtract "
                     "the zero in the table"
                 )
+            if self.moving:
+                raise ParameterError(f"a table of means does not move. Omit {MOVING.to()}")
             return SteadyPoints.from_table(log, rotation=self.rotation)
+        if self.moving:
+            return self.moving_fit(log).points(rotation=self.rotation)
         return reduced_once(log, min_dwell=self.min_dwell, tare=self.tare, rotation=self.rotation)
 
 
@@ -357,9 +384,17 @@ class _RecipeFile(Table, Recipe):
 #: Fields that name one file each.
 _FILES = ("mapping", "no_load")
 #: Kind of unit of each amount.
-_KINDS = {"every": "time", "radius": "length", "load": "force", "min_dwell": "time"}
+_KINDS = {
+    "every": "time",
+    "radius": "length",
+    "load": "force",
+    "min_dwell": "time",
+    "inertia": "moment of inertia",
+}
+#: Amounts that say how dwells are found, not how files are read.
+_OF_DWELLS = ("min_dwell", "inertia")
 #: Unit in which an amount is written.
-_UNITS = {"time": "s", "length": "m", "force": "N"}
+_UNITS = {"time": "s", "length": "m", "force": "N", "moment of inertia": "kg*m^2"}
 
 
 def _distinct(paths: Sequence[Path]) -> tuple[Path, ...]:
