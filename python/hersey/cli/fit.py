@@ -6,14 +6,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 from hersey.cli.groups import grouped, option
-from hersey.cli.moving import fitted_lines, reduced
+from hersey.cli.moving import fitted, fitted_lines
 from hersey.cli.options import Force, KeepGoing, Logs, Reading, SensorsFile
 from hersey.cli.outputs import may_write, print_json
 from hersey.cli.printing import Printing
 from hersey.cli.progress import working
-from hersey.cli.terminal import note
 from hersey.cli.workers import Crew
-from hersey.errors import HerseyError, ParameterError
+from hersey.errors import ParameterError
 from hersey.files.tables import TABLES
 
 if TYPE_CHECKING:
@@ -23,7 +22,7 @@ if TYPE_CHECKING:
     from hersey.damping.surface import DampingSurface
     from hersey.machine.machine import Machine
 
-_NO_WINDOWS = "--json prints a surface, for which the windows of this log are too few: omit --json"
+_NO_SURFACE = "--json prints a surface, for which the windows of this log are too few: omit --json"
 _EACH = "Fit each log separately and write one row per log (.csv or .parquet)."
 
 
@@ -72,8 +71,8 @@ def _fit_one(logs: list[Path], reading: Reading, machine: Machine | None, printi
     from hersey.verdict.warnings import warnings_of
 
     with working("fitting the surface"):
-        points, moving = reduced(logs, log, reading, machine)
-        surface = _surface(points, reading, said_beside=moving is not None and not printing.as_json)
+        found = fitted(logs, log, reading, machine)
+        points, surface, moving = found.points, found.surface, found.moving
         curves = None
         if points is not None and surface is not None and printing.in_full:
             curves = _curves(points, surface, machine)
@@ -81,6 +80,8 @@ def _fit_one(logs: list[Path], reading: Reading, machine: Machine | None, printi
         printing.text(*fitted_lines(moving))
         printing.warnings(*moving.warnings)
     if points is None or surface is None:
+        if printing.as_json:
+            raise ParameterError(_NO_SURFACE)
         return
     if printing.as_json:
         from hersey.document.assembly import fit_document
@@ -95,22 +96,6 @@ def _fit_one(logs: list[Path], reading: Reading, machine: Machine | None, printi
 
         printing.text("", surface.summary(), drag_curves(curves.table))
     printing.warnings(*warnings_of(points, surface))
-
-
-def _surface(points: SteadyPoints | None, reading: Reading, *, said_beside: bool) -> DampingSurface | None:
-    """The surface of the points; of a moving log, whose fit is ``said_beside``, a note says why there is none."""
-    from hersey.damping.fit import fit as fitted
-
-    try:
-        if points is None:
-            raise ParameterError(_NO_WINDOWS)
-        return fitted(points, temperature_scale=reading.temperature_scale)
-    except HerseyError as error:
-        if not said_beside:
-            raise
-        if points is not None:
-            note(f"No surface B = a w^c can be fitted to the windows of this log: {error}")
-        return None
 
 
 def _curves(points: SteadyPoints, surface: DampingSurface, machine: Machine | None) -> CurveMixture:

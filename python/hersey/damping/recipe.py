@@ -22,7 +22,16 @@ from hersey.damping.moving.result import MovingFit
 from hersey.damping.no_load import no_load_torque
 from hersey.damping.no_load_torque import NoLoadTorque
 from hersey.damping.once import read_once, reduced_once
-from hersey.errors import MOVING, SIGN, TARE, HerseyError, InsufficientDataError, ParameterError, Setting, turned
+from hersey.errors import (
+    MOVING,
+    SIGN,
+    TARE,
+    HerseyError,
+    InsufficientDataError,
+    ParameterError,
+    Setting,
+    turned,
+)
 from hersey.files.toml import Quantity, Table, quoted, read_tables
 from hersey.log import TorqueLog
 from hersey.log.mapping import LogMapping, mapping_of, read_with_mapping

@@ -62,28 +62,28 @@ def _correlations(terms: FloatArray) -> FloatArray:
     return np.concatenate([[1.0], np.linalg.solve(system, known)])
 
 
-def autoregression(series: Sequence[tuple[np.ndarray, FloatArray]], parameters: int) -> Autoregression:
+def autoregression(series: Sequence[tuple[np.ndarray, FloatArray]]) -> Autoregression:
     """Return the autoregression of residuals, with as many terms as AICc allows.
 
     Parameters
     ----------
     series
-        Of each stretch: places of the residuals on an even grid, and the residuals.
-    parameters
-        Numbers fitted to them.
+        Of each stretch: places of the residuals on an even grid, and columns whose products add up to their
+        covariance: the residuals, and what a fit took from them, in standard errors of its numbers.
     """
     lags = MOST_TERMS
     sums, pairs = np.zeros(lags + 1), np.zeros(lags + 1)
-    for places, values in series:
+    for places, columns in series:
         if not places.size:
             continue
-        grid, there = np.zeros(places[-1] - places[0] + 1), np.zeros(places[-1] - places[0] + 1)
-        grid[places - places[0]], there[places - places[0]] = values, 1.0
-        for lag in range(min(lags, grid.size - 1) + 1):
-            sums[lag] += float(grid[lag:] @ grid[: grid.size - lag])
-            pairs[lag] += float(there[lag:] @ there[: grid.size - lag])
+        at = places - places[0]
+        grid, there = np.zeros((at[-1] + 1, columns.shape[1])), np.zeros(at[-1] + 1)
+        grid[at], there[at] = columns, 1.0
+        for lag in range(min(lags, there.size - 1) + 1):
+            sums[lag] += float(np.sum(grid[lag:] * grid[: there.size - lag]))
+            pairs[lag] += float(there[lag:] @ there[: there.size - lag])
     count = pairs[0]
-    variance = sums[0] / max(count - parameters, 1.0)
+    variance = sums[0] / max(count, 1.0)
     if sums[0] <= 0.0:
         return Autoregression(np.empty(0), 0.0)
     unbiased = np.divide(sums, pairs, out=np.zeros(lags + 1), where=pairs > 0) / (sums[0] / count)

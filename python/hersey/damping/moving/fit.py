@@ -35,7 +35,7 @@ LEAST_EQUATIONS, _MOVES = 30, 0.05
 #: Kelvin that temperature must span so that friction may depend on it.
 _WARMER = 3.0
 #: Rounds in which the noise is judged by what a law leaves.
-_ROUNDS = 2
+_ROUNDS = 3
 #: Share of the variance of the noise of the first round, which is not known yet.
 _FIRST = 1e-4
 #: Least share of the mean square of the torque, without that of inertia, that friction and offset must explain.
@@ -118,9 +118,7 @@ def _too_few(name: str, equations: Equations, least: float) -> InsufficientDataE
     )
 
 
-def _equations(
-    stretches: Sequence[Stretch], noise: SpeedNoise, low_pass: LowPass
-) -> tuple[Equations, float]:
+def _equations(stretches: Sequence[Stretch], noise: SpeedNoise, low_pass: LowPass) -> tuple[Equations, float]:
     """Equations clear of standstill, and the least speed of them."""
     filtered = tuple(each for s in stretches if (each := Filtered.of(s, low_pass)) is not None)
     fastest = max(float(np.max(np.abs(each.speed))) for each in filtered)
@@ -183,9 +181,7 @@ def _determined(fitted: MovingLawFit, equations: Equations) -> bool:
     return True
 
 
-def _result(
-    log: TorqueLog, made: _Made, chosen: MovingLawFit, fits: Sequence[MovingLawFit]
-) -> MovingFit:
+def _result(log: TorqueLog, made: _Made, chosen: MovingLawFit, fits: Sequence[MovingLawFit]) -> MovingFit:
     equations = made.equations
     noise = made.fitting.noise
     freedom = max(chosen.residuals.size / noise.together - chosen.values.size, 1.0)
@@ -248,4 +244,3 @@ def _refuse_no_friction(name: str, result: MovingFit, equations: Equations) -> N
             "as a brake, gravity or the torque of a motor under test",
             remedy="record the drive without that load",
         )
-

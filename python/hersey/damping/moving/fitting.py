@@ -33,6 +33,8 @@ class MovingLawFit:
     covariance: FloatArray
     residuals: FloatArray
     chi_square: float  #: of the independent combinations, in units of the variance given
+    columns: FloatArray  #: derivatives of the torque of each equation by the numbers as they are fitted
+    own: FloatArray  #: covariance of these, if the noise is the one assumed
 
     def error(self, name: str) -> float:
         """Return the standard error of a number."""
@@ -72,12 +74,15 @@ class Fitting:
         return self.whitened.power(self.covariances)
 
     def again(self, fitted: MovingLawFit) -> Fitting:
-        """Return the same with the noise that residuals of a law show."""
-        series, start = [], 0
-        for places in self.equations.places:
-            series.append((places, fitted.residuals[start : start + places.size]))
-            start += places.size
-        noise = autoregression(series, fitted.values.size)
+        """Return the same with the noise that residuals of a law show, and what the law took of it.
+
+        Noise has the covariance of residuals plus that of the fitted torque, exactly so with the right noise.
+        """
+        values, vectors = np.linalg.eigh(fitted.own)
+        taken = fitted.columns @ (vectors * np.sqrt(np.maximum(values, 0.0)))
+        columns = np.column_stack([fitted.residuals, taken])
+        ends = np.cumsum([places.size for places in self.equations.places])[:-1]
+        noise = autoregression(list(zip(self.equations.places, np.split(columns, ends), strict=True)))
         return Fitting.of(self.equations, noise, self.prior, self.covariances)
 
     def fit(self, law: MovingLaw, near: MovingLawFit | None = None) -> MovingLawFit:
@@ -175,7 +180,9 @@ class Fitting:
         own = np.diag(robust)
         wider = np.sqrt(np.maximum(inflation * np.diag(inverse) / np.where(own > 0.0, own, 1.0), 1.0))
         covariance = robust * np.outer(scale * wider, scale * wider)
-        return MovingLawFit(law, values, covariance, residuals, chi)
+        columns = law.jacobian(values, self.equations)
+        columns[:, logs] *= values[logs]
+        return MovingLawFit(law, values, covariance, residuals, chi, columns, inflation * inverse)
 
     def _unbiased(self, law: MovingLaw, values: FloatArray, inverse: FloatArray) -> FloatArray:
         """The step that undoes what noise of the acceleration takes from the inertia."""

@@ -1,6 +1,6 @@
 """The torque of a moving log, for a law of friction: its numbers, and how the equations follow from them.
 
-    torque(t) = J dw/dt + offset + friction(w), with w the speed a delay later than it was read
+torque(t) = J dw/dt + offset + friction(w), with w the speed a delay later than it was read
 """
 
 from __future__ import annotations
@@ -65,7 +65,9 @@ class Equations:
         kelvin = [each.temperature for each in self.filtered]
         if any(each is None for each in kelvin):
             return None
-        return self.joined([f.weighted(k) for f, k in zip(self.filtered, kelvin, strict=True) if k is not None])
+        return self.joined(
+            [f.weighted(k) for f, k in zip(self.filtered, kelvin, strict=True) if k is not None]
+        )
 
     def __len__(self) -> int:
         """Return the number of equations."""
@@ -127,9 +129,7 @@ class MovingLaw:
             others.append(np.ones(len(equations)))
         return np.column_stack([columns, *others, self._joined(own, inertia, equations)[1]])
 
-    def _joined(
-        self, own: FloatArray, inertia: float, equations: Equations
-    ) -> tuple[FloatArray, FloatArray]:
+    def _joined(self, own: FloatArray, inertia: float, equations: Equations) -> tuple[FloatArray, FloatArray]:
         """Friction of each equation, and how torque changes with the delay."""
         parts = [self._friction(own, each) for each in equations.filtered]
         friction, shifted = (equations.joined([part[i] for part in parts]) for i in range(2))

@@ -21,7 +21,15 @@ _UNKNOWN = 0.5
 
 def moving_warnings(fit: MovingFit, equations: Equations) -> tuple[Warning, ...]:
     """Return the warnings of a fit."""
-    found = (_one_way(equations), *_alike(fit), _zero(fit), _standing(fit), _left(fit), _inertia(fit), _delay(fit))
+    found = (
+        _one_way(equations),
+        *_alike(fit),
+        _zero(fit),
+        _standing(fit),
+        _left(fit),
+        _inertia(fit),
+        _delay(fit),
+    )
     return tuple(each for each in found if each is not None)
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import numpy as np
 
 from hersey.arrays import FloatArray
-from hersey.damping.estimate import Estimate
+from hersey.damping.estimate import Estimate, estimate
 from hersey.damping.moving.fitting import Fitting, MovingLawFit
 from hersey.log.torque_log import ROTATIONS, TorqueLog
 from hersey.result import Means, Record, Result
@@ -57,7 +57,9 @@ class MovingFit(Result):
     speed_range: Annotated[tuple[float, float], Means("least and greatest speed used", "rad/s")]
     temperature_range: Annotated[tuple[float, float] | None, Means("least and greatest", "K")]
     scatter: Annotated[float, Means("standard deviation of what the law leaves, within bandwidth", "N m")]
-    explained: Annotated[float, Means("share of the mean square of the torque, without inertia, that the law explains")]
+    explained: Annotated[
+        float, Means("share of the mean square of the torque, without inertia, that the law explains")
+    ]
     effective_rows: Annotated[float, Means("independent moments")]
     warnings: tuple[Warning, ...]
     log: TorqueLog
@@ -79,6 +81,23 @@ class MovingFit(Result):
         if law.reference_kelvin is not None and kelvin is None:
             kelvin = np.full(np.shape(speed), law.reference_kelvin)
         return law.torque(own, speed, kelvin)
+
+    @property
+    def middle_speed(self) -> float:
+        """Speed in the middle of those used, by its logarithm, rad/s."""
+        return float(np.sqrt(self.speed_range[0] * self.speed_range[1]))
+
+    def friction_at(self, speed: float) -> Estimate:
+        """Return friction (N m) at a speed (rad/s), at the mean temperature of the log, with its interval.
+
+        It may be known where the numbers of the law are not, because speeds are alike.
+        """
+        law, size = self.fitted.law.friction, len(self.fitted.law.friction.names)
+        own, at = self.fitted.values[:size], np.array([speed])
+        kelvin = None if law.reference_kelvin is None else np.array([law.reference_kelvin])
+        gradient = law.jacobian(own, at, kelvin)[0]
+        error = float(np.sqrt(gradient @ self.fitted.covariance[:size, :size] @ gradient))
+        return estimate(float(law.torque(own, at, kelvin)[0]), error, self.parameters[0].estimate.freedom)
 
     @takes_si(rotation=ROTATIONS)
     def points(self, *, rotation: str = "both") -> SteadyPoints:
