@@ -17,7 +17,7 @@ from hersey.arrays import FloatArray
 #: Equations per block, and terms of the autoregression, at the most.
 BLOCK, MOST_TERMS = 400, 12
 #: Rows that each term needs, and standard errors by which a reflection must stay below 1.
-_ROWS_PER_TERM, _NEAR_ONE = 10, 3.0
+_ROWS_PER_TERM, _NEAR_ONE = 40, 3.0
 
 
 @dataclass(frozen=True)
@@ -87,23 +87,22 @@ def autoregression(series: Sequence[tuple[np.ndarray, FloatArray]]) -> Autoregre
     if sums[0] <= 0.0:
         return Autoregression(np.empty(0), 0.0)
     unbiased = np.divide(sums, pairs, out=np.zeros(lags + 1), where=pairs > 0) / (sums[0] / count)
-    terms, stationary = _terms(unbiased, pairs)
+    terms, stationary = _terms(unbiased, pairs, 1.0 - _NEAR_ONE / np.sqrt(count))
     if not stationary:  # divided by all rows, correlations surely are
-        terms = _terms(sums / sums[0], pairs)[0]
+        terms = _terms(sums / sums[0], pairs, 1.0)[0]
     return Autoregression(terms, variance)
 
 
-def _terms(correlation: FloatArray, pairs: FloatArray) -> tuple[FloatArray, bool]:
-    """Terms by Levinson's recursion and AICc, and whether all reflections stay below 1 for so many rows."""
+def _terms(correlation: FloatArray, pairs: FloatArray, most: float) -> tuple[FloatArray, bool]:
+    """Terms by Levinson's recursion and AICc, and whether all reflections stay below ``most``."""
     count = pairs[0]
-    most = 1.0 - _NEAR_ONE / np.sqrt(count)
     terms, left = np.empty(0), 1.0
     chosen, least = terms, 0.0
     for size in range(1, pairs.size):
         if pairs[size] < _ROWS_PER_TERM * size:
             break
         reflection = (correlation[size] - float(terms @ correlation[size - 1 : 0 : -1])) / left
-        if abs(reflection) > most:
+        if abs(reflection) >= most:
             return chosen, False
         terms = np.concatenate([terms - reflection * terms[::-1], [reflection]])
         left *= 1.0 - reflection**2

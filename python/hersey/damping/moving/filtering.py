@@ -1,8 +1,8 @@
 """One low-pass for torque, speed and acceleration alike, so that no linear term is biased by it.
 
-Each equation is the model weighted with a Gaussian of standard deviation ``width``; acceleration is the
-speed weighted with the derivative of the same Gaussian (integration by parts), and friction is evaluated
-before it is weighted. Power is halved at 0.1325 / width.
+Each equation is the model weighted with a Hann window of standard deviation ``width``; acceleration is the
+speed differenced over five rows and weighted with the same window, and friction is evaluated before it is
+weighted. Power is halved at 0.13 / width.
 """
 
 from __future__ import annotations
@@ -15,17 +15,20 @@ import numpy as np
 from hersey.arrays import FloatArray
 from hersey.damping.moving.stretches import Stretch
 
-#: Standard deviations at which the Gaussian is cut.
-REACH = 3.0
+#: Half the length of a Hann window in its standard deviations.
+REACH = float(1.0 / np.sqrt(1.0 / 3.0 - 2.0 / np.pi**2))
 #: Standard deviations between two equations.
 APART = 2.0
-#: Width in s times the frequency in Hz at which the power of a Gaussian is halved.
-HALF_POWER = float(np.sqrt(np.log(2.0)) / (2.0 * np.pi))
+#: Width in s times the frequency in Hz at which the power of the window is halved.
+HALF_POWER = 0.1303
+#: First and second difference over five rows, exact up to the fourth power.
+_FIRST = np.array([1.0, -8.0, 0.0, 8.0, -1.0]) / 12.0
+_SECOND = np.array([-1.0, 16.0, -30.0, 16.0, -1.0]) / 12.0
 
 
 @dataclass(frozen=True)
 class LowPass:
-    """A Gaussian over rows of one interval."""
+    """A Hann window over rows of one interval."""
 
     width: float  #: standard deviation, s
     interval: float  #: s
@@ -42,23 +45,21 @@ class LowPass:
 
     @cached_property
     def weights(self) -> FloatArray:
-        """Weights of the mean."""
-        at = self._at
-        raw = np.exp(-0.5 * (at / self.width) ** 2)
-        return raw / raw.sum()
+        """Weights of the mean; those of two rows at each end are 0."""
+        inside = self.half - 2
+        at = np.arange(-inside, inside + 1)
+        raw = np.pad(1.0 + np.cos(np.pi * at / (inside + 1)), 2)
+        return np.asarray(raw / raw.sum())
 
     @cached_property
     def slope(self) -> FloatArray:
-        """Weights of the derivative: exact for a straight line."""
-        raw = self._at * self.weights
-        return raw / float(raw @ self._at)
+        """Weights of the mean derivative."""
+        return np.convolve(self.weights, _FIRST, "same") / self.interval
 
     @cached_property
     def bend(self) -> FloatArray:
-        """Weights of the second derivative: exact for a parabola."""
-        at = self._at
-        raw = (at**2 - float(self.weights @ at**2)) * self.weights
-        return 2.0 * raw / float(raw @ at**2)
+        """Weights of the mean second derivative."""
+        return np.convolve(self.weights, _SECOND, "same") / self.interval**2
 
     @cached_property
     def smoother(self) -> FloatArray:
@@ -71,11 +72,7 @@ class LowPass:
     @property
     def half(self) -> int:
         """Rows on each side of the middle."""
-        return max(2, int(np.ceil(REACH * self.width / self.interval)))
-
-    @property
-    def _at(self) -> FloatArray:
-        return self.interval * np.arange(-self.half, self.half + 1, dtype=np.float64)
+        return max(2, round(REACH * self.width / self.interval)) + 1
 
 
 @dataclass(frozen=True)

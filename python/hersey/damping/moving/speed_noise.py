@@ -20,8 +20,6 @@ WIDTHS = (1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 24.0, 32.0, 48.0, 64.0, 96.0
 MOST_OF_MOTION = 0.15
 #: Share of the variance of the acceleration that its noise may be.
 TOLERATED = 1e-4
-#: Correlation of neighbours below which noise is that of a position: -0.5 is, 0 is not.
-_DIFFERENCED = -0.3
 
 
 @dataclass(frozen=True)
@@ -35,7 +33,7 @@ class SpeedNoise:
         """Return those of the noise of the acceleration, at lags of 0, 1, ... equations, rad2/s4."""
         weights = low_pass.slope
         if self.differenced:
-            weights = np.sqrt(0.5) * np.diff(np.concatenate([[0.0], weights, [0.0]]))
+            weights = np.sqrt(0.5) * _differences(weights)
         lags = np.arange(0, weights.size, low_pass.step)
         return self.variance * np.array([weights[lag:] @ weights[: weights.size - lag] for lag in lags])
 
@@ -43,8 +41,18 @@ class SpeedNoise:
         """Return the variance that is left behind a filter with these weights."""
         if not self.differenced:
             return self.variance * float(weights @ weights)
-        steps = np.diff(np.concatenate([[0.0], weights, [0.0]]))
+        steps = _differences(weights)
         return 0.5 * self.variance * float(steps @ steps)
+
+
+def _differences(weights: FloatArray) -> FloatArray:
+    """Weights of a position whose differences have these weights."""
+    return np.diff(np.concatenate([[0.0], weights, [0.0]]))
+
+
+def _neighbours(weights: FloatArray) -> float:
+    """Correlation of neighbours of white noise behind these weights."""
+    return float(weights[1:] @ weights[:-1] / (weights @ weights))
 
 
 def speed_noise(stretches: Sequence[Stretch]) -> SpeedNoise:
@@ -59,7 +67,8 @@ def speed_noise(stretches: Sequence[Stretch]) -> SpeedNoise:
             count += rough.size
     if not count or sums[0] == 0.0:
         return SpeedNoise(0.0, differenced=True)
-    differenced = sums[1] / sums[0] < _DIFFERENCED
+    middle = 0.5 * (_neighbours(extra) + _neighbours(_differences(extra)))
+    differenced = bool(sums[1] / sums[0] < middle)
     unit = SpeedNoise(1.0, differenced)
     return SpeedNoise(sums[0] / count / unit.behind(extra), differenced)
 
