@@ -113,7 +113,7 @@ def test_noise_of_a_tachometer_does_not_lessen_the_inertia() -> None:
 
 
 def test_correlated_noise_widens_the_intervals() -> None:
-    """Noise with a memory of 0.5 s: a mean is known as of 1/0.99 times fewer rows; white noise all but alike."""
+    """Noise with a memory of 0.5 s: a mean is known as of 100 times fewer rows."""
     speed, rate = waves(times())
     friction = COULOMB * np.sign(speed) + VISCOUS * speed
     kicks = np.random.default_rng(3).normal(0.0, 0.01, speed.size)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import altair as alt
 import numpy as np
 
@@ -62,7 +64,7 @@ def _windows(fit: MovingFit, factor: float, x: alt.X, y: alt.Y) -> list[alt.Char
         level=[temperature_name(each) for each in kelvin],
     )
     base = plot(rows)
-    color: alt.Color | alt.ColorValue = alt.value(BLUE)
+    color: Any = alt.value(BLUE)
     if fit.log.has_temperature:
         color = temperature_channels(kelvin)[0]
     bars = base.mark_rule().encode(x=x, y="low:Q", y2="high:Q", color=color)

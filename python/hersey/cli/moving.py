@@ -110,4 +110,5 @@ def _shown(known: Estimate, unit: str) -> str:
     large, small = _SMALL[unit]
     is_small = max(abs(known.value), abs(known.low), abs(known.high)) < _BELOW
     factor = 1e3 if is_small else 1.0
-    return f"{rounded(*(factor * each for each in (known.value, known.low, known.high)))} {small if is_small else large}"
+    shown = rounded(factor * known.value, factor * known.low, factor * known.high)
+    return f"{shown} {small if is_small else large}"

@@ -10,8 +10,9 @@ from hersey.damping.dwells.groups import MIN_SAMPLES
 from hersey.errors import SIGN, InsufficientDataError, capital, turned
 
 Kind = Literal[
-    "changing", "standing", "too slow", "other rotation", "too short", "zero torque", "speed not held", "stick-slip",
-    "swing", "speed drift", "temperature drift", "torque drift", "opposite signs", "spikes", "ripple",
+    "changing", "standing", "too slow", "other rotation", "too short", "zero torque", "speed not held",
+    "stick-slip", "swing", "speed drift", "temperature drift", "torque drift", "opposite signs", "spikes",
+    "ripple",
 ]  # fmt: skip
 #: Stretches that nobody meant as a dwell.
 NO_DWELL: tuple[Kind, ...] = ("changing", "standing", "too slow", "other rotation")

@@ -38,7 +38,7 @@ _WARMER = 3.0
 _ROUNDS = 3
 #: Share of the variance of the noise of the first round, which is not known yet.
 _FIRST = 1e-4
-#: Least share of the mean square of the torque, without that of inertia, that friction and offset must explain.
+#: Least share of the mean square of the torque, without inertia, that friction and offset must explain.
 LEAST_EXPLAINED = 0.8
 
 

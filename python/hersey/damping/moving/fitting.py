@@ -125,7 +125,7 @@ class Fitting:
         return float(np.sqrt(self.noise.variance))
 
     def _chi(self, law: MovingLaw, white: FloatArray, values: FloatArray) -> float:
-        return float(white @ white) + (values[law.names.index(DELAY)] / self.prior) ** 2
+        return float(white @ white + (values[law.names.index(DELAY)] / self.prior) ** 2)
 
     def _from(self, law: MovingLaw, values: FloatArray) -> MovingLawFit:
         """Rounds of Levenberg and Marquardt, then the covariance."""
@@ -189,7 +189,7 @@ class Fitting:
         index = law.names.index(INERTIA)
         share = self.noise_of_acceleration / self.noise.variance
         column = inverse[:, index]
-        return column * share * values[index] / (1.0 - share * column[index])
+        return np.asarray(column * share * values[index] / (1.0 - share * column[index]))
 
     def _step(
         self, law: MovingLaw, design: FloatArray, white: FloatArray, values: FloatArray, damping: float

@@ -74,7 +74,7 @@ def speed_noise(stretches: Sequence[Stretch]) -> SpeedNoise:
 
 
 def low_pass_for(stretches: Sequence[Stretch], noise: SpeedNoise) -> LowPass | None:
-    """Return the narrowest low-pass behind which noise of the speed does not count; None if rows are too few."""
+    """Return the narrowest low-pass behind which noise does not count; None if rows are too few."""
     interval = stretches[0].interval
     best: tuple[float, LowPass] | None = None
     for width in WIDTHS:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 
 import numpy as np
@@ -31,7 +32,7 @@ class Stretch:
     @property
     def time(self) -> FloatArray:
         """Times of the rows, s."""
-        return self.start + self.interval * np.arange(self.torque.size)
+        return np.asarray(self.start + self.interval * np.arange(self.torque.size), dtype=np.float64)
 
 
 def stretches_of(log: TorqueLog) -> list[Stretch]:
@@ -53,7 +54,7 @@ def _without_gaps(run: Run) -> list[tuple[int, int]]:
     steps = np.diff(run.time)
     ends = np.flatnonzero((steps > beyond * run.sampling_interval) | (steps < 0.0)) + 1
     edges = [0, *ends.tolist(), run.time.size]
-    return [(a, b) for a, b in zip(edges[:-1], edges[1:], strict=True) if b - a > 1]
+    return [(a, b) for a, b in itertools.pairwise(edges) if b - a > 1]
 
 
 def _even(index: int, run: Run, rows: slice, interval: float) -> Stretch:
@@ -65,7 +66,8 @@ def _even(index: int, run: Run, rows: slice, interval: float) -> Stretch:
         even = np.arange(time[0], time[-1] + 1e-6 * interval, interval)
         channels = [None if each is None else np.interp(even, time, each) for each in channels]
     torque, speed, kelvin = channels
-    assert torque is not None and speed is not None
+    assert torque is not None
+    assert speed is not None
     return Stretch(index, float(time[0]), interval, torque, speed, kelvin, time.size)
 
 
@@ -75,7 +77,7 @@ def _averaged(stretch: Stretch, together: int) -> Stretch:
         return stretch
 
     def means(values: FloatArray) -> FloatArray:
-        return values[: values.size // together * together].reshape(-1, together).mean(axis=1)
+        return np.asarray(values[: values.size // together * together].reshape(-1, together).mean(axis=1))
 
     kelvin = stretch.temperature
     return Stretch(
