@@ -29,12 +29,12 @@ NAMES = ("T_C", "T_S", "w_S", "k_v", "J", "offset")
 NEAR, LEAST, MOST = 0.03, 0.92, 0.98
 WORDS = """
 `python -m benchmarks.moving` writes this page. A generator that shares no code with hersey drives virtual
-joints through ramps and sines: inertia, Coulomb and viscous friction, for every second joint Stribeck's rise
-near standstill, a torque zero, coloured torque noise of 1 to 4 % of the Coulomb friction, and a 12-bit encoder
-whose differences are the speed. Each log lasts 60 s at 200 rows per second. The least evidence for a larger
-law (10 in AICc), the tolerated noise of the acceleration (1e-4) and the slowest speed used (1 % of the
-greatest) were chosen while looking at joints 0 to 99; joints from 1000 on were not looked at before. The share
-that friction must explain (0.8) was chosen looking at the motor dynamometer below.
+joints through ramps and sines: inertia, Coulomb and viscous friction, for every second joint Stribeck's
+rise near standstill, a torque zero, coloured torque noise of 1 to 4 % of the Coulomb friction, and a 12-bit
+encoder whose differences are the speed. Each log lasts 60 s at 200 rows per second. The least evidence for a
+larger law (10 in AICc), the tolerated noise of the acceleration (1e-4) and the slowest speed used (1 % of
+the greatest) were chosen while looking at joints 0 to 99; joints from 1000 on were not looked at before.
+The share that friction must explain (0.8) was chosen looking at the motor dynamometer below.
 """
 
 
@@ -154,8 +154,8 @@ def screw_drives(folder: Path) -> list[str]:
     lines = [
         "## Two screw drives (RViMLab/TRO2021, IEEE T-RO 37)",
         "",
-        "Start-stop logs at 50 and 200 rpm, each direction for 4 to 5 s, are fitted together as a moving log. "
-        "Beside them are the dwells of the folder `steady_state`, other logs of the same drives. Torque in "
+        "Start-stop logs at 50 and 200 rpm, each direction for 4 to 5 s, are fitted together as a moving "
+        "log. Beside them are the dwells of the folder `steady_state`, other logs of the same drives. Torque in "
         "mN m, with one standard error; the fitted offset is added.",
         "",
         "| drive | speed, rpm | start-stop | steady state | ratio |",
