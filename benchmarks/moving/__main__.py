@@ -155,8 +155,8 @@ def screw_drives(folder: Path) -> list[str]:
         "## Two screw drives (RViMLab/TRO2021, IEEE T-RO 37)",
         "",
         "Start-stop logs at 50 and 200 rpm, each direction for 4 to 5 s, are fitted together as a moving "
-        "log. Beside them are the dwells of the folder `steady_state`, other logs of the same drives. Torque "
-        "in mN m, with one standard error; the fitted offset is added.",
+        "log. Beside them are the dwells of the folder `steady_state`, other logs of the same drives. "
+        "Torque in mN m, with one standard error; the fitted offset is added.",
         "",
         "| drive | speed, rpm | start-stop | steady state | ratio |",
         "|---|---|---|---|---|",
