@@ -220,6 +220,7 @@ def read_with_mapping(
     every: float | None = None,
     radius: float | Sequence[float] | None = None,
     load: float | Sequence[float] | None = None,
+    without_torque: bool = False,
     progress: Progress | None = None,
 ) -> Corrected:
     """Read one log or several with `hersey.read`, using their mapping, and apply its corrections.
@@ -233,7 +234,7 @@ def read_with_mapping(
         motor constant.
     signs
         -1 by role, ``torque`` or ``speed``, flips the sign in addition to the mapping.
-    isothermal, drop_missing, every, radius, load, progress
+    isothermal, drop_missing, every, radius, load, without_torque, progress
         As for `hersey.read`; they override the mapping.
 
     Raises
@@ -250,6 +251,7 @@ def read_with_mapping(
     needed = _without_temperature if isothermal else dict
     chosen = mapping if isinstance(mapping, LogMapping) else mapping_of(files, mapping)
     chosen = _outranked(chosen, channels or {}, units or {}).turned(signs or {})
+    chosen = replace(chosen, torque=TorqueMapping()) if without_torque else chosen
     stated = Stated(every, as_stated(radius), as_stated(load))
     chosen = without_what_is_said(chosen, channels or {}, stated)
     try:
@@ -259,6 +261,7 @@ def read_with_mapping(
             units={**needed(chosen.units), **(units or {})},
             isothermal=isothermal,
             drop_missing=drop_missing,
+            without_torque=without_torque,
             **{name: value for name, value in vars(chosen.stated).items() if value is not None}
             | {name: value for name, value in vars(stated).items() if value is not None},
             progress=progress,

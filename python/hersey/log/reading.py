@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from hersey.errors import ParameterError
+from hersey.errors import ChannelError, ParameterError, UnitError
 from hersey.log.assembly import Assembly
 from hersey.log.channels import ChannelChoice, Stated
 from hersey.log.exchanged import refuse_exchanged
@@ -37,6 +38,7 @@ def read(
     every: float | None = None,
     radius: float | Sequence[float] | None = None,
     load: float | Sequence[float] | None = None,
+    without_torque: bool = False,
     progress: Progress | None = None,
 ) -> TorqueLog:
     """Read one log, or several of the same machine, each as a separate run.
@@ -65,6 +67,9 @@ def read(
         it; one value, or one per run.
     load
         Normal load, N, if there is no column for it; one value, or one per run.
+    without_torque
+        Whether to read time and speed alone, for `hersey.coast_down`: no torque is looked for, and all its
+        values are NaN.
     progress
         Called with bytes done and total bytes.
 
@@ -97,10 +102,11 @@ def read(
             )
     choices = {r: ChannelChoice((channels or {}).get(r, ""), (units or {}).get(r, "")) for r in known}
     stated = _stated(every=every, radius=radius, load=load)
-    wanted = Wanted(choices, stated, isothermal, drop_missing)
+    wanted = Wanted(choices, stated, isothermal, drop_missing, without_torque)
     done: list[tuple[Run, LogFile]] = []
     for number, file in enumerate(files, start=1):
-        read_here = _runs(file, wanted, "frame" if len(files) == 1 else f"frame {number}", progress)
+        name = "frame" if len(files) == 1 else f"frame {number}"
+        read_here = (_speeds if without_torque else _runs)(file, wanted, name, progress)
         if any(read_here[0][1].sha256 == other.sha256 for _, other in done):
             name = read_here[0][1].name
             raise ParameterError(f"{name} has the same content as an earlier file. Give each file once")
@@ -109,7 +115,8 @@ def read(
     log = TorqueLog(tuple(run for run, _ in done), tuple(log for _, log in done))
     refuse_given_twice(log.runs)
     refuse_rows_shared(log.runs)
-    refuse_exchanged(log, choices)
+    if not without_torque:
+        refuse_exchanged(log, choices)
     return log
 
 
@@ -122,6 +129,19 @@ def _runs(file: Any, wanted: Wanted, frame: str, progress: Progress | None) -> l
             assembly = Assembly(recording, wanted)
         return assembly.runs()
     return read_delimited(path, wanted, progress)
+
+
+def _speeds(
+    file: Any, wanted: Wanted, frame: str, progress: Progress | None
+) -> list[tuple[Run, LogFile]]:
+    """The runs in a log without torque, with a temperature if one is found."""
+    try:
+        return _runs(file, wanted, frame, progress)
+    except (ChannelError, UnitError) as error:
+        of_temperature = error.setting is not None and error.setting.name == "temperature"
+        if not of_temperature or wanted.choices["temperature"] != ChannelChoice():
+            raise
+    return _runs(file, replace(wanted, isothermal=True), frame, progress)
 
 
 def _stated(*, every: Any, radius: Any, load: Any) -> Stated:
