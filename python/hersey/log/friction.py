@@ -154,7 +154,12 @@ def computed(chosen: Chosen, stated: Stated) -> list[Warning]:
         )
     if kinds["speed"] != "speed":
         out.append(
-            Warning("speed computed", "speed is '{channel}' / radius ({radius_from})", channel=paths["speed"], **known)
+            Warning(
+                "speed computed",
+                "speed is '{channel}' / radius ({radius_from})",
+                channel=paths["speed"],
+                **known,
+            )
         )
     if known["load_from"]:
         out.append(Warning("load known", "load is {load_from}", **known))

@@ -131,9 +131,7 @@ def _runs(file: Any, wanted: Wanted, frame: str, progress: Progress | None) -> l
     return read_delimited(path, wanted, progress)
 
 
-def _speeds(
-    file: Any, wanted: Wanted, frame: str, progress: Progress | None
-) -> list[tuple[Run, LogFile]]:
+def _speeds(file: Any, wanted: Wanted, frame: str, progress: Progress | None) -> list[tuple[Run, LogFile]]:
     """The runs in a log without torque, with a temperature if one is found."""
     try:
         return _runs(file, wanted, frame, progress)

@@ -56,9 +56,7 @@ def speeds(law: FloatArray, first: float, time: FloatArray) -> tuple[FloatArray,
     return np.where(moving, speed, 0.0), np.where(moving[:, None], jacobian, 0.0)
 
 
-def _even_functions(
-    square: float, time: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+def _even_functions(square: float, time: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     """Cosh of the rate times time, sinh of it over the rate, and both derivatives by the rate squared.
 
     All four are scaled by one factor, which keeps them finite; no ratio of them depends on it.

@@ -9,7 +9,7 @@ import numpy as np
 from hersey.damping.coast_down.coasts import Coast, LeftOut, coasts_in
 from hersey.damping.coast_down.departures import of_bound, of_coasts, of_shape
 from hersey.damping.coast_down.doubts import Doubts, no_coast
-from hersey.damping.coast_down.ends import without_ends
+from hersey.damping.coast_down.ends import is_free, without_ends
 from hersey.damping.coast_down.fitting import CoastFit, Trace, fit_coasts, within_physics
 from hersey.damping.coast_down.inertia import inertia_of
 from hersey.damping.coast_down.result import CoastDown, Friction, estimates_of, speeds_of
@@ -101,13 +101,19 @@ def coast_down(log: Any, *, inertia: Any) -> CoastDown:
 
 
 def _found(log: TorqueLog) -> tuple[list[Coast], list[LeftOut]]:
-    coasts: list[Coast] = []
+    """The coasts of a log, and what else it holds; none if most falls of speed are set by a drive."""
+    falls: list[Coast] = []
     left_out: list[LeftOut] = []
     for index, run in enumerate(log.runs):
         here, others = coasts_in(run, index)
-        coasts += here
+        falls += here
         left_out += others
-    return coasts, left_out
+    free = [is_free(each) for each in falls]
+    driven = [each for each, kept in zip(falls, free, strict=True) if not kept]
+    coasts = [each for each, kept in zip(falls, free, strict=True) if kept]
+    if sum(each.rows for each in driven) > sum(each.rows for each in coasts):
+        driven, coasts = falls, []
+    return coasts, [*left_out, *(LeftOut(c.run, c.start, c.end, c.rows, "driven") for c in driven)]
 
 
 def _of_the_mean(between: float, count: int) -> float:

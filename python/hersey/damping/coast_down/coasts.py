@@ -85,7 +85,7 @@ def coasts_in(run: Run, index: int) -> tuple[list[Coast], list[LeftOut]]:
     size = max(1, -(-run.time.size // _LOOKED_AT))
     time, signed = (_means(values, size) for values in (run.time, run.speed))
     speed = np.abs(signed)
-    noise = _noise(signed)
+    noise = noise_of_rows(signed)
     found: list[tuple[int, int, bool]] = []
     why = np.full(speed.size, "held", dtype="<U8")
     why[speed <= max(STANDING, _EDGE_NOISE * noise)] = "standing"
@@ -125,8 +125,8 @@ def _means(values: FloatArray, size: int) -> FloatArray:
     return values if size == 1 else values[: values.size // size * size].reshape(-1, size).mean(axis=1)
 
 
-def _noise(speed: FloatArray) -> float:
-    """Standard deviation of the noise of one row, that of rounding included."""
+def noise_of_rows(speed: FloatArray) -> float:
+    """Return the standard deviation of the noise of one row, that of rounding included."""
     bends = np.abs(np.diff(speed, 2))
     white = float(np.median(bends)) / (_MEDIAN * _BEND) if bends.size else 0.0
     return max(white, step_of(speed) / np.sqrt(12.0))

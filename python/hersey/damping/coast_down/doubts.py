@@ -18,7 +18,6 @@ from hersey.schema.warning import Warning
 
 MISFIT = "friction of another shape"
 NEGATIVE = "negative friction term"
-NOT_SMOOTH = "speed falls unevenly"
 DIFFERENT = "coasts differ"
 NOT_SEPARATED = "friction terms not separated"
 CUT = "parts left out"
@@ -27,11 +26,11 @@ WARMED = "temperature changed"
 TORQUE_UNUSED = "torque not used"
 #: Share of the torque that a term may take without being told.
 _MATTERS = 0.1
-#: Scatter about the fit, as a share of the fall, that is no noise of a sensor.
-_UNEVEN = 0.02
+#: A difference between coasts above this share is none of bearings: one of them is driven or braked.
+_UNLIKE = 0.5
 #: Change of temperature, K, that is worth a word.
 _WARMER = 2.0
-#: Rows of braked or driven stretches, as a share, that are worth a word.
+#: Stretches that are worth a word.
 _WORDS = {"braking": "braked", "driven": "driven", "reversed": "driven through standstill"}
 _TERMS = ("Coulomb friction", "viscous friction", "windage")
 
@@ -39,7 +38,9 @@ _TERMS = ("Coulomb friction", "viscous friction", "windage")
 def no_coast(log: TorqueLog, left_out: Sequence[LeftOut]) -> InsufficientDataError:
     """Return the error of a log in which no wheel coasts, with what it holds instead."""
     whole = max(1, sum(each.rows for each in left_out))
-    rows = {why: sum(e.rows for e in left_out if e.why == why) for why in dict.fromkeys(e.why for e in left_out)}
+    rows = {
+        why: sum(e.rows for e in left_out if e.why == why) for why in dict.fromkeys(e.why for e in left_out)
+    }
     named = {
         "standing": "standstill",
         "rising": "rising speed",
@@ -77,18 +78,6 @@ class Doubts:
         return [*found, *self._of_inertia(), *self._temperature(), *self._torque()]
 
     def _of_the_law(self) -> list[Warning]:
-        uneven = self._unevenness()
-        if uneven > _UNEVEN:
-            return [
-                Warning(
-                    NOT_SMOOTH,
-                    "speed scatters {share:.2g %} of its fall about the fitted curve, so the wheel does not "
-                    "coast freely, or speed is not measured at its rows",
-                    severity="act",
-                    remedy="check that neither drive nor brake acts, and cut the log to the coast",
-                    share=uneven,
-                )
-            ]
         if self.bound.shows:
             return [
                 Warning(
@@ -114,18 +103,6 @@ class Doubts:
             ]
         return []
 
-    def _unevenness(self) -> float:
-        """Typical scatter about the fit as a share of the fall, of the worst coast.
-
-        Noise of single rows is averaged; the last turns, in which gears make the speed swing, do not count.
-        """
-        worst = 0.0
-        for index, trace in enumerate(self.fit.traces):
-            rest = trace.speed - self.fit.predicted(index, trace.time)
-            smooth = np.convolve(rest, np.ones(5) / 5, mode="valid") if rest.size > 25 else rest
-            worst = max(worst, 1.5 * float(np.median(np.abs(smooth))) / float(trace.speed[0] - trace.speed[-1]))
-        return worst
-
     def _of_coasts(self) -> list[Warning]:
         if not self.differing.shows:
             return []
@@ -134,7 +111,7 @@ class Doubts:
                 DIFFERENT,
                 "the torque of {count} coasts differs by up to {share:.2g %} from their mean ({chance:p}); "
                 "the intervals include that",
-                severity="watch",
+                severity="watch" if self.differing.share < _UNLIKE else "act",
                 remedy="bearings that warm up, and the direction, are common reasons: fit the coasts apart",
                 count=len(self.coasts),
                 share=self.differing.share,

@@ -1,4 +1,4 @@
-"""Rows at the ends of a coast in which the drive or a brake acts already, or still."""
+"""What a law fitted to coasts shows to be none: rows at their ends, and whole stretches that are driven."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from hersey.damping.coast_down.closed_form import speeds
-from hersey.damping.coast_down.coasts import FEWEST_ROWS, Coast
+from hersey.damping.coast_down.coasts import FEWEST_ROWS, Coast, noise_of_rows
 from hersey.damping.coast_down.fitting import Trace, fit_coasts
 
 #: Shares of a coast at its beginning and its end that are looked at.
@@ -17,6 +17,8 @@ _BEGINNING, _END = 0.02, 0.06
 _ROWS, _BEYOND = 3, 4.0
 #: Rows next to them that are left out, too: a drive does not let go at once.
 _MARGIN = 3
+#: Scatter about the law, as a share of the fall, that is no noise of a sensor, over so many rows.
+_UNEVEN, _SMOOTHED = 0.04, 5
 #: From the median of absolute values to the standard deviation.
 _MEDIAN = 0.6745
 
@@ -41,6 +43,20 @@ def without_ends(coasts: Sequence[Coast]) -> list[Coast]:
         first, last = first + _MARGIN * (first > 0), last - _MARGIN * (last < coast.rows)
         cut.append(_part(coast, first, last) if last - first >= FEWEST_ROWS else coast)
     return cut
+
+
+def is_free(coast: Coast) -> bool:
+    """Return whether a law of friction describes a fall of speed, as it does not where a drive sets it.
+
+    Noise of single rows is averaged; the last turns, in which gears make the speed swing, do not count.
+    """
+    (coast,) = without_ends([coast])
+    fit = fit_coasts([Trace(coast.time, coast.speed)])
+    rest = coast.speed - fit.predicted(0, coast.time)
+    smooth = np.convolve(rest, np.ones(_SMOOTHED) / _SMOOTHED, mode="valid")
+    noise = 2.0 * noise_of_rows(coast.speed) / np.sqrt(_SMOOTHED)
+    allowed = np.hypot(_UNEVEN * float(coast.speed[0] - coast.speed[-1]), noise)
+    return bool(np.median(np.abs(smooth)) < _MEDIAN * allowed)
 
 
 def _part(coast: Coast, first: int, last: int) -> Coast:

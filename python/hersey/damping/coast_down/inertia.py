@@ -30,6 +30,8 @@ def inertia_of(given: Any, name: str = "inertia") -> Estimate:
     >>> inertia_of("0.012 kg*m^2 ± 2 %").high
     0.01224
     """
+    if isinstance(given, Estimate):
+        return given
     text, half = given, 0.0
     if isinstance(given, str) and (parts := re.split(r"\s*(?:±|\+/-|\+-)\s*", given.strip())):
         text = parts[0]

@@ -193,9 +193,7 @@ class CoastDown(Result):
     def summary(self) -> str:
         """Return terms, torque and warnings as text."""
         lines = [self.headline()]
-        for name, unit, term in zip(
-            NAMES, UNITS, (self.coulomb, self.viscous, self.windage), strict=True
-        ):
+        for name, unit, term in zip(NAMES, UNITS, (self.coulomb, self.viscous, self.windage), strict=True):
             shown = f"{term} {unit}" if term.low > 0 else f"not shown, at most {term.high:.3g} {unit}"
             lines.append(f"  {name}: {shown}")
         for i in (0, self.speeds.size // 2, self.speeds.size - 1):

@@ -58,9 +58,7 @@ def windows_of(fit: CoastFit) -> list[Window]:
     return found
 
 
-def _measured(
-    fit: CoastFit, index: int, trace: Trace, speed: FloatArray, start: int, end: int
-) -> Window:
+def _measured(fit: CoastFit, index: int, trace: Trace, speed: FloatArray, start: int, end: int) -> Window:
     """How much more or less a window is slowed than by the law of all."""
     rows = slice(start, end)
     rate = deceleration(fit.law, speed[rows])
