@@ -282,13 +282,13 @@ def page(count: int) -> str:
     lines = [
         TITLE,
         "",
-        "`python -m benchmarks.coast_down` writes this page. A generator that shares no code with the fitter",
-        "integrates virtual wheels with known friction, and `hersey.coast_down` gets the speeds and the moment of",
-        "inertia. Every log holds standstill, run-up, hold and, for most wheels, a brake, too.",
+        "`python -m benchmarks.coast_down` writes this page. A generator that shares no code with the",
+        "fitter integrates virtual wheels with known friction, and `hersey.coast_down` gets the speeds and",
+        "the moment of inertia. Every log holds standstill, run-up, hold and, for most wheels, a brake, too.",
         "",
-        "Share of the 95 % intervals that hold the truth: of the torque at nine speeds of each wheel, of the three",
-        "terms, which are truly zero for many wheels, and of the windows that `points()` returns (aim: 92 to 98 %;",
-        "a term that is zero may exceed it). The last column is the median half width of the torque's interval.",
+        "Share of the 95 % intervals that hold the truth: of the torque at nine speeds of each wheel, of the",
+        "three terms, which are truly zero for many wheels, and of the windows that `points()` returns (aim:",
+        "92 to 98 %; a term that is zero may exceed it). Last column: median half width of the torque.",
         "",
         "| wheels | number | torque | Coulomb | viscous | windage | windows | half width |",
         "| --- | --- | --- | --- | --- | --- | --- | --- |",
@@ -307,9 +307,10 @@ def page(count: int) -> str:
         + ", ".join(f"{kind} {number}" for kind, number in sorted(whole.warnings.items()))
         + ".",
         "",
-        "Numbers of the method that were chosen while looking at virtual wheels, though not these: parts of a",
-        "coast whose decelerations are compared (40), the rise that counts as a brake (25 %, 6 errors), steps of",
-        "a coarse reading in a block (4), degrees of freedom (a third of the effective rows).",
+        "Chosen while looking at virtual wheels of this generator: parts of a coast whose decelerations are",
+        "compared (40), the rise that counts as a brake (25 %, 6 errors), rows at the ends that are checked",
+        "(2 % and 6 %), steps of a coarse reading in a block (4), degrees of freedom (a third of the",
+        "effective rows), the least departure that is reported (0.5 %) and unevenness (4 % of the fall).",
         "",
     ]
     return "\n".join(lines)

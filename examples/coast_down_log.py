@@ -41,8 +41,9 @@ def log() -> str:
     speed = np.array([*rest, *up, *hold, *coasted(0.0), *rest, *up, *hold, *second, *brake, *rest]) * _RPM
     seen = speed + NOISE * np.random.default_rng(SEED).standard_normal(speed.size)
     head = [
-        f"# SYNTHETIC: J = {INERTIA:g} kg m^2; T = {COULOMB:g} N m + {VISCOUS:g} N m s w + {WINDAGE:g} N m s^2 w^2,",
-        f"# noise {NOISE:g} rpm, seed {SEED}; written by examples/coast_down_log.py",
+        f"# SYNTHETIC: J = {INERTIA:g} kg m^2; T = {COULOMB:g} N m + {VISCOUS:g} N m s w",
+        f"# + {WINDAGE:g} N m s^2 w^2, noise {NOISE:g} rpm, seed {SEED};",
+        "# written by examples/coast_down_log.py",
         "time [s],speed [rpm]",
     ]
     rows = [f"{INTERVAL * row:.1f},{each:.1f}" for row, each in enumerate(seen.tolist())]

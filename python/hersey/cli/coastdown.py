@@ -29,7 +29,7 @@ def coastdown(
     reading: Reading,
     printing: Printing,
 ) -> None:
-    """Find the friction torque from coast-downs: speed against time, and a moment of inertia.
+    """Find the friction torque from coast-downs: speed over time and a moment of inertia.
 
     Example: [bold]hersey coastdown examples/coast-down.csv --inertia "0.012 kg*m^2 ± 2 %"[/bold]
 

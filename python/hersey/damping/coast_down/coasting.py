@@ -11,7 +11,7 @@ from hersey.damping.coast_down.departures import of_bound, of_coasts, of_shape
 from hersey.damping.coast_down.doubts import Doubts, no_coast
 from hersey.damping.coast_down.ends import is_free, without_ends
 from hersey.damping.coast_down.fitting import CoastFit, Trace, fit_coasts, within_physics
-from hersey.damping.coast_down.inertia import inertia_of
+from hersey.damping.coast_down.inertia import NORMAL, inertia_of
 from hersey.damping.coast_down.result import CoastDown, Friction, estimates_of, speeds_of
 from hersey.damping.coast_down.windows import windows_of
 from hersey.damping.distributions import student_quantile
@@ -120,7 +120,7 @@ def _of_the_mean(between: float, count: int) -> float:
     """Standard error of the mean of coasts that differ, so that 1.96 times it holds in 95 %."""
     if between == 0.0:
         return 0.0
-    return between / np.sqrt(count) * float(student_quantile(0.975, count - 1)) / 1.96
+    return float(between / np.sqrt(count) * student_quantile(0.975, count - 1) / NORMAL)
 
 
 def _noise(fit: CoastFit) -> float:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Annotated, Literal
 
 import numpy as np
@@ -122,14 +123,16 @@ def coasts_in(run: Run, index: int) -> tuple[list[Coast], list[LeftOut]]:
 
 def _means(values: FloatArray, size: int) -> FloatArray:
     """Means of so many rows each; those at the end that are fewer are left out."""
-    return values if size == 1 else values[: values.size // size * size].reshape(-1, size).mean(axis=1)
+    return np.asarray(
+        values if size == 1 else values[: values.size // size * size].reshape(-1, size).mean(axis=1)
+    )
 
 
 def noise_of_rows(speed: FloatArray) -> float:
     """Return the standard deviation of the noise of one row, that of rounding included."""
     bends = np.abs(np.diff(speed, 2))
     white = float(np.median(bends)) / (_MEDIAN * _BEND) if bends.size else 0.0
-    return max(white, step_of(speed) / np.sqrt(12.0))
+    return max(white, float(step_of(speed) / np.sqrt(12.0)))
 
 
 def _falls(speed: FloatArray, least: float) -> Iterator[tuple[int, int]]:
@@ -210,7 +213,7 @@ def _rates(
 ) -> tuple[FloatArray, FloatArray]:
     """Deceleration of each part, and its standard error, from noise and from the scatter of neighbours."""
     rates, errors = np.empty(edges.size - 1), np.empty(edges.size - 1)
-    for i, (start, end) in enumerate(zip(edges[:-1], edges[1:], strict=True)):
+    for i, (start, end) in enumerate(pairwise(edges)):
         t = time[start:end] - time[start:end].mean()
         rates[i] = -float(t @ speed[start:end]) / float(t @ t)
         errors[i] = noise / np.sqrt(float(t @ t))
@@ -247,6 +250,6 @@ def _above(rates: FloatArray, errors: FloatArray, part: int, earlier: int) -> bo
 def _stretches(run: int, time: FloatArray, why: np.ndarray, size: int) -> Iterator[LeftOut]:
     """Stretches of one reason each."""
     edges = [0, *(np.flatnonzero(why[1:] != why[:-1]) + 1).tolist(), why.size]
-    for start, end in zip(edges[:-1], edges[1:], strict=True):
+    for start, end in pairwise(edges):
         if reason := str(why[start]):
             yield LeftOut(run, float(time[start]), float(time[end - 1]), size * (end - start), reason)  # type: ignore[arg-type]

@@ -82,7 +82,7 @@ class Doubts:
             return [
                 Warning(
                     NEGATIVE,
-                    "friction of Coulomb, viscous and windage terms does not describe this coast: one of them "
+                    "Coulomb, viscous and windage friction do not describe these coasts: one of them "
                     "would have to be negative ({chance:p}), so the terms mean nothing",
                     severity="act",
                     remedy="fit other laws to the torque in windows of speed, which stays valid: points()",
@@ -136,8 +136,8 @@ class Doubts:
         return [
             Warning(
                 NOT_SEPARATED,
-                "{terms} cannot be told apart from the other terms between {slow:.3g rpm} and {fast:.3g rpm}; "
-                "the torque itself is known there",
+                "{terms} cannot be separated from the other terms between {slow:.3g rpm} and "
+                "{fast:.3g rpm}; the torque itself is known there",
                 severity="note" if wide else "watch",
                 remedy="record more coasts" if wide else "let the wheel coast down to lower speeds",
                 terms=" and ".join(names),
@@ -172,7 +172,8 @@ class Doubts:
         return [
             Warning(
                 EXACT,
-                "the moment of inertia has no error, so it is taken as exact; 1 % of it is 1 % of every torque",
+                "the moment of inertia has no error, so it is taken as exact; 1 % of it is 1 % of each "
+                "torque",
                 remedy="state it, e.g. as '{inertia:.4g} kg*m^2 ± 2 %'",
                 inertia=self.inertia.value,
             )
@@ -186,8 +187,8 @@ class Doubts:
         return [
             Warning(
                 WARMED,
-                "temperature went from {cold:.3g degC} to {hot:.3g degC}; viscous friction follows it, but one "
-                "law is fitted to all",
+                "temperature went from {cold:.3g degC} to {hot:.3g degC}; viscous friction follows it, "
+                "but one law is fitted to all",
                 severity="watch",
                 remedy="compare coasts of one temperature",
                 cold=float(known.min()),

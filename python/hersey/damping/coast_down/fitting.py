@@ -238,10 +238,10 @@ def _searched(
         return values, x[kept:]
 
     def residual(x: FloatArray) -> FloatArray:
-        return -np.concatenate(_linear(traces, *split(x), free, of_angle)[1])
+        return np.asarray(-np.concatenate(_linear(traces, *split(x), free, of_angle)[1]))
 
     def jacobian(x: FloatArray) -> FloatArray:
-        return np.vstack(_linear(traces, *split(x), free, of_angle)[0]) * scale
+        return np.asarray(np.vstack(_linear(traces, *split(x), free, of_angle)[0]) * scale)
 
     begin = np.concatenate([law[free], first]) / scale
     size = _TOLERANCE
@@ -264,7 +264,7 @@ def _linear(
 
 
 def whole(columns: FloatArray, trace: Trace, of_angle: bool) -> FloatArray:
-    """Return columns of speeds, of their means over blocks, or of the angles that they sum up to, about their mean."""
+    """Return columns of speeds, of their means over blocks, or of the angles that they sum up to."""
     if not of_angle and trace.blocks.size:
         rows = np.diff(np.append(trace.blocks, columns.shape[0]))
         return np.asarray(np.add.reduceat(columns, trace.blocks, axis=0) / rows[:, None])

@@ -227,7 +227,10 @@ class CoastDown(Result):
 def estimates_of(friction: Friction) -> list[Estimate]:
     """Return the coefficients with their intervals."""
     parts = friction.estimate(np.eye(TERMS))
-    return [Estimate(*map(float, each), friction.freedom) for each in zip(*parts, strict=True)]
+    return [
+        Estimate(float(value), float(error), float(low), float(high), friction.freedom)
+        for value, error, low, high in zip(*parts, strict=True)
+    ]
 
 
 def speeds_of(fit: CoastFit) -> FloatArray:
