@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from hersey.cli.groups import grouped, option
 from hersey.cli.options import Force, Logs, Reading, drawn
-from hersey.cli.outputs import may_draw
+from hersey.cli.outputs import may_draw, may_write
 from hersey.cli.printing import Printing
 from hersey.cli.progress import bar, working
 from hersey.errors import ParameterError
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from hersey.damping.coast_down import CoastDown
 
 _INERTIA = "Moment of inertia of all that turns, e.g. '0.012 kg*m^2 ± 2 %'; required."
+_POINTS = "Write the torque in windows of speed, for 'hersey fit CSV --means'."
 _FIGURE = "the speeds with the fitted curve, and the torque against speed"
 
 
@@ -24,6 +25,7 @@ def coastdown(
     logs: Logs,
     *,
     inertia: Annotated[str, option(_INERTIA)] = "",
+    points: Annotated[Path | None, option(_POINTS, metavar="CSV")] = None,
     figure: Annotated[Path | None, drawn(_FIGURE)] = None,
     force: Force = False,
     reading: Reading,
@@ -37,6 +39,7 @@ def coastdown(
     """
     if not inertia:
         raise ParameterError("the moment of inertia is missing: add --inertia '0.012 kg*m^2 ± 2 %'")
+    written = may_write(points, force, reading.inputs(logs), flag="--points", ends=[".csv"])
     drawing = may_draw(figure, force, reading.inputs(logs))
 
     from hersey.damping.coast_down import coast_down
@@ -48,11 +51,13 @@ def coastdown(
         log = reading.recipe(logs).speeds(progress=progress)
     with working("fitting the coasts"):
         found = coast_down(log, inertia=known)
+    if points is not None:
+        written.write(found.table())
     drawing.draw(found, "drawing the coasts")
     if printing.json(found):
         return
     printing.conclusion(lambda: _lines(found), found.summary(), *found.warnings)
-    printing.files(figure)
+    printing.files(points, figure)
 
 
 def _lines(found: CoastDown) -> list[str]:

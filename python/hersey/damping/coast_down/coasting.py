@@ -61,9 +61,9 @@ def coast_down(log: Any, *, inertia: Any) -> CoastDown:
     scale = known.value
     shared = float(np.hypot(known.error / scale, _of_the_mean(between, len(coasts))))
     friction = Friction(scale * law, scale * fit.law, scale**2 * fit.covariance, fit.freedom, shared)
-    coulomb, viscous, windage = estimates_of(friction)
     speeds = speeds_of(fit)
     torque, _, low, high = friction.estimate(speeds[:, None] ** np.arange(law.size))
+    coulomb, viscous, windage = estimates_of(friction, speeds, high)
     return CoastDown(
         inertia=known,
         coulomb=coulomb,

@@ -33,6 +33,8 @@ FEWEST_ROWS = 20
 _PARTS, _FEWEST_PER_PART = 40, 12
 #: A deceleration that is so many times that of a faster part, beyond so many of its errors, is no friction.
 _RISES, _SURELY = 1.25, 6.0
+#: A part below this share of the one before it begins suddenly.
+_SUDDEN = 0.6
 #: Neighbouring parts whose scatter counts: that of a ripple grows as the wheel slows.
 _NEAR = 9
 #: From second differences, and from a median deviation, to the standard deviation of white noise.
@@ -230,7 +232,7 @@ def _states(rates: FloatArray, errors: FloatArray) -> list[str]:
     kept = [0]
     for part in range(1, rates.size):
         smaller = [k for k in kept if _above(rates, errors, part, k)]
-        if smaller == kept or (len(kept) > 2 and len(smaller) >= len(kept) - 1):
+        if smaller and not _begins_suddenly(rates, kept, smaller):
             state[part] = "braking"
             continue
         for k in smaller:
@@ -238,6 +240,12 @@ def _states(rates: FloatArray, errors: FloatArray) -> list[str]:
             kept.remove(k)
         kept.append(part)
     return state
+
+
+def _begins_suddenly(rates: FloatArray, kept: list[int], smaller: list[int]) -> bool:
+    """Whether parts with a small deceleration begin with a sudden fall of it, as where a drive takes hold."""
+    before = [k for k in kept if k < smaller[0]]
+    return bool(before) and bool(rates[smaller[:2]].min() < _SUDDEN * rates[before[-1]])
 
 
 def _above(rates: FloatArray, errors: FloatArray, part: int, earlier: int) -> bool:

@@ -85,7 +85,7 @@ class Doubts:
                     "Coulomb, viscous and windage friction do not describe these coasts: one of them "
                     "would have to be negative ({chance:p}), so the terms mean nothing",
                     severity="act",
-                    remedy="fit other laws to the torque in windows of speed, which stays valid: points()",
+                    remedy="fit another law to the points, the torque in windows of speed, which stay valid",
                     chance=self.bound.p_value,
                 )
             ]
@@ -96,7 +96,7 @@ class Doubts:
                     "friction has another shape than Coulomb, viscous and windage terms: torque departs from "
                     "them by up to {share:.2g %} ({chance:p}), so the intervals are too narrow",
                     severity="watch",
-                    remedy="fit other laws to the torque in windows of speed, which stays valid: points()",
+                    remedy="fit another law to the points, the torque in windows of speed, which stay valid",
                     share=self.shape.share,
                     chance=self.shape.p_value,
                 )
@@ -137,10 +137,13 @@ class Doubts:
             Warning(
                 NOT_SEPARATED,
                 "{terms} cannot be separated from the other terms between {slow:.3g rpm} and "
+                "{fast:.3g rpm}; the torque itself is known there"
+                if len(open_terms) == 1
+                else "{terms} cannot be separated from each other between {slow:.3g rpm} and "
                 "{fast:.3g rpm}; the torque itself is known there",
                 severity="note" if wide else "watch",
                 remedy="record more coasts" if wide else "let the wheel coast down to lower speeds",
-                terms=" and ".join(names),
+                terms=_listed(names),
                 slow=slow,
                 fast=fast,
             )
@@ -206,3 +209,9 @@ class Doubts:
         if not any(np.isfinite(run.torque).any() for run in self.log.runs):
             return []
         return [Warning(TORQUE_UNUSED, "the log has a torque, which a coast-down does not use")]
+
+
+def _listed(names: Sequence[str]) -> str:
+    """Names with commas, the last with "and"."""
+    *first, last = names
+    return f"{', '.join(first)} and {last}" if first else last

@@ -86,9 +86,11 @@ def covariance_of_fit(
     """
     information = sum(each.T @ each for each in jacobians)
     # in the directions in which white noise has unit variance
-    values, vectors = np.linalg.eigh(information)
+    size = np.sqrt(np.diag(information))
+    size = np.where(size > 0.0, size, 1.0)
+    values, vectors = np.linalg.eigh(information / np.outer(size, size))
     kept = values > values[-1] * _SINGULAR
-    root = vectors[:, kept] / np.sqrt(values[kept])
+    root = vectors[:, kept] / np.sqrt(values[kept]) / size[:, None]
     middle = np.zeros((int(kept.sum()),) * 2)
     for jacobian, residual in zip(jacobians, residuals, strict=True):
         plain = jacobian @ root

@@ -20,7 +20,7 @@ from hersey.errors import InsufficientDataError
 from hersey.log.torque_log import Correction, TorqueLog
 from hersey.result import Means, Result
 from hersey.schema.warning import Warning
-from hersey.units import rpm, takes_si
+from hersey.units import celsius, rpm, takes_si
 
 if TYPE_CHECKING:
     import polars as pl
@@ -144,13 +144,31 @@ class CoastDown(Result):
         made = Correction(
             "torque from coast-down", (("moment_of_inertia", f"{self.inertia.value:g} kg m^2"),), ()
         )
-        log = replace(self.log, runs=tuple(runs), corrections=(*self.log.corrections, made))
+        exact = replace(
+            self.log.sensors, torque_gain=0.0, torque_zero=0.0, stated=("torque", *self.log.sensors.stated)
+        )
+        done = (*self.log.corrections, made)
+        log = replace(self.log, runs=tuple(runs), corrections=done, sensors=exact)  # no sensor of a torque
         signs = np.sign(table["speed"].to_numpy())
         shared = (self.friction.shared * torque * signs)[:, None]
         return SteadyPoints(
             table, (), 0.0, None, log, warnings=self.warnings, window_errors=shared if shared.any() else
             np.empty((0, 0)), temperature_rates=np.zeros(torque.size)
         )  # fmt: skip
+
+    def table(self) -> str:
+        """Return the points as a table of means, CSV, which ``hersey fit --means`` reads."""
+        points = self.points().table
+        hot = points["temperature"].null_count() == 0
+        head = ["speed [rpm]", *(["temperature [degC]"] if hot else []), "torque [N*m]", "torque error [N*m]"]
+        lines = [
+            f"# coast-down: windows of speed; moment of inertia {self.inertia.value:g} kg m^2",
+            ",".join(head),
+        ]
+        for row in points.iter_rows(named=True):
+            cells = [rpm(row["speed"]), *([celsius(row["temperature"])] if hot else [])]
+            lines.append(",".join(f"{each:.7g}" for each in (*cells, row["torque"], row["torque_error"])))
+        return "\n".join([*lines, ""])
 
     def friction_torque(self, speed: FloatArray) -> FloatArray:
         """Return the friction torque, N m, of the fitted law at speeds, rad/s."""
@@ -224,13 +242,19 @@ class CoastDown(Result):
         )
 
 
-def estimates_of(friction: Friction) -> list[Estimate]:
-    """Return the coefficients with their intervals."""
-    parts = friction.estimate(np.eye(TERMS))
-    return [
-        Estimate(float(value), float(error), float(low), float(high), friction.freedom)
-        for value, error, low, high in zip(*parts, strict=True)
-    ]
+def estimates_of(friction: Friction, speeds: FloatArray, most: FloatArray) -> list[Estimate]:
+    """Return the coefficients with their intervals.
+
+    No term exceeds the whole torque, whose upper limits at speeds are ``most``: at the slowest for the
+    constant term, at the fastest for the others.
+    """
+    found = []
+    for power, each in enumerate(zip(*friction.estimate(np.eye(TERMS)), strict=True)):
+        value, error, low, high = map(float, each)
+        end = 0 if power == 0 else -1
+        limit = max(float(most[end] / speeds[end] ** power), value)
+        found.append(Estimate(value, error, low, min(high, limit), friction.freedom))
+    return found
 
 
 def speeds_of(fit: CoastFit) -> FloatArray:
