@@ -194,7 +194,12 @@ def test_a_log_of_dwells_does_not_coast() -> None:
 
 @pytest.mark.parametrize(
     ("given", "half"),
-    [("0.012 kg*m^2", 0.0), ("0.012 kg*m^2 ± 2 %", 2.4e-4), ("120 kg*cm^2 +/- 1.2 kg*cm^2", 1.2e-4), (0.012, 0.0)],
+    [
+        ("0.012 kg*m^2", 0.0),
+        ("0.012 kg*m^2 ± 2 %", 2.4e-4),
+        ("120 kg*cm^2 +/- 1.2 kg*cm^2", 1.2e-4),
+        (0.012, 0.0),
+    ],
 )
 def test_an_inertia_is_read_with_its_error(given: object, half: float) -> None:
     known = inertia_of(given)

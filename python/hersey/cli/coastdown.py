@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -15,7 +16,6 @@ from hersey.errors import ParameterError
 if TYPE_CHECKING:
     from hersey.damping.coast_down import CoastDown
 
-_INERTIA = "Moment of inertia of all that turns, e.g. '0.012 kg*m^2 ± 2 %'; required."
 _POINTS = "Write the torque in windows of speed, for 'hersey fit CSV --means'."
 _FIGURE = "the speeds with the fitted curve, and the torque against speed"
 
@@ -24,7 +24,6 @@ _FIGURE = "the speeds with the fitted curve, and the torque against speed"
 def coastdown(
     logs: Logs,
     *,
-    inertia: Annotated[str, option(_INERTIA)] = "",
     points: Annotated[Path | None, option(_POINTS, metavar="CSV")] = None,
     figure: Annotated[Path | None, drawn(_FIGURE)] = None,
     force: Force = False,
@@ -37,7 +36,7 @@ def coastdown(
 
     No torque is needed. Standstill, run-up and braking are found and left out.
     """
-    if not inertia:
+    if not reading.inertia:
         raise ParameterError("the moment of inertia is missing: add --inertia '0.012 kg*m^2 ± 2 %'")
     written = may_write(points, force, reading.inputs(logs), flag="--points", ends=[".csv"])
     drawing = may_draw(figure, force, reading.inputs(logs))
@@ -46,9 +45,9 @@ def coastdown(
     from hersey.damping.coast_down.inertia import inertia_of
     from hersey.log import memory_limit
 
-    known = inertia_of(inertia, "--inertia")
+    known = inertia_of(reading.inertia, "--inertia")
     with bar("reading") as progress, memory_limit(reading.max_memory):
-        log = reading.recipe(logs).speeds(progress=progress)
+        log = replace(reading, inertia="").recipe(logs).speeds(progress=progress)
     with working("fitting the coasts"):
         found = coast_down(log, inertia=known)
     if points is not None:

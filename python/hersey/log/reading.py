@@ -12,6 +12,8 @@ import numpy as np
 from hersey.errors import ChannelError, ParameterError, UnitError
 from hersey.log.assembly import Assembly
 from hersey.log.channels import ChannelChoice, Stated
+from hersey.log.derived.sources import Sources
+from hersey.log.derived.text import text_recording
 from hersey.log.exchanged import refuse_exchanged
 from hersey.log.formats.frame import frame_recording, is_frame
 from hersey.log.friction import of_each_run
@@ -27,7 +29,7 @@ from hersey.log.wanted import Wanted
 from hersey.units import takes_si
 
 
-@takes_si(every="time", radius="length", load="force", channels=CHANNELS, units=UNITS)
+@takes_si(every="time", radius="length", load="force", position_window="time", channels=CHANNELS, units=UNITS)
 def read(
     paths: Any,
     *,
@@ -39,6 +41,10 @@ def read(
     radius: float | Sequence[float] | None = None,
     load: float | Sequence[float] | None = None,
     without_torque: bool = False,
+    name_pattern: str | None = None,
+    name_decimal: str | None = None,
+    schedule: Any = None,
+    position_window: float | None = None,
     progress: Progress | None = None,
 ) -> TorqueLog:
     """Read one log, or several of the same machine, each as a separate run.
@@ -49,7 +55,8 @@ def read(
         File or files (text, Excel, LVM, TDMS, MDF, MATLAB, HDF5, NumPy, Parquet), or polars or pandas frames.
     channels
         Column name by role (``time``, ``torque``, ``speed``, ``temperature``; ``load``, ``radius``, and
-        ``run``, the run number), if names and units in the file are not sufficient. ``name#2`` is the second
+        ``run``, the run number; ``position``, an angle or a distance instead of a speed; ``direction`` of a
+        speed without a sign), if names and units in the file are not sufficient. ``name#2`` is the second
         column with that name, ``group/name`` a column in a part of the file, ``#2`` the second column of a
         table without header. Torque may be a friction force or coefficient; speed may be a sliding speed.
     units
@@ -70,6 +77,17 @@ def read(
     without_torque
         Whether to read time and speed alone, for `hersey.coast_down`: no torque is looked for, and all its
         values are NaN.
+    name_pattern
+        Pattern of the file names, e.g. ``"{speed} rpm {load} N.txt"``, if they state speed, load, radius or
+        temperature. ``*`` stands for any text.
+    name_decimal
+        Decimal mark of the numbers in the names, e.g. ``"-"`` for ``0-1rps.txt``.
+    schedule
+        Speed, temperature or load by time, if the log has no channel of it: a file (``from [s]``,
+        ``to [s]``, ``speed [rpm]``), or a list of ``{"from": "0 s", "to": "60 s", "speed": "10 rpm"}``.
+        Times are counted from the first row.
+    position_window
+        Time over which speed is the slope of a ``position`` column, s (0.2 s).
     progress
         Called with bytes done and total bytes.
 
@@ -102,11 +120,15 @@ def read(
             )
     choices = {r: ChannelChoice((channels or {}).get(r, ""), (units or {}).get(r, "")) for r in known}
     stated = _stated(every=every, radius=radius, load=load)
+    sources = Sources.of(name_pattern, name_decimal, schedule, position_window)
+    sources.refuse_twice(choices, stated)
+    stated = sources.stated(stated, files)
     wanted = Wanted(choices, stated, isothermal, drop_missing, without_torque)
     done: list[tuple[Run, LogFile]] = []
     for number, file in enumerate(files, start=1):
+        of_file = replace(wanted, derived=sources.of_file(file))
         name = "frame" if len(files) == 1 else f"frame {number}"
-        read_here = (_speeds if without_torque else _runs)(file, wanted, name, progress)
+        read_here = (_speeds if without_torque else _runs)(file, of_file, name, progress)
         if any(read_here[0][1].sha256 == other.sha256 for _, other in done):
             name = read_here[0][1].name
             raise ParameterError(f"{name} has the same content as an earlier file. Give each file once")
@@ -128,6 +150,9 @@ def _runs(file: Any, wanted: Wanted, frame: str, progress: Progress | None) -> l
         with opened(path, kind) as recording:
             assembly = Assembly(recording, wanted)
         return assembly.runs()
+    if wanted.needs_parts:
+        with text_recording(path) as recording:
+            return Assembly(recording, wanted).runs()
     return read_delimited(path, wanted, progress)
 
 
