@@ -32,7 +32,6 @@ from hersey.files.toml import Table, naming, read_tables, read_toml
 from hersey.log import corrections
 from hersey.log.channels import Stated
 from hersey.log.corrections import Corrected
-from hersey.log.derived.set_points import SetPoints
 from hersey.log.layouts.laid_out import reading_by
 from hersey.log.layouts.presets import with_preset
 from hersey.log.layouts.proposing import with_layout
@@ -78,7 +77,8 @@ class _Roles(Table):
     position: PositionMapping = field(default_factory=PositionMapping)
     direction: RoleMapping = field(default_factory=RoleMapping)
     names: NamesMapping = field(default_factory=NamesMapping)
-    schedule: Annotated[SetPoints | None, Steps(None)] = None
+    #: Set points by time: one ``[[schedule]]`` per step, with from, to, and speed, temperature or load.
+    schedule: Annotated[Any, Steps(None)] = None
     layout: LogLayout | None = None
 
 

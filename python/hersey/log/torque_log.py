@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     import polars as pl
 
     from hersey.damping.dwells import SteadyPoints
-    from hersey.damping.moving import MovingFit
+    from hersey.damping.moving.result import MovingFit
 
 #: SI unit of each channel that can be corrected.
 CHANNEL_UNITS = {"torque": "N m", "speed": "rad/s", "temperature": "K"}
@@ -196,7 +196,7 @@ class TorqueLog(Result):
     @takes_si(inertia="moment of inertia")
     def moving(self, *, inertia: float | None = None) -> MovingFit:
         """Fit friction, inertia and offset to every sample: see `hersey.fit_moving`."""
-        from hersey.damping.moving import fit_moving
+        from hersey.damping.moving.fit import fit_moving
 
         return fit_moving(self, inertia=inertia)
 

@@ -13,8 +13,3 @@ moving_warnings  what is to be known of it
 windows          windows of speed and temperature as steady points
 ===============  ===================================================================
 """
-
-from hersey.damping.moving.fit import fit_moving
-from hersey.damping.moving.result import MovingFit
-
-__all__ = ["MovingFit", "fit_moving"]
