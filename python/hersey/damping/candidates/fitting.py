@@ -109,7 +109,7 @@ class LawFit:
         far visits scatter. That leaves open what depends on temperature: its law, and a transition that moves
         with it; levels and exponents of speed are those of these visits.
         """
-        thermal = name in ("e", "q", "at", "d") and self.law.thermal is not None or name == THINNING
+        thermal = (name in ("e", "q", "at", "d") and self.law.thermal is not None) or name == THINNING
         moved = self.freedoms.moved_by_untold
         if not thermal or not moved.size or moved[self.law.index(name)] < _LITTLE:
             return ""

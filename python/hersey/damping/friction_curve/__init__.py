@@ -2,7 +2,8 @@
 
 law        torque against speed and temperature, with its derivatives
 dwell_law  the same as the fit of dwells takes it
-result     the law that describes the dwells, with its parameters
+fitted     the law that describes the dwells, with its parameters
+words      what these say
+result     both together: `FrictionCurve`
 fit        which law describes the dwells: `fit_friction`
-words      what a friction curve says
 """

@@ -19,7 +19,7 @@ from hersey.damping.friction_curve.law import STRIBECK_SPEED, VISCOUS, FrictionL
 
 #: Share of the least torque below which a law has none: a logarithm has no place for it.
 _FLOOR = 1e-3
-#: Falls of the viscous coefficient with temperature from which a search begins, 1/K: none, oil, grease when cold.
+#: Falls of ln k_v with temperature from which a search begins, 1/K: none, oil, grease when cold.
 _THINNINGS = (0.0, 0.02, 0.05)
 #: Stribeck speeds from which a search begins, and how far beyond the measured speeds they lie.
 _TRIED, _BEYOND = 9, 2.0
@@ -74,7 +74,7 @@ class DwellFriction(Named):
         return by_speed, np.asarray(-own[-1] * viscous / torque)
 
     def starts(self, inputs: Inputs, log_torque: FloatArray, weights: FloatArray) -> list[FloatArray]:
-        """Return where to search from: linear fits over Stribeck speeds and thinnings, the likeliest first."""
+        """Return where to search from: linear fits over Stribeck speeds and thinnings, likeliest first."""
         speed, root = self._speed(inputs), np.sqrt(weights)
         ways = [speed > 0, speed < 0] if self.friction.apart else [np.ones(speed.shape, dtype=bool)]
         ranked: list[tuple[float, FloatArray]] = []
@@ -102,13 +102,14 @@ class DwellFriction(Named):
             shapes = np.column_stack([np.ones_like(speed), *share, speed * thinned])
             parts, missed = optimize.nnls(shapes * relative, root[way])
             middle = [] if at is None else [parts[0] + max(parts[1], 0.02 * self.least), float(np.log(at))]
-            found.append((float(missed) ** 2, np.array([max(parts[0], _FLOOR * self.least), *middle, parts[-1]])))
+            values = np.array([max(parts[0], _FLOOR * self.least), *middle, parts[-1]])
+            found.append((float(missed) ** 2, values))
         return sorted(found, key=lambda one: one[0])
 
     def _stribeck_speeds(self, speed: FloatArray) -> list[float | None]:
         if not self.friction.stribeck:
             return [None]
-        return np.geomspace(speed.min() / _BEYOND, speed.max(), _TRIED).tolist()
+        return [float(at) for at in np.geomspace(speed.min() / _BEYOND, speed.max(), _TRIED)]
 
     def _at(self, name: str) -> IntArray:
         """Where the parameter of that name stands in each direction."""

@@ -19,19 +19,20 @@ from hersey.damping.dwells.reduced import require_points
 from hersey.damping.estimate import Estimate, quantile
 from hersey.damping.friction_curve import law as laws
 from hersey.damping.friction_curve.dwell_law import DwellFriction
-from hersey.damping.friction_curve.law import FrictionLaw
-from hersey.damping.friction_curve.result import (
+from hersey.damping.friction_curve.fitted import (
     BOTH,
     COULOMB_VISCOUS,
     FORWARD,
     REVERSE,
     STRIBECK,
     DirectionTest,
-    FrictionCurve,
     FrictionParameter,
     LeastTorque,
     TriedFriction,
 )
+from hersey.damping.friction_curve.law import FrictionLaw
+from hersey.damping.friction_curve.result import FrictionCurve
+from hersey.damping.trend import trend_of
 from hersey.errors import InsufficientDataError
 from hersey.units import takes_si
 
@@ -72,7 +73,7 @@ def fit_friction(points: SteadyPoints) -> FrictionCurve:
     """Fit Coulomb, viscous and Stribeck friction to the steady points of a joint or gear motor.
 
     Coulomb plus viscous friction and a Stribeck curve are fitted, for both directions together and for each
-    apart, in the likelihood of `hersey.fit`. A law with more parameters is chosen only if AICc is better by 6.
+    apart, in the likelihood of `hersey.fit`. A law with more parameters needs a gain of 6 in AICc.
 
     Parameters
     ----------
@@ -97,7 +98,7 @@ def fit_friction(points: SteadyPoints) -> FrictionCurve:
     >>> torque = [-0.536, -0.521, -0.509, -0.501, 0.501, 0.507, 0.52, 0.533]
     >>> points = SteadyPoints.from_table({"speed [rpm]": speed, "torque [N*m]": torque})
     >>> fit_friction(points).headline()
-    'Coulomb plus viscous friction: T_C = 494 mN·m [491, 497], k_v = 6.3 mN·m·s/rad [5.5, 7.1]'
+    'Coulomb plus viscous friction: T_C = 494 mN·m [493, 496], k_v = 6.34 mN·m·s/rad [5.85, 6.83]'
     """
     require_points(points, "hersey.fit_friction({points})")
     data = Observations.of(points)
@@ -118,12 +119,14 @@ def fit_friction(points: SteadyPoints) -> FrictionCurve:
         aicc=chosen.fit.aicc,
         scatter=chosen.fit.scatter,
         points=len(data),
+        falls=any(trend_of(data.take(np.flatnonzero(way))).falls for way in ways.values() if np.any(way)),
         forward_speeds=ends[FORWARD],
         reverse_speeds=ends[REVERSE],
         temperature_range=None if kelvin is None else (float(kelvin.min()), float(kelvin.max())),
         reference_temperature=chosen.law.reference_kelvin,
         law=chosen.law,
         values=chosen.values,
+        data=data,
     )
 
 
@@ -132,6 +135,12 @@ def _ways(data: Observations) -> dict[str, BoolArray]:
     sign = data.inputs.sign
     forward = np.ones(len(data), dtype=bool) if sign is None else sign > 0
     return {FORWARD: forward, REVERSE: ~forward}
+
+
+def _together(data: Observations) -> str:
+    """What one law for all dwells holds for."""
+    measured = [name for name, way in _ways(data).items() if np.any(way)]
+    return measured[0] if len(measured) == 1 else BOTH
 
 
 def _fitted(data: Observations) -> list[_Fitted]:
@@ -205,10 +214,9 @@ def _parameters(chosen: _Fitted, data: Observations) -> tuple[FrictionParameter,
     out = []
     for i, label in enumerate(chosen.law.names):
         name = label.rstrip("+-")
-        direction = _WAYS.get(label[len(name) :], BOTH)
+        direction = _WAYS.get(label[len(name) :], _together(data))
         known = _estimate(chosen, data, i)
-        bounded = known.estimable
-        out.append(FrictionParameter(name, direction, known, laws.UNITS[name], bounded))
+        out.append(FrictionParameter(name, direction, known, laws.UNITS[name], known.estimable))
     return tuple(out)
 
 
@@ -230,7 +238,17 @@ def _estimate(chosen: _Fitted, data: Observations, i: int) -> Estimate:
             known = replace(known, low=0.0, high=high)
     if label.startswith((laws.STRIBECK_SPEED, laws.STATIC)) and not known.high < _UNBOUNDED * known.value:
         known = replace(known, high=np.inf)
+    if label.startswith(laws.STATIC) and _is_extrapolated(chosen, data, label):
+        known = replace(known, high=np.inf)
     return known
+
+
+def _is_extrapolated(chosen: _Fitted, data: Observations, label: str) -> bool:
+    """Whether the slowest dwell is above the Stribeck speed: then it shows little of the rise to T_S."""
+    own = dict(zip(chosen.law.names, chosen.values.tolist(), strict=True))
+    direction = _WAYS.get(label[-1])
+    speed = data.speed if direction is None else data.speed[_ways(data)[direction]]
+    return float(speed.min()) > own[label.replace(laws.STATIC, laws.STRIBECK_SPEED)]
 
 
 def _least(chosen: _Fitted, data: Observations) -> tuple[LeastTorque, ...]:
@@ -238,7 +256,7 @@ def _least(chosen: _Fitted, data: Observations) -> tuple[LeastTorque, ...]:
     if not chosen.law.stribeck:
         return ()
     out = []
-    ways = _ways(data) if chosen.law.apart else {BOTH: np.ones(len(data), dtype=bool)}
+    ways = _ways(data) if chosen.law.apart else {_together(data): np.ones(len(data), dtype=bool)}
     for name, way in ways.items():
         side = -1.0 if name == REVERSE else 1.0
         ends = float(data.speed[way].min()), float(data.speed[way].max())
@@ -279,13 +297,12 @@ def _least_estimate(chosen: _Fitted, side: float, ends: tuple[float, float], at:
         step = _STEP * fit.error(law.names[i])
         if not step > 0.0:
             continue
-        moved = [
-            _least_speed(chosen.law, law.of(fit.values + way * step * np.eye(fit.values.size)[i]), side, wide)
-            for way in (1.0, -1.0)
-        ]
-        if moved[0] is None or moved[1] is None:
+        moved = step * np.eye(fit.values.size)[i]
+        above = _least_speed(chosen.law, law.of(fit.values + moved), side, wide)
+        below = _least_speed(chosen.law, law.of(fit.values - moved), side, wide)
+        if above is None or below is None:
             return Estimate(at, np.inf, -np.inf, np.inf)
-        slopes[i] = (np.log(moved[0]) - np.log(moved[1])) / (2.0 * step)
+        slopes[i] = np.log(above / below) / (2.0 * step)
     error = float(np.sqrt(max(slopes @ fit.covariance @ slopes, 0.0)))
     freedom = fit.freedoms.of(slopes) if np.any(slopes) else float(fit.freedom)
     reach = quantile(freedom) * error

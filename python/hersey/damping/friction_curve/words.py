@@ -2,15 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from hersey.damping.estimate import Estimate, rounded
 from hersey.damping.friction_curve import law as laws
-from hersey.damping.friction_curve.result import BOTH, STRIBECK
+from hersey.damping.friction_curve.fitted import BOTH, STRIBECK, FittedFriction, FrictionParameter
 from hersey.units import celsius, rpm
-
-if TYPE_CHECKING:
-    from hersey.damping.friction_curve.result import FrictionCurve, FrictionParameter
 
 _LAWS = {"coulomb_viscous": "Coulomb plus viscous friction", "stribeck": "Stribeck friction"}
 _FORMULAS = {
@@ -23,35 +18,44 @@ _LARGE = 1.0
 _SMALL_P = 0.001
 
 
-def named(curve: FrictionCurve) -> str:
-    """Return the law and its parameters, on one line."""
+def law_of(curve: FittedFriction) -> str:
+    """Return the name of the law."""
     own = ", each direction with its own parameters" if curve.apart else ""
-    return f"{_LAWS[curve.kind]}{own}: {_listed(curve)}"
+    return f"{_LAWS[curve.kind]}{own}"
 
 
-def verdict_of(curve: FrictionCurve) -> str:
-    """Return law, parameters, what torque does as the drive slows, and whether the directions differ."""
-    said = (f"{named(curve)}{_at(curve)}.", _slowing(curve), _directions(curve))
-    return " ".join(filter(None, said))
+def named(curve: FittedFriction) -> str:
+    """Return the law and its parameters, on one line."""
+    return f"{law_of(curve)}: {_listed(curve)}{_at(curve)}"
 
 
-def rows_of(curve: FrictionCurve) -> list[tuple[str, str]]:
+def finding_of(curve: FittedFriction) -> str:
+    """Return what torque does as the drive slows, and whether the directions differ."""
+    return ". ".join(filter(None, (slowing_of(curve), directions_of(curve)))) + "."
+
+
+def verdict_of(curve: FittedFriction) -> str:
+    """Return law and parameters, what torque does as the drive slows, and whether the directions differ."""
+    return f"{named(curve)}. {finding_of(curve)}"
+
+
+def rows_of(curve: FittedFriction) -> list[tuple[str, str]]:
     """Return a row per parameter: its name with the direction, and value with interval and unit."""
     rows = []
     for each in curve.parameters:
-        way = "" if each.direction == BOTH else f" {each.direction}"
+        way = f" {each.direction}" if curve.apart and each.direction != BOTH else ""
         rows.append((f"{each.name}{way}", _valued(each, curve)))
     return rows
 
 
-def formula_of(curve: FrictionCurve) -> str:
+def formula_of(curve: FittedFriction) -> str:
     """Return the law as a formula."""
     formula = _FORMULAS[curve.kind]
     kelvin = curve.reference_temperature
     return formula if kelvin is None else f"{formula} exp(-s (T - {celsius(kelvin):.0f} °C))"
 
 
-def summary_of(curve: FrictionCurve) -> str:
+def summary_of(curve: FittedFriction) -> str:
     """Return law, parameters and laws tried, as text."""
     lines = [verdict_of(curve), f"{formula_of(curve)} (value, 95 % interval)"]
     width = max(len(name) for name, _ in rows_of(curve))
@@ -65,25 +69,25 @@ def summary_of(curve: FrictionCurve) -> str:
     return "\n".join(lines)
 
 
-def _at(curve: FrictionCurve) -> str:
+def _at(curve: FittedFriction) -> str:
     kelvin = curve.reference_temperature
     return "" if kelvin is None else f" (k_v at {celsius(kelvin):.0f} °C)"
 
 
-def _listed(curve: FrictionCurve) -> str:
+def _listed(curve: FittedFriction) -> str:
     """All parameters, those of both directions of one name together."""
     names = dict.fromkeys(each.name for each in curve.parameters)
     parts = []
     for name in names:
         own = [each for each in curve.parameters if each.name == name]
         each = " and ".join(
-            _valued(one, curve) + ("" if one.direction == BOTH else f" {one.direction}") for one in own
+            _valued(one, curve) + (f" {one.direction}" if len(own) > 1 else "") for one in own
         )
         parts.append(f"{name} = {each}" if own[0].bounded or len(own) > 1 else f"{name} {each}")
     return (", " if len(parts) == len(curve.parameters) else "; ").join(parts)
 
 
-def _valued(parameter: FrictionParameter, curve: FrictionCurve) -> str:
+def _valued(parameter: FrictionParameter, curve: FittedFriction) -> str:
     """Value, unit and interval, or why there is none."""
     if not parameter.bounded:
         return f"cannot be determined{_why(parameter, curve)}"
@@ -97,7 +101,7 @@ def _valued(parameter: FrictionParameter, curve: FrictionCurve) -> str:
     return text
 
 
-def _why(parameter: FrictionParameter, curve: FrictionCurve) -> str:
+def _why(parameter: FrictionParameter, curve: FittedFriction) -> str:
     if parameter.name in (laws.STATIC, laws.STRIBECK_SPEED):
         return f" (the slowest dwell, {_speed(curve.speed_range[0])}, is too fast: record slower ones)"
     if parameter.name == laws.THINNING:
@@ -105,50 +109,51 @@ def _why(parameter: FrictionParameter, curve: FrictionCurve) -> str:
     return ""
 
 
-def _slowing(curve: FrictionCurve) -> str:
-    """What torque does as the drive slows, and what that means for stick-slip."""
+def slowing_of(curve: FittedFriction) -> str:
+    """Return what torque does as the drive slows, and what that means for stick-slip."""
     if curve.kind == STRIBECK:
         return _of_stribeck(curve)
-    slopes = [each.estimate for each in curve.parameters if each.name == laws.VISCOUS]
+    slopes = curve.slopes
     low, high = curve.speed_range
-    over = f"from {_speed(low)} to {_speed(high)}"
-    if all(each.low > 0.0 for each in slopes):
-        return f"Torque rises with speed {over}, so the friction curve there causes no stick-slip."
+    over = f"from {rpm(low):.3g} to {_speed(high)}"
+    if curve.rises:
+        return f"Torque rises with speed {over}, so the friction curve causes no stick-slip there"
+    if curve.falls:
+        return "Torque falls with speed in some of the dwells, so stick-slip is possible"
     if any(each.high < 0.0 for each in slopes):
-        return f"Torque falls as speed rises {over}, so stick-slip is possible."
-    return f"The dwells do not prove that torque changes with speed {over}."
+        return f"Torque falls as speed rises {over}, so stick-slip is possible"
+    return f"The dwells do not prove that torque changes with speed {over}"
 
 
-def _of_stribeck(curve: FrictionCurve) -> str:
+def _of_stribeck(curve: FittedFriction) -> str:
     if not curve.least:
-        return "Torque falls as speed rises over the measured speeds, so stick-slip is possible."
+        return "Torque falls as speed rises over the measured speeds, so stick-slip is possible"
     where = " and ".join(
-        _speed_estimate(each.speed) + ("" if each.direction == BOTH else f" {each.direction}")
-        for each in curve.least
+        _speed_estimate(each.speed) + (f" {each.direction}" if curve.apart else "") for each in curve.least
     )
-    return f"Torque is lowest at {where}; below it torque rises as the drive slows, so stick-slip is possible."
+    return f"Torque is lowest at {where}; below it torque rises as the drive slows, so stick-slip is possible"
 
 
-def _directions(curve: FrictionCurve) -> str:
+def directions_of(curve: FittedFriction) -> str:
+    """Return whether the directions differ, and what else would explain it."""
     test = curve.directions
     if test is None:
         return ""
     p = f"p < {_SMALL_P:g}" if test.p_value < _SMALL_P else f"p = {test.p_value:.2g}"
     if not test.differ:
-        return f"One law describes both directions ({p})."
-    said = f"The directions differ ({p})."
+        return f"One law describes both directions ({p})"
+    said = f"The directions differ ({p})"
     if test.offset is None:
         return said
     factor, unit = _torque_unit(curve)
-    return (
-        f"{said} An error of {factor * test.offset:.2g} {unit} in the torque zero would shift T_C alike: "
-        "record a standstill to exclude it."
-    )
+    off = f"A torque zero off by {factor * test.offset:.2g} {unit}"
+    return f"{said}. {off} would explain the difference in T_C: record a standstill to exclude it"
 
 
-def _torque_unit(curve: FrictionCurve) -> tuple[float, str]:
+def _torque_unit(curve: FittedFriction) -> tuple[float, str]:
     """Factor from N m, and the unit in which torques read best."""
-    largest = max(each.estimate.value for each in curve.parameters if each.name in (laws.COULOMB, laws.STATIC))
+    torques = (laws.COULOMB, laws.STATIC)
+    largest = max(each.estimate.value for each in curve.parameters if each.name in torques)
     return (1.0, "N·m") if largest >= _LARGE else (1e3, "mN·m")
 
 
