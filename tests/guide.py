@@ -61,8 +61,8 @@ def write_files_of_a_reader(folder: Path) -> None:
         write(f"{name}.csv", _HEADER, times(factor))
     stuck = [row for row in rows if 2.0 < float(row[2]) < 3.0]  # held for 32 s, sticking and slipping
     write("squeal.csv", _HEADER, stuck)
-    means = re.search(
-        r"^```text\n(.*?)^```$", (DOCS / "how-to/means.md").read_text(), re.DOTALL | re.MULTILINE
-    )
-    assert means is not None
-    (folder / "means.csv").write_text(means[1])
+    for page, name in (("means", "means.csv"), ("joint-friction", "joint.csv")):
+        text = (DOCS / f"how-to/{page}.md").read_text()
+        table = re.search(r"^```text\n(.*?)^```$", text, re.DOTALL | re.MULTILINE)
+        assert table is not None
+        (folder / name).write_text(table[1])

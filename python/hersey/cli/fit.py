@@ -41,6 +41,8 @@ def fit(
 
     Example: [bold]hersey fit examples/bench.csv --tare standing[/bold]
 
+    Of a joint or gear motor it prints Coulomb, viscous and Stribeck friction, if that describes the dwells.
+
     Several logs count as runs of one machine and give one fit, unless --each fits them separately. If a log
     then fails, nothing is written; with --keep-going the others are, and the exit code is 1.
     """
