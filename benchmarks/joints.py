@@ -35,6 +35,8 @@ WHITE, SLOW, OFFSET = 0.02, 0.004, 0.02
 TAU = 0.4
 #: Scatter from dwell to dwell, share of torque: none in every other joint.
 SCATTER = 0.004
+#: Joints of each setting whose whole verdict is asked for.
+WHOLE = 5
 #: Temperature of k_v, degC, and those of a joint that warms up, each visited twice.
 REFERENCE, WARM = 40.0, (25.0, 40.0, 60.0)
 NAMES = ("T_C", "T_S", "w_S", "k_v", "s")
@@ -170,14 +172,14 @@ class Judged:
     """What the fit says of a joint beside the truth."""
 
     law: bool  #: the right one of both that the dwells can show
-    leads: bool  #: the friction curve comes first in `hersey fit`
+    leads: bool | None  #: the friction curve comes first in `hersey fit`; None if not asked
     directions: bool  #: rightly the same or apart
     held: dict[str, list[bool]]  #: by parameter, whether each interval holds the truth
     open: int  #: parameters that cannot be determined
 
 
-def judged(setting: str, joint: Joint, path: Path) -> Judged:
-    """Fit the log of a joint and compare."""
+def judged(setting: str, joint: Joint, path: Path, *, whole: bool) -> Judged:
+    """Fit the log of a joint and compare; ``whole`` asks for the verdict of `hersey fit`, which takes long."""
     points = hersey.Recipe(logs=str(path), tare="standing", isothermal=not joint.temperatures).points()
     curve = hersey.fit_friction(points)
     held: dict[str, list[bool]] = {}
@@ -192,8 +194,10 @@ def judged(setting: str, joint: Joint, path: Path) -> Judged:
         held.setdefault(each.name, []).append(each.estimate.low <= truth <= each.estimate.high)
     shown = joint.forward.static is not None and "too fast" not in setting
     right = (curve.kind == "stribeck") == shown
-    surface = hersey.fit(points)
-    leads = leading_friction(points, surface, hersey.regime(points, surface)) is not None
+    leads = None
+    if whole:
+        surface = hersey.fit(points)
+        leads = leading_friction(points, surface, hersey.regime(points, surface)) is not None
     return Judged(right, leads, curve.apart == ("apart" in setting), held, unknown)
 
 
@@ -207,7 +211,9 @@ def table(results: dict[str, list[Judged]]) -> list[str]:
     everything: list[bool] = []
     for setting, all_ in results.items():
         cells = [f"{len(all_)} {setting}"]
-        cells += [f"{sum(getattr(each, name) for each in all_)} of {len(all_)}" for name in counted]
+        for name in counted:
+            asked = [one for each in all_ if (one := getattr(each, name)) is not None]
+            cells.append(f"{sum(asked)} of {len(asked)}")
         own: list[bool] = []
         for name in NAMES:
             held = [one for each in all_ for one in each.held.get(name, [])]
@@ -269,7 +275,7 @@ def main() -> int:
                 rng = np.random.default_rng([given.seed, number, index])
                 joint, path = drawn(setting, rng), Path(folder) / f"joint{number}-{index}.csv"
                 written(joint, rng, path)
-                results.setdefault(setting, []).append(judged(setting, joint, path))
+                results.setdefault(setting, []).append(judged(setting, joint, path, whole=index < WHOLE))
             print(setting, file=sys.stderr)
     lines = [WORDS, f"Seed {given.seed}.", "", *table(results)]
     if found := measured(given.folder):

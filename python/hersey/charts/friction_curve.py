@@ -1,4 +1,4 @@
-"""The friction curve of a joint: torque against speed with the fitted law, signed if it turns both ways."""
+"""The friction curve of a joint: torque against speed with the fitted law, signed if both ways."""
 
 from __future__ import annotations
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -248,7 +249,7 @@ def _is_extrapolated(chosen: _Fitted, data: Observations, label: str) -> bool:
     own = dict(zip(chosen.law.names, chosen.values.tolist(), strict=True))
     direction = _WAYS.get(label[-1])
     speed = data.speed if direction is None else data.speed[_ways(data)[direction]]
-    return float(speed.min()) > own[label.replace(laws.STATIC, laws.STRIBECK_SPEED)]
+    return bool(speed.min() > own[label.replace(laws.STATIC, laws.STRIBECK_SPEED)])
 
 
 def _least(chosen: _Fitted, data: Observations) -> tuple[LeastTorque, ...]:
@@ -302,8 +303,8 @@ def _least_estimate(chosen: _Fitted, side: float, ends: tuple[float, float], at:
         below = _least_speed(chosen.law, law.of(fit.values - moved), side, wide)
         if above is None or below is None:
             return Estimate(at, np.inf, -np.inf, np.inf)
-        slopes[i] = np.log(above / below) / (2.0 * step)
-    error = float(np.sqrt(max(slopes @ fit.covariance @ slopes, 0.0)))
+        slopes[i] = math.log(above / below) / (2.0 * step)
+    error = math.sqrt(max(float(slopes @ fit.covariance @ slopes), 0.0))
     freedom = fit.freedoms.of(slopes) if np.any(slopes) else float(fit.freedom)
     reach = quantile(freedom) * error
-    return Estimate(at, at * error, at * float(np.exp(-reach)), at * float(np.exp(reach)), freedom)
+    return Estimate(at, at * error, at * math.exp(-reach), at * math.exp(reach), freedom)

@@ -30,7 +30,7 @@ class FrictionParameter(Record):
 
     name: Annotated[str, Means("T_C, T_S, w_S, k_v, or s: fall of ln k_v per kelvin")]
     direction: Annotated[str, Means("forward, reverse, or both")]
-    estimate: Estimate
+    estimate: Annotated[Estimate, Means("in SI")]
     unit: str
     bounded: Annotated[bool, Means("whether the dwells determine it")] = True
 
@@ -86,13 +86,13 @@ class FittedFriction(Record):
     of k_v.
     """
 
-    parameters: tuple[FrictionParameter, ...]
-    least: tuple[LeastTorque, ...]
+    parameters: Annotated[tuple[FrictionParameter, ...], Means("those of the forward direction first")]
+    least: Annotated[tuple[LeastTorque, ...], Means("empty if torque has no minimum at the measured speeds")]
     tried: Annotated[tuple[TriedFriction, ...], Means("the likeliest first")]
     directions: DirectionTest | None
     aicc: float
     scatter: Annotated[float, Means("relative, between dwells, beyond their errors")]
-    points: int
+    points: Annotated[int, Means("dwells fitted")]
     falls: Annotated[bool, Means("whether torque falls with speed somewhere, by the dwells alone")]
     forward_speeds: Annotated[tuple[float, float] | None, Means("slowest and fastest dwell", "rad/s")]
     reverse_speeds: Annotated[tuple[float, float] | None, Means("slowest and fastest dwell", "rad/s")]
