@@ -179,7 +179,7 @@ class Judged:
 
 
 def judged(setting: str, joint: Joint, path: Path, *, whole: bool) -> Judged:
-    """Fit the log of a joint and compare; ``whole`` asks for the verdict of `hersey fit`, which takes long."""
+    """Fit the log of a joint and compare; ``whole`` asks for the verdict of `hersey fit`, too."""
     points = hersey.Recipe(logs=str(path), tare="standing", isothermal=not joint.temperatures).points()
     curve = hersey.fit_friction(points)
     held: dict[str, list[bool]] = {}

@@ -1,4 +1,4 @@
-"""Friction curves of dwells whose law is known: which law, which parameters, and what cannot be determined."""
+"""Friction curves of dwells whose law is known: law, parameters, and what cannot be determined."""
 
 from __future__ import annotations
 
