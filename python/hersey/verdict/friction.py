@@ -21,7 +21,8 @@ def leading_friction(points: SteadyPoints, surface: DampingSurface, seen: Regime
 
     It never leads where film theory is at stake: a film is named, no-load torque was subtracted, or loads
     differ. Where temperature varies the power law must be excluded, since a film moves with temperature too.
-    Coulomb plus viscous friction cannot lead where the dwells alone show that torque falls with speed.
+    Coulomb plus viscous friction cannot lead where the dwells alone show that torque falls with speed, or
+    where no viscous part is proven.
     """
     if seen.named not in (None, COULOMB, FALLING) or points.rest is not None or points.varying_load:
         return None
@@ -29,7 +30,7 @@ def leading_friction(points: SteadyPoints, surface: DampingSurface, seen: Regime
         curve = fit_friction(points)
     except InsufficientDataError:
         return None
-    if curve.falls and not curve.law.stribeck:
+    if not curve.law.stribeck and (curve.falls or not any(each.low > 0.0 for each in curve.slopes)):
         return None
     needed = 0.0 if surface.b is None else EVIDENCE
     return curve if curve.aicc + needed <= surface.statistics.aicc else None
