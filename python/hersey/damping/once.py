@@ -35,6 +35,10 @@ class HowRead(Protocol):
         """Their files."""
 
     @property
+    def schedule(self) -> Path | None:
+        """File of what was asked for by time."""
+
+    @property
     def chosen(self) -> LogMapping:
         """Their mapping."""
 
@@ -48,7 +52,8 @@ def read_once(how: HowRead, progress: Progress | None) -> TorqueLog | MeansTable
         return how.read_files(progress)
     try:
         mapping = how.chosen
-        hashed = [_hash(path) for path in _files(how.logs, mapping)]
+        scheduled = () if how.schedule is None else (how.schedule,)
+        hashed = [_hash(path) for path in (*scheduled, *_files(how.logs, mapping))]
     except (HerseyError, OSError):  # which reading says, too
         return how.read_files(progress)
     hashes = tuple(digest for digest, _ in hashed)

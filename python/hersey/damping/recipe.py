@@ -24,12 +24,12 @@ from hersey.damping.once import read_once, reduced_once
 from hersey.errors import SIGN, TARE, HerseyError, InsufficientDataError, ParameterError, Setting, turned
 from hersey.files.toml import Quantity, Table, quoted, read_tables
 from hersey.log import TorqueLog
-from hersey.log.mapping import LogMapping, mapping_of, read_with_mapping
+from hersey.log.mapping import LogMapping, Motor, mapping_of, read_with_mapping
 from hersey.log.means import MeansTable, is_means_table, read_means, refuse_corrections
 from hersey.log.sensors import Sensors
 from hersey.log.text.delimited import Progress
 from hersey.result import json_record
-from hersey.units import argument
+from hersey.units import KINDS, argument
 
 Amount = float | tuple[float, ...] | None
 
@@ -100,6 +100,23 @@ class Recipe:
         Radius at which a friction force acts, m: one, or one for each run.
     load
         Normal load, N: one, or one for each run.
+    name_pattern
+        Pattern of the file names, e.g. ``"{speed} rpm {load} N.txt"``, if they state speed, load, radius or
+        temperature.
+    name_decimal
+        Decimal mark of the numbers in the names.
+    schedule
+        Table of speed, temperature or load by time, if the log has no channel of it.
+    position_window
+        Time over which speed is the slope of a position column, s.
+    torque_constant
+        Torque of the motor per ampere, N m/A, if the torque column is its current.
+    gear_ratio
+        Turns of the shaft where torque is measured per turn of the roll or joint.
+    speed_gear_ratio
+        Turns of the shaft where speed is measured per turn of the roll or joint.
+    inertia
+        Moment of inertia at the roll or joint, kg m^2; its torque is subtracted.
     isothermal
         Whether temperature is left out of the fit.
     drop_missing
@@ -126,6 +143,14 @@ class Recipe:
     every: Annotated[float | None, _OneOrMore("time", 1e-9, 1e6, "2 ms")] = None
     radius: Annotated[Amount, _OneOrMore("length", 1e-6, 1e3, "25 mm")] = None
     load: Annotated[Amount, _OneOrMore("force", 1e-9, 1e9, "50 N")] = None
+    name_pattern: str = ""
+    name_decimal: str = ""
+    schedule: Annotated[Path | None, _Path(None)] = None
+    position_window: Annotated[float | None, _OneOrMore("time", 1e-6, 1e4, "0.2 s")] = None
+    torque_constant: Annotated[float | None, _OneOrMore("motor constant", 1e-6, 1e3, "0.11 N*m/A")] = None
+    gear_ratio: Annotated[float | None, _OneOrMore(None, 1e-4, 1e4, "50")] = None
+    speed_gear_ratio: Annotated[float | None, _OneOrMore(None, 1e-4, 1e4, "50")] = None
+    inertia: Annotated[float | None, _OneOrMore("moment of inertia", 1e-12, 1e6, "2e-4 kg*m^2")] = None
     isothermal: bool = False
     drop_missing: bool = False
     means: bool = False
@@ -219,14 +244,21 @@ class Recipe:
     @property
     def chosen(self) -> LogMapping:
         """The mapping by which the logs are read."""
-        return mapping_of(self.logs, self.mapping)
+        return self._motor.added(mapping_of(self.logs, self.mapping), {}, {})[0]
+
+    @property
+    def _motor(self) -> Motor:
+        return Motor(self.torque_constant, self.gear_ratio, self.speed_gear_ratio, self.inertia)
 
     @property
     def are_means(self) -> bool:
         """Whether the logs are tables of means, by statement or by their content."""
-        if self.means or self.every is not None or {"time", "run"} & self.channels.keys():
+        rows = {"time", "run", "position", "direction"} & self.channels.keys()
+        if self.means or self.every is not None or self.schedule or rows:
             return self.means
         mapping = self.chosen
+        if mapping.schedule is not None or mapping.position.channel:
+            return False
         if mapping.time.every is not None or mapping.layout is not None:
             return False
         channels, units = mapping.channels | self.channels, mapping.units | self.units
@@ -305,7 +337,8 @@ class Recipe:
             signs=self.signs,
             isothermal=self.isothermal,
             drop_missing=self.drop_missing,
-            **{name: given for name in _KINDS if name != "min_dwell" and (given := getattr(self, name))},
+            **vars(self._motor),
+            **{name: given for name in _STATED if (given := getattr(self, name))},
             progress=progress,
         )
         return replace(done.log, corrections=done.corrections)
@@ -355,11 +388,19 @@ class _RecipeFile(Table, Recipe):
 
 
 #: Fields that name one file each.
-_FILES = ("mapping", "no_load")
+_FILES = ("mapping", "schedule", "no_load")
 #: Kind of unit of each amount.
-_KINDS = {"every": "time", "radius": "length", "load": "force", "min_dwell": "time"}
-#: Unit in which an amount is written.
-_UNITS = {"time": "s", "length": "m", "force": "N"}
+_KINDS = {
+    "every": "time",
+    "radius": "length",
+    "load": "force",
+    "min_dwell": "time",
+    "position_window": "time",
+    "torque_constant": "motor constant",
+    "inertia": "moment of inertia",
+}
+#: What is said of a log and a file need not hold.
+_STATED = ("every", "radius", "load", "name_pattern", "name_decimal", "schedule", "position_window")
 
 
 def _distinct(paths: Sequence[Path]) -> tuple[Path, ...]:
@@ -393,5 +434,5 @@ def _written(value: Any, kind: str = "", folder: Path = Path()) -> str:
     if isinstance(value, Sequence) and not isinstance(value, str):
         return f"[{', '.join(_written(each, kind, folder) for each in value)}]"
     if kind:
-        return quoted(f"{value!r} {_UNITS[kind]}")
+        return quoted(f"{value!r} {KINDS[kind][0]}")
     return quoted(value) if isinstance(value, str) else repr(value)
