@@ -8,6 +8,7 @@ import shutil
 from pathlib import Path
 
 from tests.conftest import ROOT
+from tests.damping.moving_logs import sine
 
 DOCS = ROOT / "docs"
 TUTORIAL = sorted((DOCS / "tutorial").glob("*.md"))
@@ -69,5 +70,6 @@ def write_files_of_a_reader(folder: Path) -> None:
         write(f"{name}.csv", _HEADER, times(factor))
     stuck = [row for row in rows if 2.0 < float(row[2]) < 3.0]  # held for 32 s, sticking and slipping
     write("squeal.csv", _HEADER, stuck)
-    for page, name in (("means", "means.csv"), ("joint-friction", "joint.csv")):
+    for page, name in (("means", "means.csv"), ("joint-friction", "staircase.csv")):
         (folder / name).write_text(table_of(page))
+    sine().to_frame().drop("run").write_csv(folder / "joint.csv")

@@ -14,7 +14,7 @@ from tests.guide import table_of
 @pytest.fixture
 def joint(tmp_path: Path) -> Path:
     """The table of the how-to page: T_C 0.42 and 0.35, T_S 0.6 and 0.52 N m."""
-    path = tmp_path / "joint.csv"
+    path = tmp_path / "staircase.csv"
     path.write_text(table_of("joint-friction"))
     return path
 

@@ -10,6 +10,7 @@ from hersey.damping.branches import Transition
 from hersey.damping.candidates.shared_errors import SharedScatter
 from hersey.damping.curves.mixture import LawWeight
 from hersey.damping.friction_curve.result import FrictionCurve
+from hersey.damping.moving.result import MovingFit
 from hersey.damping.no_load_torque import NoLoadTorque
 from hersey.document.parts.log import InputFile, Point
 from hersey.schema.part import Interval, Part
@@ -106,3 +107,4 @@ class FitDocument(Part):
     fit: FitPart
     regime: Regime
     friction: FrictionCurve | None = Field(default=None, description=FRICTION)
+    moving: MovingFit | None = Field(default=None, description="of a log that moves all the time")
