@@ -4,7 +4,7 @@ The generator below shares no code with the fit. Each joint is a staircase in bo
 and read as a user's log would be: `hersey.Recipe(...).points()`, then `hersey.fit_friction`. The screw drives
 measured by others are read in place where they are there.
 
-Usage: python -m benchmarks.joints [--joints 40] [--seed 1] [--folder ../shared/data]
+Usage: python -m benchmarks.joints [--joints 30] [--seed 1] [--folder ../shared/data]
 """
 
 from __future__ import annotations
@@ -264,7 +264,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("--joints", type=int, default=40, help="of each setting")
+    parser.add_argument("--joints", type=int, default=30, help="of each setting")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--folder", type=Path, default=ROOT.parent / "shared" / "data")
     given = parser.parse_args()
