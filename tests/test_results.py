@@ -19,6 +19,7 @@ import hersey
 from hersey import testbench
 from hersey.charts.render import picture
 from hersey.damping.compare import LogComparison
+from hersey.damping.friction_curve.result import FrictionCurve
 from hersey.damping.no_load_torque import NoLoadTorque
 from hersey.document.parts.cycles import CyclesPart
 from hersey.document.parts.drift import DriftPart
@@ -202,6 +203,7 @@ RESULTS: dict[str, tuple[Callable[[], Any], type]] = {
     "AgesAtLimit": (lambda: growth().reaches(2.0), hersey.AgesAtLimit),
     "TimeToFailure": (ends, TimeToFailurePart),
     "ModelComparison": (models, ModelsPart),
+    "FrictionCurve": (lambda: hersey.fit_friction(points()), FrictionCurve),
     "LogComparison": (lambda: hersey.compare(points(), points()), LogComparison),
     "CoastDown": (lambda: hersey.coast_down(COASTS, inertia="0.012 kg*m^2 ± 2 %"), hersey.CoastDown),
     "TestDesign": (lambda: hersey.design(models(), count=1), DesignPart),

@@ -17,6 +17,7 @@ coast_down       speeds of a coast-down, and its torque against speed
 moving           friction against speed of a log that moves all the time
 regime           exponents against what each regime predicts
 film             the regime chart, over the Stribeck curve
+friction_curve   torque of a joint against speed, both directions
 friction         the Stribeck curve: dwells, model, regimes, stall
 mixed            torque of film and asperities against speed
 transition       transition speed against temperature
@@ -58,6 +59,7 @@ CHARTS = {
     "Inspection": ("inspection", "channels_chart"),
     "SteadyPoints": ("damping", "steady_chart"),
     "DampingSurface": ("damping", "surface_chart"),
+    "FrictionCurve": ("friction_curve", "friction_curve_chart"),
     "NoLoadTorque": ("damping", "rest_chart"),
     "ModelComparison": ("damping", "models_chart"),
     "LogComparison": ("damping", "logs_chart"),
