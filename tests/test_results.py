@@ -19,6 +19,7 @@ import hersey
 from hersey import testbench
 from hersey.charts.render import picture
 from hersey.damping.compare import LogComparison
+from hersey.damping.friction_curve.result import FrictionCurve
 from hersey.damping.no_load_torque import NoLoadTorque
 from hersey.document.parts.cycles import CyclesPart
 from hersey.document.parts.drift import DriftPart
@@ -46,10 +47,12 @@ from hersey.study.nip_film import FilmPart, MeasuredFilmPart, MixedPart, Verdict
 from hersey.verdict.contact_verdict import verdict
 from hersey.verdict.regime import Regime
 from tests.conftest import ROOT
+from tests.damping.moving_logs import sine
 from tests.life import shipped, test_ageing_maps, test_other_uses
 from tests.machines import machine_of, map_of
 
 BENCH = ROOT / "examples" / "bench.csv"
+COASTS = ROOT / "examples" / "coast-down.csv"
 TRAIN = hersey.Drivetrain(1000, 1)
 DRAG = hersey.Drag(50, 1, ehl_exponent=-0.7, mixed_exponent=-1.2, stick_speed=0.01)
 
@@ -72,6 +75,11 @@ def surface() -> hersey.DampingSurface:
 @cache
 def machine() -> hersey.Machine:
     return hersey.read_machine(ROOT / "tests" / "stand" / "machine.toml")
+
+
+@cache
+def moving() -> hersey.MovingFit:
+    return sine().moving()
 
 
 @cache
@@ -168,6 +176,7 @@ RESULTS: dict[str, tuple[Callable[[], Any], type]] = {
     "SteadyPoints": (points, PointsPart),
     "DampingSurface": (surface, FitPart),
     "NoLoadTorque": (lambda: hersey.NoLoadTorque.stated(constant=0.02, uncertainty=0.1), NoLoadTorque),
+    "MovingFit": (moving, hersey.MovingFit),
     "Regime": (lambda: hersey.regime(points(), surface()), Regime),
     "Film": (film, FilmPart),
     "MixedFilm": (mixed, MixedPart),
@@ -194,7 +203,9 @@ RESULTS: dict[str, tuple[Callable[[], Any], type]] = {
     "AgesAtLimit": (lambda: growth().reaches(2.0), hersey.AgesAtLimit),
     "TimeToFailure": (ends, TimeToFailurePart),
     "ModelComparison": (models, ModelsPart),
+    "FrictionCurve": (lambda: hersey.fit_friction(points()), FrictionCurve),
     "LogComparison": (lambda: hersey.compare(points(), points()), LogComparison),
+    "CoastDown": (lambda: hersey.coast_down(COASTS, inertia="0.012 kg*m^2 ± 2 %"), hersey.CoastDown),
     "TestDesign": (lambda: hersey.design(models(), count=1), DesignPart),
     "Inspection": (lambda: hersey.inspect(BENCH), Inspection),
     "CycleRecord": (record, CyclesPart),

@@ -4,6 +4,8 @@ from .damping.candidates import ModelComparison as ModelComparison
 from .damping.candidates import compare_models as compare_models
 from .damping.candidates import hersey_collapse as hersey_collapse
 from .damping.candidates import viscosity_laws as viscosity_laws
+from .damping.coast_down import CoastDown as CoastDown
+from .damping.coast_down import coast_down as coast_down
 from .damping.compare import LogComparison as LogComparison
 from .damping.compare import compare as compare
 from .damping.design import TestDesign as TestDesign
@@ -11,6 +13,10 @@ from .damping.design import design as design
 from .damping.dwells import SteadyPoints as SteadyPoints
 from .damping.estimate import Estimate as Estimate
 from .damping.fit import fit as fit
+from .damping.friction_curve.fit import fit_friction as fit_friction
+from .damping.friction_curve.result import FrictionCurve as FrictionCurve
+from .damping.moving.fit import fit_moving as fit_moving
+from .damping.moving.result import MovingFit as MovingFit
 from .damping.no_load import no_load_torque as no_load_torque
 from .damping.no_load_torque import NoLoadTorque as NoLoadTorque
 from .damping.recipe import Recipe as Recipe

@@ -27,6 +27,7 @@ from hersey.motion.drag import Drag as AnyDrag
 from tests import test_results
 from tests.charts.test_charts import titles
 from tests.conftest import ROOT
+from tests.damping.moving_logs import sine
 from tests.life import shipped, test_ageing_maps, test_other_uses
 from tests.machines import machine_of, map_of
 
@@ -130,6 +131,10 @@ def belt_map() -> hersey.OperatingMap:
     )
 
 
+def coasts() -> hersey.CoastDown:
+    return hersey.coast_down(EXAMPLES / "coast-down.csv", inertia="0.012 kg*m^2 ± 2 %")
+
+
 def logs() -> hersey.LogComparison:
     data = Observations.of(points())
     return hersey.compare(data, data, names=("new", "worn"))
@@ -140,11 +145,14 @@ MADE: dict[str, Callable[[], Any]] = {
     "TorqueLog": log,
     "Inspection": lambda: hersey.inspect([EXAMPLES / "bench.csv"]),
     "SteadyPoints": points,
+    "FrictionCurve": lambda: hersey.fit_friction(points()),
     "NoLoadTorque": lambda: hersey.NoLoadTorque.stated(constant=0.02, per_speed=0.001, uncertainty=0.1),
     "DampingSurface": surface,
     "ModelComparison": models,
     "LogComparison": logs,
+    "CoastDown": coasts,
     "TestDesign": lambda: hersey.design(models(), count=4, quantity="transition speed"),
+    "MovingFit": lambda: sine(hot=True).moving(),
     "Regime": lambda: hersey.regime(points(), surface()),
     "Film": film,
     "MixedFilm": mixed,

@@ -22,6 +22,7 @@ from hersey.errors import ChannelError, HerseyError, ParameterError, followed_by
 
 if TYPE_CHECKING:
     from hersey.damping.dwells import SteadyPoints
+    from hersey.damping.moving.result import MovingFit
     from hersey.damping.recipe import Recipe
     from hersey.damping.surface import DampingSurface
     from hersey.log import TorqueLog
@@ -78,9 +79,8 @@ def reduced(words: str, *flags: str, **more: Any) -> Any:
 _TORQUE_UNIT = "Unit of torque; of a signal e.g. '35 mN*m/A', or '9.84 mN*m / 100' for %."
 _CURRENT = "Column of the motor current, instead of a torque; needs --torque-constant."
 _TORQUE_CONSTANT = "Torque of the motor per ampere, e.g. '0.11 N*m/A'."
-_GEAR_RATIO = "Turns of the motor, or torque sensor, per turn of the roll or joint, e.g. 50."
-_INERTIA = "Moment of inertia at the roll or joint, e.g. '2e-4 kg*m^2'; its torque is subtracted."
-_SPEED_GEAR_RATIO = "Turns of the speed sensor's shaft per turn of the roll or joint, e.g. 50."
+_GEAR_RATIO = "Turns of the motor, or torque sensor, per turn of the output shaft, e.g. 50."
+_SPEED_GEAR_RATIO = "Turns of the speed sensor's shaft per turn of the output shaft, e.g. 50."
 _RADIUS = "Radius for a log of friction force and sliding speed: '25 mm' or its column."
 _LOAD = "Normal load: '50 N', '10 N, 20 N' for two runs, or its column."
 _POSITION = "Column of a position, instead of a speed; speed is its slope."
@@ -94,6 +94,8 @@ _MAPPING = "File with roles, units and corrections.  [default: hersey.toml besid
 _DROP_MISSING = "Drop rows with a missing or impossible number, however many."
 _MEANS = "Read a table of means: one row per dwell, no time column."
 _NO_LOAD = "Log of the drive without the lubricated contact; its torque is subtracted."
+_MOVING = "Fit every sample of a log whose speed changes all the time."
+_INERTIA = "Moment of inertia at the output shaft, e.g. '2e-4 kg*m^2'; used where speed changes."
 _NO_CACHE = "Read and compute everything again, without the cache."
 _RECIPE = "Use the logs and settings of a recipe; options typed here override it."
 
@@ -140,6 +142,7 @@ class Reading:
     rotation: Annotated[str, reduced("Use dwells in both, forward or reverse rotation.")] = "both"
     temperature_scale: Annotated[str, reduced("Scale of T in B = a T^b w^c: degC or K.")] = "degC"
     no_load: Annotated[str, reduced(_NO_LOAD, metavar="LOG")] = ""
+    moving: Annotated[bool, reduced(_MOVING, "--moving")] = False
     recipe_file: Annotated[str, read(_RECIPE, "--recipe", metavar="TOML")] = ""
     no_cache: Annotated[bool, read(_NO_CACHE, "--no-cache")] = False
 
@@ -264,12 +267,16 @@ class Reading:
         return read
 
     def points(
-        self, paths: list[Path], log: TorqueLog | MeansTable, machine: Machine | None = None
+        self,
+        paths: list[Path],
+        log: TorqueLog | MeansTable,
+        machine: Machine | None = None,
+        fit: MovingFit | None = None,
     ) -> SteadyPoints:
         """Reduce the log of these files to dwells; print what the no-load log shows."""
         if machine is not None and machine.rest is not None:
             refuse_no_load_log(paths, machine.rest)
-        points = self.recipe(paths).dwells(log, machine)
+        points = self.recipe(paths).dwells(log, machine, fit)
         if self.no_load and points.rest is not None:
             note(f"No-load torque subtracted: {points.rest}.")
             note(*(f"- {warning.sentence}" for warning in points.rest.warnings))
@@ -347,7 +354,7 @@ class Reading:
 
 
 _AS_GIVEN = (
-    *("isothermal", "drop_missing", "means", "tare", "rotation", "temperature_scale"),
+    *("isothermal", "drop_missing", "means", "tare", "rotation", "temperature_scale", "moving"),
     *("name_pattern", "name_decimal"),
 )
 _NOT_OF_FILE = "not from the machine file"

@@ -18,10 +18,20 @@ from pydantic import ValidationInfo
 
 from hersey.arguments.frozen import explained
 from hersey.damping.dwells import SteadyPoints
+from hersey.damping.moving.result import MovingFit
 from hersey.damping.no_load import no_load_torque
 from hersey.damping.no_load_torque import NoLoadTorque
 from hersey.damping.once import read_once, reduced_once
-from hersey.errors import SIGN, TARE, HerseyError, InsufficientDataError, ParameterError, Setting, turned
+from hersey.errors import (
+    MOVING,
+    SIGN,
+    TARE,
+    HerseyError,
+    InsufficientDataError,
+    ParameterError,
+    Setting,
+    turned,
+)
 from hersey.files.toml import Quantity, Table, quoted, read_tables
 from hersey.log import TorqueLog
 from hersey.log.mapping import LogMapping, Motor, mapping_of, read_with_mapping
@@ -115,8 +125,6 @@ class Recipe:
         Turns of the shaft where torque is measured per turn of the roll or joint.
     speed_gear_ratio
         Turns of the shaft where speed is measured per turn of the roll or joint.
-    inertia
-        Moment of inertia at the roll or joint, kg m^2; its torque is subtracted.
     isothermal
         Whether temperature is left out of the fit.
     drop_missing
@@ -133,6 +141,10 @@ class Recipe:
         Scale of T in the fit: ``degC`` or ``K``.
     no_load
         Log of the drive without the lubricated contact; its torque is subtracted.
+    moving
+        Whether friction is fitted to every sample of a log that moves all the time, instead of to dwells.
+    inertia
+        Moment of inertia of all that the torque of such a log accelerates, kg m^2; None if it is fitted.
     """
 
     logs: Annotated[tuple[Path, ...], _Paths(None)] = ()
@@ -150,7 +162,6 @@ class Recipe:
     torque_constant: Annotated[float | None, _OneOrMore("motor constant", 1e-6, 1e3, "0.11 N*m/A")] = None
     gear_ratio: Annotated[float | None, _OneOrMore(None, 1e-4, 1e4, "50")] = None
     speed_gear_ratio: Annotated[float | None, _OneOrMore(None, 1e-4, 1e4, "50")] = None
-    inertia: Annotated[float | None, _OneOrMore("moment of inertia", 1e-12, 1e6, "2e-4 kg*m^2")] = None
     isothermal: bool = False
     drop_missing: bool = False
     means: bool = False
@@ -159,6 +170,8 @@ class Recipe:
     rotation: str = "both"
     temperature_scale: str = "degC"
     no_load: Annotated[Path | None, _Path(None)] = None
+    moving: bool = False
+    inertia: Annotated[float | None, Quantity("moment of inertia", 0.0, 1e9, "2e-4 kg*m^2")] = None
 
     def __post_init__(self) -> None:
         """Bring amounts to SI and names of files to paths."""
@@ -193,10 +206,13 @@ class Recipe:
         log = read_once(self, progress)
         return log if drive is None else replace(log, sensors=log.sensors.or_else(drive.sensors))
 
-    def dwells(self, log: TorqueLog | MeansTable, drive: KnownDrive | None = None) -> SteadyPoints:
+    def dwells(
+        self, log: TorqueLog | MeansTable, drive: KnownDrive | None = None, fit: MovingFit | None = None
+    ) -> SteadyPoints:
         """Reduce a log, or a table of means, to dwells with the torque of the film.
 
-        The no-load torque is that of ``no_load``, or else of the drive. The dwells keep the recipe.
+        The no-load torque is that of ``no_load``, or else of the drive. The dwells keep the recipe. ``fit``
+        is that of a moving log, whose windows become the dwells; without it, one is made where it is needed.
 
         Raises
         ------
@@ -205,13 +221,26 @@ class Recipe:
         """
         rest = self.rest(None if drive is None else drive.rest)
         try:
-            points = replace(self._dwells(log), recipe=self)
+            found = self._dwells(log) if fit is None else fit.points(rotation=self.rotation)
+            points = replace(found, recipe=self)
         except InsufficientDataError as error:
             flipped = [turned(role) for role, sign in self.signs.items() if sign == -1]
             if error.setting == SIGN and len(flipped) == 1:
                 error.remedy = f"omit {flipped[0]}"
             raise
         return points if rest is None else points.without(rest)
+
+    def moving_fit(self, log: TorqueLog) -> MovingFit:
+        """Fit friction, inertia and offset to every sample of a log.
+
+        Raises
+        ------
+        InsufficientDataError, ParameterError
+            If that cannot be, or a tare is asked for.
+        """
+        if self.tare != "none":
+            raise ParameterError(f"the torque zero of a moving log is fitted. Omit {TARE.to()}")
+        return log.moving(inertia=self.inertia)
 
     def points(self, drive: KnownDrive | None = None, *, progress: Progress | None = None) -> SteadyPoints:
         """Read the logs and reduce them to dwells; errors begin with the name of the log.
@@ -248,7 +277,7 @@ class Recipe:
 
     @property
     def _motor(self) -> Motor:
-        return Motor(self.torque_constant, self.gear_ratio, self.speed_gear_ratio, self.inertia)
+        return Motor(self.torque_constant, self.gear_ratio, self.speed_gear_ratio)
 
     @property
     def are_means(self) -> bool:
@@ -324,11 +353,21 @@ class Recipe:
         """Return all values that differ from the default as JSON, in SI."""
         return json_record({name: _plain(value) for name, value in self.stated().items()})
 
+    def speeds(self, *, progress: Progress | None = None) -> TorqueLog:
+        """Read the logs without a torque, for `hersey.coast_down`.
+
+        Raises
+        ------
+        HerseyError
+            As `hersey.read` does.
+        """
+        return self._trace(progress, without_torque=True)
+
     def read_files(self, progress: Progress | None = None) -> TorqueLog | MeansTable:
         """Read the logs as they are now."""
         return self._means() if self.are_means else self._trace(progress)
 
-    def _trace(self, progress: Progress | None) -> TorqueLog:
+    def _trace(self, progress: Progress | None, *, without_torque: bool = False) -> TorqueLog:
         done = read_with_mapping(
             self.logs,
             mapping=self.mapping,
@@ -337,6 +376,7 @@ class Recipe:
             signs=self.signs,
             isothermal=self.isothermal,
             drop_missing=self.drop_missing,
+            without_torque=without_torque,
             **vars(self._motor),
             **{name: given for name in _STATED if (given := getattr(self, name))},
             progress=progress,
@@ -367,7 +407,11 @@ class Recipe:
                     f"a table of means has no standstill for a tare. Omit {TARE.to()}, and subtract "
                     "the zero in the table"
                 )
+            if self.moving:
+                raise ParameterError(f"a table of means does not move. Omit {MOVING.to()}")
             return SteadyPoints.from_table(log, rotation=self.rotation)
+        if self.moving:
+            return self.moving_fit(log).points(rotation=self.rotation)
         return reduced_once(log, min_dwell=self.min_dwell, tare=self.tare, rotation=self.rotation)
 
 

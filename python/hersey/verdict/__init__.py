@@ -5,6 +5,7 @@ regimes          the table: what each state of lubrication predicts
 contact_regimes  the same for a contact that is known: its soft film over the dwells
 explanations     everything that explains how torque varies with speed
 regime           exponents against named regimes, and a verdict in words
+friction         whether friction as of a joint describes the dwells
 evidence         the film that a log measures
 contact_verdict  what the measured exponents say of a contact
 transition       where drag is least, by the contact and by a log

@@ -37,6 +37,7 @@ class Inputs:
     log_speed: FloatArray  #: ln(w/w_ref), shape (points,)
     kelvin: FloatArray | None  #: K, shape (points,); None if the log has no temperature
     group: IntArray  #: index of the temperature, coldest first, shape (points,)
+    sign: FloatArray | None = None  #: of the rotation, 1 or -1, shape (points,); None: forward
 
     @cached_property
     def shapes(self) -> dict[object, tuple[FloatArray, FloatArray, FloatArray]]:
@@ -46,7 +47,8 @@ class Inputs:
     def take(self, index: IntArray) -> Inputs:
         """Return the inputs at an index."""
         kelvin = None if self.kelvin is None else self.kelvin[index]
-        return Inputs(self.log_speed[index], kelvin, self.group[index])
+        sign = None if self.sign is None else self.sign[index]
+        return Inputs(self.log_speed[index], kelvin, self.group[index], sign)
 
 
 @dataclass(frozen=True)
@@ -108,7 +110,7 @@ class Observations:
         by_run = np.unique(run).size >= MANY_RUNS
         reference = float(np.exp(np.mean(np.log(speed))))
         return cls(
-            inputs=Inputs(np.log(speed / reference), kelvin, group),
+            inputs=Inputs(np.log(speed / reference), kelvin, group, np.sign(points.column("speed"))),
             log_torque=np.log(torque),
             torque_error=points.column("torque_error") / torque,
             speed_error=points.column("speed_error") / speed,

@@ -79,7 +79,7 @@ def _advice(path: Path) -> str:
             "its layout can be described: write the text of hersey.log.proposal.propose_mapping(path) to "
             "hersey.toml beside it, and use hersey.read_with_mapping"
         )
-    if way_in() == "app":
+    if way_in() == "page":
         return "type hersey inspect in a terminal to describe its layout in a hersey.toml, and add that"
     typed = f"hersey inspect {shlex.quote(str(path))} {_SAVE_MAPPING.to()}"
     return f"to describe its layout in hersey.toml, run '{typed}' and try again"
