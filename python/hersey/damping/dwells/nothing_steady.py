@@ -10,9 +10,10 @@ import numpy as np
 from hersey.damping.dwells.few_rows import LASTS, changes_in_steps, held_for_few_rows, rows_held
 from hersey.damping.dwells.groups import MIN_DWELL, MIN_SAMPLES, distinct_speeds
 from hersey.damping.dwells.judging import Asked
+from hersey.damping.dwells.one_speed import is_one_speed
 from hersey.damping.dwells.points import Rejection
 from hersey.damping.dwells.reasons import CAUSES, Reason, opposite_signs, remedies, sizes
-from hersey.errors import ROTATION, InsufficientDataError, Setting, followed_by, turned
+from hersey.errors import ROTATION, InsufficientDataError, OneSpeedError, Setting, followed_by, turned
 from hersey.log.roles import EVERY
 from hersey.log.torque_log import NO_CLOCK, Run, TorqueLog
 from hersey.units import rpm
@@ -47,7 +48,8 @@ def nothing_steady(
     other_clock
         Says which unit of time would give dwells, or nothing.
     """
-    if few := held_for_few_rows(log):
+    one = is_one_speed(log)
+    if (few := held_for_few_rows(log)) and not one:
         return InsufficientDataError(few)
     name = log.files[0].name + (f" and {len(log.files) - 1} more" if len(log.files) > 1 else "")
     held = [r for r in rejected if r.is_dwell]
@@ -62,7 +64,7 @@ def nothing_steady(
     said = f"{name}: no dwell found ({listed})"
     for way in (*(_remedy(alike) for alike in reasons.values()), way_out):
         said = followed_by(said, way)
-    return InsufficientDataError(said)
+    return OneSpeedError(said) if one else InsufficientDataError(said)
 
 
 def _in_short(alike: list[Reason]) -> str:

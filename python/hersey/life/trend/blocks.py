@@ -15,8 +15,12 @@ from hersey.arrays import FloatArray
 
 #: Blocks at the most, and how much shorter the first is than they are on average.
 _BLOCKS, _FIRST = 150, 0.2
+#: Steps without a row that end a block, and how many such gaps do at the most.
+_GAP, _GAPS = 5.0, 50
 #: Longest correlation time, as a share of the duration, and how many are tried.
 _LONGEST, _TIMES = 1.0, 10
+#: Least share of the greatest variance in any direction.
+_LEAST = 1e-6
 #: Half widths in correlation times from which on neighbours count as independent.
 _FAR = 60.0
 #: Ratios of the variances of what wanders and of a row's own noise.
@@ -47,13 +51,17 @@ def blocks_of(
     rows = value.size
     count = min(rows, _BLOCKS)
     u = np.linspace(0.0, 1.0, count + 1)
-    ends = np.unique(np.round(rows * (_FIRST * u + (1.0 - _FIRST) * u * u)).astype(int))
+    ends = np.round(rows * (_FIRST * u + (1.0 - _FIRST) * u * u)).astype(int)
+    apart = np.diff(time)
+    step = float(np.median(apart))
+    gaps = np.flatnonzero(apart > _GAP * step)
+    longest = gaps[np.argsort(-apart[gaps], kind="stable")[:_GAPS]]
+    ends = np.union1d(ends, longest + 1)
     number = np.diff(ends).astype(float)
 
     def mean(values: FloatArray) -> FloatArray:
         return np.asarray(np.add.reduceat(values, ends[:-1]) / number)
 
-    step = float(time[-1] - time[0]) / max(rows - 1, 1)
     width = time[ends[1:] - 1] - time[ends[:-1]] + step
     return Blocks(
         mean(age), mean(time), width, number, mean(value), None if temperature is None else mean(temperature)
@@ -84,10 +92,20 @@ def noises(blocks: Blocks) -> Noise:
     whitening = np.empty((times.size, blocks.age.size, blocks.age.size))
     logs = np.empty(times.size)
     for k, (time, ratio) in enumerate(kinds):
-        factor = np.linalg.cholesky(_covariance(blocks, time, ratio))
+        factor = _factor(_covariance(blocks, time, ratio))
         whitening[k] = np.linalg.inv(factor)
         logs[k] = 2.0 * np.sum(np.log(np.diag(factor)))
     return Noise(times, ratios, whitening, logs)
+
+
+def _factor(covariance: FloatArray) -> FloatArray:
+    """The triangle of a covariance, also where rows at uneven times make it slightly wrong."""
+    try:
+        return np.linalg.cholesky(covariance)
+    except np.linalg.LinAlgError:
+        values, vectors = np.linalg.eigh(covariance)
+        least = _LEAST * float(values[-1])
+        return np.linalg.cholesky((vectors * np.maximum(values, least)) @ vectors.T)
 
 
 def _covariance(blocks: Blocks, time: float, ratio: float) -> FloatArray:

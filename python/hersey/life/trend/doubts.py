@@ -127,7 +127,7 @@ def _of_rows(record: Record, by: str) -> list[Warning]:
         words = "{rows} {rows:row|rows} with hardly any friction at the begin or end of the log {rows:was|were} excluded"
         found.append(Warning("faces apart", words, rows=record.apart))
     if record.other_speed:
-        words = "{rows} {rows:row|rows} at another speed {rows:was|were} excluded"
+        words = "{rows} {rows:row|rows} at another speed, as of a start, {rows:was|were} excluded"
         found.append(Warning("another speed", words, rows=record.other_speed))
     if record.restarts.size:
         words = "the drive stopped {stops} {stops:time|times} within the log; age counts only while it turns"

@@ -10,16 +10,13 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from hersey.arrays import BoolArray, FloatArray
+from hersey.damping.dwells.one_speed import SAME, only_speed, speeds_held
 from hersey.errors import InsufficientDataError, ParameterError, Setting
 from hersey.log.torque_log import STANDING, Run, TorqueLog
 from hersey.units import rpm
 
-#: Speeds this near, as a share, are one.
-_SAME = 0.05
-#: Share of the rows in motion that one speed must have to be the only one; share from which one is named.
-_ONLY, _NAMED = 0.8, 0.05
-#: Speeds that are named at the most.
-_MOST = 5
+#: Share of the rows in motion from which a speed is named.
+_NAMED = 0.05
 #: Friction below this share of its median, at an end of the record, is that of faces apart.
 _APART = 0.05
 #: Fewest rows.
@@ -108,11 +105,10 @@ def _at_speed(speed: FloatArray, moving: BoolArray, at: float | None) -> BoolArr
     if not moving.any():
         raise InsufficientDataError("the drive stands still throughout: friction needs motion")
     if at is not None:
-        return np.abs(speed - abs(at)) <= _SAME * abs(at)
-    found = _speeds(speed[moving])
-    if found and found[0][1] >= _ONLY:
-        return np.abs(speed - found[0][0]) <= _SAME * found[0][0]
-    held = sorted(each for each in found if each[1] >= _NAMED)
+        return np.abs(speed - abs(at)) <= SAME * abs(at)
+    if (only := only_speed(speed)) is not None:
+        return np.abs(speed - only) <= SAME * only
+    held = sorted(each for each in speeds_held(speed) if each[1] >= _NAMED)
     if not held:
         raise InsufficientDataError(
             "the speed varies throughout, but a trend is followed at one speed. To follow the rows near "
@@ -128,21 +124,6 @@ def _at_speed(speed: FloatArray, moving: BoolArray, at: float | None) -> BoolArr
 
 def _choice(speed: float) -> str:
     return AT.to(f"{rpm(speed):.3g} rpm")
-
-
-def _speeds(speed: FloatArray) -> list[tuple[float, float]]:
-    """Speeds that are held, the most frequent first, each with its share of the rows."""
-    left, found = np.sort(speed), []
-    for _ in range(_MOST):
-        if not left.size:
-            break
-        ends = np.searchsorted(left, left * (1.0 + _SAME), side="right")
-        first = int(np.argmax(ends - np.arange(left.size)))
-        held = float(np.median(left[first : ends[first]]))
-        near = np.abs(left - held) <= _SAME * held
-        found.append((held, float(np.sum(near)) / speed.size))
-        left = left[~near]
-    return found
 
 
 def _apart(value: FloatArray, chosen: BoolArray) -> BoolArray:

@@ -92,8 +92,10 @@ class FrictionTrend(Result):
         """Return what friction does in one sentence."""
         what, level = capital(self.quantity), friction_within(self.unit, self.last)
         if self.kind == "constant":
-            most = greatest_rate(self.by, self.rate, self.last.value)
-            return f"{what} shows no trend: {level}; a steady drift is at most {most}"
+            most = greatest_rate(self.by, self.rate, self.last.value, self.last_age)
+            count = len(self.jumps)
+            beside = f" beside {count} jump{'s' if count > 1 else ''}" if count else ""
+            return f"{what} shows no trend{beside}: {level}; a steady drift is at most {most}"
         moves = self.kind.removesuffix(" and settles")
         if self.steady is not None and self.steady_age is not None:
             steady = friction_within(self.unit, self.steady)
@@ -101,7 +103,7 @@ class FrictionTrend(Result):
             if self.steady_age.high <= self.last_age:
                 return f"{what} {moves} to a steady {steady}, {when}"
             return f"{what} {moves} towards {steady}, {when}: this log may end before"
-        rate = rate_within(self.by, self.rate, self.last.value)
+        rate = rate_within(self.by, self.rate, self.last.value, self.last_age)
         if self.rate.low * self.rate.high > 0.0:
             return f"{what} {moves}, last by {rate}; no steady value is reached"
         first = friction_within(self.unit, self.first)
@@ -111,10 +113,10 @@ class FrictionTrend(Result):
         """Return the conclusion, a line each: headline, values, time constant, law."""
         said = [f"{self.headline()}."]
         first, last = (friction_within(self.unit, each) for each in (self.first, self.last))
-        facts = [
-            ("at the begin, at the end", f"{first}, {last}"),
-            ("rate over the last tenth", rate_within(self.by, self.rate, self.last.value)),
-        ]
+        rate = rate_within(self.by, self.rate, self.last.value, self.last_age)
+        facts = [("at the begin, at the end", f"{first}, {last}"), ("rate over the last tenth", rate)]
+        if self.kind == "constant":
+            facts = [] if not self.jumps else facts[:1]
         if self.time_constant is not None:
             facts.append(("time constant", age_within(self.by, self.time_constant)))
         if self.per_kelvin is not None:

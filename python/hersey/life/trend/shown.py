@@ -14,8 +14,17 @@ _AGES = {
 _FROM = 2.0
 #: An end of an interval this near to 0, as a share of the other, is 0.
 _NOTHING = 1e-3
-#: By what age is counted in: what a rate is per, and its size.
-_RATES = {"time": ("h", 3600.0), "distance": ("km", 1000.0), "revolutions": ("1000 rev", 1000.0)}
+#: By what age is counted in: what a rate may be per, its size, and from what last age on.
+_RATES = {
+    "time": (("h", 3600.0, 600.0), ("min", 60.0, 10.0), ("s", 1.0, 0.0)),
+    "distance": (("km", 1000.0, 100.0), ("m", 1.0, 0.0)),
+    "revolutions": (("1000 rev", 1000.0, 100.0), ("rev", 1.0, 0.0)),
+}
+
+
+def rate_unit(by: str, last: float) -> tuple[str, float]:
+    """Return what a rate reads best per, in a record up to the last age, and its size."""
+    return next((unit, size) for unit, size, least in _RATES[by] if last >= least)
 
 
 def age_unit(by: str, largest: float) -> tuple[str, float]:
@@ -43,20 +52,20 @@ def age_within(by: str, age: Estimate) -> str:
     return rounded(age.value / size, age.low / size, age.high / size, unit)
 
 
-def rate_within(by: str, rate: Estimate, level: float) -> str:
+def rate_within(by: str, rate: Estimate, level: float, last: float) -> str:
     """Return a rate as a share of a level, with its interval."""
-    unit, size = _RATES[by]
+    unit, size = rate_unit(by, last)
     shares = [100.0 * size * each / abs(level) for each in (rate.value, rate.low, rate.high)]
     least = _NOTHING * max(map(abs, shares))
     value, low, high = (each if abs(each) > least else 0.0 for each in shares)
     return rounded(value, low, high, f"%/{unit}")
 
 
-def greatest_rate(by: str, rate: Estimate, level: float) -> str:
+def greatest_rate(by: str, rate: Estimate, level: float, last: float) -> str:
     """Return the greatest rate, up or down, that an interval leaves open, as a share of a level."""
-    unit, size = _RATES[by]
+    unit, size = rate_unit(by, last)
     most = max(abs(rate.low), abs(rate.high)) * size / abs(level)
-    return f"{100.0 * most:.2g} %/{unit}"
+    return f"{float(f'{100.0 * most:.2g}'):g} %/{unit}"
 
 
 def friction_unit(unit: str, largest: float) -> tuple[str, float]:
