@@ -82,7 +82,9 @@ def log_of(kind: str, seed: int) -> tuple[dict[str, np.ndarray], Truth]:
     level = np.exp(random.uniform(np.log(0.05), np.log(2.0)))
     course, truth = _course(kind, t, level, random)
     warming = random.uniform(0.0, 3.0) * (1.0 - np.exp(-t / random.uniform(200.0, 3000.0)))
-    swing = random.uniform(0.0, 0.3) * np.sin(2 * np.pi * (t / random.uniform(300.0, 2000.0) + random.random()))
+    swing = random.uniform(0.0, 0.3) * np.sin(
+        2 * np.pi * (t / random.uniform(300.0, 2000.0) + random.random())
+    )
     kelvin = warming + swing
     last = kelvin[t >= 0.9 * _DURATION].mean()
     friction = course + level * random.uniform(-0.015, 0.005) * (kelvin - last)
@@ -132,7 +134,14 @@ def judged(kind: str, seed: int) -> Judged:
     columns, truth = log_of(kind, seed)
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "log.csv"
-        table = np.column_stack([columns["time"], np.full(columns["time"].size, 60.0), columns["friction"], columns["temperature"]])
+        table = np.column_stack(
+            [
+                columns["time"],
+                np.full(columns["time"].size, 60.0),
+                columns["friction"],
+                columns["temperature"],
+            ]
+        )
         head = "time (s),speed (rpm),torque (N*m),temperature (degC)"
         np.savetxt(file, table, delimiter=",", header=head, comments="", fmt="%.7g")
         log = hersey.read(file)
@@ -163,7 +172,20 @@ def _held(found: hersey.Estimate | None, truth: float | None) -> str:
 
 def table(every: list[Judged]) -> list[str]:
     """Return the lines of the table, one for each kind."""
-    head = ("truth", "logs", "claim right", "steady: given", "held", "below", "above", "width", "age held", "time constant held", "jumps claimed", "s")
+    head = (
+        "truth",
+        "logs",
+        "claim right",
+        "steady: given",
+        "held",
+        "below",
+        "above",
+        "width",
+        "age held",
+        "time constant held",
+        "jumps claimed",
+        "s",
+    )
     lines = [f"| {' | '.join(head)} |", "|" + " --- |" * len(head)]
     for kind in dict.fromkeys(each.kind for each in every):
         some = [each for each in every if each.kind == kind]
@@ -187,7 +209,11 @@ def _cells(kind: str, some: list[Judged]) -> list[str]:
     given = [each for each in some if each.steady != "none"]
     low, high = (sum(each.steady == side for each in given) for side in ("low", "high"))
     width = np.nanmedian([each.width for each in given]) if given and kind != "linear" else np.nan
-    jumps = sum(each.found and each.jumps == 1 for each in some) if kind == "step" else sum(each.jumps > 0 for each in some)
+    jumps = (
+        sum(each.found and each.jumps == 1 for each in some)
+        if kind == "step"
+        else sum(each.jumps > 0 for each in some)
+    )
     return [
         KINDS[kind],
         str(len(some)),
@@ -209,6 +235,68 @@ def _share(held: list[str]) -> str:
     return f"{sum(each == 'held' for each in told)} of {len(told)}" if told else ""
 
 
+def files(folder: Path) -> list[str]:
+    """Return the lines of what is said of the pin-on-disc files, or that they are not there."""
+    paths = sorted(folder.glob(_FILES))
+    if not paths:
+        return ["The collection of public measurements was not there."]
+    lines = []
+    for path in paths:
+        found = hersey.trend(hersey.read(path, channels=_CHANNELS, units=_UNITS))
+        law = found.law or ", ".join(
+            f"{each.name} {each.weight:.2f}" for each in found.laws if each.weight >= 0.1
+        )
+        kept = [each.sentence for each in found.warnings if each.severity != "note"]
+        lines.append(f"| {path.stem} | {found.headline()}. | {law} | {' '.join(kept)} |")
+    return ["| file | headline | law, or weights | warnings |", "| --- | --- | --- | --- |", *lines]
+
+
+def page(every: list[Judged], folder: Path, first: int) -> str:
+    """Return the page."""
+    said = " ".join(line.strip() for line in (__doc__ or "").splitlines()[2:7])
+    shown = [each for each in every if each.steady in ("held", "low", "high")]
+    held = sum(each.steady == "held" for each in shown)
+    ages = [
+        each.steady_age
+        for each in every
+        if each.kind != "flat" and each.steady_age in ("held", "low", "high")
+    ]
+    alarms = sum(each.said != "constant" for each in every if each.kind == "flat")
+    flat = sum(each.kind == "flat" for each in every)
+    return "\n".join(
+        [
+            "# Friction over time",
+            "",
+            "`python -m benchmarks.trends` writes this page.",
+            "",
+            "## Logs of a known truth",
+            "",
+            said,
+            "",
+            f"Seeds {first} to {first + flat - 1}. Thresholds were chosen on seeds 1 to 30.",
+            "",
+            *table(every),
+            "",
+            f"- 95 % intervals of the steady value hold the truth in {held} of {len(shown)} logs where one "
+            f"is given ({100 * held / len(shown):.1f} %; asked: 92 to 98 %).",
+            f"- A trend is claimed in {alarms} of {flat} logs without one (asked: at most 5 %).",
+            "- The age from which friction is steady lies in its interval in "
+            f"{ages.count('held')} of {len(ages)} logs ({100 * ages.count('held') / len(ages):.1f} %).",
+            '- "below" and "above" count true steady values outside the interval. "jumps claimed": of one '
+            "jump, logs in which it alone is found; of the others, logs in which any is claimed. s: "
+            "processor time.",
+            "",
+            "## Wear tests by others",
+            "",
+            "Polyphenylene sulphide, plain and with 15 to 45 % of PTFE, on a disc at constant speed (TE67, "
+            "kyembot/pin-on-disk-data-analysis). Nobody knows the truth here.",
+            "",
+            *files(folder),
+            "",
+        ]
+    )
+
+
 def main() -> None:
     """Judge the logs, print what is found and write the page."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
@@ -219,15 +307,16 @@ def main() -> None:
     takes_workers(parser)
     given = parser.parse_args()
     every: list[Judged] = []
+    seeds = list(range(given.first, given.first + given.logs))
     for kind in [given.only] if given.only else KINDS:
-        seeds = range(given.first, given.first + given.logs)
-        every += worked(partial(judged, kind), list(seeds), given)
-        for line in table(every[-given.logs :]):
-            print(line, flush=True)
-        for each in every[-given.logs :]:
-            if given.only:
-                print(each)
+        some = list(worked(partial(judged, kind), seeds, given))
+        every += some
+        print(*table(some)[2:], *(some if given.only else ()), sep="\n", flush=True)
+    if not given.only:
+        PAGE.write_text(page(every, given.folder, given.first))
 
 
-if __name__ == "__main__":
-    main()
+if __name__ == "__main__":  # workers know the functions by the name of the module
+    from benchmarks.trends import main as run
+
+    run()

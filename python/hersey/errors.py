@@ -204,11 +204,6 @@ class InsufficientDataError(HerseyError, ValueError):
 class OneSpeedError(InsufficientDataError):
     """A log of one speed: no dependence on speed can be fitted, but friction can be followed over time."""
 
-    def __init__(self, *message: object, **remedy: Any) -> None:
-        """Take the message, and ``remedy`` and ``setting``."""
-        follow = "To follow friction over time, use hersey.trend(log)" if way_in() == "python" else ""
-        super().__init__(*message, **{"remedy": follow} | remedy)
-
 
 class ParameterError(HerseyError, ValueError):
     """A parameter outside what the physics allows.

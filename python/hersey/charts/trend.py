@@ -28,9 +28,7 @@ def trend_chart(found: FrictionTrend) -> Chart:
     tips = [tip("time", f"age ({unit})"), tip("value", label)]
     rows: dict[str, Any] = {"time": found.age / size}
     blocks = plot(rows_of(**rows, value=factor * found.value))
-    law = plot(
-        rows_of(**rows, value=factor * found.fitted, low=factor * found.low, high=factor * found.high)
-    )
+    law = plot(rows_of(**rows, value=factor * found.fitted, low=factor * found.low, high=factor * found.high))
     layers: list[Any] = []
     if (steady := _steady_from(found)) is not None and steady < found.last_age:
         layers.append(shaded([(steady / size, end)], GREEN))

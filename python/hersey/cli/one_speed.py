@@ -9,12 +9,10 @@ from hersey.cli.mistyped import Commands, options_of, parameters_of, retyped
 from hersey.errors import HerseyError, OneSpeedError, followed_by
 from hersey.files.endings import LOGS
 
-#: The command that follows friction, and its options that mean something else in other commands or need dwells.
+#: The command that follows friction, and its options that mean something else elsewhere or make dwells.
 _TREND = "trend"
-_OTHERS = frozenset(
-    ["by", "at", "share", "seed", "out", "figure", "json", "force", "quiet", "verbose", "recipe", "no-cache"]
-    + ["min-dwell", "tare", "rotation", "temperature-scale", "no-load"]
-)
+_OWN = frozenset(["by", "at", "share", "seed", "out", "figure", "json", "force", "quiet", "verbose"])
+_OTHERS = _OWN | {"recipe", "no-cache", "min-dwell", "tare", "rotation", "temperature-scale", "no-load"}
 
 
 def with_trend(error: HerseyError, commands: Commands) -> str:

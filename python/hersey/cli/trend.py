@@ -21,7 +21,13 @@ _AT = "Follow this speed, of a log with several, e.g. '60 rpm'.  [default: the o
 _SHARE = "Friction is steady within this share of its steady value."
 _OUT = "Write means of blocks with the law and its interval (.csv)."
 #: Options that make dwells of a log, and what they are if nobody types them.
-_OF_DWELLS = {"min_dwell": "2 s", "tare": "none", "rotation": "both", "temperature_scale": "degC", "no_load": ""}
+_OF_DWELLS = {
+    "min_dwell": "2 s",
+    "tare": "none",
+    "rotation": "both",
+    "temperature_scale": "degC",
+    "no_load": "",
+}
 
 
 @grouped

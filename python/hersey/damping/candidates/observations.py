@@ -19,8 +19,8 @@ from hersey.damping.dwells import (
 from hersey.damping.dwells.constant import refuse_constant_torque
 from hersey.damping.dwells.least_duration import speeds_lost
 from hersey.damping.dwells.misleading import lagging, one_direction, unlinked_runs
-from hersey.damping.dwells.one_speed import is_one_speed
-from hersey.errors import InsufficientDataError, OneSpeedError
+from hersey.damping.dwells.one_speed import is_one_speed, of_one_speed
+from hersey.errors import InsufficientDataError
 from hersey.log.means import MeansTable
 from hersey.log.torque_log import TorqueLog
 from hersey.units import rpm
@@ -95,7 +95,7 @@ class Observations:
             more = f"all dwells are at {held}. Record dwells at three or more speeds"
             if isinstance(points.log, TorqueLog):
                 if is_one_speed(points.log):
-                    raise OneSpeedError(more)
+                    raise of_one_speed(more)
                 if few := held_for_few_rows(points.log):
                     raise InsufficientDataError(few)
             raise InsufficientDataError(more)

@@ -10,10 +10,10 @@ import numpy as np
 from hersey.damping.dwells.few_rows import LASTS, changes_in_steps, held_for_few_rows, rows_held
 from hersey.damping.dwells.groups import MIN_DWELL, MIN_SAMPLES, distinct_speeds
 from hersey.damping.dwells.judging import Asked
-from hersey.damping.dwells.one_speed import is_one_speed
+from hersey.damping.dwells.one_speed import is_one_speed, of_one_speed
 from hersey.damping.dwells.points import Rejection
 from hersey.damping.dwells.reasons import CAUSES, Reason, opposite_signs, remedies, sizes
-from hersey.errors import ROTATION, InsufficientDataError, OneSpeedError, Setting, followed_by, turned
+from hersey.errors import ROTATION, InsufficientDataError, Setting, followed_by, turned
 from hersey.log.roles import EVERY
 from hersey.log.torque_log import NO_CLOCK, Run, TorqueLog
 from hersey.units import rpm
@@ -64,7 +64,7 @@ def nothing_steady(
     said = f"{name}: no dwell found ({listed})"
     for way in (*(_remedy(alike) for alike in reasons.values()), way_out):
         said = followed_by(said, way)
-    return OneSpeedError(said) if one else InsufficientDataError(said)
+    return of_one_speed(said) if one else InsufficientDataError(said)
 
 
 def _in_short(alike: list[Reason]) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from hersey.arrays import FloatArray
+from hersey.errors import OneSpeedError, way_in
 from hersey.log.torque_log import STANDING, TorqueLog
 
 #: Speeds this near, as a share, are one.
@@ -18,7 +19,8 @@ _MOST = 5
 def speeds_held(speed: FloatArray) -> list[tuple[float, float]]:
     """Return speeds without sign, the most frequent first, each with its share of the rows in motion."""
     left = np.sort(speed[speed > STANDING])
-    rows, found = left.size, []
+    rows = left.size
+    found: list[tuple[float, float]] = []
     while left.size and len(found) < _MOST:
         ends = np.searchsorted(left, left * (1.0 + SAME), side="right")
         first = int(np.argmax(ends - np.arange(left.size)))
@@ -33,6 +35,12 @@ def only_speed(speed: FloatArray) -> float | None:
     """Return the one speed that is held whenever the drive turns, rad/s, or None."""
     found = speeds_held(speed)
     return found[0][0] if found and found[0][1] >= _ONLY else None
+
+
+def of_one_speed(reason: str) -> OneSpeedError:
+    """Return the error of a log of one speed, with what it is good for; a terminal adds the line."""
+    way = "To follow friction over time, use hersey.trend(log)" if way_in() == "python" else ""
+    return OneSpeedError(reason, remedy=way)
 
 
 def is_one_speed(log: TorqueLog) -> bool:

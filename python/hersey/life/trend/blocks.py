@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hersey.arrays import FloatArray
+from hersey.arrays import FloatArray, IntArray
 
 #: Blocks at the most, and how much shorter the first is than they are on average.
 _BLOCKS, _FIRST = 150, 0.2
@@ -31,6 +31,7 @@ _RATIOS = (0.0, 0.003, 0.03, 0.3, 3.0, 300.0)
 class Blocks:
     """Means of blocks: arrays of shape (blocks,)."""
 
+    first: IntArray  #: first row
     age: FloatArray  #: mean age
     time: FloatArray  #: mean time, s
     width: FloatArray  #: duration, s
@@ -45,9 +46,16 @@ class Blocks:
 
 
 def blocks_of(
-    age: FloatArray, time: FloatArray, value: FloatArray, temperature: FloatArray | None
+    age: FloatArray,
+    time: FloatArray,
+    value: FloatArray,
+    temperature: FloatArray | None,
+    cuts: tuple[int, ...] = (),
 ) -> Blocks:
-    """Return the means of blocks of rows, ascending in time; each row is one where they are few."""
+    """Return the means of blocks of rows, ascending in time; each row is one where they are few.
+
+    No block goes across a gap, or across the first row of ``cuts``.
+    """
     rows = value.size
     count = min(rows, _BLOCKS)
     u = np.linspace(0.0, 1.0, count + 1)
@@ -56,7 +64,7 @@ def blocks_of(
     step = float(np.median(apart))
     gaps = np.flatnonzero(apart > _GAP * step)
     longest = gaps[np.argsort(-apart[gaps], kind="stable")[:_GAPS]]
-    ends = np.union1d(ends, longest + 1)
+    ends = np.union1d(np.union1d(ends, longest + 1), np.array(cuts, dtype=int))
     number = np.diff(ends).astype(float)
 
     def mean(values: FloatArray) -> FloatArray:
@@ -64,7 +72,13 @@ def blocks_of(
 
     width = time[ends[1:] - 1] - time[ends[:-1]] + step
     return Blocks(
-        mean(age), mean(time), width, number, mean(value), None if temperature is None else mean(temperature)
+        ends[:-1],
+        mean(age),
+        mean(time),
+        width,
+        number,
+        mean(value),
+        None if temperature is None else mean(temperature),
     )
 
 
@@ -101,11 +115,11 @@ def noises(blocks: Blocks) -> Noise:
 def _factor(covariance: FloatArray) -> FloatArray:
     """The triangle of a covariance, also where rows at uneven times make it slightly wrong."""
     try:
-        return np.linalg.cholesky(covariance)
+        return np.asarray(np.linalg.cholesky(covariance))
     except np.linalg.LinAlgError:
         values, vectors = np.linalg.eigh(covariance)
         least = _LEAST * float(values[-1])
-        return np.linalg.cholesky((vectors * np.maximum(values, least)) @ vectors.T)
+        return np.asarray(np.linalg.cholesky((vectors * np.maximum(values, least)) @ vectors.T))
 
 
 def _covariance(blocks: Blocks, time: float, ratio: float) -> FloatArray:

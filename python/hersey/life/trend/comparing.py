@@ -10,31 +10,65 @@ from scipy import special
 
 from hersey.arrays import FloatArray
 from hersey.damping.candidates.likelihood import EVIDENCE
-from hersey.life.trend.blocks import Blocks, Noise
+from hersey.life.trend.blocks import Blocks, Noise, blocks_of, noises
+from hersey.life.trend.record import Record
 from hersey.life.trend.shapes import Shape
 
 #: Values of a parameter that are tried at first, and between those that count.
 _COARSE, _FINE = 24, 32
 #: Logarithm of the likelihood below the greatest at which a value no longer counts.
 _FAINT = 12.0
+#: Parts of a record of which temperature is the mean.
+_PARTS = 10
 #: Parameters of the noise: its variance, how long it lasts and how much of it does.
 _OF_NOISE = 3
 
 
 @dataclass(frozen=True)
 class Data:
-    """Blocks with their noise, and what else friction depends on."""
+    """Rows and blocks of a record with their noise, and what else friction depends on."""
 
+    record: Record
     blocks: Blocks
     noise: Noise
     start: float  #: first age, in T
-    age: FloatArray  #: in T
+    age: FloatArray  #: of the blocks, in T
     scale: float  #: T
-    jumps: tuple[int, ...] = ()  #: first block after each
-    last_temperature: float = 0.0  #: K, of the last tenth of the record
+    last_temperature: float  #: K, of the last tenth of the record
+    rows: tuple[int, ...] = ()  #: first row after each jump
+
+    @classmethod
+    def of(cls, record: Record, cuts: tuple[int, ...] = ()) -> Data:
+        """Return the blocks of a record, none of which goes across a cut."""
+        kelvin = record.temperature
+        blocks = blocks_of(record.age, record.time, record.value, kelvin, cuts)
+        scale = float(record.age[-1])
+        last = 0.0 if kelvin is None else float(np.array_split(kelvin, _PARTS)[-1].mean())
+        age = blocks.age / scale
+        return cls(record, blocks, noises(blocks), float(age[0]), age, scale, last)
+
+    @property
+    def jumps(self) -> tuple[int, ...]:
+        """First block after each jump."""
+        return tuple(int(each) for each in np.searchsorted(self.blocks.first, self.rows))
+
+    def cut_before(self, block: int) -> tuple[Data, int]:
+        """Return the data with a cut where a jump near the begin of a block is likeliest, and its row."""
+        ends = (*self.blocks.first.tolist(), self.record.value.size)
+        begin, end = ends[block - 1], ends[min(block + 1, len(ends) - 1)]
+        values = self.record.value[begin:end]
+        count = np.arange(1, values.size)
+        left = np.cumsum(values)[:-1]
+        right = float(values.sum()) - left
+        row = begin + 1 + int(np.argmax(left**2 / count + right**2 / (values.size - count)))
+        return replace(Data.of(self.record, (*self.rows, row)), rows=self.rows), row
+
+    def with_jump(self, row: int) -> Data:
+        """Return the same with one more jump, before a row that begins a block."""
+        return replace(self, rows=tuple(sorted((*self.rows, row))))
 
     def fixed(self, shape: Shape, warm: bool, at: FloatArray) -> FloatArray:
-        """Return the columns beside the course, for parameters ``at``: level, first change, temperature, jumps."""
+        """Return the columns beside the course at parameters ``at``: level, first change, jumps."""
         columns = [np.ones(self.age.size)]
         if shape.drifts:
             columns.append((self.age - self.start) / (1.0 - self.start))
@@ -182,6 +216,10 @@ class Draws:
         first = 1 + self.fitted.shape.drifts + self.fitted.shape.meets + self.fitted.warm
         return self.linear[:, first : first + len(self.fitted.data.jumps)]
 
+    def per_kelvin(self) -> FloatArray:
+        """Return how much friction changes per K, of a law with temperature as a cause, shape (draws,)."""
+        return self.linear[:, 1 + self.fitted.shape.drifts + self.fitted.shape.meets]
+
     def steady(self) -> FloatArray:
         """Return the value at which friction comes to rest, at the last temperature, shape (draws,)."""
         shape = self.fitted.shape
@@ -212,11 +250,6 @@ def draws_of(found: Fitted, count: int, random: np.random.Generator) -> Draws:
         normal = random.standard_normal((r.shape[0], number))
         linear.append((middle[:, None] + np.linalg.solve(r, normal) * spread).T)
     return Draws(found, at, np.concatenate(linear))
-
-
-def with_jump(data: Data, first: int) -> Data:
-    """Return the data with one more jump, before a block."""
-    return replace(data, jumps=tuple(sorted((*data.jumps, first))))
 
 
 def jump_gains(found: Fitted, candidates: Sequence[int]) -> FloatArray:

@@ -36,10 +36,10 @@ def doubts_of(
 ) -> tuple[Warning, ...]:
     """Return the warnings of a trend, the gravest causes first."""
     found = [_of_jump(each, by) for each in jumps]
-    found += _of_temperature(record, data, fitting, weights, changing)
+    found += _of_temperature(data, fitting, weights, changing)
     found += _of_noise(fitting[0], data)
     found += _of_length(record, numbers, changing, by)
-    found += _of_rows(record, by)
+    found += _of_rows(record)
     return tuple(found)
 
 
@@ -61,7 +61,7 @@ def _of_jump(jump: Jump, by: str) -> Warning:
 
 
 def _of_temperature(
-    record: Record, data: Data, fitting: Sequence[Fitted], weights: FloatArray, changing: bool
+    data: Data, fitting: Sequence[Fitted], weights: FloatArray, changing: bool
 ) -> list[Warning]:
     kelvin = data.blocks.temperature
     if kelvin is None:
@@ -103,7 +103,9 @@ def _of_noise(best: Fitted, data: Data) -> list[Warning]:
         return []
     words = "friction wanders for {shown} at a time, so only {independent:.0f} values are independent"
     values: dict[str, Any] = {"shown": shown_age("time", lasts), "lasts": lasts, "independent": independent}
-    return [Warning("wandering", words, severity="watch", remedy="record longer, or repeat the test", **values)]
+    return [
+        Warning("wandering", words, severity="watch", remedy="record longer, or repeat the test", **values)
+    ]
 
 
 def _of_length(record: Record, numbers: Mapping[str, Any], changing: bool, by: str) -> list[Warning]:
@@ -114,17 +116,22 @@ def _of_length(record: Record, numbers: Mapping[str, Any], changing: bool, by: s
         words = "friction still changes at the end of the log, so its steady value cannot be determined"
         return [Warning("not steady", words, severity="watch", remedy="record longer", last_age=last)]
     if numbers["steady_age"].high > last:
-        words = "friction may become steady only after the log ends at {end}: its steady value is extrapolated"
+        words = (
+            "friction may become steady only after the log ends at {end}: its steady value is extrapolated"
+        )
         end = shown_age(by, last)
         how = "record longer"
         return [Warning("extrapolated", words, severity="watch", remedy=how, last_age=last, end=end)]
     return []
 
 
-def _of_rows(record: Record, by: str) -> list[Warning]:
+def _of_rows(record: Record) -> list[Warning]:
     found = []
     if record.apart:
-        words = "{rows} {rows:row|rows} with hardly any friction at the begin or end of the log {rows:was|were} excluded"
+        words = (
+            "{rows} {rows:row|rows} with hardly any friction at the begin or end of the log "
+            "{rows:was|were} excluded"
+        )
         found.append(Warning("faces apart", words, rows=record.apart))
     if record.other_speed:
         words = "{rows} {rows:row|rows} at another speed, as of a start, {rows:was|were} excluded"

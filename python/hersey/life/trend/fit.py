@@ -11,7 +11,6 @@ from hersey.arguments.door import Words
 from hersey.arrays import FloatArray, one_thread
 from hersey.damping.candidates.likelihood import EVIDENCE
 from hersey.errors import ParameterError
-from hersey.life.trend.blocks import blocks_of, noises
 from hersey.life.trend.comparing import Data, Draws, Fitted, effective_rows
 from hersey.life.trend.doubts import doubts_of
 from hersey.life.trend.jumps import with_jumps
@@ -109,8 +108,9 @@ class _Laws:
 
 def trend_of(record: Record, *, by: str = "time", share: float = 0.05, seed: int = 1) -> FrictionTrend:
     """Return the trend of a record: see `trend`."""
-    data, warm = _data(record)
-    every = with_jumps(shapes(_fastest(data)), data, warm)
+    whole = Data.of(record)
+    every = with_jumps(shapes(_fastest(whole)), whole, _causes(record.temperature))
+    data = every[0].data
     laws = _Laws(tuple(sorted(every, key=lambda each: each.rank)))
     growing = [each.shape.law.grows for each in laws.fits]
     constants = laws.some([not each for each in growing])
@@ -118,7 +118,7 @@ def trend_of(record: Record, *, by: str = "time", share: float = 0.05, seed: int
     fitting = laws.some(growing) if changing else constants
     random = np.random.default_rng(seed)
     found = weighed(fitting.fits, fitting.weights, random)
-    numbers = _numbers(found, fitting, share, record, random)
+    numbers = _numbers(found, fitting, share, random)
     if not changing:  # what a drift could still be
         drifts = laws.some([each.shape.name == "linear" for each in laws.fits])
         numbers["rate"] = interval(last_rate(weighed(drifts.fits, drifts.weights, random)) / data.scale)
@@ -152,29 +152,19 @@ def trend_of(record: Record, *, by: str = "time", share: float = 0.05, seed: int
     )
 
 
-def _data(record: Record) -> tuple[Data, tuple[bool, ...]]:
-    """The blocks of a record, and whether temperature is left out, or tried, too, as a cause."""
-    kelvin = record.temperature
-    blocks = blocks_of(record.age, record.time, record.value, kelvin)
-    scale = float(record.age[-1])
-    warm: tuple[bool, ...] = (False,)
-    last = 0.0
-    if kelvin is not None:
-        means = np.array([part.mean() for part in np.array_split(kelvin, _PARTS)])
-        last = float(means[-1])
-        if float(np.ptp(means)) >= _WARM:
-            warm = (False, True)
-    age = blocks.age / scale
-    return Data(blocks, noises(blocks), float(age[0]), age, scale, last_temperature=last), warm
+def _causes(kelvin: FloatArray | None) -> tuple[bool, ...]:
+    """Whether temperature is left out, or tried, too, as a cause: it is if it changed."""
+    if kelvin is None:
+        return (False,)
+    means = [float(part.mean()) for part in np.array_split(kelvin, _PARTS)]
+    return (False, True) if max(means) - min(means) >= _WARM else (False,)
 
 
 def _fastest(data: Data) -> float:
     return _FASTEST * float(data.age[1] - data.age[0])
 
 
-def _numbers(
-    found: Weighed, laws: _Laws, share: float, record: Record, random: np.random.Generator
-) -> dict[str, Any]:
+def _numbers(found: Weighed, laws: _Laws, share: float, random: np.random.Generator) -> dict[str, Any]:
     """Value at begin and end, rate, temperature; steady value, its age and the time constant where known."""
     scale = found.data.scale
     first, last = found.curves(np.array([found.data.start, 1.0])).T
@@ -206,9 +196,7 @@ def _per_kelvin(found: Weighed) -> Any:
     """How much friction changes per K, if the likeliest law has temperature as a cause."""
     if not found.draws[0].fitted.warm:
         return None
-    return interval(
-        np.concatenate([d.linear[:, 1 + d.fitted.shape.drifts + d.fitted.shape.meets] for d in found.draws if d.fitted.warm])
-    )
+    return interval(np.concatenate([each.per_kelvin() for each in found.draws if each.fitted.warm]))
 
 
 def _kind(best: Fitted, found: Weighed, changing: bool) -> str:

@@ -114,7 +114,7 @@ def _at_speed(speed: FloatArray, moving: BoolArray, at: float | None) -> BoolArr
             "the speed varies throughout, but a trend is followed at one speed. To follow the rows near "
             f"one, choose it, e.g. {_choice(float(np.median(speed[moving])))}"
         )
-    named = ", ".join(f"{rpm(each):.3g} rpm ({100 * share:.0f} % of the rows in motion)" for each, share in held)
+    named = ", ".join(f"{rpm(each):.3g} rpm ({100 * share:.0f} % of the rows)" for each, share in held)
     most = max(held, key=lambda each: each[1])[0]
     raise InsufficientDataError(
         f"the log has several speeds, but a trend is followed at one: {named}. Choose one, e.g. "

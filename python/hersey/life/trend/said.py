@@ -15,6 +15,8 @@ from hersey.life.trend.comparing import Data, Draws, Fitted, draws_of
 _DRAWS, _FAINT = 3000, 0.01
 #: Ages up to the last at which curves are followed, beyond it, and how far, in T.
 _WITHIN, _BEYOND, _FAR = 400, 100, 30.0
+#: Half distances of neighbouring blocks by which the place of a jump may be off.
+_ASIDE = 2.0
 #: Part of the record over which its last rate is taken.
 _LAST = 0.1
 #: Share of the change that has come after a time constant.
@@ -81,7 +83,9 @@ def steady_ages(found: Weighed, share: float, random: np.random.Generator) -> Fl
     rise, fall = off[rows, before], -off[rows, after]
     crossed = age[before] + (age[after] - age[before]) * rise / np.where(rise + fall > 0.0, rise + fall, 1.0)
     for jump, gap in zip(found.jumps, found.gaps, strict=True):
-        crossed += np.where(np.abs(crossed - jump) < 1e-6, gap * random.uniform(-1.0, 1.0, rows.size), 0.0)
+        crossed += np.where(
+            np.abs(crossed - jump) < 1e-6, gap * random.uniform(-_ASIDE, _ASIDE, rows.size), 0.0
+        )
     return np.where(never, np.inf, np.where(at_once, 0.0, crossed))
 
 
@@ -96,6 +100,7 @@ def _followed(found: Weighed) -> FloatArray:
 
 def time_constants(found: Weighed) -> FloatArray:
     """Return after what age a settling law has come to 63 % of its change, in T."""
+
     def of(draws: Draws) -> FloatArray:
         tau = np.exp(draws.at[0])
         if len(draws.fitted.shape.law.shapes) == 1:

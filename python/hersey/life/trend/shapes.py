@@ -50,7 +50,13 @@ class Shape:
     @property
     def parameters(self) -> int:
         """How many numbers it takes beside the level."""
-        return int(self.law.grows) + (bool(self.varied)) + (len(self.law.shapes) == 2) + self.drifts + 2 * self.meets
+        return (
+            int(self.law.grows)
+            + (bool(self.varied))
+            + (len(self.law.shapes) == 2)
+            + self.drifts
+            + 2 * self.meets
+        )
 
     def grid(self, count: int, ends: tuple[float, float] | None = None) -> FloatArray:
         """Return values of its parameters, (shapes, values): logarithms of tau/T or of r T, and of m."""
