@@ -21,7 +21,7 @@ from hersey.log.stating import proposals, unstated
 from hersey.log.text.column import Column
 from hersey.log.torque_log import LogFile, Run
 from hersey.schema.warning import Warning
-from hersey.units import Conversion
+from hersey.units import Conversion, named
 
 Chosen = dict[str, tuple[Column, Conversion]]
 #: Kinds of torque and speed that are those of a rotation already.
@@ -218,6 +218,6 @@ def _needing(role: str, chosen: Chosen) -> str:
     kind = role_conversion(of, unit.unit)[0]
     if role == "load":
         return f"'{column}' is a {kind}, which needs the normal load"
-    what = "sliding speed" if kind == "belt speed" else kind
+    what = named(kind)
     example = {"torque": "a torque", "speed": "a speed of rotation"}[of]
     return f"'{column}' is a {what}, which needs the radius to become {example}"
