@@ -263,4 +263,4 @@ def test_wear_tests_by_others(name: str, kind: str, steady: bool) -> None:
         )
     )
     assert (found.kind, found.steady is not None, found.jumps) == (kind, steady, ())
-    assert {"not steady", "extrapolated"} & {*kinds(found)}
+    assert {"not steady", "steady value extrapolated"} & {*kinds(found)}

@@ -13,7 +13,7 @@ from hersey.damping.dwells.judging import Asked
 from hersey.damping.dwells.one_speed import is_one_speed, of_one_speed
 from hersey.damping.dwells.points import Rejection
 from hersey.damping.dwells.reasons import CAUSES, Reason, opposite_signs, remedies, sizes
-from hersey.errors import ROTATION, InsufficientDataError, Setting, followed_by, turned
+from hersey.errors import MOVING, ROTATION, InsufficientDataError, Setting, followed_by, turned, way_in
 from hersey.log.roles import EVERY
 from hersey.log.torque_log import NO_CLOCK, Run, TorqueLog
 from hersey.units import rpm
@@ -28,6 +28,8 @@ _BLOCKS, _TURN = 60, 0.1
 _HELD = 0.9
 #: A log shorter than so many dwells has a clock in another unit, or rows less often: so many times, say.
 _TOO_BRIEF, _RARER = 1.0, 50
+#: Rows from which a log without dwells may be fitted as it moves.
+_TO_FIT = 300
 #: A log of so many dwells of the usual duration is long enough: the duration asked for is the mistake.
 _ENOUGH = 20.0
 
@@ -64,7 +66,11 @@ def nothing_steady(
     said = f"{name}: no dwell found ({listed})"
     for way in (*(_remedy(alike) for alike in reasons.values()), way_out):
         said = followed_by(said, way)
-    return of_one_speed(said) if one else InsufficientDataError(said)
+    brief = too_brief(log, asked.min_dwell)
+    if one and not brief:
+        return of_one_speed(said)
+    moves = not brief and _runs_up_and_down(log, rejected)
+    return InsufficientDataError(said, setting=MOVING if moves else None)
 
 
 def _in_short(alike: list[Reason]) -> str:
@@ -118,7 +124,11 @@ def _way_out(
             return followed_by(steps, other_clock())
         count = sum(map(_ramps, log.runs))
         ramps = f"{count} ramp{'s' if count > 1 else ''} {span}"
-        return followed_by(f"The speed never holds: {ramps}. {held}", other_clock())
+        moving = ""
+        if log.rows >= _TO_FIT:
+            moving = f"To fit friction to every sample while the speed changes, use {MOVING.to()}"
+        said = followed_by(f"The speed never holds: {ramps}. {held}", other_clock())
+        return said if way_in() == "page" else followed_by(said, moving)
     enough = sorted({math.floor(10 * s - 0.5) / 10 for s, rows in short if rows >= MIN_SAMPLES and s > 0.2})
     for shorter in enough:
         if (count := dwells_with(shorter)) >= WORTH_IT:

@@ -10,11 +10,12 @@ from hersey.damping.dwells.groups import MIN_SAMPLES
 from hersey.errors import SIGN, InsufficientDataError, capital, turned
 
 Kind = Literal[
-    "changing", "standing", "other rotation", "too short", "zero torque", "speed not held", "stick-slip",
-    "swing", "speed drift", "temperature drift", "torque drift", "opposite signs", "spikes", "ripple",
+    "changing", "standing", "too slow", "other rotation", "too short", "zero torque", "speed not held",
+    "stick-slip", "swing", "speed drift", "temperature drift", "torque drift", "opposite signs", "spikes",
+    "ripple",
 ]  # fmt: skip
 #: Stretches that nobody meant as a dwell.
-NO_DWELL: tuple[Kind, ...] = ("changing", "standing", "other rotation")
+NO_DWELL: tuple[Kind, ...] = ("changing", "standing", "too slow", "other rotation")
 #: A ripple comes a whole number of times in a turn within this share of one; frequencies closer than this
 #: share are the same.
 WHOLE_TURN = 0.03
@@ -30,6 +31,7 @@ _OWN = "look for an oscillation of the drive, a controller or the mains"
 LABELS: dict[Kind, str] = {
     "changing": "speed changing",
     "standing": "drive at standstill",
+    "too slow": "drive near standstill, or in no window",
     "other rotation": "other direction of rotation",
     "too short": "dwell too short",
     "zero torque": "torque is zero",

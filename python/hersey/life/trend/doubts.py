@@ -121,7 +121,9 @@ def _of_length(record: Record, numbers: Mapping[str, Any], changing: bool, by: s
         )
         end = shown_age(by, last)
         how = "record longer"
-        return [Warning("extrapolated", words, severity="watch", remedy=how, last_age=last, end=end)]
+        return [
+            Warning("steady value extrapolated", words, severity="watch", remedy=how, last_age=last, end=end)
+        ]
     return []
 
 
