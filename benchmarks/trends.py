@@ -1,6 +1,6 @@
 """Friction over time at one speed: intervals, claims and jumps of `hersey.trend` on logs of a known truth.
 
-The generator stands in this file and shares no code with the fitter. Each log is an hour at 1 Hz: friction
+The generator stands in `benchmarks/trends.py` and shares no code with the fitter. Each log is an hour at 1 Hz: friction
 that does not change, falls or rises to a steady value (exponentially, or by a power of age), grows steadily,
 or jumps; with noise of neighbouring rows that lasts 3 to 60 s (1 to 4 %), independent noise (0.5 to 3 %) and
 a resolution of 0.1 %. Temperature rises by up to 3 K with a time constant of its own and swings by up to
@@ -273,7 +273,8 @@ def page(every: list[Judged], folder: Path, first: int) -> str:
             "",
             said,
             "",
-            f"Seeds {first} to {first + flat - 1}. Thresholds were chosen on seeds 1 to 30.",
+            f"Seeds {first} to {first + flat - 1}. Thresholds were chosen on seeds 1 to 30; these ran twice, "
+            "the second time after jumps were placed at rows, not blocks.",
             "",
             *table(every),
             "",
