@@ -58,7 +58,7 @@ PARTS = (
     Part(
         "Validation",
         folder="validation",
-        first=("index", "measurements", "layouts", "paper", "growth", "trends"),
+        first=("index", "measurements", "layouts", "moving", "paper", "growth", "trends"),
     ),
     Part("Glossary", page="glossary.md"),
 )

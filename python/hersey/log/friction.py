@@ -75,7 +75,7 @@ def _without(columns: tuple[Column, ...], chosen: Chosen) -> tuple[Column, ...]:
 
 def slow_roles(chosen: Chosen) -> frozenset[str]:
     """Return the roles that may be slow: interpolated between values, so no load that makes the torque."""
-    of_coefficient = role_conversion("torque", chosen["torque"][1].unit)[0] == "friction coefficient"
+    of_coefficient = _kinds(chosen).get("torque") == "friction coefficient"
     return frozenset({"temperature"} if of_coefficient else {"temperature", "load"})
 
 
@@ -84,7 +84,7 @@ def in_rotation(arrays: dict[str, FloatArray], chosen: Chosen, stated: Stated) -
 
     A row without a number that is needed gets none.
     """
-    kinds, rows = _kinds(chosen), arrays["torque"].size
+    kinds, rows = _kinds(chosen), arrays["speed"].size
     if is_rotation(chosen) and stated.load is None:
         arrays.pop("radius", None)
         return arrays
@@ -100,17 +100,22 @@ def in_rotation(arrays: dict[str, FloatArray], chosen: Chosen, stated: Stated) -
 
 def is_rotation(chosen: Chosen) -> bool:
     """Return whether torque and speed are those of a rotation as they were recorded."""
-    return _kinds(chosen) == _OF_ROTATION
+    return all(kind == _OF_ROTATION[role] for role, kind in _kinds(chosen).items())
+
+
+def rotating(chosen: Mapping[str, Any]) -> tuple[str, ...]:
+    """Return which of torque and speed a log has: a coast-down has no torque."""
+    return tuple(role for role in _OF_ROTATION if role in chosen)
 
 
 def _kinds(chosen: Chosen) -> dict[str, str]:
-    return {role: role_conversion(role, chosen[role][1].unit)[0] for role in ("torque", "speed")}
+    return {role: role_conversion(role, chosen[role][1].unit)[0] for role in rotating(chosen)}
 
 
 def _in_rotation(
     arrays: dict[str, FloatArray], kinds: dict[str, str], stated: Stated
 ) -> dict[str, FloatArray]:
-    rows = arrays["torque"].shape
+    rows = arrays["speed"].shape
     known = {role: arrays[role] for role in ("load", "radius") if role in arrays}
     for role in ("load", "radius"):
         if (value := getattr(stated, role)) is not None:
@@ -120,9 +125,9 @@ def _in_rotation(
     if "load" in known:
         arrays["load"] = known["load"]
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        if kinds["torque"] == "friction coefficient":
+        if kinds.get("torque") == "friction coefficient":
             arrays["torque"] = arrays["torque"] * known["load"]
-        if kinds["torque"] != "torque":
+        if kinds.get("torque", "torque") != "torque":
             arrays["torque"] = arrays["torque"] * known["radius"]
         if kinds["speed"] != "speed":
             arrays["speed"] = arrays["speed"] / known["radius"]
@@ -134,22 +139,27 @@ def computed(chosen: Chosen, stated: Stated) -> list[Warning]:
     """Return what torque and speed were computed from, and where the load is from."""
     known = _source("radius", "m", chosen, stated) | _source("load", "N", chosen, stated)
     kinds = _kinds(chosen)
-    torque, speed = (chosen[role][0].path for role in ("torque", "speed"))
+    paths = {role: chosen[role][0].path for role in kinds}
     out = []
-    if kinds["torque"] != "torque":
+    if kinds.get("torque", "torque") != "torque":
         out.append(
             Warning(
                 "torque computed",
                 "torque is '{channel}' x load ({load_from}) x radius ({radius_from})"
                 if kinds["torque"] == "friction coefficient"
                 else "torque is '{channel}' x radius ({radius_from})",
-                channel=torque,
+                channel=paths["torque"],
                 **known,
             )
         )
     if kinds["speed"] != "speed":
         out.append(
-            Warning("speed computed", "speed is '{channel}' / radius ({radius_from})", channel=speed, **known)
+            Warning(
+                "speed computed",
+                "speed is '{channel}' / radius ({radius_from})",
+                channel=paths["speed"],
+                **known,
+            )
         )
     if known["load_from"]:
         out.append(Warning("load known", "load is {load_from}", **known))
@@ -191,11 +201,11 @@ def of_each_run(runs: list[tuple[Run, LogFile]], stated: Stated) -> list[tuple[R
 
 def _scaled(run: Run, log: LogFile, role: str, value: float) -> Run:
     units = {channel.role: channel.unit for channel in log.channels}
-    kinds = {of: role_conversion(of, units[of])[0] for of in ("torque", "speed")}
+    kinds = {of: role_conversion(of, units[of])[0] for of in rotating(units)}
     if role == "load":
-        torque = run.torque * value if kinds["torque"] == "friction coefficient" else run.torque
+        torque = run.torque * value if kinds.get("torque") == "friction coefficient" else run.torque
         return replace(run, torque=torque, load=np.full(run.torque.shape, value))
-    torque = run.torque * value if kinds["torque"] != "torque" else run.torque
+    torque = run.torque * value if kinds.get("torque", "torque") != "torque" else run.torque
     return replace(run, torque=torque, speed=run.speed / value if kinds["speed"] != "speed" else run.speed)
 
 

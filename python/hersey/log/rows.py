@@ -275,7 +275,8 @@ def _recorded(
         warnings = (*warnings, start)
     optional = {role: run.get(role) for role in ("temperature", "load")}
     record = replace(file, name=name, rows=run["time"].size, warnings=warnings)
-    return Run(name, run["time"], run["torque"], run["speed"], **optional), record
+    torque = run["torque"] if "torque" in run else np.full(run["time"].size, np.nan)
+    return Run(name, run["time"], torque, run["speed"], **optional), record
 
 
 def _slow(
