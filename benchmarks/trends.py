@@ -1,10 +1,10 @@
 """Friction over time at one speed: intervals, claims and jumps of `hersey.trend` on logs of a known truth.
 
-The generator stands in `benchmarks/trends.py` and shares no code with the fitter. Each log is an hour at 1 Hz:
+The generator stands in `benchmarks/trends.py` and shares no code with the fitter. A log is an hour at 1 Hz:
 friction that does not change, falls or rises to a steady value (exponentially, or by a power of age), grows
 steadily, or jumps; with noise of neighbouring rows that lasts 3 to 60 s (1 to 4 %), independent noise (0.5 to
-3 %) and a resolution of 0.1 %. Temperature rises by up to 3 K with a time constant of its own and swings by up
-to 0.3 K; friction changes by -1.5 to 0.5 % per K.
+3 %) and a resolution of 0.1 %. Temperature rises by up to 3 K with a time constant of its own and swings by
+up to 0.3 K; friction changes by -1.5 to 0.5 % per K.
 
 `python -m benchmarks.trends` writes `docs/validation/trends.md`, with the files of the pin-on-disc rig if the
 collection of public measurements is there. ``--only KIND --first SEED`` runs one kind; nothing is written.
