@@ -200,6 +200,7 @@ RESULTS: dict[str, tuple[Callable[[], Any], type]] = {
     ),
     "Drift": (lambda: hersey.fit_drift(table(other("lubricant", 1, units=2, logs=3))), DriftPart),
     "Growth": (growth, hersey.Growth),
+    "FrictionTrend": (lambda: hersey.trend(log(), at="60 rpm"), hersey.FrictionTrend),
     "AgesAtLimit": (lambda: growth().reaches(2.0), hersey.AgesAtLimit),
     "TimeToFailure": (ends, TimeToFailurePart),
     "ModelComparison": (models, ModelsPart),

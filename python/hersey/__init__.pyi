@@ -59,6 +59,8 @@ from .life.population import Population as Population
 from .life.population import weibull as weibull
 from .life.time_to_failure.estimate import TimeToFailure as TimeToFailure
 from .life.time_to_failure.estimate import time_to_failure as time_to_failure
+from .life.trend.fit import trend as trend
+from .life.trend.result import FrictionTrend as FrictionTrend
 from .log import TorqueLog as TorqueLog
 from .log import memory_limit as memory_limit
 from .log import read as read

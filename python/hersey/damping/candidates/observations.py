@@ -19,6 +19,7 @@ from hersey.damping.dwells import (
 from hersey.damping.dwells.constant import refuse_constant_torque
 from hersey.damping.dwells.least_duration import speeds_lost
 from hersey.damping.dwells.misleading import lagging, one_direction, unlinked_runs
+from hersey.damping.dwells.one_speed import is_one_speed, of_one_speed
 from hersey.errors import InsufficientDataError
 from hersey.log.means import MeansTable
 from hersey.log.torque_log import TorqueLog
@@ -93,9 +94,13 @@ class Observations:
             held = " and ".join(f"{v} rpm" for v in sorted({f"{rpm(w):.3g}" for w in speed}, key=float)[:2])
             if lost := speeds_lost(points):
                 raise InsufficientDataError(f"all dwells are at {held}: {lost}")
-            if isinstance(points.log, TorqueLog) and (few := held_for_few_rows(points.log)):
-                raise InsufficientDataError(few)
-            raise InsufficientDataError(f"all dwells are at {held}. Record dwells at three or more speeds")
+            more = f"all dwells are at {held}. Record dwells at three or more speeds"
+            if isinstance(points.log, TorqueLog):
+                if is_one_speed(points.log):
+                    raise of_one_speed(more)
+                if few := held_for_few_rows(points.log):
+                    raise InsufficientDataError(few)
+            raise InsufficientDataError(more)
         if fewest_speeds > 1:
             refuse_constant_torque(points)
         kelvin = points.column("temperature") if points.log.has_temperature else None
