@@ -154,6 +154,7 @@ def _surface(
         data_sha256=tuple(file.sha256 for file in points.log.files),
         sensors=str(points.log.sensors),
         rest=points.rest,
+        domain=points.domain,
     )
 
 

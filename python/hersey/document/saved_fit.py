@@ -319,6 +319,7 @@ def _surface(document: _FitFile) -> DampingSurface:
         data_sha256=tuple(file.sha256 for file in document.files),
         sensors=fit.sensors,
         rest=_rest(fit.rest),
+        domain=fit.domain,
         version=document.hersey_version,
     )
 

@@ -11,6 +11,7 @@ import numpy as np
 from hersey.arguments.door import Words
 from hersey.arrays import FloatArray
 from hersey.log.clock import Clock, clock_of
+from hersey.log.domain import TORQUE, Domain
 from hersey.log.impossible import Impossible
 from hersey.log.long_arrays import passed
 from hersey.log.middle import median_step
@@ -30,8 +31,8 @@ CHANNEL_UNITS = {"torque": "N m", "speed": "rad/s", "temperature": "K"}
 NO_CLOCK = "number of the row"
 #: No quantity of a drive comes near this, in SI.
 LARGEST = 1e12
-#: Slower than this, rad/s (a fiftieth of a revolution a minute), the drive stands.
-STANDING = 0.002
+#: Slower than this, rad/s, the drive stands.
+STANDING = TORQUE.standing
 #: What is subtracted from torque, and the directions whose dwells are used.
 TARES, ROTATIONS = Words(("none", "standing")), Words(("both", "forward", "reverse"))
 
@@ -78,6 +79,7 @@ class Run(Record):
     speed: FloatArray
     temperature: FloatArray | None
     load: FloatArray | None = None  #: normal load, N, where it is known
+    domain: Domain = TORQUE  #: what ``torque`` and ``speed`` hold: friction and sliding speed, if it says so
 
     def to_dict(self) -> dict[str, Any]:
         """Return the size of the run and the range of each channel, in SI."""
@@ -166,6 +168,11 @@ class TorqueLog(Result):
     def title(self) -> str:
         """Name of the first file, and the number of others."""
         return title_of(self.files)
+
+    @property
+    def domain(self) -> Domain:
+        """What was measured: a torque, or a friction force or coefficient, against which speed."""
+        return self.runs[0].domain
 
     @property
     def has_temperature(self) -> bool:

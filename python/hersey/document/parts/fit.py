@@ -11,6 +11,7 @@ from hersey.damping.candidates.shared_errors import SharedScatter
 from hersey.damping.curves.mixture import LawWeight
 from hersey.damping.no_load_torque import NoLoadTorque
 from hersey.document.parts.log import InputFile, Point
+from hersey.log.domain import TORQUE, Domain
 from hersey.schema.part import Interval, Part
 from hersey.schema.warning import Warning
 from hersey.verdict.regime import Regime
@@ -85,6 +86,7 @@ class FitPart(Part):
     rest: NoLoadTorque | None = Field(
         default=None, description="no-load torque subtracted before the fit, which is of the film alone"
     )
+    domain: Domain = Field(default=TORQUE, description="what torque and speed are: friction, if it says so")
     summary: str
     laws: list[LawWeight] = Field(default=[], description="models of the drag curve behind the decision")
     trend: TrendPart | None = None
