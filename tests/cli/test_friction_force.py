@@ -62,8 +62,9 @@ def test_a_column_of_a_length_is_proposed_as_the_radius_and_not_taken(tmp_path: 
     lines += [f"{i / 10},5,20,{i},25,50" for i in range(400)]
     (tmp_path / "wear.csv").write_text("\n".join([*lines, ""]))
     plain = run("inspect", "wear.csv", "--isothermal", cwd=tmp_path)
-    assert "'Track radius [mm]' may be the radius, but is not used. If it is, use --radius 'Track radius'" in (
-        plain.words
+    assert (
+        "'Track radius [mm]' may be the radius, but is not used. If it is, use --radius 'Track radius'"
+        in (plain.words)
     )
     assert "'Wear [um]' may be" not in plain.words
     looked = run("inspect", "wear.csv", "--isothermal", "--radius", "Track radius", cwd=tmp_path)

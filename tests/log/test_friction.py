@@ -11,6 +11,7 @@ import polars as pl
 import pytest
 
 import hersey
+from hersey.domain import Domain
 from hersey.errors import (
     ChannelError,
     HerseyError,
@@ -21,7 +22,6 @@ from hersey.errors import (
     UnstatedRoleError,
 )
 from hersey.log import list_channels
-from hersey.log.domain import Domain
 from hersey.log.text import blocks
 from tests.conftest import shared
 

@@ -11,7 +11,6 @@ roles                 roles of columns: their names, and the kinds of units that
 role_units            the unit of a column with a role
 channels              which column plays which role
 without_units         columns without units: named at once
-domain                a quantity against a speed: a torque of a rotation, or friction against sliding
 friction              which of them a file holds, and what it becomes with a load and a radius
 pooling               runs that are fitted together: one domain for all
 as_torque             friction as a torque, where somebody has a radius and asks for it

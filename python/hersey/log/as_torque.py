@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TypeVar
 
 import numpy as np
 
+from hersey.domain import TORQUE, Domain
 from hersey.errors import ParameterError, Setting
-from hersey.log.domain import TORQUE, Domain
 from hersey.log.means import MeansTable
 from hersey.log.pooling import SAME_LOAD
 from hersey.log.torque_log import LogFile, TorqueLog
 from hersey.schema.warning import Warning
-
-Log = TypeVar("Log", TorqueLog, MeansTable)
 
 
 def factors(of: Domain, radius: float, load: float | None) -> tuple[float, float]:
@@ -48,7 +45,9 @@ def one_load(log: TorqueLog | MeansTable, load: float | None = None) -> float | 
     )
 
 
-def log_as_torque(log: Log, *, radius: float, load: float | None = None) -> Log:
+def log_as_torque(
+    log: TorqueLog | MeansTable, *, radius: float, load: float | None = None
+) -> TorqueLog | MeansTable:
     """Return a log, or a table of means, as the torque of a rotation at a radius (m) and a load (N).
 
     Raises

@@ -18,10 +18,10 @@ import polars as pl
 from hersey.arguments.door import Keys
 from hersey.arguments.numbers import described
 from hersey.arrays import FloatArray
+from hersey.domain import TORQUE, Domain
 from hersey.errors import HerseyError, InsufficientDataError, ParameterError
 from hersey.log.cell_table import CellTable, cells_of
 from hersey.log.channels import ChannelChoice, Stated, called, find_channel
-from hersey.log.domain import TORQUE, Domain
 from hersey.log.friction import beside, computed, domain_of, in_domain, unused
 from hersey.log.mean_roles import (
     Role,
@@ -168,7 +168,7 @@ def read_means(
     domains = []
     choices = _choices(dict(channels or {}), dict(units or {}))
     radii, loads = (_for_each(name, of, len(listed)) for name, of in (("radius", radius), ("load", load)))
-    whole = Stated(None, *(None if None in of else tuple(map(float, of)) for of in (radii, loads)))
+    whole = Stated(None, _of_all(radii), _of_all(loads))
     for number, table in enumerate(listed):
         cells = cells_of(table, f"table {number + 1}" if len(listed) > 1 else "table")
         said = Stated(None, radii[number], loads[number])
@@ -204,6 +204,12 @@ def _for_each(name: str, given: float | Sequence[float] | None, tables: int) -> 
         if not 0 < value < LARGEST:
             raise ParameterError(f"{name} is {value:g} (SI): it must be greater than 0")
     return list(values)
+
+
+def _of_all(values: list[float | None]) -> tuple[float, ...] | float | None:
+    """What is said of all tables: one value, one for each, or nothing."""
+    known = tuple(value for value in values if value is not None)
+    return (known if len(set(known)) > 1 else known[0]) if known else None
 
 
 def is_means_table(path: Path, channels: Mapping[str, str], units: Mapping[str, str]) -> bool:

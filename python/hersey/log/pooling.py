@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from hersey.domain import TORQUE, Domain
 from hersey.errors import ParameterError, Setting
 from hersey.log.channels import Stated
-from hersey.log.domain import TORQUE, Domain
 from hersey.log.friction import Chosen, computed, domain_of, measured
 from hersey.log.text.column import Column
 from hersey.log.torque_log import LogFile, Run
@@ -62,8 +62,8 @@ def _torque_asked(runs: list[tuple[Run, LogFile]], stated: Stated) -> list[tuple
     out = []
     for run, log in runs:
         of = run.domain
-        known = {"load": run.load, "radius": stated.radius}
-        torque, speed = of.converted(TORQUE, run.torque, run.speed, **known)
+        assert run.load is not None
+        torque, speed = of.converted(TORQUE, run.torque, run.speed, load=run.load, radius=stated.radius)
         kept = tuple(w for w in log.warnings if w.kind not in ("torque computed", "speed computed"))
         made = [w for w in computed(_chosen(log), stated, TORQUE) if w.kind != "load known"]
         out.append(

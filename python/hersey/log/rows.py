@@ -267,9 +267,9 @@ def _recorded(
             begins=begins,
         )
         warnings = (*warnings, start)
-    optional = {role: run.get(role) for role in ("temperature", "load")}
     record = replace(file, name=name, rows=run["time"].size, warnings=warnings)
-    return Run(name, run["time"], run["torque"], run["speed"], **optional), record
+    times, torque, speed = (run[role] for role in ("time", "torque", "speed"))
+    return Run(name, times, torque, speed, run.get("temperature"), run.get("load")), record
 
 
 def _slow(

@@ -10,15 +10,15 @@ import numpy as np
 
 from hersey.arguments.door import Words
 from hersey.arrays import FloatArray
+from hersey.domain import TORQUE, Domain
 from hersey.log.clock import Clock, clock_of
-from hersey.log.domain import TORQUE, Domain
 from hersey.log.impossible import Impossible
 from hersey.log.long_arrays import passed
 from hersey.log.middle import median_step
 from hersey.log.sensors import Sensors
 from hersey.result import Means, Record, Result
 from hersey.schema.warning import Warning
-from hersey.units import celsius, rpm, takes_si
+from hersey.units import celsius, takes_si
 
 if TYPE_CHECKING:
     import polars as pl
@@ -222,11 +222,11 @@ def _ends(values: FloatArray) -> tuple[float, float]:
 
 def _ranges(run: Run) -> str:
     """What a run spans, for people."""
-    slow, fast = (rpm(end) for end in _ends(run.speed))
-    least, most = _ends(run.torque)
+    of, (least, most) = run.domain, _ends(run.torque)
     duration = float(run.time[-1] - run.time[0])
     text = (
-        f"{run.time.size} rows, {duration:.5g} s; {slow:.4g} to {fast:.4g} rpm, {least:.4g} to {most:.4g} N m"
+        f"{run.time.size} rows, {duration:.5g} s; {of.between(*_ends(run.speed), '.4g')}, "
+        f"{'' if of.is_torque else f'{of.quantity} '}{least:.4g} to {of.amount(most, '.4g')}"
     )
     if run.temperature is None:
         return text
@@ -239,4 +239,11 @@ def _run_frame(index: int, run: Run) -> pl.DataFrame:
 
     channels = {title: getattr(run, name) for name, title in _COLUMNS.items()}
     columns = {title: values for title, values in channels.items() if values is not None}
+    of = run.domain
+    if not of.is_torque:
+        named = {
+            "torque (N m)": f"{of.quantity} ({of.unit or 1})",
+            "speed (rad/s)": f"{of.speed} ({of.speed_unit})",
+        }
+        columns = {named.get(title, title): values for title, values in columns.items()}
     return pl.DataFrame(columns).insert_column(0, pl.Series("run", np.full(run.time.size, index)))

@@ -303,16 +303,16 @@ def _with_constant(regime: str, fit: LawFit, lack: LackOfFit, data: Observations
     assert isinstance(fit.law, ConstantPlusLaw)
     film: FloatArray = fit.law.film_share(fit.values, data.inputs)
     share = float(1.0 - np.median(film))
+    torque, beside = "torque", "no-load torque or "
+    if not data.domain.is_torque:
+        torque, beside = data.domain.quantity, ""
     if regime == "constant film":
         words = (
-            f"a constant torque, e.g. Coulomb friction, {100 * share:.0f} % of the total, plus a viscous "
-            "torque"
+            f"a constant {torque}, e.g. Coulomb friction, {100 * share:.0f} % of the total, plus a viscous "
+            f"{torque}"
         )
         return Explanation(COULOMB_VISCOUS, words, share, lack.curvature)
-    words = (
-        f"{regime} plus a constant torque (no-load torque or Coulomb friction), {100 * share:.0f} % of "
-        "the total"
-    )
+    words = f"{regime} plus a constant {torque} ({beside}Coulomb friction), {100 * share:.0f} % of the total"
     return Explanation(regime + CONSTANT, words, share, lack.curvature)
 
 

@@ -17,7 +17,7 @@ from hersey.damping.dwells.reduced import require_points
 from hersey.damping.estimate import Estimate, estimate, rounded
 from hersey.damping.surface import DampingSurface
 from hersey.damping.trend import Trend, trend_of
-from hersey.log.domain import TORQUE, Domain
+from hersey.domain import TORQUE, Domain
 from hersey.lubrication.contact import Contact
 from hersey.lubrication.lubricant import Lubricant
 from hersey.result import Means, Record, Result

@@ -106,6 +106,11 @@ class Domain(Record):
         """Return a value of the quantity in SI, with its unit."""
         return f"{value:{form}} {self.unit}".strip()
 
+    def small(self, value: float, form: str = ".3g") -> str:
+        """Return a value of the quantity (SI) in the unit in which charts show it."""
+        unit, factor = self.shown
+        return f"{value * factor:{form}} {unit.replace('·', ' ')}".strip()
+
     def require_torque(self, what: str) -> None:
         """Raise `ParameterError` if this is friction, and ``what`` is about the torque of a rotation."""
         if not self.is_torque:
