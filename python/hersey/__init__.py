@@ -7,7 +7,6 @@ errors          the closed table of what can go wrong, and what to do in the wor
 arguments       what a user passes to a function: names and types
 units           the one door for units
 arrays          numbers or arrays as arguments
-domain          a quantity against a speed: the torque of a rotation, or friction against sliding
 schema          the schema of what the document and every ``--json`` hold, from the fields of the results
 result          what every result can do
 files           text, TOML with units, writing whole or not at all

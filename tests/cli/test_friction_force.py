@@ -97,9 +97,8 @@ def test_an_amount_without_a_unit_is_no_name(wear: Path) -> None:
     assert "radius: '30' is not a number with a unit of length" in refused.stderr
 
 
-@pytest.mark.parametrize("name", ["Spring force", "Drive torque"])
-def test_a_trace_of_a_force_becomes_one_of_torque_by_a_mapping_of_its_own(name: str, tmp_path: Path) -> None:
-    examples = ROOT / "examples"
+def test_a_trace_of_a_force_becomes_one_of_torque_by_a_mapping_of_its_own(tmp_path: Path) -> None:
+    examples, name = ROOT / "examples", "Spring force"
     text = (examples / "bench.csv").read_text().replace("Drive torque [N*m]", f"{name} [N]")
     (tmp_path / "pull.csv").write_text(text)
     bench, machine = examples / "bench.csv", examples / "machine.toml"

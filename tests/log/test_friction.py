@@ -11,7 +11,6 @@ import polars as pl
 import pytest
 
 import hersey
-from hersey.domain import Domain
 from hersey.errors import (
     ChannelError,
     HerseyError,
@@ -23,6 +22,7 @@ from hersey.errors import (
 )
 from hersey.log import list_channels
 from hersey.log.text import blocks
+from hersey.schema.domain import Domain
 from tests.conftest import shared
 
 TORQUE_DOMAIN = Domain()

@@ -20,10 +20,10 @@ from hersey.damping.candidates.shared_errors import Freedom, SharedScatter
 from hersey.damping.candidates.thermal import CELSIUS, KELVIN, Thermal
 from hersey.damping.estimate import Estimate
 from hersey.damping.no_load_torque import NoLoadTorque
-from hersey.domain import TORQUE, Domain
 from hersey.errors import ExtrapolationWarning, ParameterError, UntoldWarning
 from hersey.motion.whole_torque import refuse_whole_torque
 from hersey.result import Result
+from hersey.schema.domain import TORQUE, Domain
 from hersey.units import ZERO_CELSIUS, takes_si
 
 #: Law of temperature by the scale of T in T^b.

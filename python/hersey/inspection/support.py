@@ -19,10 +19,10 @@ from hersey.damping.estimate import Estimate, rounded
 from hersey.damping.fit import fit
 from hersey.damping.rising import Rising, rising
 from hersey.damping.surface import DampingSurface
-from hersey.domain import TORQUE, Domain
 from hersey.errors import InsufficientDataError, Setting
 from hersey.log.means import MeansTable
 from hersey.result import Means, Record
+from hersey.schema.domain import TORQUE, Domain
 from hersey.units import convert
 
 #: Speeds that span less than this factor, and temperatures that span less than so many kelvin, give an

@@ -6,11 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from hersey.domain import TORQUE, Domain
 from hersey.errors import ParameterError, Setting
 from hersey.log.means import MeansTable
 from hersey.log.pooling import SAME_LOAD
 from hersey.log.torque_log import LogFile, TorqueLog
+from hersey.schema.domain import TORQUE, Domain
 from hersey.schema.warning import Warning
 
 
@@ -79,5 +79,5 @@ def _said(file: LogFile, of: Domain, radius: float, load: float | None) -> LogFi
         if load is None or of.quantity != "friction coefficient"
         else "torque is the {quantity} x load ({load:g} N) x radius ({radius:g} m)"
     )
-    made = Warning("torque computed", words, quantity=of.quantity, radius=radius, load=load)
+    made = Warning("friction as torque", words, quantity=of.quantity, radius=radius, load=load)
     return replace(file, warnings=(*file.warnings, made))

@@ -14,12 +14,12 @@ from typing import Any
 import numpy as np
 
 from hersey.arrays import FloatArray
-from hersey.domain import QUANTITY_OF, SPEED_OF, Domain
 from hersey.log.channels import ChannelChoice, Stated, find_channel
 from hersey.log.long_arrays import HELD, Filling, blocks
 from hersey.log.roles import role_conversion
 from hersey.log.stating import proposals, unstated
 from hersey.log.text.column import Column
+from hersey.schema.domain import QUANTITY_OF, SPEED_OF, Domain
 from hersey.schema.warning import Warning
 from hersey.units import Conversion
 

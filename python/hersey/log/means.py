@@ -18,7 +18,6 @@ import polars as pl
 from hersey.arguments.door import Keys
 from hersey.arguments.numbers import described
 from hersey.arrays import FloatArray
-from hersey.domain import TORQUE, Domain
 from hersey.errors import HerseyError, InsufficientDataError, ParameterError
 from hersey.log.cell_table import CellTable, cells_of
 from hersey.log.channels import ChannelChoice, Stated, called, find_channel
@@ -40,6 +39,7 @@ from hersey.log.sensors import Sensors
 from hersey.log.text.column import Column
 from hersey.log.torque_log import LARGEST, Channel, LogFile, TorqueLog, title_of
 from hersey.result import Result, json_record
+from hersey.schema.domain import TORQUE, Domain
 from hersey.schema.warning import Warning
 from hersey.units import takes_si
 

@@ -6,12 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from hersey.domain import TORQUE, Domain
 from hersey.errors import ParameterError, Setting
 from hersey.log.channels import Stated
 from hersey.log.friction import Chosen, computed, domain_of, measured
 from hersey.log.text.column import Column
 from hersey.log.torque_log import LogFile, Run
+from hersey.schema.domain import TORQUE, Domain
 from hersey.schema.warning import Warning
 from hersey.units import Conversion
 

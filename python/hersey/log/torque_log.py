@@ -10,13 +10,13 @@ import numpy as np
 
 from hersey.arguments.door import Words
 from hersey.arrays import FloatArray
-from hersey.domain import TORQUE, Domain
 from hersey.log.clock import Clock, clock_of
 from hersey.log.impossible import Impossible
 from hersey.log.long_arrays import passed
 from hersey.log.middle import median_step
 from hersey.log.sensors import Sensors
 from hersey.result import Means, Record, Result
+from hersey.schema.domain import TORQUE, Domain
 from hersey.schema.warning import Warning
 from hersey.units import celsius, takes_si
 

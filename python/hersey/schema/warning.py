@@ -7,8 +7,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
-from hersey.domain import TORQUE, Domain
 from hersey.errors import Setting, capital, followed_by, printable, sentence
+from hersey.schema.domain import TORQUE, Domain
 from hersey.schema.record import Means, Record, json_record
 from hersey.units import celsius, rpm
 

@@ -17,10 +17,10 @@ from hersey.damping.dwells.reduced import require_points
 from hersey.damping.estimate import Estimate, estimate, rounded
 from hersey.damping.surface import DampingSurface
 from hersey.damping.trend import Trend, trend_of
-from hersey.domain import TORQUE, Domain
 from hersey.lubrication.contact import Contact
 from hersey.lubrication.lubricant import Lubricant
 from hersey.result import Means, Record, Result
+from hersey.schema.domain import TORQUE, Domain
 from hersey.units import celsius, rpm, takes_si
 from hersey.verdict.contact_regimes import film_law, log_regimes
 from hersey.verdict.explanations import Explained, Explanation, Tried, explained

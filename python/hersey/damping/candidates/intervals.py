@@ -34,8 +34,8 @@ from hersey.damping.candidates.stribeck import StribeckLaw
 from hersey.damping.candidates.thermal import ARRHENIUS, VFT
 from hersey.damping.distributions import normal_quantile, ratio_above
 from hersey.damping.estimate import CONFIDENCE, quantile
-from hersey.domain import Domain
 from hersey.result import OPEN, Record
+from hersey.schema.domain import Domain
 from hersey.units import convert
 
 Ends = tuple[float, float]
@@ -109,17 +109,8 @@ def quantities(law_fit: LawFit, data: Observations) -> tuple[Quantity, ...]:
         ),
         ("c_mixed", "c below the transition", "", float),
         ("stick", "ln(Stribeck peak / Coulomb)", "", float),
-        *(
-            [("viscous", f"ln(viscous {torque} at the Stribeck speed / Coulomb)", "", float)]
-            if stribeck
-            else []
-        ),
-        (
-            "at",
-            "Stribeck speed" if stribeck else "transition speed",
-            domain.speed_unit,
-            lambda v: w * _exp(v),
-        ),
+        *([("viscous", viscous, "", float)] if stribeck else []),
+        ("at", f"{kind} speed", domain.speed_unit, lambda v: w * _exp(v)),
         *of_transition,
     ]
     index = {name: i for i, name in enumerate(law.names)}

@@ -19,10 +19,10 @@ from hersey.damping.dwells import (
 from hersey.damping.dwells.constant import refuse_constant_torque
 from hersey.damping.dwells.least_duration import speeds_lost
 from hersey.damping.dwells.misleading import lagging, one_direction, unlinked_runs
-from hersey.domain import TORQUE, Domain
 from hersey.errors import InsufficientDataError
 from hersey.log.means import MeansTable
 from hersey.log.torque_log import TorqueLog
+from hersey.schema.domain import TORQUE, Domain
 
 #: Change of temperature from dwell to dwell, K, that ends a stay.
 STEP = 6.0

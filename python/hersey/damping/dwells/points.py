@@ -15,12 +15,12 @@ from hersey.damping.dwells.reasons import NO_DWELL, Reason, joined, opposite_sig
 from hersey.damping.dwells.relaxation import Relaxation
 from hersey.damping.dwells.resolution import Resolution
 from hersey.damping.no_load_torque import NoLoadTorque
-from hersey.domain import Domain
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.log.as_torque import factors, log_as_torque, one_load
 from hersey.log.means import MeanRow, MeansTable, read_means
 from hersey.log.torque_log import TorqueLog
 from hersey.result import Result, json_record
+from hersey.schema.domain import Domain
 from hersey.schema.warning import Warning
 from hersey.units import rpm, takes_si
 

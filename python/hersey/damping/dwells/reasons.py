@@ -7,8 +7,8 @@ from statistics import median
 from typing import Literal
 
 from hersey.damping.dwells.groups import MIN_SAMPLES
-from hersey.domain import TORQUE, Domain
 from hersey.errors import SIGN, InsufficientDataError, capital, turned
+from hersey.schema.domain import TORQUE, Domain
 
 Kind = Literal[
     "changing", "standing", "other rotation", "too short", "zero torque", "speed not held", "stick-slip",

@@ -11,7 +11,7 @@ from hersey.damping.candidates.shared_errors import SharedScatter
 from hersey.damping.curves.mixture import LawWeight
 from hersey.damping.no_load_torque import NoLoadTorque
 from hersey.document.parts.log import InputFile, Point
-from hersey.domain import TORQUE, Domain
+from hersey.schema.domain import TORQUE, Domain
 from hersey.schema.part import Interval, Part
 from hersey.schema.warning import Warning
 from hersey.verdict.regime import Regime

@@ -7,7 +7,7 @@ from typing import Final
 
 from hersey.arrays import FloatArray
 from hersey.errors import ParameterError, Setting
-from hersey.result import Record
+from hersey.schema.record import Record
 from hersey.units import rpm
 
 #: Of each quantity: its unit and symbol, how it is shown (unit, factor), and its powers in normal load and
