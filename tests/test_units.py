@@ -93,7 +93,7 @@ def test_temperatures_have_an_offset(unit: str, boiling: float) -> None:
     [
         ("speed", "Hz", "revolutions or radians"),
         ("speed", "1/s", "revolutions or radians"),
-        ("speed", "mm/s", "is that of a belt speed, not of a speed"),
+        ("speed", "mm/s", "is that of a sliding speed, not of a speed"),
         ("torque", "%", "9.84 mN"),
         ("torque", "rpm", "not a unit of torque"),
         ("torque", "furlongz", "unknown unit"),

@@ -155,7 +155,7 @@ def test_what_is_no_speed_is_named(speed: Any, says: str) -> None:
         surface().predict(speed=speed, temperature=420.0)
     if not isinstance(speed, list):
         with pytest.raises(
-            HerseyError, match=says.replace("of speed", "of belt speed").replace("25 rpm", "25 mm/s")
+            HerseyError, match=says.replace("of speed", "of sliding speed").replace("25 rpm", "25 mm/s")
         ):
             hersey.stick_slip(TRAIN, DRAG, drive_speed=speed)
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import shlex
 import unicodedata
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, Literal, Self
 
@@ -165,13 +165,20 @@ class ChannelError(HerseyError, LookupError):
 class UnitError(HerseyError, ValueError):
     """A unit that is missing, unknown or of the wrong dimension.
 
-    ``columns`` holds the index of the column of a log that has it, where there is one.
+    ``columns`` holds the index of the column of a log that has it, where there is one; ``units`` a unit that
+    it could have by role, where several columns lack one.
     """
 
-    def __init__(self, *message: object, columns: tuple[int, ...] = (), **remedy: Any) -> None:
-        """Take the message, the column, and ``remedy`` and ``setting``."""
+    def __init__(
+        self,
+        *message: object,
+        columns: tuple[int, ...] = (),
+        units: Mapping[str, str] | None = None,
+        **remedy: Any,
+    ) -> None:
+        """Take the message, the column, the units, and ``remedy`` and ``setting``."""
         super().__init__(*message, **remedy)
-        self.columns = columns
+        self.columns, self.units = columns, dict(units or {})
 
 
 class UnstatedRoleError(UnitError):

@@ -76,7 +76,7 @@ MISTAKES: dict[str, tuple[bytes, str, str, str]] = {
     "kelvin called Celsius": (
         log(change=lambda t, q, n, c: (t, q, n, float(c) + 273)),
         "unit:Temperature",
-        "423 °C is hotter than any belt. Read as K it is 100 to 150 °C.",
+        "423 °C is hotter than any such drive. Read as K it is 100 to 150 °C.",
         "Read as K",
     ),
     "Celsius called kelvin": (

@@ -409,7 +409,7 @@ def test_channels_and_where_their_faults_begin() -> None:
 
 def test_choices_are_passed_on() -> None:
     text = json.dumps(chart_of(result_of("Trajectory"), units=("in", "ozf", "s")).to_dict(validate=False))
-    assert "Belt speed (in/s)" in text
+    assert "Sliding speed (in/s)" in text
     assert "Spring force (ozf)" in text
 
 

@@ -80,7 +80,7 @@ def test_figures_are_written(document: Analysis, tmp_path: Path) -> None:
     assert {p.suffix for p in written} == {".svg", ".png", ".pdf"}
     assert (tmp_path / "figures" / "torque.png").read_bytes().startswith(b"\x89PNG")
     assert (tmp_path / "figures" / "torque.pdf").read_bytes().startswith(b"%PDF")
-    assert "Roll speed (rpm)" in (tmp_path / "figures" / "torque.svg").read_text()
+    assert "Speed (rpm)" in (tmp_path / "figures" / "torque.svg").read_text()
 
 
 _CHARTS: dict[int, tuple[Analysis, dict[str, Any]]] = {}

@@ -45,7 +45,7 @@ def test_numbers_with_units_are_in_si_and_so_is_the_baseline_beside_them() -> No
     filled = amounts({"mass": None, "stiffness": "1 N/m"}, needed=("mass", "stiffness"))
     assert filled.in_si
     assert filled.values["mass"] == pytest.approx(OUNCE / INCH, rel=1e-12)
-    assert filled.words == ["- Not given; using the paper's baseline values: mass 10.9 kg."]
+    assert filled.words == ["- Not given; using the baseline values: mass 10.9 kg."]
 
 
 def test_the_machine_fills_what_is_not_given() -> None:
@@ -186,7 +186,7 @@ def test_a_machine_brings_grip_motor_and_rest(tmp_path: Path) -> None:
     assert weak.startswith("The belt stalls")
     assert ", starting at 0.0818 s" in weak
     assert "The motor is too weak: the motion needs up to 0.27 of the 0.2 N·m of the motor" in weak
-    assert "The roll can pull the belt with up to 18 N. It cannot start a belt at rest" in weak
+    assert "The drive can pull with up to 18 N. It cannot start from rest" in weak
     free = json.loads(run(*typed, "free.toml", "--json", cwd=tmp_path).stdout)
     assert (free["kind"], free["motor"]["limit"]) == ("stick_slip", pytest.approx(0.2))
     assert free["motor"]["torque"] > 1.0
@@ -198,7 +198,7 @@ def test_a_machine_brings_grip_motor_and_rest(tmp_path: Path) -> None:
         done = run("sweep", scenario, "--machine", file, cwd=tmp_path).words
         assert done.startswith(f"1 set of parameters {kind} 1 (100 %)")
         assert "The no-load torque is added to the drag: 1.33 N + 0 N·s/m times speed" in done
-        assert ("The roll can pull the belt with up to 18 N" in done) == (file == "weak.toml")
+        assert ("The drive can pull with up to 18 N" in done) == (file == "weak.toml")
 
 
 def test_a_drive_speed_may_be_that_of_the_roll_where_the_machine_states_its_radius(tmp_path: Path) -> None:

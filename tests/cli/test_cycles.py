@@ -213,7 +213,7 @@ def test_a_mistake_ends_in_one_line(tmp_path: Path) -> None:
         (["--drive-speed", "0 mm/s"], "must be greater than 0"),
         (
             ["--drive-speed", "3 rpm"],
-            "is the speed of a roll, but a trace of force in N needs the speed of the belt",
+            "is a rotational speed, but a trace of force in N needs a sliding speed",
         ),
         (["--known", "mass=1 kg"], "--known needs --identify"),
         (["--identify"], "--drive-speed '20 mm/s'"),

@@ -23,6 +23,7 @@ from tests.life.test_campaign import means
 #: Eight answers about channels, all as proposed; then the machine, one point.
 CHANNELS = [""] * 8
 MACHINE = [
+    "",
     "11 N/mm ± 10 %",
     "11 kg",
     "15 mm",
@@ -62,7 +63,7 @@ def test_answers_from_a_pipe_become_two_files_with_comments(folder: Path) -> Non
 
 
 def test_a_dash_leaves_out_and_the_end_leaves_out_the_rest(folder: Path) -> None:
-    answers = ["", "", "", "", "-", "", "", "", ""]
+    answers = ["", "", "", "", "-", "", "", "", "", ""]
     done = run("new", "log.csv", "--mapping", "own.toml", cwd=folder, answers=lines(*answers))
     assert done.returncode == 0, done.stderr
     assert read_mapping(folder / "own.toml").channels == {
@@ -80,9 +81,9 @@ def test_a_dash_leaves_out_and_the_end_leaves_out_the_rest(folder: Path) -> None
         ([], "hersey new asks questions: type it in a terminal, or pipe the answers"),
         (["Moment"], "answer 1, channel of the torque: log.csv: there is no column 'Moment' (torque)"),
         (["", "rpm"], "answer 2, unit of the torque: unit 'rpm' is not a unit of torque"),
-        ([*CHANNELS, "11"], "answer 9, k stiffness: '11' has no unit: write '11 N/mm', for example"),
-        ([*CHANNELS, "11 N/mm", ""], "answer 10, m mass: this answer is required. Estimate it"),
-        ([*CHANNELS, "11 N/mm", "11 kg"], "the answers end before 'R roll radius'"),
+        ([*CHANNELS, "", "11"], "answer 10, k stiffness: '11' has no unit: write '11 N/mm', for example"),
+        ([*CHANNELS, "", "11 N/mm", ""], "answer 11, m mass: this answer is required. Estimate it"),
+        ([*CHANNELS, "", "11 N/mm", "11 kg"], "the answers end before 'R radius'"),
     ],
 )
 def test_a_wrong_answer_from_a_pipe_writes_nothing(folder: Path, answers: list[str], said: str) -> None:
@@ -93,7 +94,7 @@ def test_a_wrong_answer_from_a_pipe_writes_nothing(folder: Path, answers: list[s
 
 
 def test_what_the_answers_do_not_fit_is_said_at_once(folder: Path) -> None:
-    machine = [*MACHINE[:4], "", MACHINE[4], *[""] * 9]
+    machine = [*MACHINE[:5], "", MACHINE[5], *[""] * 9]
     oil = ["", "40 degC: 400 mm^2/s, 100 degC: 40 mm^2/s"]
     done = run("new", "--all", cwd=folder, answers=lines(*machine, *oil))
     assert (done.returncode, done.stdout) == (2, "")

@@ -89,7 +89,7 @@ def test_a_start_above_the_setpoint_warms_nothing_up(folder: Path) -> None:
         ([*TYPED[:6], "--from", "-300 degC"], "--from is -300 degC"),
         ([*TYPED, "--out", "w.svg", "--figure", "w.svg"], "name two different files"),
         (HEATED[:5] + HEATED[6:], "--heat"),
-        ([*HEATED, "--stiffness", "11 N/mm"], "omit the other options of the belt"),
+        ([*HEATED, "--stiffness", "11 N/mm"], "omit the other options of the drive"),
         (HEATED[:6], "--drive-speed"),
         (["simulate", "--from", "20 degC"], "--from needs --heat"),
         ([*HEATED[:2], "bare.toml", *HEATED[3:]], "add [heat]"),

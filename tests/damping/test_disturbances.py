@@ -72,7 +72,7 @@ def test_frequency_and_amplitude_of_a_ripple_are_data() -> None:
 
 def test_one_frequency_at_every_speed_is_none_of_the_roll() -> None:
     with pytest.raises(
-        InsufficientDataError, match=r"3 Hz, .* the same at every speed, so not from roll or belt"
+        InsufficientDataError, match=r"3 Hz, .* the same at every speed, so not from what turns"
     ):
         log(lambda torque: torque * (1.0 + 0.6 * np.sin(2.0 * np.pi * 3.0 * TIME))).steady()
 

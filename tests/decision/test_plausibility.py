@@ -60,7 +60,7 @@ def test_a_radius_in_metres_is_asked_about(points: hersey.SteadyPoints, machine:
     found = _asked(points, replace(machine, roll_radius=15.0))
     assert found is not None
     assert found.kind == "radius unit"
-    assert in_words(found)[0] == "Is the roll radius 15000 mm? That is 15 m"
+    assert in_words(found)[0] == "Is the radius 15000 mm? That is 15 m"
 
 
 def test_swapped_columns_are_asked_about(points: hersey.SteadyPoints, machine: hersey.Machine) -> None:

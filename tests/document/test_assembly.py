@@ -98,7 +98,7 @@ def test_warnings_name_what_matters(document: Analysis, log: hersey.TorqueLog) -
 def test_the_simulation_is_of_this_machine(document: Analysis) -> None:
     s = document.simulation
     assert s is not None
-    stalls = s.title.endswith("the roll slips on the belt and cannot move it")
+    stalls = s.title.endswith("the drive slips and does not move it")
     assert s.kind == ("stalled" if stalls else "stick_slip")
     assert s.transition_speed == pytest.approx(0.015 * document.fit.transition_curve[-1].speed, rel=0.03)
 

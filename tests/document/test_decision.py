@@ -200,7 +200,7 @@ def test_without_a_machine_it_speaks_of_the_roll(log: hersey.TorqueLog, tmp_path
     assert document.simulation is document.map is None
     assert not any("paper" in str(warning) for warning in document.warnings)
     high = fit(points).transition_estimate(fit(points).temperature_range[1]).high  # type: ignore[index]
-    assert f"Keep the roll above {figures(high * 60 / math.tau, up=True)} rpm" in said.otherwise
+    assert f"Keep the speed above {figures(high * 60 / math.tau, up=True)} rpm" in said.otherwise
     assert said.instruction.endswith("The safe speed is not yet known.")
     file = tmp_path / "machine.toml"
     file.write_text("\n".join(part.lines for part in said.missing if part.file == "machine.toml"))

@@ -120,7 +120,7 @@ def test_an_interval_of_the_transition_that_is_not_told_gives_no_speed(
     monkeypatch.setattr(DampingSurface, "transition_estimate", lambda *_: open_ended)
     said = of_log(Findings(points=points, surface=surface, regime=seen), Trend(True, True, 1.0, 0.1))
     assert "torque is lowest at 9.5 rpm, interval not known" in said.instruction
-    assert "Keep the roll well above 9.5 rpm" in said.otherwise
+    assert "Keep the speed well above 9.5 rpm" in said.otherwise
 
 
 def test_warnings_of_the_log(points: hersey.SteadyPoints, surface: DampingSurface, seen: Regime) -> None:

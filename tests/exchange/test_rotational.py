@@ -94,7 +94,7 @@ def test_the_radius_is_a_parameter(tmp_path: Path) -> None:
         ({"port": "linear"}, "port is 'linear': it must be translational or rotational"),
         (
             {"port": "rotational", "drive": "torque", "roll_radius": RADIUS},
-            "port 'rotational' needs drive 'speed', because a torque already acts on the roll",
+            "port 'rotational' needs drive 'speed', because a torque already acts on the shaft",
         ),
     ],
 )

@@ -228,7 +228,7 @@ def test_gears_by_hand_in_both_directions() -> None:
     np.testing.assert_allclose(done.log.runs[0].speed, speed / 2.0, rtol=1e-12)
     (warning,) = done.corrections[-1].warnings
     assert warning.values == {"rows": int(np.sum(~driving))}
-    assert str(warning) == f"in {int(np.sum(~driving))} rows the roll drives the motor"
+    assert str(warning) == f"in {int(np.sum(~driving))} rows the load drives the motor"
     assert not corrections.at_roll(log, torque_ratio=3.0).corrections[-1].warnings
 
 

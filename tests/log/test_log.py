@@ -366,6 +366,45 @@ def test_a_number_that_reads_in_two_ways_is_refused(tmp_path: Path) -> None:
         hersey.read(path)
 
 
+def damaged(path: Path, cell: str, rows: tuple[int, ...], of: int = 1000) -> Path:
+    lines = [f"{i / 10:.1f},0.5{i % 7},60.{i % 3},150\n" for i in range(of)]
+    for row in rows:
+        lines[row] = f"{row / 10:.1f},{cell},60.0,150\n"
+    path.write_text(HEADER + "".join(lines))
+    return path
+
+
+@pytest.mark.parametrize(
+    ("cell", "fault"),
+    [
+        ("err", "column 'Torque': 'err' is not a number"),
+        ('"0,52"', "column 'Torque': '0,52' is not a number"),
+        ("0,52", "5 cells, but the header has 4"),
+    ],
+)
+def test_cells_that_are_no_numbers_cost_their_rows_alone(cell: str, fault: str, tmp_path: Path) -> None:
+    rows = tuple(range(100, 120))
+    log = hersey.read(damaged(tmp_path / "log.csv", cell, rows))
+    assert log.rows == 980
+    (warning,) = log.files[0].warnings
+    between = ": " if fault.startswith("5") else ", "
+    faults = [f"line {row + 2}{between}{fault}" for row in rows[:10]]
+    assert warning.values == {"rows": 20, "faults": "; ".join(faults), "others": 10, "dates": ""}
+    assert np.setdiff1d(np.arange(1000), np.round(10 * log.runs[0].time)).tolist() == list(rows)
+    many = damaged(tmp_path / "many.csv", cell, tuple(range(100, 121)))
+    with pytest.raises(UnreadableLogError, match=r"line 102.*the first of 21 such rows, of 1000") as refused:
+        hersey.read(many)
+    assert "drop_missing=True" in refused.value.remedy
+    assert hersey.read(many, drop_missing=True).rows == 979
+
+
+def test_damage_in_one_file_stops_none_of_many(tmp_path: Path) -> None:
+    logs = [damaged(tmp_path / f"{i}.csv", "-.-" if i == 3 else f"0.{60 + i}", (500,)) for i in range(5)]
+    log = hersey.read(logs)
+    assert [file.rows for file in log.files] == [1000, 1000, 1000, 999, 1000]
+    assert [len(file.warnings) for file in log.files] == [0, 0, 0, 1, 0]
+
+
 def test_the_hash_is_of_all_bytes_also_of_what_follows_the_table(tmp_path: Path) -> None:
     path = tmp_path / "log.csv"
     path.write_text(HEADER + BODY + "Mean,0.6,61,150\nTest completed at 21:02:28\n")

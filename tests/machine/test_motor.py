@@ -33,9 +33,9 @@ def test_the_motor_bears_no_more_than_the_roll_grips() -> None:
     slips = hersey.simulate(replace(TRAIN, grip=150.0), DRAG, drive_speed=1.0, duration=0.3)
     assert motor_use(slips, motor_torque=4.0, roll_radius=0.02).torque == pytest.approx(3.0)
     assert slips.roll_slips == [(pytest.approx(0.15), 0.3)]
-    assert "the roll slips on the belt for 0.15, starting at 0.15" in slips.summary()
+    assert "the drive slips for 0.15, starting at 0.15" in slips.summary()
     stalled = hersey.stick_slip(replace(TRAIN, grip=150.0), DRAG, drive_speed=1.0)
-    assert stalled.summary().startswith("stalled: the roll slips on the belt and cannot move it")
+    assert stalled.summary().startswith("stalled: the drive slips and moves nothing")
 
 
 def test_a_motion_already_beyond_is_beyond_from_its_start() -> None:

@@ -15,14 +15,14 @@ POINT = hersey.OperatingPoint("slow", 0.045, 453.15)
 @pytest.mark.parametrize(
     ("given", "line"),
     [
-        ({}, "roll radius 15 mm, stiffness 11 kN/m, mass 11 kg, no operating points"),
+        ({}, "drive, radius 15 mm, stiffness 11 kN/m, mass 11 kg, no operating points"),
         (
             {"stiffness": 512.3, "mass": "450 g", "points": (POINT,)},
-            "roll radius 15 mm, stiffness 512.3 N/m, mass 0.45 kg, 1 operating point",
+            "drive, radius 15 mm, stiffness 512.3 N/m, mass 0.45 kg, 1 operating point",
         ),
         (
             {"stiffness": 1e3, "points": (POINT, POINT)},
-            "roll radius 15 mm, stiffness 1 kN/m, mass 11 kg, 2 operating points",
+            "drive, radius 15 mm, stiffness 1 kN/m, mass 11 kg, 2 operating points",
         ),
     ],
 )
@@ -33,7 +33,7 @@ def test_a_machine_is_shown_on_one_line(given: dict[str, Any], line: str) -> Non
 
 def test_a_machine_from_its_file_is_shown_like_one_made_by_hand() -> None:
     machine = hersey.read_machine(ROOT / "examples" / "machine.toml")
-    assert repr(machine) == "Machine(roll radius 15 mm, stiffness 11 kN/m, mass 11 kg, 2 operating points)"
+    assert repr(machine) == "Machine(belt, radius 15 mm, stiffness 11 kN/m, mass 11 kg, 2 operating points)"
 
 
 def test_a_table_of_the_file_says_where_its_keys_are() -> None:

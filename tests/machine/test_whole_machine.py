@@ -79,7 +79,7 @@ def test_bands_laps_and_plans_take_the_machine() -> None:
 
 def test_a_surface_needs_a_machine() -> None:
     surface, machine = fitted()
-    with pytest.raises(ParameterError, match="needs roll radius and stick speed"):
+    with pytest.raises(ParameterError, match="needs radius and stick speed"):
         hersey.hysteresis(machine.train, surface, temperature=AT)
     with pytest.raises(ParameterError, match=r"machine is a Drivetrain\. It must be a Machine"):
         hersey.operating_map(surface, machine.train)  # type: ignore[arg-type]

@@ -356,7 +356,7 @@ def test_a_band_counts_only_beyond_its_accuracy() -> None:
         "so the start does not matter."
     )
     assert replace(band, lower=1.9, transition=2.0, upper=2.5).verdict() == (
-        "Below 1.9, stick-slip is certain. From 2 to 2.5, the belt slides if slowed from above and sticks if "
+        "Below 1.9, stick-slip is certain. From 2 to 2.5, it slides if slowed from above and sticks if "
         "started from below. Above, it slides."
     )
 
@@ -508,13 +508,13 @@ def test_a_roll_that_does_not_start_the_belt_stalls_and_is_told_from_stick_slip(
     released = (DRAG.stick_speed, float(DRAG.force(DRAG.stick_speed)) / TRAIN.stiffness)
     kinds = [hersey.stick_slip(train, DRAG, drive_speed=1.5, start=released).kind for train in (weak, weaker)]
     assert kinds == ["stick_slip", "stalled"]
-    assert band.verdict().startswith("The roll cannot start a belt at rest")
+    assert band.verdict().startswith("The grip does not suffice to start from rest")
     assert (never.lower, never.upper, never.sensitivity, never.bistable) == (0.0, 0.0, {}, False)
     assert "No stick-slip: a belt that sticks also stalls" in never.verdict()
     for stalling in (band, never):
         drawn = band_chart(stalling).to_dict()
         states = drawn["layer"][0]["data"]["values"]
-        assert [row["state"] for row in states] == ["stall: the roll slips"]
+        assert [row["state"] for row in states] == ["stall: the drive slips"]
     assert not hersey.hysteresis(replace(TRAIN, grip=1.01 * DRAG.holding_force), DRAG).stalls
     stiction = hersey.hysteresis(weak, replace(DRAG, closure="stiction"))
     assert (stiction.stalls, stiction.upper) == (True, 0.0)

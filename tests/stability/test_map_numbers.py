@@ -249,7 +249,7 @@ def test_states_and_torques_go_with_their_temperatures(few: OperatingMap) -> Non
     assert strong.look_up(temperature=467.0, speed=0.3)[0].verdict() == "Smooth."
     weak = replace(few, torque_limit=3.0)
     assert weak.look_up(temperature=467.0, speed=0.3)[0].verdict().startswith("The motor cannot start")
-    may = "The drive may be unable to start a belt at rest. If it starts:"
+    may = "The drive may be unable to start it from rest. If it starts:"
     words = {
         s: few.look_up(temperature=467.0, speed=v)[0].verdict()
         for s, v in (("slow", 0.01), ("band", 0.045), ("fast", 0.3))
@@ -274,7 +274,7 @@ def test_every_sentence_of_a_map(few: OperatingMap, surface: DampingSurface) -> 
         "dwells do not show. "
         "The interval of V* includes the uncertainty of the fit, stiffness and stick speed",
         f"the drive gives at most 4.5 N m (motor torque); a belt at rest needs {rest:.3g} N m to start",
-        "the drive may be unable to start a belt at rest",
+        "the drive may be unable to start the belt from rest",
         "thick paper: the verdict is uncertain, because the point lies within the 95 % interval of V* "
         f"({1e3 * low:.3g} mm/s to {1e3 * high:.3g} mm/s)",
     ]
@@ -371,7 +371,7 @@ def test_the_summary_is_a_table_of_the_map(few: OperatingMap) -> None:
     ]
     assert "".join(f"{cell:<26s}" for cell in cells).rstrip() in lines
     torque = 0.015 * float(few.drag.at(453.15).force(0.12))
-    may = "The drive may be unable to start a belt at rest. If it starts:"
+    may = "The drive may be unable to start it from rest. If it starts:"
     assert f"full speed (120 mm/s, 180 degC, {torque:.3g} N m): {may} Smooth." in lines
     free = replace(few, torque_limit=None, stall_above=np.full(3, np.inf))
     assert free.summary().splitlines()[2].endswith("unknown")
@@ -494,7 +494,7 @@ def operating_map_of_stall(few: OperatingMap) -> OperatingMap:
     """The map with a belt that stalls soon on both branches."""
     below, above = few.contour(1.3 * 0.015 * max(few.drag.at(t).transition_force for t in KELVIN))
     below, above = np.maximum(below, 2 * few.speed[0]), np.minimum(above, 0.3)
-    return replace(few, stall_below=below, stall_above=above, limited_by="roll friction")
+    return replace(few, stall_below=below, stall_above=above, limited_by="grip")
 
 
 def test_the_frame_is_the_range_of_the_dwells(few: OperatingMap) -> None:

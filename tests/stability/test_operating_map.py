@@ -133,7 +133,7 @@ def test_where_the_roll_slips_a_belt_may_swing_without_sticking(
     drawn = map_of(surface, machine.train, **QUICK, limits=limits, temperatures=[kelvin, 460.0])
     state = drawn.state_at(temperature=kelvin, speed=0.9999 * drawn.upper[0])
     assert state.state == "bistable"
-    assert "oscillates while the roll slips" in state.verdict()
+    assert "oscillates while the drive slips" in state.verdict()
     free = map_of(surface, machine.train, **QUICK, temperatures=[kelvin, 460.0])
     assert (
         "sticks if started from rest"
@@ -144,7 +144,7 @@ def test_where_the_roll_slips_a_belt_may_swing_without_sticking(
 def test_stall_is_where_the_drag_exceeds_the_limit(surface: DampingSurface, machine: Machine) -> None:
     grip = Limits(roll_friction=0.2, nip_load=250.0, motor_torque=8.0)  # too weak for a belt at rest
     drawn = map_of(surface, machine.train, **QUICK, limits=grip)
-    assert (drawn.torque_limit, drawn.limited_by) == (pytest.approx(0.2 * 250 * 0.015), "roll friction")
+    assert (drawn.torque_limit, drawn.limited_by) == (pytest.approx(0.2 * 250 * 0.015), "grip")
     t, above, below = drawn.temperature[30], drawn.stall_above[30], drawn.stall_below[30]
     assert 0 < below < drawn.transition[30] < above < math.inf
     for speed in (above, below):
@@ -193,9 +193,8 @@ def test_what_the_roll_cannot_bear_simulation_finds_slipping(
     assert ("keeps sliding" in smooth.verdict()) == (grip == 250.0)
     started = [each for each in drawn.warnings if each.kind == "belt not started"]
     assert bool(started) == ("not started" in drawn.summary()) == (grip == 250.0)
-    assert [str(each) for each in started] == ["the drive cannot start a belt at rest at any temperature"][
-        : len(started)
-    ]
+    never = "the drive cannot start the belt from rest at any temperature"
+    assert [str(each) for each in started] == [never][: len(started)]
     own = map_of(surface, gripping, **QUICK, temperatures=[360.0, 453.15])  # the drivetrain's own grip
     assert own.torque_limit == pytest.approx(0.015 * grip)
     parts = bands_of(drawn, Frame.of(drawn))
@@ -449,7 +448,7 @@ def texts(svg: str) -> list[str]:
 def test_the_picture_names_everything(drawn: OperatingMap) -> None:
     svg = picture(map_chart(drawn), ".svg").decode()
     shown = texts(svg)
-    for text in ("Temperature (°C)", "Drive speed at the belt (mm/s)", "Roll speed (rpm)"):
+    for text in ("Temperature (°C)", "Drive speed (mm/s)", "Speed (rpm)"):
         assert text in shown
     for text in (
         "smooth",
@@ -585,7 +584,7 @@ def test_the_command_maps_a_fit_and_overwrites_nothing(fit_json: Path, tmp_path:
     refused = run("map", machine, "--fit", fit_json, cwd=tmp_path)
     assert (refused.returncode, "--force" in refused.stderr) == (2, True)
     printed = run("map", machine, "--fit", fit_json, "--json", cwd=tmp_path)
-    assert json.loads(printed.stdout)["limited_by"] == "roll friction"
+    assert json.loads(printed.stdout)["limited_by"] == "grip"
 
 
 def test_the_command_refuses_what_it_cannot_use(fit_json: Path, bench_csv: Path, tmp_path: Path) -> None:

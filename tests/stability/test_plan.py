@@ -119,7 +119,7 @@ def test_the_number_that_would_do_does() -> None:
     assert plan.found
     assert [each.kind for each in plan.warnings] == ["grip not in the plan"]
     assert str(plan.warnings[0]) == (
-        "the grip of the roll is not stated (roll_friction and nip_load), so the roll is assumed not to slip"
+        "the grip is not stated (roll_friction and nip_load), so the drive is assumed not to slip"
     )
 
 
@@ -141,7 +141,7 @@ def test_a_roll_that_cannot_start_the_belt_has_no_plan() -> None:
     enough = refused.obstacles[0].needed
     assert enough is not None
     assert enough > FUSER_DRAG.holding_force > 180.0
-    assert f"The roll grip of 180 N cannot start this belt; {enough:g} N is needed" in refused.verdict()
+    assert f"The grip of 180 N cannot start it; {enough:g} N is needed" in refused.verdict()
     assert hersey.stick_slip(replace(FUSER, grip=180.0), FUSER_DRAG, drive_speed=0.045).kind == "stalled"
 
 
@@ -269,7 +269,7 @@ def test_the_command_says_what_forbids_a_profile(examples_here: Path) -> None:
     cold = ["--target", "45 mm/s", "--heat", "--from", "20 degC", "--out", "p.csv"]
     never = run("plan", "weak.toml", *command[2:], *cold, cwd=examples_here)
     assert never.returncode == 1
-    assert "he motor torque of 0.1 N m cannot start this belt" in never.words
+    assert "he motor torque of 0.1 N m cannot start it" in never.words
     assert not (examples_here / "p.csv").exists()
     for arguments, words in (
         (["--target", "45"], "45"),

@@ -342,14 +342,11 @@ def test_reach_of_a_drive() -> None:
     assert reach.broken == "the motor torque is not sufficient"
     gripped = replace(limits, roll_friction=0.6, nip_load=100.0)
     assert (Reach.of(gripped, 0.02).force, Reach.of(gripped, 0.02, 50.0).force) == (pytest.approx(60.0), 50.0)
-    assert Reach.of(gripped, 0.02).broken == "the roll slips on the belt"
+    assert Reach.of(gripped, 0.02).broken == "the drive slips"
     assert _obstacle("motor_torque", 2.0, 5.3821, held=True).text == (
-        "The motor torque of 2 N m cannot start this belt; 5.39 N m is needed."
+        "The motor torque of 2 N m cannot start it; 5.39 N m is needed."
     )
-    assert (
-        _obstacle("grip", 180.0, 434.0).text
-        == "The roll grip is limited to 180 N, but 434 N would be enough."
-    )
+    assert _obstacle("grip", 180.0, 434.0).text == "The grip is limited to 180 N, but 434 N would be enough."
     free = Reach.of(Limits(), None)
     assert (free.speed, free.acceleration, free.force, free.uses(shape, 80.0)) == (
         math.inf,
@@ -473,7 +470,7 @@ def test_what_a_plan_says(plan: Plan) -> None:
     assert plan.verdict() == (
         f"Accelerate to {plan.peak_speed:.4g} m/s in {plan.rise:.4g} s, {hold}slow down to 1.9 m/s in "
         f"{plan.fall:.4g} s. After {plan.duration:.5g} s the drive runs at the target "
-        "and the belt slides steadily."
+        "and slides steadily."
     )
     drawn_often = replace(plan, draws=1500, share=0.97, share_low=0.96178)
     assert drawn_often.proof() == (
@@ -525,7 +522,7 @@ def test_the_chart_of_a_plan_in_numbers(plan: Plan) -> None:
     speeds, force = plan_chart(plan).to_dict(validate=False)["vconcat"]
     assert plan.response is not None
     data = next(rows(layer) for layer in speeds["layer"] if len(rows(layer)) > 100)
-    belt = [(r["time"], r["value"]) for r in data if r["line"] == "belt, nominal parameters"]
+    belt = [(r["time"], r["value"]) for r in data if r["line"] == "sliding, nominal parameters"]
     np.testing.assert_allclose(belt, np.column_stack([plan.response.time, plan.response.belt_speed]))
     end = plan.response.time[-1]
     drive = [(r["time"], r["value"]) for r in data if r["line"] == "drive"]
@@ -553,7 +550,7 @@ def test_the_chart_of_a_plan_in_numbers(plan: Plan) -> None:
     assert limits == {
         "limit": pytest.approx(500.0),
         "motor limit": pytest.approx(400.0),
-        "grip of the roll": pytest.approx(600.0),
+        "grip": pytest.approx(600.0),
     }
     axes = next(layer for layer in speeds["layer"] if len(rows(layer)) > 100)["encoding"]
     assert axes["x"]["scale"]["domain"] == pytest.approx([0.0, end])

@@ -136,7 +136,7 @@ def test_the_page_says_who_carries_the_torque(page: Analysis, machine: Machine) 
     assert "208 mN m at 5 rpm (film 3 %, contact 10 %, no-load 87 %)" in shares
     assert "at 17.4 rpm (film 6 %, contact 1 %, no-load 94 %)" in shares
     assert agreement.startswith("Measured torque is 1.00 times that")
-    assert hard.startswith("Eq. 9 of the paper gives 1 N m at 17.4 rpm, 84 times film and contact")
+    assert hard.startswith("Eq. 9 gives 1 N m at 17.4 rpm, 84 times film and contact")
     # The level of the paper, 50 ozf at 1 in/s.
     assert np.interp(0.0254 / 0.015, budget.speed, whole) == pytest.approx(50 * 0.278 * 0.015, rel=0.15)
 

@@ -216,9 +216,9 @@ def test_the_verdict_in_whole_sentences(says: Verdict, log_says: Regime) -> None
     sentences = (
         "By the regime chart this contact is isoviscous-elastic, and damping should vary as "
         f"speed^{says.expected:.2f}; measured: {says.exponent}. "
-        f"A numerical solution for this roll gives the exponent {says.solved:.2f}. ",
+        f"A numerical solution for this nip gives the exponent {says.solved:.2f}. ",
         "From the log alone no regime can be named",
-        " Eq. 5 of the paper (Dowson-Higginson) does not apply to this contact. "
+        " Eq. 5 (Dowson-Higginson) does not apply to this contact. "
         f"The exponent of damping in temperature (K) is {says.thermal}; the film of this lubricant predicts "
         f"{says.thermal_expected:.2f}, which {'agrees' if agrees else 'disagrees'}.",
     )
@@ -326,10 +326,11 @@ def test_nip_strain_and_inlet(machine: Machine, contact: Contact, oil: Lubricant
     share = 100 * (pressed.nip.width / 2) ** 2 / (2 * 15e-3 * 3.5e-3)
     assert share > 15
     assert (
-        f"the rubber strain (a^2/(2 R h)) is {share:.0f} %; linear elasticity holds only up to about 15 %"
+        f"the strain of the layer (a^2/(2 R h)) is {share:.0f} %; linear elasticity holds only up to about "
+        "15 %"
     ) in check_film(replace(machine, contact=pressed), film_at(pressed, oil))
     film = film_at(contact, oil)
-    short = "the inlet is not short compared with rubber and nip, so the soft-EHL law is only approximate"
+    short = "the inlet is not short compared with layer and nip, so the soft-EHL law is only approximate"
     assert short not in check_film(machine, film)
     assert short in check_film(machine, replace(film, inlet_short=np.array(False)))
     rigid = replace(film, inlet_short=np.array(False), regime=np.array(0))
@@ -389,7 +390,7 @@ def test_what_is_said_of_a_log(machine: Machine, measured: MeasuredFilm) -> None
         "contains more than the nip's drag",
     )
     assert more(grip=0.15) == (
-        "friction coefficient 0.2 exceeds that of belt on roll, 0.15, so the belt would slip",
+        "friction coefficient 0.2 exceeds that of the grip, 0.15, so the drive would slip",
     )
     assert notes(grip=0.25) == alone
     for value, said in ((3.1, True), (2.9, False), (0.3, True), (0.35, False)):
@@ -485,7 +486,7 @@ def test_the_stribeck_curve_in_numbers(measured: MeasuredFilm) -> None:
     assert [row["friction"] for row in line] == pytest.approx(film[order].tolist())
     rounded = [5.0 * round((t - 273.15) / 5) for t in measured.temperature]
     assert [row["level"] for row in dots] == rounded
-    assert [(row["friction"], row["text"]) for row in rule] == [(0.6, "belt slips on the roll (0.6)")]
+    assert [(row["friction"], row["text"]) for row in rule] == [(0.6, "the drive slips (0.6)")]
     shown = panel["layer"][-1]["encoding"]["color"]["scale"]["domain"]
     assert shown == [90.0, 120.0, 150.0, 180.0]
     free = film_chart(measured.predicted, [], replace(measured, grip=None)).to_dict(validate=False)

@@ -108,7 +108,7 @@ def test_names_of_python_show_what_their_fields_mean(site: Path) -> None:
     text = (site / "reference" / "python" / "stability.html").read_text(encoding="utf-8")
     assert "hersey.OperatingMap" in text
     assert "Annotated" not in text
-    assert "torque to start a belt at rest" in text.replace("&#39;", "'").lower()
+    assert "torque to start from rest" in text.replace("&#39;", "'").lower()
 
 
 @pytest.mark.parametrize("sought", SOUGHT)

@@ -265,7 +265,7 @@ def _doubtful_heat(channel: Mapping[str, Any], unit: str, scale: float, offset: 
     if median > _TOO_COLD and most < ZERO_CELSIUS + TOO_HOT:
         return []
     end, what = ("most", "hotter") if most >= ZERO_CELSIUS + TOO_HOT else ("median", "colder")
-    title = f"{channel[end]:.4g} {sign(unit)} is {what} than any belt."
+    title = f"{channel[end]:.4g} {sign(unit)} is {what} than any such drive."
     for other in ("K", "degC", "degF"):
         low, high = _celsius(channel, other)
         if other != unit and low > _TOO_COLD - ZERO_CELSIUS and high < TOO_HOT:

@@ -246,5 +246,5 @@ class _Routes:
 
 
 def _question(question: Question) -> dict[str, Any]:
-    names = ("key", "section", "field", "words", "example", "unit", "letter", "needed", "first")
+    names = ("key", "section", "field", "name", "words", "example", "unit", "letter", "needed", "first")
     return {name: getattr(question, name) for name in names}

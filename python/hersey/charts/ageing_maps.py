@@ -35,7 +35,7 @@ def _panel(result: AgeingMaps, index: int, width: float) -> Chart:
     scale = alt.Scale(domain=[float(hot[0]), float(hot[-1])], nice=False)
     x = alt.X("x:Q", title=TEMPERATURE, scale=scale, axis=alt.Axis(grid=False, tickCount=4))
     domain = logarithmic_axis((1e3 * float(result.speed[0]), 1e3 * float(result.speed[-1])), grid=False)
-    y = alt.Y("y:Q", title="Drive speed at the belt (mm/s)" if index == 0 else None, **domain)
+    y = alt.Y("y:Q", title="Drive speed (mm/s)" if index == 0 else None, **domain)
     rows = [
         row | {"region": named[name.split()[0]], "part": name}
         for name, bottom, top in _regions(result, index)

@@ -208,7 +208,7 @@ def simulation_speed(document: Analysis) -> Chart | None:
     marks.setdefault(s.drive_speed * scale, "drive speed")
     domain = (0.0, 1.05 * scale * max(*s.belt_speed, s.transition_speed))
     rows = rows_of(time=s.time, value=[scale * v for v in s.belt_speed])
-    line = over_time(rows, f"Belt speed ({unit})", time_axis(), domain=domain)
+    line = over_time(rows, f"Sliding speed ({unit})", time_axis(), domain=domain)
     what = {"stick_slip": f"stick-slip at {s.frequency:.4g} Hz, stuck {s.stuck_fraction:.1%} of the time"}
     title = alt.Title(s.title, subtitle=what.get(s.kind, s.kind.replace("_", " ")))
     return alt.layer(line, *levels(list(marks.items()), domain, 220), title=title, width=WIDTH, height=220)

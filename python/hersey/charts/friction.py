@@ -83,9 +83,7 @@ def friction_chart(
         model = along(mixed, kelvin, dwells)
     seen = _seen(measured, model)
     span = _span(dwells, model)
-    stalls = [
-        (value, name) for value, name in ((grip, "belt slips on the roll"), (motor, "motor stalls")) if value
-    ]
+    stalls = [(value, name) for value, name in ((grip, "the drive slips"), (motor, "motor stalls")) if value]
     # A limit far beyond all that is measured would press the curve flat: it is named in the subtitle.
     near = [(value, name) for value, name in stalls if value < _NEAR * seen.max()]
     far = [f"{name} at {value:.3g}, beyond the chart" for value, name in stalls if (value, name) not in near]

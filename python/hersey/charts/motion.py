@@ -29,7 +29,7 @@ def trajectory_chart(run: Trajectory, *, units: tuple[str, str, str] = SI) -> Ch
     length, force, time = units
     x = time_axis((0.0, float(run.time[-1])), None, tickCount=12, **BARE)
     panels: list[alt.Chart | Chart] = [
-        _panel(run, run.belt_speed, f"Belt speed ({length}/{time})", x, time, height=210),
+        _panel(run, run.belt_speed, f"Sliding speed ({length}/{time})", x, time, height=210),
         _panel(run, run.spring_force, f"Spring force ({force})", x, time, height=150),
     ]
     if run.film_temperature is not None and run.roll_temperature is not None:
@@ -41,14 +41,14 @@ def trajectory_chart(run: Trajectory, *, units: tuple[str, str, str] = SI) -> Ch
     words = [f"{run.time.size} samples; {changes}"]
     if run.roll_slips:
         words.append(f"shaded: {run.slipping_in_words(lambda duration: f'{duration:.6g} {time}')}")
-    return stacked(*panels, title=alt.Title("Motion of the belt", subtitle=words), spacing=8)
+    return stacked(*panels, title=alt.Title("Motion", subtitle=words), spacing=8)
 
 
 def cycle_chart(cycle: StickSlipCycle, *, units: tuple[str, str, str] = SI) -> Chart:
     """Return the lap to which a motion settles: how long it sticks and slips, and how far it swings."""
     length, _, time = units
     swings = [
-        _swing(cycle.speed_min, cycle.speed_max, f"Belt speed ({length}/{time})"),
+        _swing(cycle.speed_min, cycle.speed_max, f"Sliding speed ({length}/{time})"),
         _swing(cycle.stretch_min, cycle.stretch_max, f"Spring stretch ({length})"),
     ]
     panels = [_lap(cycle, time), *swings] if cycle.frequency > 0 else swings
@@ -93,7 +93,7 @@ def _in_words(cycle: StickSlipCycle, time: str) -> str:
     unit = "Hz" if time == "s" else f"1/{time}"
     words = f"{kind} at {cycle.frequency:.4g} {unit}, stuck {cycle.stuck_fraction:.1%} of the time"
     slips = cycle.grip_slip_duration * cycle.frequency
-    return words + (f"; the roll slips {slips:.1%} of the time" if slips else "")
+    return words + (f"; the drive slips {slips:.1%} of the time" if slips else "")
 
 
 def _lap(cycle: StickSlipCycle, time: str) -> Chart:

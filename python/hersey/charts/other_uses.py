@@ -47,7 +47,7 @@ def _across(*, limits: bool) -> alt.X:
     if not limits:
         return alt.X("x:N", title="Duty (share of the running time)", sort=None)
     scale = alt.Scale(zero=False, padding=14)
-    return alt.X("x:Q", title="Motor torque limit at the roll (N·m)", scale=scale)
+    return alt.X("x:Q", title="Motor torque limit (N·m)", scale=scale)
 
 
 def _rows(uses: OtherUses) -> list[Row]:

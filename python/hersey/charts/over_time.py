@@ -56,10 +56,10 @@ def temperatures_over_time(
     """Return the temperatures (K) of film and roll, in degC."""
     rows = [
         row
-        for body, kelvin in (("film", film), ("roll", roll))
+        for body, kelvin in (("film", film), ("counterbody", roll))
         for row in rows_of(time=times, value=[celsius(t) for t in kelvin], body=[body] * len(times))
     ]
     legend = alt.Legend(title=None, orient="top-left", fillColor="white", padding=4)
-    color = categories(alt.Color, "body", {"film": ORANGE, "roll": INK}, legend)
+    color = categories(alt.Color, "body", {"film": ORANGE, "counterbody": INK}, legend)
     drawn: alt.Chart = over_time(rows, TEMPERATURE, x, unit=unit, zero=False).encode(color=color)
     return drawn

@@ -42,12 +42,12 @@ _SHOWN = 1.5
 #: Colour and dashes of each line.
 _LOOKS = {
     "drive": (INK, [7, 3]),
-    "belt": (BLUE, [1, 0]),
-    "belt, nominal parameters": (BLUE, [1, 0]),
-    "belt without the profile": (EDGE, [1, 0]),
+    "sliding": (BLUE, [1, 0]),
+    "sliding, nominal parameters": (BLUE, [1, 0]),
+    "sliding without the profile": (EDGE, [1, 0]),
 }
 #: What limits the force on the spring.
-_LIMITS = {"spring_force": "limit", "motor_torque": "motor limit", "grip": "grip of the roll"}
+_LIMITS = {"spring_force": "limit", "motor_torque": "motor limit", "grip": "grip"}
 #: Times (s) and values.
 Line = Sequence[tuple[float, float]]
 
@@ -67,7 +67,7 @@ def plan_chart(plan: Plan, *, temperature: Schedule | None = None) -> Chart:
     scale, unit = (1e3, "mm/s") if plan.target_speed < 1.0 else (1.0, "m/s")
     belt = _of_belt(plan, plan.response.belt_speed)
     slow, fast = min(v for _, v in belt), max(plan.peak_speed, *(v for _, v in belt))
-    lines = {"belt, nominal parameters": belt, "drive": _drive(plan, (start, end))}
+    lines = {"sliding, nominal parameters": belt, "drive": _drive(plan, (start, end))}
     domain = (min(0.0, 1.05 * slow), 1.08 * fast)
     panels = [
         _speeds(plan, lines, time_axis((start, end), None), domain, scale, unit, **UP),
@@ -89,9 +89,9 @@ def profile_chart(plan: Plan, motion: StartPart | None) -> Chart:
     last = max(1.6 * end, rows[-1].time) if motion is None else max(motion.time)
     lines: dict[str, Line] = {"drive": _drive(plan, (0.0, last))}
     if motion is not None and motion.straight:
-        lines["belt without the profile"] = _rounded(motion.time, motion.straight)
+        lines["sliding without the profile"] = _rounded(motion.time, motion.straight)
     if motion is not None:
-        lines["belt"] = _rounded(motion.time, motion.belt_speed)
+        lines["sliding"] = _rounded(motion.time, motion.belt_speed)
     domain = (0.0, 2.2 * max(_greatest(plan), *(v for v, _ in _marks(plan))))
     chart = _speeds(plan, lines, time_axis((0.0, last), tickCount=6), domain)
     return chart.properties(title="Start-up profile")
@@ -156,7 +156,7 @@ def _speeds(
             strokeDash=categories(alt.StrokeDash, "line", {name: _LOOKS[name][1] for name in lines}, key),
             tooltip=tips,
         ),
-        *_peak([row for row in rows if row["line"] == "belt"], ends[1], x),
+        *_peak([row for row in rows if row["line"] == "sliding"], ends[1], x),
         *_ready(plan, x, lines["drive"][-1][0]),
     ]
     return alt.layer(*layers, width=WIDTH, height=_HEIGHT)

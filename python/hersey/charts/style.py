@@ -35,7 +35,7 @@ DIAMOND: Row = {
     "size": 85,
     "opacity": 1,
 }
-ROLL_SPEED, TEMPERATURE = "Roll speed (rpm)", "Temperature (°C)"
+ROLL_SPEED, TEMPERATURE = "Speed (rpm)", "Temperature (°C)"
 #: How dwells are drawn.
 APPROACHES = "filled: reached from a lower speed; open: from a higher one; bars: two standard errors"
 Chart = alt.LayerChart | alt.FacetChart | alt.VConcatChart | alt.HConcatChart

@@ -45,7 +45,7 @@ def torque_budget_chart(part: TorqueBudgetPart) -> Chart:
     y = alt.Y("torque:Q", title=f"Torque ({unit})", stack="zero", axis=alt.Axis(tickCount=6))
     legend = alt.Legend(title=None, orient="bottom", columns=2, symbolOpacity=1)
     color = categories(alt.Color, "part", {name: shade for _, name, shade in _PARTS}, legend)
-    at = tip("speed", "roll (rpm)")
+    at = tip("speed", "speed (rpm)")
     tips = [alt.Tooltip("part:N", title="part"), at, tip("torque", f"torque ({unit})")]
     areas = plot(rows).mark_area(line=False)
     areas = areas.encode(x=x, y=y, order="order:Q", color=color, tooltip=tips)

@@ -60,7 +60,7 @@ _OF_THE_PAPER = {
     "time": "s",
 }
 _BARE = "Results are in the units of the numbers given."
-_PAPER_UNITS = "Numbers are in inches, ounces of force (ozf) and seconds, as in the paper"
+_PAPER_UNITS = "Numbers are in inches, ounces of force (ozf) and seconds, as in the baseline"
 #: Speeds of the drive, which may be given as those of the roll.
 _OF_A_DRIVE = ("drive_speed", "from_speed", "to_speed")
 #: Numbers of a belt that a machine file states.
@@ -186,8 +186,8 @@ def _parsed(name: str, text: str) -> float:
     kind, example = _KINDS[name]
     if _of_the_roll(name, text):  # without a machine file, for with one it is at the belt by now
         raise UnitError(
-            f"{_flag(name)} '{text}' is a speed of the roll, but the speed of the belt is needed",
-            remedy=f"name a machine file with --machine, for its roll radius, or write e.g. '{example}'",
+            f"{_flag(name)} '{text}' is a rotational speed, but a sliding speed is needed",
+            remedy=f"name a machine file with --machine, for its radius, or write e.g. '{example}'",
         )
     if not any(c.isdigit() for c in text):
         raise ParameterError(f"{_flag(name)} is '{text}': write a number with its unit, e.g. '{example}'")
@@ -231,7 +231,7 @@ def _with_baseline(values: Mapping[str, float | None], lacking: list[str]) -> Am
         kind = _KINDS[name][0]
         unit, factor = _SHOWN.get(kind, (KINDS[kind][0], 1.0))
         baseline.append(f"{name.replace('_', ' ')} {three(factor * taken[name], unit)}")
-    filled = f"Not given; using the paper's baseline values: {', '.join(baseline)}." if baseline else ""
+    filled = f"Not given; using the baseline values: {', '.join(baseline)}." if baseline else ""
     return Amounts({**values, **taken}, in_si=True, filled=filled)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import shlex
 import sys
 from contextlib import suppress
 from typing import Annotated, Any
@@ -28,7 +29,7 @@ from hersey.cli.mistyped import (
     without_value,
 )
 from hersey.cli.terminal import hush, say, say_wrapped, warnings_said
-from hersey.errors import HerseyError, speak
+from hersey.errors import HerseyError, UnitError, speak
 
 #: The commands in the order of the help, in groups, each with the first sentence of its help. The sentences
 #: are here too, so that the help lists them without loading the commands. Each command is a module of this
@@ -46,13 +47,13 @@ PANELS = {
         "fit": "Fit the damping surface B = a T^b w^c and print it with the lubrication regime.",
         "models": "Compare damping models on the same dwells and choose one.",
         "film": "Compute film thickness and lubrication regime, and compare them with a log.",
-        "map": "Map over temperature and speed where the belt runs smoothly, sticks or stalls.",
+        "map": "Map over temperature and speed where the drive runs smoothly, sticks or stalls.",
         "posterior": "Estimate V*, stick speed, stiffness, mass and closure from log and machine file.",
         "plan": "Find the quickest start-up profile that ends in steady sliding.",
         "warmup": "Find the quickest warm-up whose drag stays within the limits of grip and motor.",
         "cycles": "Find the slips of a stick-slip trace, and with --identify the drive behind them.",
         "hysteresis": "Find the speed range in which sticking depends on how the drive was started.",
-        "simulate": "Simulate the belt at a drive speed or over a profile.",
+        "simulate": "Simulate the motion at a drive speed or over a profile.",
         "sweep": "Simulate every combination of parameters and count the outcomes.",
         "design": "Propose the dwells or measurements to record next.",
     },
@@ -176,7 +177,7 @@ def main() -> None:
         with warnings_said():
             code = app(standalone_mode=False)
     except HerseyError as error:
-        _fail(_slip() or str(error))
+        _fail(_slip() or f"{error}{_in_full(error)}")
     except typer.Abort:
         raise KeyboardInterrupt from None
     except OSError:  # stdout takes no more
@@ -189,6 +190,15 @@ def main() -> None:
     if code == INTERRUPTED:  # which is what typer makes of it
         raise KeyboardInterrupt
     sys.exit(code or 0)
+
+
+def _in_full(error: HerseyError) -> str:
+    """The command with the units that several columns lack, to be typed as it is once they are right."""
+    units = error.units if isinstance(error, UnitError) else {}
+    if len(units) < 2:
+        return ""
+    options = [word for role, unit in units.items() for word in (f"--{role}-unit", unit)]
+    return f". In full: {shlex.join(['hersey', *sys.argv[1:], *options])}"
 
 
 def _misuse(error: Any) -> str:

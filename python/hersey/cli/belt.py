@@ -25,14 +25,14 @@ _OPTIONAL = ("bristle_stiffness", "bristle_damping", "static_force")
 
 
 #: Heading of these options in the help.
-_PANEL = "The belt, its spring and its drag"
+_PANEL = "The drive: mass, spring and drag"
 _STIFFNESS = "Spring stiffness k, e.g. '11 N/mm'.  [default: 1000]"
-_MASS = "Belt mass m, e.g. '11 kg'.  [default: 1]"
-_TRANSITION_FORCE = "Drag at the transition speed (B0 of the paper), e.g. '14 N'.  [default: 50]"
+_MASS = "Moving mass m, e.g. '11 kg'.  [default: 1]"
+_TRANSITION_FORCE = "Drag at the transition speed (B0), e.g. '14 N'.  [default: 50]"
 _TRANSITION_SPEED = "Speed of least drag, where the branches meet, e.g. '25 mm/s'.  [default: 1]"
 _EHL = "Damping exponent above the transition speed.  [default: -0.7]"
 _MIXED = "Damping exponent below the transition speed.  [default: -1.2]"
-_STICK_SPEED = "Speed below which the belt sticks, e.g. '0.3 mm/s'.  [default: 0.01]"
+_STICK_SPEED = "Speed below which it sticks, e.g. '0.3 mm/s'.  [default: 0.01]"
 _STATIC_FORCE = "Break-away drag, e.g. '40 N'.  [default: e times the drag at the stick speed]"
 _TABLE = "CSV of the drag curve, columns 'speed (mm/s)' and 'force (N)', instead of branches."
 _CLOSURE = "Motion below the stick speed: retained, stiction, stribeck or lugre."
@@ -145,7 +145,7 @@ def _of_the_machine(
         at = "" if kelvin is None else f" (at {celsius(kelvin):.0f} °C)"
         notes.append(f"The no-load torque is added to the drag: {machine.rest}{at}.")
     if train.grip is not None:
-        notes.append(f"The roll can pull the belt with up to {three(train.grip, 'N')}.")
+        notes.append(f"The drive can pull with up to {three(train.grip, 'N')}.")
     if train.grip is not None and drag.holding_force > train.grip:
-        notes.append(f"It cannot start a belt at rest, which takes {three(drag.holding_force, 'N')}.")
+        notes.append(f"It cannot start from rest, which takes {three(drag.holding_force, 'N')}.")
     return train, drag, replace(numbers, filled=" ".join(filter(None, notes)))

@@ -274,7 +274,7 @@ def _of_channel(channel: TraceFile, given: TraceFile) -> FloatArray:
     if turning != (channel.unit == "rad/s"):
         raise WrongKindError(
             f"--drive-speed-channel {channel.name}: with a trace of {given.quantity} in {given.unit} it must "
-            f"be {'an angular speed' if turning else 'the speed of a belt'}"
+            f"be {'an angular speed' if turning else 'a sliding speed'}"
         )
     seen = np.isfinite(channel.value)
     return np.asarray(np.interp(given.time, channel.time[seen], channel.value[seen]))
@@ -306,14 +306,14 @@ def _other_speed(text: str, speed: float, given: TraceFile) -> WrongKindError:
 
     trace = given.quantity if given.unit == RELATIVE else f"{given.quantity} in {given.unit}"
     if _turns(given):
-        is_of, needed, by = "a belt", "a roll", "divide it by"
+        is_of, needed, by = "a sliding speed", "a rotational speed", "divide it by"
         typed = f"{rpm(speed / _RADIUS):.3g} rpm"
     else:
-        is_of, needed, by = "a roll", "the belt", "multiply it by"
+        is_of, needed, by = "a rotational speed", "a sliding speed", "multiply it by"
         typed = f"{1e3 * speed * _RADIUS:.3g} mm/s"
     return WrongKindError(
-        f"--drive-speed '{text}' is the speed of {is_of}, but a trace of {trace} needs the speed of {needed}",
-        remedy=f"{by} the radius of the roll, e.g. at {1e3 * _RADIUS:g} mm type --drive-speed '{typed}'",
+        f"--drive-speed '{text}' is {is_of}, but a trace of {trace} needs {needed}",
+        remedy=f"{by} the radius, e.g. at {1e3 * _RADIUS:g} mm type --drive-speed '{typed}'",
     )
 
 

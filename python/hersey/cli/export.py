@@ -71,7 +71,7 @@ class _Unit:
     closure: Annotated[str, option(_CLOSURE)] = "retained"
     bristle_stiffness: BristleStiffness = None
     bristle_damping: BristleDamping = None
-    name: Annotated[str, option("Name of the model in the tool.")] = "Belt drive"
+    name: Annotated[str, option("Name of the model in the tool.")] = "Sliding drive"
     library: Annotated[list[str] | None, option(_LIBRARY, metavar="PLATFORM=FILE")] = None
 
     def drag(self, surface: DampingSurface | None, machine: Machine, file: str) -> Drag | MixedDrag:

@@ -41,7 +41,7 @@ _EXAMPLES = {
 _LONGEST, _MOST = 18, 12
 _LOG = "Log to compare with; repeat for more files."
 _AT = "Film temperature, e.g. '180 degC', if neither log nor operating points give it."
-_BELT_SPEED = "Belt speed, e.g. '120 mm/s', instead of the operating points of the file."
+_BELT_SPEED = "Sliding speed, e.g. '120 mm/s', instead of the operating points of the file."
 _MACHINE = "Machine file with the tables \\[contact] and \\[lubricant]."
 
 

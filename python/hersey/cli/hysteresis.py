@@ -81,8 +81,8 @@ def _as_typed(error: ParameterError, typed: dict[str, str | None], numbers: Amou
     swaps = end is not None and end >= error.limit
     swap = f", or swap the two speeds: {retyped(*_swapped(sys.argv[1:]))}" if swaps else ""
     return ParameterError(
-        f"{said} lies below the transition speed, {numbers.shown(error.limit, 'belt speed')}. Below it the "
-        f"belt cannot slide steadily. Start from a higher speed{swap}"
+        f"{said} lies below the transition speed, {numbers.shown(error.limit, 'belt speed')}. Below it, "
+        f"sliding is unstable. Start from a higher speed{swap}"
     )
 
 
@@ -99,11 +99,11 @@ def _band(band: HysteresisBand, numbers: Amounts) -> list[str]:
     between = numbers.shown_range(band.transition, band.upper, "belt speed")
     lines = []
     if band.stalls:
-        lines.append("The roll cannot start a belt at rest: it slips on it at any drive speed.")
+        lines.append("The grip does not suffice to start from rest, at any drive speed.")
     if band.upper == 0:
         return [
             *lines,
-            f"No stick-slip. A belt that slides keeps sliding above {least}, within the grip of the roll.",
+            f"No stick-slip. Once sliding, it keeps sliding above {least}, within the grip.",
         ]
     if not band.bistable:
         return [*lines, f"Stick-slip ends at {upper}, whatever the start (speed of least drag: {least})."]
@@ -115,7 +115,7 @@ def _band(band: HysteresisBand, numbers: Amounts) -> list[str]:
     return [
         *lines,
         f"Smooth from any start above {upper} (V*). Sticks from any start below {lower}.",
-        f"From {between} the belt sticks if started from rest and slides if slowed from above.",
+        f"From {between} it sticks if started from rest and slides if slowed from above.",
     ]
 
 
@@ -124,17 +124,13 @@ def _survived(found: Disturbance, numbers: Amounts) -> str:
     above = numbers.shown(found.drive_speed + found.step, "belt speed")
     if found.kick == found.step == math.inf:
         return f"Sliding at {at} survives any disturbance."
-    loss = (
-        "any sudden loss of belt speed"
-        if found.kick == math.inf
-        else f"a sudden loss of belt speed of {kick}"
-    )
+    loss = "any sudden loss of speed" if found.kick == math.inf else f"a sudden loss of speed of {kick}"
     return f"Sliding at {at} survives {loss} and a sudden step of the drive down from {above}."
 
 
 def _stepped(step: SafeStep, numbers: Amounts) -> str:
     before, after = (numbers.shown(v, "belt speed") for v in (step.from_speed, step.to_speed))
-    does, ramp = "makes the belt stick" if step.sticks else "keeps the belt sliding", "Any ramp is safe."
+    does, ramp = "makes it stick" if step.sticks else "keeps it sliding", "Any ramp is safe."
     if step.ramp_time == math.inf:
         ramp = "No ramp is slow enough."
     elif step.ramp_time > 0:

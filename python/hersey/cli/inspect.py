@@ -52,13 +52,13 @@ def inspect(
     from hersey.log.proposal import propose_mapping
 
     recipe = reading.recipe(logs)
+    if kept is not None:
+        with working("looking at the channels"), memory_limit(reading.max_memory):
+            written.write(propose_mapping(logs[0], channels=recipe.channels, units=recipe.units))
     with working("looking at the channels"), memory_limit(reading.max_memory):
         given = {name: value for name, value in vars(recipe).items() if name not in ("logs", "no_load")}
         inspection = inspected(logs, **(given | {"means": recipe.are_means}))
     with memory_limit(reading.max_memory):
-        if kept is not None:
-            proposal = propose_mapping(logs[0], channels=recipe.channels, units=recipe.units)
-            written.write(proposal)
         if save_recipe is not None:
             saved.write(recipe.toml(save_recipe.parent))
         drawing.draw(inspection, "drawing the channels", paths=logs)

@@ -216,11 +216,12 @@ def _likely(role: str, written: str) -> str:
 
 def _machine(asked: list[Question], asking: Asking, path: Path) -> str:
     """The machine file, empty if the first question is skipped."""
-    from hersey.machine.questions import lacking
+    from hersey.machine.questions import PART, asked_of, lacking
     from hersey.machine.writing import machine_text
 
     answers: dict[str, str] = {}
-    for question in asked:
+    for general in asked:
+        question = asked_of(general, answers.get(PART, ""))
 
         def fits(text: str, question: Question = question) -> None:
             with_it = {**answers, question.key: text}
@@ -228,7 +229,8 @@ def _machine(asked: list[Question], asking: Asking, path: Path) -> str:
                 _refuse_wrong(machine_text(with_it))
 
         read = _reader(question, fits)
-        needed = bool(answers) and question in lacking(answers)
+        begun = any(key != PART for key in answers)
+        needed = begun and general in lacking(answers)
         assumed = question.assumed if needed else ""
         text = asking.ask(question.name, read, words=_words(question), proposed=assumed, needed=needed)
         if text and text == assumed:
@@ -239,26 +241,26 @@ def _machine(asked: list[Question], asking: Asking, path: Path) -> str:
                 words = "e.g. 1 mm/s to 4 mm/s, or ± 50 %; if skipped, the value counts as exact"
                 uncertainty = asking.ask("its uncertainty", _known(text, read), words=words)
                 answers[question.key] = uncertainty or text
-        elif not answers:
+        elif question.needed and not begun:
             say(f"No machine file is written, because {path} needs this answer.", file=sys.stderr)
             return ""
-    return machine_text(answers, _points(asking))
+    return machine_text(answers, _points(asking, answers.get(PART, "")))
 
 
-def _points(asking: Asking) -> list[dict[str, str]]:
+def _points(asking: Asking, part: str) -> list[dict[str, str]]:
     """The operating points, until one is skipped."""
     points: list[dict[str, str]] = []
-    while point := _point(len(points) + 1, asking):
+    while point := _point(len(points) + 1, asking, part):
         points.append(point)
     return points
 
 
-def _point(number: int, asking: Asking) -> dict[str, str]:
+def _point(number: int, asking: Asking, part: str) -> dict[str, str]:
     """An operating point, empty if its first question is skipped."""
-    from hersey.machine.questions import POINT
+    from hersey.machine.questions import POINT, asked_of
 
     point: dict[str, str] = {}
-    for question in sorted(POINT, key=lambda q: not q.needed):
+    for question in (asked_of(q, part) for q in sorted(POINT, key=lambda q: not q.needed)):
         what = f"operating point {number}, {question.name}"
         needed = bool(point) and question.needed
         name = "" if question.needed else f"{point['speed']} at {point['temperature']}"

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 _MACHINE = "Machine file with drivetrain, limits and uncertainties."
-_TARGET = "Target speed of the belt, e.g. '60 mm/s', or of the roll, e.g. '40 rpm'."
+_TARGET = "Target speed where it slides, e.g. '60 mm/s', or of the shaft, e.g. '40 rpm'."
 _PROFILE = "Use a temperature that varies: a file of time and temperature."
 _HEAT = "Compute the temperature from \\[heat] of the machine file."
 _FROM = "Temperature of the cold start, with --heat.  [default: that of \\[heat]]"
@@ -172,7 +172,7 @@ def _verdict(planned: Plan) -> str:
             f"Speed up to {peak} {taking(planned.rise)}, {held}slow down to {target} {taking(planned.fall)}."
         )
     wait = f"Wait {three(planned.wait, 's')}. " if planned.wait > 0 else ""
-    return f"{wait}{way} The belt slides steadily from {three(planned.duration, 's')} on."
+    return f"{wait}{way} It slides steadily from {three(planned.duration, 's')} on."
 
 
 def _temperatures(course: Schedule, planned: Plan) -> str:
@@ -180,7 +180,7 @@ def _temperatures(course: Schedule, planned: Plan) -> str:
     from hersey.units import celsius
 
     at = [f"{celsius(course.at(time)):.0f} °C" for time in (0.0, planned.wait, planned.duration)]
-    return f"Film temperature: {at[0]} at first, {at[1]} at the start, {at[2]} once the belt slides steadily."
+    return f"Film temperature: {at[0]} at first, {at[1]} at the start, {at[2]} once it slides steadily."
 
 
 def _of_a_fit(

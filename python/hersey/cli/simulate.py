@@ -33,12 +33,12 @@ _HEAT = "Simulate heating from cold, with \\[heat] of --machine and the drag of 
 _FROM = "Temperature at the start, with --heat.  [default: that of \\[heat]]"
 #: What the motion settles to, in words.
 _KINDS = {
-    "stick_slip": "The belt sticks and slips.",
-    "steady_sliding": "The belt slides steadily.",
-    "oscillation": "The belt oscillates without sticking.",
+    "stick_slip": "It sticks and slips.",
+    "steady_sliding": "It slides steadily.",
+    "oscillation": "It oscillates without sticking.",
     "unsettled": "The motion has not settled.",
-    "stalled": "The belt stalls: the roll slips on it and does not move it.",
-    "grip_slip": "The belt slides steadily, slower than the roll, which slips on it.",
+    "stalled": "It stalls: the drive slips and does not move it.",
+    "grip_slip": "It slides steadily, slower than the drive, which slips.",
 }
 
 
@@ -168,16 +168,16 @@ def _cycle(cycle: StickSlipCycle, numbers: Amounts) -> list[str]:
     if cycle.frequency == 0:
         speed = numbers.shown(cycle.speed_max, "belt speed")
         stretch = numbers.shown(cycle.stretch_max, "length")
-        return [*lines, *labelled([("belt speed", speed), ("stretch", stretch)])]
+        return [*lines, *labelled([("sliding speed", speed), ("stretch", stretch)])]
     rows = [
         ("frequency", numbers.shown(cycle.frequency, "frequency")),
         ("stuck", f"{three(100 * cycle.stuck_fraction)} % of the time"),
-        ("belt speed", numbers.shown_range(cycle.speed_min, cycle.speed_max, "belt speed")),
+        ("sliding speed", numbers.shown_range(cycle.speed_min, cycle.speed_max, "belt speed")),
         ("stretch", numbers.shown_range(cycle.stretch_min, cycle.stretch_max, "length")),
         ("drag work", f"{numbers.shown(cycle.drag_work, 'energy')} per cycle"),
     ]
     if cycle.grip_slip_duration > 0:
-        rows.append(("roll slips", f"{numbers.shown(cycle.grip_slip_duration, 'time')} per cycle"))
+        rows.append(("drive slips", f"{numbers.shown(cycle.grip_slip_duration, 'time')} per cycle"))
     return [*lines, *labelled(rows)]
 
 
@@ -234,7 +234,7 @@ def _warmed(belt: Belt, drive: _Drive, heat: _Heat) -> _Motion:
         )
     if belt != Belt(machine=belt.machine):
         raise ParameterError(
-            "--heat uses the belt of --machine and the drag of --fit: omit the other options of the belt"
+            "--heat uses the drive of --machine and the drag of --fit: omit the other options of the drive"
         )
     if drive.drive_speed is None:
         raise ParameterError("--heat needs the speed of the drive: add --drive-speed '30 mm/s'")

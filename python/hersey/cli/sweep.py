@@ -38,13 +38,13 @@ _CHUNK = "Keep the sweep in a folder, N sets at a time."
 _KINDS = {
     "stick_slip": "stick-slip",
     "steady_sliding": "steady sliding",
-    "grip_slip": "roll slips on the sliding belt",
+    "grip_slip": "drive slips while it slides",
 }
 #: Ranges of the stick-slip that are printed: name, unit, and how many make one in SI.
 _RANGES = {
     "frequency": ("frequency", "Hz", 1.0),
     "stuck_fraction": ("stuck", "% of the time", 100.0),
-    "speed_max": ("highest belt speed", "mm/s", 1e3),
+    "speed_max": ("highest sliding speed", "mm/s", 1e3),
     "stretch_max": ("greatest stretch", "mm", 1e3),
 }
 
@@ -157,7 +157,7 @@ def _lines(counted: dict[str, Any], *, in_si: bool) -> list[str]:
             unit, factor = "", 1.0
         ranges.append((label, f"{three(factor * low)} to {three(factor * high, unit)}"))
     lines = [f"{sets} set{'s' * (sets != 1)} of parameters", *labelled(rows)]
-    lines += ["Where the belt sticks and slips", *labelled(ranges)] if ranges else []
+    lines += ["Where it sticks and slips", *labelled(ranges)] if ranges else []
     return lines + [f"- {failure}" for failure in counted["failures"]]
 
 
@@ -166,7 +166,7 @@ def _of_the_machine(described: Scenario) -> Iterator[str]:
     from hersey.cli.figures import three
 
     if described.grip is not None:
-        yield f"The roll can pull the belt with up to {three(described.grip, 'N')}."
+        yield f"The drive can pull with up to {three(described.grip, 'N')}."
     if described.rest_force or described.rest_damping:
         force, damping = three(described.rest_force, "N"), three(described.rest_damping, "N·s/m")
         yield f"The no-load torque is added to the drag: {force} + {damping} times speed."

@@ -37,7 +37,7 @@ def of_a_force(error: HerseyError, path: Path, machine: Machine) -> HerseyError:
     radius = f"{1e3 * machine.roll_radius:.6g} mm"
     return ChannelError(
         f"{path.name}: '{forces[0]}' is a force, but a trace needs the torque",
-        remedy=f"if it acts at the roll radius, write two lines into {mapping_of_log(path)}: "
+        remedy=f"if it acts at the radius of the machine file, write two lines into {mapping_of_log(path)}: "
         f'torque.channel = {quoted(forces[0])} and radius.value = "{radius}"',
         setting=Setting("torque", "channel"),
     )

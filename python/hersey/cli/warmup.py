@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 _MACHINE = "Machine file with drivetrain, limits and \\[heat]."
 _OUT = "Write the warm-up as a table, which plan --temperature-profile reads."
-_TARGET = "Full speed of the belt, e.g. '120 mm/s', or of the roll, e.g. '80 rpm'."
+_TARGET = "Full speed where it slides, e.g. '120 mm/s', or of the shaft, e.g. '80 rpm'."
 _FROM = "Temperature of the cold start, e.g. '20 degC'.  [default: that of \\[heat]]"
 #: Rows of the table.
 _ROWS = 12
@@ -114,7 +114,11 @@ def _lines(warm: WarmUp, weakest: str) -> list[str]:
         (four(warm.time[i]), four(1e3 * warm.drive_speed[i]), f"{film[i]:.1f}", f"{roll[i]:.1f}")
         for i in np.unique(np.linspace(0, last, _ROWS).round().astype(int)).tolist()
     ]
-    return [*lines, "", *columns(("time (s)", "drive (mm/s)", "film (°C)", "roll (°C)"), rows, first=">")]
+    return [
+        *lines,
+        "",
+        *columns(("time (s)", "drive (mm/s)", "film (°C)", "counterbody (°C)"), rows, first=">"),
+    ]
 
 
 def _verdict(warm: WarmUp) -> str:
@@ -136,7 +140,7 @@ def _verdict(warm: WarmUp) -> str:
         return f"{first}. {target} is not reached within {longest}; the speed is then {last}."
     at = int(warm.time.searchsorted(warm.full_speed))
     film = f"{celsius(float(warm.film_temperature[at])):.0f} °C"
-    sticks = "" if math.isfinite(warm.slides_from) else " The belt sticks at that speed."
+    sticks = "" if math.isfinite(warm.slides_from) else " It sticks at that speed."
     least = warm.target_speed / warm.acceleration + 2.0 * float(warm.time[1])
     slow = " and run slowly until warm" if warm.full_speed - warm.start > least else ""
     when = f"Full speed {target} is reached after {three(warm.full_speed, 's')}, at {film}."

@@ -236,7 +236,7 @@ class Recipe:
         if self.means or self.every is not None or {"time", "run"} & self.channels.keys():
             return self.means
         mapping = self.chosen
-        if mapping.time.every is not None:
+        if mapping.time.every is not None or mapping.layout is not None:
             return False
         channels, units = mapping.channels | self.channels, mapping.units | self.units
         return all(is_means_table(path, channels, units) for path in self.logs)

@@ -81,9 +81,9 @@ class StickSpeeds(Record):
     stick_speed: Annotated[list[float], Means(unit="m/s")]
     transition: Annotated[list[float], Means(unit="m/s")]
     upper: Annotated[list[float], Means("V*; null outside the search range", "m/s", open=True)]
-    stiction: Annotated[
-        float | None, Means("V* at the stated stick speed if the belt stops abruptly", "m/s")
-    ] = None
+    stiction: Annotated[float | None, Means("V* at the stated stick speed if it stops abruptly", "m/s")] = (
+        None
+    )
 
 
 @dataclass(frozen=True)

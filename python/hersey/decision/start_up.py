@@ -228,7 +228,7 @@ def _obstacle(asked: _Asked, below_transition: float) -> Obstacle:
             f"{speed} is below the speed of lowest drag, {1e3 * value:.3g} mm/s [{1e3 * low:.3g}, "
             f"{1e3 * high:.3g}], with {100 * below_transition:.0f} % probability, and steady sliding is "
             f"unstable there. Choose a target well above {1e3 * needed:.3g} mm/s: from {1e3 * safe:.3g} mm/s "
-            "on the belt slides from any start"
+            "on it slides from any start"
         )
         return Obstacle("target_speed", asked.target, needed, text)
     if asked.limits.speed is not None and asked.target > asked.limits.speed:

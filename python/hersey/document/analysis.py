@@ -15,6 +15,7 @@ from hersey.document.parts.fit import FitPart
 from hersey.document.parts.log import InputFile, MachineFilePart, Point, Quality, RecipePart, Timeline
 from hersey.document.parts.models import ModelsPart
 from hersey.document.parts.posterior import PosteriorPart
+from hersey.schema.noun import DRIVE, Noun
 from hersey.schema.part import SCHEMA_VERSION, Part
 from hersey.schema.warning import Warning
 from hersey.stability.hysteresis import HysteresisBand
@@ -34,6 +35,7 @@ class Analysis(Part):
     schema_version: Literal["2"] = SCHEMA_VERSION
     hersey_version: str
     title: str
+    part: Noun = Field(default=DRIVE, description="what slides, as the machine file names it")
     command: str
     made: str | None = Field(default=None, description="when, UTC, ISO 8601; null if not stated")
     recipe: RecipePart | None = Field(

@@ -35,6 +35,7 @@ from hersey.files.reading import hash_of
 from hersey.log import TorqueLog
 from hersey.log.means import MeansTable
 from hersey.log.torque_log import Channel
+from hersey.schema.noun import DRIVE
 from hersey.study import Study
 from hersey.study.thinning import kept
 from hersey.verdict.regime import regime
@@ -60,6 +61,7 @@ def document_of(study: Study, *, command: str = "", made: str | None = None) -> 
     return Analysis(
         hersey_version=_core.VERSION,
         title=log.title,
+        part=DRIVE if machine is None else machine.part,
         command=command,
         made=made,
         recipe=_recipe(points),

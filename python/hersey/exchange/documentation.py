@@ -57,7 +57,7 @@ _GROUPS = {
 _EVENTS = {
     "3.0": (
         "With event mode a step returns early at every change of mode (stick, release, start of mixed "
-        "lubrication or full film, start and end of roll slip). Outputs can be read at that moment. "
+        "lubrication or full film, start and end of slip of the grip). Outputs can be read at that moment. "
         "Without it, steps continue through changes of mode. The motion is the same, because each "
         "change is located to rounding inside the step."
     ),
@@ -86,7 +86,7 @@ def page(model: Model, variables: Sequence[Variable], facts: Mapping[str, str], 
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         '<meta name="viewport" content="width=device-width">\n'
         f"<title>{escape(model.name)}</title>\n<style>\n{_STYLE}</style>\n</head>\n<body>\n"
-        f"<h1>{escape(model.name)}</h1>\n<p>A belt drive that may stick and slip, as an FMU for "
+        f"<h1>{escape(model.name)}</h1>\n<p>A drive that may stick and slip, as an FMU for "
         f"co-simulation (FMI {fmi}). It contains the hersey core.</p>\n"
         f'<ul class="facts">{listed}</ul>\n{tables}'
         f"<h2>Steps and events</h2>\n<p>{_EVENTS[fmi]} The communication step size affects nothing else, "

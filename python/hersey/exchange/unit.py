@@ -119,7 +119,7 @@ def export_fmu(
     start: str | tuple[float, float] = "rest",
     roll_radius: float | None = None,
     fitted: FittedLaw | None = None,
-    name: str = "Belt drive",
+    name: str = "Sliding drive",
     fmi: str = "3.0",
     libraries: Mapping[str, str | Path] = _NONE,
     tolerance: float = TOLERANCE,
@@ -270,7 +270,7 @@ def _refuse(out: str | Path, name: str, drive: str, port: str, fmi: str, roll_ra
         raise ParameterError("drive 'torque' needs the roll_radius at which it acts")
     if port == ROTATIONAL and drive != "speed":
         raise ParameterError(
-            "port 'rotational' needs drive 'speed', because a torque already acts on the roll"
+            "port 'rotational' needs drive 'speed', because a torque already acts on the shaft"
         )
     if port == ROTATIONAL and roll_radius is None:
         raise ParameterError("a rotational port needs the roll_radius")
@@ -356,7 +356,7 @@ def _facts(
 ) -> dict[str, str]:
     """What the unit was made of."""
     shaft = drive == "speed" and port == ROTATIONAL
-    moved = "speed of the roll's shaft" if shaft else f"{drive} of the drive"
+    moved = "speed of the shaft" if shaft else f"{drive} of the drive"
     facts = {"Input": moved, "Made by": f"hersey {_core.VERSION}"}
     temperatures = _measured_temperatures(drag, fitted)
     if fitted is None:
@@ -371,9 +371,9 @@ def _facts(
     facts["Fitted by"] = f"hersey {fitted.version}"
     facts["Logs (SHA-256)"] = ", ".join(fitted.data_sha256) or "unknown"
     low, high = fitted.speed_range
-    ranges = f"roll speeds of {rpm(low):.4g} to {rpm(high):.4g} rpm"
+    ranges = f"speeds of {rpm(low):.4g} to {rpm(high):.4g} rpm"
     if roll_radius is not None:
-        ranges += f" ({1e3 * low * roll_radius:.4g} to {1e3 * high * roll_radius:.4g} mm/s at the belt)"
+        ranges += f" ({1e3 * low * roll_radius:.4g} to {1e3 * high * roll_radius:.4g} mm/s where it slides)"
     if temperatures is not None:
         ranges += f" and {_degrees(temperatures)}"
     facts["Measured at"] = f"{ranges}; extrapolated outside"

@@ -14,6 +14,13 @@ MOST_BYTES = 64_000_000
 NO_TEXT = "is not plain text in UTF-8. Save it with a text editor as plain text, encoding UTF-8"
 #: Characters of a value that a message shows.
 _SHOWN = 60
+#: Words of headers, by the encoding of East Asia in which they are looked for.
+_WORDS = {
+    "cp932": ("時間", "トルク", "回転", "温度", "速度"),
+    "gb18030": ("时间", "扭矩", "转矩", "转速", "温度", "速度"),
+    "big5": ("時間", "扭矩", "轉速", "溫度", "速度"),
+    "cp949": ("시간", "토크", "회전", "온도", "속도"),
+}
 #: Bytes that mean nothing in Windows-1252.
 _NOT_CP1252 = (b"\x81", b"\x8d", b"\x8f", b"\x90", b"\x9d")
 
@@ -77,8 +84,19 @@ def encoding_of(start: bytes) -> str:
     try:
         codecs.getincrementaldecoder("utf-8")().decode(start)
     except UnicodeDecodeError:
+        if east_asian := next((each for each in _WORDS if _holds_words(start, each)), ""):
+            return east_asian
         return "cp1252" if not any(code in start for code in _NOT_CP1252) else "latin-1"
     return "utf-8-sig"
+
+
+def _holds_words(start: bytes, encoding: str) -> bool:
+    """Whether bytes are a text in an encoding of East Asia, with a word of a header."""
+    try:
+        text = codecs.getincrementaldecoder(encoding)().decode(start)
+    except UnicodeDecodeError:
+        return False
+    return any(word in text for word in _WORDS[encoding])
 
 
 def _bytes(path: Path, most: int) -> bytes:

@@ -196,7 +196,7 @@ def _other_stiffness(best: DriveFit, held: HeldSlope, fitted: float, unit: str) 
     agreed = held.slope / held.followed / fitted
     return Warning(
         _OTHER_STIFFNESS,
-        "while the belt is held, the spring force rises by {rise}. At the drive speed of {speed} this means "
+        "while it is held, the spring force rises by {rise}. At the drive speed of {speed} this means "
         "a stiffness of {measured}, but {other} is {source}; they would agree at a drive speed of {needed}",
         severity="watch",
         remedy="check the drive speed and the parameters given as known",
@@ -210,9 +210,9 @@ def _taken_for_creep(best: DriveFit, held: HeldSlope, fitted: float, unit: str) 
     agreed = held.slope / fitted
     return Warning(
         "difference taken for creep",
-        "while the belt is held, the spring force rises by {rise}. At the drive speed of {speed} this means "
+        "while it is held, the spring force rises by {rise}. At the drive speed of {speed} this means "
         "a stiffness of {measured}, but {other} is {source}. The fit explains the difference by creep of the "
-        "held belt, {creep:.1%} of the drive speed; a drive speed of {needed} would explain it too",
+        "held part, {creep:.1%} of the drive speed; a drive speed of {needed} would explain it too",
         severity="watch",
         creep=1 - held.followed,
         agreed=agreed,

@@ -301,7 +301,7 @@ def _refuse_a_lost_zero(record: CycleRecord) -> None:
     if share < _LEAST_MEAN:
         raise InsufficientDataError(
             "the zero of the force is lost: over a cycle the force averages "
-            f"{100 * share + 0.0:.1f} % of its drop, but a belt that slides against friction needs a "
+            f"{100 * share + 0.0:.1f} % of its drop, but sliding against friction needs a "
             "force above zero",
             remedy="identification needs the true zero: record with DC coupling, and zero the sensor "
             "without load",

@@ -30,6 +30,8 @@ from hersey.inspection.support import Support, support_of_points
 from hersey.log.channels import ChannelChoice, Stated
 from hersey.log.corrections import Corrected
 from hersey.log.doubtful import doubtful_units
+from hersey.log.layouts.laid_out import reading_by
+from hersey.log.layouts.proposing import with_layout
 from hersey.log.mapping import LogMapping, as_stated, mapping_of, read_with_mapping, without_what_is_said
 from hersey.log.means import MeansTable, read_means
 from hersey.log.roles import CHANNELS, OTHER_ROLES, ROLES, SIGNS, UNITS
@@ -234,7 +236,13 @@ def inspect(
     chosen = mapping if isinstance(mapping, LogMapping) else mapping_of(files, mapping)
     chosen = chosen.turned(reading.get("signs") or {})
     choices, known = _said(chosen, reading)
-    reports = tuple(file_report(raw_channels(file), choices, known) for file in files)
+    try:
+        with reading_by(chosen.layout):
+            reports = tuple(file_report(raw_channels(file), choices, known) for file in files)
+    except HerseyError as error:
+        if chosen.layout is not None or len(files) > 1:
+            raise
+        raise with_layout(error, Path(files[0]), reading.get("channels"), reading.get("units")) from None
     needed: tuple[str, ...] = ()
     log: TorqueLog | MeansTable
     try:

@@ -66,7 +66,7 @@ class AgeingMaps(Result):
     when: Annotated[tuple[str, ...], Means("what each age is, in one word")]
     temperature: FloatArray
     speed: FloatArray
-    torque: Annotated[FloatArray, Means("N m at the roll", shape="(ages, temperatures, speeds)", open=True)]
+    torque: Annotated[FloatArray, Means("N m", shape="(ages, temperatures, speeds)", open=True)]
     transition: Annotated[
         FloatArray, Means("0 where torque never falls with speed", shape="(ages, temperatures)")
     ]

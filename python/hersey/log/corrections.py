@@ -188,7 +188,7 @@ def at_roll(
     ratios = (("torque_ratio", f"{torque_ratio:g}"), ("speed_ratio", f"{speed_ratio:g}"))
     done = _corrected(log, "gears", geared, *ratios, ("efficiency", f"{efficiency:.4g}"))
     backwards = Warning(
-        "roll drives the motor", "in {rows} {rows:row|rows} the roll drives the motor", rows=back
+        "roll drives the motor", "in {rows} {rows:row|rows} the load drives the motor", rows=back
     )
     return _warned(done, backwards) if back and efficiency != 1.0 else done
 

@@ -19,7 +19,16 @@ from hersey.arrays import BoolArray, FloatArray, IntArray
 from hersey.errors import DROP_MISSING, ISOTHERMAL, Setting, TimeOrderError, UnreadableLogError
 from hersey.log.believed import BELIEVED, TENTHS, Believed, as_written, in_si, is_code, is_wrapped
 from hersey.log.long_arrays import each_block, ends, every, joined, rows_where
-from hersey.log.neighbours import LEAST_JUMP, NEAREST_BURST, bursts, drop_outs, flips, on_its_way, pulses
+from hersey.log.neighbours import (
+    LEAST_JUMP,
+    NEAREST_BURST,
+    bursts,
+    drop_outs,
+    flips,
+    on_its_way,
+    pulses,
+    step_of_counts,
+)
 from hersey.log.roles import role_conversion
 from hersey.log.stray_times import stray_times
 from hersey.log.text.column import Column
@@ -279,7 +288,10 @@ def _of_channel(
     zero = reading.unit.offset
     if least <= zero + _ROUNDING * zero and most >= zero - _ROUNDING * zero:
         nearest = _NEAR_ZERO if kind == "temperature" else 0.0
-        take(Reason.DROP_OUT, _few(_but(drop_outs(values, zero, nearest), taken), values))
+        rows = drop_outs(values, zero, nearest)
+        if rows.size and kind in ("speed", "belt speed"):  # a row without a count is none
+            rows = drop_outs(values, zero, 1.5 * step_of_counts(values))
+        take(Reason.DROP_OUT, _few(_but(rows, taken), values))
     if kind == "temperature" and time is not None and most - least > LEAST_JUMP:
         take(Reason.JUMP, pulses(values, time, high - low, MOST))
     if size > 0 and taken.size:

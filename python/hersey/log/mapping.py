@@ -17,11 +17,24 @@ from typing import Any
 import numpy as np
 from pydantic.dataclasses import dataclass
 
-from hersey.errors import MAPPING, ChannelError, ParameterError, Setting, UnitError, printable, turned
+from hersey.errors import (
+    MAPPING,
+    ChannelError,
+    HerseyError,
+    ParameterError,
+    Setting,
+    UnitError,
+    printable,
+    turned,
+)
 from hersey.files.toml import Table, naming, read_tables, read_toml
 from hersey.log import corrections
 from hersey.log.channels import Stated
 from hersey.log.corrections import Corrected
+from hersey.log.layouts.laid_out import reading_by
+from hersey.log.layouts.presets import with_preset
+from hersey.log.layouts.proposing import with_layout
+from hersey.log.layouts.table import LogLayout
 from hersey.log.reading import read
 from hersey.log.role_tables import (
     LoadMapping,
@@ -57,6 +70,7 @@ class _Roles(Table):
     load: LoadMapping = field(default_factory=LoadMapping)
     radius: RadiusMapping = field(default_factory=RadiusMapping)
     run: RoleMapping = field(default_factory=RoleMapping)
+    layout: LogLayout | None = None
 
 
 @dataclass(frozen=True)
@@ -67,6 +81,8 @@ class LogMapping(_Roles):
     ----------
     time, torque, speed, temperature, load, radius, run
         One `RoleMapping` each; ``run`` is the number of a run.
+    layout
+        How the file is laid out, or none where it shows by itself.
     source
         File that it was read from, or none.
     """
@@ -185,6 +201,9 @@ def read_mapping(path: str | Path) -> LogMapping:
     for role in ROLE_KINDS:
         with naming(path.name, f"{role}.unit"):
             _check_unit(role, getattr(mapping, role).unit, mapping.torque.motor_constant)
+    if mapping.layout is not None:
+        with naming(path.name):
+            with_preset(mapping.layout)
     return mapping
 
 
@@ -253,19 +272,24 @@ def read_with_mapping(
     stated = Stated(every, as_stated(radius), as_stated(load))
     chosen = without_what_is_said(chosen, channels or {}, stated)
     try:
-        log = read(
-            files,
-            channels={**needed(chosen.channels), **(channels or {})},
-            units={**needed(chosen.units), **(units or {})},
-            isothermal=isothermal,
-            drop_missing=drop_missing,
-            **{name: value for name, value in vars(chosen.stated).items() if value is not None}
-            | {name: value for name, value in vars(stated).items() if value is not None},
-            progress=progress,
-        )
+        with reading_by(chosen.layout):
+            log = read(
+                files,
+                channels={**needed(chosen.channels), **(channels or {})},
+                units={**needed(chosen.units), **(units or {})},
+                isothermal=isothermal,
+                drop_missing=drop_missing,
+                **{name: value for name, value in vars(chosen.stated).items() if value is not None}
+                | {name: value for name, value in vars(stated).items() if value is not None},
+                progress=progress,
+            )
         done = chosen.correct(log)
-    except (ChannelError, UnitError) as error:
-        if chosen.source is None:
+    except HerseyError as error:
+        if chosen.layout is None and len(files) == 1:
+            with_advice = with_layout(error, Path(files[0]), channels, units)
+            if with_advice is not error:
+                raise with_advice from None
+        if chosen.source is None or not isinstance(error, ChannelError | UnitError):
             raise
         raise error.saying(f"{error.reason} (channels and units come from {chosen.source.name})") from None
     logged = tuple(_as_written(file, chosen) for file in log.files)

@@ -11,6 +11,8 @@ from hersey.errors import HerseyError, printable
 from hersey.files.toml import quoted
 from hersey.log.channels import ChannelChoice, called, find_channel, is_dead
 from hersey.log.columns import open_columns
+from hersey.log.layouts.laid_out import reading_by
+from hersey.log.layouts.proposing import proposed_layout
 from hersey.log.reading import list_channels
 from hersey.log.roles import role_conversion
 from hersey.log.stating import proposed
@@ -37,12 +39,24 @@ def propose_mapping(
     [torque]
     """
     path = Path(path)
+    proposal = proposed_layout(path, channels, units)
+    if proposal is None:
+        return "\n".join(_roles(path, channels or {}, units or {}))
+    with reading_by(proposal.layout):
+        lines = _roles(path, proposal.channels | (channels or {}), units or {})
+    return "\n".join([lines[0], proposal.layout.toml(), "", *lines[1:]])
+
+
+def _roles(path: Path, channels: Mapping[str, str], units: Mapping[str, str]) -> list[str]:
+    """The lines of a mapping that say which channel plays which role."""
     columns = tuple(Column(index, name, unit) for index, (name, unit) in enumerate(list_channels(path)))
     lines = [f"# Channels of {printable(path.name)}, proposed by hersey inspect. Check and correct them."]
     for role in ("torque", "speed", "temperature", "time"):
-        choice = ChannelChoice((channels or {}).get(role, ""), (units or {}).get(role, ""))
+        choice = ChannelChoice(channels.get(role, ""), units.get(role, ""))
         lines += [*_proposed(role, columns, choice, path), ""]
-    return "\n".join(lines)
+    if "run" in channels:
+        lines += ["[run]", f"channel = {quoted(channels['run'])}", ""]
+    return lines
 
 
 _EXAMPLES: dict[str, tuple[str, ...]] = {
@@ -50,10 +64,10 @@ _EXAMPLES: dict[str, tuple[str, ...]] = {
         "# sign = -1                     # flips the sign",
         '# tare = "4 mN*m"               # sensor reading without load',
         '# no_load = "4 mN*m"            # torque without the lubricated contact, or a log of it: "free.csv"',
-        "# gear_ratio = 12.5             # turns of the sensor shaft per turn of the roll",
+        "# gear_ratio = 12.5             # turns of the sensor shaft per turn of the output shaft",
         "# efficiency = 0.9              # of the gears",
         (
-            '# inertia = "2e-4 kg*m^2"       # between sensor and contact, referred to the roll; matters '
+            '# inertia = "2e-4 kg*m^2"       # between sensor and contact, referred to the output; matters '
             "in ramps"
         ),
         '# motor_constant = "35 mN*m/A"  # if the channel is the motor current',
@@ -62,7 +76,7 @@ _EXAMPLES: dict[str, tuple[str, ...]] = {
     ),
     "speed": (
         "# sign = -1",
-        "# gear_ratio = 12.5             # turns of the sensor shaft per turn of the roll",
+        "# gear_ratio = 12.5             # turns of the sensor shaft per turn of the output shaft",
         '# gain_error = "0.1 %"          # sensor error, at 95 %',
     ),
     "temperature": (

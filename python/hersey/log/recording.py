@@ -119,6 +119,23 @@ def library_warning(library: str, message: str) -> Warning:
     )
 
 
+def cell_that_is_no_number(
+    row: int, column: str, cell: str, odd: int, *, where: str = "", expected: str = "number"
+) -> Warning:
+    """Return the warning of the first of several (``odd``) cells of a column that are no numbers."""
+    return Warning(
+        "cell that is no number",
+        "row {row}, column '{column}': '{cell}' is not a {expected}"
+        + (", nor are {others} more {others:cell|cells} in this column" if odd > 1 else ""),
+        where=where,
+        row=row,
+        column=column,
+        cell=cell[:40],
+        expected=expected,
+        others=odd - 1,
+    )
+
+
 def library(module: str, reads: str) -> Any:
     """Return an optional library, imported on first use.
 

@@ -17,7 +17,7 @@ from hersey.log.text.dated_numbers import numbers_lost
 from hersey.log.torque_log import LogFile, Run
 from hersey.schema.warning import Warning
 
-#: Rows that may be left out unasked, as a share of a file; one may be in any.
+#: Rows that may be left out unasked, as a share of a file; one may be in any, unless it is misread.
 FEW = 0.02
 #: Rows left out that are listed one by one, at the most.
 _LISTED = 10
@@ -53,6 +53,8 @@ class LeftOut:
     out_of_order: int = 0  #: those among them whose time is
     units: str = ""  #: what to do about cells that hold a number with its unit
     dates: str = ""  #: a column in which a spreadsheet has made dates of numbers
+    misread: int = 0  #: cells of a number in another style, and rows of more cells than the header
+    rewrite: str = ""  #: what to do about these
 
     def add(self, rows: int, words: Iterable[str], *, out_of_order: bool = False) -> None:
         """Count rows; of ``words``, one for each of them, no more are taken than are shown."""
@@ -72,11 +74,14 @@ class LeftOut:
         """
         most = 2 * self.rows > rows
         allowed = allowed and not most and not self.dates  # what has become a date are not any numbers
-        if not self.rows or allowed or self.rows <= max(1.0, FEW * rows):
+        misread = self.misread > FEW * rows
+        if not self.rows or allowed or (self.rows <= max(1.0, FEW * rows) and not misread):
             return
         how_many = f" (the first of {self.rows} such rows, of {rows})" if self.rows > 1 else ""
         few = f"too few rows remain. {f'{without}. Otherwise n' if without else 'N'}ame another column, or "
-        way_out = (self.units or f"{few}correct the file") if most else _way_out()
+        way_out = (
+            (self.units or f"{few}correct the file") if most else _way_out(self.rewrite if misread else "")
+        )
         said = f"{file}, {self.words[0]}{how_many}"
         if self.dates:
             way_out = numbers_lost(self.dates)
@@ -108,8 +113,9 @@ class LeftOut:
         ]
 
 
-def _way_out() -> str:
-    return f"correct the file, or exclude such rows with {DROP_MISSING.to()} (they will be counted)"
+def _way_out(rewrite: str) -> str:
+    first = rewrite or "correct the file"
+    return f"{first}, or exclude such rows with {DROP_MISSING.to()} (they will be counted)"
 
 
 def runs_of(

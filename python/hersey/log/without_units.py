@@ -43,7 +43,7 @@ def naming_all(
     use += "".join(of_an_input(role, column.name) for role, column in lacking.items())
     said = f"columns {named} have no units" if several else f"column {named} has no unit"
     indices = tuple(column.index for column in lacking.values())
-    return UnitError(f"{file}: {said}", columns=indices, remedy=use, setting=setting)
+    return UnitError(f"{file}: {said}", columns=indices, units=examples, remedy=use, setting=setting)
 
 
 def _without_units(

@@ -53,9 +53,9 @@ class Nip(Record):
     width_over_hertz: Annotated[
         float, Means("width relative to that of the half-space contact under the same load")
     ]
-    paper_width: Annotated[float, Means("Eq. 8 of the paper", "m")]
+    paper_width: Annotated[float, Means("Eq. 8", "m")]
     paper_in_range: Annotated[bool, Means("whether Eq. 8 applies here")]
-    strain: Annotated[float, Means("a^2/(2 R h), a nominal strain of the rubber")]
+    strain: Annotated[float, Means("a^2/(2 R h), a nominal strain of the layer")]
 
     @property
     def half_width(self) -> float:
@@ -105,7 +105,7 @@ class Contact(Record):
 
     roll_radius: Annotated[float, Means(unit="m")]
     rubber_thickness: Annotated[float, Means(unit="m")]
-    modulus: Annotated[float, Means("Young's modulus of the rubber", "Pa")]
+    modulus: Annotated[float, Means("Young's modulus of the layer", "Pa")]
     poisson_ratio: float
     length: Annotated[float, Means(unit="m")]
     load: Annotated[float, Means(unit="N")]

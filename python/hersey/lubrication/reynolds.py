@@ -96,14 +96,14 @@ class LineContactSolution:
     the ruptured film beyond ``outlet``, where pressure is zero.
     """
 
-    x: Annotated[FloatArray, Means("positions of the nodes from the roll axis, positive downstream", "m")]
+    x: Annotated[FloatArray, Means("positions of the nodes from the axis, positive downstream", "m")]
     pressure: Annotated[FloatArray, Means("at the nodes", "Pa")]
     film_thickness: Annotated[FloatArray, Means("at the nodes", "m")]
-    central_thickness: Annotated[float, Means("film under the axis of the roll", "m")]
+    central_thickness: Annotated[float, Means("film under the axis", "m")]
     minimum_thickness: Annotated[float, Means("minimum film", "m")]
     couette: Annotated[float, Means("shear due to sliding", "N/m")]
     poiseuille: Annotated[float, Means("half the integral of film thickness times pressure gradient", "N/m")]
-    roll_traction: Annotated[float, Means("shear force on the roll per length", "N/m")]
+    roll_traction: Annotated[float, Means("shear force on the rotating wall per length", "N/m")]
     base_traction: Annotated[float, Means("shear force on the opposite surface per length", "N/m")]
     greatest_pressure: Annotated[float, Means(unit="Pa")]
     outlet: Annotated[float, Means("where the film ends", "m")]
@@ -117,7 +117,7 @@ class LineContactSolution:
     by_load: Annotated[LineExponents, Means("of load")]
     friction: Annotated[float, Means("magnitude of roll_traction over the load")]
     iterations: Annotated[int, Means("total number of Newton steps")]
-    stations: Annotated[int, Means("intermediate solutions, starting from a rigid roll")]
+    stations: Annotated[int, Means("intermediate solutions, starting from a rigid wall")]
     warnings: Annotated[tuple[Warning, ...], Means("where the model does not apply, or needs a finer grid")]
 
 
@@ -254,7 +254,7 @@ def _of_the_shape(
     if solution.outlet > _HALF_WIDTH * radius:
         yield Warning(
             "contact too wide for a parabola",
-            "the contact extends to {share:.0%} of the radius from the axis, where a roll is no longer "
+            "the contact extends to {share:.0%} of the radius from the axis, where a circle is no longer "
             "a parabola",
             severity="watch",
             share=solution.outlet / radius,

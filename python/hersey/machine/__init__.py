@@ -10,7 +10,8 @@ heat                 the table of what warms the nip, and what the rest takes aw
 duty                 the tables of how the machine is used, and of a gear that fatigues
 no_load              the table of what the drive takes without the film
 sharing              the tables of what shares the load with the film
-at_belt              quantities at the belt, and what to write for one of another kind
+at_belt              quantities where the part slides, and what to write for one of another kind
+rotational           rotational quantities in the place of those at the surface
 doubts               values that are possible, but unusual
 uncertainty          how far a parameter is known
 temperature_profile  temperature against time, from a file

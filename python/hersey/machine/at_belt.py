@@ -1,4 +1,4 @@
-"""Quantities at the belt, and what to write where one of another kind, or a range, is given."""
+"""Quantities where the part slides, and what to write where one of another kind, or a range, is given."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from pydantic import ValidationInfo
 
 from hersey.errors import HerseyError, UnitError
 from hersey.files.toml import Quantity
+from hersey.machine.rotational import has_angle, turning_at_radius
 from hersey.machine.uncertainty import read_uncertainty
 from hersey.motion.parameters import OF_THE_BELT
 from hersey.units import KINDS, convert, parse
@@ -18,26 +19,24 @@ from hersey.units import KINDS, convert, parse
 _GRAVITY = 9.80665
 #: For a kind: kinds given instead, what they are, the factor to SI, the power of the roll radius (m).
 _INSTEAD: dict[str, tuple[tuple[str, str, float, int], ...]] = {
-    "belt speed": (("speed", "a rotational speed, but the speed of the belt is needed", 1.0, 1),),
-    "stiffness": (("torsional stiffness", "a torsional stiffness, but that at the belt is needed", 1.0, -2),),
+    "belt speed": (("speed", "a rotational speed, which needs the radius", 1.0, 1),),
+    "stiffness": (("torsional stiffness", "a torsional stiffness, which needs the radius", 1.0, -2),),
     "mass": (
         ("force", "a weight, but a mass is needed", 1 / _GRAVITY, 0),
-        ("moment of inertia", "a moment of inertia, but the mass at the belt is needed", 1.0, -2),
+        ("moment of inertia", "a moment of inertia, which needs the radius", 1.0, -2),
     ),
     "force": (
         ("mass", "a mass, but a force is needed", _GRAVITY, 0),
-        ("torque", "a torque, but the force at the belt is needed", 1.0, -1),
+        ("torque", "a torque, but the force at the surface is needed", 1.0, -1),
     ),
-    "torque": (("force", "a force, but the torque at the roll is needed", 1.0, 1),),
+    "torque": (("force", "a force, but a torque is needed", 1.0, 1),),
 }
 
-#: Units that make a torque a torsional stiffness.
-_ANGLES = ("rad", "deg", "°", "rev")
 #: What leads from the other kind, by the power of the radius.
 _BY_RADIUS = {
-    1: "Multiply it by roll_radius",
+    1: "Add roll_radius, or multiply by it",
     -1: "Divide it by roll_radius",
-    -2: "Divide it by the square of roll_radius",
+    -2: "Add roll_radius, or divide by its square",
 }
 
 #: A value with its uncertainty, as 11 ± 1 N/mm, 11 N/mm +/- 1 N/mm or 11 N/mm ± 10 %.
@@ -47,12 +46,15 @@ _PLUS_MINUS = re.compile(
 
 
 class AtBelt(Quantity):
-    """A quantity at the belt or the roll; the roll radius of [drivetrain] leads to it from another kind."""
+    """A quantity at the surface that slides; the radius of [drivetrain] leads to it from a rotational one."""
 
     def _with_unit(self, given: object, info: ValidationInfo[Any]) -> float:
         try:
             return super()._with_unit(given, info)
         except UnitError:
+            turning = turning_at_radius(str(self.kind), str(given), _radius(info.context.document))
+            if turning is not None:
+                return turning
             key = str(info.field_name)
             meant = (
                 self._range(given, key)
@@ -103,7 +105,7 @@ class AtBelt(Quantity):
         for kind, what, factor, power in _INSTEAD.get(str(self.kind), ()):
             try:
                 value = parse(kind, str(given))
-                if kind == "torsional stiffness" and not any(each in str(given) for each in _ANGLES):
+                if kind == "torsional stiffness" and not has_angle(str(given)):
                     continue  # N*m, which is a slip of N/m too
                 radius = _radius(document) if power else 1.0
             except UnitError:

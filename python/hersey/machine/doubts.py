@@ -125,8 +125,8 @@ def doubts(
     if modulus is not None and modulus > _HARD_RUBBER:
         shore = _SHORE_A[0] <= modulus / 1e6 <= _SHORE_A[1]
         yield Warning(
-            "modulus of the rubber",
-            "[contact] modulus {megapascal:.4g} MPa is far above that of a rubber, 0.5 to 10 MPa",
+            "modulus of the layer",
+            "[contact] modulus {megapascal:.4g} MPa is far above that of an elastomer, 0.5 to 10 MPa",
             severity="watch",
             remedy="If it is the hardness, write shore_a = {megapascal:.4g} instead of modulus"
             if shore

@@ -38,6 +38,7 @@ from hersey.machine.sharing import NEEDED, AsperitiesTable, BoundaryTable
 from hersey.machine.uncertainty import Uncertainty, read_uncertainty, refuse_value_outside
 from hersey.motion.belt import Drivetrain
 from hersey.motion.heat import HeatBalance
+from hersey.schema.noun import DRIVE, Noun
 from hersey.schema.warning import Warning
 from hersey.units import takes_si
 
@@ -62,13 +63,14 @@ _KINDS = {
 class Machine:
     """The machine, in SI.
 
-    ``stiffness`` (N/m) and ``mass`` (kg) at the belt, ``roll_radius`` (m) at which torque acts on it, and
-    ``stick_speed`` (m/s) below which the belt sticks: at ``stick_speed_temperature`` (K; None: the reference
-    of the fit), at others by ``stick_speed_rule`` (see `DampingSurface.stick_speed_at`). ``uncertainty``
+    ``part`` names what slides. ``stiffness`` (N/m) and ``mass`` (kg) where it slides, ``roll_radius`` (m) at
+    which torque acts on it, and ``stick_speed`` (m/s) below which it sticks: at
+    ``stick_speed_temperature`` (K; None: the reference of the fit), at others by ``stick_speed_rule`` (see
+    `DampingSurface.stick_speed_at`). ``uncertainty``
     says how far parameters are known. ``contact`` and ``lubricant`` make the film, if they are stated.
     ``sensors`` are those of its logs, so far as a log's own mapping states no errors of them. ``rest`` is
     what the drive takes besides the film, ``heat`` what makes its temperature, from a cold start.
-    ``asperities`` and ``boundary`` share the load with the film; ``static_friction`` is that of a belt at
+    ``asperities`` and ``boundary`` share the load with the film; ``static_friction`` is that at
     rest (None: e times the drag at the stick speed). ``life`` and ``gear`` say how it is used, and what a
     life test asks of it.
     """
@@ -92,6 +94,7 @@ class Machine:
     life: LifeTable = field(default_factory=LifeTable)
     gear: GearTable | None = None
     heat: HeatBalance | None = None
+    part: Noun = DRIVE
 
     def __repr__(self) -> str:
         """Return what moves the belt, with units, and how many operating points there are, on one line."""
@@ -99,7 +102,7 @@ class Machine:
         stiffness = f"{self.stiffness:.4g} N/m" if soft else f"{self.stiffness / 1e3:.4g} kN/m"
         count = len(self.points)
         return (
-            f"Machine(roll radius {1e3 * self.roll_radius:.4g} mm, stiffness {stiffness}, "
+            f"Machine({self.part}, radius {1e3 * self.roll_radius:.4g} mm, stiffness {stiffness}, "
             f"mass {self.mass:.4g} kg, {count or 'no'} operating point{'' if count == 1 else 's'})"
         )
 
@@ -190,7 +193,7 @@ class Machine:
     @property
     def train(self) -> Drivetrain:
         """The drivetrain of the motion, whose roll grips the belt so far as `limits` say."""
-        return self.limits.gripping(Drivetrain(self.stiffness, self.mass))
+        return self.limits.gripping(Drivetrain(self.stiffness, self.mass, part=self.part))
 
     @property
     def belt(self) -> dict[str, Any]:
@@ -201,7 +204,7 @@ class Machine:
 
 @dataclass(frozen=True)
 class DrivetrainTable(Table):
-    """What moves the belt, and below which speed it sticks, in SI."""
+    """What moves the part that slides, and below which speed it sticks, in SI."""
 
     called: ClassVar[Mapping[str, str]] = {
         "k": "stiffness",
@@ -209,6 +212,8 @@ class DrivetrainTable(Table):
         "m": "mass",
         "weight": "mass",
         "r": "roll_radius",
+        "inertia": "mass",
+        "radius": "roll_radius",
     }
 
     stiffness: Annotated[float, AtBelt("stiffness", 1.0, 1e10, "11 N/mm")]
@@ -222,6 +227,8 @@ class DrivetrainTable(Table):
     )
     #: "fixed": the same stick speed at all temperatures; by default it moves with the transition speed.
     stick_speed_rule: Literal["with transition", "fixed"] = "with transition"
+    #: What slides, in the word that results use.
+    part: Noun = DRIVE
 
 
 def _named(rows: object) -> object:
@@ -268,7 +275,8 @@ def _uncertainty(path: Path, document: Mapping[str, Any], tables: _MachineFile) 
     found = {}
     for parameter, text in tables.uncertainty.items():
         with at_line(path, f"uncertainty.{parameter}", "uncertainty", parameter):
-            found[parameter] = read_uncertainty(parameter, text)
+            radius = tables.drivetrain.roll_radius
+            found[parameter] = read_uncertainty(parameter, text, roll_radius=radius)
             if (value := getattr(tables.drivetrain, parameter, None)) is not None:
                 line = line_of(read_text(path), ("drivetrain", parameter))
                 refuse_value_outside(

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from hersey.errors import ParameterError, UnitError
@@ -20,8 +20,10 @@ from hersey.machine.limits import Limits, OperatingPoint
 from hersey.machine.machine import DrivetrainTable
 from hersey.machine.nip import ContactTable, LubricantTable
 from hersey.machine.no_load import RestTable
+from hersey.machine.rotational import turning_at_radius
 from hersey.machine.uncertainty import range_ends, read_uncertainty
 from hersey.motion.parameters import KINDS as PARAMETERS
+from hersey.schema.noun import TURNING
 from hersey.units import KINDS, convert, parse
 
 #: The tables of both files that are asked about.
@@ -41,6 +43,8 @@ _TABLES: dict[str, type] = {
 }
 #: What is known of an answer beside its value, written behind it.
 _SHARE = re.compile(r"(.*?)\s*(?:±|\+/?-)\s*([0-9.]+\s*%)\s*")
+#: What people call a key otherwise.
+_CALLED = {"roll_radius": "radius", "roll_friction": "friction", "rubber_thickness": "layer_thickness"}
 _BARE = re.compile(r"\s*[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?\s*")
 
 
@@ -67,7 +71,7 @@ class Question:
     @property
     def name(self) -> str:
         """Return what a person calls it, with its letter in the sketch."""
-        words = self.field.replace("_", " ")
+        words = _CALLED.get(self.field, self.field).replace("_", " ")
         return f"{self.letter} {words}" if self.letter else words
 
     @property
@@ -102,6 +106,8 @@ class Question:
         if self.field == "viscosities":
             return self._viscosities(text)
         value = _number(text) if self.is_number else text
+        if self._turns(text):
+            return {self.key: text}  # the radius leads to it when the whole file is read
         refuse_value(_TABLES[self.section], self.field, value)
         return {self.key: value}
 
@@ -116,8 +122,14 @@ class Question:
             out[f"uncertainty.{self.field}"] = uncertainty
             if known.limits is not None:
                 value = _middle(self.field, *known.limits, self.unit)
-        refuse_value(_TABLES[self.section], self.field, value)
+        if not self._turns(value):
+            refuse_value(_TABLES[self.section], self.field, value)
         return {self.key: value, **out}
+
+    def _turns(self, text: str) -> bool:
+        """Whether an answer is a rotational quantity."""
+        kind = "belt speed" if self.field == "speed" else PARAMETERS.get(self.field)
+        return kind is not None and turning_at_radius(kind, text, 1.0) is not None
 
     def _viscosities(self, text: str) -> dict[str, Any]:
         pairs = [[part.strip() for part in pair.split(":")] for pair in text.split(",")]
@@ -167,37 +179,40 @@ STICK_SPEED = "0.3 mm/s to 3 mm/s"
 #: What is asked about the machine, in the order of the file.
 MACHINE = (
     Question(
-        "drivetrain", "stiffness", "stiffness of gear train, roll core and rubber together, at the belt",
+        "drivetrain", "part", "what slides, in one word", "joint", first=True,
+    ),
+    Question(
+        "drivetrain", "stiffness", "stiffness of all that yields, where it slides; or torsional",
         "11 N/mm", "N/mm", "k", needed=True, first=True, uncertain=True,
     ),
     Question(
-        "drivetrain", "mass", "all that moves with the belt, including the motor, at the belt",
+        "drivetrain", "mass", "all that moves, motor included, where it slides; or moment of inertia",
         "11 kg", "kg", "m", needed=True, first=True, uncertain=True,
     ),
     Question(
-        "drivetrain", "roll_radius", "radius at which the torque acts on the belt",
+        "drivetrain", "roll_radius", "radius of the surface that slides, at which the torque acts",
         "15 mm", "mm", "R", needed=True, first=True,
     ),
     Question(
-        "drivetrain", "stick_speed", "the belt sticks below it; rarely measured, so a range is fine",
+        "drivetrain", "stick_speed", "it sticks below this; rarely measured, so a range is fine",
         STICK_SPEED, "mm/s", "", needed=True, first=True, uncertain=True, assumed=STICK_SPEED,
     ),
     Question(
         "drivetrain", "stick_speed_temperature",
         "temperature of the stick speed; default: reference temperature of the fit", "180 degC", "degC",
     ),
-    Question("limits", "nip_load", "load that presses the roll on the heater", "300 N", "N", "N", first=True),
-    Question("limits", "motor_torque", "maximum torque of the motor, at the roll", "1 N*m", "N*m"),
-    Question("limits", "roll_friction", "friction coefficient of the belt on the roll", "0.6", "", "µ"),
-    Question("limits", "acceleration", "maximum of the drive, at the belt", "500 mm/s^2", "mm/s^2"),
-    Question("limits", "speed", "maximum of the drive, at the belt", "400 mm/s", "mm/s"),
-    Question("contact", "rubber_thickness", "rubber on the roll", "3.5 mm", "mm", "h", needed=True),
+    Question("limits", "nip_load", "load on the sliding contact", "300 N", "N", "N", first=True),
+    Question("limits", "motor_torque", "maximum torque of the motor, after the gears", "1 N*m", "N*m"),
+    Question("limits", "roll_friction", "friction coefficient of what moves it, if it slips", "0.6", "", "µ"),
+    Question("limits", "acceleration", "maximum of the drive, where it slides", "500 mm/s^2", "mm/s^2"),
+    Question("limits", "speed", "maximum of the drive, where it slides", "400 mm/s", "mm/s"),
+    Question("contact", "rubber_thickness", "soft layer on the contact", "3.5 mm", "mm", "h", needed=True),
     Question(
-        "contact", "modulus", "Young's modulus of the warm rubber", "0.65 MPa", "MPa", "E", needed=True
+        "contact", "modulus", "Young's modulus of the layer, warm", "0.65 MPa", "MPa", "E", needed=True
     ),
-    Question("contact", "poisson_ratio", "Poisson's ratio of the rubber, up to 0.5", "0.48", needed=True),
-    Question("contact", "length", "of the nip, along the roll", "220 mm", "mm", "L", needed=True),
-    Question("contact", "roughness", "of belt and heater together, rms", "0.5 um", "um"),
+    Question("contact", "poisson_ratio", "Poisson's ratio of the layer, up to 0.5", "0.48", needed=True),
+    Question("contact", "length", "of the contact, along the axis", "220 mm", "mm", "L", needed=True),
+    Question("contact", "roughness", "of both surfaces together, rms", "0.5 um", "um"),
     Question(
         "lubricant", "density", "of the lubricant; a viscosity in mm^2/s needs it", "0.9 g/cm^3", "g/cm^3"
     ),
@@ -207,7 +222,7 @@ MACHINE = (
     ),
     Question("lubricant", "pressure_viscosity", "pressure-viscosity coefficient", "20 GPa^-1", "GPa^-1"),
     Question(
-        "rest", "torque", "no-load torque (without film and contact), at the roll",
+        "rest", "torque", "no-load torque (without film and contact)",
         "180 mN*m", "mN*m", needed=True,
     ),
 )  # fmt: skip
@@ -215,8 +230,10 @@ MACHINE = (
 #: What is asked of each operating point.
 POINT = (
     Question("points", "name", "name of this operating point", "full speed"),
-    Question("points", "speed", "of the belt", "200 mm/s", "mm/s", needed=True, first=True),
-    Question("points", "temperature", "of the belt", "180 degC", "degC", needed=True, first=True),
+    Question(
+        "points", "speed", "where it slides, or rotational", "200 mm/s", "mm/s", needed=True, first=True
+    ),
+    Question("points", "temperature", "of the film", "180 degC", "degC", needed=True, first=True),
 )
 
 #: What is asked about a log, for ``hersey.toml``.
@@ -224,14 +241,14 @@ MAPPING = (
     Question("torque", "channel", "torque channel", "Drive torque", needed=True, first=True),
     Question("torque", "unit", "its unit", "N*m", needed=True, first=True),
     Question("torque", "sign", "-1 flips it", "-1"),
-    Question("torque", "gear_ratio", "turns of the sensor shaft per turn of the roll", "12.5"),
+    Question("torque", "gear_ratio", "turns of the sensor shaft per turn of the output shaft", "12.5"),
     Question("torque", "efficiency", "of those gears", "0.9"),
     Question("torque", "tare", "what the sensor shows without load", "4 mN*m", "mN*m"),
     Question("torque", "motor_constant", "if the channel is the motor current", "35 mN*m/A", "mN*m/A"),
     Question("speed", "channel", "speed channel", "Drive speed", needed=True, first=True),
     Question("speed", "unit", "its unit", "rpm", needed=True, first=True),
     Question("speed", "sign", "-1 flips it", "-1"),
-    Question("speed", "gear_ratio", "turns of its shaft per turn of the roll", "12.5"),
+    Question("speed", "gear_ratio", "turns of its shaft per turn of the output shaft", "12.5"),
     Question("temperature", "channel", "temperature channel", "Temperature", first=True),
     Question("temperature", "unit", "its unit", "degC", first=True),
     Question("temperature", "offset", "film minus reading", "-1.5 K", "K"),
@@ -247,12 +264,12 @@ MAPPING = (
 TITLES = {
     "drivetrain": "What the log cannot show: the drivetrain. Give every value with its unit.",
     "limits": "Limits of the machine, for the map and for start-up profiles.",
-    "contact": "The nip, for the film: a rubber-covered roll presses the belt on the heater.",
+    "contact": "The contact, for the film: a shaft with a soft layer, pressed on.",
     "lubricant": "The lubricant: points of the data sheet.",
-    "rest": "No-load torque without film and contact (bearings, gears), at the roll.",
+    "rest": "No-load torque without film and contact (bearings, gears).",
     "uncertainty": "Uncertainties: a share (95 % of the values lie within it) or a range.",
     "points": "Operating points to judge.",
-    "torque": "Channels: name and unit as in the log. The rest describes the path from sensor to roll.",
+    "torque": "Channels: name and unit as in the log. The rest describes the path from sensor to output.",
     "speed": "",
     "temperature": "",
     "time": "",
@@ -260,6 +277,31 @@ TITLES = {
     "load": "For a friction coefficient in the log: the normal load.",
 }
 BY_KEY: Mapping[str, Question] = {q.key: q for q in (*MACHINE, *POINT, *MAPPING)}
+
+
+#: Key of what slides.
+PART = "drivetrain.part"
+#: What is asked instead of what turns as a whole: words, example, unit.
+_OF_TURNING = {
+    "drivetrain.stiffness": ("torsional stiffness of gears and shafts together", "200 N*m/rad", "N*m/rad"),
+    "drivetrain.mass": (
+        "moment of inertia of all that turns with it; that of the motor times its gear ratio squared",
+        "0.01 kg*m^2", "kg*m^2",
+    ),
+    "drivetrain.roll_radius": (
+        "radius at which speeds in mm/s are stated; results in rpm do not depend on it", "50 mm", "mm",
+    ),
+    "points.speed": ("rotational", "10 rpm", "rpm"),
+    "limits.speed": ("maximum of the drive", "60 rpm", "rpm"),
+}  # fmt: skip
+
+
+def asked_of(question: Question, part: str) -> Question:
+    """Return the question as it is asked of what slides, in the terms of its machine."""
+    if part not in TURNING or question.key not in _OF_TURNING:
+        return question
+    words, example, unit = _OF_TURNING[question.key]
+    return replace(question, words=words, example=example, unit=unit)
 
 
 def lacking(answered: Mapping[str, str]) -> list[Question]:

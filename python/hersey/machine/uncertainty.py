@@ -10,9 +10,10 @@ import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.errors import ParameterError, meant
+from hersey.machine.rotational import at_radius
 from hersey.motion.parameters import KINDS, OF_THE_BELT
 from hersey.units import KINDS as UNITS
-from hersey.units import convert, parse, takes_si
+from hersey.units import convert, takes_si
 
 #: Standard deviations that enclose 95 % of a normal distribution on either side.
 _DEVIATIONS = 1.96
@@ -63,8 +64,10 @@ class Uncertainty:
         return np.asarray(low * (high / low) ** share)
 
 
-def read_uncertainty(parameter: str, text: object) -> Uncertainty:
+def read_uncertainty(parameter: str, text: object, *, roll_radius: float | None = None) -> Uncertainty:
     """Return what ``"10 %"``, ``"0.3 mm/s to 3 mm/s"`` or, for an exponent, ``"-0.75 to -0.65"`` says.
+
+    With a ``roll_radius`` (m) the ends may be rotational quantities, e.g. ``"0.01 rad/s to 0.03 rad/s"``.
 
     Raises
     ------
@@ -94,7 +97,7 @@ def read_uncertainty(parameter: str, text: object) -> Uncertainty:
         example = f"1 {UNITS[kind][1]} to 2 {UNITS[kind][1]}" if kind else "-0.75 to -0.65"
         raise ParameterError(f"'{text}' is neither a share ('10 %') nor a range ('{example}')")
     try:
-        low, high = (float(end) if kind is None else parse(kind, end) for end in ends)
+        low, high = (float(end) if kind is None else at_radius(kind, end, roll_radius) for end in ends)
     except ValueError as error:
         if kind is not None or isinstance(error, ParameterError):
             raise

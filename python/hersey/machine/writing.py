@@ -9,7 +9,7 @@ from typing import Any
 
 from hersey.errors import ParameterError
 from hersey.files.toml import quoted
-from hersey.machine.questions import BY_KEY, MACHINE, MAPPING, POINT, TITLES, Question
+from hersey.machine.questions import BY_KEY, MACHINE, MAPPING, PART, POINT, TITLES, Question, asked_of
 
 #: What no question asks of a file, as TOML holds it: values of its tables by key, or what stands in none.
 Others = Mapping[str, Any]
@@ -40,8 +40,8 @@ def machine_text(
 
     Examples
     --------
-    >>> print(machine_text({"drivetrain.mass": "11 kg"}).splitlines()[3])
-    mass = "11 kg"                  # all that moves with the belt, including the motor, at the belt
+    >>> print(machine_text({"drivetrain.mass": "11 kg"}).splitlines()[4])
+    mass = "11 kg"                  # all that moves, motor included, where it slides; or moment of inertia
     """
     values = _values(answers)
     known = {key: values.pop(key) for key in list(values) if key.startswith("uncertainty.")}
@@ -162,7 +162,7 @@ def _tables(
     lines = [_line(key, value, "") for key, value in others.items() if not isinstance(value, dict)]
     sections = list(dict.fromkeys(q.section for q in questions))
     for section in sections:
-        own = [q for q in questions if q.section == section]
+        own = [asked_of(q, str(values.get(PART, ""))) for q in questions if q.section == section]
         more = others.get(section, {})
         stated = any(q.key in values or q.key in lacking for q in own) or bool(more)
         mark = "" if stated else "# "

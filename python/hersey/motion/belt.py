@@ -12,6 +12,7 @@ from hersey.errors import ParameterError
 from hersey.motion.drag import AnyDrag, PowersOfTemperature
 from hersey.motion.whole_torque import refuse_whole_torque
 from hersey.result import Means, Record
+from hersey.schema.noun import DRIVE, Noun
 from hersey.units import takes_si
 
 T = TypeVar("T")
@@ -20,15 +21,16 @@ T = TypeVar("T")
 @takes_si(stiffness="stiffness", mass="mass", grip="force")
 @dataclass(frozen=True)
 class Drivetrain(Record):
-    """Spring (gear train, roll core and rubber) of ``stiffness`` and moving ``mass``.
+    """Spring of ``stiffness`` (gear train, and what else yields) and moving ``mass``.
 
-    ``grip`` is the largest force before the roll slips on the belt: friction times load. Default: the roll
-    never slips, as Eq. 11 assumes.
+    ``grip`` is the largest force before the drive slips on the part that it moves, such as a roll on a belt:
+    friction times load. Default: it never slips, as Eq. 11 assumes. ``part`` names what slides.
     """
 
     stiffness: Annotated[float, Means(unit="N/m")]
     mass: Annotated[float, Means(unit="kg")]
-    grip: Annotated[float | None, Means("largest force before the roll slips on the belt", "N")] = None
+    grip: Annotated[float | None, Means("largest force before the drive slips on what it moves", "N")] = None
+    part: Annotated[Noun, Means("what slides, in a word")] = DRIVE
 
     @classmethod
     @takes_si(stiffness="torsional stiffness", inertia="moment of inertia", roll_radius="length")
@@ -110,7 +112,7 @@ def belt_of(
         return plain, _warned(drag, temperature, speeds), temperature
     if machine is None:
         raise ParameterError(
-            "a fitted surface needs roll radius and stick speed of the machine. Give read_machine(...) "
+            "a fitted surface needs radius and stick speed of the machine. Give read_machine(...) "
             "instead of its train, or surface.drag(...) instead of the surface"
         )
     if machine.belt["stick_speed_rule"] == "fixed" and isinstance(temperature, int | float):

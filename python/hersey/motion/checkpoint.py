@@ -55,15 +55,15 @@ if TYPE_CHECKING:
 #: Unit and meaning of each number.
 _ABOUT = {
     "frequency": ("Hz", "slips per time"),
-    "slip_duration": ("s", "time of a cycle in which the belt slips"),
+    "slip_duration": ("s", "time of a cycle in which it slips"),
     "stick_duration": ("s", "time of a cycle in which it sticks"),
-    "speed_min": ("m/s", "lowest belt speed of a cycle"),
-    "speed_max": ("m/s", "highest belt speed of a cycle"),
+    "speed_min": ("m/s", "lowest sliding speed of a cycle"),
+    "speed_max": ("m/s", "highest sliding speed of a cycle"),
     "stretch_min": ("m", "smallest stretch of the spring"),
     "stretch_max": ("m", "largest stretch of the spring"),
-    "grip_slip_duration": ("s", "time of a cycle in which the roll slips on the belt"),
+    "grip_slip_duration": ("s", "time of a cycle in which the drive slips"),
     "drag_work": ("J", "work done by the drag in a cycle"),
-    "stuck_fraction": ("1", "fraction of a cycle in which the belt sticks"),
+    "stuck_fraction": ("1", "fraction of a cycle in which it sticks"),
     "laps": ("1", "cycles simulated"),
 }
 

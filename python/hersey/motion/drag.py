@@ -347,7 +347,7 @@ class Drag(PowersOfTemperature):
             If the static force grows at rest, which sets of many have not.
         """
         if self.static_growth:
-            raise ParameterError("static_growth applies to one belt and cannot be swept")
+            raise ParameterError("static_growth applies to one drag and cannot be swept")
         if self.static_force is None and not self.rest_force and not self.rest_damping:
             return None
         values = [getattr(self, name) for name in BESIDE]

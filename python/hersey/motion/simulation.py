@@ -60,8 +60,8 @@ class Numerics(TypedDict, total=False):
 
 #: What is said of a kind in which the roll slips.
 _MEANT = {
-    "stalled": ": the roll slips on the belt and cannot move it",
-    "grip_slip": ": the roll slips on the belt, which slides more slowly",
+    "stalled": ": the drive slips and moves nothing",
+    "grip_slip": ": the drive slips, and what it moves slides more slowly",
 }
 
 
@@ -106,11 +106,11 @@ class StickSlipCycle(Result):
                 f"{self.kind.replace('_', ' ')}{_MEANT.get(self.kind, '')}",
                 f"  frequency       {self.frequency:.6f}",
                 f"  stuck fraction  {self.stuck_fraction:.6f}",
-                f"  belt speed      {self.speed_min:.6f} to {self.speed_max:.6f}",
+                f"  sliding speed   {self.speed_min:.6f} to {self.speed_max:.6f}",
                 f"  stretch         {self.stretch_min:.6f} to {self.stretch_max:.6f}",
                 f"  drag work       {self.drag_work:.6f} per cycle",
                 *(
-                    [f"  roll slips      {self.grip_slip_duration:.6f} per cycle"]
+                    [f"  drive slips     {self.grip_slip_duration:.6f} per cycle"]
                     * (self.grip_slip_duration > 0)
                 ),
             ]
@@ -354,7 +354,7 @@ def start_state(
     if start == "rest":
         return 0.0, 0.0
     if start != "steady":
-        raise ParameterError(f"start is '{start}': it must be rest, steady, or (belt speed, stretch)")
+        raise ParameterError(f"start is '{start}': it must be rest, steady, or (sliding speed, stretch)")
     if is_torque:
         raise ParameterError("start 'steady' needs a drive_speed")
     now = law if temperature is None else law.at(temperature.first)

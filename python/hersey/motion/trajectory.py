@@ -46,9 +46,9 @@ class Energy(Record):
 
     work: Annotated[float, Means("done by the drive", "J")]
     dissipated: Annotated[float, Means("work against drag", "J")]
-    slipped: Annotated[float, Means("lost where the roll slips on the belt", "J")]
+    slipped: Annotated[float, Means("lost where the drive slips", "J")]
     stored: Annotated[float, Means("growth of kinetic and spring energy", "J")]
-    owed: Annotated[float, Means("released by a contact that holds the belt, and not recovered")]
+    owed: Annotated[float, Means("released by a contact that holds, and not recovered")]
     residual: Annotated[float, Means("work less the other three, as a share of all energy turned over")]
 
 
@@ -94,7 +94,7 @@ class Trajectory(Result):
     stretch: Annotated[FloatArray, Means(unit="m")]
     spring_force: Annotated[FloatArray, Means(unit="N")]
     mode_index: NDArray[np.uint8]
-    slipping: Annotated[NDArray[np.bool_], Means("whether the roll slips on the belt")]
+    slipping: Annotated[NDArray[np.bool_], Means("whether the drive slips")]
     events: tuple[Event, ...]
     energy: Energy
     steps: int
@@ -125,9 +125,9 @@ class Trajectory(Result):
             return ""
         total, begin = sum(end - begin for begin, end in spans), spans[0][0]
         if len(spans) == 1:
-            return f"the roll slips on the belt for {shown(total)}, starting at {shown(begin)}"
+            return f"the drive slips for {shown(total)}, starting at {shown(begin)}"
         times = f"{len(spans)} times for {shown(total)} in total"
-        return f"the roll slips on the belt {times}, first at {shown(begin)}"
+        return f"the drive slips {times}, first at {shown(begin)}"
 
     def summary(self) -> str:
         """Return ranges, energies and check as text, in the units of the arguments."""
@@ -137,7 +137,7 @@ class Trajectory(Result):
                 f"{self.time.size} samples from {self.time[0]:.6g} to {self.time[-1]:.6g}, "
                 f"{len(self.events)} changes of mode; in SI or the units given"
             ),
-            f"  belt speed      {self.belt_speed.min():.6f} to {self.belt_speed.max():.6f}",
+            f"  sliding speed   {self.belt_speed.min():.6f} to {self.belt_speed.max():.6f}",
             f"  stretch         {self.stretch.min():.6f} to {self.stretch.max():.6f}",
             f"  spring force    {self.spring_force.min():.6f} to {self.spring_force.max():.6f}",
             *self._heating(),

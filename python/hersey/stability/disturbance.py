@@ -53,7 +53,7 @@ class Disturbance(Record):
     """
 
     drive_speed: float
-    kick: Annotated[float, Means("largest sudden loss of belt speed that sliding survives", "m/s", open=True)]
+    kick: Annotated[float, Means("largest sudden loss of speed that sliding survives", "m/s", open=True)]
     step: Annotated[
         float,
         Means("largest sudden step of the drive down to this speed that sliding survives", "m/s", open=True),
@@ -104,8 +104,8 @@ def step_within(
     """Return the same as `safe_step` where the band of the belt is known."""
     if from_speed < band.transition:
         raise ParameterError(
-            f"from_speed is {from_speed}, below the transition speed {band.transition:.6g}. Below it the "
-            "belt cannot slide steadily: start from a higher speed",
+            f"from_speed is {from_speed}, below the transition speed {band.transition:.6g}. Below it, "
+            "sliding is unstable: start from a higher speed",
             quantity="from_speed",
             value=from_speed,
             limit=band.transition,

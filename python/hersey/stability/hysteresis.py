@@ -54,7 +54,7 @@ class HysteresisBand(Result):
     lower: Annotated[float, OPEN]
     transition: float
     upper: Annotated[float, Means("0, as is lower, where no stick-slip cycle exists", open=True)]
-    stalls: Annotated[bool, Means("whether the grip of the roll cannot start a belt at rest")]
+    stalls: Annotated[bool, Means("whether the grip cannot start it from rest")]
     closure: str
     method: Annotated[str, Means("half laps, or simulation")]
     lower_accuracy: Annotated[float, Means("relative", open=True)]
@@ -88,18 +88,15 @@ class HysteresisBand(Result):
 
     def verdict(self) -> str:
         """Return what the band means, in a sentence or two."""
-        stalled = (
-            "The roll cannot start a belt at rest: it slips on it at any drive speed. " if self.stalls else ""
-        )
+        stalled = "The grip does not suffice to start from rest, at any drive speed. " if self.stalls else ""
         return stalled + self._in_motion()
 
     def _in_motion(self) -> str:
-        """What the band means for a belt that is not stalled."""
+        """What the band means where it is not stalled."""
         if self.upper == 0:
             return (
-                "No stick-slip: a belt that sticks also stalls. From the transition speed "
-                f"{self.transition:.6g} up, a belt that slides keeps sliding while the grip exceeds the "
-                "drag."
+                "No stick-slip: what sticks also stalls. From the transition speed "
+                f"{self.transition:.6g} up, sliding goes on while the grip exceeds the drag."
             )
         if not self.bistable:
             return (
@@ -108,10 +105,10 @@ class HysteresisBand(Result):
             )
         certain = f"Below {self.lower:.6g}, stick-slip is certain. From {self.transition:.6g} "
         if np.isinf(self.upper):
-            return certain + "up, the belt slides if slowed from above, but not if started from rest."
+            return certain + "up, it slides if slowed from above, but not if started from rest."
         return (
-            f"{certain}to {self.upper:.6g}, the belt slides if slowed from above and sticks if started "
-            "from below. Above, it slides."
+            f"{certain}to {self.upper:.6g}, it slides if slowed from above and sticks if started from below. "
+            "Above, it slides."
         )
 
     def headline(self) -> str:

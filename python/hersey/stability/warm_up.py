@@ -334,7 +334,7 @@ def _warnings(warm: WarmUp, rule: _Rule, resting: Trajectory) -> Iterator[Warnin
     if warm.peak_force > warm.force_limit:
         yield Warning(
             "peak force above the limit",
-            "the spring force reaches {peak_force:.4g} N while the belt breaks away or accelerates, "
+            "the spring force reaches {peak_force:.4g} N while it breaks away or accelerates, "
             "above the limit of {force_limit:.4g} N; steady sliding stays below the limit",
             severity="watch",
             peak_force=warm.peak_force,
@@ -343,9 +343,9 @@ def _warnings(warm: WarmUp, rule: _Rule, resting: Trajectory) -> Iterator[Warnin
     if math.isfinite(warm.full_speed) and warm.slides_from > warm.full_speed:
         yield Warning(
             "slides late",
-            "the belt slides steadily only from {slides_from:.4g} s on"
+            "it slides steadily only from {slides_from:.4g} s on"
             if math.isfinite(warm.slides_from)
-            else "the belt does not slide steadily within the time simulated",
+            else "it does not slide steadily within the time simulated",
             severity="watch",
             remedy="plan a start with plan_profile, using the temperature profile of this warm-up",
             slides_from=warm.slides_from,

@@ -90,7 +90,7 @@ class WarmUp(Result):
             last = _speed(float(self.drive_speed[-1]))
             return f"{first}; {target} is not reached within {self.time[-1]:.4g} s, only {last} at {end}."
         at = int(np.searchsorted(self.time, self.full_speed))
-        sliding = "" if math.isfinite(self.slides_from) else " The belt sticks there."
+        sliding = "" if math.isfinite(self.slides_from) else " It sticks there."
         how = "" if self.full_speed - self.start <= self._least_ramp else ", slowly until warm"
         when = f"full speed {target} after {self.full_speed:.4g} s, at {_temperature_words(self, at)}"
         return f"{first}{how}: {when}.{sliding}"
@@ -139,12 +139,14 @@ class WarmUp(Result):
         lines = [self.verdict(), f"Drag stays below {self.kept_below:.4g} N ({limit}).", *self.beside(), ""]
         if not math.isfinite(self.start):
             del lines[1]
-        lines.append(f"  {'time (s)':>9s}  {'drive (mm/s)':>12s}  {'film (degC)':>11s}  {'roll (degC)':>11s}")
+        lines.append(
+            f"  {'time (s)':>9s}  {'drive (mm/s)':>12s}  {'film (degC)':>11s}  {'counterbody (degC)':>18s}"
+        )
         last = min(self.time.size - 1, int(np.searchsorted(self.time, self.full_speed)))
         for i in np.unique(np.linspace(0, last, _ROWS).round().astype(int)).tolist():
             film, roll = celsius(self.film_temperature[i]), celsius(self.roll_temperature[i])
             lines.append(
-                f"  {self.time[i]:9.4g}  {1e3 * self.drive_speed[i]:12.4g}  {film:11.1f}  {roll:11.1f}"
+                f"  {self.time[i]:9.4g}  {1e3 * self.drive_speed[i]:12.4g}  {film:11.1f}  {roll:18.1f}"
             )
         return "\n".join([*lines, *(f"- {warning}" for warning in self.warnings)])
 
@@ -170,7 +172,7 @@ class WarmUp(Result):
 
 def _temperature_words(warm: WarmUp, at: int) -> str:
     film, roll = celsius(warm.film_temperature[at]), celsius(warm.roll_temperature[at])
-    return f"{film:.4g} degC (roll {roll:.4g} degC)"
+    return f"{film:.4g} degC (counterbody {roll:.4g} degC)"
 
 
 def _speed(speed: float) -> str:

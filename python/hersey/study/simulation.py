@@ -67,7 +67,7 @@ def _simulated(
     run = simulate(train, drag, drive_speed=speed, duration=first + 6.0 * period, samples=4001)
     samples = kept(run.belt_speed, 1500)
     if cycle.kind in ("stalled", "grip_slip"):
-        title += "; the roll slips on the belt" + (" and does not move it" if cycle.kind == "stalled" else "")
+        title += "; the drive slips" + (" and does not move it" if cycle.kind == "stalled" else "")
     beside, law = {"rest_force": drag.rest_force, "rest_damping": drag.rest_damping}, drag.law_at(None)
     return SimulationPart(
         title=title,

@@ -118,7 +118,7 @@ def _paper(mixed: MixedContact, speed: float, level: float) -> list[str]:
     )
     soft = float(_at(mixed, np.array([speed]), np.array([level])).torque[0])
     return [
-        f"Eq. 9 of the paper gives {hard:.3g} N m at {rpm(speed):.3g} rpm, {hard / soft:.2g} times "
+        f"Eq. 9 gives {hard:.3g} N m at {rpm(speed):.3g} rpm, {hard / soft:.2g} times "
         "film and contact. It is for hard surfaces; no flooded film in a soft nip reaches this "
         "torque."
     ]

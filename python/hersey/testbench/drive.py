@@ -8,6 +8,7 @@ from hersey.lubrication.contact import Contact
 from hersey.lubrication.lubricant import Lubricant
 from hersey.machine.limits import Limits, OperatingPoint
 from hersey.machine.machine import Machine
+from hersey.schema.noun import BELT
 from hersey.units import ZERO_CELSIUS
 
 
@@ -19,6 +20,7 @@ def example_drive() -> tuple[Machine, NoLoadTorque]:
         mass=11.0,
         roll_radius=15e-3,
         stick_speed=3e-3,
+        part=BELT,
         limits=Limits(motor_torque=1.0, roll_friction=0.6, nip_load=300.0, acceleration=0.5, speed=0.4),
         points=(
             OperatingPoint("full speed", 0.2, 180.0 + ZERO_CELSIUS),

@@ -42,7 +42,7 @@ class PhysicalTruth:
     def drag(self, temperature: float, roll_radius: float, stick_speed: float) -> MixedDrag | DragTable:
         """Return the drag of the belt at a temperature in degC, radius in m and stick speed in m/s."""
         if self.mixed is None:
-            raise ParameterError("a belt without contact cannot stick. Set stick_slip of the stand to False")
+            raise ParameterError("a drive without contact cannot stick. Set stick_slip of the stand to False")
         kelvin = temperature + ZERO_CELSIUS
         rest = self.rest.at_the_belt(roll_radius, kelvin)
         return MixedDrag(self.mixed, kelvin, stick_speed, **rest)  # type: ignore[arg-type]

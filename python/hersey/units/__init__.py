@@ -13,7 +13,7 @@ arguments   what functions and records are called with, in SI
 
 from hersey.units.arguments import Kind, argument, si, takes_si
 from hersey.units.into_si import Conversion, Number, celsius, conversion, convert, rpm
-from hersey.units.kinds import KINDS, nearest_unit
+from hersey.units.kinds import KINDS, named, nearest_unit
 from hersey.units.pint_units import registry
 from hersey.units.quantity import parse
 from hersey.units.spelling import COUNTS, of_encoder, without_factor
@@ -30,6 +30,7 @@ __all__ = [
     "celsius",
     "conversion",
     "convert",
+    "named",
     "nearest_unit",
     "of_encoder",
     "parse",

@@ -52,10 +52,10 @@ _MISTAKEN = {
         ("K/W", "thermal resistance", "write its inverse: 1 / 2 K/W = '0.5 W/K'"),
     ),
     "belt speed": (
-        ("rad/s", "speed of rotation", "multiply by the radius of the roll: 10 rad/s x 15 mm = '150 mm/s'"),
+        ("rad/s", "speed of rotation", "multiply by the radius: 10 rad/s x 15 mm = '150 mm/s'"),
     ),
     "speed": (
-        ("m/s", "belt speed", "divide by the radius of the roll: 150 mm/s / 15 mm = '10 rad/s'"),
+        ("m/s", "sliding speed", "divide by the radius: 150 mm/s / 15 mm = '10 rad/s'"),
     ),
     "power": (("W/m^2", "heat flux", "multiply by the area: 18000 W/m^2 x 0.05 m^2 = '900 W'"),),
 }  # fmt: skip
@@ -72,13 +72,18 @@ def _alike(text: str, si: str) -> bool:
     return parsed is not None and bool(parsed.dimensionality == registry.parse_units(si).dimensionality)
 
 
+def named(kind: str) -> str:
+    """Return what people call a kind of quantity."""
+    return "sliding speed" if kind == "belt speed" else kind
+
+
 def wrong_kind(kind: str, unit: str, text: str) -> WrongKindError:
     """Return the error of a unit of another kind, which is written ``text`` without its factor."""
     for si, what, how in _MISTAKEN.get(kind, ()):
         if _alike(text, si):
-            return WrongKindError(f"unit '{unit}' is that of a {what}, not of a {kind}", remedy=how)
+            return WrongKindError(f"unit '{unit}' is that of a {what}, not of a {named(kind)}", remedy=how)
     way_out = meant(kind, unit, _ALIKE_OF_ANOTHER_KIND)
-    return WrongKindError(f"unit '{unit}' is not a unit of {kind}", remedy=way_out)
+    return WrongKindError(f"unit '{unit}' is not a unit of {named(kind)}", remedy=way_out)
 
 
 def meant(kind: str, unit: str, alike: float = _ALIKE) -> str:

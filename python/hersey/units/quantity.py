@@ -7,7 +7,7 @@ import re
 
 from hersey.errors import UnitError, WrongKindError
 from hersey.units.into_si import conversion
-from hersey.units.kinds import KINDS
+from hersey.units.kinds import KINDS, named
 from hersey.units.spelling import NUMBER
 
 #: Characters of a quantity at the most: the patterns below take longer than linear.
@@ -27,10 +27,12 @@ def parse(kind: str, text: str) -> float:
     example = KINDS[kind][1]
     if len(text) > _LONGEST_QUANTITY:
         shown = f"'{text[:20]}...' has {len(text)} characters; at most {_LONGEST_QUANTITY} are allowed"
-        raise UnitError(f"{shown}. Write a number and a unit of {kind}, e.g. '1 {example}'")
+        raise UnitError(f"{shown}. Write a number and a unit of {named(kind)}, e.g. '1 {example}'")
     match = re.fullmatch(rf"\s*({NUMBER})\s*([A-Za-z°ºµμ%℃℉].*?)\s*", text)
     if match is None:
-        raise UnitError(f"'{text}' is not a number with a unit of {kind}. Write {_written(kind, text)}")
+        raise UnitError(
+            f"'{text}' is not a number with a unit of {named(kind)}. Write {_written(kind, text)}"
+        )
     if re.match(r"(\S+\s+)?to\s", match[2]):
         raise UnitError(f"'{text}' is a range. Write one value here, e.g. '{match[1]} {example}'")
     if kind == "time" and (period := _period(float(match[1]), match[2])):

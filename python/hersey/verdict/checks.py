@@ -84,7 +84,7 @@ def _on_thickening(lubricant: Lubricant, film: Film) -> Iterator[Warning]:
         yield Warning(
             "no thickening",
             "pressure does not thicken this lubricant here (alpha p = {thickening:.2g}), so Eqs. 5, "
-            "9 and 10 of the paper do not apply",
+            "9 and 10 do not apply",
             thickening=thickening,
         )
 
@@ -125,7 +125,7 @@ def _apart(one: float, other: float) -> float:
 def _check_statements(machine: Machine, contact: Contact) -> Iterator[Warning]:
     if abs(contact.roll_radius / machine.roll_radius - 1.0) > _SAME:
         yield Warning(
-            "two roll radii",
+            "two radii",
             "[contact] roll_radius is {contact:.4g mm}, but [drivetrain] roll_radius is "
             "{drivetrain:.4g mm}. Use the same value in both",
             severity="act",
@@ -165,7 +165,7 @@ def _check_contact(contact: Contact, film: Film) -> Iterator[Warning]:
     if nip.strain > MAX_STRAIN:
         yield Warning(
             "large strain",
-            "the rubber strain (a^2/(2 R h)) is {strain:.0f %}; linear elasticity holds only up to "
+            "the strain of the layer (a^2/(2 R h)) is {strain:.0f %}; linear elasticity holds only up to "
             "about {limit:.0f %}",
             severity="watch",
             strain=nip.strain,
@@ -173,7 +173,7 @@ def _check_contact(contact: Contact, film: Film) -> Iterator[Warning]:
             off=nip.strain / MAX_STRAIN,
         )
     if not np.all(film.inlet_short) and np.any(film.regime == REGIMES.index("isoviscous-elastic")):
-        words = "the inlet is not short compared with rubber and nip, so the soft-EHL law is only approximate"
+        words = "the inlet is not short compared with layer and nip, so the soft-EHL law is only approximate"
         yield Warning("long inlet", words, severity="watch", off=1.0)
     if contact.roughness is not None:
         least = float(film.lambda_ratio(contact.roughness).min())
@@ -256,8 +256,7 @@ def _check_friction(highest: float, grip: float | None) -> Iterator[Warning]:
     if grip is not None and highest > grip:
         yield Warning(
             "friction above the grip",
-            "friction coefficient {friction:.2g} exceeds that of belt on roll, {grip:g}, so the belt "
-            "would slip",
+            "friction coefficient {friction:.2g} exceeds that of the grip, {grip:g}, so the drive would slip",
             severity="act",
             friction=highest,
             grip=grip,

@@ -55,7 +55,7 @@ def contact_regimes(
             low=float(band.min()),
             high=float(band.max()),
             film="" if starved else row.film,
-            meaning="isoviscous film in a rubber nip, flooded: range of the local exponent in this contact",
+            meaning="isoviscous film in a soft nip, flooded: range of the local exponent in this contact",
         )
         if row.name == SOFT
         else row

@@ -168,13 +168,13 @@ def _text(
         f"speed^{expected:.2f}; measured: {c}."
     ]
     if solved is not None:
-        lines.append(f"A numerical solution for this roll gives the exponent {solved:.2f}.")
+        lines.append(f"A numerical solution for this nip gives the exponent {solved:.2f}.")
     if seen.named is None:
         lines.append("From the log alone no regime can be named.")
     elif excluded is None:
         lines.append("The measured exponent agrees with that regime.")
     if held != "piezoviscous-elastic":
-        lines.append("Eq. 5 of the paper (Dowson-Higginson) does not apply to this contact.")
+        lines.append("Eq. 5 (Dowson-Higginson) does not apply to this contact.")
     if thermal is not None:
         lines.append(
             f"The exponent of damping in temperature (K) is {thermal}; the film of this lubricant predicts "

@@ -41,7 +41,7 @@ REGIMES: tuple[RegimeRow, ...] = (
         -0.60,
         -0.56,
         "isoviscous-elastic",
-        "isoviscous film in a rubber nip; down to -0.56 on a bonded layer, by numerical solutions",
+        "isoviscous film in a soft nip; down to -0.56 on a bonded layer, by numerical solutions",
     ),
     RegimeRow(
         "rigid piezoviscous film", -2 / 3, -2 / 3, "piezoviscous-rigid", "film thickness as speed^(2/3)"
@@ -51,7 +51,7 @@ REGIMES: tuple[RegimeRow, ...] = (
         -0.70,
         -0.70,
         "piezoviscous-elastic",
-        "piezoviscous line contact, Eq. 10 of the paper",
+        "piezoviscous line contact, Eq. 10",
     ),
     RegimeRow(COULOMB, -1.0, -1.0, "isoviscous-rigid", "torque independent of speed"),
     RegimeRow(FALLING, -np.inf, -1.0, "", "torque falls with speed: mixed lubrication, stick-slip possible"),

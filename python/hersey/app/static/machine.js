@@ -36,7 +36,7 @@ function form(view, questions, act) {
     const hint = told(faults) || (q.key === "drivetrain.stick_speed" ? "If not measured, type a range, e.g. 1 to 4." : "");
     const id = `m-${q.key}`;
     return make("div", { class: "line" },
-      make("label", { for: id, title: q.words }, ...(q.letter ? [make("i", { text: q.letter }), " "] : []), q.field.replace(/_/g, " ")),
+      make("label", { for: id, title: q.words }, ...(q.letter ? [make("i", { text: q.letter }), " "] : []), q.name.replace(`${q.letter} `, "")),
       make("input", { class: `field${faults.length ? " wrong" : ""}`, id, "data-control": `field:${q.key}`, value: machine.answers[q.key] ?? "", autocomplete: "off",
         "aria-invalid": faults.length ? "true" : null, "aria-describedby": `${id}-hint`, ...typed((field) => act.machine({ answers: { [q.key]: field.value } })), onfocus: () => meant(q.letter), onblur: () => meant("") }),
       make("span", { class: "unit", text: sign(q.unit) }),
@@ -71,14 +71,14 @@ function form(view, questions, act) {
   }
 }
 
-/** What each number is: the drive pulls through a spring k on the belt of mass m, between heater and roll. */
+/** What each number is: the drive pulls through a spring k on the mass m, which slides under a load. */
 function sketch() {
   const part = (letter, ...children) => draw("g", letter ? { "data-letter": letter } : {}, ...children);
   const word = (x, y, text, anchor = "middle") => draw("text", { x, y, "text-anchor": anchor, text });
   const path = (kind, d) => draw("path", { class: kind, d });
   return draw("svg", { class: "sketch", viewBox: "0 0 300 168", width: 300, height: 168, role: "img",
-    "aria-label": "Sketch: the drive pulls through a spring k on the belt of mass m, which slides between the heater and a roll of radius R with rubber h and length L, pressed on with the load N; friction of belt and roll is µ" },
-  draw("rect", { class: "body", x: 150, y: 12, width: 112, height: 20, rx: 2 }), word(206, 26, "heater"),
+    "aria-label": "Sketch: the drive pulls through a spring k on the mass m, which slides on a surface, pressed on with the load N by a wheel of radius R with a soft layer h and length L; its friction is µ" },
+  draw("rect", { class: "body", x: 150, y: 12, width: 112, height: 20, rx: 2 }), word(206, 26, "surface"),
   part("m", draw("path", { class: "belt", d: "M112 38H284", "stroke-width": 3 }), word(118, 31, "m")),
   part("h", draw("circle", { class: "rubber", cx: 206, cy: 94, r: 52 }), path("dimension", "M233 121L243 131M243 131H264"), word(271, 135, "h")),
   draw("circle", { class: "body", cx: 206, cy: 94, r: 38 }),
@@ -89,5 +89,5 @@ function sketch() {
   part("k", path("belt", "M112 38h-8l-4-7-8 14-8-14-8 14-8-14-4 7h-8"), word(84, 25, "k")),
   draw("circle", { class: "body", cx: 36, cy: 38, r: 20 }), word(36, 42, "drive"),
   part("N", path("dimension", "M206 164v-14m-4 5 4-6 4 6"), word(216, 164, "N", "start")),
-  part("", path("dimension", "M104 52h28m-5-3 5 3-5 3"), word(86, 70, "belt speed")));
+  part("", path("dimension", "M104 52h28m-5-3 5 3-5 3"), word(86, 70, "speed")));
 }

@@ -71,6 +71,6 @@ def temperature_axis(frame: Frame, field: str = "x:Q") -> alt.X:
 
 
 def speed_axis(frame: Frame, field: str = "y:Q") -> alt.Y:
-    """Return the axis up, in mm/s at the belt."""
+    """Return the axis up, in mm/s where it slides."""
     domain = logarithmic_axis((1e3 * frame.low, 1e3 * frame.high), grid=False)
-    return alt.Y(field, title="Drive speed at the belt (mm/s)", **domain)
+    return alt.Y(field, title="Drive speed (mm/s)", **domain)

@@ -22,7 +22,7 @@ REGIONS = (
     ("swing", "depends on start: oscillates when slowed down", "oscillates", "#e08f2d"),
     ("stick_slip", "sticks", "sticks", "#cc6a3d"),
     ("creep", "sticks: slower than the stick speed", "below stick speed", "#a8503a"),
-    ("stall", "stall: the roll slips", "stall", "#44444e"),
+    ("stall", "stall: the drive slips", "stall", "#44444e"),
     ("motor", "stall: above the motor limit", "motor stalls", "#44444e"),
 )
 #: Lower and upper edge (m/s) of a part of a region at each column of the chart.

@@ -4,6 +4,7 @@
 groups          points that share a temperature or a speed
 columns         a column of the steady points by its name
 points          `SteadyPoints`: one row per dwell, and what is not used
+counted_speed   slow speeds of an encoder that reads 0 or one count
 segments        stretches of a run in which the speed holds
 ripple          dwells whose speed ripples with the shaft, put together again
 noise           the standard error of a mean where neighbours are correlated

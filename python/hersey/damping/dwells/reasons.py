@@ -123,10 +123,10 @@ class Reason:
         """Return how a ripple goes with the revolution of the roll, in words."""
         times = round(self.per_turn)
         if 1 <= times <= MOST_WHOLE and abs(self.per_turn - times) <= WHOLE_TURN:
-            return "once per roll revolution" if times == 1 else f"{times} times per roll revolution"
+            return "once per revolution" if times == 1 else f"{times} times per revolution"
         if self.per_turn < 1.0:
-            return f"once in {1.0 / self.per_turn:.3g} roll revolutions, possibly once per turn of the belt"
-        return f"{self.per_turn:.3g} times per roll revolution"
+            return f"once in {1.0 / self.per_turn:.3g} revolutions"
+        return f"{self.per_turn:.3g} times per revolution"
 
     def remedy(self) -> str:
         """Return what to do about a ripple."""
@@ -182,9 +182,9 @@ def sizes(alike: list[Reason]) -> str:
     if _once_a_turn(alike):
         return f"{at}{_longest(alike).turns()}"
     if _same_frequency(alike):
-        return f"{at}the same at every speed, so not from roll or belt"
+        return f"{at}the same at every speed, so not from what turns"
     turns = [r.per_turn for r in alike]
-    return f"{at}{min(turns):.3g} to {max(turns):.3g} times per roll revolution"
+    return f"{at}{min(turns):.3g} to {max(turns):.3g} times per revolution"
 
 
 def remedies(alike: list[Reason]) -> str:

@@ -12,6 +12,7 @@ import numpy as np
 import polars as pl
 
 from hersey.arrays import FloatArray
+from hersey.damping.dwells.counted_speed import counting_error, with_counts_spread
 from hersey.damping.dwells.groups import MIN_DWELL, MIN_SAMPLES
 from hersey.damping.dwells.judging import Asked, Dwell, Stretch, judged
 from hersey.damping.dwells.noise import mean_and_error
@@ -88,9 +89,12 @@ class _Reduction:
     def __init__(
         self, log: TorqueLog, subtracted: bool, asked: Asked, clocks: Clocks = LONGER_CLOCKS
     ) -> None:
-        self.log, self.subtracted, self.asked, self.clocks = log, subtracted, asked, clocks
+        self.recorded, self.subtracted, self.asked, self.clocks = log, subtracted, asked, clocks
+        counted = [with_counts_spread(run) for run in log.runs]
+        self.counts = [step for _, step in counted]  # of encoders, rad/s
+        self.log = replace(log, runs=tuple(run for run, _ in counted)) if any(self.counts) else log
         self.starts = starts_of(log.runs)
-        self.segments = [joined_over_turns(run, segments_of(run)) for run in log.runs]
+        self.segments = [joined_over_turns(run, segments_of(run)) for run in self.log.runs]
         self.stretches = [s for i in range(len(log.runs)) for s in _in_order(i, self.segments[i])]
         self.settling: dict[str, float] = {}
         self.steps = [self._steps(i) for i in range(len(log.runs))]
@@ -192,7 +196,7 @@ class _Reduction:
             rejected=rejected,
             tare=float(np.mean(tares)),
             standing_torque=None if self.zero is None else self.zero.mean,
-            log=self.log,
+            log=self.recorded,
             tare_errors=disturbances,
             warnings=warnings,
             resolutions=resolutions,
@@ -203,7 +207,7 @@ class _Reduction:
 
     def _steps(self, index: int) -> dict[str, float]:
         """Steps in which the sensors of a run count while its speed holds, SI; 0 where they show none."""
-        run = self.log.runs[index]
+        run = self.recorded.runs[index]
         rows = [slice(s.start, s.end) for s in self.segments[index] if s.steady]
         channels = {"torque": run.torque, "speed": run.speed, "temperature": run.temperature}
         return {
@@ -218,9 +222,15 @@ class _Reduction:
         for name in ("torque", "speed", "temperature"):
             if step := max(steps[name] for steps in self.steps):
                 steps = [self.steps[d.run][name] for d in dwells]
-                errors = self._each(partial(_rounding, name), dwells, steps)
+                errors = self._each(partial(self._rounding, name), dwells, steps)
                 out.append(Resolution(name, step, np.array(errors) * alike))
         return tuple(out)
+
+    def _rounding(self, name: str, _: Run, dwell: Dwell, step: float) -> float:
+        """The error that the step of a sensor leaves in the mean of a dwell, SI."""
+        values = _values(self.recorded.runs[dwell.run], name, dwell)
+        counted = counting_error(values, self.counts[dwell.run]) if name == "speed" else None
+        return rounding_error(values, step) if counted is None else counted
 
     def _repeats(self, dwells: list[Dwell]) -> FloatArray:
         """How many dwells have the speed and temperature of each."""
@@ -354,11 +364,6 @@ def _values(run: Run, name: str, dwell: Dwell) -> FloatArray:
     """Readings of a channel over a dwell; none if it was not recorded."""
     values: FloatArray | None = getattr(run, name)
     return np.empty(0) if values is None else values[dwell.start : dwell.end]
-
-
-def _rounding(name: str, run: Run, dwell: Dwell, step: float) -> float:
-    """The error that the step of a sensor leaves in the mean of a dwell, SI."""
-    return rounding_error(_values(run, name, dwell), step)
 
 
 def _widen(rows: list[dict[str, object]], quantity: str, errors: FloatArray) -> None:

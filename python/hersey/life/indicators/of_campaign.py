@@ -144,14 +144,14 @@ class _Asked:
                 )
                 if value is None
             ]
-            return [], [_lacks("grip of the roll", "limits", " and ".join(lacks))]
+            return [], [_lacks("grip", "limits", " and ".join(lacks))]
         estimates, limit = self.estimates, grip * self.machine.roll_radius
         warnings = []
         if any(rest is None for rest in estimates.runs.rests):
             warnings.append(
                 Warning(
                     "no-load torque unknown",
-                    "all torque is counted as the belt's, although the roll carries less",
+                    "all torque is counted as that of the contact, although bearings and gears take a part",
                     remedy="add [rest] to the machine file",
                     severity="watch",
                 )

@@ -13,6 +13,7 @@ cells         tables and lists of channels in cell arrays of MATLAB
 hdf5          HDF5, and MATLAB 7.3
 matrices      numbers in rows and columns, as the two before hold them
 excel         workbooks of Excel, through polars and calamine
+sheets        all cells of a workbook, for a layout
 numpy_arrays  what NumPy saved
 parquet       Parquet
 frame         polars and pandas frames in memory

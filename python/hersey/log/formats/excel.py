@@ -14,7 +14,7 @@ import polars as pl
 
 from hersey.arrays import FloatArray
 from hersey.errors import HerseyError
-from hersey.log.recording import LONGEST_CELL, Cells, Recording, Signal, library
+from hersey.log.recording import LONGEST_CELL, Cells, Recording, Signal, cell_that_is_no_number, library
 from hersey.log.text.column import Column
 from hersey.log.text.dated_numbers import was_number
 from hersey.log.text.footer import summary_lines
@@ -33,17 +33,7 @@ _LAST = 21
 def open_excel(file: BinaryIO, _name: str) -> Iterator[Recording]:
     """Open a workbook: each sheet with a table is a group, named where there are several."""
     prepare()
-    sheets = pl.read_excel(
-        io.BytesIO(file.read()),
-        sheet_id=0,
-        engine="calamine",
-        has_header=False,
-        # as text: a word in a column of numbers costs its row alone
-        read_options={"dtypes": "string", "skip_rows": 0},
-        drop_empty_rows=False,
-        drop_empty_cols=False,
-        raise_if_empty=False,
-    )
+    sheets = sheets_of(file)
     recording = Recording("Excel", ())
     tables: dict[str, tuple[pl.DataFrame, Layout]] = {}
     others = []
@@ -65,6 +55,21 @@ def open_excel(file: BinaryIO, _name: str) -> Iterator[Recording]:
         recording.comments += tuple(comment.rstrip() for comment in layout.comments)
     recording.signals, recording.others, recording.cells = tuple(signals), tuple(others), tuple(columns)
     yield recording
+
+
+def sheets_of(file: BinaryIO) -> dict[str, pl.DataFrame]:
+    """Return the cells of each sheet as text, by its title."""
+    return pl.read_excel(
+        io.BytesIO(file.read()),
+        sheet_id=0,
+        engine="calamine",
+        has_header=False,
+        # as text: a word in a column of numbers costs its row alone
+        read_options={"dtypes": "string", "skip_rows": 0},
+        drop_empty_rows=False,
+        drop_empty_cols=False,
+        raise_if_empty=False,
+    )
 
 
 def prepare() -> None:
@@ -154,18 +159,10 @@ def _numbers(
     if style is None and any(was_number(column.name, cell) for cell in text.filter(odd)):
         recording.dates.add(replace(column, group=group).path)
     for row in odd.arg_true()[:1]:
+        expected = "number" if style is None else "time"
+        at, odd_cells = layout.first_line + row, int(odd.sum())
         recording.warnings.append(
-            Warning(
-                "cell that is no number",
-                "row {row}, column '{column}': '{cell}' is not a {expected}"
-                + (", nor are {others} more {others:cell|cells} in this column" if odd.sum() > 1 else ""),
-                where=sheet,
-                row=layout.first_line + row,
-                column=column.name,
-                cell=text[row][:40],
-                expected="number" if style is None else "time",
-                others=int(odd.sum()) - 1,
-            )
+            cell_that_is_no_number(at, column.name, text[row], odd_cells, where=sheet, expected=expected)
         )
     if isinstance(written, Stamps):
         recording.warnings.append(written.warning(column.name))

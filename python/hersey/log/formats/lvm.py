@@ -14,10 +14,11 @@ import polars as pl
 
 from hersey.arrays import FloatArray
 from hersey.errors import UnreadableLogError
-from hersey.log.recording import Recording, Signal
+from hersey.log.recording import Recording, Signal, cell_that_is_no_number
 from hersey.log.text.column import refuse_columns, refuse_long_name, refuse_ragged, split_unit
 from hersey.log.text.layout import encoding_of
-from hersey.log.text.numbers import LONGEST_NUMBER, NumberStyle, is_missing
+from hersey.log.text.numbers import LONGEST_NUMBER, NumberStyle
+from hersey.log.text.stamps import numbers_in
 from hersey.schema.warning import Warning
 
 _END = "***End_of_Header***"
@@ -99,7 +100,7 @@ def open_lvm(file: BinaryIO, name: str) -> Iterator[Recording]:
                 )
             )
     recording.comments = tuple(f"{k}: {v[0]}"[:200] for k, v in general.items() if v and v[0])[:5]
-    table = _Table(segments, style, name)
+    table = _Table(segments, style, name, recording.warnings)
     recording.signals = tuple(table.signals())
     yield recording
 
@@ -169,8 +170,10 @@ def _style(general: dict[str, list[str]], segments: list[_Segment]) -> NumberSty
 class _Table:
     """The channels of all segments, one after another."""
 
-    def __init__(self, segments: list[_Segment], style: NumberStyle, file: str) -> None:
-        self.segments, self.style, self.file = segments, style, file
+    def __init__(
+        self, segments: list[_Segment], style: NumberStyle, file: str, warnings: list[Warning]
+    ) -> None:
+        self.segments, self.style, self.file, self.warnings = segments, style, file, warnings
         names = segments[0].names
         self.columns = [i for i, name in enumerate(names) if name != _X]
         self.names = [names[i] for i in self.columns]
@@ -214,13 +217,10 @@ class _Table:
         cells = [row[column] if column < len(row) else "" for row in segment.rows[:rows]]
         if len(cells) < _FEW and all(map(self.style.is_number, cells)):
             return np.array([self.style.value(cell) for cell in cells])
-        values = self.style.values(pl.Series(cells, dtype=pl.String))
-        if values is None:
-            bad = next(i for i, c in enumerate(cells) if not (is_missing(c) or self.style.is_number(c)))
-            raise UnreadableLogError(
-                f"{self.file}, line {segment.line + bad}, column '{segment.names[column]}': "
-                f"'{cells[bad][:40]}' is not a number"
-            )
+        values, odd = numbers_in(pl.Series(cells, dtype=pl.String), self.style)
+        for row in odd.arg_true()[:1]:
+            place = segment.line + row, segment.names[column], cells[row]
+            self.warnings.append(cell_that_is_no_number(*place, int(odd.sum())))
         return values
 
     def _step(self, segment: _Segment, channel: int) -> tuple[object, ...]:

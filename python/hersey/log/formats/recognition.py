@@ -37,6 +37,7 @@ FILES = {
     "parquet": "a Parquet file",
     "lvm": "a LabVIEW measurement file",
     "excel": "an Excel workbook",
+    "sheets": "an Excel workbook",
     "numpy_arrays": "a NumPy file",
 }
 #: Bytes of the start that are looked at.
@@ -134,4 +135,5 @@ def _of_archive(path: Path, start: bytes, kind: str | None) -> str:
 
 def called(kind: str) -> str:
     """Return a file of a format in words, with the suffixes that it usually has."""
-    return f"{FILES[kind]} ({', '.join(suffix for suffix, reader in READERS.items() if reader == kind)})"
+    suffixes = [suffix for suffix, reader in READERS.items() if FILES[reader] == FILES[kind]]
+    return f"{FILES[kind]} ({', '.join(suffixes)})"

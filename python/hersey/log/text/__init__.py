@@ -3,6 +3,7 @@
 ===============  ================================================
 numbers          how a text file writes numbers
 stamps           how it writes times
+split_seconds    times in whole seconds beside a column of milliseconds
 column           a column: name and unit
 decimal_commas   commas between the columns that are decimal marks too
 separators       what stands between cells, and the rows of numbers that it makes

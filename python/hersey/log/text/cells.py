@@ -21,11 +21,13 @@ from hersey.log.text.repeated_header import refuse_another_header
 from hersey.log.text.stamps import Stamps, numbers_in
 from hersey.schema.warning import Warning
 
+_ONE_STYLE = "export numbers with one decimal mark and without thousands separators"
+
 
 class CellReader:
     """Reads the same columns of one block after another; time stamps remember what they read.
 
-    With ``strict`` a cell that is no number is refused, also where it could be none in any style.
+    With ``strict`` a cell that is no number is refused.
     """
 
     def __init__(self, name: str, layout: Layout, columns: list[Column], *, strict: bool) -> None:
@@ -33,6 +35,8 @@ class CellReader:
         self.name, self.layout, self.columns, self.strict = name, layout, columns, strict
         self.stamps = {i: Stamps(style) for i, style in layout.stamps.items()}
         self.dates = dict[int, Column]()  # columns in which numbers have become dates, by index
+        self.misread = 0  # cells of a number in another style, and rows of more cells than the header
+        self.remedy = ""  # for the first of them
 
     def warnings(self) -> list[Warning]:
         """Return how time stamps were read."""
@@ -46,10 +50,12 @@ class CellReader:
     def numbers(self, block: Block) -> list[FloatArray]:
         """Return the columns as numbers, NaN where a cell stands for a missing value.
 
+        Unless ``strict`` also where a cell is no number, and in a row of more cells than the header.
+
         Raises
         ------
         UnreadableLogError
-            If a cell is no number, or a row has more cells than the header; it names the line.
+            If ``strict``, or if most rows are such; it names the line.
         """
         wanted = sorted(column.index for column in self.columns)
         style = self.layout.style
@@ -97,39 +103,55 @@ class CellReader:
 
     def _cell_by_cell(self, block: Block) -> list[FloatArray]:
         width = len(self.layout.columns)
-        table: list[list[str]] = []
-        for row, cells in enumerate(block.cells(self.layout.between)):
-            if any(cells[width:]):
-                raise UnreadableLogError(
-                    f"{self.name}, line {block.lines[row]}: {len(cells)} cells, but the header has {width}",
-                    remedy=with_decimal_commas([cells], width) if self.layout.separator == "," else "",
-                )
-            table.append(cells + [""] * (width - len(cells)))
+        table = [cells + [""] * (width - len(cells)) for cells in block.cells(self.layout.between)]
+        self._leave_out_longer(block, table)
         return [
             self._readable(block, column, [row[column.index] for row in table]) for column in self.columns
         ]
 
+    def _leave_out_longer(self, block: Block, table: list[list[str]]) -> None:
+        """Empty the rows that have more cells than the header: which of them is which is not known."""
+        width = len(self.layout.columns)
+        longer = [row for row, cells in enumerate(table) if any(cells[width:])]
+        if not longer:
+            return
+        cells = table[longer[0]]
+        remedy = with_decimal_commas([cells], width) if self.layout.separator == "," else ""
+        self._misread(
+            len(longer),
+            len(table),
+            f"{self.name}, line {block.lines[longer[0]]}: {len(cells)} cells, but the header has {width}",
+            remedy,
+        )
+        for row in longer:
+            table[row] = [""] * width
+
+    def _misread(self, count: int, rows: int, said: str, remedy: str) -> None:
+        """Count cells that are misread; refuse if ``strict``, or if most of the rows have one."""
+        if self.strict or 2 * count > rows:
+            raise UnreadableLogError(said, remedy=remedy)
+        self.misread += count
+        self.remedy = self.remedy or remedy
+
     def _readable(self, block: Block, column: Column, cells: list[str]) -> FloatArray:
-        """The numbers of a column, NaN also where a cell is none, unless it could be one in another style."""
+        """The numbers of a column, NaN also where a cell is none."""
         values, odd = numbers_in(pl.Series(cells, dtype=pl.String), self._written(column))
         plain = column.index not in self.stamps
+        otherwise = []
         for row in odd.arg_true():
             place = f"{self.name}, line {block.lines[row]}"
             if plain:
                 refuse_another_header(place, column, cells[row], self.layout.columns)
-            written = plain and looks_numeric(cells[row])
+            said = f"{place}, column '{column.name}': '{cells[row][:40]}' is not a {self.what(column)}"
             dated = plain and was_number(column.name, cells[row])
             if dated:
                 self.dates[column.index] = column
-            if self.strict or written:
-                raise UnreadableLogError(
-                    f"{place}, column '{column.name}': '{cells[row][:40]}' is not a {self.what(column)}",
-                    remedy="export numbers with one decimal mark and without thousands separators"
-                    if written
-                    else numbers_lost(column.name)
-                    if dated
-                    else "",
-                )
+            if plain and looks_numeric(cells[row]):
+                otherwise.append(said)
+            elif self.strict:
+                raise UnreadableLogError(said, remedy=numbers_lost(column.name) if dated else "")
+        if otherwise:
+            self._misread(len(otherwise), len(cells), otherwise[0], _ONE_STYLE)
         return values
 
 

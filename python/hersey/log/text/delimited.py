@@ -36,6 +36,7 @@ from hersey.log.text.column import Column
 from hersey.log.text.footer import end_of_table
 from hersey.log.text.layout import SNIFFED, Layout, find_layout
 from hersey.log.text.numbers import is_missing
+from hersey.log.text.split_seconds import refuse_split_seconds
 from hersey.log.text.stamps import refuse_whole_minutes
 from hersey.log.text.units_in_cells import numbers_only
 from hersey.log.torque_log import NO_CLOCK, Channel, LogFile, Run
@@ -68,6 +69,7 @@ def read_delimited(path: Path, wanted: Wanted, progress: Progress | None = None)
     arrays, impossible = table.arrays()
     if (time := channels.get("time")) and (stamps := table.reader.stamps.get(time[0].index)):
         refuse_whole_minutes(f"{name}: column '{time[0].name}'", stamps, arrays["time"])
+        refuse_split_seconds(f"{name}: column '{time[0].name}'", arrays["time"], layout.columns)
     used = tuple(Channel(role, column.name, si.unit) for role, (column, si) in table.channels.items())
     if stated.every is not None:
         used = (Channel("time", NO_CLOCK, f"{stated.every:g} s"), *used)
@@ -321,6 +323,7 @@ class _Table:
         words = (self._fault(block, values, int(row)) for row in np.flatnonzero(gone))
         self.left_out.add(int(gone.sum()), words)
         self.left_out.dates = next((column.name for column in self.reader.dates.values()), "")
+        self.left_out.misread, self.left_out.rewrite = self.reader.misread, self.reader.remedy
         kept = np.flatnonzero(~gone) if gone.any() else None
         first = self._lines[-1][0] + self._kept_last if self._lines else 0
         self._kept_last = len(block.lines) if kept is None else kept.size
@@ -348,7 +351,9 @@ class _Table:
     def _fault(self, block: Block, values: list[FloatArray], row: int) -> str:
         """Line and column of the first cell of a row that is of no use, and what is wrong with it."""
         cells = next(block.cells(self.layout.between, slice(row, None)))
-        place = f"line {block.lines[row]}"
+        place, width = f"line {block.lines[row]}", len(self.layout.columns)
+        if any(cells[width:]):
+            return f"{place}: {len(cells)} cells, but the header has {width}"
         for (column, _), numbers in zip(self.channels.values(), values, strict=True):
             cell = cells[column.index] if column.index < len(cells) else ""
             in_column = f"{place}, column '{column.name}': "

@@ -11,7 +11,7 @@ from hersey.log.signals import is_signal
 from hersey.log.text.column import Column, name_and_unit, refuse_long_name, split_unit
 from hersey.log.text.decimal_commas import with_decimal_commas
 from hersey.log.text.numbers import is_missing, looks_numeric
-from hersey.log.text.separators import BLANKS, NumberRows, split
+from hersey.log.text.separators import BLANKS, SEPARATORS, NumberRows, split
 from hersey.log.text.unit_pairs import of_one_kind, same_unit
 from hersey.units import KINDS, conversion
 
@@ -22,6 +22,8 @@ _TYPE = re.compile(
     r"(L?REAL|[US]?D?INT|L?INT|D?WORD|BYTE|BOOL|STRING|(DATE_AND_)?TIME|DOUBLE|U?INT\d+|(FLOAT|REAL)\d*)",
     re.IGNORECASE,
 )
+#: What stands between a name and its unit, where it is no bracket (DIN 1313 has a stroke).
+_BEFORE_UNITS = (" / ", " in ", ", ")
 #: A name in a header between blanks, with the unit behind it.
 _NAME = re.compile(r"[^\s\[(]+(?:[ \t]?(?:\[[^\[\]]*\]|\([^()]*\)))?|\S+")
 
@@ -42,7 +44,7 @@ def columns_of(table: NumberRows, numbered: list[Numbered], file: str) -> tuple[
         del above[-1]
     line, header = above[-1]
     units: list[str] = []
-    if len(above) > 1 and len(above[-2][1]) == len(header) and _is_units_row(header):
+    if len(above) > 1 and len(above[-2][1]) == len(header) and is_units_row(header):
         units, (line, header) = header, above[-2]
     units = units or _of_oscilloscope([row for _, row in above[:-1]], len(header))
     _require_width(table, numbered, header, line, file)
@@ -61,9 +63,23 @@ def columns_of(table: NumberRows, numbered: list[Numbered], file: str) -> tuple[
     return _with_endings(tuple(columns)), ""
 
 
+def commented_header(above: str, table: NumberRows) -> str:
+    """Return the header in a comment just above the rows, without its sign; nothing if it is another comment.
+
+    It has a name for each column, no number, and at least two units in brackets or at the ends of names.
+    """
+    line = above.lstrip("#~/ \t")
+    names = _names(line, table)
+    units = sum(_is_unit((name_and_unit(name) or split_unit(name))[1]) for name in names)
+    if len(names) != table.width or units < 2 or any(looks_numeric(name) or not name for name in names):
+        return ""
+    return line
+
+
 def _with_endings(columns: tuple[Column, ...]) -> tuple[Column, ...]:
     """The columns with the units at the end of their names; a name that another has stays whole."""
     split = [split_unit(c.name) if not c.unit else (c.name, c.unit) for c in columns]
+    split = [(name, unit) if unit else _behind_sign(name) for name, unit in split]
     counts = Counter(name for name, _ in split)
     return tuple(
         replace(c, name=name if counts[name] == 1 else c.name, unit=unit)
@@ -71,8 +87,23 @@ def _with_endings(columns: tuple[Column, ...]) -> tuple[Column, ...]:
     )
 
 
+def _behind_sign(name: str) -> tuple[str, str]:
+    """Name and unit of a column called ``M / Nm``, ``n in 1/min`` or ``Torque, mNm``; no unit otherwise."""
+    for sign in _BEFORE_UNITS:
+        plain, _, unit = name.partition(sign)
+        if plain.strip() and unit.strip() and _is_unit(unit.strip()):
+            return plain.strip(), unit.strip()
+    return name, ""
+
+
 def _names(line: str, table: NumberRows) -> list[str]:
-    """The cells of a line above the table; between blanks a name may have a unit, or a blank, of its own."""
+    """The cells of a line above the table; between blanks a name may have a unit, or a blank, of its own.
+
+    A header may have another separator than the rows.
+    """
+    if table.separator not in line and table.separator != BLANKS:
+        others = (split(line, each) for each in SEPARATORS if each in line)
+        return next((cells for cells in others if len(cells) == table.width), split(line, table.separator))
     if table.separator != BLANKS:
         return split(line, table.separator)
     splits = (line.split(), _NAME.findall(line), re.split(r"\s{2,}|\t", line.strip()))
@@ -128,8 +159,11 @@ def _of_oscilloscope(above: list[list[str]], width: int) -> list[str]:
     return [time[0].lower(), *channels]
 
 
-def _is_units_row(row: list[str]) -> bool:
-    """Units of at least half of the cells that are not blank; no number, no name with a unit of its own."""
+def is_units_row(row: list[str]) -> bool:
+    """Return whether at least half of the cells that are not blank are units.
+
+    None may be a number, or a name with a unit of its own.
+    """
     filled = [cell.strip("[]() ") for cell in row if cell.strip()]
     filled = [cell for cell in filled if cell not in ("1", "-")]  # units of a coefficient
     named = any(name_and_unit(cell) for cell in row if cell[:1] not in "[(")

@@ -17,7 +17,7 @@ from hersey.errors import MAPPING, Setting, UnreadableLogError, way_in
 from hersey.files import text as text_files
 from hersey.log.text.column import Column, refuse_columns, split_unit
 from hersey.log.text.dated_numbers import was_number
-from hersey.log.text.header import Numbered, columns_of
+from hersey.log.text.header import Numbered, columns_of, commented_header
 from hersey.log.text.numbers import NumberStyle, is_missing, looks_numeric, style_of
 from hersey.log.text.orientation import refuse_long, refuse_transposed
 from hersey.log.text.separators import BLANKS, SEPARATORS, NumberRows, number_rows, split
@@ -70,19 +70,19 @@ class Layout:
         return tuple(c for c in self.columns if not (c.name.startswith("#") and c.index in self.texts))
 
 
-def find_layout(start: bytes, name: str, *, separators: str = SEPARATORS) -> Layout:
-    """Return the layout of a text file from its first `SNIFFED` bytes.
+def find_layout(start: bytes, name: str, *, separators: str = SEPARATORS, long: bool = False) -> Layout:
+    """Return the layout of a text file from its first `SNIFFED` bytes; ``long``: rows name their channels.
 
     Raises
     ------
     UnreadableLogError
         If the bytes are no text, or hold no header followed by rows of numbers.
     """
-    return _layout(start, name, separators, way_in())
+    return _layout(start, name, separators, long, way_in())
 
 
 @lru_cache(maxsize=_KEPT)
-def _layout(start: bytes, name: str, separators: str, _way_in: str) -> Layout:
+def _layout(start: bytes, name: str, separators: str, long: bool, _way_in: str) -> Layout:
     """The layout, kept because each who opens a file looks for it; its words suit the way in."""
     encoding = encoding_of(start, name)
     lines = _lines(start, encoding, name, separators)
@@ -95,6 +95,8 @@ def _layout(start: bytes, name: str, separators: str, _way_in: str) -> Layout:
     ]
     refuse_transposed(name, [line for _, line in numbered], separators)
     table = _table(numbered, separators, name)
+    if not table.first and (header := _in_comment(lines, numbered[0][0], comment, table)):
+        numbered, table = [header, *numbered], replace(table, first=1)
     rows = [split(line, table.separator) for _, line in numbered[table.first :]]
     rows = [row for row in rows if len(row) == table.width]
     columns, headless = columns_of(table, numbered, name)
@@ -103,7 +105,7 @@ def _layout(start: bytes, name: str, separators: str, _way_in: str) -> Layout:
     style = style_of([cell for row in rows for cell in row])
     columns, warnings = _with_epochs(columns, rows, style, [] if headless else header)
     texts = frozenset(c.index for c in columns if c.index not in stamps and _holds_words(rows, c))
-    if not headless:
+    if not headless and not long:
         refuse_long(name, columns, texts, stamps, rows, header)
     first_line = numbered[table.first][0]
     comments = tuple(li.strip("# ~/")[:200] for li in lines[: first_line - 1] if li.startswith(comment))
@@ -158,6 +160,15 @@ def _joined(lines: list[str], comment: str, separators: str) -> Iterator[tuple[i
             count += whole
         yield number + 1, " ".join(cell)
         number += count
+
+
+def _in_comment(lines: list[str], first: int, comment: str, table: NumberRows) -> Numbered | None:
+    """The header in a comment above the first row, as NumPy and gnuplot write it."""
+    above = next((i for i in range(first - 2, -1, -1) if lines[i].strip()), None)
+    if above is None or not lines[above].lstrip().startswith(comment):
+        return None
+    header = commented_header(lines[above], table)
+    return (above + 1, header) if header else None
 
 
 def _table(numbered: list[Numbered], separators: str, name: str) -> NumberRows:

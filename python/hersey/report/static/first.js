@@ -82,7 +82,7 @@ function nextStep(words, { next, measurement, fold: safe, closures }) {
     if (measurement.left < 1) reasons.push(`This measurement should narrow the ratio of the two from ${digits(ratio, 2)} to ${digits(ratio ** measurement.left, 2)}.`);
   }
   const likely = Object.entries(closures ?? {}).filter(([name, share]) => share >= 0.05 && share <= 0.95 && CLOSURE_WORDS[name]);
-  if (likely.length > 1) reasons.push(`How the belt comes to rest is not known: it ${likely.map(([name, share]) => `${CLOSURE_WORDS[name]} (${digits(100 * share, 2)} %)`).join(" or ")}.`);
+  if (likely.length > 1) reasons.push(`How the ${noun} comes to rest is not known: it ${likely.map(([name, share]) => `${CLOSURE_WORDS[name]} (${digits(100 * share, 2)} %)`).join(" or ")}.`);
   const text = add(why, "p", `${reasons.join(" ")} `);
   link(text, "How V* depends on the stick speed", "band");
 }

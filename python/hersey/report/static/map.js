@@ -82,9 +82,9 @@ function operatingMap(place, map, move = null) {
     const middle = Math.floor(columns.length / 2), ends = hot ? [0, columns.length - 1] : [0];
     const told = (edge) => ends.map((i) => digits(millimetres(edges[edge][i]))).join(" to ");
     const from = hot ? ` from ${celsius(columns[0]).toFixed(0)} to ${celsius(columns.at(-1)).toFixed(0)} °C` : "";
-    if (!edges.folds) return `Operating map: the belt sticks below ${told("transition")} mm/s${from}; V* is not computed for this closure`;
+    if (!edges.folds) return `Operating map: the ${map.train.part} sticks below ${told("transition")} mm/s${from}; V* is not computed for this closure`;
     const band = edges.upper[middle] > 1.01 * edges.transition[middle] || edges.upper.at(-1) > 1.01 * edges.transition.at(-1);
-    return `Operating map: the belt sticks below ${told("transition")} mm/s${from}`
+    return `Operating map: the ${map.train.part} sticks below ${told("transition")} mm/s${from}`
       + (band ? `, and runs smoothly from any start above ${told("upper")} mm/s` : ", and runs smoothly above");
   }
 
@@ -187,8 +187,8 @@ function operatingMap(place, map, move = null) {
   function drawAxes() {
     const { left, right, top, bottom } = frame;
     tickWords = [];
-    svg("text", { x: 0, y: 12, class: "axis" }, picture, frame.width > 420 ? "Drive speed at the belt (mm/s)" : "Drive speed (mm/s)");
-    svg("text", { x: right + 34, y: 12, "text-anchor": "end", class: "axis" }, picture, "roll (rpm)");
+    svg("text", { x: 0, y: 12, class: "axis" }, picture, "Drive speed (mm/s)");
+    svg("text", { x: right + 34, y: 12, "text-anchor": "end", class: "axis" }, picture, "rpm");
     for (const value of logTicks(1e3 * slowest, 1e3 * fastest)) {
       const y = up(value / 1e3);
       svg("path", { d: `M${left} ${y}h-4`, class: "tick" }, picture);

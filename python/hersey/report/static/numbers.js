@@ -21,7 +21,7 @@ function numbers(place) {
       rows.push([digits(motion.time[i], 5), digits(1e3 * speedAt(drive, motion.time[i]), 4), digits(1e3 * motion.belt_speed[i], 4),
         digits(motion.spring_force[i], 4), motion.stuck[i] ? "yes" : "no"]);
     }
-    table(box, ["Time, s", "Drive, mm/s", "Belt, mm/s", "Spring, N", "Stuck"], rows, [0, 1, 2, 3], { name: "motion", label: "Motion from rest" });
+    table(box, ["Time, s", "Drive, mm/s", "Sliding, mm/s", "Spring, N", "Stuck"], rows, [0, 1, 2, 3], { name: "motion", label: "Motion from rest" });
   }
   box.addEventListener("toggle", () => { if (box.open) fill(); });
   return {

@@ -1,4 +1,4 @@
-// The panel to try settings: what the belt does at a setting of the machine, and how to reproduce it.
+// The panel to try settings: what happens at a setting of the machine, and how to reproduce it.
 
 async function live(analysis, bytes, { map: mapPlace, panel: place }) {
   place.classList.add("panel");
@@ -273,7 +273,7 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
       if (touched) said.textContent = verdict.textContent; // the verdict of the page that opens is read in its place
       printed.textContent = inWords();
       if (open) output();
-      chart.say(`Belt speed: ${words} at ${speedText(setting.speed)}`, `Phase plane at ${speedText(setting.speed)}: ${words}`);
+      chart.say(`Sliding speed: ${words} at ${speedText(setting.speed)}`, `Phase plane at ${speedText(setting.speed)}: ${words}`);
     }, 500);
     trackColours();
     course.show(setting.profile);

@@ -4,7 +4,7 @@ const failuresOf = (plan) => Object.entries(plan.failures).filter(([, count]) =>
 function planFinding(point) {
   const { plan } = point;
   const name = capital(point.name);
-  const sure = plan.share ? ` The belt slides with ${plan.share > 0.99 ? "over 99" : digits(100 * plan.share, 2)} % probability.` : "";
+  const sure = plan.share ? ` The ${noun} slides with ${plan.share > 0.99 ? "over 99" : digits(100 * plan.share, 2)} % probability.` : "";
   const way = (verb, speed, time) => time > 0 ? `${verb} to ${perSecond(speed)} mm/s${verb === "ramp" && plan.kind === "direct" ? ` in ${digits(time, 2)} s` : ""}` : `step to ${perSecond(speed)} mm/s at once`;
   const jumps = !(plan.rise > 0) || (plan.kind === "overshoot" && !(plan.fall > 0));
   const limit = jumps ? " For a ramp instead of a step, state the acceleration of the drive in [limits], e.g. acceleration = \"500 mm/s^2\"." : "";
@@ -40,7 +40,7 @@ async function onePlan(parent, point, i) {
   await chart(columns, `plan_${i}`, { heading: "", says: planFinding(point), behind: false });
   const side = add(columns, "div");
   if (plan.rows.length) {
-    const heads = ["Time, s", "Drive, mm/s", ...(radius === null ? [] : ["Roll, rpm"])];
+    const heads = ["Time, s", "Drive, mm/s", ...(radius === null ? [] : ["Drive, rpm"])];
     table(side, heads, plan.rows.map((row) => [row.time.toFixed(3), digits(row.drive_speed * 1e3), ...(radius === null ? [] : [digits((row.drive_speed / radius) * TO_RPM)])]),
       heads.map((_, k) => k), { name: `profile-${i + 1}`, label: `Profile of ${point.name}` });
     const foot = side.querySelector(".foot");
@@ -54,7 +54,7 @@ async function onePlan(parent, point, i) {
   const all = fold(columns, "Probability in detail");
   all.classList.add("across");
   add(all, "p", pretty(plan.verdict), "text");
-  add(all, "p", `The belt slides in ${digits(100 * plan.share, 3)} % of ${plural(plan.draws, "draw")}; the true share is above ${digits(Math.floor(1000 * plan.share_low) / 10, 3)} % with 95 % confidence. `
+  add(all, "p", `The ${noun} slides in ${digits(100 * plan.share, 3)} % of ${plural(plan.draws, "draw")}; the true share is above ${digits(Math.floor(1000 * plan.share_low) / 10, 3)} % with 95 % confidence. `
     + `${failuresOf(plan) ? `Failures: ${failuresOf(plan)}. ` : ""}Random seed ${plan.seed}; ${plural(plan.tried, "profile")} tried.`, "text");
 }
 // A value and its unit.

@@ -10,8 +10,9 @@ const share = (part, whole) => `${digits((100 * part) / whole, 2)} %`;
 const NUMBERS = ["no", "one", "two", "three", "four", "five", "six"];
 const plural = (count, word, words = `${word}s`) => `${NUMBERS[count] ?? count} ${count === 1 ? word : words}`;
 const capital = (text) => `${text.slice(0, 1).toUpperCase()}${text.slice(1)}`;
+const noun = data.part; // what slides
 const radius = data.map?.roll_radius ?? null;
-// A speed of the roll, at the belt where its radius is known.
+// A rotational speed, where it slides if the radius is known.
 const rolled = (speed) => radius === null ? `${digits(speed * TO_RPM, 2)} rpm` : `${digits(1e3 * speed * radius, 2)} mm/s`;
 const whole = (kelvin) => data.fit.temperature_scale === "K" ? degrees(kelvin) : `${Math.round(celsius(kelvin))} °C`;
 

@@ -78,13 +78,13 @@ function settings(analysis) {
   function toml(setting, law) {
     const radius = map.roll_radius, at = setting.temperature === null ? "" : ` at ${digits(setting.temperature - 273.15)} °C`;
     const closed = setting.closure === "retained" ? [] : [`# The closure tried is ${setting.closure}; machine files and hersey map, plan and report use only retained.`];
-    const lines = [...closed, "# The setting tried: a machine file for hersey map, plan, report and simulate.", "[drivetrain]",
+    const lines = [...closed, "# The setting tried: a machine file for hersey map, plan, report and simulate.", "[drivetrain]", `part = "${map.train.part}"`,
       `stiffness = "${neat(setting.stiffness)} N/m"`, `mass = "${neat(setting.mass)} kg"`, `roll_radius = "${radius} m"`,
       `stick_speed = "${neat(law.stick_speed)} m/s"`];
     if (setting.temperature !== null) lines.push(`stick_speed_temperature = "${setting.temperature} K"`);
     if (map.stick_speed_rule === "fixed") lines.push('stick_speed_rule = "fixed"');
     const limits = [...(map.limited_by === "motor torque" ? [`motor_torque = "${map.torque_limit} N*m"`] : []),
-      ...(map.train.grip === null ? [] : ["roll_friction = 1.0  # with this load, the grip of the roll", `nip_load = "${map.train.grip} N"`]),
+      ...(map.train.grip === null ? [] : ["roll_friction = 1.0  # with this load, the grip", `nip_load = "${map.train.grip} N"`]),
       ...(map.speed_limit === null ? [] : [`speed = "${map.speed_limit} m/s"`])];
     if (limits.length) lines.push("", "[limits]", ...limits);
     if (law.rest_force !== 0 || law.rest_damping !== 0) {

@@ -79,7 +79,7 @@ function exponents(parent) {
 function dwells(parent) {
   const hot = data.points.some((p) => p.temperature !== null);
   const [factor, unit] = torqueUnit();
-  table(parent, ["Roll, rpm", ...(hot ? ["°C"] : []), `Torque, ${unit}`, "± (1 s.e.)", `Damping, ${unit}·s/rad`, "Measured / fitted − 1, %", "Approached", "From, s", "To, s"],
+  table(parent, ["Speed, rpm", ...(hot ? ["°C"] : []), `Torque, ${unit}`, "± (1 s.e.)", `Damping, ${unit}·s/rad`, "Measured / fitted − 1, %", "Approached", "From, s", "To, s"],
     data.points.map((p) => [
       digits(p.speed * TO_RPM, 4), ...(hot ? [celsius(p.temperature).toFixed(1)] : []), digits(p.torque * factor, 4),
       digits(p.torque_error * factor, 2), digits(p.damping * factor, 4), (100 * Math.expm1(p.residual)).toFixed(1).replace("-", "−"),

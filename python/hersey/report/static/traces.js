@@ -1,10 +1,10 @@
-// Belt speed against time and the phase plane, on one scale of speed. The first slip does not set the scale: it is cut
+// Sliding speed against time and the phase plane, on one scale of speed. The first slip does not set the scale: it is cut
 // off and its peak is written.
 
 function traces(place) {
   const HEIGHT = 190, TOP = 14, BOTTOM = 34, LEFT = 34;
   const two = add(place, "div", "", "two");
-  const panes = [["Belt speed", "(mm/s)", "Time (s)"], ["Phase plane", "(mm/s over N)", "Spring force (N)"]].map(([title, unit, below]) => {
+  const panes = [["Sliding speed", "(mm/s)", "Time (s)"], ["Phase plane", "(mm/s over N)", "Spring force (N)"]].map(([title, unit, below]) => {
     const box = add(two, "div"), heading = add(box, "h3", `${title} `);
     add(heading, "span", unit);
     const drawing = svg("svg", { role: "group", "aria-label": title, height: HEIGHT }, box);

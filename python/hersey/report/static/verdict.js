@@ -54,7 +54,7 @@ function verdicts({ map, points, limit, motor, questions }) {
     }
     switch (zone.state) {
       case "stall":
-        return { zone, signal: "act", words: "stalls: the roll slips on the belt", sub: [torque, `the grip is ${torqueText(limit * radius)}`] };
+        return { zone, signal: "act", words: "stalls: the drive slips", sub: [torque, `the grip is ${torqueText(limit * radius)}`] };
       case "motor":
         return { zone, signal: "act", words: "stalls: above the motor limit", sub: [torque, `the motor gives ${torqueText(limit * radius)}`] };
       case "smooth": return { zone, signal: "good", words: "smooth from any start", sub: [torque, settles(motion, setting)] };
@@ -65,7 +65,7 @@ function verdicts({ map, points, limit, motor, questions }) {
       case "swing": return { zone, signal: "watch", words: "depends on start: oscillates when slowed down, sticks once it has stuck", sub: [torque, laps] };
       default:
         if (setting.speed <= law.stick_speed) return { zone, signal: "act", words: "sticks: slower than the stick speed", sub: [torque] };
-        return { zone, signal: "act", words: "sticks from any start", sub: [laps, cycle.speed_max > 0 ? `belt peak ${speedText(cycle.speed_max)}` : torque] };
+        return { zone, signal: "act", words: "sticks from any start", sub: [laps, cycle.speed_max > 0 ? `peak ${speedText(cycle.speed_max)}` : torque] };
     }
   }
   const [perNewtonMetre, torqueName] = torqueUnit();
@@ -85,7 +85,7 @@ function verdicts({ map, points, limit, motor, questions }) {
     while (stuck >= 0 && v[stuck] > law.stick_speed * (1 + 1e-6)) stuck -= 1;
     while (first < v.length && !(v[first] > law.stick_speed * (1 + 1e-6))) first += 1;
     const peak = v.reduce((a, b) => Math.max(a, b), 0), pull = motion.spring_force.reduce((a, b) => Math.max(a, b), 0);
-    const sub = [`belt peak ${speedText(peak)}`, `spring force up to ${digits(pull)} N`];
+    const sub = [`peak ${speedText(peak)}`, `spring force up to ${digits(pull)} N`];
     if (first >= v.length) return { signal: "act", words: "does not start with this profile", sub };
     const watched = 3 * 2 * Math.PI * Math.sqrt(answer.train.mass / answer.train.stiffness);
     if (time.at(-1) - time[Math.max(stuck, 0)] > watched && time.at(-1) > last) {

@@ -8,6 +8,7 @@ import numpy as np
 
 from hersey.arrays import BoolArray
 from hersey.damping.surface import FIXED
+from hersey.schema.noun import BELT
 from hersey.schema.warning import Warning
 from hersey.stability.operating_map.edges import shown_laws
 from hersey.stability.operating_map.result import OperatingMap
@@ -65,29 +66,32 @@ def _of_the_temperature(map_: OperatingMap) -> Iterator[Warning]:
 
 
 def _of_the_stall(map_: OperatingMap) -> Iterator[Warning]:
-    """Yield what the drive can give, and what the belt needs."""
+    """Yield what the drive can give, and what the part needs."""
     if map_.torque_limit is None:
         yield Warning(
             "no torque limit",
             "the map shows no stall, because no torque limit is stated",
-            remedy="add motor_torque, or roll_friction and nip_load, to [limits]",
+            remedy="add motor_torque, or roll_friction and nip_load, to [limits]"
+            if map_.train.part == BELT
+            else "add motor_torque to [limits]",
         )
         return
     least, most = float(map_.holding.min()), float(map_.holding.max())
     yield Warning(
         "torque limit",
-        "the drive gives at most {limit:.3g} N m ({limited_by}); a belt at rest needs "
+        "the drive gives at most {limit:.3g} N m ({limited_by}); a {part} at rest needs "
         + ("{least:.3g} N m" if most <= _SAME_TORQUE * least else "{least:.3g} to {most:.3g} N m")
         + " to start",
         limit=map_.torque_limit,
         limited_by=map_.limited_by,
+        part=map_.train.part,
         least=least,
         most=most,
     )
 
 
 def _not_started(map_: OperatingMap) -> Iterator[Warning]:
-    """Yield the temperatures at which the drive does not start the belt, and where it may not."""
+    """Yield the temperatures at which the drive does not start the part, and where it may not."""
     never = ~map_.starts & ~map_.doubtful
     if never.any():
         yield _unstarted("belt not started", map_, never, surely=True)
@@ -101,9 +105,9 @@ def _unstarted(kind: str, map_: OperatingMap, columns: BoolArray, *, surely: boo
     return Warning(
         kind,
         (
-            "the drive cannot start a belt at rest"
+            "the drive cannot start the {part} from rest"
             if surely
-            else "the drive may be unable to start a belt at rest"
+            else "the drive may be unable to start the {part} from rest"
         )
         + (
             " at any temperature"
@@ -115,6 +119,7 @@ def _unstarted(kind: str, map_: OperatingMap, columns: BoolArray, *, surely: boo
             else " from {first:.0f degC} to {last:.0f degC}"
         ),
         severity="watch",
+        part=map_.train.part,
         first=first,
         last=last,
     )

@@ -193,10 +193,10 @@ def _drawn(
 def torque_limit(
     grip: float | None, motor_torque: float | None, roll_radius: float
 ) -> tuple[float | None, str]:
-    """The torque on the roll (N m) at which the belt slips on it or the motor gives up, and which."""
+    """The torque on the roll (N m) at which it slips or the motor gives up, and which."""
     known = []
     if grip is not None:
-        known.append((grip * roll_radius, "roll friction"))
+        known.append((grip * roll_radius, "grip"))
     if motor_torque is not None:
         known.append((motor_torque, "motor torque"))
     return min(known) if known else (None, "")

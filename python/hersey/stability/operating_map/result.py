@@ -53,7 +53,7 @@ class OperatingMap(Result):
     stall_below: Annotated[FloatArray, OPEN]
     stall_above: Annotated[FloatArray, OPEN]
     torque: Annotated[FloatArray, Means("of steady sliding", "N m", shape="(n, m)")]
-    holding: Annotated[FloatArray, Means("torque to start a belt at rest", "N m")]
+    holding: Annotated[FloatArray, Means("torque to start from rest", "N m")]
     holding_interval: Annotated[FloatArray, Means("95 %", "N m", shape="(2, n)", open=True)]
     torque_limit: Annotated[float | None, Means(unit="N m")]
     limited_by: str

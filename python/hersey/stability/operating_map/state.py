@@ -1,4 +1,4 @@
-"""What the belt does at one temperature and drive speed."""
+"""What happens at one temperature and drive speed."""
 
 from __future__ import annotations
 
@@ -12,32 +12,32 @@ from hersey.result import OPEN, Means, Record
 #: belt sticks on. ``stall``: the roll slips on the belt; ``motor``: the motor gives up.
 STATES = ("creep", "stick_slip", "swing", "bistable", "smooth", "stall", "motor")
 _VERDICTS = {
-    "creep": "Below the stick speed, where nothing was measured: the belt creeps or sticks.",
+    "creep": "Below the stick speed, where nothing was measured: it creeps or sticks.",
     "stick_slip": "Stick-slip is certain.",
-    "swing": "The belt oscillates; once it has stuck, it keeps sticking.",
+    "swing": "It oscillates; once it has stuck, it keeps sticking.",
     "bistable": "Smooth only if slowed from above; sticks if started from rest.",
     "smooth": "Smooth.",
-    "stall": "Drag exceeds the grip of the roll, which slips on the belt.",
+    "stall": "Drag exceeds the grip: the drive slips.",
     "motor": "Drag exceeds what the motor can give.",
 }
 #: The same on a roll that may slip on the belt.
 _SLIPPING = (
-    "Smooth only if slowed from above; from rest it keeps sticking, or oscillates while the roll slips."
+    "Smooth only if slowed from above; from rest it keeps sticking, or oscillates while the drive slips."
 )
 #: The same of a belt at rest, which the drive does not start.
 _NOT_STARTED = {
-    "stall": "The roll slips on a belt at rest and cannot start it",
-    "motor": "The motor cannot start a belt at rest",
+    "stall": "The drive slips and cannot start it from rest",
+    "motor": "The motor cannot start it from rest",
 }
 
 
 #: Where the belts drawn do not agree.
-_MAY_NOT_START = "The drive may be unable to start a belt at rest. If it starts:"
+_MAY_NOT_START = "The drive may be unable to start it from rest. If it starts:"
 
 
 @dataclass(frozen=True)
 class MapState(Record):
-    """What the belt does at one temperature and drive speed; speeds in m/s, torque in N m.
+    """What happens at one temperature and drive speed; speeds in m/s, torque in N m.
 
     ``state`` is one of `STATES`: ``stall`` or ``motor`` where the drive does not start a belt at rest.
     ``torque`` is that of steady sliding, with which the drive must cope. ``slipping`` says that the roll
@@ -45,17 +45,17 @@ class MapState(Record):
     """
 
     state: str
-    moving: Annotated[str, Means("state of a belt that already moves")]
+    moving: Annotated[str, Means("state once it moves")]
     torque: float
-    holding: Annotated[float, Means("torque to start a belt at rest")]
-    starts: Annotated[bool, Means("whether the drive starts a belt at rest")]
+    holding: Annotated[float, Means("torque to start from rest")]
+    starts: Annotated[bool, Means("whether it starts from rest")]
     doubtful: Annotated[bool, Means("whether the 95 % interval of holding allows the opposite")]
     lower: Annotated[float, OPEN]
     transition: float
     upper: Annotated[float, OPEN]
     stick_speed: Annotated[float, Means("at this temperature")]
     extrapolated: bool
-    slipping: Annotated[bool, Means("whether the roll may slip for part of each cycle")] = False
+    slipping: Annotated[bool, Means("whether the drive may slip for part of each cycle")] = False
 
     def verdict(self) -> str:
         """Return what the state means, in one sentence."""
@@ -65,7 +65,7 @@ class MapState(Record):
         if self.starts:
             return moving
         slides = self.moving in ("bistable", "smooth")
-        return _NOT_STARTED[self.state] + ("; a belt that slides already keeps sliding." if slides else ".")
+        return _NOT_STARTED[self.state] + ("; once sliding, it keeps sliding." if slides else ".")
 
 
 #: Verdicts of a posterior of drives, in words.

@@ -125,7 +125,7 @@ def neighbours(train: Drivetrain, drag: AnyDrag) -> list[MachineSample]:
 
 
 def _machine(train: Drivetrain, drag: AnyDrag, values: Mapping[str, float]) -> MachineSample:
-    of_train = {name: value for name, value in values.items() if hasattr(train, name)}
+    of_train: dict[str, Any] = {name: value for name, value in values.items() if hasattr(train, name)}
     of_drag = {name: value for name, value in values.items() if name not in of_train}
     for name, value in of_train.items():
         if value <= 0:

@@ -28,14 +28,14 @@ _NAMES = {
     "acceleration": ("acceleration", "m/s^2"),
     "spring_force": ("spring force", "N"),
     "motor_torque": ("motor torque", "N m"),
-    "grip": ("roll grip", "N"),
+    "grip": ("grip", "N"),
     "target_speed": ("target speed", "m/s"),
 }
 #: What is said of a draw that needs more than a limit of force.
 _BROKEN = {
     "spring_force": "the spring force exceeds its limit",
     "motor_torque": "the motor torque is not sufficient",
-    "grip": "the roll slips on the belt",
+    "grip": "the drive slips",
 }
 
 
@@ -187,7 +187,7 @@ def _not_started(name: str, limit: float, starting: float, reach: Reach) -> Obst
     """The obstacle of a force that does not start the belt, where no force would leave a profile."""
     (label, unit), factor = _NAMES[name], reach.factors[name]
     enough, given = (_written(value * factor, unit) for value in (_up(starting), limit))
-    text = f"the {label} of {given} cannot start this belt, which needs {enough} to break away"
+    text = f"the {label} of {given} cannot start it, since it needs {enough} to break away"
     return Obstacle(name, limit * factor, None, text)
 
 
@@ -222,7 +222,7 @@ def _obstacle(name: str, given: float, needed: float, *, held: bool = False) -> 
     would_do, limit = (_written(value, unit) for value in (enough, given))
     text = f"the {label} is limited to {limit}, but {would_do} would be enough"
     if held and name != "spring_force":
-        text = f"the {label} of {limit} cannot start this belt; {would_do} is needed"
+        text = f"the {label} of {limit} cannot start it; {would_do} is needed"
     return Obstacle(name, given, enough, text)
 
 

@@ -18,11 +18,11 @@ from hersey.stability.plan.result import Plan
 from hersey.stability.plan.search import Progress
 from hersey.units import takes_si
 
-#: What no share of draws counts: how a belt comes to rest.
+#: What no share of draws counts: how a part comes to rest.
 _GRADUAL_STOP = Warning(
     "gradual stop assumed",
-    "this assumes that the belt comes to rest gradually (retained); if it stops abruptly (stiction), "
-    "it may keep sticking",
+    "this assumes that it comes to rest gradually (retained); if it stops abruptly (stiction), it may keep "
+    "sticking",
     severity="watch",
 )
 #: Draws of the fit from which those of the plan are taken.

@@ -285,8 +285,7 @@ def _warnings(reach: Reach, impossible: float) -> Iterator[Warning]:
     if "grip" not in reach.forces:
         yield Warning(
             "grip not in the plan",
-            "the grip of the roll is not stated (roll_friction and nip_load), so the roll is assumed "
-            "not to slip",
+            "the grip is not stated (roll_friction and nip_load), so the drive is assumed not to slip",
         )
     if impossible > 0:
         yield Warning(

@@ -134,10 +134,7 @@ class Plan(Result):
             way = f"Accelerate to {speed_text(self.peak_speed)} {up}, {held}"
             way += f"slow down to {speed_text(self.target_speed)} {down}"
         start = f"Wait {self.wait:.5g} s. " if self.wait > 0 else ""
-        return (
-            f"{start}{way}. After {self.duration:.5g} s the drive runs at the target and the belt slides "
-            "steadily."
-        )
+        return f"{start}{way}. After {self.duration:.5g} s the drive runs at the target and slides steadily."
 
     def proof(self) -> str:
         """Return how the plan was verified, in a sentence."""
@@ -154,9 +151,7 @@ class Plan(Result):
         if self.course is None:
             return ""
         at = [f"{celsius(self.course.at(time)):.4g} degC" for time in (0.0, self.wait, self.duration)]
-        return (
-            f"film: {at[0]} initially, {at[1]} when the drive starts, {at[2]} when the belt slides steadily"
-        )
+        return f"film: {at[0]} initially, {at[1]} when the drive starts, {at[2]} when it slides steadily"
 
     def table(self) -> str:
         """Return the profile as CSV for a motor controller, with straight lines between the rows."""

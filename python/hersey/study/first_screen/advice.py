@@ -42,7 +42,7 @@ def next_step(found: Behaviour, points: Sequence[PointDecisionPart]) -> str:
 def _of_points(edges: Edges, points: Sequence[PointDecisionPart]) -> str:
     """What the operating points need, the gravest first; empty if nothing."""
     if edges.starts is None:
-        return "record the torque that starts the belt from rest, since the drive may not start it"
+        return "record the torque that starts it from rest, since the drive may not start it"
     if not points:
         return "add your operating points to the machine file"
     slow = [p.name for p in points if p.verdict in ("sticks", "depends", "unknown") and p.signal == "act"]
@@ -53,7 +53,7 @@ def _of_points(edges: Edges, points: Sequence[PointDecisionPart]) -> str:
     planned = [p.name for p in points if p.signal != "good" and p.plan is not None and p.plan.found]
     if planned:
         profile = "its start-up profile" if len(planned) == 1 else "their start-up profiles"
-        return f"start {listed(planned)} with {profile}, and check that the belt slides"
+        return f"start {listed(planned)} with {profile}, and check that it slides"
     return ""
 
 
@@ -104,7 +104,7 @@ def _action(best: Measurement) -> str:
     speeds = listed([mm(speed) for speed in best.speeds]) if best.speeds else ""
     return {
         "starts": f"start from rest{where} at {speeds} mm/s and record the torque",
-        "break-away": f"record the torque that starts the belt from rest{where}",
+        "break-away": f"record the torque that starts it from rest{where}",
         "stick-slip": f"record 20 s of stick-slip{where} at {speeds} mm/s",
         "dwell": f"hold one dwell{where} at {speeds} mm/s",
     }[best.kind]

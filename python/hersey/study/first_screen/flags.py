@@ -17,6 +17,7 @@ from hersey.log.channels import CLOCK_PASSED_OVER
 from hersey.log.doubtful import doubtful_units
 from hersey.log.replaced import UNIT_REPLACED, replaced_in
 from hersey.posterior.result import SAFE
+from hersey.schema.noun import BELT, puller_of
 from hersey.schema.warning import Warning
 from hersey.stability.operating_map import OperatingMap
 from hersey.study.findings import Findings
@@ -166,7 +167,7 @@ def _whole(points: SteadyPoints, found: Behaviour, unit: str) -> Iterator[Warnin
         yield Warning(
             "torque of more than the film",
             "{fold} assumes that the whole torque, {shown} at its lowest, comes from the film. If part of "
-            "it is that of bearings, gears or rubber, V* is higher. State that part in [rest]",
+            "it is that of bearings, gears or other parts, V* is higher. State that part in [rest]",
             severity="watch",
             title="Torque may hold more than the film",
             where="data",
@@ -178,8 +179,8 @@ def _whole(points: SteadyPoints, found: Behaviour, unit: str) -> Iterator[Warnin
 
 def _of_machine(found: Behaviour, map_: OperatingMap, unit: str) -> Iterator[Warning]:
     yield from _start(found, map_, unit)
-    yield from _closures(found)
-    if map_.train.grip is None:
+    yield from _closures(found, map_)
+    if map_.train.grip is None and map_.train.part == BELT:  # others have no roll that could slip
         pulls = [p.plan.peak_force for p in found.points if p.plan is not None and p.plan.found]
         yield Warning(
             "grip not stated",
@@ -213,21 +214,23 @@ def _of_machine(found: Behaviour, map_: OperatingMap, unit: str) -> Iterator[War
 
 
 def _start(found: Behaviour, map_: OperatingMap, unit: str) -> Iterator[Warning]:
-    """That roll or motor may not start the belt."""
+    """That grip or motor may not start the part."""
     edges, kelvin = edges_of(found.posterior, found.temperature), found.temperature
     if edges.starts is True:
         return
     held, surely = edges.holding, edges.starts is False
-    needs = starting(held.low, held.value, held.high, edges.limit, map_.limited_by, unit)
+    needs = starting(held.low, held.value, held.high, edges.limit, map_, unit)
     kind = "motor" if map_.limited_by == "motor torque" else "roll"
     yield Warning(
         f"start: {kind}",
         "{at}{needs}",
         severity="act" if surely else "watch",
-        title=("The motor does not start the belt" if surely else "The motor may not start the belt")
+        title=("The motor does not start the {part}" if surely else "The motor may not start the {part}")
         if kind == "motor"
-        else ("The roll slips at the start" if surely else "The roll may slip at the start"),
+        else ("The {puller} slips at the start" if surely else "The {puller} may slip at the start"),
         where="band",
+        part=map_.train.part,
+        puller=puller_of(map_.train.part),
         temperature=kelvin,
         held=held.value,
         limit=edges.limit,
@@ -236,8 +239,8 @@ def _start(found: Behaviour, map_: OperatingMap, unit: str) -> Iterator[Warning]
     )
 
 
-def _closures(found: Behaviour) -> Iterator[Warning]:
-    """That V* depends on how the belt comes to rest, where the evidence does not decide that."""
+def _closures(found: Behaviour, map_: OperatingMap) -> Iterator[Warning]:
+    """That V* depends on how the part comes to rest, where the evidence does not decide that."""
     drawn, kelvin = found.posterior, found.temperature
     chances = drawn.closures()
     if max(chances.values()) >= _DECIDED:
@@ -254,8 +257,9 @@ def _closures(found: Behaviour) -> Iterator[Warning]:
         "it comes to rest gradually ({gradually:.0f %} probability, V* {soft} mm/s) or stops "
         "abruptly ({abruptly:.0f %}, V* {dead} mm/s)",
         severity="watch",
-        title="The safe speed depends on how the belt comes to rest",
+        title="The safe speed depends on how the {part} comes to rest",
         where="band",
+        part=map_.train.part,
         gradually=chances["retained"],
         abruptly=chances["stiction"],
         retained=soft,

@@ -16,6 +16,7 @@ from hersey.decision.behaviour import Behaviour, PointBehaviour
 from hersey.decision.edges import Edge, Edges, edges_of
 from hersey.errors import capital
 from hersey.posterior.result import SAFE
+from hersey.schema.noun import Noun, puller_of
 from hersey.stability.operating_map import OperatingMap
 from hersey.study.findings import Findings
 from hersey.study.first_screen.result import Signal
@@ -104,7 +105,7 @@ def of_machine(found: Behaviour, map_: OperatingMap, unit: str, *, few: bool = F
         return Instruction(
             of_general, f"{where}{general}" if where else capital(general), interval, _below(edges)
         )
-    otherwise = f"{capital(_slides(edges))}{_below(edges)}"
+    otherwise = f"{capital(_slides(edges, map_.train.part))}{_below(edges)}"
     return Instruction(signal, said, interval, otherwise)
 
 
@@ -160,10 +161,10 @@ def _general(edges: Edges, map_: OperatingMap, unit: str, *, few: bool) -> tuple
     return run, "good"
 
 
-def _slides(edges: Edges) -> str:
+def _slides(edges: Edges, part: Noun) -> str:
     if not math.isfinite(edges.safe):
         return "no speed is known to be smooth from any start. "
-    return f"the belt slides from any start above {_up(edges.safe)} mm/s. "
+    return f"the {part} slides from any start above {_up(edges.safe)} mm/s. "
 
 
 def _below(edges: Edges) -> str:
@@ -176,7 +177,7 @@ def _below(edges: Edges) -> str:
 
 
 def of_log(known: Findings, trend: Trend) -> Instruction:
-    """Return what the log alone tells, in speeds of the roll: what is known first, then what is missing."""
+    """Return what the log alone tells, in speeds of the shaft: what is known first, then what is missing."""
     surface = known.surface
     if surface.transition is None:
         return _one_branch(known, trend)
@@ -190,7 +191,7 @@ def of_log(known: Findings, trend: Trend) -> Instruction:
     else:
         lowest += ", interval not known"
         least = f"well above {roll(found.value)} rpm"
-    otherwise = f"{_sides(known, kelvin, found)} Keep the roll {least}; the safe speed may be higher."
+    otherwise = f"{_sides(known, kelvin, found)} Keep the speed {least}; the safe speed may be higher."
     if known.machine is None:
         otherwise += " To find it, add stiffness and mass in a machine file."
     text = _lead(at(kelvin), f"{lowest}. The safe speed is not yet known")
@@ -243,7 +244,7 @@ def _one_branch(known: Findings, trend: Trend) -> Instruction:
             "watch",
             f"Torque is lowest near {roll(trend.least)} rpm, and below that rises as the drive slows",
             interval,
-            f"Keep the roll well above {roll(trend.least)} rpm; the safe speed is not yet known. To "
+            f"Keep the speed well above {roll(trend.least)} rpm; the safe speed is not yet known. To "
             "determine the transition, record more dwells below that speed.",
         )
     if trend.constant:
@@ -260,7 +261,7 @@ def _one_branch(known: Findings, trend: Trend) -> Instruction:
         "watch",
         f"Measure dwells slower than {low} rpm: torque rises with speed down to there",
         interval,
-        f"Once sliding, the belt keeps sliding down to {low} rpm. From rest it may stick: torque at "
+        f"Once sliding, it keeps sliding down to {low} rpm. From rest it may stick: torque at "
         "lower speeds is not known.",
     )
 
@@ -269,14 +270,15 @@ def _not_started(
     where: str, kelvin: float | None, edges: Edges, map_: OperatingMap, unit: str
 ) -> Instruction:
     needed, limit = torque(edges.holding.high, unit, up=True), torque(edges.limit, unit)
+    part, pulls = map_.train.part, puller_of(map_.train.part)
     if map_.limited_by == "motor torque":
-        what = f"give the roll more than {needed}: the motor's {limit} cannot start a belt at rest"
+        what = f"give the {pulls} more than {needed}: the motor's {limit} cannot start a {part} at rest"
     else:
-        what = f"let the roll grip more than {needed}: at {limit} it slips on a belt at rest"
+        what = f"let the {pulls} grip more than {needed}: at {limit} it slips on a {part} at rest"
     turn = figures(1e3 * edges.transition.high, up=True)
     takes = map_.state_at(temperature=kelvin, speed=edges.transition.high).torque
     if takes <= edges.limit:
-        otherwise = f"A belt that already slides keeps sliding above {turn} mm/s."
+        otherwise = f"A {part} that already slides keeps sliding above {turn} mm/s."
     else:
         otherwise = f"It cannot keep sliding either: that takes {torque(takes, unit)} at {turn} mm/s."
     return Instruction("act", _lead(where, what), _starting(edges, map_, unit), otherwise)
@@ -284,7 +286,7 @@ def _not_started(
 
 def _starting(edges: Edges, map_: OperatingMap, unit: str) -> str:
     held = edges.holding
-    return starting(held.low, held.value, held.high, edges.limit, map_.limited_by, unit)
+    return starting(held.low, held.value, held.high, edges.limit, map_, unit)
 
 
 def _interval(what: str, edge: Edge) -> str:

@@ -6,6 +6,7 @@ import math
 
 from hersey.damping.surface import DampingSurface
 from hersey.machine.machine import Machine
+from hersey.schema.noun import BELT, DRIVE, Noun
 from hersey.study.findings import Findings
 from hersey.study.first_screen.result import MissingPart
 from hersey.units import celsius, rpm
@@ -17,6 +18,7 @@ _MAPPING = "hersey.toml"
 def missing(known: Findings) -> list[MissingPart]:
     """Return what is not stated, what most is missing first."""
     points, surface, machine = known.points, known.surface, known.machine
+    part = DRIVE if machine is None else machine.part
     file = _MACHINE if known.machine_file is None else known.machine_file.name
     out = []
     if machine is None:
@@ -27,14 +29,14 @@ def missing(known: Findings) -> list[MissingPart]:
         out.append(_points(file, surface, machine))
     if machine is None or (machine.limits.motor_torque is None and machine.limits.grip is None):
         out.append(_limits(file, machine))
-    elif machine.limits.grip is None:
+    elif machine.limits.grip is None and part == BELT:
         out.append(_grip(file, machine))
     if machine is not None and "stick_speed" not in machine.uncertainty:
         out.append(_stick_speed(file, machine))
-    if machine is not None and (machine.contact is None or machine.lubricant is None):
+    if machine is not None and part == BELT and (machine.contact is None or machine.lubricant is None):
         out.append(_nip(file, machine))
     if machine is not None and points.rest is None:
-        out.append(_rest(file))
+        out.append(_rest(file, part))
     return out
 
 
@@ -46,16 +48,16 @@ def _table(name: str, stated: bool) -> str:
 def _drivetrain(file: str) -> MissingPart:
     return MissingPart(
         purpose=(
-            "the drive speed above which the belt slides from any start (V*), the map, and the "
-            "start-up profile"
+            "the drive speed above which it slides from any start (V*), the map, and the start-up profile"
         ),
         file=file,
         lines=(
             "[drivetrain]\n"
-            'stiffness = "11 N/mm"    # enter yours: gears, roll core and rubber together, at the belt\n'
-            'mass = "11 kg"           # enter yours: all that moves with the belt, including the motor\n'
-            'roll_radius = "15 mm"    # enter yours: radius at which the torque acts on the belt\n'
-            'stick_speed = "1 mm/s"   # enter yours: the belt sticks below it; results depend on it\n'
+            'part = "drive"               # enter yours: what slides, e.g. joint, shaft, seal, pad\n'
+            'stiffness = "200 N*m/rad"    # enter yours: gears and shafts together; or e.g. "11 N/mm"\n'
+            'mass = "0.01 kg*m^2"         # enter yours: all that moves, motor included; or e.g. "11 kg"\n'
+            'roll_radius = "15 mm"        # enter yours: radius of the surface that slides\n'
+            'stick_speed = "1 mm/s"       # enter yours: it sticks below; results depend on it\n'
             "\n"
             "[uncertainty]\n"
             'stick_speed = "0.3 mm/s to 3 mm/s"   # enter yours, until it is measured\n'
@@ -80,11 +82,7 @@ def _points(file: str, surface: DampingSurface, machine: Machine | None) -> Miss
     level = f"{celsius(hot[1]):.0f} degC" if hot else "25 degC"
     middle = math.sqrt(surface.speed_range[0] * surface.speed_range[1])
     speed = f"{1e3 * middle * machine.roll_radius:.3g} mm/s" if machine else f"{rpm(middle):.3g} rpm"
-    note = (
-        "enter yours"
-        if machine
-        else f"enter yours, for the belt; the middle of the log is {speed} at the roll"
-    )
+    note = "enter yours" if machine else f"enter yours, where it slides; the middle of the log is {speed}"
     stated = speed if machine else "100 mm/s"
     return MissingPart(
         purpose="what happens at your speeds, and the start-up profile for them",
@@ -101,15 +99,16 @@ def _points(file: str, surface: DampingSurface, machine: Machine | None) -> Miss
 def _limits(file: str, machine: Machine | None) -> MissingPart:
     stated = {} if machine is None else {k: v for k, v in vars(machine.limits).items() if v is not None}
     rows = {
-        "motor_torque": 'motor_torque = "1 N*m"         # enter yours: maximum, at the roll\n',
+        "motor_torque": 'motor_torque = "1 N*m"         # enter yours: maximum, after the gears\n',
         "roll_friction": "roll_friction = 0.6            # enter yours: friction of the belt on the roll\n",
         "nip_load": 'nip_load = "300 N"             # enter yours\n',
-        "acceleration": 'acceleration = "500 mm/s^2"    # enter yours: maximum of the drive, at the belt\n',
-        "speed": 'speed = "400 mm/s"             # enter yours: maximum of the drive, at the belt\n',
+        "acceleration": 'acceleration = "500 mm/s^2"    # enter yours: maximum, where it slides\n',
+        "speed": 'speed = "400 mm/s"             # enter yours: maximum, where it slides\n',
     }
-    lines = "".join(row for name, row in rows.items() if name not in stated)
+    of_grip = () if machine is not None and machine.part == BELT else ("roll_friction", "nip_load")
+    lines = "".join(row for name, row in rows.items() if name not in stated and name not in of_grip)
     return MissingPart(
-        purpose="whether the drive starts the belt, and a start-up profile that it can follow",
+        purpose="whether the drive starts from rest, and a start-up profile that it can follow",
         file=file,
         lines=f"{_table('limits', bool(stated))}{lines}",
     )
@@ -163,9 +162,10 @@ def _nip(file: str, machine: Machine) -> MissingPart:
     )
 
 
-def _rest(file: str) -> MissingPart:
+def _rest(file: str, part: Noun) -> MissingPart:
+    without = "belt and heater" if part == BELT else "the contact that slides"
     return MissingPart(
         purpose="the torque of the film alone, without bearings and gears",
         file=file,
-        lines='[rest]\nlog = "no-load.csv"   # enter yours: a log of the drive without belt and heater\n',
+        lines=f'[rest]\nlog = "no-load.csv"   # enter yours: a log of the drive without {without}\n',
     )

@@ -17,7 +17,7 @@ from hersey.posterior.result import SAFE
 from hersey.stability.operating_map import OperatingMap
 from hersey.study.first_screen.reasons import in_words
 from hersey.study.first_screen.result import PointDecisionPart, Signal, StartPart
-from hersey.study.first_screen.words import between, mm, per_cent, starting, torque
+from hersey.study.first_screen.words import between, giving, mm, per_cent, starting, torque
 from hersey.study.thinning import kept
 
 #: Samples of a start that the page draws.
@@ -118,7 +118,7 @@ def points_of_log(surface: DampingSurface, machine: Machine, *, rises: bool) -> 
 def _judged(found: PointBehaviour, verdict: Verdict, edges: Edges, map_: OperatingMap, unit: str) -> _Said:
     chances, kind = verdict.probability, verdict.kind
     held = edges.holding
-    needs = starting(held.low, held.value, held.high, edges.limit, map_.limited_by, unit)
+    needs = starting(held.low, held.value, held.high, edges.limit, map_, unit)
     if kind == "too fast":
         limit = f"{mm(map_.speed_limit or math.nan)} mm/s"
         return _Said("act", f"exceeds the maximum speed of the drive, {limit}")
@@ -161,8 +161,9 @@ def _with_plan(found: PointBehaviour, verdict: Verdict) -> _Said:
 def _beyond(map_: OperatingMap, found: PointBehaviour, unit: str) -> str:
     kelvin = found.point.temperature if map_.drag.varies_with_temperature else None
     takes = map_.state_at(temperature=kelvin, speed=found.point.speed).torque
-    gives = "the motor gives" if map_.limited_by == "motor torque" else "the roll grips"
-    return f"sliding takes {torque(takes, unit)}, {gives} {torque(map_.torque_limit or math.nan, unit)}"
+    return (
+        f"sliding takes {torque(takes, unit)}, {giving(map_)} {torque(map_.torque_limit or math.nan, unit)}"
+    )
 
 
 def _motion(found: PointBehaviour) -> StartPart | None:

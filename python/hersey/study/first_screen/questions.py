@@ -53,13 +53,13 @@ def in_words(question: Question) -> tuple[str, str]:
         )
     if question.kind == "radius unit":
         return (
-            f"Is the roll radius {figures(1e3 * question.value)} mm? That is {figures(question.value)} m",
+            f"Is the radius {figures(1e3 * question.value)} mm? That is {figures(question.value)} m",
             "Correct roll_radius in the machine file.",
         )
     if question.kind == "torque unit":
         unit = "Is torque in mN·m?" if question.thousandfold else "Is the unit of torque right?"
         return f"{unit} It is {times} times {of}", f"Give the unit with {Setting('torque', 'unit').to()}."
-    faster = f"The belt would run at {mm(question.value)} mm/s, {times} times {of}"
+    faster = f"The surface would run at {mm(question.value)} mm/s, {times} times {of}"
     return (
         f"Is the unit of speed right? {faster}",
         f"Give the unit with {Setting('speed', 'unit').to()}, or correct roll_radius.",

@@ -16,7 +16,7 @@ _NAMED = {
     "stiffness": "the stiffness",
     "mass": "the mass",
     "transition_force": "the drag at the transition",
-    "grip": "the grip of the roll",
+    "grip": "the grip",
     "rest_force": "the drag of the no-load torque",
 }
 #: Where a value must lie, by `ParameterError.bound`.

@@ -24,7 +24,7 @@ class StartPart(Part):
     time: Numbers
     drive_speed: Numbers
     belt_speed: Numbers
-    straight: Numbers = Field(description="belt speed if the drive goes straight to the point")
+    straight: Numbers = Field(description="speed if the drive goes straight to the point")
 
 
 class PointDecisionPart(Part):
@@ -85,7 +85,7 @@ class DecisionPart(Part):
     )
     temperature: float | None = Field(default=None, description="K, at which the safe speed and V* hold")
     safe_speed: float | None = Field(
-        default=None, description="m/s; above it the belt is smooth from any start with 97.5 % probability"
+        default=None, description="m/s; above it it is smooth from any start with 97.5 % probability"
     )
     fold: Edge | None = Field(default=None, description="V*")
     closures: dict[str, float] = Field(default={}, description="probability of each closure")

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 
+from hersey.schema.noun import puller_of
+from hersey.stability.operating_map import OperatingMap
 from hersey.units import celsius
 from hersey.units import rpm as in_rpm
 
@@ -13,12 +15,12 @@ MINUS = "\N{MINUS SIGN}"
 
 
 def mm(speed: float) -> str:
-    """Return a belt speed (m/s) in mm/s, without the unit."""
+    """Return a speed (m/s) in mm/s, without the unit."""
     return figures(1e3 * speed)
 
 
 def roll(speed: float) -> str:
-    """Return a roll speed (rad/s) in rpm, without the unit."""
+    """Return a rotational speed (rad/s) in rpm, without the unit."""
     return figures(float(in_rpm(speed)))
 
 
@@ -71,12 +73,17 @@ def torque(value: float, unit: str, *, up: bool | None = None) -> str:
     return f"{figures(value * PER[unit], up=up)} {unit}"
 
 
-def starting(low: float, value: float, high: float, limit: float, by: str, unit: str) -> str:
-    """Return what starts a belt beside what the drive gives (N m, in a unit); ``by`` is what limits it."""
+def giving(map_: OperatingMap) -> str:
+    """Return what limits the torque, as the subject of what it gives."""
+    motor = map_.limited_by == "motor torque"
+    return "the motor gives" if motor else f"the {puller_of(map_.train.part)} grips"
+
+
+def starting(low: float, value: float, high: float, limit: float, map_: OperatingMap, unit: str) -> str:
+    """Return what starts a part at rest beside what the drive gives (N m, in a unit)."""
     ends = within(low, high, PER[unit]) if low < high else ""
-    gives = "the motor gives" if by == "motor torque" else "the roll grips"
     said = " ".join(filter(None, ("starting from rest takes", figures(value * PER[unit]), unit, ends)))
-    return f"{said}, {gives} {torque(limit, unit)}"
+    return f"{said}, {giving(map_)} {torque(limit, unit)}"
 
 
 def per_cent(share: float) -> str:

@@ -1,0 +1,96 @@
+"""Layouts of instruments that are known, and how their exports begin."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields, replace
+
+from hersey.errors import ParameterError, meant
+from hersey.log.layouts.table import LogLayout
+
+
+@dataclass(frozen=True)
+class Preset:
+    """A layout, what it is for, and words of which all stand in the first lines of such an export."""
+
+    layout: LogLayout
+    of: str
+    words: tuple[str, ...]
+
+
+#: By name, as in ``preset = "twincat"``: after readers of the format by others, or after its usual form.
+PRESETS: dict[str, Preset] = {
+    # after readers of the format by others
+    "rheocompass": Preset(
+        LogLayout(section="Interval and data points:*", skip=("Result:*", "Test:*", "Project:*")),
+        "Anton Paar RheoCompass, text export",
+        ("Interval and data points:", "Interval data:"),
+    ),
+    "twincat": Preset(
+        LogLayout(
+            header="Name * Name *",
+            paired_clocks="ms",
+            skip=(
+                *("SymbolComment*", "Data-Type*", "SampleTime*", "VariableSize*", "SymbolBased*"),
+                *("IndexGroup*", "IndexOffset*", "SymbolName*", "NetID*", "Port*", "Offset*"),
+                *("ScaleFactor*", "BitMask*", "Unit ScaleFactor*", "Unit Offset*", "EOF*"),
+            ),
+        ),
+        "Beckhoff TwinCAT Scope, text export with a clock for each channel",
+        ("SampleTime[ms]", "Starttime of export"),
+    ),
+}
+
+
+# from what is known of the format
+PRESETS |= {
+    "yokogawa": Preset(
+        LogLayout(
+            header="TraceName,*",
+            values=("HResolution,{every:s}*",),
+            skip=(
+                *("BlockSize,*", "SampleRate,*", "HOffset,*", "HUnit,*", "DisplayBlockSize,*"),
+                *("DisplayPointNo.,*", "PhaseShift,*", "Date,*", "Time,*", "BlockNumber,*"),
+            ),
+        ),
+        "Yokogawa DL and ScopeCorder, CSV",
+        ("TraceName,", "VUnit,", "HResolution,"),
+    ),
+    "graphtec": Preset(
+        LogLayout(header="Number,*", milliseconds="ms"),
+        "Graphtec GL, CSV",
+        ("GRAPHTEC", "Number,Date&Time,ms"),
+    ),
+    "campbell": Preset(
+        LogLayout(header_line=2, units_line=3, first_row=5),
+        "Campbell Scientific TOA5",
+        ('"TOA5"',),
+    ),
+    "wincc": Preset(
+        LogLayout(header_line=1, channel_column="VarName", value_column="VarValue"),
+        "Siemens WinCC, archive as CSV",
+        ("VarName", "TimeString", "VarValue"),
+    ),
+}
+
+
+def with_preset(layout: LogLayout) -> LogLayout:
+    """Return a layout with what its preset says, replaced by what it states itself.
+
+    Raises
+    ------
+    ParameterError
+        If there is no such preset.
+    """
+    if not layout.preset:
+        return layout
+    if layout.preset not in PRESETS:
+        near = meant(layout.preset, list(PRESETS))
+        said = f" Did you mean '{near}'?" if near else ""
+        raise ParameterError(
+            f"[layout] names the unknown preset '{layout.preset[:40]}'.{said} Presets: {', '.join(PRESETS)}"
+        )
+    stated = {each.name: getattr(layout, each.name) for each in fields(layout)}
+    own = {
+        name: value for name, value in stated.items() if value != LogLayout.__dataclass_fields__[name].default
+    }
+    return replace(PRESETS[layout.preset].layout, **{**own, "preset": ""})
