@@ -44,7 +44,6 @@ def of_each_run(runs: list[tuple[Run, LogFile]], stated: Stated) -> list[tuple[R
             for (run, log), (of, to), value in zip(runs, domains, values, strict=True)
         ]
     refuse_mixed([(log.name, to) for (_, log), (_, to) in zip(runs, domains, strict=True)])
-    _refuse_loads(domains[0][1], stated)
     done = [
         (run, log) if to.is_torque else _in_contact(replace(run, domain=to), log, of)
         for (run, log), (of, to) in zip(runs, domains, strict=True)
@@ -135,16 +134,3 @@ def refuse_mixed(domains: list[tuple[str, Domain]]) -> None:
                 f"{first} holds a {_SPEED_WORDS[of.speed]} and {name} a {_SPEED_WORDS[other.speed]}",
                 remedy=f"state the radius, e.g. {Setting('radius').to('25 mm')}",
             )
-
-
-def _refuse_loads(domain: Domain, stated: Stated) -> None:
-    """Raise `ParameterError` if torques at different loads that are stated would be pooled."""
-    values = stated.load if isinstance(stated.load, tuple) else ()
-    if not values or not domain.is_torque or max(values) <= SAME_LOAD * min(values):
-        return
-    raise ParameterError(
-        f"the runs have loads of {min(values):g} to {max(values):g} N, so their torques cannot be fitted "
-        "together",
-        remedy=f"give the radius, e.g. {Setting('radius').to('25 mm')}, to fit the friction coefficient, or "
-        "fit each load separately",
-    )

@@ -90,7 +90,7 @@ def _of_range(surface: DampingSurface, trend: Trend) -> str:
     if least <= 0.0 <= most:
         return (
             f"{name} shows no change with {of.speed}: {_level(surface)} at {span}. A change of "
-            f"{_per_cent(change)} over this range is not excluded."
+            f"{_size(change)} over this range is not excluded."
         )
     does = "rises" if least > 0.0 else "falls"
     first, last = (_at(surface, speed) for speed in surface.speed_range)
@@ -108,6 +108,10 @@ def _level(surface: DampingSurface) -> str:
 def _at(surface: DampingSurface, speed: float) -> str:
     value = surface.torque(speed=speed, temperature=surface.reference_temperature)
     return surface.domain.amount(float(np.ravel(value)[0]))
+
+
+def _size(change: float) -> str:
+    return _per_cent(change) if change < 1.0 else f"a factor of {1.0 + change:.2g}"
 
 
 def _per_cent(share: float) -> str:

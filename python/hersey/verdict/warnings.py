@@ -66,7 +66,8 @@ def _of_file(log: TorqueLog | MeansTable, i: int) -> Iterator[Warning]:
     if file.cut_off:
         yield Warning("cut off", "the file ends too early", severity="watch", where=file.name)
     yield from (warning.within(file.name) for warning in file.warnings)
-    if run is not None and run.clock.gaps:
+    lifted = any(warning.kind == "rows without contact" for warning in file.warnings)
+    if run is not None and run.clock.gaps and not lifted:
         yield Warning(
             "gaps",
             "rows are missing at {places} {places:place|places} ({share:.1f %} of the time)",

@@ -19,6 +19,7 @@ from hersey.damping.dwells import (
 from hersey.damping.dwells.constant import refuse_constant_torque
 from hersey.damping.dwells.least_duration import speeds_lost
 from hersey.damping.dwells.misleading import lagging, one_direction, unlinked_runs
+from hersey.damping.dwells.several_loads import refuse_several_loads
 from hersey.errors import InsufficientDataError
 from hersey.log.means import MeansTable
 from hersey.log.torque_log import TorqueLog
@@ -99,6 +100,7 @@ class Observations:
             raise InsufficientDataError(f"all dwells are at {held}. Record dwells at three or more speeds")
         if fewest_speeds > 1:
             refuse_constant_torque(points)
+            refuse_several_loads(points)
         kelvin = points.column("temperature") if points.log.has_temperature else None
         group, means = _groups(kelvin, speed.size)
         run = points.column("run").astype(np.intp)

@@ -120,7 +120,9 @@ class Reason:
         return self.label + how
 
     def turns(self) -> str:
-        """Return how a ripple goes with the revolution of the roll, in words."""
+        """Return how a ripple goes with the revolution of the roll, in words; nothing if that is unknown."""
+        if self.domain.speed != "speed":
+            return "of unknown cause"
         times = round(self.per_turn)
         if 1 <= times <= MOST_WHOLE and abs(self.per_turn - times) <= WHOLE_TURN:
             return "once per revolution" if times == 1 else f"{times} times per revolution"
@@ -162,7 +164,9 @@ def _shares(alike: list[Reason]) -> str:
     if not shares:
         return ""
     low, high = f"{min(shares):.3g}", f"{max(shares):.3g}"
-    by = {"stick-slip": " with torque varying by", "speed not held": " (varies by"}.get(alike[0].kind, " by")
+    by = {"stick-slip": f" with {alike[0].domain.quantity} varying by", "speed not held": " (varies by"}.get(
+        alike[0].kind, " by"
+    )
     return f"{by} {low if low == high else f'{low} to {high}'} %" + (")" if "(" in by else "")
 
 
@@ -179,7 +183,7 @@ def sizes(alike: list[Reason]) -> str:
     slow, fast = _frequencies(alike)
     low, high = f"{slow:.3g}", f"{fast:.3g}"
     at = f" at {low if low == high else f'{low} to {high}'} Hz, amplitude {size} the mean, "
-    if _once_a_turn(alike):
+    if _once_a_turn(alike) or alike[0].domain.speed != "speed":
         return f"{at}{_longest(alike).turns()}"
     if _same_frequency(alike):
         return f"{at}the same at every speed, so not from what turns"
