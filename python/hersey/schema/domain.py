@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Final
+from typing import Any, Final
 
 from hersey.arrays import FloatArray
 from hersey.errors import ParameterError, Setting
@@ -36,6 +36,11 @@ class Domain(Record):
 
     quantity: str = "torque"  #: ``torque``, ``friction force`` or ``friction coefficient``
     speed: str = "speed"  #: ``speed`` of rotation, or ``sliding speed``
+
+    @classmethod
+    def read(cls, part: Any) -> Domain:
+        """Return the one that a document holds."""
+        return cls(part.quantity, part.speed)
 
     @property
     def is_torque(self) -> bool:

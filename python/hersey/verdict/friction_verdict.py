@@ -31,10 +31,15 @@ def friction_verdict(points: SteadyPoints, surface: DampingSurface, trend: Trend
     because
         Sentence on regimes, said where all dwells have one load.
     """
-    seen = _lowest(surface) if surface.transition is not None else _of_range(surface, trend)
+    seen = friction_finding(surface, trend)
     if loads := points.varying_load:
         because = _of_loads(points, loads)
     return " ".join(filter(None, (seen, because)))
+
+
+def friction_finding(surface: DampingSurface, trend: Trend) -> str:
+    """Return what friction does as speed rises, without what causes it."""
+    return _lowest(surface) if surface.transition is not None else _of_range(surface, trend)
 
 
 def power_of(surface: DampingSurface) -> Estimate:
