@@ -16,11 +16,23 @@ from hersey.damping.estimate import Estimate, rounded
 from hersey.damping.surface import DampingSurface
 from hersey.damping.trend import Trend
 from hersey.errors import InsufficientDataError, capital
+from hersey.verdict.regimes import COULOMB, FALLING, Hypothesis
 
+#: What a regime means where friction was measured, for those whose meaning is about torque.
+_MEANINGS = {
+    "constant film": "film of fixed thickness, e.g. if starved: friction proportional to speed",
+    COULOMB: "friction independent of speed",
+    FALLING: "friction falls with speed: boundary or mixed lubrication",
+}
 #: Change over the range of speeds below which friction is constant, whatever the interval of its exponent.
 NEGLIGIBLE = 0.01
 #: Change over the range of speeds up to which an exponent that may be zero makes friction constant.
 CLOSE = 0.1
+
+
+def of_friction(hypothesis: Hypothesis) -> Hypothesis:
+    """Return a hypothesis whose meaning is that for friction."""
+    return replace(hypothesis, meaning=_MEANINGS.get(hypothesis.name, hypothesis.meaning))
 
 
 def friction_verdict(points: SteadyPoints, surface: DampingSurface, trend: Trend, because: str) -> str:

@@ -24,7 +24,7 @@ from hersey.schema.domain import TORQUE, Domain
 from hersey.units import celsius, rpm, takes_si
 from hersey.verdict.contact_regimes import film_law, log_regimes
 from hersey.verdict.explanations import Explained, Explanation, Tried, explained
-from hersey.verdict.friction_verdict import friction_verdict
+from hersey.verdict.friction_verdict import friction_verdict, of_friction
 from hersey.verdict.regimes import FALLING, REGIMES, Hypothesis, RegimeRow, judged, listed, named_in_words
 
 if TYPE_CHECKING:
@@ -132,6 +132,7 @@ def regime(
         verdict = _verdict(surface, by, table, trend)
     else:
         verdict = friction_verdict(points, surface, trend, _of_films(by))
+        hypotheses = tuple(map(of_friction, hypotheses))
     return Regime(
         branch_exponents(points, surface),
         hypotheses,
