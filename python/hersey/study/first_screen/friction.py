@@ -15,4 +15,6 @@ def of_friction(known: Findings, trend: Trend) -> Instruction:
         f"To extend the range, record dwells slower than {of.at(low)} and faster than {of.at(high)}. Whether "
         "a machine with this contact sticks also depends on its stiffness and mass, which this log lacks."
     )
-    return Instruction("good", friction_finding(known.surface, trend), "", further)
+    return Instruction(
+        "watch" if trend.falls else "good", friction_finding(known.surface, trend), "", further
+    )
