@@ -8,6 +8,7 @@ import shutil
 from pathlib import Path
 
 from tests.conftest import ROOT
+from tests.damping.moving_logs import sine
 
 DOCS = ROOT / "docs"
 TUTORIAL = sorted((DOCS / "tutorial").glob("*.md"))
@@ -66,3 +67,4 @@ def write_files_of_a_reader(folder: Path) -> None:
     )
     assert means is not None
     (folder / "means.csv").write_text(means[1])
+    sine().to_frame().drop("run").write_csv(folder / "joint.csv")

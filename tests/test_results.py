@@ -46,6 +46,7 @@ from hersey.study.nip_film import FilmPart, MeasuredFilmPart, MixedPart, Verdict
 from hersey.verdict.contact_verdict import verdict
 from hersey.verdict.regime import Regime
 from tests.conftest import ROOT
+from tests.damping.moving_logs import sine
 from tests.life import shipped, test_ageing_maps, test_other_uses
 from tests.machines import machine_of, map_of
 
@@ -72,6 +73,11 @@ def surface() -> hersey.DampingSurface:
 @cache
 def machine() -> hersey.Machine:
     return hersey.read_machine(ROOT / "tests" / "stand" / "machine.toml")
+
+
+@cache
+def moving() -> hersey.MovingFit:
+    return sine().moving()
 
 
 @cache
@@ -168,6 +174,7 @@ RESULTS: dict[str, tuple[Callable[[], Any], type]] = {
     "SteadyPoints": (points, PointsPart),
     "DampingSurface": (surface, FitPart),
     "NoLoadTorque": (lambda: hersey.NoLoadTorque.stated(constant=0.02, uncertainty=0.1), NoLoadTorque),
+    "MovingFit": (moving, hersey.MovingFit),
     "Regime": (lambda: hersey.regime(points(), surface()), Regime),
     "Film": (film, FilmPart),
     "MixedFilm": (mixed, MixedPart),

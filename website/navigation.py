@@ -55,7 +55,7 @@ PARTS = (
         first=("index", "commands", "python", "files", "document", "logs", "report", "inspect", "app"),
     ),
     Part("Gallery", page="gallery.md"),
-    Part("Validation", folder="validation", first=("index", "measurements", "paper", "growth")),
+    Part("Validation", folder="validation", first=("index", "measurements", "layouts", "paper", "growth")),
     Part("Glossary", page="glossary.md"),
 )
 

@@ -21,7 +21,7 @@ _SET = ("time", "torque", "temperature")
 
 
 def rheocompass(path: Path) -> Made:
-    """Anton Paar RheoCompass: intervals with a header of three rows each, UTF-16."""
+    """Anton Paar RheoCompass: intervals with a header of three rows each, UTF-16; after readers of it."""
     steps = staircase(1)
     lines = ["Project:\tSeal 4", "Test:\tStribeck 2", "Result:\tRotation 1", ""]
     for number, step in enumerate(steps, 1):

@@ -11,6 +11,8 @@ from .damping.design import design as design
 from .damping.dwells import SteadyPoints as SteadyPoints
 from .damping.estimate import Estimate as Estimate
 from .damping.fit import fit as fit
+from .damping.moving.fit import fit_moving as fit_moving
+from .damping.moving.result import MovingFit as MovingFit
 from .damping.no_load import no_load_torque as no_load_torque
 from .damping.no_load_torque import NoLoadTorque as NoLoadTorque
 from .damping.recipe import Recipe as Recipe

@@ -72,6 +72,7 @@ FORCE = Setting("force", "switch")
 TARE = Setting("tare")
 MAPPING = Setting("mapping")
 ROTATION = Setting("rotation")
+MOVING = Setting("moving", "switch")
 
 
 #: The sign of the torque.

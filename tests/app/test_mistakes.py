@@ -9,6 +9,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from benchmarks.layouts.sections import umt
+from benchmarks.layouts.trying import wrong_with
 
 from hersey.app.analysis import Analysis, Dropped
 from hersey.app.channels import Fault, of_problem
@@ -16,6 +18,7 @@ from hersey.app.checking import check
 from hersey.app.looking import look
 from hersey.app.view import line_of, view_of
 from hersey.errors import HerseyError, Setting, TimeOrderError, UnreadableLogError
+from hersey.log.mapping import read_with_mapping
 from tests.cli.test_bad_input import staircase
 from tests.conftest import ROOT
 
@@ -531,3 +534,12 @@ def test_a_channel_called_a_radius_is_proposed_and_taken_with_its_button_alone(t
     one.choices["Track radius"]["role"] = "radius"
     check(one)
     assert one.faults == []
+
+
+def test_a_log_that_needs_a_layout_is_read_by_the_proposed_one(tmp_path: Path) -> None:
+    made = umt(tmp_path / "export.txt")
+    one = dropped(tmp_path, (tmp_path / "export.txt").read_bytes())
+    assert one.faults == []
+    assert '[layout]\nheader = "T(s) *"\nvalues = ["Step *: Velocity {speed} rpm"]' in one.mapping_file()
+    (tmp_path / "hersey.toml").write_text(one.mapping_file())
+    assert wrong_with(read_with_mapping(tmp_path / "export.txt").log, made) == ""

@@ -298,7 +298,7 @@ def test_a_profile_is_followed_and_edited(page: Page, tmp_path: Path) -> None:
     done = run(*words[1:], "--csv", "motion.csv", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     peak = pl.read_csv(tmp_path / "motion.csv")["belt_speed"].max()
-    told = re.search(r"belt peak ([\d.]+) mm/s", verdict(page))
+    told = re.search(r"peak ([\d.]+) mm/s", verdict(page))
     assert told is not None
     assert 1e3 * float(peak) == pytest.approx(float(told[1]), rel=0.01)  # type: ignore[arg-type]
     page.fill("[aria-label='Row 2, time in s']", "7")
@@ -448,7 +448,7 @@ def test_the_numbers_behind_a_motion(page: Page) -> None:
     with page.expect_download() as download:
         page.click("#panel .numbers button:text-is('Save CSV')")
     rows = pl.read_csv(download.value.path())
-    assert rows.columns == ["Time, s", "Drive, mm/s", "Belt, mm/s", "Spring, N", "Stuck"]
+    assert rows.columns == ["Time, s", "Drive, mm/s", "Sliding, mm/s", "Spring, N", "Stuck"]
     assert set(rows["Drive, mm/s"]) == {20}
     assert set(rows["Stuck"]) == {"yes", "no"}
     assert rows["Time, s"].is_sorted()

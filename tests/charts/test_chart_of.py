@@ -27,6 +27,7 @@ from hersey.motion.drag import Drag as AnyDrag
 from tests import test_results
 from tests.charts.test_charts import titles
 from tests.conftest import ROOT
+from tests.damping.moving_logs import sine
 from tests.life import shipped, test_ageing_maps, test_other_uses
 from tests.machines import machine_of, map_of
 
@@ -145,6 +146,7 @@ MADE: dict[str, Callable[[], Any]] = {
     "ModelComparison": models,
     "LogComparison": logs,
     "TestDesign": lambda: hersey.design(models(), count=4, quantity="transition speed"),
+    "MovingFit": lambda: sine(hot=True).moving(),
     "Regime": lambda: hersey.regime(points(), surface()),
     "Film": film,
     "MixedFilm": mixed,

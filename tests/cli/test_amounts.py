@@ -183,7 +183,7 @@ def test_a_machine_brings_grip_motor_and_rest(tmp_path: Path) -> None:
     drag = ["--transition-force", "14 N", "--transition-speed", "25 mm/s"]
     typed = ["simulate", *drag, "--drive-speed", "20 mm/s", "--machine"]
     weak = run(*typed, "weak.toml", cwd=tmp_path).words
-    assert weak.startswith("The belt stalls")
+    assert weak.startswith("The drive stalls: the grip does not suffice")
     assert ", starting at 0.0818 s" in weak
     assert "The motor is too weak: the motion needs up to 0.27 of the 0.2 N·m of the motor" in weak
     assert "The drive can pull with up to 18 N. It cannot start from rest" in weak

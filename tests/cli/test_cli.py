@@ -90,7 +90,7 @@ def test_the_band_is_printed_and_piped(tmp_path: Path) -> None:
     steps = ["--drive-speed", "1.2", "--from-speed", "2.5", "--to-speed", "1.2"]
     text = run("hysteresis", *steps, cwd=tmp_path).words
     assert text.startswith("Smooth from any start above 2.17 (V*). Sticks from any start below 0.982.")
-    assert "A sudden step from 2.5 to 1.2 makes it stick. Use a ramp of at least 0.0698." in text
+    assert "A sudden step from 2.5 to 1.2 makes the drive stick. Use a ramp of at least 0.0698." in text
     assert text.endswith("transition force 50 ozf, transition speed 1 in/s, stick speed 0.01 in/s.")
     verbose = run("hysteresis", *steps, "--verbose", cwd=tmp_path).stdout
     assert "upper fold V*     2.1734934" in verbose

@@ -51,7 +51,7 @@ def test_the_code_tells_it_where_nothing_can_be_said(line: str, tmp_path: Path) 
 def test_the_other_streams_may_be_closed(line: str, tmp_path: Path) -> None:
     done = shell(line, "simulate", "--csv", "motion.csv", folder=tmp_path)
     assert (done.returncode, done.stderr) == (0, "")
-    assert done.stdout.startswith("It sticks and slips.\n")
+    assert done.stdout.startswith("The drive sticks and slips.\n")
     assert (tmp_path / "motion.csv").read_text().startswith("time,")
 
 

@@ -510,7 +510,7 @@ def test_a_roll_that_does_not_start_the_belt_stalls_and_is_told_from_stick_slip(
     assert kinds == ["stick_slip", "stalled"]
     assert band.verdict().startswith("The grip does not suffice to start from rest")
     assert (never.lower, never.upper, never.sensitivity, never.bistable) == (0.0, 0.0, {}, False)
-    assert "No stick-slip: a belt that sticks also stalls" in never.verdict()
+    assert "No stick-slip: what sticks also stalls" in never.verdict()
     for stalling in (band, never):
         drawn = band_chart(stalling).to_dict()
         states = drawn["layer"][0]["data"]["values"]

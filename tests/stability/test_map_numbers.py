@@ -273,8 +273,8 @@ def test_every_sentence_of_a_map(few: OperatingMap, surface: DampingSurface) -> 
         f"transition speed, from {1e3 * cold_stick:.3g} mm/s to {1e3 * hot_stick:.3g} mm/s), which the "
         "dwells do not show. "
         "The interval of V* includes the uncertainty of the fit, stiffness and stick speed",
-        f"the drive gives at most 4.5 N m (motor torque); a belt at rest needs {rest:.3g} N m to start",
-        "the drive may be unable to start the belt from rest",
+        f"the drive gives at most 4.5 N m (motor torque); starting from rest takes {rest:.3g} N m",
+        "the drive may be unable to start from rest",
         "thick paper: the verdict is uncertain, because the point lies within the 95 % interval of V* "
         f"({1e3 * low:.3g} mm/s to {1e3 * high:.3g} mm/s)",
     ]

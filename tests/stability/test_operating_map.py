@@ -193,7 +193,7 @@ def test_what_the_roll_cannot_bear_simulation_finds_slipping(
     assert ("keeps sliding" in smooth.verdict()) == (grip == 250.0)
     started = [each for each in drawn.warnings if each.kind == "belt not started"]
     assert bool(started) == ("not started" in drawn.summary()) == (grip == 250.0)
-    never = "the drive cannot start the belt from rest at any temperature"
+    never = "the drive cannot start from rest at any temperature"
     assert [str(each) for each in started] == [never][: len(started)]
     own = map_of(surface, gripping, **QUICK, temperatures=[360.0, 453.15])  # the drivetrain's own grip
     assert own.torque_limit == pytest.approx(0.015 * grip)

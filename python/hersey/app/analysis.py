@@ -174,7 +174,9 @@ class Analysis:
         return shlex.join(parts)
 
     def propose(self, file: Dropped) -> None:
-        """Take roles and units of a file's channels as proposed, where nothing was chosen yet."""
+        """Take layout, roles and units of a file's channels as proposed, where nothing was chosen yet."""
+        if layout := file.look.get("layout"):
+            self.mapping_others.setdefault("layout", layout)
         claimed = {name: role for role, names in file.look["claims"].items() for name in names}
         for channel in file.look["channels"]:
             role = channel["role"] or claimed.get(channel["name"], "")
@@ -337,6 +339,7 @@ class Analysis:
             self.mapped, self.mapped_units, self.mapping_others, self.corrections = {}, {}, {}, {}
         if not self.files:
             self.choices, self.corrections, self.options = {}, {}, dict(_OPTIONS)
+            self.mapping_others.pop("layout", None)
         elif gone.look:
             still = {name for f in self.files.values() if f.look for name in f.names}
             self.choices = {name: choice for name, choice in self.choices.items() if name in still}

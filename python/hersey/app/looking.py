@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import tomllib
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,9 @@ from hersey.errors import HerseyError, UnreadableLogError
 from hersey.inspection.file_report import ChannelReport, file_report
 from hersey.inspection.raw import Lacking, RawLog, raw_channels
 from hersey.log.channels import ChannelChoice, Stated, find_channel, is_dead
+from hersey.log.layouts.laid_out import reading_by
+from hersey.log.layouts.proposing import Proposal, proposed_layout
+from hersey.log.layouts.table import LogLayout
 from hersey.log.mapping import LogMapping, read_with_mapping
 from hersey.log.means import is_means_table
 from hersey.log.roles import OTHER_ROLES, ROLES, is_called
@@ -26,11 +30,40 @@ _COLUMNS = 75
 def look(path: Path) -> dict[str, Any]:
     """Return a file as the page shows it, JSON; see `hersey.inspection` for what is found.
 
+    A file that is no log as it stands is shown by the layout that is proposed for it, if there is one.
+
     Raises
     ------
     HerseyError
         If it is no log.
     """
+    try:
+        seen = _seen(path, None)
+    except HerseyError:
+        if (proposal := proposed_layout(path)) is None:
+            raise
+        return _seen(path, proposal)
+    if (seen["without"] or seen["problem"]) and (proposal := proposed_layout(path)):
+        return _seen(path, proposal)
+    return seen
+
+
+def _seen(path: Path, proposal: Proposal | None) -> dict[str, Any]:
+    """A file as it stands, or by a layout."""
+    if proposal is None:
+        return _look(path, None)
+    with reading_by(proposal.layout):
+        seen = _look(path, proposal.layout)
+    return seen | {
+        "layout": tomllib.loads(proposal.layout.toml())["layout"],
+        "channels": [
+            channel | {"role": "run"} if channel["name"] == proposal.channels.get("run") else channel
+            for channel in seen["channels"]
+        ],
+    }
+
+
+def _look(path: Path, layout: LogLayout | None) -> dict[str, Any]:
     log = raw_channels(path)
     if not log.channels:
         raise UnreadableLogError(f"{log.name} holds no channel of numbers")
@@ -38,7 +71,7 @@ def look(path: Path) -> dict[str, Any]:
     report = file_report(log, choices, Stated())
     names = distinct_names([channel.column for channel in log.channels])
     units = _units(log)
-    means = is_means_table(path, {}, {})
+    means = layout is None and is_means_table(path, {}, {})
     without = {role: why for role, why in report.lacking.items() if not (means and role == "time")}
     found = {channel.role: name for channel, name in zip(report.channels, names, strict=True) if channel.role}
     return {
@@ -57,7 +90,7 @@ def look(path: Path) -> dict[str, Any]:
         "without": {role: why.text for role, why in without.items()},
         "reasons": {role: why.reason or why.text for role, why in without.items()},
         "claims": {role: _claims(role, log, names, why) for role, why in without.items()},
-        "problem": {} if without or means else _problem(path),
+        "problem": {} if without or means else _problem(path, layout),
         "found": found,
     }
 
@@ -151,10 +184,10 @@ def _finite(value: float) -> float | None:
     return float(value) if np.isfinite(value) else None
 
 
-def _problem(path: Path) -> dict[str, Any]:
+def _problem(path: Path, layout: LogLayout | None) -> dict[str, Any]:
     """Why the file cannot be read as a log of torque, as data; empty if it can."""
     try:
-        read_with_mapping([path], mapping=LogMapping())
+        read_with_mapping([path], mapping=LogMapping(layout=layout))
     except HerseyError as error:
         return error.to_dict()
     return {}

@@ -133,9 +133,11 @@ def _of_the_machine(
     from hersey.cli.figures import three
     from hersey.damping.no_load_torque import with_rest
     from hersey.motion.drag import DragTable
+    from hersey.schema.noun import puller_of
     from hersey.units import celsius
 
-    train, drag, notes = machine.limits.gripping(train), film, [numbers.filled]
+    train = machine.limits.gripping(replace(train, part=machine.part))
+    drag, notes = film, [numbers.filled]
     kelvin = None
     if machine.rest is not None:
         # a curve without a temperature has the no-load torque of that log's own temperature
@@ -145,7 +147,7 @@ def _of_the_machine(
         at = "" if kelvin is None else f" (at {celsius(kelvin):.0f} °C)"
         notes.append(f"The no-load torque is added to the drag: {machine.rest}{at}.")
     if train.grip is not None:
-        notes.append(f"The drive can pull with up to {three(train.grip, 'N')}.")
+        notes.append(f"The {puller_of(train.part)} can pull with up to {three(train.grip, 'N')}.")
     if train.grip is not None and drag.holding_force > train.grip:
         notes.append(f"It cannot start from rest, which takes {three(drag.holding_force, 'N')}.")
     return train, drag, replace(numbers, filled=" ".join(filter(None, notes)))

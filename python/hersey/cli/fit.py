@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 from hersey.cli.groups import grouped, option
+from hersey.cli.moving import fitted, fitted_lines
 from hersey.cli.options import Force, KeepGoing, Logs, Reading, SensorsFile
 from hersey.cli.outputs import may_write, print_json
 from hersey.cli.printing import Printing
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from hersey.damping.surface import DampingSurface
     from hersey.machine.machine import Machine
 
+_NO_SURFACE = "--json prints a surface, for which the windows of this log are too few: omit --json"
 _EACH = "Fit each log separately and write one row per log (.csv or .parquet)."
 
 
@@ -65,20 +67,28 @@ def _fit_one(logs: list[Path], reading: Reading, machine: Machine | None, printi
     """Fit all logs together."""
     log = reading.log(logs, machine)
 
-    from hersey.damping.fit import fit as fitted
     from hersey.verdict.regime import regime
     from hersey.verdict.warnings import warnings_of
 
     with working("fitting the surface"):
-        points = reading.points(logs, log, machine)
-        surface = fitted(points, temperature_scale=reading.temperature_scale)
-        curves = _curves(points, surface, machine) if printing.in_full else None
+        found = fitted(logs, log, reading, machine)
+        points, surface, moving = found.points, found.surface, found.moving
+        curves = None
+        if points is not None and surface is not None and printing.in_full:
+            curves = _curves(points, surface, machine)
+    if moving is not None and not printing.as_json:
+        printing.text(*fitted_lines(moving))
+        printing.warnings(*moving.warnings)
+    if points is None or surface is None:
+        if printing.as_json:
+            raise ParameterError(_NO_SURFACE)
+        return
     if printing.as_json:
         from hersey.document.assembly import fit_document
 
-        print_json(fit_document(log, points, surface, curves))
+        print_json(fit_document(log, points, surface, curves, moving))
         return
-    printing.text(regime(points, surface).verdict)
+    printing.text(*([""] if moving is not None else []), regime(points, surface).verdict)
     if curves is None:
         printing.text("", *_estimates(surface))
     else:

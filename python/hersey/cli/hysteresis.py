@@ -15,6 +15,7 @@ from hersey.errors import ParameterError
 
 if TYPE_CHECKING:
     from hersey.cli.amounts import Amounts
+    from hersey.schema.noun import Noun
     from hersey.stability.disturbance import Disturbance, SafeStep
     from hersey.stability.hysteresis import HysteresisBand
 
@@ -63,9 +64,9 @@ def hysteresis(
                 raise _as_typed(error, {"from_speed": from_speed, "to_speed": to_speed}, numbers) from None
     if printing.json(band, disturbance=kick, step=step):
         return
-    printing.conclusion(lambda: _band(band, numbers), band.summary({**vars(train), **vars(law)}))
+    printing.conclusion(lambda: _band(band, numbers, train.part), band.summary({**vars(train), **vars(law)}))
     printing.text(*([] if kick is None else [_survived(kick, numbers)]))
-    printing.text(*([] if step is None else [_stepped(step, numbers)]))
+    printing.text(*([] if step is None else [_stepped(step, numbers, train.part)]))
     printing.text(*numbers.words)
 
 
@@ -93,8 +94,8 @@ def _swapped(words: list[str]) -> list[str]:
     return [f"{other.get(flag, flag)}{mark}{value}" for flag, mark, value in split]
 
 
-def _band(band: HysteresisBand, numbers: Amounts) -> list[str]:
-    """What the belt does at which drive speeds."""
+def _band(band: HysteresisBand, numbers: Amounts, part: Noun) -> list[str]:
+    """What happens at which drive speeds."""
     lower, least, upper = (numbers.shown(v, "belt speed") for v in (band.lower, band.transition, band.upper))
     between = numbers.shown_range(band.transition, band.upper, "belt speed")
     lines = []
@@ -103,7 +104,7 @@ def _band(band: HysteresisBand, numbers: Amounts) -> list[str]:
     if band.upper == 0:
         return [
             *lines,
-            f"No stick-slip. Once sliding, it keeps sliding above {least}, within the grip.",
+            f"No stick-slip. Once sliding, the {part} keeps sliding above {least}, within the grip.",
         ]
     if not band.bistable:
         return [*lines, f"Stick-slip ends at {upper}, whatever the start (speed of least drag: {least})."]
@@ -115,7 +116,7 @@ def _band(band: HysteresisBand, numbers: Amounts) -> list[str]:
     return [
         *lines,
         f"Smooth from any start above {upper} (V*). Sticks from any start below {lower}.",
-        f"From {between} it sticks if started from rest and slides if slowed from above.",
+        f"From {between} the {part} sticks if started from rest and slides if slowed from above.",
     ]
 
 
@@ -128,9 +129,10 @@ def _survived(found: Disturbance, numbers: Amounts) -> str:
     return f"Sliding at {at} survives {loss} and a sudden step of the drive down from {above}."
 
 
-def _stepped(step: SafeStep, numbers: Amounts) -> str:
+def _stepped(step: SafeStep, numbers: Amounts, part: Noun) -> str:
     before, after = (numbers.shown(v, "belt speed") for v in (step.from_speed, step.to_speed))
-    does, ramp = "makes it stick" if step.sticks else "keeps it sliding", "Any ramp is safe."
+    does = f"makes the {part} stick" if step.sticks else f"keeps the {part} sliding"
+    ramp = "Any ramp is safe."
     if step.ramp_time == math.inf:
         ramp = "No ramp is slow enough."
     elif step.ramp_time > 0:

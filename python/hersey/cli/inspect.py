@@ -16,7 +16,7 @@ from hersey.errors import Setting
 if TYPE_CHECKING:
     from hersey.inspection import Inspection
 
-_SAVE_MAPPING = "Write the proposed channels and units as hersey.toml beside the log."
+_SAVE_MAPPING = "Write the proposed layout, channels and units as hersey.toml beside the log."
 #: Longest name of a channel in the table, and most channels without a role that it shows.
 _LONGEST, _OTHERS = 28, 8
 

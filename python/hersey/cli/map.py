@@ -1,4 +1,4 @@
-"""Where the belt runs smoothly: ``hersey map``."""
+"""Where the drive runs smoothly: ``hersey map``."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def map_(
     printing: Printing,
     force: Force = False,
 ) -> None:
-    """Map over temperature and speed where the belt runs smoothly, sticks or stalls.
+    """Map over temperature and speed where the drive runs smoothly, sticks or stalls.
 
     Example: [bold]hersey map examples/machine.toml examples/bench.csv --tare standing[/bold]
 

@@ -13,7 +13,7 @@ from hersey.cli.groups import argument, option
 from hersey.cli.loading import loading
 from hersey.cli.no_load import refuse_no_load_log
 from hersey.cli.progress import bar, working
-from hersey.cli.quantities import amount_of, amounts_in
+from hersey.cli.quantities import amount_of, amounts_in, ratio_of
 from hersey.cli.recipe_file import ROLES, read_recipe
 from hersey.cli.several import for_this_log_only
 from hersey.cli.terminal import note
@@ -22,6 +22,7 @@ from hersey.errors import ChannelError, HerseyError, ParameterError, followed_by
 
 if TYPE_CHECKING:
     from hersey.damping.dwells import SteadyPoints
+    from hersey.damping.moving.result import MovingFit
     from hersey.damping.recipe import Recipe
     from hersey.damping.surface import DampingSurface
     from hersey.log import TorqueLog
@@ -76,12 +77,25 @@ def reduced(words: str, *flags: str, **more: Any) -> Any:
 
 
 _TORQUE_UNIT = "Unit of torque; of a signal e.g. '35 mN*m/A', or '9.84 mN*m / 100' for %."
-_RADIUS = "Radius for a log of friction force and sliding speed: '25 mm' or its column."
+_CURRENT = "Column of the motor current, instead of a torque; needs --torque-constant."
+_TORQUE_CONSTANT = "Torque of the motor per ampere, e.g. '0.11 N*m/A'."
+_GEAR_RATIO = "Turns of the motor, or torque sensor, per turn of the roll or joint, e.g. 50."
+_SPEED_GEAR_RATIO = "Turns of the speed sensor's shaft per turn of the roll or joint, e.g. 50."
+_RADIUS = "Radius of a friction force or track: '25 mm', one for each run, or its column."
 _LOAD = "Normal load: '50 N', '10 N, 20 N' for two runs, or its column."
+_POSITION = "Column of a position, instead of a speed; speed is its slope."
+_POSITION_UNIT = "Unit of the position, e.g. 'deg', 'mm', or 'rev/4096' for counts."
+_POSITION_WINDOW = "Time over which the slope of the position is taken.  [default: 0.2 s]"
+_DIRECTION = "Column of the direction of a speed without a sign: 1 and -1, 1 and 0, CW and CCW."
+_NAME_PATTERN = "Pattern of file names that state values, e.g. '{speed} rpm {load} N.txt'."
+_NAME_DECIMAL = "Decimal mark of the numbers in the file names, e.g. '-' for 0-1rps.txt."
+_SCHEDULE = "Table of set points by time: columns 'from [s]', 'to [s]', 'speed [rpm]'."
 _MAPPING = "File with roles, units and corrections.  [default: hersey.toml beside the log]"
 _DROP_MISSING = "Drop rows with a missing or impossible number, however many."
 _MEANS = "Read a table of means: one row per dwell, no time column."
 _NO_LOAD = "Log of the drive without the lubricated contact; its torque is subtracted."
+_MOVING = "Fit every sample of a log whose speed changes all the time."
+_INERTIA = "Moment of inertia at the roll or joint, e.g. '2e-4 kg*m^2'; used where speed changes."
 _NO_CACHE = "Read and compute everything again, without the cache."
 _RECIPE = "Use the logs and settings of a recipe; options typed here override it."
 
@@ -93,9 +107,14 @@ class Reading:
     torque: Annotated[str, read("Torque column, e.g. 'Tq' or 'Tq (ozf.in)'.")] = ""
     torque_unit: Annotated[str, read(_TORQUE_UNIT)] = ""
     torque_sign: Annotated[int, read("Use -1 to flip the sign of torque.")] = 1
+    current: Annotated[str, read(_CURRENT)] = ""
+    torque_constant: Annotated[str, read(_TORQUE_CONSTANT)] = ""
+    gear_ratio: Annotated[str, read(_GEAR_RATIO)] = ""
+    inertia: Annotated[str, read(_INERTIA)] = ""
     speed: Annotated[str, read("Speed column.")] = ""
     speed_unit: Annotated[str, read("Unit of speed, e.g. 'rpm'.")] = ""
     speed_sign: Annotated[int, read("Use -1 to flip the sign of speed.")] = 1
+    speed_gear_ratio: Annotated[str, read(_SPEED_GEAR_RATIO)] = ""
     temperature: Annotated[str, read("Temperature column.")] = ""
     temperature_unit: Annotated[str, read("Unit of temperature, e.g. 'degC'.")] = ""
     time: Annotated[str, read("Time column.")] = ""
@@ -105,6 +124,13 @@ class Reading:
     radius_unit: Annotated[str, read("Unit of the radius column, e.g. 'mm'.")] = ""
     load: Annotated[str, read(_LOAD)] = ""
     load_unit: Annotated[str, read("Unit of the load column, e.g. 'N'.")] = ""
+    position: Annotated[str, read(_POSITION)] = ""
+    position_unit: Annotated[str, read(_POSITION_UNIT)] = ""
+    position_window: Annotated[str, read(_POSITION_WINDOW)] = ""
+    direction: Annotated[str, read(_DIRECTION)] = ""
+    name_pattern: Annotated[str, read(_NAME_PATTERN)] = ""
+    name_decimal: Annotated[str, read(_NAME_DECIMAL)] = ""
+    schedule: Annotated[str, read(_SCHEDULE, metavar="TABLE")] = ""
     run: Annotated[str, read("Column that numbers the runs in a file.")] = ""
     mapping: Annotated[str, read(_MAPPING, metavar="TOML")] = ""
     isothermal: Annotated[bool, reduced("Ignore temperature: fit B = a w^c.", "--isothermal")] = False
@@ -116,6 +142,7 @@ class Reading:
     rotation: Annotated[str, reduced("Use dwells in both, forward or reverse rotation.")] = "both"
     temperature_scale: Annotated[str, reduced("Scale of T in B = a T^b w^c: degC or K.")] = "degC"
     no_load: Annotated[str, reduced(_NO_LOAD, metavar="LOG")] = ""
+    moving: Annotated[bool, reduced(_MOVING, "--moving")] = False
     recipe_file: Annotated[str, read(_RECIPE, "--recipe", metavar="TOML")] = ""
     no_cache: Annotated[bool, read(_NO_CACHE, "--no-cache")] = False
 
@@ -140,7 +167,7 @@ class Reading:
 
     def anywhere(self) -> Reading:
         """Return the same with absolute paths: workers may have been started in another folder."""
-        given = {name: getattr(self, name) for name in ("mapping", "no_load")}
+        given = {name: getattr(self, name) for name in ("mapping", "schedule", "no_load")}
         whole: dict[str, Any] = {name: str(Path(path).absolute()) for name, path in given.items() if path}
         return replace(self, **whole)
 
@@ -152,16 +179,46 @@ class Reading:
         amounts = {role: amounts_in(getattr(self, role)) for role in ("load", "radius")}
         names = {role: name for role in ROLES if (name := getattr(self, role)) and not amounts.get(role)}
         units = {role: unit for role in ROLES if (unit := getattr(self, f"{role}_unit", ""))}
+        if self.current:
+            names["torque"] = self._current()
         signs = {role: sign for role in ("torque", "speed") if (sign := getattr(self, f"{role}_sign")) != 1}
-        given = {name: getattr(self, name) or None for name in ("mapping", "every", "no_load")}
+        given = {
+            name: getattr(self, name) or None
+            for name in ("mapping", "every", "schedule", "position_window", "no_load")
+        }
         same: dict[str, Any] = {name: getattr(self, name) for name in _AS_GIVEN}
         dwell = amount_of("time", self.min_dwell, "--min-dwell")
         own: dict[str, Any] = {"channels": names, "units": units, "signs": signs, "min_dwell": dwell}
-        return Recipe(logs=tuple(logs), **(own | amounts | given | same))
+        return Recipe(logs=tuple(logs), **(own | amounts | given | same | self._motor()))
+
+    def _current(self) -> str:
+        """The column of the motor current, which plays the part of the torque."""
+        if self.torque:
+            raise ParameterError("--torque and --current both name the torque: omit one of them")
+        if not self.torque_constant:
+            raise ParameterError(
+                "--current needs the constant of the motor: add e.g. --torque-constant '0.11 N*m/A'"
+            )
+        return self.current
+
+    def _motor(self) -> dict[str, float]:
+        """What is said of the motor and its gears, SI."""
+        kinds = {"torque_constant": "motor constant", "inertia": "moment of inertia"}
+        said = {
+            name: amount_of(kind, text, f"--{name.replace('_', '-')}")
+            for name, kind in kinds.items()
+            if (text := getattr(self, name))
+        }
+        ratios = ("gear_ratio", "speed_gear_ratio")
+        return said | {
+            name: ratio_of(f"--{name.replace('_', '-')}", text)
+            for name in ratios
+            if (text := getattr(self, name))
+        }
 
     def inputs(self, *given: Path | list[Path] | None) -> list[Path]:
         """Return the files that a command reads, of which none may be an output."""
-        named = [Path(path) for path in (self.recipe_file, self.mapping, self.no_load) if path]
+        named = [Path(path) for path in (self.recipe_file, self.mapping, self.schedule, self.no_load) if path]
         for paths in given:
             named += [paths] if isinstance(paths, Path) else paths or []
         return named
@@ -210,12 +267,16 @@ class Reading:
         return read
 
     def points(
-        self, paths: list[Path], log: TorqueLog | MeansTable, machine: Machine | None = None
+        self,
+        paths: list[Path],
+        log: TorqueLog | MeansTable,
+        machine: Machine | None = None,
+        fit: MovingFit | None = None,
     ) -> SteadyPoints:
         """Reduce the log of these files to dwells; print what the no-load log shows."""
         if machine is not None and machine.rest is not None:
             refuse_no_load_log(paths, machine.rest)
-        points = self.recipe(paths).dwells(log, machine)
+        points = self.recipe(paths).dwells(log, machine, fit)
         if self.no_load and points.rest is not None:
             note(f"No-load torque subtracted: {points.rest}.")
             note(*(f"- {warning.sentence}" for warning in points.rest.warnings))
@@ -292,7 +353,10 @@ class Reading:
             return fit(self.points(logs, log, machine), temperature_scale=self.temperature_scale)
 
 
-_AS_GIVEN = ("isothermal", "drop_missing", "means", "tare", "rotation", "temperature_scale")
+_AS_GIVEN = (
+    *("isothermal", "drop_missing", "means", "tare", "rotation", "temperature_scale", "moving"),
+    *("name_pattern", "name_decimal"),
+)
 _NOT_OF_FILE = "not from the machine file"
 
 

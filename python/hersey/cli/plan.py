@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from hersey.motion.heat import HeatBalance
     from hersey.motion.schedule import Schedule
     from hersey.posterior.result import Posterior
+    from hersey.schema.noun import Noun
     from hersey.stability.plan import Plan
 
     Temperature = float | Schedule | HeatBalance | None
@@ -128,10 +129,10 @@ def plan(
     else:
         beyond = beyond_the_log(surface, temperature) if isinstance(temperature, float) else []
     planned = replace(planned, warnings=(*planned.warnings, *beyond))
-    write_course(planned, outputs, printing, lambda: _lines(planned), temperature=course)
+    write_course(planned, outputs, printing, lambda: _lines(planned, machine.part), temperature=course)
 
 
-def _lines(planned: Plan) -> list[str]:
+def _lines(planned: Plan, part: Noun) -> list[str]:
     """The profile in words and as a table, and how much of each limit it uses."""
     from hersey.cli.figures import columns, four, labelled, three
 
@@ -140,7 +141,7 @@ def _lines(planned: Plan) -> list[str]:
             "No profile ends in steady sliding.",
             *(f"- {each.text}" for each in planned.obstacles),
         ]
-    lines = [_verdict(planned)]
+    lines = [_verdict(planned, part)]
     rows = [(four(time), four(1e3 * speed)) for time, speed in planned.rows()]
     lines += [planned.proof(), "", *columns(("time (s)", "drive speed (mm/s)"), rows, first=">"), ""]
     uses = []
@@ -156,8 +157,8 @@ def _lines(planned: Plan) -> list[str]:
     return lines if planned.course is None else [*lines, _temperatures(planned.course, planned)]
 
 
-def _verdict(planned: Plan) -> str:
-    """The profile in a sentence, and when the belt slides steadily."""
+def _verdict(planned: Plan, part: Noun) -> str:
+    """The profile in a sentence, and when the part slides steadily."""
     from hersey.cli.figures import three
 
     def taking(time: float) -> str:
@@ -172,7 +173,7 @@ def _verdict(planned: Plan) -> str:
             f"Speed up to {peak} {taking(planned.rise)}, {held}slow down to {target} {taking(planned.fall)}."
         )
     wait = f"Wait {three(planned.wait, 's')}. " if planned.wait > 0 else ""
-    return f"{wait}{way} It slides steadily from {three(planned.duration, 's')} on."
+    return f"{wait}{way} The {part} slides steadily from {three(planned.duration, 's')} on."
 
 
 def _temperatures(course: Schedule, planned: Plan) -> str:

@@ -78,6 +78,16 @@ def amount_of(kind: str, text: str, flag: str) -> float:
         return parse(kind, text)
 
 
+def ratio_of(flag: str, text: str) -> float:
+    """Return a plain number that an option names, or a ratio such as ``50:1``."""
+    match = re.fullmatch(
+        r"\s*([0-9]{1,9}(?:\.[0-9]{0,9})?)\s*(?::\s*([0-9]{1,9}(?:\.[0-9]{0,9})?))?\s*", text[:60]
+    )
+    if match is None or not float(match[1]) * float(match[2] or 1):
+        raise ParameterError(f"{flag} is '{text}': write a number greater than 0, e.g. 50")
+    return float(match[1]) / float(match[2] or 1)
+
+
 @contextmanager
 def _of(flag: str) -> Iterator[None]:
     """Begin what is wrong with a value with its option."""

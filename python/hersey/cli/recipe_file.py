@@ -12,12 +12,22 @@ if TYPE_CHECKING:
     from hersey.damping.recipe import Recipe
 
 #: Roles that have an option for the column, for its unit and for the sign.
-ROLES = ("time", "torque", "speed", "temperature", "load", "radius", "run")
-_WITH_UNIT, _WITH_SIGN = ROLES[:-1], ("torque", "speed")
+ROLES = ("time", "torque", "speed", "temperature", "load", "radius", "position", "run", "direction")
+_WITH_UNIT, _WITH_SIGN = ROLES[:-2], ("torque", "speed")
 #: Tables of a recipe by role: the ending of the option, and the roles that have it.
 _TABLES = {"channels": ("", ROLES), "units": ("_unit", _WITH_UNIT), "signs": ("_sign", _WITH_SIGN)}
 #: Options that are an amount, and the units in which a recipe holds it.
-_UNITS = {"load": "N", "radius": "m", "every": "s", "min_dwell": "s"}
+_UNITS = {
+    "load": "N",
+    "radius": "m",
+    "every": "s",
+    "min_dwell": "s",
+    "position_window": "s",
+    "torque_constant": "N*m/A",
+    "inertia": "kg*m^2",
+}
+#: Options that are a plain number.
+_PLAIN = ("gear_ratio", "speed_gear_ratio")
 
 
 def read_recipe(path: Path) -> tuple[list[Path], dict[str, Any]]:
@@ -65,4 +75,4 @@ def _typed(name: str, value: Any) -> Any:
     if name in _UNITS:
         values = value if isinstance(value, tuple) else (value,)
         return ", ".join(f"{each!r} {_UNITS[name]}" for each in values)
-    return str(value) if isinstance(value, Path) else value
+    return str(value) if isinstance(value, Path) or name in _PLAIN else value

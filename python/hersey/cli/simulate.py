@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from hersey.motion.schedule import Schedule
     from hersey.motion.simulation import StickSlipCycle
     from hersey.motion.trajectory import Trajectory
+    from hersey.schema.noun import Noun
 
 #: Time simulated with --heat if none is given.
 _WARMING = "60 s"
@@ -33,12 +34,12 @@ _HEAT = "Simulate heating from cold, with \\[heat] of --machine and the drag of 
 _FROM = "Temperature at the start, with --heat.  [default: that of \\[heat]]"
 #: What the motion settles to, in words.
 _KINDS = {
-    "stick_slip": "It sticks and slips.",
-    "steady_sliding": "It slides steadily.",
-    "oscillation": "It oscillates without sticking.",
+    "stick_slip": "The {part} sticks and slips.",
+    "steady_sliding": "The {part} slides steadily.",
+    "oscillation": "The {part} oscillates without sticking.",
     "unsettled": "The motion has not settled.",
-    "stalled": "It stalls: the drive slips and does not move it.",
-    "grip_slip": "It slides steadily, slower than the drive, which slips.",
+    "stalled": "The {part} stalls: the grip does not suffice to move it.",
+    "grip_slip": "The {part} slides steadily, slower than it is driven: the grip does not suffice.",
 }
 
 
@@ -108,7 +109,7 @@ def simulate(
     printing: Printing,
     force: Force = False,
 ) -> None:
-    """Simulate the belt at a drive speed or over a profile.
+    """Simulate the motion at a drive speed or over a profile.
 
     Give all numbers with units, e.g. '11 N/mm', or all bare in any consistent set of units. The defaults are
     the paper's baseline, in inches, ounces of force and seconds.
@@ -157,14 +158,15 @@ def _settled(belt: Belt, drive: _Drive, written: bool) -> _Motion:
     lines = [] if run is None else _of_run(run, motor, time, numbers)
     whole = "\n".join([cycle.summary(), *([] if run is None else [run.summary()])])
     after = [*lines, *numbers.words]
-    return _Motion(run, cycle, beside, before, _cycle(cycle, numbers), whole, after)
+    return _Motion(run, cycle, beside, before, _cycle(cycle, numbers, train.part), whole, after)
 
 
-def _cycle(cycle: StickSlipCycle, numbers: Amounts) -> list[str]:
+def _cycle(cycle: StickSlipCycle, numbers: Amounts, part: Noun) -> list[str]:
     """What the motion settles to."""
     from hersey.cli.figures import labelled, three
 
-    lines = [_KINDS.get(cycle.kind, f"{cycle.kind.replace('_', ' ').capitalize()}.")]
+    kind = cycle.kind.replace("_", " ").capitalize()
+    lines = [_KINDS[cycle.kind].format(part=part) if cycle.kind in _KINDS else f"{kind}."]
     if cycle.frequency == 0:
         speed = numbers.shown(cycle.speed_max, "belt speed")
         stretch = numbers.shown(cycle.stretch_max, "length")
@@ -260,4 +262,4 @@ def _warmed(belt: Belt, drive: _Drive, heat: _Heat) -> _Motion:
     after = [*_of_run(run, None, time, numbers), *beyond]
     beside = {"energy": run.energy, "check": run.check, "warming": run}
     whole = "\n".join([cycle.summary(), run.summary()])
-    return _Motion(run, cycle, beside, [warmed], _cycle(cycle, numbers), whole, after)
+    return _Motion(run, cycle, beside, [warmed], _cycle(cycle, numbers, train.part), whole, after)

@@ -24,6 +24,7 @@ from hersey.errors import ParameterError
 
 if TYPE_CHECKING:
     from hersey.machine.machine import Machine
+    from hersey.schema.noun import Noun
     from hersey.stability.warm_up_result import WarmUp
 
 
@@ -91,16 +92,17 @@ def warmup(
     limit = Warning("force limit", "the limit is that of the {limit}", limit=weakest)
     beyond = beyond_the_log(surface, warm.film_temperature)
     warm = replace(warm, warnings=(*warm.warnings, limit, *beyond))
-    write_course(warm, outputs, printing, lambda: _lines(warm, weakest))
+    write_course(warm, outputs, printing, lambda: _lines(warm, weakest, machine.part))
 
 
-def _lines(warm: WarmUp, weakest: str) -> list[str]:
+def _lines(warm: WarmUp, weakest: str, part: Noun) -> list[str]:
     """The warm-up in words, what the alternatives would do, and a table."""
     import math
 
     import numpy as np
 
     from hersey.cli.figures import columns, four, three
+    from hersey.schema.noun import BELT
     from hersey.units import celsius
 
     lines = [_verdict(warm)]
@@ -110,6 +112,7 @@ def _lines(warm: WarmUp, weakest: str) -> list[str]:
     lines += _alternatives(warm)
     last = min(warm.time.size - 1, int(np.searchsorted(warm.time, warm.full_speed)))
     film, roll = celsius(warm.film_temperature), celsius(warm.roll_temperature)
+    body = "roll" if part == BELT else "counterbody"
     rows = [
         (four(warm.time[i]), four(1e3 * warm.drive_speed[i]), f"{film[i]:.1f}", f"{roll[i]:.1f}")
         for i in np.unique(np.linspace(0, last, _ROWS).round().astype(int)).tolist()
@@ -117,7 +120,7 @@ def _lines(warm: WarmUp, weakest: str) -> list[str]:
     return [
         *lines,
         "",
-        *columns(("time (s)", "drive (mm/s)", "film (°C)", "counterbody (°C)"), rows, first=">"),
+        *columns(("time (s)", "drive (mm/s)", "film (°C)", f"{body} (°C)"), rows, first=">"),
     ]
 
 

@@ -22,7 +22,7 @@ from hersey.log.means import MeansTable
 from hersey.log.text.delimited import Progress
 
 #: Settings of a recipe on which what is read does not depend.
-_OF_DWELLS = ("min_dwell", "tare", "rotation", "temperature_scale", "no_load")
+_OF_DWELLS = ("min_dwell", "tare", "rotation", "temperature_scale", "no_load", "moving", "inertia")
 #: Bytes of logs from which reading takes longer than finding what was read.
 _WORTH_KEEPING = 1 << 16
 
@@ -33,6 +33,10 @@ class HowRead(Protocol):
     @property
     def logs(self) -> tuple[Path, ...]:
         """Their files."""
+
+    @property
+    def schedule(self) -> Path | None:
+        """File of what was asked for by time."""
 
     @property
     def chosen(self) -> LogMapping:
@@ -48,7 +52,8 @@ def read_once(how: HowRead, progress: Progress | None) -> TorqueLog | MeansTable
         return how.read_files(progress)
     try:
         mapping = how.chosen
-        hashed = [_hash(path) for path in _files(how.logs, mapping)]
+        scheduled = () if how.schedule is None else (how.schedule,)
+        hashed = [_hash(path) for path in (*scheduled, *_files(how.logs, mapping))]
     except (HerseyError, OSError):  # which reading says, too
         return how.read_files(progress)
     hashes = tuple(digest for digest, _ in hashed)

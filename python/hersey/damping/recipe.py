@@ -18,19 +18,29 @@ from pydantic import ValidationInfo
 
 from hersey.arguments.frozen import explained
 from hersey.damping.dwells import SteadyPoints
+from hersey.damping.moving.result import MovingFit
 from hersey.damping.no_load import no_load_torque
 from hersey.damping.no_load_torque import NoLoadTorque
 from hersey.damping.once import read_once, reduced_once
-from hersey.errors import SIGN, TARE, HerseyError, InsufficientDataError, ParameterError, Setting, turned
+from hersey.errors import (
+    MOVING,
+    SIGN,
+    TARE,
+    HerseyError,
+    InsufficientDataError,
+    ParameterError,
+    Setting,
+    turned,
+)
 from hersey.files.toml import Quantity, Table, quoted, read_tables
 from hersey.log import TorqueLog
 from hersey.log.as_torque import log_as_torque
-from hersey.log.mapping import LogMapping, mapping_of, read_with_mapping
+from hersey.log.mapping import LogMapping, Motor, mapping_of, read_with_mapping
 from hersey.log.means import MeansTable, is_means_table, read_means, refuse_corrections
 from hersey.log.sensors import Sensors
 from hersey.log.text.delimited import Progress
 from hersey.result import json_record
-from hersey.units import argument
+from hersey.units import KINDS, argument
 
 Amount = float | tuple[float, ...] | None
 
@@ -105,6 +115,21 @@ class Recipe:
         Radius at which a friction force acts, m: one, or one for each run.
     load
         Normal load, N: one, or one for each run.
+    name_pattern
+        Pattern of the file names, e.g. ``"{speed} rpm {load} N.txt"``, if they state speed, load, radius or
+        temperature.
+    name_decimal
+        Decimal mark of the numbers in the names.
+    schedule
+        Table of speed, temperature or load by time, if the log has no channel of it.
+    position_window
+        Time over which speed is the slope of a position column, s.
+    torque_constant
+        Torque of the motor per ampere, N m/A, if the torque column is its current.
+    gear_ratio
+        Turns of the shaft where torque is measured per turn of the roll or joint.
+    speed_gear_ratio
+        Turns of the shaft where speed is measured per turn of the roll or joint.
     isothermal
         Whether temperature is left out of the fit.
     drop_missing
@@ -121,6 +146,10 @@ class Recipe:
         Scale of T in the fit: ``degC`` or ``K``.
     no_load
         Log of the drive without the lubricated contact; its torque is subtracted.
+    moving
+        Whether friction is fitted to every sample of a log that moves all the time, instead of to dwells.
+    inertia
+        Moment of inertia of all that the torque of such a log accelerates, kg m^2; None if it is fitted.
     """
 
     logs: Annotated[tuple[Path, ...], _Paths(None)] = ()
@@ -131,6 +160,13 @@ class Recipe:
     every: Annotated[float | None, _OneOrMore("time", 1e-9, 1e6, "2 ms")] = None
     radius: Annotated[Amount, _OneOrMore("length", 1e-6, 1e3, "25 mm")] = None
     load: Annotated[Amount, _OneOrMore("force", 1e-9, 1e9, "50 N")] = None
+    name_pattern: str = ""
+    name_decimal: str = ""
+    schedule: Annotated[Path | None, _Path(None)] = None
+    position_window: Annotated[float | None, _OneOrMore("time", 1e-6, 1e4, "0.2 s")] = None
+    torque_constant: Annotated[float | None, _OneOrMore("motor constant", 1e-6, 1e3, "0.11 N*m/A")] = None
+    gear_ratio: Annotated[float | None, _OneOrMore(None, 1e-4, 1e4, "50")] = None
+    speed_gear_ratio: Annotated[float | None, _OneOrMore(None, 1e-4, 1e4, "50")] = None
     isothermal: bool = False
     drop_missing: bool = False
     means: bool = False
@@ -139,6 +175,8 @@ class Recipe:
     rotation: str = "both"
     temperature_scale: str = "degC"
     no_load: Annotated[Path | None, _Path(None)] = None
+    moving: bool = False
+    inertia: Annotated[float | None, Quantity("moment of inertia", 0.0, 1e9, "2e-4 kg*m^2")] = None
 
     def __post_init__(self) -> None:
         """Bring amounts to SI and names of files to paths."""
@@ -177,10 +215,13 @@ class Recipe:
         log = replace(log, sensors=log.sensors.or_else(drive.sensors))
         return log if log.domain.is_torque else log_as_torque(log, radius=drive.roll_radius)
 
-    def dwells(self, log: TorqueLog | MeansTable, drive: KnownDrive | None = None) -> SteadyPoints:
+    def dwells(
+        self, log: TorqueLog | MeansTable, drive: KnownDrive | None = None, fit: MovingFit | None = None
+    ) -> SteadyPoints:
         """Reduce a log, or a table of means, to dwells with the torque of the film.
 
-        The no-load torque is that of ``no_load``, or else of the drive. The dwells keep the recipe.
+        The no-load torque is that of ``no_load``, or else of the drive. The dwells keep the recipe. ``fit``
+        is that of a moving log, whose windows become the dwells; without it, one is made where it is needed.
 
         Raises
         ------
@@ -189,13 +230,26 @@ class Recipe:
         """
         rest = self.rest(None if drive is None else drive.rest)
         try:
-            points = replace(self._dwells(log), recipe=self)
+            found = self._dwells(log) if fit is None else fit.points(rotation=self.rotation)
+            points = replace(found, recipe=self)
         except InsufficientDataError as error:
             flipped = [turned(role) for role, sign in self.signs.items() if sign == -1]
             if error.setting == SIGN and len(flipped) == 1:
                 error.remedy = f"omit {flipped[0]}"
             raise
         return points if rest is None else points.without(rest)
+
+    def moving_fit(self, log: TorqueLog) -> MovingFit:
+        """Fit friction, inertia and offset to every sample of a log.
+
+        Raises
+        ------
+        InsufficientDataError, ParameterError
+            If that cannot be, or a tare is asked for.
+        """
+        if self.tare != "none":
+            raise ParameterError(f"the torque zero of a moving log is fitted. Omit {TARE.to()}")
+        return log.moving(inertia=self.inertia)
 
     def points(self, drive: KnownDrive | None = None, *, progress: Progress | None = None) -> SteadyPoints:
         """Read the logs and reduce them to dwells; errors begin with the name of the log.
@@ -228,14 +282,21 @@ class Recipe:
     @property
     def chosen(self) -> LogMapping:
         """The mapping by which the logs are read."""
-        return mapping_of(self.logs, self.mapping)
+        return self._motor.added(mapping_of(self.logs, self.mapping), {}, {})[0]
+
+    @property
+    def _motor(self) -> Motor:
+        return Motor(self.torque_constant, self.gear_ratio, self.speed_gear_ratio)
 
     @property
     def are_means(self) -> bool:
         """Whether the logs are tables of means, by statement or by their content."""
-        if self.means or self.every is not None or {"time", "run"} & self.channels.keys():
+        rows = {"time", "run", "position", "direction"} & self.channels.keys()
+        if self.means or self.every is not None or self.schedule or rows:
             return self.means
         mapping = self.chosen
+        if mapping.schedule is not None or mapping.position.channel:
+            return False
         if mapping.time.every is not None or mapping.layout is not None:
             return False
         channels, units = mapping.channels | self.channels, mapping.units | self.units
@@ -314,7 +375,8 @@ class Recipe:
             signs=self.signs,
             isothermal=self.isothermal,
             drop_missing=self.drop_missing,
-            **{name: given for name in _KINDS if name != "min_dwell" and (given := getattr(self, name))},
+            **vars(self._motor),
+            **{name: given for name in _STATED if (given := getattr(self, name))},
             progress=progress,
         )
         return replace(done.log, corrections=done.corrections)
@@ -343,7 +405,11 @@ class Recipe:
                     f"a table of means has no standstill for a tare. Omit {TARE.to()}, and subtract "
                     "the zero in the table"
                 )
+            if self.moving:
+                raise ParameterError(f"a table of means does not move. Omit {MOVING.to()}")
             return SteadyPoints.from_table(log, rotation=self.rotation)
+        if self.moving:
+            return self.moving_fit(log).points(rotation=self.rotation)
         return reduced_once(log, min_dwell=self.min_dwell, tare=self.tare, rotation=self.rotation)
 
 
@@ -364,11 +430,19 @@ class _RecipeFile(Table, Recipe):
 
 
 #: Fields that name one file each.
-_FILES = ("mapping", "no_load")
+_FILES = ("mapping", "schedule", "no_load")
 #: Kind of unit of each amount.
-_KINDS = {"every": "time", "radius": "length", "load": "force", "min_dwell": "time"}
-#: Unit in which an amount is written.
-_UNITS = {"time": "s", "length": "m", "force": "N"}
+_KINDS = {
+    "every": "time",
+    "radius": "length",
+    "load": "force",
+    "min_dwell": "time",
+    "position_window": "time",
+    "torque_constant": "motor constant",
+    "inertia": "moment of inertia",
+}
+#: What is said of a log and a file need not hold.
+_STATED = ("every", "radius", "load", "name_pattern", "name_decimal", "schedule", "position_window")
 
 
 def _distinct(paths: Sequence[Path]) -> tuple[Path, ...]:
@@ -402,5 +476,5 @@ def _written(value: Any, kind: str = "", folder: Path = Path()) -> str:
     if isinstance(value, Sequence) and not isinstance(value, str):
         return f"[{', '.join(_written(each, kind, folder) for each in value)}]"
     if kind:
-        return quoted(f"{value!r} {_UNITS[kind]}")
+        return quoted(f"{value!r} {KINDS[kind][0]}")
     return quoted(value) if isinstance(value, str) else repr(value)

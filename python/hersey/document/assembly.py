@@ -14,6 +14,7 @@ from hersey.arrays import FloatArray
 from hersey.damping.candidates.observations import Observations
 from hersey.damping.curves import CurveMixture, fit_curves
 from hersey.damping.dwells import SteadyPoints, groups_of_temperature
+from hersey.damping.moving.result import MovingFit
 from hersey.damping.surface import DampingSurface
 from hersey.damping.trend import trend_of
 from hersey.decision.behaviour import Behaviour, ranges
@@ -116,6 +117,7 @@ def fit_document(
     points: SteadyPoints,
     surface: DampingSurface,
     curves: CurveMixture | None = None,
+    moving: MovingFit | None = None,
 ) -> FitDocument:
     """Return what a fit needs to be read back: fit and drag curves, dwells and files, and the regime."""
     return FitDocument(
@@ -124,6 +126,7 @@ def fit_document(
         points=_points(points, surface),
         fit=_fit_part(points, surface, curves or fit_curves(points, surface)),
         regime=regime(points, surface),
+        moving=moving,
     )
 
 

@@ -7,7 +7,7 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, TypedDict, Unpack
+from typing import TYPE_CHECKING, Annotated, Any, TypedDict, Unpack, cast
 
 from hersey.arguments.door import Words
 from hersey.arrays import refuse_unknown
@@ -29,10 +29,18 @@ from hersey.inspection.raw import raw_channels
 from hersey.inspection.support import Support, support_of_points
 from hersey.log.channels import ChannelChoice, Stated
 from hersey.log.corrections import Corrected
+from hersey.log.derived.sources import Sources
 from hersey.log.doubtful import doubtful_units
 from hersey.log.layouts.laid_out import reading_by
 from hersey.log.layouts.proposing import with_layout
-from hersey.log.mapping import LogMapping, as_stated, mapping_of, read_with_mapping, without_what_is_said
+from hersey.log.mapping import (
+    LogMapping,
+    Motor,
+    as_stated,
+    mapping_of,
+    read_with_mapping,
+    without_what_is_said,
+)
 from hersey.log.means import MeansTable, read_means
 from hersey.log.roles import CHANNELS, OTHER_ROLES, ROLES, SIGNS, UNITS
 from hersey.log.torque_log import ROTATIONS, TARES, Correction, LogFile, TorqueLog
@@ -61,6 +69,14 @@ class Reading(TypedDict, total=False):
     every: float | None
     radius: float | Sequence[float] | None
     load: float | Sequence[float] | None
+    name_pattern: str | None
+    name_decimal: str | None
+    schedule: Any
+    position_window: float | None
+    torque_constant: float | None
+    gear_ratio: float | None
+    speed_gear_ratio: float | None
+    inertia: float | None
 
 
 @dataclass(frozen=True, repr=False)
@@ -187,6 +203,9 @@ class Inspection(Result):
     every="time",
     radius="length",
     load="force",
+    torque_constant="motor constant",
+    inertia="moment of inertia",
+    position_window="time",
     tare=TARES,
     rotation=ROTATIONS,
     temperature_scale=Words(("degC", "K")),
@@ -217,8 +236,7 @@ def inspect(
     means
         Whether the files are tables of means: one row per dwell, no clock.
     **reading
-        Any of ``mapping``, ``channels``, ``units``, ``isothermal``, ``signs``, ``drop_missing``, ``every``,
-        ``radius`` and ``load``, as for `hersey.read_with_mapping`.
+        How to read the logs, as for `hersey.read_with_mapping`.
 
     Raises
     ------
@@ -234,11 +252,19 @@ def inspect(
     files = [paths] if isinstance(paths, str | Path) else list(paths)
     mapping = reading.get("mapping")
     chosen = mapping if isinstance(mapping, LogMapping) else mapping_of(files, mapping)
+    said: Mapping[str, Any] = reading
+    motor = Motor(*(said.get(each.name) for each in fields(Motor)))
+    chosen, channels, units = motor.added(chosen, reading.get("channels") or {}, reading.get("units") or {})
+    rest = {name: value for name, value in reading.items() if name not in vars(motor)}
+    reading = cast("Reading", rest | {"channels": channels, "units": units})
     chosen = chosen.turned(reading.get("signs") or {})
     choices, known = _said(chosen, reading)
+    made = _made(chosen, reading)
     try:
         with reading_by(chosen.layout):
-            reports = tuple(file_report(raw_channels(file), choices, known) for file in files)
+            reports = tuple(
+                _without_lacking(file_report(raw_channels(file), choices, known), made) for file in files
+            )
     except HerseyError as error:
         if chosen.layout is not None or len(files) > 1:
             raise
@@ -280,6 +306,20 @@ def _said(mapping: LogMapping, reading: Reading) -> tuple[dict[str, ChannelChoic
         for role in (*ROLES, *OTHER_ROLES)
     }
     return choices, Stated(*(getattr(stated, f.name) or getattr(said.stated, f.name) for f in fields(Stated)))
+
+
+def _made(mapping: LogMapping, reading: Mapping[str, Any]) -> frozenset[str]:
+    """The roles that no column needs to play: a schedule, file names or a position do."""
+    said = mapping.sources | {name: value for name in mapping.sources if (value := reading.get(name))}
+    names = {name: said[name] for name in ("name_pattern", "name_decimal", "schedule", "position_window")}
+    sources = Sources.of(**names)
+    position = (reading.get("channels") or {}).get("position") or mapping.position.channel
+    return sources.roles | ({"speed"} if position else set())
+
+
+def _without_lacking(report: FileReport, made: frozenset[str]) -> FileReport:
+    """The report of a file without what it says of roles that no column needs to play."""
+    return replace(report, lacking={role: why for role, why in report.lacking.items() if role not in made})
 
 
 def _supported(

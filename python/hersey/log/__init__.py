@@ -4,6 +4,7 @@
 torque_log            `TorqueLog`: channels in SI, with where they came from
 sensors               what the sensors do not know
 text                  CSV and its relatives
+layouts               exports that need a layout to be read
 recording             what a file of any other format holds: channels with clocks of their own
 formats               one reader per format, and which one opens a file
 signals               currents, voltages and percentages, and how much one of them stands for
@@ -32,6 +33,7 @@ constant_temperature  a temperature that is excluded and never changes: its sens
 given_twice           a measurement that a log holds twice: refused
 not_a_log             what is neither a file nor a table: refused
 own_tables            tables that hersey wrote: refused as logs
+derived               channels that no column holds: file names, schedules, positions, directions
 exchanged             columns under each other's names: refused
 reading               `read`: from files to a log
 many                  many files, each a log of its own: in turn, in threads, or by workers

@@ -29,6 +29,13 @@ from hersey.log.channels import (
     taken_columns,
 )
 from hersey.log.constant_temperature import constant_temperature
+from hersey.log.derived.speeds import (
+    outside_schedule,
+    speed_column,
+    speed_of_position,
+    unscheduled,
+    with_direction,
+)
 from hersey.log.formats.frame import FRAME
 from hersey.log.friction import Chosen, beside, computed, in_domain, slow_roles, unused
 from hersey.log.impossible import Impossible, Reading, impossible_rows, marked_rows
@@ -99,6 +106,7 @@ class Assembly:
         self.chosen: Chosen = {}
         self._timed: Chosen = {}
         self.parts: dict[str, _Part] = {}
+        self.derived, self._said = wanted.derived, list[Warning]()
         try:
             self._choose(wanted.roles, isothermal=wanted.isothermal)
         except UnitError as error:
@@ -110,12 +118,15 @@ class Assembly:
             if role != "time":  # which is that of the channel
                 self.chosen[role] = self._channel(role)
         torque = self.chosen["torque"][0]
+        others = {r: g.column(torque.group) for r, g in self.derived.channels.items() if r in OTHER_ROLES}
+        self.chosen |= others
         near = tuple(c for c in self.columns if c.group == torque.group)
         self.chosen |= beside(near, self.choices, self.stated, self.chosen, self.source.name)
         self._unused = [*clocks_passed_over(near, self.stated), *unused(near, self.chosen, self.stated)]
         if isothermal:
             self._unused += constant_temperature(near, self.chosen, self.source.name, self._numbers)
-        self.parts = {role: self._part(role) for role in self.chosen}
+        for role in self.chosen:
+            self.parts[role] = self._part(role)
 
     def _naming_all(self, error: UnitError, roles: tuple[str, ...]) -> UnitError:
         """The error of a channel without a unit, with all others that lack one."""
@@ -144,6 +155,7 @@ class Assembly:
         left_out, torque = LeftOut(), self.parts["torque"]
         warnings = [*self.recording.warnings, *self._counted.values()]
         marked, rows_marked = self._judged(self._marked)
+        self._leave_out_unscheduled()
         self._leave_out_missing(left_out)
         impossible, rows_impossible = self._judged(self._impossible)
         impossible = (*marked, *impossible)
@@ -156,7 +168,7 @@ class Assembly:
         arrays = {role: without(values, bad) for role, values in arrays.items()}
         warnings += computed(self.chosen, self.stated)
         warnings += replaced_units(self._timed | self.chosen)
-        warnings += [*filter(None, self._dead.values()), *self._unused]
+        warnings += [*filter(None, self._dead.values()), *self._unused, *self._said]
         log = self._record(tuple(warnings))
         log = replace(log, missing_rows=rows_marked + rows_impossible, impossible=impossible)
 
@@ -223,6 +235,10 @@ class Assembly:
     def _channel(self, role: str) -> tuple[Column, Conversion]:
         """The channel of a role; the part of the file that holds the torque is looked at first."""
         file, choice, channel = self.source.name, self.choices[role], None
+        if given := self.derived.channels.get(role):
+            return given.column(self.chosen["torque"][0].group)
+        if role == "speed" and self.choices["position"].name:
+            return speed_column(*self._position())
         taken = taken_columns(role, self.columns, self.choices, self.chosen)
         if role != "torque" and not choice.name:
             torque = self.chosen["torque"][0]
@@ -239,6 +255,10 @@ class Assembly:
     def _part(self, role: str) -> _Part:
         """A channel with its numbers and its clock."""
         column, unit = self.chosen[role]
+        if given := self.derived.channels.get(role):
+            torque = self.parts["torque"]
+            self._said.append(given.warning())
+            return _Part(role, column, unit, given.at(torque.time), torque.time, torque.tick, None)
         signal = self.recording.signals[column.index]
         time, tick, _ = self._clock(signal, column)
         values = signal.load()
@@ -248,7 +268,41 @@ class Assembly:
                 f"has {time.size}. The file is damaged or cut off"
             )
         marked = None if signal.marked is None else signal.marked()
+        if role == "speed":
+            values = self._speed(time, values)
         return _Part(role, column, unit, _in_si(values, unit), time, tick, marked)
+
+    def _position(self) -> tuple[Column, Conversion]:
+        """The column of the position, and its unit."""
+        choice, file = self.choices["position"], self.source.name
+        channel = find_channel("position", self.columns, choice, file)
+        assert channel is not None  # it is named
+        return channel
+
+    def _speed(self, time: FloatArray, values: FloatArray) -> FloatArray:
+        """The speed from the numbers of its column, or of a position; with the sign of a direction."""
+        if self.choices["position"].name:
+            column, unit = self._position()
+            values, warning = speed_of_position(column, unit, time, values, self.derived.window)
+            self._said.append(warning)
+        if name := self.choices["direction"].name:
+            values, warning = with_direction(self.recording, name, values)
+            self._said.append(warning)
+        return values
+
+    def _leave_out_unscheduled(self) -> None:
+        """Leave out samples of the torque at which nothing is scheduled."""
+        torque = self.parts["torque"]
+        given = self.derived.channels.items()
+        scheduled = [self.parts[role].values for role, of in given if of.schedule and role in self.parts]
+        if not scheduled:
+            return
+        rows, count = _unknown(scheduled), torque.time.size
+        if rows.size > count - 2:
+            raise outside_schedule(self.source.name, torque.time)
+        _leave_out([part for part in self.parts.values() if part.tick == torque.tick], rows)
+        if rows.size:
+            self._said.append(unscheduled(int(rows.size), count))
 
     def _numbers(self, column: Column) -> FloatArray:
         """The numbers of a channel as written."""

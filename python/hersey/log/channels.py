@@ -19,6 +19,7 @@ from hersey.errors import (
     printable,
     way_in,
 )
+from hersey.log.derived.file_names import proposed_pattern
 from hersey.log.long_arrays import ends
 from hersey.log.own_tables import not_a_log, own_table
 from hersey.log.role_units import with_unit
@@ -210,11 +211,27 @@ def no_channel(
             f". If '{of.path}' is the frequency of an inverter, divide by the pole pairs of the motor, e.g. "
             f"for 2 use {named}"
         )
+    if role == "speed":
+        way_out += _speed_elsewhere(columns, file)
     if role == "temperature":
         way_out += f", or use {ISOTHERMAL.to()} to exclude temperature"
     said = f"{file}: no {role} column found. Columns: {_listed(columns)}"
     said += not_numbers(others)
     return ChannelError(said, absent=True, remedy=way_out, setting=channel)
+
+
+def _speed_elsewhere(columns: tuple[Column, ...], file: str) -> str:
+    """The name of the file, or a position, where a log without a speed may have it."""
+    if found := proposed_pattern(file):
+        template, decimal = found
+        mark = "" if decimal == "." else f" {Setting('name_decimal').to(decimal)}"
+        return f". If the name of the file states it, use {Setting('name_pattern').to(template)}{mark}"
+    angle = next(
+        (c for c in columns if c.unit and is_called("position", c) and could_be("position", c)), None
+    )
+    if angle is not None:
+        return f". If '{angle.path}' is the position, use {Setting('position', 'channel').to(angle.path)}"
+    return f", or give set points by time with {Setting('schedule').to('schedule.csv')}"
 
 
 def not_numbers(others: tuple[str, ...]) -> str:

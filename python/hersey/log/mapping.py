@@ -10,9 +10,10 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass as plain_dataclass
 from dataclasses import field, fields, replace
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from pydantic.dataclasses import dataclass
@@ -31,6 +32,7 @@ from hersey.files.toml import Table, naming, read_tables, read_toml
 from hersey.log import corrections
 from hersey.log.channels import Stated
 from hersey.log.corrections import Corrected
+from hersey.log.derived.set_points import SetPoints
 from hersey.log.layouts.laid_out import reading_by
 from hersey.log.layouts.presets import with_preset
 from hersey.log.layouts.proposing import with_layout
@@ -38,9 +40,12 @@ from hersey.log.layouts.table import LogLayout
 from hersey.log.reading import read
 from hersey.log.role_tables import (
     LoadMapping,
+    NamesMapping,
+    PositionMapping,
     RadiusMapping,
     RoleMapping,
     SpeedMapping,
+    Steps,
     TemperatureMapping,
     TimeMapping,
     TorqueMapping,
@@ -70,6 +75,10 @@ class _Roles(Table):
     load: LoadMapping = field(default_factory=LoadMapping)
     radius: RadiusMapping = field(default_factory=RadiusMapping)
     run: RoleMapping = field(default_factory=RoleMapping)
+    position: PositionMapping = field(default_factory=PositionMapping)
+    direction: RoleMapping = field(default_factory=RoleMapping)
+    names: NamesMapping = field(default_factory=NamesMapping)
+    schedule: Annotated[SetPoints | None, Steps(None)] = None
     layout: LogLayout | None = None
 
 
@@ -79,8 +88,12 @@ class LogMapping(_Roles):
 
     Attributes
     ----------
-    time, torque, speed, temperature, load, radius, run
+    time, torque, speed, temperature, load, radius, run, position, direction
         One `RoleMapping` each; ``run`` is the number of a run.
+    names
+        What the names of the files state.
+    schedule
+        What was asked for by time, if no channel holds it.
     layout
         How the file is laid out, or none where it shows by itself.
     source
@@ -125,6 +138,16 @@ class LogMapping(_Roles):
             of.value if of.value is not None else of.values or None for of in (self.radius, self.load)
         )
         return Stated(self.time.every, radius, load)
+
+    @property
+    def sources(self) -> dict[str, Any]:
+        """What it says of channels that no column holds, as `hersey.read` takes it."""
+        return {
+            "name_pattern": self.names.pattern or None,
+            "name_decimal": self.names.decimal if self.names.pattern else None,
+            "schedule": self.schedule,
+            "position_window": self.position.window,
+        }
 
     def turned(self, signs: Mapping[str, int]) -> LogMapping:
         """Return the mapping with the signs of torque and speed multiplied by those given by role.
@@ -226,7 +249,17 @@ def find_mapping(path: str | Path) -> Path | None:
     return next((candidate for candidate in beside if os.path.isfile(candidate)), None)  # noqa: PTH113
 
 
-@takes_si(every="time", radius="length", load="force", channels=CHANNELS, units=UNITS, signs=SIGNS)
+@takes_si(
+    every="time",
+    radius="length",
+    load="force",
+    torque_constant="motor constant",
+    inertia="moment of inertia",
+    position_window="time",
+    channels=CHANNELS,
+    units=UNITS,
+    signs=SIGNS,
+)
 def read_with_mapping(
     paths: str | Path | Sequence[str | Path],
     *,
@@ -239,6 +272,14 @@ def read_with_mapping(
     every: float | None = None,
     radius: float | Sequence[float] | None = None,
     load: float | Sequence[float] | None = None,
+    torque_constant: float | None = None,
+    gear_ratio: float | None = None,
+    speed_gear_ratio: float | None = None,
+    inertia: float | None = None,
+    name_pattern: str | None = None,
+    name_decimal: str | None = None,
+    schedule: Any = None,
+    position_window: float | None = None,
     progress: Progress | None = None,
 ) -> Corrected:
     """Read one log or several with `hersey.read`, using their mapping, and apply its corrections.
@@ -248,12 +289,19 @@ def read_with_mapping(
     mapping
         A mapping or its file, for all logs. Default: the one that `find_mapping` finds in their folder.
     channels, units
-        By role; they override the mapping. A role whose channel or unit is given here is not corrected for a
-        motor constant.
+        By role; they override the mapping. A role whose channel or unit is given here is not corrected for
+        the motor constant of the mapping.
     signs
         -1 by role, ``torque`` or ``speed``, flips the sign in addition to the mapping.
-    isothermal, drop_missing, every, radius, load, progress
+    isothermal, drop_missing, every, radius, load, name_pattern, name_decimal, schedule, position_window,
+    progress
         As for `hersey.read`; they override the mapping.
+    torque_constant
+        Torque of the motor per ampere, N m/A, if the torque column is its current.
+    gear_ratio, speed_gear_ratio
+        Turns of the shaft where torque, or speed, is measured per turn of the roll or joint.
+    inertia
+        Moment of inertia at the roll or joint, kg m^2; its torque is subtracted.
 
     Raises
     ------
@@ -268,19 +316,29 @@ def read_with_mapping(
     files = [paths] if isinstance(paths, str | Path) else list(paths)
     needed = _without_temperature if isothermal else dict
     chosen = mapping if isinstance(mapping, LogMapping) else mapping_of(files, mapping)
-    chosen = _outranked(chosen, channels or {}, units or {}).turned(signs or {})
+    motor = Motor(torque_constant, gear_ratio, speed_gear_ratio, inertia)
+    chosen, channels, units = motor.added(chosen, channels or {}, units or {})
+    chosen = chosen.turned(signs or {})
     stated = Stated(every, as_stated(radius), as_stated(load))
-    chosen = without_what_is_said(chosen, channels or {}, stated)
+    said = {
+        "name_pattern": name_pattern,
+        "name_decimal": name_decimal,
+        "schedule": schedule,
+        "position_window": position_window,
+    }
+    sources = chosen.sources | {name: value for name, value in said.items() if value is not None}
+    chosen = without_what_is_said(chosen, channels, stated)
     try:
         with reading_by(chosen.layout):
             log = read(
                 files,
-                channels={**needed(chosen.channels), **(channels or {})},
-                units={**needed(chosen.units), **(units or {})},
+                channels={**needed(chosen.channels), **channels},
+                units={**needed(chosen.units), **units},
                 isothermal=isothermal,
                 drop_missing=drop_missing,
                 **{name: value for name, value in vars(chosen.stated).items() if value is not None}
                 | {name: value for name, value in vars(stated).items() if value is not None},
+                **sources,
                 progress=progress,
             )
         done = chosen.correct(log)
@@ -316,6 +374,41 @@ def mapping_of(files: Sequence[str | Path], stated: str | Path | None = None) ->
 
 def _without_temperature(stated: Mapping[str, str]) -> dict[str, str]:
     return {role: value for role, value in stated.items() if role != "temperature"}
+
+
+@plain_dataclass(frozen=True)
+class Motor:
+    """What a person says of the motor and its gears, SI, beside a mapping; None where nothing is said."""
+
+    torque_constant: float | None = None
+    gear_ratio: float | None = None
+    speed_gear_ratio: float | None = None
+    inertia: float | None = None
+
+    def added(
+        self, mapping: LogMapping, channels: Mapping[str, str], units: Mapping[str, str]
+    ) -> tuple[LogMapping, dict[str, str], dict[str, str]]:
+        """Return a mapping with it, and the channels and units that are still to be read beside it.
+
+        Raises
+        ------
+        ParameterError, UnitError
+            If a value is not greater than 0, or the unit of the current is none.
+        """
+        for name, value in vars(self).items():
+            if value is not None and not 0 < value < np.inf:
+                raise ParameterError(f"{Setting(name).to()} is {value:g} (SI): it must be greater than 0")
+        mapping = _outranked(mapping, channels, units)
+        torque, speed, left = mapping.torque, mapping.speed, (dict(channels), dict(units))
+        if self.torque_constant is not None:
+            name, unit = left[0].pop("torque", torque.channel), left[1].pop("torque", torque.unit)
+            _ampere(unit)
+            torque = replace(torque, channel=name, unit=unit, motor_constant=self.torque_constant)
+        torque = replace(
+            torque, gear_ratio=self.gear_ratio or torque.gear_ratio, inertia=self.inertia or torque.inertia
+        )
+        speed = replace(speed, gear_ratio=self.speed_gear_ratio or speed.gear_ratio)
+        return replace(mapping, torque=torque, speed=speed), *left
 
 
 def _outranked(mapping: LogMapping, channels: Mapping[str, str], units: Mapping[str, str]) -> LogMapping:

@@ -43,7 +43,7 @@ def propose_mapping(
     if proposal is None:
         return "\n".join(_roles(path, channels or {}, units or {}))
     with reading_by(proposal.layout):
-        lines = _roles(path, proposal.channels | (channels or {}), units or {})
+        lines = _roles(path, {**proposal.channels, **(channels or {})}, units or {})
     return "\n".join([lines[0], proposal.layout.toml(), "", *lines[1:]])
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,8 @@ import numpy as np
 from hersey.errors import ParameterError
 from hersey.log.assembly import Assembly
 from hersey.log.channels import ChannelChoice, Stated
+from hersey.log.derived.sources import Sources
+from hersey.log.derived.text import text_recording
 from hersey.log.exchanged import refuse_exchanged
 from hersey.log.formats.frame import frame_recording, is_frame
 from hersey.log.given_twice import refuse_given_twice, refuse_rows_shared
@@ -26,7 +29,7 @@ from hersey.log.wanted import Wanted
 from hersey.units import takes_si
 
 
-@takes_si(every="time", radius="length", load="force", channels=CHANNELS, units=UNITS)
+@takes_si(every="time", radius="length", load="force", position_window="time", channels=CHANNELS, units=UNITS)
 def read(
     paths: Any,
     *,
@@ -37,6 +40,10 @@ def read(
     every: float | None = None,
     radius: float | Sequence[float] | None = None,
     load: float | Sequence[float] | None = None,
+    name_pattern: str | None = None,
+    name_decimal: str | None = None,
+    schedule: Any = None,
+    position_window: float | None = None,
     progress: Progress | None = None,
 ) -> TorqueLog:
     """Read one log, or several of the same machine, each as a separate run.
@@ -47,7 +54,8 @@ def read(
         File or files (text, Excel, LVM, TDMS, MDF, MATLAB, HDF5, NumPy, Parquet), or polars or pandas frames.
     channels
         Column name by role (``time``, ``torque``, ``speed``, ``temperature``; ``load``, ``radius``, and
-        ``run``, the run number), if names and units in the file are not sufficient. ``name#2`` is the second
+        ``run``, the run number; ``position``, an angle or a distance instead of a speed; ``direction`` of a
+        speed without a sign), if names and units in the file are not sufficient. ``name#2`` is the second
         column with that name, ``group/name`` a column in a part of the file, ``#2`` the second column of a
         table without header. Torque may be a friction force or coefficient; speed may be a sliding speed.
     units
@@ -65,6 +73,17 @@ def read(
         it; one value, or one per run.
     load
         Normal load, N, if there is no column for it; one value, or one per run.
+    name_pattern
+        Pattern of the file names, e.g. ``"{speed} rpm {load} N.txt"``, if they state speed, load, radius or
+        temperature. ``*`` stands for any text.
+    name_decimal
+        Decimal mark of the numbers in the names, e.g. ``"-"`` for ``0-1rps.txt``.
+    schedule
+        Speed, temperature or load by time, if the log has no channel of it: a file (``from [s]``,
+        ``to [s]``, ``speed [rpm]``), or a list of ``{"from": "0 s", "to": "60 s", "speed": "10 rpm"}``.
+        Times are counted from the first row.
+    position_window
+        Time over which speed is the slope of a ``position`` column, s (0.2 s).
     progress
         Called with bytes done and total bytes.
 
@@ -97,10 +116,14 @@ def read(
             )
     choices = {r: ChannelChoice((channels or {}).get(r, ""), (units or {}).get(r, "")) for r in known}
     stated = _stated(every=every, radius=radius, load=load)
+    sources = Sources.of(name_pattern, name_decimal, schedule, position_window)
+    sources.refuse_twice(choices, stated)
+    stated = sources.stated(stated, files)
     wanted = Wanted(choices, stated, isothermal, drop_missing)
     done: list[tuple[Run, LogFile]] = []
     for number, file in enumerate(files, start=1):
-        read_here = _runs(file, wanted, "frame" if len(files) == 1 else f"frame {number}", progress)
+        of_file = replace(wanted, derived=sources.of_file(file))
+        read_here = _runs(file, of_file, "frame" if len(files) == 1 else f"frame {number}", progress)
         if any(read_here[0][1].sha256 == other.sha256 for _, other in done):
             name = read_here[0][1].name
             raise ParameterError(f"{name} has the same content as an earlier file. Give each file once")
@@ -121,6 +144,9 @@ def _runs(file: Any, wanted: Wanted, frame: str, progress: Progress | None) -> l
         with opened(path, kind) as recording:
             assembly = Assembly(recording, wanted)
         return assembly.runs()
+    if wanted.needs_parts:
+        with text_recording(path) as recording:
+            return Assembly(recording, wanted).runs()
     return read_delimited(path, wanted, progress)
 
 

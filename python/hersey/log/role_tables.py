@@ -9,8 +9,9 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, ValidationInfo
 from pydantic.dataclasses import dataclass
 
-from hersey.errors import ParameterError
+from hersey.errors import ParameterError, UnitError
 from hersey.files.toml import Quantity, Table, Text
+from hersey.log.derived.set_points import SetPoints
 from hersey.log.quantities import Amount, amount
 from hersey.log.sensor_tables import SpeedErrors, TemperatureErrors, TorqueErrors
 
@@ -76,6 +77,46 @@ class RadiusMapping(RoleMapping):
     value: Annotated[float, Quantity("length", 1e-6, 1e3, "25 mm")] | None = None
     #: Radius of each run.
     values: tuple[Annotated[float, Quantity("length", 1e-6, 1e3, "25 mm")], ...] = ()
+
+
+@dataclass(frozen=True)
+class PositionMapping(RoleMapping):
+    """What it says of a position in the place of a speed."""
+
+    #: Time over which speed is the slope of the position.
+    window: Annotated[float, Quantity("time", 1e-6, 1e4, "0.2 s")] | None = None
+
+
+@dataclass(frozen=True)
+class NamesMapping(Table):
+    """What it says of the names of the files."""
+
+    #: Pattern of the names with speed, load, radius or temperature, e.g. "{speed} rpm {load} N.txt".
+    pattern: Text = ""
+    #: Decimal mark of their numbers, e.g. "-".
+    decimal: Text = "."
+
+
+class Steps(Quantity):
+    """The steps of a schedule, each a table with from, to and e.g. speed, with units."""
+
+    def checked(self, given: Any, _: ValidationInfo[Any]) -> Any:
+        """Return the schedule."""
+        if given is None or isinstance(given, SetPoints):
+            return given
+        if not isinstance(given, list) or not all(isinstance(step, dict) for step in given):
+            raise ParameterError('is no list of steps. Write [[schedule]], then from = "0 s" and so on')
+        for step in given:
+            if bare := [key for key, value in step.items() if not isinstance(value, str)]:
+                example = f"{step[bare[0]]} {_STEP_UNITS.get(bare[0], 's')}"
+                raise UnitError(
+                    f"has a step whose {bare[0]} is {step[bare[0]]!r}, without a unit. Write it in quotes "
+                    f'with its unit, e.g. "{example}"'
+                )
+        return SetPoints.of(given)
+
+
+_STEP_UNITS = {"speed": "rpm", "temperature": "degC", "load": "N"}
 
 
 @dataclass(frozen=True)

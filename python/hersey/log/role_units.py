@@ -51,16 +51,17 @@ def with_unit(
         If there is no unit, an unknown one, or one that the role cannot have.
     """
     unit = given or column.unit or known_unit(role, column)
-    if role == "run":
+    if role in ("run", "direction"):
         return column, Conversion(unit, 1.0, 0.0)
     if not unit:
         example = example_unit(role, column)
+        counts = f", or for counts {Setting(role, 'unit').to('rev/4096')}" if role == "position" else ""
         raise UnitError(
             f"{file}: column '{column.path}' has no unit",
             columns=(column.index,),
             remedy=(
                 f"write '{column.name} [{example}]' in the header, add a row of units, or use "
-                f"{Setting(role, 'unit').to(example)}{of_an_input(role, column.name)}"
+                f"{Setting(role, 'unit').to(example)}{counts}{of_an_input(role, column.name)}"
             ),
             setting=Setting(role, "unit"),
         )
@@ -123,5 +124,8 @@ def _right_unit(role: str, unit: str) -> str:
         return f"{turns}. {_INVERTER} {setting.to('rev/s/2')}" if unit.strip() == "Hz" else turns
     if role == "speed" and (counted := of_encoder(unit)):
         return f"use {setting.to(counted)}, with your value instead of {COUNTS}"
+    if role == "position":
+        counts = setting.to("rev/4096")
+        return f"use {setting.to('deg')}, or for counts {counts} with the counts of one turn of your encoder"
     kind = ROLE_KINDS[role][0]
     return f"use {setting.to(nearest_unit(kind, unit) or KINDS[kind][1])}, or correct the header"

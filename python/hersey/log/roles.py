@@ -14,9 +14,9 @@ from hersey.units import Conversion, conversion, of_encoder
 
 #: Roles of a log's columns, in the order in which they are asked for.
 ROLES = ("time", "torque", "speed", "temperature")
-#: Roles of columns that a log may have beside them: normal load, radius at which a friction force acts, and
-#: the number of a run.
-OTHER_ROLES = ("load", "radius", "run")
+#: Roles of columns that a log may have beside them: normal load, radius at which a friction force acts, the
+#: number of a run, a position in the place of a speed, and the direction of a speed without a sign.
+OTHER_ROLES = ("load", "radius", "run", "position", "direction")
 #: Dictionaries by role that functions take, of a log and of a table of means.
 CHANNELS = Keys((*ROLES, *OTHER_ROLES), "{'torque': 'Torque 1'}")
 UNITS = Keys(CHANNELS, "{'torque': 'Nm'}", "_unit")
@@ -32,6 +32,7 @@ ROLE_KINDS: dict[str, tuple[str, ...]] = {
     "temperature": ("temperature",),
     "load": ("force",),
     "radius": ("length",),
+    "position": ("angle", "length"),
 }
 _NAMES = {
     "time": r"t|time.*|.*\btime|.*datetime|.*zeit|timestamp|elapsed.*|.*seconds|epoch.*|unix.*",
@@ -40,6 +41,7 @@ _NAMES = {
     "temperature": r".*temp.*|.*thermistor.*|.*heater.*|.*thermocouple.*|.*film t.*",
     "load": r".*\bload(?! ?cell).*|.*normal ?(force|kraft).*|.*normalkraft.*|f_?n|.*axial ?force",
     "radius": r".*radius.*",
+    "position": r".*(angle|position|encoder|winkel|lage).*|phi|theta|pos",
 }
 #: Names of what stands for a torque, or a speed of rotation, where the radius is known.
 FRICTION_NAMES = {

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     import polars as pl
 
     from hersey.damping.dwells import SteadyPoints
+    from hersey.damping.moving.result import MovingFit
 
 #: SI unit of each channel that can be corrected.
 CHANNEL_UNITS = {"torque": "N m", "speed": "rad/s", "temperature": "K"}
@@ -198,6 +199,13 @@ class TorqueLog(Result):
         from hersey.damping.dwells import steady_points
 
         return steady_points(self, min_dwell=min_dwell, tare=tare, rotation=rotation)
+
+    @takes_si(inertia="moment of inertia")
+    def moving(self, *, inertia: float | None = None) -> MovingFit:
+        """Fit friction, inertia and offset to every sample: see `hersey.fit_moving`."""
+        from hersey.damping.moving.fit import fit_moving
+
+        return fit_moving(self, inertia=inertia)
 
 
 def title_of(files: tuple[LogFile, ...]) -> str:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from hersey.errors import ISOTHERMAL, ChannelError, ParameterError
 from hersey.log.channels import ChannelChoice, Stated
+from hersey.log.derived.given import Derived
 from hersey.log.roles import EVERY, ROLES
 
 
@@ -25,6 +26,7 @@ class Wanted:
     stated: Stated
     isothermal: bool = False
     drop_missing: bool = False
+    derived: Derived = Derived()  # noqa: RUF009 # frozen
 
     def __post_init__(self) -> None:
         """Refuse what contradicts itself."""
@@ -35,6 +37,12 @@ class Wanted:
         if self.isothermal and self.choices["temperature"] != ChannelChoice():
             said = f"{ISOTHERMAL.to()} excludes temperature"
             raise ChannelError(said, remedy="do not name a temperature column")
+
+    @property
+    def needs_parts(self) -> bool:
+        """Whether a channel is to be made of something else than a column of its own."""
+        named = any(self.choices[role].name for role in ("position", "direction") if role in self.choices)
+        return named or bool(self.derived.channels)
 
     @property
     def roles(self) -> tuple[str, ...]:

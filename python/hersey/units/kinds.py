@@ -14,6 +14,8 @@ _QUANTITIES: dict[str, tuple[str, str, str]] = {
     "time": ("s", "s", "s ms us min h"),
     "torque": ("N*m", "N*m", "N*m mN*m N*mm N*cm kN*m Nm mNm Nmm Ncm ozf*in lbf*in lbf*ft kgf*cm gf*cm"),
     "speed": ("rad/s", "rpm", "rpm rad/s rev/s rev/min deg/s"),
+    "angle": ("rad", "deg", "rad deg rev"),
+    "motor constant": ("N*m/A", "N*m/A", "N*m/A mN*m/A"),
     "temperature": ("K", "degC", "degC degF K"),
     "stiffness": ("N/m", "N/mm", "N/m N/mm kN/m N/um lbf/in ozf/in"),
     "mass": ("kg", "kg", "kg g mg lb oz slug"),

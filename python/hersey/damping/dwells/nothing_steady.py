@@ -12,7 +12,7 @@ from hersey.damping.dwells.groups import MIN_DWELL, MIN_SAMPLES, distinct_speeds
 from hersey.damping.dwells.judging import Asked
 from hersey.damping.dwells.points import Rejection
 from hersey.damping.dwells.reasons import CAUSES, Reason, opposite_signs, remedies, sizes
-from hersey.errors import ROTATION, InsufficientDataError, Setting, followed_by, turned
+from hersey.errors import MOVING, ROTATION, InsufficientDataError, Setting, followed_by, turned, way_in
 from hersey.log.roles import EVERY
 from hersey.log.torque_log import NO_CLOCK, Run, TorqueLog
 
@@ -26,6 +26,8 @@ _BLOCKS, _TURN = 60, 0.1
 _HELD = 0.9
 #: A log shorter than so many dwells has a clock in another unit, or rows less often: so many times, say.
 _TOO_BRIEF, _RARER = 1.0, 50
+#: Rows from which a log without dwells may be fitted as it moves.
+_TO_FIT = 300
 #: A log of so many dwells of the usual duration is long enough: the duration asked for is the mistake.
 _ENOUGH = 20.0
 
@@ -61,7 +63,8 @@ def nothing_steady(
     said = f"{name}: no dwell found ({listed})"
     for way in (*(_remedy(alike) for alike in reasons.values()), way_out):
         said = followed_by(said, way)
-    return InsufficientDataError(said)
+    moves = not too_brief(log, asked.min_dwell) and _runs_up_and_down(log, rejected)
+    return InsufficientDataError(said, setting=MOVING if moves else None)
 
 
 def _in_short(alike: list[Reason]) -> str:
@@ -116,7 +119,11 @@ def _way_out(
             return followed_by(steps, other_clock())
         count = sum(map(_ramps, log.runs))
         ramps = f"{count} ramp{'s' if count > 1 else ''} {span}"
-        return followed_by(f"The speed never holds: {ramps}. {held}", other_clock())
+        moving = ""
+        if log.rows >= _TO_FIT:
+            moving = f"To fit friction to every sample while the speed changes, use {MOVING.to()}"
+        said = followed_by(f"The speed never holds: {ramps}. {held}", other_clock())
+        return said if way_in() == "page" else followed_by(said, moving)
     enough = sorted({math.floor(10 * s - 0.5) / 10 for s, rows in short if rows >= MIN_SAMPLES and s > 0.2})
     for shorter in enough:
         if (count := dwells_with(shorter)) >= WORTH_IT:

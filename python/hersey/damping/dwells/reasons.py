@@ -11,11 +11,12 @@ from hersey.errors import SIGN, InsufficientDataError, capital, turned
 from hersey.schema.domain import TORQUE, Domain
 
 Kind = Literal[
-    "changing", "standing", "other rotation", "too short", "zero torque", "speed not held", "stick-slip",
-    "swing", "speed drift", "temperature drift", "torque drift", "opposite signs", "spikes", "ripple",
+    "changing", "standing", "too slow", "other rotation", "too short", "zero torque", "speed not held",
+    "stick-slip", "swing", "speed drift", "temperature drift", "torque drift", "opposite signs", "spikes",
+    "ripple",
 ]  # fmt: skip
 #: Stretches that nobody meant as a dwell.
-NO_DWELL: tuple[Kind, ...] = ("changing", "standing", "other rotation")
+NO_DWELL: tuple[Kind, ...] = ("changing", "standing", "too slow", "other rotation")
 #: A ripple comes a whole number of times in a turn within this share of one; frequencies closer than this
 #: share are the same.
 WHOLE_TURN = 0.03
@@ -31,6 +32,7 @@ _OWN = "look for an oscillation of the drive, a controller or the mains"
 _LABELS: dict[Kind, str] = {
     "changing": "speed changing",
     "standing": "drive at standstill",
+    "too slow": "drive near standstill, or in no window",
     "other rotation": "other direction of rotation",
     "too short": "dwell too short",
     "zero torque": "{quantity} is zero",

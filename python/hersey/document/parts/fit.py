@@ -9,6 +9,7 @@ from pydantic import Field
 from hersey.damping.branches import Transition
 from hersey.damping.candidates.shared_errors import SharedScatter
 from hersey.damping.curves.mixture import LawWeight
+from hersey.damping.moving.result import MovingFit
 from hersey.damping.no_load_torque import NoLoadTorque
 from hersey.document.parts.log import InputFile, Point
 from hersey.schema.domain import TORQUE, Domain
@@ -103,3 +104,4 @@ class FitDocument(Part):
     points: list[Point]
     fit: FitPart
     regime: Regime
+    moving: MovingFit | None = Field(default=None, description="of a log that moves all the time")

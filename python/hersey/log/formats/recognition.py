@@ -37,7 +37,6 @@ FILES = {
     "parquet": "a Parquet file",
     "lvm": "a LabVIEW measurement file",
     "excel": "an Excel workbook",
-    "sheets": "an Excel workbook",
     "numpy_arrays": "a NumPy file",
 }
 #: Bytes of the start that are looked at.
@@ -135,5 +134,6 @@ def _of_archive(path: Path, start: bytes, kind: str | None) -> str:
 
 def called(kind: str) -> str:
     """Return a file of a format in words, with the suffixes that it usually has."""
-    suffixes = [suffix for suffix, reader in READERS.items() if FILES[reader] == FILES[kind]]
+    kind = "excel" if kind == "sheets" else kind  # another reader of the same files
+    suffixes = [suffix for suffix, reader in READERS.items() if reader == kind]
     return f"{FILES[kind]} ({', '.join(suffixes)})"

@@ -167,9 +167,8 @@ def _conditions(grid: Grid, layout: LogLayout, above: dict[int, str], place: str
             f'{place}: no column matches wide = "{layout.wide}"', remedy="mend wide of [layout]"
         )
     _refuse_conditions(len(runs), place)
-    names = pattern(layout.wide or "*").names
-    for values, own in runs.items():
-        yield _part(grid, shared | own, own, dict(zip(names, values, strict=True)), place)
+    for values, of_run in runs.items():
+        yield _part(grid, shared | of_run, of_run, dict(zip(of.names, values, strict=True)), place)
 
 
 def _side_by_side(grid: Grid, place: str) -> Iterator[Grid]:

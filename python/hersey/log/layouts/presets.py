@@ -38,11 +38,12 @@ PRESETS: dict[str, Preset] = {
         "Beckhoff TwinCAT Scope, text export with a clock for each channel",
         ("SampleTime[ms]", "Starttime of export"),
     ),
-}
-
-
-# from what is known of the format
-PRESETS |= {
+    "trios": Preset(
+        LogLayout(section="[step]*"),
+        "TA Instruments TRIOS, text export",
+        ("[step]", "Instrument name"),
+    ),
+    # after the usual form of the export
     "yokogawa": Preset(
         LogLayout(
             header="TraceName,*",

@@ -13,6 +13,7 @@ from hersey.errors import (
     HerseyError,
     MissingFileError,
     ParameterError,
+    Setting,
     TimeOrderError,
     UnitError,
     way_in,
@@ -32,12 +33,15 @@ from hersey.log.text.column import Column, split_unit
 from hersey.log.text.header import is_units_row
 from hersey.log.text.numbers import looks_numeric
 from hersey.log.text.split_seconds import is_milliseconds
+from hersey.log.torque_log import LogFile, Run
 from hersey.log.wanted import Wanted
 
 #: Lines of a file among which the words of a preset are looked for; names of channels with a number behind.
 _FIRST = 60
 _NUMBERED = re.compile(r"(.*?[A-Za-z°\u0370-\u9fff])([ _.:#-]{0,3})([0-9]{1,4})")
 _TITLED = re.compile(r"([^0-9{}*]{0,40}?)([0-9]{1,6}(?:[.,][0-9]{1,3})?)([^0-9{}*]{0,20})")
+#: What writes the proposal.
+_SAVE_MAPPING = Setting("save_mapping", "switch")
 #: Layouts that are tried at the most.
 _MOST = 60
 
@@ -75,7 +79,9 @@ def _advice(path: Path) -> str:
             "its layout can be described: write the text of hersey.log.proposal.propose_mapping(path) to "
             "hersey.toml beside it, and use hersey.read_with_mapping"
         )
-    typed = f"hersey inspect {shlex.quote(str(path))} --save-mapping"
+    if way_in() == "page":
+        return "type hersey inspect in a terminal to describe its layout in a hersey.toml, and add that"
+    typed = f"hersey inspect {shlex.quote(str(path))} {_SAVE_MAPPING.to()}"
     return f"to describe its layout in hersey.toml, run '{typed}' and try again"
 
 
@@ -145,10 +151,11 @@ def _tried(
                 continue
             if _varies(runs):
                 return Proposal(layout, more, isothermal)
-    return Proposal(layout, {}, lacks_units=True) if lacks_units else None
+    shows_itself = replace(layout, header_line=0, units_line=0, first_row=0) == LogLayout()
+    return Proposal(layout, {}, lacks_units=True) if lacks_units and not shows_itself else None
 
 
-def _varies(runs: list) -> bool:
+def _varies(runs: list[tuple[Run, LogFile]]) -> bool:
     """Whether there are at least two speeds."""
     speeds = [float(run.speed.mean()) for run, _ in runs]
     return max(speeds) > min(speeds) or any(run.speed.min() < run.speed.max() for run, _ in runs)

@@ -29,6 +29,8 @@ _NO_SET_POINT = re.compile(
     r"(?i)(?<!/)\b(max|min(?!-1|\(-1|⁻|\^)|mean|avg|average|limit|alarm|ambient|room|raum|umgebung|grenz|mittel|start|end|initial"
     r"|final|ramp|accel|fan|range|scale|rated|nenn)"
 )
+#: A number behind a unit that is called instead of the quantity.
+_CALLED = re.compile(rf"(?i)(?<![\w/])(rpm|1/min|U/min|rad/s)\s?[:=]\s?({_NUMBER})(?![\w.])")
 #: Roles that a line above a table may state.
 _STATED = ("speed", "temperature")
 
@@ -110,7 +112,7 @@ def stated_in(text: str) -> str:
             alone = plain[match.end() : match.end() + 1] in ("", " ")
             unit = "" if alone else f":{match[3]}"
             placeholders[match.span()] = f"{{{role}{unit}}}{match[2]}{match[3]}"
-    for match in _BEFORE.finditer(plain):
+    for match in (*_BEFORE.finditer(plain), *_CALLED.finditer(plain)):
         if (role := _role_of(match[1])) and role not in roles:
             roles.add(role)
             placeholders[match.span(2)] = f"{{{role}:{match[1].strip()}}}"

@@ -85,7 +85,7 @@ class Stack:
             step = role_conversion("time", value.unit)[1].scale * value.number
             if not 0 < step < 1e6:
                 raise UnreadableLogError(f"{self.file}: the time between rows is {step:g} s")
-            self._put(run, CLOCK, "s", np.arange(rows) * step, self.file)
+            self._put(run, CLOCK, "s", np.arange(rows, dtype=np.float64) * step, self.file)
         else:
             self._put(run, SET.format(name), value.unit, np.full(rows, value.number), self.file)
 
@@ -165,9 +165,9 @@ class Stack:
 
 def _loading(parts: Sequence[FloatArray | None], rows: Sequence[int]) -> Callable[[], FloatArray]:
     """What gives the numbers of a channel: none in a run that does not have it."""
+    known = [*parts, *[None] * (len(rows) - len(parts))]
     filled = [
-        parts[run] if run < len(parts) and parts[run] is not None else np.full(count, np.nan)
-        for run, count in enumerate(rows)
+        np.full(count, np.nan) if part is None else part for part, count in zip(known, rows, strict=True)
     ]
     return lambda: np.concatenate(filled)
 

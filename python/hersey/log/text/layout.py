@@ -95,8 +95,8 @@ def _layout(start: bytes, name: str, separators: str, long: bool, _way_in: str) 
     ]
     refuse_transposed(name, [line for _, line in numbered], separators)
     table = _table(numbered, separators, name)
-    if not table.first and (header := _in_comment(lines, numbered[0][0], comment, table)):
-        numbered, table = [header, *numbered], replace(table, first=1)
+    if not table.first and (commented := _in_comment(lines, numbered[0][0], comment, table)):
+        numbered, table = [commented, *numbered], replace(table, first=1)
     rows = [split(line, table.separator) for _, line in numbered[table.first :]]
     rows = [row for row in rows if len(row) == table.width]
     columns, headless = columns_of(table, numbered, name)

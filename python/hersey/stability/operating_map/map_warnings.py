@@ -79,12 +79,10 @@ def _of_the_stall(map_: OperatingMap) -> Iterator[Warning]:
     least, most = float(map_.holding.min()), float(map_.holding.max())
     yield Warning(
         "torque limit",
-        "the drive gives at most {limit:.3g} N m ({limited_by}); a {part} at rest needs "
-        + ("{least:.3g} N m" if most <= _SAME_TORQUE * least else "{least:.3g} to {most:.3g} N m")
-        + " to start",
+        "the drive gives at most {limit:.3g} N m ({limited_by}); starting from rest takes "
+        + ("{least:.3g} N m" if most <= _SAME_TORQUE * least else "{least:.3g} to {most:.3g} N m"),
         limit=map_.torque_limit,
         limited_by=map_.limited_by,
-        part=map_.train.part,
         least=least,
         most=most,
     )
@@ -104,11 +102,7 @@ def _unstarted(kind: str, map_: OperatingMap, columns: BoolArray, *, surely: boo
     everywhere = columns.all()
     return Warning(
         kind,
-        (
-            "the drive cannot start the {part} from rest"
-            if surely
-            else "the drive may be unable to start the {part} from rest"
-        )
+        ("the drive cannot start from rest" if surely else "the drive may be unable to start from rest")
         + (
             " at any temperature"
             if everywhere and surely
@@ -119,7 +113,6 @@ def _unstarted(kind: str, map_: OperatingMap, columns: BoolArray, *, surely: boo
             else " from {first:.0f degC} to {last:.0f degC}"
         ),
         severity="watch",
-        part=map_.train.part,
         first=first,
         last=last,
     )

@@ -1,0 +1,114 @@
+"""The fit of a log that moves all the time, as ``hersey fit`` prints it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from hersey.cli.options import Reading
+from hersey.cli.terminal import note
+from hersey.errors import MOVING, HerseyError, InsufficientDataError, ParameterError
+from hersey.log import TorqueLog
+from hersey.units import rpm
+
+if TYPE_CHECKING:
+    from hersey.damping.dwells import SteadyPoints
+    from hersey.damping.estimate import Estimate
+    from hersey.damping.moving.result import MovingFit
+    from hersey.damping.surface import DampingSurface
+    from hersey.log.means import MeansTable
+    from hersey.machine.machine import Machine
+
+#: Unit in which small numbers are shown, by that of large ones, and how many of it make one.
+_SMALL = {
+    "N m": ("N·m", "mN·m"),
+    "N m s/rad": ("N·m·s/rad", "mN·m·s/rad"),
+    "rad/s": ("rad/s", "mrad/s"),
+    "kg m^2": ("kg·m²", "g·m²"),
+    "s": ("s", "ms"),
+    "1/K": ("1/K", "1/kK"),
+}
+#: Share of the rows in dwells below which a log moves all the time.
+_HELD = 0.2
+#: A number below this is shown in the smaller unit.
+_BELOW = 0.1
+
+
+@dataclass(frozen=True)
+class Fitted:
+    """What is fitted to a log: the surface of its points, its friction as it moves, or both."""
+
+    points: SteadyPoints | None
+    surface: DampingSurface | None
+    moving: MovingFit | None
+
+
+def fitted(
+    logs: list[Path], log: TorqueLog | MeansTable, reading: Reading, machine: Machine | None
+) -> Fitted:
+    """Fit the dwells of a log, or every sample if that is asked for or the log has no dwells but moves."""
+    from hersey.damping.fit import fit
+
+    if reading.inertia and not reading.moving:
+        raise ParameterError("--inertia is for --moving: add it, or omit --inertia")
+    if reading.moving and isinstance(log, TorqueLog):
+        return _as_it_moves(logs, log, reading, machine, reading.recipe(logs).moving_fit(log))
+    points = None
+    try:
+        points = reading.points(logs, log, machine)
+        return Fitted(points, fit(points, temperature_scale=reading.temperature_scale), None)
+    except InsufficientDataError as error:
+        if not isinstance(log, TorqueLog) or not _moves(log, points, error) or reading.tare != "none":
+            raise
+        try:
+            moving = reading.recipe(logs).moving_fit(log)
+        except HerseyError:
+            raise error from None
+    note("The speed hardly ever holds, so friction is fitted to every sample, as with --moving.")
+    return _as_it_moves(logs, log, reading, machine, moving)
+
+
+def _moves(log: TorqueLog, points: SteadyPoints | None, error: InsufficientDataError) -> bool:
+    """Whether a log has no dwell because its speed changes all the time, or a few by chance."""
+    if points is None:
+        return error.setting == MOVING
+    return float(points.column("rows").sum()) < _HELD * log.rows
+
+
+def _as_it_moves(
+    logs: list[Path], log: TorqueLog, reading: Reading, machine: Machine | None, moving: MovingFit
+) -> Fitted:
+    """The fit with the surface of its windows; a note says why there is none."""
+    from hersey.damping.fit import fit
+
+    points = None
+    try:
+        points = reading.points(logs, log, machine, moving)
+        return Fitted(points, fit(points, temperature_scale=reading.temperature_scale), moving)
+    except HerseyError as error:
+        note(f"No surface B = a w^c can be fitted to the windows of this log: {error}")
+        return Fitted(points, None, moving)
+
+
+def fitted_lines(fit: MovingFit) -> list[str]:
+    """Return law and numbers with their intervals, and what was not used."""
+    from hersey.cli.figures import labelled, three
+
+    rows = [(each.name, _shown(each.estimate, each.unit)) for each in fit.parameters]
+    if fit.inertia_given is not None:
+        rows.append(("J", f"{three(fit.inertia_given)} kg·m² (given)"))
+    speed = fit.middle_speed
+    rows.append(("friction", f"{_shown(fit.friction_at(speed), 'N m')} at {three(rpm(speed))} rpm"))
+    head = "torque = J dw/dt + offset + friction(w), w in rad/s (value, 95 % interval)"
+    return [fit.law, "", head, *labelled(rows), fit.cost()]
+
+
+def _shown(known: Estimate, unit: str) -> str:
+    from hersey.damping.estimate import rounded
+
+    large, small = _SMALL[unit]
+    is_small = max(abs(known.value), abs(known.low), abs(known.high)) < _BELOW
+    factor = 1e3 if is_small else 1.0
+    shown = rounded(factor * known.value, factor * known.low, factor * known.high)
+    return f"{shown} {small if is_small else large}"

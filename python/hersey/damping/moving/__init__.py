@@ -1,0 +1,15 @@
+"""Logs whose torque and speed vary all the time: friction, inertia and offset from every sample.
+
+===============  ===================================================================
+stretches        parts of a log with an even clock
+filtering        one low-pass for torque, speed and acceleration alike
+speed_noise      noise of the speed, and how wide the low-pass must be
+model            the torque of a law of friction with inertia, offset and delay
+correlated       noise whose neighbours are correlated
+fitting          least squares with such noise
+fit              `fit_moving`: the law is chosen, and what is no friction refused
+result           `MovingFit`
+moving_warnings  what is to be known of it
+windows          windows of speed and temperature as steady points
+===============  ===================================================================
+"""

@@ -1,0 +1,249 @@
+"""`fit_moving`: the friction of a log whose torque and speed vary all the time."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from hersey.damping.distributions import student_quantile
+from hersey.damping.dwells.reasons import opposite_signs
+from hersey.damping.estimate import CONFIDENCE, Estimate, estimate
+from hersey.damping.friction_curve.law import COULOMB, STATIC, STRIBECK_SPEED, FrictionLaw
+from hersey.damping.moving.correlated import Autoregression
+from hersey.damping.moving.filtering import Filtered, LowPass
+from hersey.damping.moving.fitting import LEAST_SEEN, Fitting, MovingLawFit
+from hersey.damping.moving.model import INERTIA, Equations, MovingLaw
+from hersey.damping.moving.moving_warnings import moving_warnings
+from hersey.damping.moving.result import LawTried, MovingFit, MovingParameter
+from hersey.damping.moving.speed_noise import SpeedNoise, low_pass_for, speed_noise
+from hersey.damping.moving.stretches import Stretch, stretches_of
+from hersey.errors import MOVING, InsufficientDataError, ParameterError
+from hersey.log.torque_log import TorqueLog
+from hersey.units import rpm, takes_si
+
+#: A drive slower than so many standard deviations of the noise of its speed, or than this share of its
+#: greatest speed, may stand or turn either way: such rows are not used.
+_CLEAR, _SLOW = 5.0, 0.01
+#: AICc by which a law with more numbers must be better than one with fewer.
+EVIDENCE = 10.0
+#: Greatest error of the logarithm of a Stribeck speed that counts as known.
+_KNOWN = 0.5
+#: Least equations, and least share of the speed (standard deviation over the greatest) that is a motion.
+LEAST_EQUATIONS, _MOVES = 30, 0.05
+#: Kelvin that temperature must span so that friction may depend on it.
+_WARMER = 3.0
+#: Rounds in which the noise is judged by what a law leaves.
+_ROUNDS = 3
+#: Share of the variance of the noise of the first round, which is not known yet.
+_FIRST = 1e-4
+#: Least share of the mean square of the torque, without inertia, that friction and offset must explain.
+LEAST_EXPLAINED = 0.8
+
+
+@takes_si(inertia="moment of inertia")
+def fit_moving(log: TorqueLog, *, inertia: float | None = None) -> MovingFit:
+    """Fit friction, inertia and offset to every sample of a log that moves all the time.
+
+    Parameters
+    ----------
+    log
+        With torque and speed; temperature may be beside them.
+    inertia
+        Moment of inertia of all that the torque accelerates, kg m^2, if it is known; otherwise it is fitted.
+
+    Raises
+    ------
+    InsufficientDataError
+        If the speed hardly changes, too few rows are clear of standstill, torque and speed have opposite
+        signs, or torque follows neither speed nor acceleration.
+
+    Examples
+    --------
+    >>> import hersey, numpy as np, polars
+    >>> t = np.arange(0.0, 30.0, 0.01)
+    >>> w = 8.0 * np.sin(2.0 * t)
+    >>> torque = 0.01 * 16.0 * np.cos(2.0 * t) + 0.3 * np.sign(w) + 0.02 * w
+    >>> noisy = torque + np.random.default_rng(1).normal(0.0, 0.01, t.size)
+    >>> columns = {"time (s)": t, "torque (N m)": noisy, "speed (rad/s)": w}
+    >>> fit_moving(hersey.read(polars.DataFrame(columns), isothermal=True))["T_C"]
+    Estimate(0.3000 [0.2987, 0.3013] at 95 %)
+    """
+    if inertia is not None and not inertia >= 0.0:
+        raise ParameterError(f"the moment of inertia is {inertia:g} kg m^2: it must not be negative")
+    log.domain.require_torque("a fit with inertia, of a log that moves,")
+    if inertia is None and any(each.name == "inertia" for each in log.corrections):
+        inertia = 0.0  # the mapping subtracted it
+    name = log.files[0].name
+    stretches = stretches_of(log)
+    _refuse_constant(name, stretches)
+    noise = speed_noise(stretches)
+    low_pass = low_pass_for(stretches, noise)
+    if low_pass is None:
+        raise InsufficientDataError(f"{name}: too few rows without a gap to fit a moving log")
+    equations, least = _equations(stretches, noise, low_pass)
+    if len(equations) < LEAST_EQUATIONS:
+        raise _too_few(name, equations, least)
+    fitting, fits = _fitted(log, equations, noise, low_pass, inertia)
+    chosen = _chosen(fits, equations)
+    result = _result(log, _Made(fitting, equations, least, low_pass, noise), chosen, fits)
+    _refuse_no_friction(name, result, equations)
+    return replace(result, warnings=moving_warnings(result, equations))
+
+
+@dataclass(frozen=True)
+class _Made:
+    """What was made of a log for a fit."""
+
+    fitting: Fitting
+    equations: Equations
+    least: float
+    low_pass: LowPass
+    noise: SpeedNoise
+
+
+def _refuse_constant(name: str, stretches: Sequence[Stretch]) -> None:
+    speed = np.concatenate([each.speed for each in stretches]) if stretches else np.zeros(1)
+    if np.std(speed) <= _MOVES * np.max(np.abs(speed)):
+        raise InsufficientDataError(
+            f"{name}: the speed hardly changes, so inertia and friction cannot be told apart",
+            remedy=f"omit {MOVING.to()}",
+            setting=MOVING,
+        )
+
+
+def _too_few(name: str, equations: Equations, least: float) -> InsufficientDataError:
+    return InsufficientDataError(
+        f"{name}: only {len(equations)} moments lie clear of standstill (faster than {rpm(least):.3g} rpm), "
+        f"but a moving log needs {LEAST_EQUATIONS}",
+        remedy="record a longer motion, or one that reverses less often",
+    )
+
+
+def _equations(stretches: Sequence[Stretch], noise: SpeedNoise, low_pass: LowPass) -> tuple[Equations, float]:
+    """Equations clear of standstill, and the least speed of them."""
+    filtered = tuple(each for s in stretches if (each := Filtered.of(s, low_pass)) is not None)
+    fastest = max(float(np.max(np.abs(each.speed))) for each in filtered)
+    unsure = _CLEAR * float(np.sqrt(noise.behind(low_pass.smoother)))
+    least = max(unsure, _SLOW * fastest)
+    return Equations(filtered, tuple(each.turning(least) for each in filtered)), least
+
+
+def _fitted(
+    log: TorqueLog, equations: Equations, noise: SpeedNoise, low_pass: LowPass, inertia: float | None
+) -> tuple[Fitting, list[MovingLawFit]]:
+    """Return all laws, fitted with the noise that the largest leaves; the simplest come first."""
+    both = bool(np.any(equations.speed > 0) and np.any(equations.speed < 0))
+    kelvin = equations.temperature if log.has_temperature else None
+    reference = float(np.mean(kelvin)) if kelvin is not None and np.ptp(kelvin) > _WARMER else None
+    references = (None,) if reference is None else (None, reference)
+    largest = references[-1]
+
+    def law(stribeck: bool, apart: bool, warm: float | None) -> MovingLaw:
+        return MovingLaw(FrictionLaw(stribeck, apart, warm), both and not apart, inertia)
+
+    unknown = Autoregression(np.empty(0), _FIRST * float(np.mean(equations.torque**2)))
+    prior = low_pass.interval
+    fitting = Fitting.of(equations, unknown, prior, noise.covariances(low_pass))
+    near = fitting.fit(law(True, False, largest))
+    full = law(True, both, largest)
+    for _ in range(_ROUNDS):
+        near = fitting.fit(full, near)
+        fitting = fitting.again(near)
+    near = fitting.fit(full, near)
+    fits = []
+    for stribeck in (False, True):
+        for apart in (False, True) if both else (False,):
+            fits += [
+                fitting.fit(law(stribeck, apart, warm), near if stribeck else None) for warm in references
+            ]
+    return fitting, sorted(fits, key=lambda each: each.values.size)
+
+
+def _chosen(fits: Sequence[MovingLawFit], equations: Equations) -> MovingLawFit:
+    """The simplest law, unless a larger one that is determined is beyond doubt."""
+    best = fits[0]
+    for each in fits[1:]:
+        if _determined(each, equations) and each.criterion() < best.criterion() - EVIDENCE:
+            best = each
+    return best
+
+
+def _determined(fitted: MovingLawFit, equations: Equations) -> bool:
+    """Whether Stribeck's rise is one: higher near standstill, at a speed that the equations reach."""
+    slowest = float(np.min(np.abs(equations.speed)))
+    for index in fitted.law.positive:
+        name = fitted.law.names[index]
+        way = name.removeprefix(STRIBECK_SPEED)
+        speed = float(fitted.values[index])
+        if speed <= 1.01 * LEAST_SEEN * slowest or fitted.error(name) > _KNOWN * speed:
+            return False
+        if fitted.value(STATIC + way) <= fitted.value(COULOMB + way):
+            return False
+    return True
+
+
+def _result(log: TorqueLog, made: _Made, chosen: MovingLawFit, fits: Sequence[MovingLawFit]) -> MovingFit:
+    equations = made.equations
+    noise = made.fitting.noise
+    freedom = max(chosen.residuals.size / noise.together - chosen.values.size, 1.0)
+    least = min(each.criterion() for each in fits)
+    slow = equations.torque - chosen.law.value(chosen.values, INERTIA) * equations.acceleration
+    explained = 1.0 - float(np.mean(chosen.residuals**2) / np.mean(slow**2))
+    speeds = np.abs(equations.speed)
+    kelvin = equations.temperature
+    used = sum(int(np.count_nonzero(each)) for each in equations.used)
+    moving = [np.abs(each.speed) >= made.least for each in equations.filtered]
+    rows = sum(each.size for each in moving)
+    return MovingFit(
+        law=chosen.law.title,
+        parameters=tuple(_parameters(chosen, freedom)),
+        inertia_given=chosen.law.inertia,
+        laws=tuple(
+            LawTried(each.law.title, each.values.size, each.criterion() - least, _determined(each, equations))
+            for each in fits
+        ),
+        bandwidth=made.low_pass.bandwidth,
+        used=used / sum(each.size for each in equations.used),
+        near_standstill=1.0 - sum(int(np.count_nonzero(each)) for each in moving) / rows,
+        least_speed=made.least,
+        speed_range=(float(speeds.min()), float(speeds.max())),
+        temperature_range=None if kelvin is None else (float(kelvin.min()), float(kelvin.max())),
+        scatter=float(np.sqrt(np.mean(chosen.residuals**2))),
+        explained=explained,
+        effective_rows=chosen.residuals.size / noise.together,
+        warnings=(),
+        log=log,
+        fitted=chosen,
+        fitting=made.fitting,
+    )
+
+
+def _parameters(fitted: MovingLawFit, freedom: float) -> list[MovingParameter]:
+    units = fitted.law.units
+    out = []
+    for index, name in enumerate(fitted.law.names):
+        value, error = float(fitted.values[index]), fitted.error(name)
+        known = estimate(value, error, freedom)
+        if index in fitted.law.positive:
+            factor = float(np.exp(student_quantile(0.5 + CONFIDENCE / 2, freedom) * error / value))
+            known = Estimate(value, error, value / factor, value * factor, freedom)
+        out.append(MovingParameter(name, units[name], known))
+    return out
+
+
+def _refuse_no_friction(name: str, result: MovingFit, equations: Equations) -> None:
+    """Refuse what is no friction: torque that drives, or a load that the log does not hold."""
+    fast = np.array([result.speed_range[1], -result.speed_range[1]])
+    ways = fast[[np.any(equations.speed > 0), np.any(equations.speed < 0)]]
+    friction = np.sign(ways) * result.friction(ways)
+    if np.all(friction < 0.0) and result.explained >= LEAST_EXPLAINED:
+        raise opposite_signs(name)
+    if np.any(friction <= 0.0) or result.explained < LEAST_EXPLAINED:
+        raise InsufficientDataError(
+            f"{name}: torque does not follow speed: friction and a constant explain "
+            f"{max(100 * result.explained, 0.0):.0f} % of its square. A load acts that is no friction, such "
+            "as a brake, gravity or the torque of a motor under test",
+            remedy="record the drive without that load",
+        )

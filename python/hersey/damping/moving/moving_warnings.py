@@ -1,0 +1,131 @@
+"""What is to be known of the fit of a moving log."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hersey.damping.friction_curve.law import COULOMB, VISCOUS
+from hersey.damping.moving.model import DELAY, INERTIA, OFFSET, Equations
+from hersey.schema.warning import Warning
+
+if TYPE_CHECKING:
+    from hersey.damping.moving.result import MovingFit
+
+#: Share of the rows near standstill that is worth a word, and of the torque left unexplained.
+_MUCH, _LEFT = 0.5, 0.1
+#: Relative error of the inertia beyond which it is not known.
+_UNKNOWN = 0.5
+
+
+def moving_warnings(fit: MovingFit, equations: Equations) -> tuple[Warning, ...]:
+    """Return the warnings of a fit."""
+    found = (
+        _one_way(equations),
+        *_alike(fit),
+        _zero(fit),
+        _standing(fit),
+        _left(fit),
+        _inertia(fit),
+        _delay(fit),
+    )
+    return tuple(each for each in found if each is not None)
+
+
+def _one_way(equations: Equations) -> Warning | None:
+    if np.any(equations.speed > 0) and np.any(equations.speed < 0):
+        return None
+    return Warning(
+        "one direction",
+        "the drive moves in one direction only, so a torque zero cannot be told from Coulomb friction; it is "
+        "taken as 0",
+        severity="watch",
+        remedy='record both directions, or set tare = "4 mN*m" under [torque] in hersey.toml',
+    )
+
+
+def _alike(fit: MovingFit) -> list[Warning]:
+    """That friction at the speeds of this log is known better than its parts."""
+    slow, fast = fit.speed_range
+    unsure = [
+        each.name
+        for each in fit.parameters
+        if each.name.startswith((COULOMB, VISCOUS))
+        and each.estimate.error > _UNKNOWN * abs(each.estimate.value)
+    ]
+    if not unsure:
+        return []
+    return [
+        Warning(
+            "speeds alike",
+            "{names} cannot be determined from speeds of {slow:.3g rpm} to {fast:.3g rpm} with this noise; "
+            "the torque at these speeds is known better",
+            severity="watch",
+            remedy="record a wider range of speeds",
+            names=", ".join(unsure),
+            slow=slow,
+            fast=fast,
+        )
+    ]
+
+
+def _zero(fit: MovingFit) -> Warning | None:
+    if OFFSET not in fit or abs(fit[OFFSET].value) < 3.0 * fit[OFFSET].error:
+        return None
+    return Warning(
+        "offset or direction",
+        "the offset is half the difference of both directions: a torque zero, or friction that differs by "
+        "direction",
+        severity="note",
+    )
+
+
+def _standing(fit: MovingFit) -> Warning | None:
+    if fit.near_standstill < _MUCH:
+        return None
+    return Warning(
+        "near standstill",
+        "{share:.0f %} of the log is slower than {speed:.2g rpm} and is not used",
+        severity="watch",
+        share=fit.near_standstill,
+        speed=fit.least_speed,
+    )
+
+
+def _left(fit: MovingFit) -> Warning | None:
+    if 1.0 - fit.explained < _LEFT:
+        return None
+    return Warning(
+        "torque unexplained",
+        "the law explains only {share:.0f %} of the square of the torque; something else acts, such as "
+        "gravity, a ripple or a varying load",
+        severity="watch",
+        share=fit.explained,
+    )
+
+
+def _inertia(fit: MovingFit) -> Warning | None:
+    if INERTIA not in fit:
+        return None
+    known = fit[INERTIA]
+    if known.value > 0.0 and known.error < _UNKNOWN * known.value:
+        return None
+    return Warning(
+        "inertia unknown",
+        "this motion hardly shows the moment of inertia",
+        severity="note",
+        remedy="accelerate faster, or give it",
+    )
+
+
+def _delay(fit: MovingFit) -> Warning | None:
+    delay = fit[DELAY]
+    if abs(delay.value) < 3.0 * delay.error or abs(delay.value) < 2.0 * fit.fitting.prior:
+        return None
+    return Warning(
+        "channels out of step",
+        "torque and speed are out of step by {time:.2g} s; the fit allows for it",
+        severity="note",
+        time=delay.value,
+    )

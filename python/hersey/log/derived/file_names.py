@@ -1,0 +1,145 @@
+"""Values in the names of files, by a pattern such as ``{speed} rpm {load} N.txt``.
+
+Each placeholder takes a number; its unit stands behind it, or in it (``{load:N}``). ``*`` is any text.
+Blanks, and upper and lower case, make no difference.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from hersey.errors import ParameterError, Setting, UnitError
+from hersey.log.roles import role_conversion
+
+#: Roles that a name may state, and an example of a unit of each.
+ROLES = {"speed": "rpm", "load": "N", "radius": "mm", "temperature": "degC"}
+#: Marks that a name may have in the place of a decimal point.
+DECIMALS = (".", ",", "-", "_", "p", "d")
+_PATTERN, _DECIMAL = Setting("name_pattern"), Setting("name_decimal")
+_PLACEHOLDER = re.compile(r"\{([^{}:]*)(?::([^{}]*))?\}|(\*)")
+_UNIT = re.compile(r"\s*([A-Za-zµμ°%]+)")
+#: Characters of a pattern, and of a name, at the most.
+_LONGEST = 300
+
+
+@dataclass(frozen=True)
+class NamePattern:
+    """A pattern of file names, and the decimal mark of their numbers."""
+
+    template: str
+    decimal: str = "."
+
+    def __post_init__(self) -> None:
+        """Refuse a pattern that cannot be used.
+
+        Raises
+        ------
+        ParameterError
+            If it has no placeholder, an unknown one, one twice, or one without a unit.
+        """
+        if self.decimal not in DECIMALS:
+            raise ParameterError(f"{_DECIMAL.to(self.decimal)}: write one of {' '.join(DECIMALS)}")
+        if len(self.template) > _LONGEST:
+            raise ParameterError(f"{_PATTERN.to()} is longer than {_LONGEST} characters")
+        if not self.units:
+            raise ParameterError(
+                f"{_PATTERN.to(self.template)} has no placeholder. Write one, e.g. "
+                f"{_PATTERN.to('{speed} rpm.csv')}; known: {_known()}"
+            )
+
+    @property
+    def units(self) -> dict[str, str]:
+        """The unit of each role that the pattern states."""
+        return {role: unit for role, unit, _ in self._parts() if role}
+
+    def values(self, name: str) -> dict[str, str]:
+        """Return number and unit of each role in the name of a file.
+
+        Raises
+        ------
+        ParameterError
+            If the name does not match, with what it may be written as.
+        """
+        match = re.fullmatch(self._regex(), name[:_LONGEST].strip(), re.IGNORECASE)
+        if match is None:
+            way = "" if self.decimal != "." else f", or state its decimal mark, e.g. {_DECIMAL.to('-')}"
+            raise ParameterError(
+                f"{name}: the name does not match {_PATTERN.to(self.template)}. Rename the file, change the "
+                f"pattern (* stands for any text){way}"
+            )
+        return {role: f"{self._number(match[role])} {unit}" for role, unit in self.units.items()}
+
+    def _number(self, text: str) -> str:
+        return text if self.decimal == "." else text.replace(self.decimal, ".")
+
+    def _regex(self) -> str:
+        mark = re.escape(self.decimal)
+        sign = "" if self.decimal == "-" else "[-+]?"
+        number = rf"{sign}[0-9]{{1,15}}(?:{mark}[0-9]{{1,15}})?"
+        found = []
+        for role, _, literal in self._parts():
+            words = r"\s*".join(re.escape(word) for word in literal.split())
+            found.append(f"(?P<{role}>{number})" if role else r".*" if literal == "*" else rf"\s*{words}\s*")
+        return "".join(found)
+
+    def _parts(self) -> list[tuple[str, str, str]]:
+        """Role and unit of each placeholder, or the text between two of them (``*`` for any)."""
+        parts, last = list[tuple[str, str, str]](), 0
+        for match in _PLACEHOLDER.finditer(self.template):
+            if match.start() > last:
+                parts.append(("", "", self.template[last : match.start()]))
+            last = match.end()
+            if match[3]:
+                parts.append(("", "", "*"))
+                continue
+            role = match[1].strip()
+            if role not in ROLES or role in (each for each, _, _ in parts):
+                twice = "twice" if role in ROLES else "which is unknown"
+                raise ParameterError(
+                    f"{_PATTERN.to(self.template)} has {{{role}}} {twice}. Known: {_known()}"
+                )
+            parts.append((role, self._unit(role, match[2], self.template[last:]), ""))
+        return [*parts, ("", "", self.template[last:])] if last < len(self.template) else parts
+
+    def _unit(self, role: str, stated: str | None, behind: str) -> str:
+        """The unit in a placeholder, or the longest one that the text behind it begins with."""
+        word = _UNIT.match(behind)
+        candidates = (
+            [stated.strip()] if stated else [word[1][:n] for n in range(len(word[1]), 0, -1)] if word else []
+        )
+        for unit in candidates:
+            try:
+                role_conversion(role, unit)
+            except UnitError:
+                continue
+            return unit
+        raise ParameterError(
+            f"{_PATTERN.to(self.template)} has {{{role}}} without a unit behind it. Write the unit, e.g. "
+            f"{{{role}:{ROLES[role]}}}"
+        )
+
+
+def proposed_pattern(name: str) -> tuple[str, str] | None:
+    """Return a pattern and a decimal mark for a file name with a number and a unit of speed, or None."""
+    found = list(_STATED.finditer(name[:_LONGEST]))
+    roles = [_ROLE_OF[match[2].lower()] for match in found]
+    if roles.count("speed") != 1 or len(set(roles)) != len(roles):
+        return None
+    parts, last = [], 0
+    for match, role in zip(found, roles, strict=True):
+        parts += [name[last : match.start()], f"{{{role}}}"]
+        last = match.end(1)
+    marks = {mark for match in found for mark in match[1] if mark in DECIMALS}
+    if len(marks) > 1:
+        return None
+    return "".join([*parts, name[last:]]), next(iter(marks), ".")
+
+
+#: Units in file names, and the role that each shows.
+_ROLE_OF = {"rpm": "speed", "rps": "speed", "n": "load", "degc": "temperature"}
+_STATED = re.compile(r"(?<![0-9.])([0-9]+(?:[.,-][0-9]+)?)[ _]?(rpm|rps|N|degC)(?![A-Za-z])", re.IGNORECASE)
+
+
+def _known() -> str:
+    return ", ".join(f"{{{role}}}" for role in ROLES)

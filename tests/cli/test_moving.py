@@ -1,0 +1,90 @@
+"""``hersey fit`` on a log that moves all the time: asked for, found by itself, and what it cannot do."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import polars as pl
+import pytest
+
+from tests.cli.command import run
+from tests.conftest import ROOT, shared
+from tests.damping.moving_logs import RATE, sine
+
+pytestmark = pytest.mark.usefixtures("roughly")
+
+
+@pytest.fixture
+def joint(tmp_path: Path) -> Path:
+    """A log of sines."""
+    sine().to_frame().drop("run").write_csv(tmp_path / "joint.csv")
+    return tmp_path
+
+
+def test_a_moving_log_is_found_by_itself(joint: Path) -> None:
+    done = run("fit", "joint.csv", "--isothermal", cwd=joint)
+    assert done.returncode == 0, done
+    assert "friction is fitted to every sample, as with --moving." in " ".join(done.stderr.split())
+    for line in ("Coulomb and viscous friction", "T_C", "k_v", "J", "offset", "B = a w^c"):
+        assert line in done.stdout
+
+
+def test_a_given_inertia_and_json(joint: Path) -> None:
+    typed = ("fit", "joint.csv", "--isothermal", "--moving", "--inertia", "100 kg*cm^2")
+    done = run(*typed, "--json", cwd=joint)
+    document = json.loads(done.stdout)
+    assert document["moving"]["inertia_given"] == pytest.approx(0.01)
+    found = {each["name"]: each["estimate"]["value"] for each in document["moving"]["parameters"]}
+    assert found["T_C"] == pytest.approx(0.3, rel=0.01)
+    assert "J" not in found
+    assert document["fit"]["points"] > 10
+
+
+@pytest.mark.parametrize(
+    ("typed", "said"),
+    [
+        (("--inertia", "0.01 kg*m^2"), "--inertia is for --moving: add it, or omit --inertia"),
+        (("--moving", "--tare", "standing"), "the torque zero of a moving log is fitted. Omit --tare"),
+        (("--moving", "--inertia", "3 kg"), "--inertia"),
+    ],
+)
+def test_what_does_not_go_together(joint: Path, typed: tuple[str, ...], said: str) -> None:
+    done = run("fit", "joint.csv", "--isothermal", *typed, cwd=joint)
+    assert done.returncode == 2
+    assert said in " ".join(done.stderr.split())
+
+
+def test_a_ramp_is_told_to_other_commands(tmp_path: Path) -> None:
+    """`models` names --moving, and takes it."""
+    time = np.arange(0.0, 60.0, 1.0 / RATE)
+    speed = 1.0 + 8.0 * np.abs((time / 15.0) % 2.0 - 1.0)
+    noise = np.random.default_rng(1).normal(0.0, 0.01, time.size)
+    columns = {"time (s)": time, "torque (N m)": 0.3 + 0.02 * speed + noise, "speed (rad/s)": speed}
+    pl.DataFrame(columns).write_csv(tmp_path / "ramp.csv")
+    refused = run("models", "ramp.csv", "--isothermal", cwd=tmp_path)
+    said = " ".join(refused.stderr.split())
+    assert refused.returncode == 2
+    assert "To fit friction to every sample while the speed changes, use --moving" in said
+    assert run("models", "ramp.csv", "--isothermal", "--moving", cwd=tmp_path).returncode == 0
+
+
+def test_start_and_stop_of_a_screw_drive(tmp_path: Path) -> None:
+    """Friction at both speeds, as in the steady logs of the same drive within 4 %."""
+    folder = shared("data/friction/tro2021_screw_drives/driveNo1/start_stop")
+    typed = ("--torque-unit", "9.84 mN*m / 100", "--isothermal", "--moving")
+    done = run("fit", folder / "50.csv", folder / "200.csv", *typed, cwd=tmp_path)
+    assert done.returncode == 0, done
+    assert "Coulomb and viscous friction" in done.stdout
+    assert "all dwells are at 50 rpm and 200 rpm" in " ".join(done.stderr.split())
+
+
+def test_a_staircase_with_too_few_speeds_is_none(tmp_path: Path) -> None:
+    """Two dwells of a usual log: the usual error, not a fit of its ramps."""
+    lines = (ROOT / "examples" / "bench.csv").read_text().splitlines()
+    kept = [line for line in lines if not line[:1].isdigit() or float(line.split(",")[0]) < 30.0]
+    (tmp_path / "few.csv").write_text("\n".join([*kept, ""]))
+    done = run("fit", "few.csv", "--isothermal", cwd=tmp_path)
+    assert done.returncode == 2
+    assert "--moving" not in done.stderr
