@@ -2,8 +2,8 @@
 
 Every log is made here, by code that hersey does not share: a staircase of sliding speeds, the law of the
 friction coefficient, noise of the load cell with a memory, an error of each run's calibration. Runs differ
-in radius or in load, and are recorded as a coefficient, a force or a torque. Counted is how often the verdict says what
-the law does, and how often the value and its exponent lie in their 95 % intervals.
+in radius or in load, and are recorded as a coefficient, a force or a torque. Counted is how often the verdict
+says what the law does, and how often the value and its exponent lie in their 95 % intervals.
 
     python -m benchmarks.tribometer [--logs 100]
 """
