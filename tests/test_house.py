@@ -60,6 +60,8 @@ ROOMS = (
 #: and a result finds its chart and draws it.
 LAZY = {
     ("hersey.log.torque_log", "hersey.damping.dwells"),
+    ("hersey.log.torque_log", "hersey.damping.moving.fit"),
+    ("hersey.log.torque_log", "hersey.damping.moving.result"),
     ("hersey.result", "hersey.charts"),
     ("hersey.result", "hersey.charts.render"),
 }

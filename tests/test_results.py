@@ -51,6 +51,7 @@ from tests.life import shipped, test_ageing_maps, test_other_uses
 from tests.machines import machine_of, map_of
 
 BENCH = ROOT / "examples" / "bench.csv"
+COASTS = ROOT / "examples" / "coast-down.csv"
 TRAIN = hersey.Drivetrain(1000, 1)
 DRAG = hersey.Drag(50, 1, ehl_exponent=-0.7, mixed_exponent=-1.2, stick_speed=0.01)
 
@@ -202,6 +203,7 @@ RESULTS: dict[str, tuple[Callable[[], Any], type]] = {
     "TimeToFailure": (ends, TimeToFailurePart),
     "ModelComparison": (models, ModelsPart),
     "LogComparison": (lambda: hersey.compare(points(), points()), LogComparison),
+    "CoastDown": (lambda: hersey.coast_down(COASTS, inertia="0.012 kg*m^2 ± 2 %"), hersey.CoastDown),
     "TestDesign": (lambda: hersey.design(models(), count=1), DesignPart),
     "Inspection": (lambda: hersey.inspect(BENCH), Inspection),
     "CycleRecord": (record, CyclesPart),

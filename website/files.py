@@ -88,6 +88,8 @@ def _keys(kind: Any) -> Iterator[tuple[str, list[_Row]]]:
     for name in (each.name for each in dataclasses.fields(kind)):
         if name == "uncertainty" and kind is _MachineFile:
             yield f"[{name}]", [_of_uncertainty(each) for each in OF_THE_BELT]
+        elif name == "schedule" and kind is not _MachineFile:
+            yield f"[[{name}]]", [(f"`{key}`", f'`"{of}"`', words, "", "") for key, of, words in _STEP]
         else:
             yield from _tables(name, _plain(hints[name]), f"[[{name}]]" if name == "points" else f"[{name}]")
 
@@ -166,6 +168,12 @@ _OTHERS = {
     ("radius", "channel"): '"Track radius"',
     ("radius", "unit"): '"mm"',
     ("radius", "values"): '["25 mm", "30 mm"]',
+    ("position", "channel"): '"Angle"',
+    ("position", "unit"): '"deg"',
+    ("direction", "channel"): '"Dir"',
+    ("direction", "unit"): '""',
+    ("names", "pattern"): '"{speed} rpm {load} N.csv"',
+    ("names", "decimal"): '"-"',
     ("run", "channel"): '"Test no"',
     ("run", "unit"): '"1"',
     ("options", "bristle_stiffness"): '"1000 N/mm"',
@@ -173,6 +181,14 @@ _OTHERS = {
     ("options", "duration"): '"10 s"',
     ("options", "tolerance"): "1e-9",
 }
+#: Keys of a step of a schedule: example and meaning.
+_STEP = (
+    ("from", "0 s", "Begin, counted from the first row of the log."),
+    ("to", "60 s", "End."),
+    ("speed", "20 rpm", "Set point of the speed."),
+    ("temperature", "80 degC", "Set point of the temperature."),
+    ("load", "50 N", "Normal load."),
+)
 #: Examples of settings of a recipe.
 _IN_RECIPE = {
     "logs": '["bench.csv"]',
@@ -184,6 +200,9 @@ _IN_RECIPE = {
     "rotation": '"forward"',
     "temperature_scale": '"K"',
     "no_load": '"no-load.csv"',
+    "name_pattern": '"{speed} rpm {load} N.csv"',
+    "name_decimal": '"-"',
+    "schedule": '"plan.csv"',
 }
 
 

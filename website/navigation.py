@@ -55,7 +55,11 @@ PARTS = (
         first=("index", "commands", "python", "files", "document", "logs", "report", "inspect", "app"),
     ),
     Part("Gallery", page="gallery.md"),
-    Part("Validation", folder="validation", first=("index", "measurements", "layouts", "paper", "growth")),
+    Part(
+        "Validation",
+        folder="validation",
+        first=("index", "measurements", "layouts", "moving", "paper", "growth"),
+    ),
     Part("Glossary", page="glossary.md"),
 )
 

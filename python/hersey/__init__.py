@@ -53,6 +53,7 @@ __all__ += ["__version__"]
 #: What does in Python what a command of another name does.
 _OF_COMMANDS = {
     "campaign": "Campaign.open",
+    "coastdown": "coast_down",
     "export": "export_fmu",
     "film": "film_thickness",
     "life": "follow",

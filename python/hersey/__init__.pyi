@@ -4,6 +4,8 @@ from .damping.candidates import ModelComparison as ModelComparison
 from .damping.candidates import compare_models as compare_models
 from .damping.candidates import hersey_collapse as hersey_collapse
 from .damping.candidates import viscosity_laws as viscosity_laws
+from .damping.coast_down import CoastDown as CoastDown
+from .damping.coast_down import coast_down as coast_down
 from .damping.compare import LogComparison as LogComparison
 from .damping.compare import compare as compare
 from .damping.design import TestDesign as TestDesign

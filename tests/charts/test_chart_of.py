@@ -131,6 +131,10 @@ def belt_map() -> hersey.OperatingMap:
     )
 
 
+def coasts() -> hersey.CoastDown:
+    return hersey.coast_down(EXAMPLES / "coast-down.csv", inertia="0.012 kg*m^2 ± 2 %")
+
+
 def logs() -> hersey.LogComparison:
     data = Observations.of(points())
     return hersey.compare(data, data, names=("new", "worn"))
@@ -145,6 +149,7 @@ MADE: dict[str, Callable[[], Any]] = {
     "DampingSurface": surface,
     "ModelComparison": models,
     "LogComparison": logs,
+    "CoastDown": coasts,
     "TestDesign": lambda: hersey.design(models(), count=4, quantity="transition speed"),
     "MovingFit": lambda: sine(hot=True).moving(),
     "Regime": lambda: hersey.regime(points(), surface()),

@@ -23,6 +23,7 @@ COMMANDS = {
     "warmup": (*WITH, "--target", "120 mm/s", "--from", "20 degC"),
     "cycles": ("stick-slip.csv", "--drive-speed", "20 mm/s", "--identify"),
     "life": ("life.hersey", "--machine", "machine.toml"),
+    "coastdown": ("coast-down.csv", "--inertia", "0.012 kg*m^2 ± 2 %"),
     "compare": ("bench.csv", *LOG),
 }
 

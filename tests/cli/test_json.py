@@ -38,6 +38,7 @@ ARGUMENTS: dict[str, list[str]] = {
     "fit": [BENCH, *TARE],
     "models": [BENCH, *TARE, "--bootstrap", "0", "--isothermal"],
     "design": [BENCH, *TARE, "--count", "1"],
+    "coastdown": [str(EXAMPLES / "coast-down.csv"), "--inertia", "0.012 kg*m^2"],
     "compare": [BENCH, BENCH, *TARE],
     "campaign": ["check", "CAMPAIGN"],
     "life": ["LIFE", "--machine", MACHINE],

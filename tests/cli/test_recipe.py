@@ -79,6 +79,8 @@ def test_every_setting_survives_the_command_line(tmp_path: Path) -> None:
         rotation="reverse",
         temperature_scale="K",
         no_load=tmp_path / "bench.csv",
+        moving=True,
+        inertia=1 / 7,
     )
     recipe.save(tmp_path / "one.toml")
     done = run("inspect", "--recipe", "one.toml", "--save-recipe", "two.toml", cwd=tmp_path)

@@ -167,7 +167,7 @@ def test_one_direction_shows_no_zero() -> None:
     speed, rate = 6.0 + 4.0 * np.sin(time), 4.0 * np.cos(time)
     fit = made(speed, rate, COULOMB + VISCOUS * speed).moving()
     assert "offset" not in fit
-    assert kinds(fit) == ["one direction"]
+    assert kinds(fit) == ["torque zero unknown"]
     assert fit["T_C"].value == pytest.approx(COULOMB + OFFSET, rel=0.02)
 
 

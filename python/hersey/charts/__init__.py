@@ -13,6 +13,7 @@ log              speed, torque and temperature over time
 inspection       the channels of a log, and their faults
 against_speed    dwells and curves against speed, of which most of what follows is made
 damping          dwells, surface, candidates, two logs, the next dwells
+coast_down       speeds of a coast-down, and its torque against speed
 moving           friction against speed of a log that moves all the time
 regime           exponents against what each regime predicts
 film             the regime chart, over the Stribeck curve
@@ -60,6 +61,7 @@ CHARTS = {
     "NoLoadTorque": ("damping", "rest_chart"),
     "ModelComparison": ("damping", "models_chart"),
     "LogComparison": ("damping", "logs_chart"),
+    "CoastDown": ("coast_down", "coast_down_chart"),
     "TestDesign": ("damping", "design_chart"),
     "MovingFit": ("moving", "moving_chart"),
     "Regime": ("regime", "regime_chart"),

@@ -51,6 +51,7 @@ PANELS = {
         "posterior": "Estimate V*, stick speed, stiffness, mass and closure from log and machine file.",
         "plan": "Find the quickest start-up profile that ends in steady sliding.",
         "warmup": "Find the quickest warm-up whose drag stays within the limits of grip and motor.",
+        "coastdown": "Find the friction torque from coast-downs: speed over time and a moment of inertia.",
         "cycles": "Find the slips of a stick-slip trace, and with --identify the drive behind them.",
         "hysteresis": "Find the speed range in which sticking depends on how the drive was started.",
         "simulate": "Simulate the motion at a drive speed or over a profile.",

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from hersey.inspection import Inspection
 
 _SAVE_MAPPING = "Write the proposed layout, channels and units as hersey.toml beside the log."
+#: Settings of a recipe that only a fit takes.
+_OF_A_FIT = ("logs", "no_load", "moving", "inertia")
 #: Longest name of a channel in the table, and most channels without a role that it shows.
 _LONGEST, _OTHERS = 28, 8
 
@@ -56,7 +58,7 @@ def inspect(
         with working("looking at the channels"), memory_limit(reading.max_memory):
             written.write(propose_mapping(logs[0], channels=recipe.channels, units=recipe.units))
     with working("looking at the channels"), memory_limit(reading.max_memory):
-        given = {name: value for name, value in vars(recipe).items() if name not in ("logs", "no_load")}
+        given = {name: value for name, value in vars(recipe).items() if name not in _OF_A_FIT}
         inspection = inspected(logs, **(given | {"means": recipe.are_means}))
     with memory_limit(reading.max_memory):
         if save_recipe is not None:

@@ -26,6 +26,7 @@ curves          drag curves that the dwells allow: laws by weight, and how they 
 no_load         the no-load torque from a log without the film
 rising          the rising branch by itself: whether one exponent holds
 systematic      what errors of the sensors do to a fit
+coast_down      friction from speed against time alone, by the moment of inertia
 compare         two logs against each other
 design          which dwells to record next
 ==============  =========================================================

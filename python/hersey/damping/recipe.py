@@ -362,11 +362,21 @@ class Recipe:
         """Return all values that differ from the default as JSON, in SI."""
         return json_record({name: _plain(value) for name, value in self.stated().items()})
 
+    def speeds(self, *, progress: Progress | None = None) -> TorqueLog:
+        """Read the logs without a torque, for `hersey.coast_down`.
+
+        Raises
+        ------
+        HerseyError
+            As `hersey.read` does.
+        """
+        return self._trace(progress, without_torque=True)
+
     def read_files(self, progress: Progress | None = None) -> TorqueLog | MeansTable:
         """Read the logs as they are now."""
         return self._means() if self.are_means else self._trace(progress)
 
-    def _trace(self, progress: Progress | None) -> TorqueLog:
+    def _trace(self, progress: Progress | None, *, without_torque: bool = False) -> TorqueLog:
         done = read_with_mapping(
             self.logs,
             mapping=self.mapping,
@@ -375,6 +385,7 @@ class Recipe:
             signs=self.signs,
             isothermal=self.isothermal,
             drop_missing=self.drop_missing,
+            without_torque=without_torque,
             **vars(self._motor),
             **{name: given for name in _STATED if (given := getattr(self, name))},
             progress=progress,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from hersey.damping.coast_down.result import CoastDown
 from hersey.damping.compare import LogComparison
 from hersey.document.analysis import Analysis
 from hersey.document.parts.campaign import CampaignPart
@@ -28,6 +29,7 @@ PRINTED: dict[str, type] = {
     "fit": FitDocument,
     "models": ModelsPart,
     "design": DesignPart,
+    "coastdown": CoastDown,
     "compare": LogComparison,
     "campaign": CampaignPart,
     "life": LifeTestPart,

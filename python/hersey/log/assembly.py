@@ -96,6 +96,7 @@ class Assembly:
     def __init__(self, recording: Recording, wanted: Wanted) -> None:
         self.recording, self.source = recording, recording.source
         self.choices, self.stated, self.drop_missing = wanted.choices, wanted.stated, wanted.drop_missing
+        self._first = "speed" if wanted.without_torque else "torque"  # the role that gives the clock
         if not recording.signals:
             raise nothing_to_read(recording)
         self.columns = columns(recording)
@@ -117,10 +118,10 @@ class Assembly:
         for role in roles:
             if role != "time":  # which is that of the channel
                 self.chosen[role] = self._channel(role)
-        torque = self.chosen["torque"][0]
-        others = {r: g.column(torque.group) for r, g in self.derived.channels.items() if r in OTHER_ROLES}
+        first = self.chosen[self._first][0]
+        others = {r: g.column(first.group) for r, g in self.derived.channels.items() if r in OTHER_ROLES}
         self.chosen |= others
-        near = tuple(c for c in self.columns if c.group == torque.group)
+        near = tuple(c for c in self.columns if c.group == first.group)
         self.chosen |= beside(near, self.choices, self.stated, self.chosen, self.source.name)
         self._unused = [*clocks_passed_over(near, self.stated), *unused(near, self.chosen, self.stated)]
         if isothermal:
@@ -152,7 +153,7 @@ class Assembly:
         UnreadableLogError
             If too many numbers are missing, a clock runs backwards, or the channels do not overlap.
         """
-        left_out, torque = LeftOut(), self.parts["torque"]
+        left_out, torque = LeftOut(), self.parts[self._first]
         warnings = [*self.recording.warnings, *self._counted.values()]
         marked, rows_marked = self._judged(self._marked)
         self._leave_out_unscheduled()
@@ -179,7 +180,7 @@ class Assembly:
 
     def _on_one_clock(self, warnings: list[Warning]) -> tuple[dict[str, FloatArray], int]:
         """Every channel at the times of the torque that all clocks span, and the first of these samples."""
-        torque = self.parts["torque"]
+        torque = self.parts[self._first]
         first, end = 0, torque.time.size
         others = [part for part in self.parts.values() if part.tick != torque.tick]
         for part in others:
@@ -212,7 +213,7 @@ class Assembly:
         return arrays, first
 
     def _record(self, warnings: tuple[Warning, ...]) -> LogFile:
-        used = {"time": self._clocks[self.parts["torque"].tick][2]} | {
+        used = {"time": self._clocks[self.parts[self._first].tick][2]} | {
             p.role: Channel(p.role, p.column.path, p.unit.unit) for p in self.parts.values()
         }
         return LogFile(
@@ -236,12 +237,12 @@ class Assembly:
         """The channel of a role; the part of the file that holds the torque is looked at first."""
         file, choice, channel = self.source.name, self.choices[role], None
         if given := self.derived.channels.get(role):
-            return given.column(self.chosen["torque"][0].group)
+            return given.column(self.chosen[self._first][0].group)
         if role == "speed" and self.choices["position"].name:
             return speed_column(*self._position())
         taken = taken_columns(role, self.columns, self.choices, self.chosen)
-        if role != "torque" and not choice.name:
-            torque = self.chosen["torque"][0]
+        if role != self._first and not choice.name:
+            torque = self.chosen[self._first][0]
             near = tuple(c for c in self.columns if c.group == torque.group and c != torque)
             channel = find_channel(role, near, choice, file, self._says_nothing, taken)
         if channel is None:
@@ -256,7 +257,7 @@ class Assembly:
         """A channel with its numbers and its clock."""
         column, unit = self.chosen[role]
         if given := self.derived.channels.get(role):
-            torque = self.parts["torque"]
+            torque = self.parts[self._first]
             self._said.append(given.warning())
             return _Part(role, column, unit, given.at(torque.time), torque.time, torque.tick, None)
         signal = self.recording.signals[column.index]
@@ -292,7 +293,7 @@ class Assembly:
 
     def _leave_out_unscheduled(self) -> None:
         """Leave out samples of the torque at which nothing is scheduled."""
-        torque = self.parts["torque"]
+        torque = self.parts[self._first]
         given = self.derived.channels.items()
         scheduled = [self.parts[role].values for role, of in given if of.schedule and role in self.parts]
         if not scheduled:
@@ -394,7 +395,7 @@ class Assembly:
 
     def _leave_out_missing(self, left_out: LeftOut) -> None:
         """Leave out samples without a number or a time."""
-        torque = self.parts["torque"]
+        torque = self.parts[self._first]
         for parts in self._by_clock():
             own = parts[0].tick == torque.tick
             slow = [p for p in parts if own and p.role in slow_roles(self.chosen, self.stated)]

@@ -303,7 +303,7 @@ def _effect(role: str, before: tuple[Run, ...], after: tuple[Run, ...]) -> Effec
         return None
     change = np.concatenate([a - b for b, a in pairs])
     largest = float(np.max(np.abs(change)))
-    if largest == 0.0:
+    if not largest > 0.0:  # nor has a torque that was not recorded
         return None
     typical = float(np.sqrt(np.mean(change**2)))
     level = float(np.median(np.abs(np.concatenate([b for b, _ in pairs]))))

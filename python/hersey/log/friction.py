@@ -55,8 +55,7 @@ def beside(
         elif role != "run" and getattr(stated, role) is None and choice.unit:
             why = f"a unit is given for the {role}, but no value or column"
             raise unstated(file, role, why, left)
-    both = {"torque", "speed"} <= chosen.keys()  # one may be lacking while a file is looked at
-    kinds = _kinds(chosen) if both else {}
+    kinds = {"torque": "torque"} | _kinds(chosen)
     if kinds == {"torque": "torque", "speed": "belt speed"} and not _known("radius", others, stated):
         column = chosen["speed"][0]
         why = f"'{column}' is a sliding speed, which needs the radius to become a speed of rotation"
@@ -66,7 +65,7 @@ def beside(
 
 def unused(columns: tuple[Column, ...], chosen: Chosen, stated: Stated) -> list[Warning]:
     """Return which columns may be the load or the radius that nobody stated, and how to state it."""
-    roles = ("load",) if _kinds(chosen)["torque"] == "torque" else ("load", "radius")
+    roles = ("load",) if _kinds(chosen).get("torque", "torque") == "torque" else ("load", "radius")
     left = _without(columns, chosen)
     return [each for role in roles if not _known(role, chosen, stated) for each in proposals(role, left)]
 
@@ -84,7 +83,7 @@ def slow_roles(chosen: Chosen, stated: Stated) -> frozenset[str]:
 def measured(chosen: Chosen) -> Domain:
     """Return what the columns of torque and speed hold as they were recorded."""
     kinds = _kinds(chosen)
-    return Domain(QUANTITY_OF[kinds["torque"]], SPEED_OF[kinds["speed"]])
+    return Domain(QUANTITY_OF[kinds.get("torque", "torque")], SPEED_OF[kinds.get("speed", "speed")])
 
 
 def domain_of(chosen: Chosen, stated: Stated) -> Domain:
@@ -123,7 +122,7 @@ def in_domain(
     if of == to and stated.load is None:
         arrays.pop("radius", None)
         return arrays
-    rows = arrays["torque"].size
+    rows = arrays["speed"].size
     if rows <= HELD:
         return _in_domain(arrays, of, to, stated)
     made: dict[str, Filling] = {}
@@ -139,14 +138,19 @@ def is_converted(chosen: Chosen, stated: Stated) -> bool:
     return measured(chosen) != domain_of(chosen, stated)
 
 
+def rotating(chosen: Mapping[str, Any]) -> tuple[str, ...]:
+    """Return which of torque and speed a log has: a coast-down has no torque."""
+    return tuple(role for role in ("torque", "speed") if role in chosen)
+
+
 def _kinds(chosen: Chosen) -> dict[str, str]:
-    return {role: role_conversion(role, chosen[role][1].unit)[0] for role in ("torque", "speed")}
+    return {role: role_conversion(role, chosen[role][1].unit)[0] for role in rotating(chosen)}
 
 
 def _in_domain(
     arrays: dict[str, FloatArray], of: Domain, to: Domain, stated: Stated
 ) -> dict[str, FloatArray]:
-    rows = arrays["torque"].shape
+    rows = arrays["speed"].shape
     known = {role: arrays[role] for role in ("load", "radius") if role in arrays}
     for role in ("load", "radius"):
         if (value := getattr(stated, role)) is not None:
@@ -157,7 +161,10 @@ def _in_domain(
         if role in known:
             known[role] = np.where(known[role] > 0, known[role], nothing)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        arrays["torque"], arrays["speed"] = of.converted(to, arrays["torque"], arrays["speed"], **known)
+        torque = arrays.get("torque", arrays["speed"])  # a coast-down has none
+        torque, arrays["speed"] = of.converted(to, torque, arrays["speed"], **known)
+    if "torque" in arrays:
+        arrays["torque"] = torque
     arrays.pop("radius", None)
     return arrays
 
@@ -167,21 +174,21 @@ def computed(chosen: Chosen, stated: Stated, domain: Domain | None = None) -> li
     known = _source("radius", "m", chosen, stated) | _source("load", "N", chosen, stated)
     of, to = measured(chosen), domain or domain_of(chosen, stated)
     powers = of.powers(to)
-    torque, speed = (chosen[role][0].path for role in ("torque", "speed"))
+    paths = {role: chosen[role][0].path for role in rotating(chosen)}
     out = []
-    if of.quantity != to.quantity:
+    if "torque" in paths and of.quantity != to.quantity:
         signs = {role: "x" if power > 0 else "/" for role, (power, _) in powers.items()}
         words = "{quantity} is '{channel}'"
         words += " {load_sign} load ({load_from})" if powers["load"][0] else ""
         words += " {radius_sign} radius ({radius_from})" if powers["radius"][0] else ""
         values = known | {f"{role}_sign": sign for role, sign in signs.items()}
-        out.append(Warning("torque computed", words, channel=torque, quantity=to.quantity, **values))
+        out.append(Warning("torque computed", words, channel=paths["torque"], quantity=to.quantity, **values))
     if of.speed != to.speed:
         out.append(
             Warning(
                 "speed computed",
                 "{speed} is '{channel}' {sign} radius ({radius_from})",
-                channel=speed,
+                channel=paths["speed"],
                 speed=to.speed,
                 sign="x" if to.speed == "sliding speed" else "/",
                 **known,

@@ -75,7 +75,7 @@ def refuse_rows_repeated(arrays: Mapping[str, FloatArray], file: str, place: Cal
     TimeOrderError
         Naming both stretches.
     """
-    time, torque = arrays["time"], arrays["torque"]
+    time, torque = arrays["time"], arrays.get("torque", arrays["speed"])
     for row, earlier, rows in _repeated(arrays):
         end = row + rows
         if not _varies(torque[row:end]) or (end < time.size and time[end] < time[row - 1]):

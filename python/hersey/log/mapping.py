@@ -32,7 +32,6 @@ from hersey.files.toml import Table, naming, read_tables, read_toml
 from hersey.log import corrections
 from hersey.log.channels import Stated
 from hersey.log.corrections import Corrected
-from hersey.log.derived.set_points import SetPoints
 from hersey.log.layouts.laid_out import reading_by
 from hersey.log.layouts.presets import with_preset
 from hersey.log.layouts.proposing import with_layout
@@ -78,7 +77,8 @@ class _Roles(Table):
     position: PositionMapping = field(default_factory=PositionMapping)
     direction: RoleMapping = field(default_factory=RoleMapping)
     names: NamesMapping = field(default_factory=NamesMapping)
-    schedule: Annotated[SetPoints | None, Steps(None)] = None
+    #: Set points by time: one ``[[schedule]]`` per step, with from, to, and speed, temperature or load.
+    schedule: Annotated[Any, Steps(None)] = None
     layout: LogLayout | None = None
 
 
@@ -272,6 +272,7 @@ def read_with_mapping(
     every: float | None = None,
     radius: float | Sequence[float] | None = None,
     load: float | Sequence[float] | None = None,
+    without_torque: bool = False,
     torque_constant: float | None = None,
     gear_ratio: float | None = None,
     speed_gear_ratio: float | None = None,
@@ -294,7 +295,7 @@ def read_with_mapping(
     signs
         -1 by role, ``torque`` or ``speed``, flips the sign in addition to the mapping.
     isothermal, drop_missing, every, radius, load, name_pattern, name_decimal, schedule, position_window,
-    progress
+    without_torque, progress
         As for `hersey.read`; they override the mapping.
     torque_constant
         Torque of the motor per ampere, N m/A, if the torque column is its current.
@@ -319,6 +320,7 @@ def read_with_mapping(
     motor = Motor(torque_constant, gear_ratio, speed_gear_ratio, inertia)
     chosen, channels, units = motor.added(chosen, channels or {}, units or {})
     chosen = chosen.turned(signs or {})
+    chosen = replace(chosen, torque=TorqueMapping()) if without_torque else chosen
     stated = Stated(every, as_stated(radius), as_stated(load))
     said = {
         "name_pattern": name_pattern,
@@ -336,6 +338,7 @@ def read_with_mapping(
                 units={**needed(chosen.units), **units},
                 isothermal=isothermal,
                 drop_missing=drop_missing,
+                without_torque=without_torque,
                 **{name: value for name, value in vars(chosen.stated).items() if value is not None}
                 | {name: value for name, value in vars(stated).items() if value is not None},
                 **sources,

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from hersey.errors import ParameterError
+from hersey.errors import ChannelError, ParameterError, UnitError
 from hersey.log.assembly import Assembly
 from hersey.log.channels import ChannelChoice, Stated
 from hersey.log.derived.sources import Sources
@@ -40,6 +40,7 @@ def read(
     every: float | None = None,
     radius: float | Sequence[float] | None = None,
     load: float | Sequence[float] | None = None,
+    without_torque: bool = False,
     name_pattern: str | None = None,
     name_decimal: str | None = None,
     schedule: Any = None,
@@ -73,6 +74,9 @@ def read(
         it; one value, or one per run.
     load
         Normal load, N, if there is no column for it; one value, or one per run.
+    without_torque
+        Whether to read time and speed alone, for `hersey.coast_down`: no torque is looked for, and all its
+        values are NaN.
     name_pattern
         Pattern of the file names, e.g. ``"{speed} rpm {load} N.txt"``, if they state speed, load, radius or
         temperature. ``*`` stands for any text.
@@ -119,11 +123,12 @@ def read(
     sources = Sources.of(name_pattern, name_decimal, schedule, position_window)
     sources.refuse_twice(choices, stated)
     stated = sources.stated(stated, files)
-    wanted = Wanted(choices, stated, isothermal, drop_missing)
+    wanted = Wanted(choices, stated, isothermal, drop_missing, without_torque)
     done: list[tuple[Run, LogFile]] = []
     for number, file in enumerate(files, start=1):
         of_file = replace(wanted, derived=sources.of_file(file))
-        read_here = _runs(file, of_file, "frame" if len(files) == 1 else f"frame {number}", progress)
+        name = "frame" if len(files) == 1 else f"frame {number}"
+        read_here = (_speeds if without_torque else _runs)(file, of_file, name, progress)
         if any(read_here[0][1].sha256 == other.sha256 for _, other in done):
             name = read_here[0][1].name
             raise ParameterError(f"{name} has the same content as an earlier file. Give each file once")
@@ -132,7 +137,8 @@ def read(
     log = TorqueLog(tuple(run for run, _ in done), tuple(log for _, log in done))
     refuse_given_twice(log.runs)
     refuse_rows_shared(log.runs)
-    refuse_exchanged(log, choices)
+    if not without_torque:
+        refuse_exchanged(log, choices)
     return log
 
 
@@ -148,6 +154,17 @@ def _runs(file: Any, wanted: Wanted, frame: str, progress: Progress | None) -> l
         with text_recording(path) as recording:
             return Assembly(recording, wanted).runs()
     return read_delimited(path, wanted, progress)
+
+
+def _speeds(file: Any, wanted: Wanted, frame: str, progress: Progress | None) -> list[tuple[Run, LogFile]]:
+    """The runs in a log without torque, with a temperature if one is found."""
+    try:
+        return _runs(file, wanted, frame, progress)
+    except (ChannelError, UnitError) as error:
+        of_temperature = error.setting is not None and error.setting.name == "temperature"
+        if not of_temperature or wanted.choices["temperature"] != ChannelChoice():
+            raise
+    return _runs(file, replace(wanted, isothermal=True), frame, progress)
 
 
 def _stated(*, every: Any, radius: Any, load: Any) -> Stated:

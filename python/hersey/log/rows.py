@@ -274,8 +274,8 @@ def _recorded(
         )
         warnings = (*warnings, start)
     record = replace(file, name=name, rows=run["time"].size, warnings=warnings)
-    times, torque, speed = (run[role] for role in ("time", "torque", "speed"))
-    return Run(name, times, torque, speed, run.get("temperature"), run.get("load")), record
+    torque = run["torque"] if "torque" in run else np.full(run["time"].size, np.nan)
+    return Run(name, run["time"], torque, run["speed"], run.get("temperature"), run.get("load")), record
 
 
 def _slow(

@@ -14,6 +14,8 @@ from hersey.log.roles import EVERY, ROLES
 class Wanted:
     """What the user says of a log: a choice for each role, what a file need not hold, what is left out.
 
+    A log of a wheel that coasts down is read ``without_torque``.
+
     Raises
     ------
     ParameterError
@@ -26,6 +28,7 @@ class Wanted:
     stated: Stated
     isothermal: bool = False
     drop_missing: bool = False
+    without_torque: bool = False
     derived: Derived = Derived()  # noqa: RUF009 # frozen
 
     def __post_init__(self) -> None:
@@ -47,5 +50,9 @@ class Wanted:
     @property
     def roles(self) -> tuple[str, ...]:
         """Roles that a channel must play."""
-        without = {"temperature": self.isothermal, "time": self.stated.every is not None}
+        without = {
+            "temperature": self.isothermal,
+            "time": self.stated.every is not None,
+            "torque": self.without_torque,
+        }
         return tuple(role for role in ROLES if not without.get(role))

@@ -26,6 +26,8 @@ _BLOCKS, _TURN = 60, 0.1
 _HELD = 0.9
 #: A log shorter than so many dwells has a clock in another unit, or rows less often: so many times, say.
 _TOO_BRIEF, _RARER = 1.0, 50
+#: Share of the rows in which speed holds for a moment, as on the crests of sines, of a log that moves.
+_CRESTS = 0.3
 #: Rows from which a log without dwells may be fitted as it moves.
 _TO_FIT = 300
 #: A log of so many dwells of the usual duration is long enough: the duration asked for is the mistake.
@@ -63,7 +65,8 @@ def nothing_steady(
     said = f"{name}: no dwell found ({listed})"
     for way in (*(_remedy(alike) for alike in reasons.values()), way_out):
         said = followed_by(said, way)
-    moves = not too_brief(log, asked.min_dwell) and _runs_up_and_down(log, rejected)
+    brief = sum(r.rows for r in held) < _CRESTS * log.rows
+    moves = not too_brief(log, asked.min_dwell) and (brief or _runs_up_and_down(log, rejected))
     return InsufficientDataError(said, setting=MOVING if moves else None)
 
 

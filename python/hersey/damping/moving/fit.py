@@ -68,7 +68,7 @@ def fit_moving(log: TorqueLog, *, inertia: float | None = None) -> MovingFit:
     >>> noisy = torque + np.random.default_rng(1).normal(0.0, 0.01, t.size)
     >>> columns = {"time (s)": t, "torque (N m)": noisy, "speed (rad/s)": w}
     >>> fit_moving(hersey.read(polars.DataFrame(columns), isothermal=True))["T_C"]
-    Estimate(0.3000 [0.2987, 0.3013] at 95 %)
+    Estimate(0.300 [0.299, 0.301] at 95 %)
     """
     if inertia is not None and not inertia >= 0.0:
         raise ParameterError(f"the moment of inertia is {inertia:g} kg m^2: it must not be negative")

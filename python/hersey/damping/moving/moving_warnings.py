@@ -37,7 +37,7 @@ def _one_way(equations: Equations) -> Warning | None:
     if np.any(equations.speed > 0) and np.any(equations.speed < 0):
         return None
     return Warning(
-        "one direction",
+        "torque zero unknown",
         "the drive moves in one direction only, so a torque zero cannot be told from Coulomb friction; it is "
         "taken as 0",
         severity="watch",

@@ -10,6 +10,7 @@ import numpy as np
 from hersey.arrays import FloatArray
 from hersey.damping.estimate import Estimate, estimate
 from hersey.damping.moving.fitting import Fitting, MovingLawFit
+from hersey.damping.moving.windows import windows
 from hersey.log.torque_log import ROTATIONS, TorqueLog
 from hersey.result import Means, Record, Result
 from hersey.schema.warning import Warning
@@ -115,8 +116,6 @@ class MovingFit(Result):
         InsufficientDataError
             If no window holds enough independent moments.
         """
-        from hersey.damping.moving.windows import windows
-
         return windows(self, rotation)
 
     def headline(self) -> str:

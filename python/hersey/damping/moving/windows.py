@@ -8,7 +8,7 @@ does is shared by all.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 import numpy as np
 import polars as pl
@@ -16,16 +16,39 @@ import polars as pl
 from hersey.arrays import FloatArray
 from hersey.damping.dwells.points import Rejection, SteadyPoints
 from hersey.damping.dwells.reasons import Reason
+from hersey.damping.moving.fitting import Fitting, MovingLawFit
 from hersey.damping.moving.model import DELAY, INERTIA, OFFSET
 from hersey.errors import InsufficientDataError
-
-if TYPE_CHECKING:
-    from hersey.damping.moving.result import MovingFit
+from hersey.log.torque_log import TorqueLog
+from hersey.schema.warning import Warning
 
 #: Windows per direction at the most, ratio of speeds and kelvin that one may span, moments that it must have.
 _SPEEDS, _RATIO, _KELVIN, _LEAST = 12, 1.15, 4.0, 8
 #: Moments whose correlation is summed one by one; of more, every few.
 _MOST = 1500
+
+
+class FittedLog(Protocol):
+    """A log with the law fitted to it: `MovingFit` is one."""
+
+    @property
+    def log(self) -> TorqueLog:
+        """The log."""
+
+    @property
+    def fitted(self) -> MovingLawFit:
+        """The law."""
+
+    @property
+    def fitting(self) -> Fitting:
+        """Equations and noise."""
+
+    @property
+    def warnings(self) -> tuple[Warning, ...]:
+        """What is to be known of it."""
+
+    def friction(self, speed: FloatArray, kelvin: FloatArray | None = None) -> FloatArray:
+        """Return friction alone, N m."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +63,7 @@ class _Moments:
     kelvin: FloatArray | None
 
 
-def windows(fit: MovingFit, rotation: str) -> SteadyPoints:
+def windows(fit: FittedLog, rotation: str) -> SteadyPoints:
     """Return the windows of a fit; see `MovingFit.points`."""
     moments = _moments(fit)
     of = [each for each in _members(moments) if each.size >= _LEAST]
@@ -69,7 +92,7 @@ def windows(fit: MovingFit, rotation: str) -> SteadyPoints:
 _OPTIONAL = dict.fromkeys(("temperature", "temperature_error", "load"), pl.Float64)
 
 
-def _moments(fit: MovingFit) -> _Moments:
+def _moments(fit: FittedLog) -> _Moments:
     equations = fit.fitting.equations
     counts = [each.size for each in equations.places]
     of = equations.filtered
@@ -99,7 +122,7 @@ def _members(moments: _Moments) -> list[np.ndarray]:
     return [np.flatnonzero(inverse == each) for each in range(int(inverse.max()) + 1)]
 
 
-def _row(fit: MovingFit, moments: _Moments, of: np.ndarray) -> dict[str, Any]:
+def _row(fit: FittedLog, moments: _Moments, of: np.ndarray) -> dict[str, Any]:
     run = fit.log.runs[int(moments.run[of[0]])]
     speed = float(np.mean(moments.speed[of]))
     kelvin = None if moments.kelvin is None else float(np.mean(moments.kelvin[of]))
@@ -129,7 +152,7 @@ def _row(fit: MovingFit, moments: _Moments, of: np.ndarray) -> dict[str, Any]:
     }
 
 
-def _together(fit: MovingFit, moments: _Moments, of: np.ndarray) -> float:
+def _together(fit: FittedLog, moments: _Moments, of: np.ndarray) -> float:
     """How many moments of a window count as one, by the correlation of the noise."""
     some = of[:: -(-of.size // _MOST)]
     apart = np.abs(moments.place[some][:, None] - moments.place[some][None, :])
@@ -139,7 +162,7 @@ def _together(fit: MovingFit, moments: _Moments, of: np.ndarray) -> float:
     return float(max(1.0, 1.0 + every * (np.sum(correlation[apart] * same) / some.size - 1.0)))
 
 
-def _shared(fit: MovingFit, of: list[np.ndarray]) -> FloatArray:
+def _shared(fit: FittedLog, of: list[np.ndarray]) -> FloatArray:
     """What one standard error of each number that windows share does to each of them, N m."""
     law, equations = fit.fitted.law, fit.fitting.equations
     indices = [i for i, name in enumerate(law.names) if name in (INERTIA, OFFSET, DELAY)]
@@ -150,7 +173,7 @@ def _shared(fit: MovingFit, of: list[np.ndarray]) -> FloatArray:
     return np.asarray(-means @ (vectors * np.sqrt(np.maximum(values, 0.0))))
 
 
-def _rejected(fit: MovingFit, table: pl.DataFrame) -> tuple[Rejection, ...]:
+def _rejected(fit: FittedLog, table: pl.DataFrame) -> tuple[Rejection, ...]:
     """Rows of each run that are in no window."""
     out = []
     for index, run in enumerate(fit.log.runs):

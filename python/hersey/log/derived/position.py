@@ -11,6 +11,9 @@ WINDOW = 0.2
 #: Fewest rows under a window.
 _LEAST = 5
 _TURN = 2.0 * np.pi
+#: Fewest changes that show a step, how near to a multiple of it they are, as many of them as that, and steps
+#: in a change at the most: any number is near a multiple of a small one.
+_FEWEST, _NEAR, _SHARE, _MOST_STEPS = 10, 0.05, 0.98, 1e4
 #: An angle starts anew with every turn if it spans no more than one, within this share, and jumps back by
 #: more than half a turn.
 _WHOLE, _JUMP = 1.001, 0.5
@@ -53,9 +56,12 @@ def slope(time: FloatArray, position: FloatArray, window: float) -> tuple[FloatA
 def smallest_step(position: FloatArray) -> float:
     """Return the step in which a position counts, 0 if it has none: most rows change by whole steps."""
     changes = np.abs(np.diff(position[np.isfinite(position)][:100_000]))
-    changes = changes[changes > 1e-12 * max(1.0, float(np.max(np.abs(changes), initial=0.0)))]
-    if changes.size < 10:
+    largest = float(np.max(changes, initial=0.0))
+    gaps = np.diff(np.unique(np.append(0.0, changes)))
+    gaps = gaps[gaps > 1e-6 * largest]
+    if changes.size < _FEWEST or not gaps.size:
         return 0.0
-    step = float(changes.min())
+    step = float(np.mean(gaps[gaps < 1.5 * gaps.min()]))
     ratio = changes / step
-    return step if np.mean(np.abs(ratio - np.round(ratio)) < 0.05) > 0.98 and np.median(ratio) < 1e3 else 0.0
+    counts = np.mean(np.abs(ratio - np.round(ratio)) < _NEAR) > _SHARE
+    return step if counts and np.median(ratio) < _MOST_STEPS else 0.0

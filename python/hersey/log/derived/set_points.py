@@ -61,7 +61,9 @@ class SetPoints:
             It names the step and the key.
         """
         rows = [dict(step) for step in steps]
-        keys = list(rows[0]) if rows else []
+        if not rows:
+            raise ParameterError(f"{_SCHEDULE.to()} has no step. Each needs from, to, and e.g. speed")
+        keys = list(rows[0])
         table: dict[str, list[float]] = {key: [] for key in keys}
         for number, row in enumerate(rows, start=1):
             place = f"step {number} of the schedule"

@@ -25,7 +25,16 @@ from hersey.log.channels import (
     taken_columns,
 )
 from hersey.log.constant_temperature import constant_temperature
-from hersey.log.friction import Chosen, beside, computed, in_domain, is_converted, slow_roles, unused
+from hersey.log.friction import (
+    Chosen,
+    beside,
+    computed,
+    in_domain,
+    is_converted,
+    rotating,
+    slow_roles,
+    unused,
+)
 from hersey.log.impossible import Impossible, Reading, impossible_rows
 from hersey.log.long_arrays import Filling, rows_before, without
 from hersey.log.replaced import replaced_units
@@ -339,14 +348,15 @@ class _Table:
             for (role, (_, si)), numbers in zip(self.channels.items(), values, strict=True)
         }
         if self.stated.every is not None:
-            numbers = self.rows + np.arange(arrays["torque"].size, dtype=float)
+            numbers = self.rows + np.arange(values[0].size, dtype=float)
             arrays["time"] = numbers * self.stated.every
         return arrays
 
     def _has_radius(self, by_role: dict[str, FloatArray]) -> BoolArray:
         """Whether a row has a radius where torque or speed can be had only with one."""
         rotated = in_domain(dict(by_role), self.channels, self.stated)
-        return ~(np.isnan(rotated["torque"]) | np.isnan(rotated["speed"]))
+        unknown = [np.isnan(rotated[role]) for role in rotating(self.channels)]
+        return np.asarray(~np.logical_or.reduce(unknown))
 
     def _fault(self, block: Block, values: list[FloatArray], row: int) -> str:
         """Line and column of the first cell of a row that is of no use, and what is wrong with it."""

@@ -1,0 +1,58 @@
+"""The moment of inertia of a wheel that coasts down, and how far it is known."""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import Any
+
+from hersey.damping.estimate import Estimate
+from hersey.errors import ParameterError
+from hersey.units import argument
+from hersey.units.spelling import NUMBER
+
+#: Half a 95 % interval of a normal distribution over its standard error.
+NORMAL = 1.96
+_KIND = "moment of inertia"
+_EXAMPLE = "0.012 kg*m^2 ± 2 %"
+
+
+def inertia_of(given: Any, name: str = "inertia") -> Estimate:
+    """Return a moment of inertia, kg m^2, with its 95 % interval, which is no wider than it if none is given.
+
+    Raises
+    ------
+    ParameterError, UnitError
+        If it is not a positive number with a unit, or its error cannot be read.
+
+    Examples
+    --------
+    >>> inertia_of("0.012 kg*m^2 ± 2 %").high
+    0.01224
+    """
+    if isinstance(given, Estimate):
+        return given
+    text, half = given, 0.0
+    if isinstance(given, str) and (parts := re.split(r"\s*(?:±|\+/-|\+-)\s*", given.strip())):
+        text = parts[0]
+        if len(parts) > 2:
+            raise ParameterError(f"{name} '{given}' has two errors. Write e.g. '{_EXAMPLE}'")
+        value = float(argument(name, _KIND, text, one=True))
+        half = _half(name, given, parts[1], value) if len(parts) == 2 else 0.0
+    else:
+        value = float(argument(name, _KIND, text, one=True))
+    if not (value > 0 and math.isfinite(value)):
+        raise ParameterError(f"{name} is {given}: it must be greater than 0")
+    if not 0 <= half < value:
+        raise ParameterError(f"{name} is {given}: its error must be smaller than the value")
+    return Estimate(value, half / NORMAL, value - half, value + half)
+
+
+def _half(name: str, given: str, text: str, value: float) -> float:
+    """Half the 95 % interval, kg m^2."""
+    share = re.fullmatch(rf"({NUMBER})\s*%", text)
+    if share:
+        return float(share[1]) / 100.0 * value
+    if re.fullmatch(NUMBER, text):
+        raise ParameterError(f"{name} '{given}': the error has no unit. Write e.g. '{_EXAMPLE}'")
+    return float(argument(name, _KIND, text, one=True))

@@ -1,0 +1,239 @@
+"""Friction from coast-downs: closed form, known friction, what the log holds besides, what is told of it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import polars as pl
+import pytest
+from scipy.integrate import solve_ivp
+
+import hersey
+from hersey.arrays import FloatArray
+from hersey.damping.coast_down import CoastDown
+from hersey.damping.coast_down.closed_form import speeds
+from hersey.damping.coast_down.inertia import inertia_of
+from hersey.errors import InsufficientDataError, ParameterError, UnitError
+from tests.cli.command import run
+from tests.conftest import ROOT
+
+LOG = ROOT / "examples" / "coast-down.csv"
+#: Of the example: kg m^2, N m, N m s/rad, N m s^2/rad^2.
+INERTIA, TERMS = 0.012, (0.008, 2e-4, 4e-6)
+
+
+def falling(law: tuple[float, float, float], first: float, until: float, every: float) -> FloatArray:
+    """Speeds by a solver of its own."""
+
+    def rate(_: float, w: FloatArray) -> FloatArray:
+        return -(law[0] + law[1] * w + law[2] * w * w)
+
+    time = np.arange(0.0, until, every)
+    return np.asarray(solve_ivp(rate, (0.0, until), [first], t_eval=time, rtol=1e-10, atol=1e-10).y[0])
+
+
+def frame(speed: FloatArray, every: float = 0.05, noise: float = 0.05, **more: FloatArray) -> pl.DataFrame:
+    seen = speed + noise * np.random.default_rng(4).standard_normal(speed.size)
+    return pl.DataFrame({"time [s]": every * np.arange(speed.size), "speed [rad/s]": seen} | more)
+
+
+def kinds(found: CoastDown) -> set[str]:
+    return {each.kind for each in found.warnings}
+
+
+LAWS = [(1.0, 0.05, 1e-3), (0.0, 0.05, 1e-3), (1.0, 0.0, 0.0), (0.0, 0.0, 0.01), (0.0, 0.1, 0.0)]
+
+
+@pytest.mark.parametrize("law", [*LAWS, (1.0, 0.0, 1e-4)])
+def test_the_closed_form_solves_the_equation(law: tuple[float, float, float]) -> None:
+    time = np.arange(0.0, 20.0, 0.1)
+    speed, derivatives = speeds(np.array(law), 100.0, time)
+    assert np.allclose(speed, falling(law, 100.0, 20.0, 0.1), rtol=1e-7)
+    for column, step in enumerate((1e-5, 1e-7, 1e-9, 1e-5)):
+        moved = []
+        for way in (step, -step):
+            other = np.array([*law, 100.0])
+            other[column] += way
+            moved.append(speeds(other[:3], float(other[3]), time)[0])
+        expected = (moved[0] - moved[1]) / (2.0 * step)
+        assert np.allclose(derivatives[:, column], expected, rtol=1e-5, atol=1e-5 * np.abs(expected).max())
+
+
+def test_a_wheel_that_stands_stays_so() -> None:
+    speed, derivatives = speeds(np.array([10.0, 0.0, 0.0]), 10.0, np.linspace(0.0, 3.0, 31))
+    assert speed[9] == pytest.approx(1.0)
+    assert not speed[11:].any()
+    assert not derivatives[11:].any()
+
+
+def test_the_terms_of_the_example_are_found() -> None:
+    found = hersey.coast_down(LOG, inertia="0.012 kg*m^2 ± 2 %")
+    for term, truth in zip((found.coulomb, found.viscous, found.windage), TERMS, strict=True):
+        assert term.low < truth < term.high
+        assert term.value == pytest.approx(truth, rel=0.03)
+    assert found.terms_shown == ("Coulomb", "viscous", "windage")
+    assert [each.stops for each in found.coasts] == [True, False]
+    assert found.coasts[1].slowest == pytest.approx(60.0, rel=0.05)
+    assert {"standing", "rising", "ends"} <= {each.why for each in found.left_out}
+    assert found.warnings == ()
+    value, low, high = found.torque_at("1000 rpm")
+    speed = 1000.0 * np.pi / 30.0
+    truth = TERMS[0] + TERMS[1] * speed + TERMS[2] * speed**2
+    assert low[0] < truth < high[0]
+    assert (high[0] - low[0]) / 2.0 / value[0] == pytest.approx(0.02, rel=0.05)
+
+
+def test_an_inertia_without_an_error_is_told() -> None:
+    found = hersey.coast_down(LOG, inertia="0.012 kg*m^2")
+    (exact,) = found.warnings
+    assert exact.values == {"inertia": 0.012}
+    assert "0.012 kg*m^2 ± 2 %" in exact.sentence
+    assert (found.coulomb.high - found.coulomb.low) / found.coulomb.value < 0.02
+
+
+def test_points_carry_their_own_errors_and_the_shared_one() -> None:
+    points = hersey.coast_down(LOG, inertia="0.012 kg*m^2 ± 2 %").points()
+    torque, speed, error = (points.column(name) for name in ("torque", "speed", "torque_error"))
+    truth = TERMS[0] + speed * (TERMS[1] + speed * TERMS[2])
+    assert np.mean(np.abs(torque - truth) < 2.0 * error) > 0.8
+    assert points.window_errors[:, 0] == pytest.approx(0.02 / 1.96 * torque)
+    assert np.isfinite(points.log.runs[0].torque).all()
+    assert set(points.column("approach")) == {"from above"}
+
+
+def test_points_are_fitted_like_dwells() -> None:
+    """Torque as speed^0.6 is no law of three terms, and is found from the windows."""
+    time = np.arange(0.0, 25.0, 0.02)
+    speed = (100.0**0.4 - 0.4 * 0.5 * time) ** 2.5
+    found = hersey.coast_down(frame(speed[speed > 3.0], 0.02), inertia=0.01)
+    (told,) = [each for each in found.warnings if each.severity == "act"]
+    assert told.kind == "negative friction term"
+    surface = hersey.fit(found.points())
+    assert surface.c.low < -0.4 < surface.c.high
+
+
+def test_a_coast_of_high_speeds_alone_does_not_separate_its_terms() -> None:
+    speed = falling((1.0, 0.05, 0.0), 100.0, 4.0, 0.01)
+    found = hersey.coast_down(frame(speed, 0.01, 0.3), inertia="0.01 kg*m^2 ± 1 %")
+    (told,) = [each for each in found.warnings if each.kind == "friction terms not separated"]
+    assert told.number("slow") > 50.0
+    assert "lower speeds" in told.sentence
+    assert found.coulomb.high > 0.01
+    assert found.viscous.high > 5e-4
+    truth = 0.01 * (1.0 + 0.05 * found.speeds)
+    assert ((found.low < truth) & (truth < found.high)).all()
+
+
+def test_a_term_that_is_not_there_has_a_limit() -> None:
+    speed = falling((0.0, 0.1, 0.0), 100.0, 30.0, 0.05)
+    found = hersey.coast_down(frame(speed), inertia="0.01 kg*m^2 ± 1 %")
+    assert found.terms_shown == ("viscous",)
+    assert (found.coulomb.low, found.windage.low) == (0.0, 0.0)
+    assert 0.0 < found.coulomb.high < 1e-3 * 0.1
+
+
+def test_brake_and_drive_are_left_out() -> None:
+    first = falling((1.0, 0.05, 5e-4), 100.0, 8.0, 0.02)
+    held = np.full(300, first[-1])
+    rest = falling((1.0, 0.05, 5e-4), float(first[-1]), 8.0, 0.02)
+    brake = np.linspace(rest[-1], 0.0, 120)
+    whole = np.concatenate([np.full(200, 100.0), first, held, rest, brake, np.zeros(100)])
+    found = hersey.coast_down(frame(whole, 0.02), inertia="0.01 kg*m^2 ± 1 %")
+    told = {each.values["what"] for each in found.warnings if each.kind == "parts left out"}
+    assert told == {"driven", "braked"}
+    assert len(found.coasts) == 2
+    for term, truth in zip((found.coulomb, found.viscous, found.windage), (0.01, 5e-4, 5e-6), strict=True):
+        assert term.low < truth < term.high
+
+
+def test_a_wheel_driven_through_standstill_does_not_coast() -> None:
+    down = np.concatenate([np.full(200, 100.0), np.linspace(100.0, -100.0, 400), np.full(200, -100.0)])
+    with pytest.raises(InsufficientDataError, match="speed falls freely nowhere"):
+        hersey.coast_down(frame(down), inertia=0.01)
+
+
+def test_coasts_that_differ_are_told_and_widen_the_intervals() -> None:
+    parts = []
+    for scale in (0.8, 1.0, 1.2):
+        parts += [np.full(100, 100.0), falling((scale, 0.05 * scale, 0.0), 100.0, 20.0, 0.05)]
+    found = hersey.coast_down(frame(np.concatenate(parts)), inertia="0.01 kg*m^2 ± 1 %")
+    (told,) = [each for each in found.warnings if each.kind == "coasts differ"]
+    assert told.number("share") == pytest.approx(0.2, abs=0.03)
+    assert found.difference == pytest.approx(0.2, abs=0.03)
+    truth = 0.01 * (1.0 + 0.05 * found.speeds)
+    assert ((found.low < truth) & (truth < found.high)).all()
+
+
+def test_counts_of_an_encoder_are_fitted_as_an_angle() -> None:
+    time = np.arange(0.0, 20.0, 0.01)
+    angle = np.cumsum(falling((1.0, 0.05, 0.0), 100.0, 20.0, 0.01)) * 0.01
+    count = 2.0 * np.pi / 400
+    seen = np.diff(np.floor(angle / count) * count, prepend=-1.0) / 0.01
+    log = pl.DataFrame({"time [s]": time[1:], "speed [rad/s]": seen[1:]})
+    found = hersey.coast_down(log, inertia="0.01 kg*m^2 ± 1 %")
+    assert found.fit.of_angle
+    assert found.viscous.value == pytest.approx(5e-4, rel=2e-3)
+
+
+def test_a_temperature_that_changes_is_told() -> None:
+    speed = falling((1.0, 0.05, 0.0), 100.0, 20.0, 0.05)
+    hot = {"temperature [degC]": np.linspace(40.0, 50.0, speed.size)}
+    found = hersey.coast_down(frame(speed, **hot), inertia="0.01 kg*m^2 ± 1 %")
+    (told,) = found.warnings
+    assert told.kind == "temperature changed"
+    assert told.number("hot") - told.number("cold") == pytest.approx(10.0, abs=1.0)
+    assert found.points().log.has_temperature
+
+
+def test_a_log_of_dwells_does_not_coast() -> None:
+    stairs = np.repeat([100.0, 80.0, 60.0, 40.0, 20.0, 10.0, 5.0], 200)
+    with pytest.raises(InsufficientDataError, match="speed falls freely nowhere") as error:
+        hersey.coast_down(frame(stairs, noise=0.2), inertia=0.01)
+    assert "without drive and brake" in error.value.remedy
+
+
+@pytest.mark.parametrize(
+    ("given", "half"),
+    [
+        ("0.012 kg*m^2", 0.0),
+        ("0.012 kg*m^2 ± 2 %", 2.4e-4),
+        ("120 kg*cm^2 +/- 1.2 kg*cm^2", 1.2e-4),
+        (0.012, 0.0),
+    ],
+)
+def test_an_inertia_is_read_with_its_error(given: object, half: float) -> None:
+    known = inertia_of(given)
+    assert known.value == pytest.approx(0.012)
+    assert known.high - known.value == pytest.approx(half)
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ("0.012", "inertia: '0.012' is not a number with a unit"),
+        ("-0.012 kg*m^2", "greater than 0"),
+        ("0.012 kg*m^2 ± 2", "the error has no unit. Write e.g. '0.012 kg"),
+        ("0.012 kg*m^2 ± 200 %", "smaller than the value"),
+        ("0.012 N*m", "N"),
+    ],
+)
+def test_what_is_no_inertia_is_refused(given: str, said: str) -> None:
+    with pytest.raises((ParameterError, UnitError), match=said.replace("*", r"\*")):
+        inertia_of(given)
+
+
+def test_the_command_prints_torque_and_terms(tmp_path: Path) -> None:
+    done = run("coastdown", str(LOG), "--inertia", "0.012 kg*m^2 ± 2 %", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert "2 coast-downs found." in done.stdout
+    assert "Coulomb: 7.9" in done.stdout
+    assert "[7.77, 8.10] mN m" in done.stdout
+
+
+def test_a_missing_inertia_is_asked_for(tmp_path: Path) -> None:
+    done = run("coastdown", str(LOG), cwd=tmp_path)
+    assert done.returncode == 2
+    assert "add --inertia '0.012 kg*m^2 ± 2 %'" in done.stderr
+    again = run("coastdown", str(LOG), "--inertia", "0.012 kg*m^2 ± 2 %", "--json", cwd=tmp_path)
+    assert again.returncode == 0

@@ -1,0 +1,263 @@
+"""Speed, load and temperature that no column holds: file names, schedules, positions, directions."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import polars as pl
+import pytest
+
+import hersey
+from hersey.cli.options import Reading
+from hersey.damping.recipe import Recipe
+from hersey.errors import ChannelError, HerseyError, ParameterError, UnreadableLogError
+from hersey.log.derived.file_names import NamePattern, proposed_pattern
+from hersey.log.derived.position import slope, unwrapped
+from hersey.log.derived.set_points import SetPoints
+from hersey.log.mapping import read_with_mapping
+
+RPM = np.pi / 30
+TIME = np.arange(3000) * 0.02
+SPEEDS = np.repeat([20.0, 60.0, 180.0], 1000)
+TORQUE = 0.01 * SPEEDS**0.4 + 1e-4 * np.sin(1.7 * np.arange(3000) ** 1.1)
+
+
+def written(path: Path, **columns: object) -> Path:
+    path.parent.mkdir(exist_ok=True)
+    names = {"time": "Time [s]", "torque": "Torque [N*m]", "speed": "Speed [rpm]", "angle": "Angle [deg]"}
+    frame = pl.DataFrame({names.get(name, name): values for name, values in columns.items()}, strict=False)
+    frame.write_csv(path, float_precision=6)
+    return path
+
+
+def named(
+    folder: Path, names: tuple[str, ...] = ("20 rpm 5 N.csv", "60 rpm 5 N.csv", "180 rpm 5 N.csv")
+) -> list[Path]:
+    parts = [slice(1000 * i, 1000 * i + 1000) for i in range(3)]
+    return [
+        written(folder / name, time=TIME[:1000], torque=TORQUE[part])
+        for name, part in zip(names, parts, strict=True)
+    ]
+
+
+@pytest.mark.parametrize(
+    ("template", "decimal", "name", "values"),
+    [
+        ("{speed} rpm {load} N.txt", ".", "120rpm 7.5 N.txt", {"speed": "120 rpm", "load": "7.5 N"}),
+        ("{speed}rps{load:N}*", "-", "0-1rps0-7.txt", {"speed": "0.1 rps", "load": "0.7 N"}),
+        (
+            "*_{temperature}degC_{speed:mm/s}_*",
+            ",",
+            "R1_80,5degC_25_b.csv",
+            {"temperature": "80.5 degC", "speed": "25 mm/s"},
+        ),
+        ("{radius} mm/{speed}RPM*", ".", "12 mm/-40rpm.csv", {"radius": "12 mm", "speed": "-40 RPM"}),
+    ],
+)
+def test_names_by_a_pattern(template: str, decimal: str, name: str, values: dict[str, str]) -> None:
+    assert NamePattern(template, decimal).values(name) == values
+
+
+@pytest.mark.parametrize(
+    ("template", "said"),
+    [
+        ("run.csv", "has no placeholder"),
+        ("{speed} rpm {speed} rpm", "has {speed} twice"),
+        ("{velocity} rpm", "has {velocity} which is unknown"),
+        ("{speed}.csv", "{speed} without a unit behind it. Write the unit, e.g. {speed:rpm}"),
+    ],
+)
+def test_patterns_that_cannot_be_used(template: str, said: str) -> None:
+    with pytest.raises(ParameterError) as refused:
+        NamePattern(template)
+    assert said in str(refused.value)
+
+
+def test_a_name_that_does_not_match_is_named() -> None:
+    with pytest.raises(ParameterError, match=r"^1 rps\.csv: the name does not match"):
+        NamePattern("{speed} rpm.csv").values("1 rps.csv")
+
+
+@pytest.mark.parametrize(
+    ("name", "proposed"),
+    [
+        ("0-1rps0-3N.txt", ("{speed}rps{load}N.txt", "-")),
+        ("R3 120 rpm 80 degC.csv", ("R3 {speed} rpm {temperature} degC.csv", ".")),
+        ("log 2023-01-02.csv", None),
+        ("5 N.csv", None),
+    ],
+)
+def test_a_pattern_is_proposed_for_a_name_with_a_speed(name: str, proposed: tuple[str, str] | None) -> None:
+    assert proposed_pattern(name) == proposed
+    if proposed:
+        assert "speed" in NamePattern(*proposed).values(name)
+
+
+def test_torque_against_time_with_the_speed_in_the_name_reduces_to_dwells(tmp_path: Path) -> None:
+    logs = named(tmp_path)
+    log = hersey.read(logs, name_pattern="{speed} rpm {load} N.csv", isothermal=True)
+    assert [run.speed[0] / RPM for run in log.runs] == pytest.approx([20, 60, 180], rel=1e-12)
+    assert all(np.all(run.load == 5.0) for run in log.runs)
+    kinds = [[warning.kind for warning in file.warnings] for file in log.files]
+    assert all("value of a file name" in each for each in kinds)
+    points = log.steady()
+    np.testing.assert_allclose(points.column("speed") / RPM, [20, 60, 180], rtol=1e-12)
+    np.testing.assert_allclose(points.column("torque"), 0.01 * np.array([20, 60, 180]) ** 0.4, rtol=1e-3)
+
+
+def test_what_stands_in_names_is_never_guessed_but_proposed(tmp_path: Path) -> None:
+    log = named(tmp_path)[0]
+    with pytest.raises(ChannelError, match="no speed column") as refused:
+        hersey.read(log, isothermal=True)
+    assert "name_pattern='{speed} rpm {load} N.csv'" in refused.value.remedy
+    (tmp_path / "hersey.toml").write_text('[names]\npattern = "{speed} rpm {load} N.csv"\n')
+    (run,) = read_with_mapping(log, isothermal=True).log.runs
+    assert run.speed[7] == pytest.approx(20 * RPM)
+
+
+STEPS = [
+    {"from": f"{20 * i} s", "to": f"{20 * i + 20} s", "speed": f"{w} rpm"}
+    for i, w in enumerate((20, 60, 180))
+]
+
+
+def test_schedules_in_python_in_a_table_and_in_a_mapping_agree(tmp_path: Path) -> None:
+    log = written(tmp_path / "log.csv", time=TIME + 3.0, torque=TORQUE)
+    table = tmp_path / "plan.csv"
+    table.write_text(
+        "from [min],to [s],speed [rpm]\n0,20,20\n0.3333333333333333,40,60\n0.6666666666666666,60,180\n"
+    )
+    mapping = tmp_path / "m.toml"
+    mapping.write_text(
+        "".join("[[schedule]]\n" + "".join(f'{k} = "{v}"\n' for k, v in s.items()) for s in STEPS)
+    )
+    runs = [
+        hersey.read(log, schedule=STEPS, isothermal=True).runs[0],
+        hersey.read(log, schedule=table, isothermal=True).runs[0],
+        read_with_mapping(log, mapping=mapping, isothermal=True).log.runs[0],
+    ]
+    for run in runs:
+        np.testing.assert_allclose(run.speed, SPEEDS * RPM, rtol=1e-12)
+    points = hersey.read(log, schedule=STEPS, isothermal=True).steady()
+    np.testing.assert_allclose(points.column("speed") / RPM, [20, 60, 180], rtol=1e-12)
+    (said,) = points.log.files[0].warnings
+    assert (said.kind, said.values) == ("set point", {"role": "speed"})
+
+
+def test_rows_outside_a_schedule_are_dropped_and_counted(tmp_path: Path) -> None:
+    log = written(tmp_path / "log.csv", time=TIME, torque=TORQUE)
+    (file,) = hersey.read(log, schedule=[STEPS[0], STEPS[2]], isothermal=True).files
+    (outside,) = [each for each in file.warnings if each.kind == "rows outside the schedule"]
+    assert outside.values == {"rows": 1000, "all": 3000}
+    late = [{"from": "1 h", "to": "2 h", "speed": "9 rpm"}]
+    with pytest.raises(UnreadableLogError, match=r"no step of the schedule covers .* lasts 59\.98 s"):
+        hersey.read(log, schedule=late, isothermal=True)
+
+
+@pytest.mark.parametrize(
+    ("steps", "said"),
+    [
+        ([], "has no step"),
+        ([{"from": 0, "to": 0, "speed": 1}], "step 1 of the schedule ends at 0 s"),
+        ([STEPS[1], STEPS[0]], "step 2 of the schedule begins at 0 s, before the previous one ends (40 s)"),
+        ([{"from": "0 s", "speed": "1 rpm"}], "lacks 'to'"),
+        ([{"from": "0 s", "to": "1 s", "torque": "1 N*m"}], "unknown key 'torque'"),
+        ([{"from": "0 s", "to": "1 s", "speed": "1 mm"}], "mm"),
+    ],
+)
+def test_schedules_that_cannot_be(steps: list[dict[str, object]], said: str) -> None:
+    with pytest.raises(HerseyError) as refused:
+        SetPoints.of(steps)
+    assert said in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("column", "unit", "of_turns"),
+    [
+        ("Angle", "deg", lambda turns: 360.0 * turns % 360.0),
+        ("Angle", "rad", lambda turns: 2 * np.pi * turns),
+        ("Count", "rev/4096", lambda turns: np.floor(4096.0 * turns)),
+        ("Travel", "mm", lambda turns: 2 * np.pi * 25.0 * turns),
+    ],
+)
+def test_speed_is_the_slope_of_a_position(column: str, unit: str, of_turns: object, tmp_path: Path) -> None:
+    turns = np.cumsum(SPEEDS / 60.0 * 0.02)
+    path = written(tmp_path / "log.csv", time=TIME, torque=TORQUE, **{column: of_turns(turns)})  # type: ignore[operator]
+    radius = 0.025 if unit == "mm" else None
+    log = hersey.read(
+        path, channels={"position": column}, units={"position": unit}, radius=radius, isothermal=True
+    )
+    points = log.steady()
+    np.testing.assert_allclose(points.column("speed") / RPM, [20, 60, 180], rtol=1e-4)
+    (said,) = [each for each in log.files[0].warnings if each.kind == "speed from position"]
+    assert said.values["window"] == pytest.approx(0.2)
+    if unit == "rev/4096":
+        assert said.values["step"] == pytest.approx(2 * np.pi / 4096 / 0.2)
+    assert said.values["turns"] == (int(turns[-1]) if unit == "deg" else 0)
+
+
+def test_the_angle_turned_stays_and_a_ramp_keeps_its_slope() -> None:
+    time = np.arange(1000) * 0.01
+    speed, over = slope(time, 0.5 * 3.0 * time**2, 0.2)
+    assert over == pytest.approx(0.2)
+    np.testing.assert_allclose(speed[10:-10], 3.0 * time[10:-10], rtol=1e-9)
+    turned, count = unwrapped(np.mod(-2.0 * time, 2 * np.pi))
+    np.testing.assert_allclose(turned - turned[0], -2.0 * time, atol=1e-9)
+    assert count == 4
+    far = np.array([0.0, 40.0, 3.0])
+    assert unwrapped(far) == (far, 0) or np.array_equal(unwrapped(far)[0], far)
+
+
+@pytest.mark.parametrize(
+    "words", [("CW", "CCW"), ("F", "R"), ("1", "-1"), ("1", "0"), ("fwd", "rev"), ("TRUE", "FALSE")]
+)
+def test_a_speed_without_sign_gets_that_of_its_direction(words: tuple[str, str], tmp_path: Path) -> None:
+    back = np.arange(3000) % 1000 >= 500
+    signs = np.where(back, -1.0, 1.0)
+    direction = [words[int(each)] for each in back]
+    path = written(tmp_path / "log.csv", time=TIME, torque=TORQUE * signs, speed=SPEEDS, Dir=direction)
+    log = hersey.read(path, channels={"direction": "Dir"}, isothermal=True)
+    np.testing.assert_allclose(log.runs[0].speed, SPEEDS * signs * RPM, rtol=1e-12)
+    (said,) = [each for each in log.files[0].warnings if each.kind == "sign from direction"]
+    assert said.values == {"channel": "Dir", "forward": 1500, "reverse": 1500}
+
+
+def test_other_words_for_a_direction_are_refused(tmp_path: Path) -> None:
+    path = written(tmp_path / "log.csv", time=TIME, torque=TORQUE, speed=SPEEDS, Dir=["left"] * 3000)
+    with pytest.raises(
+        UnreadableLogError, match=r"log\.csv: column 'Dir': 'left' is not a direction"
+    ) as refused:
+        hersey.read(path, channels={"direction": "Dir"}, isothermal=True)
+    assert "CW and CCW" in refused.value.remedy
+
+
+def test_two_sources_of_one_speed_are_refused(tmp_path: Path) -> None:
+    path = written(tmp_path / "20 rpm.csv", time=TIME, torque=TORQUE, speed=SPEEDS, angle=TIME)
+    ways = {
+        "name_pattern": {"channels": {"speed": "Speed"}, "name_pattern": "{speed} rpm.csv"},
+        "schedule": {"schedule": STEPS, "name_pattern": "{speed} rpm.csv"},
+        "position": {"channels": {"speed": "Speed", "position": "Angle"}},
+    }
+    for said, given in ways.items():
+        with pytest.raises(ParameterError, match="both give the speed") as refused:
+            hersey.read(path, isothermal=True, **given)  # type: ignore[arg-type]
+        assert said in str(refused.value)
+
+
+def test_options_recipe_and_its_file_agree(tmp_path: Path) -> None:
+    plan = tmp_path / "plan.csv"
+    plan.write_text("from [s],to [s],temperature [degC]\n0,60,80\n")
+    log = named(tmp_path)[0]
+    typed = Reading(
+        name_pattern="{speed} rpm {load} N.csv", schedule=str(plan), position_window="50 ms"
+    ).recipe([log])
+    made = Recipe(logs=(log,), name_pattern="{speed} rpm {load} N.csv", schedule=plan, position_window=0.05)
+    assert typed == made
+    made.save(tmp_path / "recipe.toml")
+    assert Recipe.from_file(tmp_path / "recipe.toml") == made
+    again, logs = Reading(recipe_file=str(tmp_path / "recipe.toml")).completed(set())
+    assert again.recipe(logs) == made
+    (run,) = made.log().runs
+    assert run.temperature is not None
+    np.testing.assert_allclose(run.temperature, 353.15)
