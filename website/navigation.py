@@ -58,7 +58,17 @@ PARTS = (
     Part(
         "Validation",
         folder="validation",
-        first=("index", "measurements", "joints", "moving", "coast-down", "trends", "layouts", "paper", "growth"),
+        first=(
+            "index",
+            "measurements",
+            "joints",
+            "moving",
+            "coast-down",
+            "trends",
+            "layouts",
+            "paper",
+            "growth",
+        ),
     ),
     Part("Glossary", page="glossary.md"),
 )

@@ -22,8 +22,12 @@ from hersey.errors import (
 )
 from hersey.log import list_channels
 from hersey.log.text import blocks
+from hersey.schema.domain import Domain
 from tests.conftest import shared
 
+TORQUE_DOMAIN = Domain()
+FORCE_SLIDING = Domain("friction force", "sliding speed")
+COEFFICIENT = Domain("friction coefficient", "sliding speed")
 ROWS = 200
 TIME = np.arange(ROWS) * 0.1
 FORCE = 5.0 + 0.01 * np.arange(ROWS)
@@ -48,9 +52,12 @@ FRICTION = {"Time [s]": TIME, "Friction force [N]": FORCE, "Sliding speed [mm/s]
 
 def test_a_friction_force_with_its_radius_is_a_torque(tmp_path: Path) -> None:
     path = write(tmp_path / "a.csv", text(**FRICTION))
-    with pytest.raises(UnitError, match=r"force, which needs the radius .* Give it, e\.g\. radius='25 mm'"):
-        hersey.read(path, isothermal=True)
+    (run,) = hersey.read(path, isothermal=True).runs  # asks for no radius: it stays what it is
+    np.testing.assert_array_equal(run.torque, FORCE)
+    np.testing.assert_allclose(run.speed, SLIDING * 1e-3, rtol=1e-12)
+    assert run.domain == FORCE_SLIDING
     log = hersey.read(path, isothermal=True, radius="25 mm")
+    assert log.domain == TORQUE_DOMAIN
     (run,) = log.runs
     np.testing.assert_allclose(run.torque, FORCE * 0.025, rtol=1e-12)
     np.testing.assert_allclose(run.speed, SLIDING * 1e-3 / 0.025, rtol=1e-12)
@@ -71,8 +78,9 @@ def test_load_and_radius_per_row(tmp_path: Path) -> None:
     path = write(tmp_path / "a.csv", text(**columns))
     stated = {"radius": "Radius", "load": "Normal load"}
     (run,) = hersey.read(path, isothermal=True, channels=stated).runs
-    np.testing.assert_allclose(run.torque, FORCE * RADIUS * 1e-3, rtol=1e-12)
-    np.testing.assert_allclose(run.speed, SLIDING / RADIUS, rtol=1e-12)
+    np.testing.assert_allclose(run.torque, FORCE / LOAD, rtol=1e-12)
+    np.testing.assert_allclose(run.speed, SLIDING * 1e-3, rtol=1e-12)
+    assert run.domain == COEFFICIENT
     assert run.load is not None
     np.testing.assert_allclose(run.load, LOAD)
     (same,) = hersey.read(pl.DataFrame(columns), isothermal=True, channels=stated).runs  # the other way
@@ -84,11 +92,13 @@ def test_load_and_radius_per_row(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["COF", "Friction coefficient", "µ [1]", "Friction coefficient [-]"])
-def test_a_coefficient_needs_the_load(name: str, tmp_path: Path) -> None:
+def test_a_coefficient_needs_a_load_only_to_become_a_torque(name: str, tmp_path: Path) -> None:
     columns = {"Time [s]": TIME, name: 0.1, "v [m/s]": 0.02}
     path = write(tmp_path / "a.csv", text(**columns))
-    with pytest.raises(UnitError, match=r"needs the normal load. Give it, e\.g\. load='50 N'"):
-        hersey.read(path, isothermal=True, radius=0.025)
+    for given in ({}, {"radius": 0.025}, {"load": 40.0}):
+        (run,) = hersey.read(path, isothermal=True, **given).runs
+        np.testing.assert_allclose((run.torque[0], run.speed[0]), (0.1, 0.02))
+        assert run.domain == COEFFICIENT
     for source in (path, pl.DataFrame(columns | {"Time [s]": TIME})):
         (run,) = hersey.read(source, isothermal=True, radius=0.025, load="40 N").runs
         np.testing.assert_allclose(run.torque, 0.1 * 40 * 0.025, rtol=1e-12)
@@ -101,7 +111,7 @@ def test_a_row_of_units_may_hold_that_of_a_coefficient(tmp_path: Path) -> None:
     lines = ["t;mu;v;Load", "s;1;mm/s;N", *(f"{i};0,1;20,5;50" for i in range(30))]
     path = write(tmp_path / "a.csv", "\n".join(lines))
     log = hersey.read(path, isothermal=True, radius="25 mm", channels={"load": "Load"})
-    np.testing.assert_allclose(log.runs[0].torque, 0.1 * 50 * 0.025)
+    np.testing.assert_allclose(log.runs[0].torque, 0.1 * 50 * 0.025)  # one radius, and one load throughout
     assert log.rows == 30
 
 
@@ -135,7 +145,7 @@ def test_a_radius_of_zero_or_less_costs_its_row(wrong: float, turning: bool, tmp
         columns = {n: v for n, v in columns.items() if "Sliding" not in n} | {"Speed [rpm]": SLIDING}
     for source in (write(tmp_path / "a.csv", text(**columns)), pl.DataFrame(columns)):
         log = hersey.read(source, isothermal=True, channels={"radius": "Radius"})
-        assert (log.rows, log.files[0].missing_rows) == (ROWS - 1, 1)
+        assert (log.rows, log.files[0].missing_rows) == ((ROWS - 1, 1) if turning or wrong < 0 else (ROWS, 0))
 
 
 LENGTHS = ["Wear [um]", "Stroke [mm]", "Roll radius [mm]", "Gap [in]"]
@@ -147,7 +157,8 @@ FORCES = ["Clamp [kN]", "Normal load [N]", "Axial force [N]"]
 def test_no_column_becomes_the_radius_by_its_unit_or_name(length: str, way: str, tmp_path: Path) -> None:
     read: Any
     source: Any
-    columns = FRICTION | {length: RADIUS}
+    turning = {"Time [s]": TIME, "Torque [N*m]": FORCE, "Sliding speed [mm/s]": SLIDING}
+    columns = turning | {length: RADIUS}
     read, source = hersey.read, pl.DataFrame(columns)
     if way == "text":
         source = write(tmp_path / "a.csv", text(**columns))
@@ -174,8 +185,8 @@ def test_no_column_becomes_the_load_by_its_unit_or_name(force: str, tmp_path: Pa
         said = [str(each) for each in log.files[0].warnings if each.kind == "column may play a role"]
         assert said == ([] if name == "Clamp" else [f"{proposal}{{'load': '{name}'}}"])
     coefficient = {"Time [s]": TIME, "COF": 0.1, "v [m/s]": 0.02, force: LOAD}
-    with pytest.raises(UnstatedRoleError, match="which needs the normal load"):
-        hersey.read(pl.DataFrame(coefficient), isothermal=True, radius=0.025)
+    log = hersey.read(pl.DataFrame(coefficient), isothermal=True, radius=0.025)
+    assert (log.domain, log.runs[0].load) == (COEFFICIENT, None)
 
 
 def test_a_unit_of_a_radius_names_no_column(tmp_path: Path) -> None:
@@ -195,20 +206,18 @@ def test_a_load_and_a_radius_for_each_run(tmp_path: Path) -> None:
     time = np.concatenate([TIME[:80], TIME[:120]])
     force = write(tmp_path / "force.csv", text(**(FRICTION | {"Time [s]": time})))
     log = hersey.read(force, isothermal=True, radius=["25 mm", "50 mm"], load=(10.0, 20.0))
-    for run, rows, radius, load in zip(
-        log.runs, (slice(80), slice(80, 200)), (25, 50), (10.0, 20.0), strict=True
-    ):
-        np.testing.assert_allclose(run.torque, FORCE[rows] * radius * 1e-3, rtol=1e-12)
-        np.testing.assert_allclose(run.speed, SLIDING[rows] / radius, rtol=1e-12)
+    for run, rows, load in zip(log.runs, (slice(80), slice(80, 200)), (10.0, 20.0), strict=True):
+        np.testing.assert_allclose(run.torque, FORCE[rows] / load, rtol=1e-12)
+        np.testing.assert_allclose(run.speed, SLIDING[rows] * 1e-3, rtol=1e-12)
         assert run.load is not None
         np.testing.assert_allclose(run.load, load)
     cof = write(tmp_path / "cof.csv", text(**{"Time [s]": time, "COF": 0.1, "v [m/s]": 0.02}))
     log = hersey.read(cof, isothermal=True, radius=0.025, load=[10.0, 20.0])
-    np.testing.assert_allclose([run.torque[0] for run in log.runs], [0.025, 0.05], rtol=1e-12)
+    np.testing.assert_allclose([run.torque[0] for run in log.runs], [0.1, 0.1], rtol=1e-12)
     assert "load is 2 values, one for each run" in map(str, log.files[0].warnings)
     log = hersey.read(cof, isothermal=True, radius=[0.025, 0.05], load=[10.0, 20.0])
-    np.testing.assert_allclose([run.torque[0] for run in log.runs], [0.025, 0.1], rtol=1e-12)
-    np.testing.assert_allclose([run.speed[0] for run in log.runs], [0.8, 0.4], rtol=1e-12)
+    np.testing.assert_allclose([run.torque[0] for run in log.runs], [0.1, 0.1], rtol=1e-12)
+    np.testing.assert_allclose([run.speed[0] for run in log.runs], [0.02, 0.02], rtol=1e-12)
     with pytest.raises(ParameterError, match=r"load has 3 values for 2 runs. Give one value for each run"):
         hersey.read(cof, isothermal=True, radius=0.025, load=[10.0, 20.0, 30.0])
     with pytest.raises(ParameterError, match="load is -5"):
@@ -472,7 +481,8 @@ def test_pin_on_disc_by_its_force_its_load_and_its_radius() -> None:
         units={"torque": "N", "speed": "rpm", "temperature": "degC", "radius": "mm", "load": "N"},
     )
     (run,) = log.runs
-    assert run.torque[1] == pytest.approx(1.3 * 0.022)
+    assert run.torque[1] == pytest.approx(1.3 / 59.841)
+    assert log.domain == COEFFICIENT
     assert run.load is not None
     assert run.load[0] == pytest.approx(59.841)
 

@@ -232,7 +232,8 @@ def test_channels_of_radius_and_run_in_a_mapping(tmp_path: Path) -> None:
     (tmp_path / FILE_NAME).write_text(text)
     log = read_with_mapping(path, isothermal=True).log
     assert [run.time.size for run in log.runs] == [200, 200]
-    np.testing.assert_allclose(log.runs[1].torque, 0.125)
+    np.testing.assert_allclose(log.runs[1].torque, 5.0)  # radii of a column ask for no torque
+    assert log.domain.quantity == "friction force"
 
 
 def test_a_proposal_for_a_friction_force_asks_for_the_radius(tmp_path: Path) -> None:

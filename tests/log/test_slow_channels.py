@@ -88,17 +88,17 @@ def test_torque_and_speed_are_never_interpolated(role: str, tmp_path: Path) -> N
                 hersey.read(source, drop_missing=drop)
 
 
-def test_a_slow_load_is_interpolated_unless_the_torque_is_made_of_it(tmp_path: Path) -> None:
+def test_a_slow_load_is_interpolated_unless_the_quantity_is_made_of_it(tmp_path: Path) -> None:
     load = 50.0 + TIME
     columns = {"Temp [degC]": HEAT, "Load [N]": sparse(load)}
     for source in sources(table(**columns), tmp_path):
         (run,) = hersey.read(source, channels={"load": "Load"}).runs
         assert run.load is not None
         np.testing.assert_allclose(run.load, load[TIME <= 59.0], rtol=1e-12)
-    coefficient = table(**columns).rename({"Torque [N*m]": "COF"})
-    for source in sources(coefficient, tmp_path):
+    force = table(**columns).rename({"Torque [N*m]": "Friction force [N]"})
+    for source in sources(force, tmp_path):
         with pytest.raises(UnreadableLogError, match="2940 such rows, of 3000"):
-            hersey.read(source, channels={"load": "Load"}, radius=0.02)
+            hersey.read(source, channels={"load": "Load"})
 
 
 def test_no_value_is_interpolated_across_two_runs(tmp_path: Path) -> None:

@@ -23,7 +23,7 @@ from hersey.charts.style import (
     span,
     temperature_name,
 )
-from hersey.units import rpm
+from hersey.schema.domain import TORQUE, Domain
 
 #: Share of a torque down to which its error is surely in the picture.
 _SHORTEST = 0.6
@@ -39,10 +39,11 @@ def curve_rows(
     value: FloatArray,
     kelvin: float | None,
     limits: tuple[FloatArray, FloatArray] | None = None,
+    of: Domain = TORQUE,
 ) -> list[Row]:
-    """Return the rows of a curve over speed (rad/s) at one temperature."""
+    """Return the rows of a curve over speed (SI) at one temperature."""
     name = [temperature_name(kelvin)] * len(speed)
-    rows = rows_of(speed=rpm(np.asarray(speed)), y=value, level=name)
+    rows = rows_of(speed=of.shown_speed[1] * np.asarray(speed), y=value, level=name)
     if limits is None:
         return rows
     return [row | ends for row, ends in zip(rows, rows_of(low=limits[0], high=limits[1]), strict=True)]
@@ -57,6 +58,7 @@ def against_speed(
     under: Sequence[alt.Chart] = (),
     parts: Sequence[Row] = (),
     turns: Sequence[Row] = (),
+    speed: str = ROLL_SPEED,
 ) -> Chart:
     """Return dwells and curves; each temperature is named at its curve's end, or in a legend without curves.
 
@@ -73,9 +75,11 @@ def against_speed(
         Rows as of curves, of what is only a part of them: dashed.
     turns
         Rows of ``speed`` and ``y`` where curves turn, marked by a tick.
+    speed
+        Title of the axis across.
     """
     rows = [*dwells, *curves, *parts]
-    x = alt.X("speed:Q", title=ROLL_SPEED, **logarithmic_axis(span([row["speed"] for row in rows])))
+    x = alt.X("speed:Q", title=speed, **logarithmic_axis(span([row["speed"] for row in rows])))
     domain = span([end for row in rows for end in _reach(row)])
     y = alt.Y("y:Q", title=name, **logarithmic_axis(domain))
     levels = sorted({row["level"] for row in rows})

@@ -51,9 +51,11 @@ from hersey.damping.friction_curve.result import FrictionCurve
 from hersey.document.analysis import Analysis
 from hersey.document.parts.fit import Curve
 from hersey.document.parts.log import Point, Series
+from hersey.errors import capital
+from hersey.schema.domain import Domain
 from hersey.stability.plan.result import Plan
 from hersey.study.first_screen.result import StartPart
-from hersey.units import celsius, rpm
+from hersey.units import celsius
 
 #: Cells of a surface overlap a little: seams would shine through otherwise.
 _OVERLAP = 1.004
@@ -92,27 +94,31 @@ def torque(document: Analysis) -> Chart:
     """Torque against speed per temperature, with the drag curves (the paper's Fig. 2)."""
     if document.friction is not None:
         return _friction_curve(document, document.friction)
-    _, unit = _torque_unit(document)
+    of = _of(document)
     heading = "Drag torque" if document.fit.rest is None else "Drag torque, no-load torque subtracted"
-    title = alt.Title(heading, subtitle=f"{APPROACHES}; lines: fitted drag curves")
-    return _against_speed(document, "torque", f"Torque ({unit})", turns=True).properties(title=title)
+    lines = "fitted drag curves" if of.is_torque else "fitted curves"
+    title = alt.Title(
+        heading if of.is_torque else capital(of.quantity), subtitle=f"{APPROACHES}; lines: {lines}"
+    )
+    return _against_speed(document, "torque", _axis(document), turns=True).properties(title=title)
 
 
 def damping(document: Analysis) -> Chart:
     """Damping against speed per temperature (Figs. 3 and 7)."""
-    scale, unit = _torque_unit(document)
-    title = alt.Title("Damping against speed", subtitle="dashed: slope -1, constant torque")
+    scale, _ = _torque_unit(document)
+    quantity = _of(document).quantity
+    title = alt.Title("Damping against speed", subtitle=f"dashed: slope -1, constant {quantity}")
     under = [_slope_of_minus_one(document, scale)]
-    name = f"Damping ({unit}·s/rad)"
+    name = f"Damping ({_damping_unit(document)})"
     return _against_speed(document, "damping", name, under=under).properties(title=title)
 
 
 def surface(document: Analysis) -> Chart:
     """The fitted surface over temperature and speed, with the dwells on it (Fig. 4)."""
-    _, unit = _torque_unit(document)
+    unit, factor = _damping_unit(document), _per_speed(document)
     hot = document.fit.temperature_range is not None
-    low, high = (rpm(v) for v in document.fit.speed_range)
-    x = _speed("from:Q", (low * 0.93, high * 1.07))
+    low, high = (factor * v for v in document.fit.speed_range)
+    x = _speed(document, "from:Q", (low * 0.93, high * 1.07))
     y = alt.Y(
         "low:Q",
         title=TEMPERATURE if hot else None,
@@ -120,11 +126,11 @@ def surface(document: Analysis) -> Chart:
         axis=alt.Axis() if hot else None,
     )
     shade = alt.Scale(type="log", scheme="viridis", nice=False)
-    color = alt.Color("damping:Q", title=f"B ({unit}·s/rad)", scale=shade)
-    tips = [tip("damping", f"fitted damping ({unit}·s/rad)")]
+    color = alt.Color("damping:Q", title=f"B ({unit})", scale=shade)
+    tips = [tip("damping", f"fitted damping ({unit})")]
     cells = plot(_cells(document)).mark_rect(strokeWidth=0, clip=True)
     layers = [cells.encode(x=x, x2="to:Q", y=y, y2="high:Q", color=color, tooltip=tips)]
-    line = [{"from": rpm(t.speed), "low": celsius(t.temperature)} for t in document.fit.transition_curve]
+    line = [{"from": factor * t.speed, "low": celsius(t.temperature)} for t in document.fit.transition_curve]
     subtitle = document.fit.law
     if line:
         bend = plot(line).mark_line(color="white", strokeDash=[6, 4], strokeWidth=2)
@@ -143,10 +149,11 @@ def surface(document: Analysis) -> Chart:
 def _cells(document: Analysis) -> list[Row]:
     """Cells of the surface in the units of readers; without temperature they are as high as the chart."""
     scale, _ = _torque_unit(document)
+    factor = _per_speed(document)
     return [
         {
-            "from": rpm(c.speed_low),
-            "to": rpm(c.speed_high) * _OVERLAP,
+            "from": factor * c.speed_low,
+            "to": factor * c.speed_high * _OVERLAP,
             "low": 0.0 if c.temperature_low is None else celsius(c.temperature_low),
             "high": 1.0 if c.temperature_high is None else celsius(c.temperature_high * _OVERLAP ** (1 / 8)),
             "damping": c.damping * scale,
@@ -165,7 +172,7 @@ def residuals(document: Analysis) -> Chart:
     shapes = {"from below": "triangle-up", "from above": "triangle-down", "start": "circle"}
     dots = plot(rows).mark_point(filled=True, size=55, opacity=0.85)
     dots = dots.encode(
-        x=_speed("speed:Q", span([row["speed"] for row in rows])),
+        x=_speed(document, "speed:Q", span([row["speed"] for row in rows])),
         y=alt.Y("residual:Q", title="Measured / fitted \u2212 1 (%)"),
         color=_temperature_channels(document)[0],
         shape=categories(alt.Shape, "approach", shapes, alt.Legend(title="approached")),
@@ -179,16 +186,17 @@ def residuals(document: Analysis) -> Chart:
 def regime(document: Analysis) -> Chart:
     """Exponent of damping per temperature and branch with its interval, against the named hypotheses."""
     c = document.fit.coefficients["c"]
+    what = "torque" if _of(document).is_torque else "friction"
     surface: Row = {
         "where": "all",
         "order": 1e6,
-        "branch": "rising torque" if document.fit.transition else "all speeds",
+        "branch": f"rising {what}" if document.fit.transition else "all speeds",
         "value": c.value,
         "low": c.low,
         "high": c.high,
         "speeds": f"{document.fit.points} dwells together",
     }
-    rows = [exponent_row(branch) for branch in document.regime.exponents]
+    rows = [exponent_row(branch, _of(document)) for branch in document.regime.exponents]
     solved = document.film.exponents.solved if document.film and document.film.exponents else None
     hypotheses = [(h.name, h.low, h.high) for h in document.regime.hypotheses]
     return exponent_chart([row for row in rows if row["where"] != "all"] + [surface], hypotheses, solved)
@@ -233,14 +241,16 @@ def simulation_force(document: Analysis) -> Chart | None:
 
 def timeline_speed(document: Analysis) -> Chart | None:
     """Speed over the log, dwells shaded; None for a table of means."""
-    chart = _timeline(document, document.timeline.speed, "Speed (rpm)", rpm)
+    chart = _timeline(
+        document, document.timeline.speed, _speed_axis(document), lambda v: v * _per_speed(document)
+    )
     return None if chart is None else chart.properties(title="The log (shaded: dwells used)")
 
 
 def timeline_torque(document: Analysis) -> Chart | None:
     """Torque over the log, dwells shaded; None for a table of means."""
-    scale, unit = _torque_unit(document)
-    return _timeline(document, document.timeline.torque, f"Torque ({unit})", lambda v: v * scale)
+    scale, _ = _torque_unit(document)
+    return _timeline(document, document.timeline.torque, _axis(document), lambda v: v * scale)
 
 
 def timeline_temperature(document: Analysis) -> Chart | None:
@@ -255,12 +265,39 @@ def write_figures(document: Analysis, folder: Path, *, overwrite: bool = True) -
 
 def _torque_unit(document: Analysis) -> tuple[float, str]:
     """Factor from N m, and the unit in which the torques of a document read best."""
-    unit = document.units.get("torque")
+    of, unit = _of(document), document.units.get("torque")
+    if not of.is_torque:
+        return of.shown[1], of.shown[0]
     return (
         (1e3 if unit == "mN·m" else 1.0, unit)
         if unit
         else torque_unit(max(abs(p.torque) for p in document.points))
     )
+
+
+def _of(document: Analysis) -> Domain:
+    """What was measured."""
+    return Domain.read(document.fit.domain)
+
+
+def _axis(document: Analysis) -> str:
+    """Title of an axis of what was measured."""
+    of = _of(document)
+    return f"Torque ({_torque_unit(document)[1]})" if of.is_torque else of.axis
+
+
+def _damping_unit(document: Analysis) -> str:
+    of, (_, unit) = _of(document), _torque_unit(document)
+    return f"{unit}·s/rad" if of.is_torque else of.damping_unit
+
+
+def _per_speed(document: Analysis) -> float:
+    """Factor from SI to the unit in which people read the speed."""
+    return _of(document).shown_speed[1]
+
+
+def _speed_axis(document: Analysis) -> str:
+    return ROLL_SPEED if _of(document).speed == "speed" else _of(document).speed_axis
 
 
 def _against_speed(
@@ -272,7 +309,7 @@ def _against_speed(
     for row, point in zip(rows, document.points, strict=True):
         value, error = abs(getattr(point, quantity)) * scale, 2 * abs(point.torque_error / point.torque)
         row |= {"y": value, "low": value * (1 - error), "high": value * (1 + error)}
-    curves = [_curve(c, quantity, scale) for c in document.fit.curves]
+    curves = [_curve(c, quantity, scale, _of(document)) for c in document.fit.curves]
     chart = against_speed(
         rows,
         [row for curve in curves for row in curve],
@@ -280,6 +317,7 @@ def _against_speed(
         tips=_point_tips(document),
         under=under,
         turns=[turn for curve in curves for turn in _turns(curve)] if turns else [],
+        speed=_speed_axis(document),
     )
     shown: Chart = chart.properties(usermeta={"series": _series(rows)})
     return shown
@@ -292,7 +330,12 @@ def _friction_curve(document: Analysis, curve: FrictionCurve) -> Chart:
     rows = _point_rows(document)
     for row, point in zip(rows, document.points, strict=True):
         value, error = point.torque * scale, 2.0 * point.torque_error * scale
-        row |= {"speed": rpm(point.speed), "y": value, "low": value - error, "high": value + error}
+        row |= {
+            "speed": _of(document).shown_speed[1] * point.speed,
+            "y": value,
+            "low": value - error,
+            "high": value + error,
+        }
         row["level"] = row["level"] if thermal else temperature_name(None)
     chart = signed_chart(rows, curve, (scale, unit), _point_tips(document))
     shown: Chart = chart.properties(usermeta={"series": _series(rows)})
@@ -308,9 +351,10 @@ def _series(rows: list[Row]) -> list[Row]:
     ]
 
 
-def _curve(curve: Curve, quantity: str, scale: float) -> list[Row]:
+def _curve(curve: Curve, quantity: str, scale: float, of: Domain) -> list[Row]:
     speed, damping = np.array(curve.speed), np.array(curve.damping)
-    return curve_rows(speed, scale * damping * (speed if quantity == "torque" else 1.0), curve.temperature)
+    shown = scale * damping * (speed if quantity == "torque" else 1.0)
+    return curve_rows(speed, shown, curve.temperature, of=of)
 
 
 def _turns(curve: list[Row]) -> list[Row]:
@@ -333,7 +377,7 @@ def _slope_of_minus_one(document: Analysis, scale: float) -> alt.Chart:
     """From the upper left corner of the data down, as far as they reach."""
     top = max(p.damping for p in document.points) * scale
     bottom = min(p.damping for p in document.points) * scale
-    low, high = (rpm(v) for v in document.fit.speed_range)
+    low, high = (_per_speed(document) * v for v in document.fit.speed_range)
     end = min(high, low * top / bottom)
     rows = [{"speed": low, "y": top}, {"speed": end, "y": top * low / end}]
     chart: alt.Chart = (
@@ -344,12 +388,12 @@ def _slope_of_minus_one(document: Analysis, scale: float) -> alt.Chart:
 
 def _point_rows(document: Analysis) -> list[Row]:
     scale, _ = _torque_unit(document)
-    return [_point_row(p, scale) for p in document.points]
+    return [_point_row(p, scale, _per_speed(document)) for p in document.points]
 
 
-def _point_row(p: Point, scale: float) -> Row:
+def _point_row(p: Point, scale: float, per_speed: float) -> Row:
     return {
-        "speed": rpm(abs(p.speed)),
+        "speed": per_speed * abs(p.speed),
         "temperature": None if p.temperature is None else celsius(p.temperature),
         "level": temperature_name(p.group_temperature),
         "torque_shown": abs(p.torque) * scale,
@@ -365,18 +409,18 @@ def _temperature_channels(document: Analysis) -> tuple[alt.Color, alt.Shape]:
     return temperature_channels(kelvin, legend=document.fit.temperature_range is not None)
 
 
-def _speed(field: str, domain: tuple[float, float]) -> alt.X:
-    return alt.X(field, title=ROLL_SPEED, **logarithmic_axis(domain))
+def _speed(document: Analysis, field: str, domain: tuple[float, float]) -> alt.X:
+    return alt.X(field, title=_speed_axis(document), **logarithmic_axis(domain))
 
 
 def _point_tips(document: Analysis) -> list[alt.Tooltip]:
-    _, unit = _torque_unit(document)
+    of = _of(document)
     hot = [tip("temperature", "temperature (°C)")] if document.fit.temperature_range else []
     return [
-        tip("speed", "speed (rpm)"),
+        tip("speed", f"{of.speed} ({of.shown_speed[0]})"),
         *hot,
-        tip("torque_shown", f"torque ({unit})"),
-        tip("damping_shown", f"damping ({unit}·s/rad)"),
+        tip("torque_shown", _axis(document)[0].lower() + _axis(document)[1:]),
+        tip("damping_shown", f"damping ({_damping_unit(document)})"),
         tip("residual", "measured / fitted - 1 (%)"),
         alt.Tooltip("approach:N", title="approached"),
         alt.Tooltip("from_to:N", title="dwell"),

@@ -37,6 +37,7 @@ from hersey.damping.design import TestDesign
 from hersey.damping.dwells import SteadyPoints, groups_of_temperature
 from hersey.damping.no_load_torque import NoLoadTorque
 from hersey.damping.surface import DampingSurface
+from hersey.schema.domain import Domain
 from hersey.units import celsius, rpm
 
 #: Speeds at which a law is drawn, temperatures at which a surface is drawn, and models that are listed.
@@ -51,15 +52,16 @@ def steady_chart(points: SteadyPoints) -> Chart:
     """Return the dwells of a log: torque against speed, two standard errors each, temperatures apart."""
     torque = np.abs(points.column("torque"))
     kelvin = points.column("temperature") if points.log.has_temperature else None
-    factor, unit = torque_unit(float(torque.max()))
+    of = points.domain
+    factor, title_up = _shown(of, float(torque.max()))
     shares = points.column("torque_error") / torque
-    rows = _dwells(np.abs(points.column("speed")), factor * torque, shares, kelvin)
+    rows = _dwells(of, np.abs(points.column("speed")), factor * torque, shares, kelvin)
     for row, approach in zip(rows, points.table["approach"], strict=True):
         row["approach"] = approach
     subtitle = f"{len(points)} dwells; {APPROACHES}"
     title = alt.Title("Steady points", subtitle=subtitle)
-    tips = [*_tips(unit, hot=kelvin is not None), alt.Tooltip("approach:N", title="approached")]
-    return against_speed(rows, [], f"Torque ({unit})", tips=tips).properties(title=title)
+    tips = [*_tips(of, title_up, hot=kelvin is not None), alt.Tooltip("approach:N", title="approached")]
+    return against_speed(rows, [], title_up, tips=tips, speed=_speed_title(of)).properties(title=title)
 
 
 def surface_chart(surface: DampingSurface) -> Chart:
@@ -74,17 +76,19 @@ def surface_chart(surface: DampingSurface) -> Chart:
             surface.predict(speed=speed, temperature=None if t is None else np.full_like(speed, t))
             for t in hot
         ]
-        factor, unit = torque_unit(max(float(band.torque.max()) for band in bands))
+        of = surface.domain
+        factor, title_up = _shown(of, max(float(band.torque.max()) for band in bands))
         low, high = surface.speed_range
         turns: list[Row] = [
-            {"speed": rpm(at), "y": factor * float(surface.torque(speed=np.array([at]), temperature=t)[0])}
+            {"speed": of.shown_speed[1] * at, "y": factor * float(surface.torque(speed=at, temperature=t))}
             for at, t in ((surface.transition_speed(t), t) for t in hot)
             if low < at < high
         ]
     subtitle = "lines: fitted law; shaded: 95 % limits" + ("; ticks: transition speed" if turns else "")
-    rows = _band_rows(speed, bands, hot, factor)
-    return against_speed([], rows, f"Torque ({unit})", turns=turns).properties(
-        title=alt.Title("Fitted drag torque", subtitle=subtitle)
+    rows = _band_rows(of, speed, bands, hot, factor)
+    name = "Fitted drag torque" if of.is_torque else f"Fitted {of.quantity}"
+    return against_speed([], rows, title_up, turns=turns, speed=_speed_title(of)).properties(
+        title=alt.Title(name, subtitle=subtitle)
     )
 
 
@@ -114,15 +118,18 @@ def _chosen(comparison: ModelComparison) -> Chart:
     data = comparison.data
     kelvin, torque = data.inputs.kelvin, np.exp(data.log_torque)
     measured = data.reference_speed * np.exp(data.inputs.log_speed)
-    factor, unit = torque_unit(float(torque.max()))
-    dwells = _dwells(measured, factor * torque, data.torque_error, kelvin)
+    of = data.domain
+    factor, title_up = _shown(of, float(torque.max()))
+    dwells = _dwells(of, measured, factor * torque, data.torque_error, kelvin)
     speed = np.geomspace(measured.min(), measured.max(), _SPEEDS)
     hot: list[float | None] = [None] if kelvin is None else list(data.temperatures)
-    curves = _band_rows(speed, [comparison.predict(speed=speed, temperature=t) for t in hot], hot, factor)
+    bands = [comparison.predict(speed=speed, temperature=t) for t in hot]
+    curves = _band_rows(of, speed, bands, hot, factor)
     name = comparison.chosen.candidate.name
     title = alt.Title("Chosen model", subtitle=f"{name}; shaded: 95 % limits")
-    tips = _tips(unit, hot=kelvin is not None)
-    return against_speed(dwells, curves, f"Torque ({unit})", tips=tips).properties(title=title)
+    tips = _tips(of, title_up, hot=kelvin is not None)
+    chart: Chart = against_speed(dwells, curves, title_up, tips=tips, speed=_speed_title(of))
+    return chart.properties(title=title)
 
 
 def _ranking(comparison: ModelComparison) -> Chart:
@@ -239,7 +246,21 @@ def _gain(design: TestDesign) -> Chart:
     return alt.layer(line, dots, width=WIDTH, height=170)
 
 
-def _dwells(speed: FloatArray, torque: FloatArray, share: FloatArray, kelvin: FloatArray | None) -> list[Row]:
+def _shown(of: Domain, largest: float) -> tuple[float, str]:
+    """Factor from SI, and the title of an axis of what was measured."""
+    if not of.is_torque:
+        return of.shown[1], of.axis
+    factor, unit = torque_unit(largest)
+    return factor, f"Torque ({unit})"
+
+
+def _speed_title(of: Domain) -> str:
+    return ROLL_SPEED if of.speed == "speed" else of.speed_axis
+
+
+def _dwells(
+    of: Domain, speed: FloatArray, torque: FloatArray, share: FloatArray, kelvin: FloatArray | None
+) -> list[Row]:
     """One row per dwell in the units of readers, with two relative standard errors."""
     group: list[float | None] = [None] * speed.size
     if kelvin is not None:
@@ -247,7 +268,7 @@ def _dwells(speed: FloatArray, torque: FloatArray, share: FloatArray, kelvin: Fl
             for i in members.tolist():
                 group[i] = float(kelvin[members].mean())
     return rows_of(
-        speed=rpm(speed),
+        speed=of.shown_speed[1] * speed,
         y=torque,
         low=torque * (1.0 - 2.0 * share),
         high=torque * (1.0 + 2.0 * share),
@@ -256,17 +277,18 @@ def _dwells(speed: FloatArray, torque: FloatArray, share: FloatArray, kelvin: Fl
     )
 
 
-def _tips(unit: str, *, hot: bool) -> list[alt.Tooltip]:
+def _tips(of: Domain, name: str, *, hot: bool) -> list[alt.Tooltip]:
     """The tooltip of a dwell."""
     degrees = [tip("temperature", "temperature (°C)")] if hot else []
-    return [tip("speed", "speed (rpm)"), tip("y", f"torque ({unit})"), *degrees]
+    speed = f"{of.speed} ({of.shown_speed[0]})"
+    return [tip("speed", speed), tip("y", name[0].lower() + name[1:]), *degrees]
 
 
 def _band_rows(
-    speed: FloatArray, bands: Sequence[Band], kelvin: Sequence[float | None], factor: float
+    of: Domain, speed: FloatArray, bands: Sequence[Band], kelvin: Sequence[float | None], factor: float
 ) -> list[Row]:
     rows: list[Row] = []
     for band, t in zip(bands, kelvin, strict=True):
         low, high = band.confidence
-        rows += curve_rows(speed, factor * band.torque, t, (factor * low, factor * high))
+        rows += curve_rows(speed, factor * band.torque, t, (factor * low, factor * high), of)
     return rows

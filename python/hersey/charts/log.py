@@ -8,10 +8,21 @@ import altair as alt
 import numpy as np
 
 from hersey.charts.over_time import BARE, over_time, shaded, time_axis
-from hersey.charts.style import GREEN, INK, TEMPERATURE, WIDTH, Chart, Row, plot, rows_of, torque_unit
+from hersey.charts.style import (
+    GREEN,
+    INK,
+    ROLL_SPEED,
+    TEMPERATURE,
+    WIDTH,
+    Chart,
+    Row,
+    plot,
+    rows_of,
+    torque_unit,
+)
 from hersey.log.torque_log import TorqueLog
 from hersey.study.thinning import kept
-from hersey.units import celsius, rpm
+from hersey.units import celsius
 
 #: Points drawn of a log, shared out among its runs, and least of one run.
 _POINTS, _LEAST = 3000, 200
@@ -20,10 +31,13 @@ _POINTS, _LEAST = 3000, 200
 def log_chart(log: TorqueLog) -> Chart:
     """Return speed, torque and temperature over time, runs one after another."""
     starts = np.cumsum([0.0, *(float(run.time[-1] - run.time[0]) for run in log.runs)]).tolist()
-    factor, unit = torque_unit(max(float(np.abs(run.torque).max()) for run in log.runs))
+    of, (factor, unit) = log.domain, torque_unit(max(float(np.abs(run.torque).max()) for run in log.runs))
+    name, speed = f"Torque ({unit})", ROLL_SPEED if of.speed == "speed" else of.speed_axis
+    if not of.is_torque:
+        factor, name = of.shown[1], of.axis
     quantities = {
-        "Speed (rpm)": [rpm(run.speed) for run in log.runs],
-        f"Torque ({unit})": [factor * run.torque for run in log.runs],
+        speed: [of.shown_speed[1] * run.speed for run in log.runs],
+        name: [factor * run.torque for run in log.runs],
     }
     if log.has_temperature:
         hot = [celsius(run.temperature) for run in log.runs if run.temperature is not None]

@@ -21,15 +21,20 @@ from hersey.charts.style import (
     rimmed,
     tip,
 )
-from hersey.units import celsius, rpm
+from hersey.schema.domain import TORQUE, Domain
+from hersey.units import celsius
 from hersey.verdict.regime import BranchExponent, Regime
 
 #: What the branches are called.
-_BRANCHES = {"ehl": "rising torque", "mixed": "falling torque", "all": "all speeds"}
+_BRANCHES = {"ehl": "rising {what}", "mixed": "falling {what}", "all": "all speeds"}
+#: What rises and falls.
+_WHAT = ("torque", "friction")
 #: Colour and shape of each.
 _LOOKS = {
     "rising torque": (BLUE, "circle"),
     "falling torque": (RED, "square"),
+    "rising friction": (BLUE, "circle"),
+    "falling friction": (RED, "square"),
     "all speeds": (BLUE, "diamond"),
 }
 #: The axis shows at least these exponents.
@@ -50,20 +55,20 @@ _AXIS = alt.Axis(tickCount=6, format=".1f")
 
 def regime_chart(result: Regime) -> Chart:
     """Return the exponents of a verdict on the regime."""
-    rows = [exponent_row(branch) for branch in result.exponents]
+    rows = [exponent_row(branch, result.domain) for branch in result.exponents]
     return exponent_chart(rows, [(h.name, h.low, h.high) for h in result.hypotheses])
 
 
-def exponent_row(branch: BranchExponent) -> Row:
+def exponent_row(branch: BranchExponent, of: Domain = TORQUE) -> Row:
     """Return the row of an exponent at one temperature on one branch."""
     return {
         "where": "all" if branch.temperature is None else f"{celsius(branch.temperature):.0f} °C",
         "order": branch.temperature or 0.0,
-        "branch": _BRANCHES[branch.branch],
+        "branch": _BRANCHES[branch.branch].format(what="torque" if of.is_torque else "friction"),
         "value": branch.exponent.value,
         "low": branch.exponent.low,
         "high": branch.exponent.high,
-        "speeds": f"{rpm(branch.speed_low):.3g} to {rpm(branch.speed_high):.3g} rpm, {branch.points} dwells",
+        "speeds": f"{of.between(branch.speed_low, branch.speed_high)}, {branch.points} dwells",
     }
 
 
@@ -111,7 +116,8 @@ def _words(row: Row) -> str:
 
 def _subtitle(rows: list[Row]) -> str:
     seen = {r["branch"] for r in rows}
-    shapes = {"rising torque": "circles: rising torque", "falling torque": "squares: falling torque"}
+    marks = {"rising": "circles", "falling": "squares"}
+    shapes = {f"{does} {what}": f"{mark}: {does} {what}" for does, mark in marks.items() for what in _WHAT}
     said = [words for branch, words in shapes.items() if branch in seen]
     return "; ".join([*said, "grey: predicted by each regime"]).capitalize() + "."
 

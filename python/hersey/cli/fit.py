@@ -137,22 +137,23 @@ def _estimates(surface: DampingSurface) -> list[str]:
     from hersey.cli.figures import labelled, three
     from hersey.units import celsius
 
-    scale = {"degC": "°C"}.get(surface.temperature_scale, surface.temperature_scale)
-    law = f"B = a T^b w^c, T in {scale}" if surface.b else "B = a w^c"
-    at_one = f"N·m·s/rad at {f'T = 1 {scale}, ' * bool(surface.b)}w = 1 rad/s"
-    rows = [("a", f"{_within(surface.a)} {at_one}")]
+    of, scale = surface.domain, {"degC": "°C"}.get(surface.temperature_scale, surface.temperature_scale)
+    law = f"{surface.law}, T in {scale}" if surface.b else surface.law
+    unit = (of.damping_unit if of.is_torque else of.unit).replace("N m s", "N·m·s")
+    at_one = f"at {f'T = 1 {scale}, ' * bool(surface.b)}{of.speed_symbol} = 1 {of.speed_unit}"
+    rows = [("a", " ".join(filter(None, (_within(surface.a), unit, at_one))))]
     rows += [(name, _within(known)) for name, known in (("b", surface.b), ("c", surface.c)) if known]
     if surface.transition is not None:
         kelvin = surface.reference_temperature
         at = "" if kelvin is None else f" at {celsius(kelvin):.0f} °C"
         rows.append(("c below w_t", _within(surface.transition.mixed_exponent)))
-        rows.append(("w_t", f"{_within(surface.transition.speed)} rad/s{at} (least torque)"))
+        rows.append(("w_t", f"{_within(surface.transition.speed)} {of.speed_unit}{at} (least {of.quantity})"))
     statistics = surface.statistics
     rows += [
         ("dwells", str(statistics.points)),
-        ("scatter", f"{three(100 * statistics.scatter)} % of torque"),
+        ("scatter", f"{three(100 * statistics.scatter)} % of {of.quantity}"),
     ]
-    return [f"{law}, w in rad/s (value, 95 % interval)", *labelled(rows)]
+    return [f"{law}, {of.speed_symbol} in {of.speed_unit} (value, 95 % interval)", *labelled(rows)]
 
 
 def _within(known: Estimate) -> str:

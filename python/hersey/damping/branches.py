@@ -26,7 +26,6 @@ from hersey.damping.estimate import Estimate, quantile
 from hersey.damping.gradual import Closure, closure_at, least_around, trend_left
 from hersey.damping.scaled import law_of, move_of, powers_of, scaled_speed, temperatures_of
 from hersey.result import Means, Record
-from hersey.units import rpm
 
 #: Widths of a bend, in the logarithm of speed, that a corner is compared with.
 BEND_WIDTHS = (0.15, 0.3, 0.6)
@@ -110,11 +109,17 @@ def why_no_transition(data: Observations, single: LawFit, branches: Branches) ->
         if not (meeting := _meeting(data, fit)):
             return (
                 "two branches would meet outside the measured speeds, and the slower one, with "
-                f"exponent {below}, does not prove that torque falls with speed"
+                f"exponent {below}, does not prove that {data.domain.quantity} falls with speed"
             )
-        return f"the exponent below {meeting}, {below}, does not prove that torque falls with speed there"
+        return (
+            f"the exponent below {meeting}, {below}, does not prove that {data.domain.quantity} falls with "
+            "speed there"
+        )
     if above.low <= -1.0:
-        return f"the exponent above the bend, {above}, does not prove that torque rises with speed there"
+        return (
+            f"the exponent above the bend, {above}, does not prove that {data.domain.quantity} rises with "
+            "speed there"
+        )
     scaled = scaled_speed(data, fit)
     if not scaled.min() < at < scaled.max():
         return "the falling and the rising branch would meet outside the measured speeds"
@@ -300,11 +305,11 @@ def _corner_of(fit: LawFit) -> float:
 
 
 def _meeting(data: Observations, fit: LawFit) -> str:
-    """Where the lines meet at the reference temperature, in rpm; empty if outside the measured speeds."""
+    """Where the lines meet at the reference temperature, in words; empty if outside the measured speeds."""
     at, measured = _corner_of(fit), data.inputs.log_speed
     if not measured.min() <= at <= measured.max():
         return ""
-    return f"{rpm(data.reference_speed * float(np.exp(at))):.3g} rpm"
+    return data.domain.at(data.reference_speed * float(np.exp(at)))
 
 
 def _few(data: Observations, corner: LawFit) -> str:

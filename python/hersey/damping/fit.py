@@ -152,8 +152,9 @@ def _surface(
         residuals=residuals,
         rejected_transition=refused,
         data_sha256=tuple(file.sha256 for file in points.log.files),
-        sensors=str(points.log.sensors),
+        sensors=points.log.sensors.about(points.domain),
         rest=points.rest,
+        domain=points.domain,
     )
 
 

@@ -23,6 +23,7 @@ from hersey.damping.no_load_torque import NoLoadTorque
 from hersey.errors import ExtrapolationWarning, ParameterError, UntoldWarning
 from hersey.motion.whole_torque import refuse_whole_torque
 from hersey.result import Result
+from hersey.schema.domain import TORQUE, Domain
 from hersey.units import ZERO_CELSIUS, takes_si
 
 #: Law of temperature by the scale of T in T^b.
@@ -76,6 +77,23 @@ class FittedLaw(Result):
     sensors: str = ""  #: sensor errors behind the systematic parts, in words
     rest: NoLoadTorque | None = None  #: no-load torque subtracted before the fit
     version: str = field(default=_core.VERSION)
+    domain: Domain = TORQUE  #: what "torque" and "speed" are here: friction and sliding, if it says so
+
+    @property
+    def law(self) -> str:
+        """The law in symbols; where friction was measured, that of friction and not of damping."""
+        power = "" if self.b is None else " T^b"
+        if self.domain.is_torque:
+            return f"B = a{power} w^c"
+        return f"{self.domain.symbol} = a{power} {self.domain.speed_symbol}^(1 + c)"
+
+    @property
+    def law_units(self) -> str:
+        """Units of quantity and speed in the law."""
+        of = self.domain
+        quantity = f"B in {of.damping_unit}" if of.is_torque else f"{of.symbol} in {of.unit}" * bool(of.unit)
+        scale = f"T in {self.temperature_scale}" if self.b else ""
+        return ", ".join(filter(None, (quantity, scale, f"{of.speed_symbol} in {of.speed_unit}")))
 
     @takes_si(speed="speed", temperature="temperature")
     def damping(self, *, speed: ArrayLike, temperature: ArrayLike | None = None) -> FloatArray:
@@ -210,7 +228,7 @@ class FittedLaw(Result):
 
     def _warn_outside(self, name: str, values: FloatArray, limits: tuple[float, float] | None) -> None:
         if limits and (np.any(values < limits[0] * 0.999) or np.any(values > limits[1] * 1.001)):
-            unit = "rad/s" if name == "speed" else "K"
+            unit = self.domain.speed_unit if name == "speed" else "K"
             warnings.warn(
                 f"{name} is outside the measured range, {limits[0]:.4g} to {limits[1]:.4g} {unit}, so "
                 "the result is extrapolated",

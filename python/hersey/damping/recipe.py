@@ -34,6 +34,7 @@ from hersey.errors import (
 )
 from hersey.files.toml import Quantity, Table, quoted, read_tables
 from hersey.log import TorqueLog
+from hersey.log.as_torque import log_as_torque
 from hersey.log.mapping import LogMapping, Motor, mapping_of, read_with_mapping
 from hersey.log.means import MeansTable, is_means_table, read_means, refuse_corrections
 from hersey.log.sensors import Sensors
@@ -50,6 +51,10 @@ class KnownDrive(Protocol):
     @property
     def sensors(self) -> Sensors:
         """Errors of its sensors."""
+
+    @property
+    def roll_radius(self) -> float:
+        """Radius at which the torque acts, m."""
 
     @property
     def rest(self) -> NoLoadTorque | None:
@@ -192,7 +197,8 @@ class Recipe:
     def log(self, drive: KnownDrive | None = None, *, progress: Progress | None = None) -> Any:
         """Read the logs as one log.
 
-        Sensor errors that the mapping does not state are those of the drive.
+        Sensor errors that the mapping does not state are those of the drive. Friction becomes a torque at the
+        radius of its roll.
 
         Returns
         -------
@@ -204,7 +210,10 @@ class Recipe:
             As `hersey.read` does, and if a mapping states corrections for a table of means.
         """
         log = read_once(self, progress)
-        return log if drive is None else replace(log, sensors=log.sensors.or_else(drive.sensors))
+        if drive is None:
+            return log
+        log = replace(log, sensors=log.sensors.or_else(drive.sensors))
+        return log if log.domain.is_torque else log_as_torque(log, radius=drive.roll_radius)
 
     def dwells(
         self, log: TorqueLog | MeansTable, drive: KnownDrive | None = None, fit: MovingFit | None = None

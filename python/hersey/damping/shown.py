@@ -16,7 +16,6 @@ from hersey.damping.dwells.groups import levels_of_speed
 from hersey.damping.estimate import quantile
 from hersey.damping.scaled import scaled_speed, scaled_torque
 from hersey.errors import ROTATION
-from hersey.units import rpm
 
 #: Speeds on either side whose torque must exceed the least.
 ABOVE_LEAST = 2
@@ -30,12 +29,12 @@ def why_not_shown(points: SteadyPoints, data: Observations, branches: Branches) 
     """Return why the dwells do not show the transition that branches have; empty if they do."""
     z, y = scaled_speed(data, branches.fit), scaled_torque(data, branches.fit)
     sides = (z < branches.least, "below", "fall"), (z >= branches.least, "above", "rise")
-    at = f"{rpm(data.reference_speed * float(np.exp(branches.least))):.3g} rpm"
+    at, quantity = data.domain.at(data.reference_speed * float(np.exp(branches.least))), data.domain.quantity
     for side, where, _ in sides:
         high, speeds = _higher(z, y, side, branches, _least(branches, float(np.log(data.reference_speed))))
         if high < ABOVE_LEAST:
             return (
-                f"{where} {at}, torque clearly exceeds its minimum at only {high} of {speeds} speeds, "
+                f"{where} {at}, {quantity} clearly exceeds its minimum at only {high} of {speeds} speeds, "
                 f"and {ABOVE_LEAST} are needed. Record more dwells {where} this speed"
             )
     for ways, advice in _directions(points):
@@ -45,7 +44,8 @@ def why_not_shown(points: SteadyPoints, data: Observations, branches: Branches) 
         for side, where, does in sides:
             missing = [way for way, dwells in judged if _trend(z, y, branches, side & dwells) < _IN_EACH]
             if missing:
-                return f"{where} {at}, torque does not {does} in the dwells {' or '.join(missing)}{advice}"
+                ways_named = " or ".join(missing)
+                return f"{where} {at}, {quantity} does not {does} in the dwells {ways_named}{advice}"
     return ""
 
 

@@ -24,24 +24,22 @@ _MOST_SHARE = 10.0
 
 def headline_of(s: FittedLaw) -> str:
     """Return the law and its exponents."""
-    law = "B = a T^b w^c" if s.b else "B = a w^c"
     exponents = f"b = {s.b.value:.4g}, c = {s.c.value:.4g}" if s.b else f"c = {s.c.value:.4g}"
     where = "no transition"
     if s.transition is not None:
-        where = f"transition at {s.transition.speed.value:.4g} rad/s"
-    return f"{law}, {exponents}, {where}"
+        where = f"transition at {s.transition.speed.value:.4g} {s.domain.speed_unit}"
+    return f"{s.law}, {exponents}, {where}"
 
 
 def summary_of(s: FittedLaw) -> str:
     """Return the fit as text, in the layout that users of lmfit know."""
-    law = "B = a T^b w^c" if s.b else "B = a w^c"
-    unit = f"T in {s.temperature_scale}, " if s.b else ""
-    st = s.statistics
+    st, quantity = s.statistics, s.domain.quantity
     lines = [
         "[[Model]]",
-        f"    {law}    (B in N m s/rad, {unit}w in rad/s)",
+        f"    {s.law}    ({s.law_units})",
         "[[Fit Statistics]]",
-        "    # fitting method   = robust likelihood of ln torque, errors of torque, speed and temperature",
+        f"    # fitting method   = robust likelihood of ln {quantity}, errors of {quantity}, "
+        f"{s.domain.speed} and temperature",
         f"    # scatter added    = {100 * st.scatter:.3f} % between dwells, beyond the errors of their means",
         *(f"    # scatter shared   = {_shared_text(shared)}" for shared in st.shared),
         *(_wrapped(f"    # sensors +/-      = {s.sensors}") if s.sensors else []),
@@ -51,14 +49,14 @@ def summary_of(s: FittedLaw) -> str:
         f"    chi-square         = {st.chi_square:.6g}  (from the errors of the dwells alone)",
         f"    reduced chi-square = {st.reduced_chi_square:.6g}  (1 if these errors explained all scatter)",
         f"    Akaike (AICc)      = {st.aicc:.6g}",
-        f"    R-squared, torque  = {st.r_squared_torque:.6f}",
+        f"    R-squared, {'torque ' if s.domain.is_torque else quantity} = {st.r_squared_torque:.6f}",
         f"    R-squared, damping = {st.r_squared_damping:.6f}  (nearer 1 only because division by speed",
         "                         spreads the values)",
         "[[Variables]]                                        95 % interval",
     ]
     lines += [_variable("a", s.a), *([_variable("b", s.b)] if s.b else []), _variable("c", s.c)]
     lines += _transition_text(s)
-    lines += ["[[Fitted in torque space, errors absolute]]"]
+    lines += [f"[[Fitted in {quantity} space, errors absolute]]"]
     lines += [_variable(name, estimate) for name, estimate in s.torque_space.items()]
     lines += ["[[Correlations]] (unreported are below 0.1)", *_correlations(s)]
     return "\n".join(lines)
@@ -72,7 +70,7 @@ def _transition_text(s: FittedLaw) -> list[str]:
     at = "" if kelvin is None else f" at {_temperature_text(kelvin, s.temperature_scale)}"
     lines = [
         _variable("c_mixed", s.transition.mixed_exponent),
-        _variable("w_t", s.transition.speed) + f"  rad/s{at}",
+        _variable("w_t", s.transition.speed) + f"  {s.domain.speed_unit}{at}",
     ]
     if s.b:
         freed = s.transition.freed
@@ -83,7 +81,10 @@ def _transition_text(s: FittedLaw) -> list[str]:
     lines.append("    below w_t the exponent is c_mixed")
     if s.transition.gradual:
         lines.append("    the bend is gradual: w_t is the minimum of a smooth curve through the dwells;")
-        lines.append(f"    the trend lines on either side meet at {s.transition.meeting_speed:.4g} rad/s")
+        lines.append(
+            f"    the trend lines on either side meet at {s.transition.meeting_speed:.4g} "
+            f"{s.domain.speed_unit}"
+        )
     return lines
 
 
@@ -92,7 +93,7 @@ def record_of(s: FittedLaw) -> dict[str, Any]:
     statistics = {name: value for name, value in vars(s.statistics).items() if name != "variables"}
     return json_record(
         {
-            "law": "B = a T^b w^c" if s.b else "B = a w^c",
+            "law": s.law,
             "temperature_scale": s.temperature_scale,
             "reference_speed": s.reference_speed,
             "reference_temperature": s.reference_temperature,
@@ -110,6 +111,7 @@ def record_of(s: FittedLaw) -> dict[str, Any]:
             "temperature_range": s.temperature_range,
             "sensors": s.sensors,
             "rest": s.rest,
+            "domain": s.domain,
             "summary": summary_of(s),
         }
     )
@@ -122,8 +124,9 @@ def table_of(s: FittedLaw) -> pl.DataFrame:
     named = [(name, estimate, "") for name, estimate in s.coefficients().items()]
     if s.transition is not None:
         named.append(("c_mixed", s.transition.mixed_exponent, ""))
-        named.append(("w_t", s.transition.speed, "rad/s"))
-    named[0] = ("a", s.a, "N m s/rad at T = 1, w = 1")
+        named.append(("w_t", s.transition.speed, s.domain.speed_unit))
+    unit = s.domain.damping_unit if s.domain.is_torque else s.domain.unit
+    named[0] = ("a", s.a, f"{unit} at T = 1, {s.domain.speed_symbol} = 1".strip())
     rows = [(name, e.value, e.error, e.low, e.high, unit) for name, e, unit in named]
     numbers = dict.fromkeys(("value", "error", "low", "high"), pl.Float64)
     return pl.DataFrame(rows, schema={"name": pl.String, **numbers, "unit": pl.String}, orient="row")

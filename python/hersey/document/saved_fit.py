@@ -27,6 +27,7 @@ from hersey.document.parts.fit import FitPart
 from hersey.document.parts.log import InputFile, Point
 from hersey.errors import HerseyError, ParameterError, way_in
 from hersey.files.text import read_text
+from hersey.schema.domain import Domain
 from hersey.schema.part import Interval
 from hersey.schema.warning import Warning
 
@@ -319,6 +320,7 @@ def _surface(document: _FitFile) -> DampingSurface:
         data_sha256=tuple(file.sha256 for file in document.files),
         sensors=fit.sensors,
         rest=_rest(fit.rest),
+        domain=Domain.read(fit.domain),
         version=document.hersey_version,
     )
 

@@ -14,7 +14,7 @@ from hersey.arrays import refuse_unknown
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.dwells.doubtful import doubtful_order, doubtful_tare
 from hersey.damping.dwells.misleading import misleading
-from hersey.damping.dwells.reasons import LABELS
+from hersey.damping.dwells.reasons import label_of
 from hersey.errors import (
     DROP_MISSING,
     ISOTHERMAL,
@@ -154,7 +154,10 @@ class Inspection(Result):
         if self.support is None:
             return "\n".join([*lines, f"No fit is possible: {self._hindrance()}"])
         lines.append(f"{self.support.dwells} dwells")
-        lines += [f"  excluded: {rows} rows, {LABELS[kind]}" for kind, rows in self.support.rejected.items()]
+        of = self.support.domain
+        lines += [
+            f"  excluded: {rows} rows, {label_of(kind, of)}" for kind, rows in self.support.rejected.items()
+        ]
         lines += [f"  can determine     {said}" for said in self.support.can]
         lines += [f"  cannot determine  {said}" for said in self.support.cannot]
         return "\n".join(lines)
@@ -329,6 +332,7 @@ def _supported(
         return Support(0, 0, None, (), {}, (), (str(error),)), ()
     notes = () if isinstance(points.log, MeansTable) else points.warnings  # what a table lacks, support says
     found = (*doubtful_tare(points), *notes, *doubtful_order(points), *misleading(points))
+    found = tuple(each.about(points.domain) for each in found)
     support = support_of_points(points, temperature_scale=temperature_scale, no_temperature=no_temperature)
     return support, found
 

@@ -22,7 +22,8 @@ from hersey.damping.surface import DampingSurface
 from hersey.errors import InsufficientDataError, Setting
 from hersey.log.means import MeansTable
 from hersey.result import Means, Record
-from hersey.units import convert, rpm
+from hersey.schema.domain import TORQUE, Domain
+from hersey.units import convert
 
 #: Speeds that span less than this factor, and temperatures that span less than so many kelvin, give an
 #: exponent only with a wide interval.
@@ -47,6 +48,8 @@ class Support(Record):
         Mean of each group of temperatures, K, coldest first.
     rejected
         Rows of every other stretch by the kind of its reason.
+    domain
+        What was measured: a torque, or a friction force or coefficient.
     can, cannot
         In words; what is not known names what is missing.
     """
@@ -58,6 +61,7 @@ class Support(Record):
     rejected: dict[Kind, int]
     can: tuple[str, ...]
     cannot: tuple[str, ...]
+    domain: Domain = TORQUE
 
 
 def support_of_points(
@@ -84,7 +88,7 @@ def support_of_points(
                 _branches(points, groups or [np.arange(speed.size)], speed, fitted),
             )
             if constant is None
-            else (_nothing(constant),)
+            else (_nothing(constant, points),)
         ),
         *(() if isinstance(log, MeansTable) else (_approach(points), _tare(points))),
     ):
@@ -96,7 +100,14 @@ def support_of_points(
         rejected[stretch.why.kind] += stretch.rows
     limits = (float(speed.min()), float(speed.max()))
     return Support(
-        len(points), distinct_speeds(speed), limits, levels, dict(rejected), tuple(can), tuple(cannot)
+        dwells=len(points),
+        speeds=distinct_speeds(speed),
+        speed_range=limits,
+        temperatures=levels,
+        rejected=dict(rejected),
+        can=tuple(can),
+        cannot=tuple(cannot),
+        domain=points.domain,
     )
 
 
@@ -111,19 +122,20 @@ def _fitted(points: SteadyPoints, scale: str) -> DampingSurface | str:
         return str(error)
 
 
-def _nothing(torque: float) -> Said:
+def _nothing(torque: float, points: SteadyPoints) -> Said:
     """What a torque that stands still tells."""
+    of = points.domain
     return [], [
-        f"any exponent: torque always reads {1e3 * torque:.4g} mN m. Check the sensor, or name "
+        f"any exponent: {of.quantity} always reads {of.small(torque, '.4g')}. Check the sensor, or name "
         f"another column with {Setting('torque', 'channel').to()}"
     ]
 
 
 def _speed(speed: FloatArray, points: SteadyPoints) -> Said:
     count, low, high = distinct_speeds(speed), float(speed.min()), float(speed.max())
-    span = f"{rpm(low):.3g} to {rpm(high):.3g} rpm"
+    span = points.domain.between(low, high)
     if count < 3:
-        held = f"{rpm(low):.4g} rpm" if count == 1 else span
+        held = points.domain.at(low, ".4g") if count == 1 else span
         few = "one speed" if count == 1 else "two speeds"
         if lost := speeds_lost(points):
             return [], [f"exponent c (speed): {few} ({held}): {lost}"]
@@ -183,7 +195,8 @@ def _branches(
     if surface.transition is None:
         return _one_exponent(branch, [f"a transition: {_without(surface, branch)}"])
     at = surface.transition.speed
-    said = f"a transition: torque falls, then rises; it is lowest at {_in_rpm(at)}"
+    of = surface.domain
+    said = f"a transition: {of.quantity} falls, then rises; it is lowest at {_shown(at, of)}"
     if surface.reference_temperature is not None:
         said += f" at {_levels([surface.reference_temperature])}"
     can, cannot = _one_exponent(branch, [])
@@ -192,14 +205,15 @@ def _branches(
 
 def _without(surface: DampingSurface, branch: Rising) -> str:
     """Why there is no transition, and where one could lie; an exponent that does not hold says neither."""
-    low, high = (rpm(end) for end in surface.speed_range)
+    of = surface.domain
+    low, high = map(of.at, surface.speed_range)
     ends = [surface.c.low, surface.c.high]
     if branch.bent and branch.lack_of_fit is not None:
         ends += [*branch.lack_of_fit.local_exponents, *branch.lack_of_fit.by_temperature]
     if min(ends) > -1.0:
-        return f"torque rises from {low:.3g} rpm on, so a transition may lie at slower speeds"
+        return f"{of.quantity} rises from {low} on, so a transition may lie at slower speeds"
     if max(ends) < -1.0:
-        return f"torque does not rise up to {high:.3g} rpm, so a transition may lie at faster speeds"
+        return f"{of.quantity} does not rise up to {high}, so a transition may lie at faster speeds"
     return surface.rejected_transition
 
 
@@ -227,11 +241,12 @@ def _one_exponent(branch: Rising, cannot: list[str]) -> Said:
     return ["one exponent of speed: consistent with all dwells"], cannot
 
 
-def _in_rpm(speed: Estimate) -> str:
+def _shown(speed: Estimate, of: Domain) -> str:
     if not speed.estimable:
-        return f"{rpm(speed.value):.3g} rpm (interval not known)"
-    value, low, high = (rpm(each) for each in (speed.value, speed.low, speed.high))
-    return rounded(value, low, high, "rpm")
+        return f"{of.at(speed.value)} (interval not known)"
+    unit, factor = of.shown_speed
+    value, low, high = (factor * each for each in (speed.value, speed.low, speed.high))
+    return rounded(value, low, high, unit)
 
 
 def _levels(kelvin: Sequence[float]) -> str:
@@ -249,4 +264,5 @@ def _approach(points: SteadyPoints) -> Said:
 def _tare(points: SteadyPoints) -> Said:
     if points.standing_torque is None:
         return [], ["a tare: the drive never stands still for 2 s"]
-    return [f"a tare: torque reads {points.standing_torque * 1e3:.3g} mN m at standstill"], []
+    of = points.domain
+    return [f"a tare: {of.quantity} reads {of.small(points.standing_torque)} at standstill"], []

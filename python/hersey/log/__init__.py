@@ -12,7 +12,9 @@ roles                 roles of columns: their names, and the kinds of units that
 role_units            the unit of a column with a role
 channels              which column plays which role
 without_units         columns without units: named at once
-friction              friction forces and coefficients as torques, sliding speeds as those of a rotation
+friction              which of them a file holds, and what it becomes with a load and a radius
+pooling               runs that are fitted together: one domain for all
+as_torque             friction as a torque, where somebody has a radius and asks for it
 stating               a radius or a load: proposed, used once a person states it
 slow_channels         a temperature or a load that is slower than the rows: interpolated between its values
 long_arrays           numbers of long logs: on disk, and gone over a block at a time

@@ -37,7 +37,7 @@ from hersey.log.derived.speeds import (
     with_direction,
 )
 from hersey.log.formats.frame import FRAME
-from hersey.log.friction import Chosen, beside, computed, in_rotation, slow_roles, unused
+from hersey.log.friction import Chosen, beside, computed, in_domain, slow_roles, unused
 from hersey.log.impossible import Impossible, Reading, impossible_rows, marked_rows
 from hersey.log.long_arrays import HELD, each_block, ends, rows_before, rows_where, without
 from hersey.log.recording import INVALID, INVALID_TIME, Recording, Signal, columns, nothing_to_read
@@ -162,7 +162,7 @@ class Assembly:
         impossible = (*marked, *impossible)
         warnings += [each.warning() for each in impossible]
         arrays, first = self._on_one_clock(warnings)
-        arrays = in_rotation(arrays, self.chosen, self.stated)
+        arrays = in_domain(arrays, self.chosen, self.stated)
         bad = _unknown([values for role, values in arrays.items() if role not in self._lacking])
         places = (self._place(torque, first + row) for row in bad.tolist())
         left_out.add(bad.size, (f"{each}: the radius is not greater than zero" for each in places))
@@ -398,7 +398,7 @@ class Assembly:
         torque = self.parts[self._first]
         for parts in self._by_clock():
             own = parts[0].tick == torque.tick
-            slow = [p for p in parts if own and p.role in slow_roles(self.chosen)]
+            slow = [p for p in parts if own and p.role in slow_roles(self.chosen, self.stated)]
             needed = [p for p in parts if p not in slow]
             gone = _unknown([parts[0].time, *(p.values for p in needed)])
             for part in slow:

@@ -25,6 +25,9 @@ _LEAST_WINDOW = 5
 #: Two speeds of a no-load test are one if they differ by less than this share.
 _SAME_SPEED = 0.02
 
+#: Corrections that are about the torque or the rotation of a drive.
+_OF_A_TORQUE = ("torque from current", "tare", "no-load torque", "gears", "inertia")
+
 
 @dataclass(frozen=True)
 class Corrected:
@@ -283,6 +286,8 @@ def _corrected(
     log: TorqueLog | Corrected, name: str, correct: Callable[[Run], Run], *parameters: tuple[str, str]
 ) -> Corrected:
     before = log if isinstance(log, Corrected) else Corrected(log)
+    if name in _OF_A_TORQUE:
+        before.log.domain.require_torque(f"the correction '{name}'")
     runs = tuple(correct(run) for run in before.log.runs)
     effects = tuple(
         effect for role in CHANNEL_UNITS if (effect := _effect(role, before.log.runs, runs)) is not None

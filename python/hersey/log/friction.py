@@ -1,31 +1,31 @@
-"""A friction force, or a coefficient, against sliding speed, as the torque and the speed of a rotation.
+"""What a log measures: a torque, a friction force or a coefficient, and which of them it becomes.
 
-The torque is the force times the radius at which it acts, the force the coefficient times the normal load,
-the speed of rotation that of sliding over the radius. Radius and load are channels, or the user says them.
+A torque is a force times the radius at which it acts, a force the coefficient times the normal load, a speed
+of sliding that of rotation times the radius. Radius and load are channels, or the user says them. What was
+measured stays as it is, unless somebody asks for a torque with one radius (and one load for a coefficient).
+Several radii or loads give a force or a coefficient against sliding speed, which runs have in common.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from hersey.arrays import FloatArray
-from hersey.errors import ParameterError
 from hersey.log.channels import ChannelChoice, Stated, find_channel
 from hersey.log.long_arrays import HELD, Filling, blocks
 from hersey.log.roles import role_conversion
 from hersey.log.stating import proposals, unstated
 from hersey.log.text.column import Column
-from hersey.log.torque_log import LogFile, Run
+from hersey.schema.domain import QUANTITY_OF, SPEED_OF, Domain
 from hersey.schema.warning import Warning
-from hersey.units import Conversion, named
+from hersey.units import Conversion
 
 Chosen = dict[str, tuple[Column, Conversion]]
-#: Kinds of torque and speed that are those of a rotation already.
-_OF_ROTATION = {"torque": "torque", "speed": "speed"}
+#: Whether one load or radius is known of a whole file, or several; absent where none is.
+ONE, SEVERAL = "one", "several"
 
 
 def beside(
@@ -52,112 +52,145 @@ def beside(
         choice = choices.get(role, ChannelChoice())
         if choice.name and (channel := find_channel(role, left, choice, file)):
             others[role] = channel
-        elif role != "run" and getattr(stated, role) is None:
-            why = _needing(role, chosen) or (
-                choice.unit and f"a unit is given for the {role}, but no value or column"
-            )
-            if why:
-                of = _in_need(role, chosen)
-                raise unstated(file, role, why, left, chosen[of][0] if of else None)
+        elif role != "run" and getattr(stated, role) is None and choice.unit:
+            why = f"a unit is given for the {role}, but no value or column"
+            raise unstated(file, role, why, left)
+    kinds = {"torque": "torque"} | _kinds(chosen)
+    if kinds == {"torque": "torque", "speed": "belt speed"} and not _known("radius", others, stated):
+        column = chosen["speed"][0]
+        why = f"'{column}' is a sliding speed, which needs the radius to become a speed of rotation"
+        raise unstated(file, "radius", why, _without(columns, chosen | others), column)
     return others
 
 
 def unused(columns: tuple[Column, ...], chosen: Chosen, stated: Stated) -> list[Warning]:
-    """Return which columns may be the normal load that nobody stated, and how to state it."""
-    if "load" in chosen or stated.load is not None:
-        return []
-    return proposals("load", _without(columns, chosen))
+    """Return which columns may be the load or the radius that nobody stated, and how to state it."""
+    roles = ("load",) if _kinds(chosen).get("torque", "torque") == "torque" else ("load", "radius")
+    left = _without(columns, chosen)
+    return [each for role in roles if not _known(role, chosen, stated) for each in proposals(role, left)]
 
 
 def _without(columns: tuple[Column, ...], chosen: Chosen) -> tuple[Column, ...]:
     return tuple(c for c in columns if all(c != column for column, _ in chosen.values()))
 
 
-def slow_roles(chosen: Chosen) -> frozenset[str]:
-    """Return the roles that may be slow: interpolated between values, so no load that makes the torque."""
-    of_coefficient = _kinds(chosen).get("torque") == "friction coefficient"
-    return frozenset({"temperature"} if of_coefficient else {"temperature", "load"})
+def slow_roles(chosen: Chosen, stated: Stated) -> frozenset[str]:
+    """Return the roles that may be slow: interpolated between values, so no load that makes the quantity."""
+    counts = measured(chosen).powers(domain_of(chosen, stated))["load"] != (0, 0)
+    return frozenset({"temperature"} if counts else {"temperature", "load"})
 
 
-def in_rotation(arrays: dict[str, FloatArray], chosen: Chosen, stated: Stated) -> dict[str, FloatArray]:
-    """Return torque, N m, and speed, rad/s, from what the columns hold, in SI; the load, N, where known.
+def measured(chosen: Chosen) -> Domain:
+    """Return what the columns of torque and speed hold as they were recorded."""
+    kinds = _kinds(chosen)
+    return Domain(QUANTITY_OF[kinds.get("torque", "torque")], SPEED_OF[kinds.get("speed", "speed")])
+
+
+def domain_of(chosen: Chosen, stated: Stated) -> Domain:
+    """Return what the log is about: the torque of a rotation, or friction."""
+    return target(measured(chosen), _known("load", chosen, stated), _known("radius", chosen, stated))
+
+
+def target(of: Domain, load: str, radius: str) -> Domain:
+    """Return what a measured domain becomes with `ONE` load and radius, with `SEVERAL`, or none (empty)."""
+    several, torque = SEVERAL in (load, radius), of.quantity == "torque"
+    if torque and not (radius and (load or radius == SEVERAL) and several):
+        return Domain()
+    asked = radius == ONE and (load == ONE or of.quantity == "friction force") and load != SEVERAL
+    if not torque and asked:
+        return Domain()
+    turned = "sliding speed" if radius else of.speed
+    known = bool(load) or of.quantity == "friction coefficient"
+    return Domain("friction coefficient" if known else "friction force", turned)
+
+
+def _known(role: str, chosen: Chosen, stated: Stated) -> str:
+    value = getattr(stated, role)
+    if role in chosen or (isinstance(value, tuple) and len(set(value)) > 1):
+        return SEVERAL
+    return "" if value is None else ONE
+
+
+def in_domain(
+    arrays: dict[str, FloatArray], chosen: Chosen, stated: Stated, domain: Domain | None = None
+) -> dict[str, FloatArray]:
+    """Return quantity and speed in the domain of the log (SI), from what the columns hold; the load, N.
 
     A row without a number that is needed gets none.
     """
-    kinds, rows = _kinds(chosen), arrays["speed"].size
-    if is_rotation(chosen) and stated.load is None:
+    of, to = measured(chosen), domain or domain_of(chosen, stated)
+    if of == to and stated.load is None:
         arrays.pop("radius", None)
         return arrays
+    rows = arrays["speed"].size
     if rows <= HELD:
-        return _in_rotation(arrays, kinds, stated)
+        return _in_domain(arrays, of, to, stated)
     made: dict[str, Filling] = {}
     for block in blocks(rows, *arrays.values()):
         part = {role: values[block] for role, values in arrays.items()}
-        for role, values in _in_rotation(part, kinds, stated).items():
+        for role, values in _in_domain(part, of, to, stated).items():
             made.setdefault(role, Filling()).add(values, block.stop / rows)
     return {role: each.whole() for role, each in made.items()}
 
 
-def is_rotation(chosen: Chosen) -> bool:
-    """Return whether torque and speed are those of a rotation as they were recorded."""
-    return all(kind == _OF_ROTATION[role] for role, kind in _kinds(chosen).items())
+def is_converted(chosen: Chosen, stated: Stated) -> bool:
+    """Return whether quantity or speed are computed from what was recorded."""
+    return measured(chosen) != domain_of(chosen, stated)
 
 
 def rotating(chosen: Mapping[str, Any]) -> tuple[str, ...]:
     """Return which of torque and speed a log has: a coast-down has no torque."""
-    return tuple(role for role in _OF_ROTATION if role in chosen)
+    return tuple(role for role in ("torque", "speed") if role in chosen)
 
 
 def _kinds(chosen: Chosen) -> dict[str, str]:
     return {role: role_conversion(role, chosen[role][1].unit)[0] for role in rotating(chosen)}
 
 
-def _in_rotation(
-    arrays: dict[str, FloatArray], kinds: dict[str, str], stated: Stated
+def _in_domain(
+    arrays: dict[str, FloatArray], of: Domain, to: Domain, stated: Stated
 ) -> dict[str, FloatArray]:
     rows = arrays["speed"].shape
     known = {role: arrays[role] for role in ("load", "radius") if role in arrays}
     for role in ("load", "radius"):
         if (value := getattr(stated, role)) is not None:
             known[role] = np.full(rows, 1.0 if isinstance(value, tuple) else value)  # see `of_each_run`
-    if "radius" in known:
-        known["radius"] = np.where(known["radius"] > 0, known["radius"], np.nan)
     if "load" in known:
         arrays["load"] = known["load"]
+    for role, nothing in (("radius", np.nan), ("load", np.inf)):  # no load: no contact, see `of_each_run`
+        if role in known:
+            known[role] = np.where(known[role] > 0, known[role], nothing)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        if kinds.get("torque") == "friction coefficient":
-            arrays["torque"] = arrays["torque"] * known["load"]
-        if kinds.get("torque", "torque") != "torque":
-            arrays["torque"] = arrays["torque"] * known["radius"]
-        if kinds["speed"] != "speed":
-            arrays["speed"] = arrays["speed"] / known["radius"]
+        torque = arrays.get("torque", arrays["speed"])  # a coast-down has none
+        torque, arrays["speed"] = of.converted(to, torque, arrays["speed"], **known)
+    if "torque" in arrays:
+        arrays["torque"] = torque
     arrays.pop("radius", None)
     return arrays
 
 
-def computed(chosen: Chosen, stated: Stated) -> list[Warning]:
-    """Return what torque and speed were computed from, and where the load is from."""
+def computed(chosen: Chosen, stated: Stated, domain: Domain | None = None) -> list[Warning]:
+    """Return what quantity and speed were computed from, and where the load is from."""
     known = _source("radius", "m", chosen, stated) | _source("load", "N", chosen, stated)
-    kinds = _kinds(chosen)
-    paths = {role: chosen[role][0].path for role in kinds}
+    of, to = measured(chosen), domain or domain_of(chosen, stated)
+    powers = of.powers(to)
+    paths = {role: chosen[role][0].path for role in rotating(chosen)}
     out = []
-    if kinds.get("torque", "torque") != "torque":
-        out.append(
-            Warning(
-                "torque computed",
-                "torque is '{channel}' x load ({load_from}) x radius ({radius_from})"
-                if kinds["torque"] == "friction coefficient"
-                else "torque is '{channel}' x radius ({radius_from})",
-                channel=paths["torque"],
-                **known,
-            )
-        )
-    if kinds["speed"] != "speed":
+    if "torque" in paths and of.quantity != to.quantity:
+        signs = {role: "x" if power > 0 else "/" for role, (power, _) in powers.items()}
+        words = "{quantity} is '{channel}'"
+        words += " {load_sign} load ({load_from})" if powers["load"][0] else ""
+        words += " {radius_sign} radius ({radius_from})" if powers["radius"][0] else ""
+        values = known | {f"{role}_sign": sign for role, sign in signs.items()}
+        out.append(Warning("torque computed", words, channel=paths["torque"], quantity=to.quantity, **values))
+    if of.speed != to.speed:
         out.append(
             Warning(
                 "speed computed",
-                "speed is '{channel}' / radius ({radius_from})",
+                "{speed} is '{channel}' {sign} radius ({radius_from})",
                 channel=paths["speed"],
+                speed=to.speed,
+                sign="x" if to.speed == "sliding speed" else "/",
                 **known,
             )
         )
@@ -177,57 +210,3 @@ def _source(role: str, unit: str, chosen: Chosen, stated: Stated) -> dict[str, A
         source = "" if value is None else f"{value:g} {unit}"
     one = value if role not in chosen and isinstance(value, int | float) else None
     return {role: one, f"{role}_from": source}
-
-
-def of_each_run(runs: list[tuple[Run, LogFile]], stated: Stated) -> list[tuple[Run, LogFile]]:
-    """Return runs, read with a load or a radius of 1, with those that are stated for each of them.
-
-    Raises
-    ------
-    ParameterError
-        If there are not as many of them as runs.
-    """
-    for role in ("load", "radius"):
-        values = getattr(stated, role)
-        if not isinstance(values, tuple):
-            continue
-        if len(values) != len(runs):
-            raise ParameterError(
-                f"{role} has {len(values)} values for {len(runs)} runs. Give one value for each run"
-            )
-        runs = [(_scaled(run, log, role, value), log) for (run, log), value in zip(runs, values, strict=True)]
-    return runs
-
-
-def _scaled(run: Run, log: LogFile, role: str, value: float) -> Run:
-    units = {channel.role: channel.unit for channel in log.channels}
-    kinds = {of: role_conversion(of, units[of])[0] for of in rotating(units)}
-    if role == "load":
-        torque = run.torque * value if kinds.get("torque") == "friction coefficient" else run.torque
-        return replace(run, torque=torque, load=np.full(run.torque.shape, value))
-    torque = run.torque * value if kinds.get("torque", "torque") != "torque" else run.torque
-    return replace(run, torque=torque, speed=run.speed / value if kinds["speed"] != "speed" else run.speed)
-
-
-def _in_need(role: str, chosen: Chosen) -> str:
-    """Which of torque and speed is known only with a load or a radius, or nothing."""
-    for of in ("torque", "speed"):
-        if of in chosen:
-            kind = role_conversion(of, chosen[of][1].unit)[0]
-            if (role == "radius" and kind != of) or (role == "load" and kind == "friction coefficient"):
-                return of
-    return ""
-
-
-def _needing(role: str, chosen: Chosen) -> str:
-    """Why a load or a radius is needed, or nothing."""
-    of = _in_need(role, chosen)
-    if not of:
-        return ""
-    column, unit = chosen[of]
-    kind = role_conversion(of, unit.unit)[0]
-    if role == "load":
-        return f"'{column}' is a {kind}, which needs the normal load"
-    what = named(kind)
-    example = {"torque": "a torque", "speed": "a speed of rotation"}[of]
-    return f"'{column}' is a {what}, which needs the radius to become {example}"

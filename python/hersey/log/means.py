@@ -21,7 +21,7 @@ from hersey.arrays import FloatArray
 from hersey.errors import HerseyError, InsufficientDataError, ParameterError
 from hersey.log.cell_table import CellTable, cells_of
 from hersey.log.channels import ChannelChoice, Stated, called, find_channel
-from hersey.log.friction import beside, computed, in_rotation, unused
+from hersey.log.friction import beside, computed, domain_of, in_domain, unused
 from hersey.log.mean_roles import (
     Role,
     as_long_as_torque,
@@ -32,12 +32,14 @@ from hersey.log.mean_roles import (
     torque_errors,
 )
 from hersey.log.not_a_log import is_one, refuse_not_a_log
+from hersey.log.pooling import refuse_mixed
 from hersey.log.replaced import replaced_units
 from hersey.log.roles import CHANNELS, SIGNS, UNITS
 from hersey.log.sensors import Sensors
 from hersey.log.text.column import Column
 from hersey.log.torque_log import LARGEST, Channel, LogFile, TorqueLog, title_of
 from hersey.result import Result, json_record
+from hersey.schema.domain import TORQUE, Domain
 from hersey.schema.warning import Warning
 from hersey.units import takes_si
 
@@ -91,6 +93,7 @@ class MeansTable(Result):
     corrections: tuple[Any, ...] = ()  #: none: what is corrected is corrected in the table
     runs: tuple[Any, ...] = ()  #: none: no trace was recorded
     sensors: Sensors = field(default_factory=Sensors)
+    domain: Domain = TORQUE  #: what ``torque`` and ``speed`` of the means hold
 
     @property
     def rows(self) -> int:
@@ -162,16 +165,21 @@ def read_means(
     means: list[MeanRow] = []
     files: list[LogFile] = []
     stated = []
+    domains = []
     choices = _choices(dict(channels or {}), dict(units or {}))
     radii, loads = (_for_each(name, of, len(listed)) for name, of in (("radius", radius), ("load", load)))
+    whole = Stated(None, _of_all(radii), _of_all(loads))
     for number, table in enumerate(listed):
         cells = cells_of(table, f"table {number + 1}" if len(listed) > 1 else "table")
         said = Stated(None, radii[number], loads[number])
-        rows, file, errors = _read(cells, choices, said, isothermal, means)
+        rows, file, errors, domain = _read(cells, choices, (said, whole), isothermal, means)
         means += rows
         files.append(file)
         stated.append(errors)
-    return MeansTable(tuple(_turned(row, signs or {}) for row in means), tuple(files), all(stated))
+        domains.append((file.name, domain))
+    refuse_mixed(domains)
+    means = [_turned(row, signs or {}) for row in means]
+    return MeansTable(tuple(means), tuple(files), all(stated), domain=domains[0][1])
 
 
 def _turned(row: MeanRow, signs: Mapping[str, int]) -> MeanRow:
@@ -196,6 +204,12 @@ def _for_each(name: str, given: float | Sequence[float] | None, tables: int) -> 
         if not 0 < value < LARGEST:
             raise ParameterError(f"{name} is {value:g} (SI): it must be greater than 0")
     return list(values)
+
+
+def _of_all(values: list[float | None]) -> tuple[float, ...] | float | None:
+    """What is said of all tables: one value, one for each, or nothing."""
+    known = tuple(value for value in values if value is not None)
+    return (known if len(set(known)) > 1 else known[0]) if known else None
 
 
 def is_means_table(path: Path, channels: Mapping[str, str], units: Mapping[str, str]) -> bool:
@@ -246,16 +260,25 @@ def _refuse_other(table: Any) -> None:
 
 
 def _read(
-    cells: CellTable, choices: dict[str, ChannelChoice], said: Stated, isothermal: bool, before: list[MeanRow]
-) -> tuple[list[MeanRow], LogFile, bool]:
-    """The rows of a table, its record, and whether it states errors; ``before`` are rows of other tables."""
+    cells: CellTable,
+    choices: dict[str, ChannelChoice],
+    stated: tuple[Stated, Stated],
+    isothermal: bool,
+    before: list[MeanRow],
+) -> tuple[list[MeanRow], LogFile, bool, Domain]:
+    """The rows of a table, its record, whether it states errors, and its domain.
+
+    ``stated`` is what the user says of this table and of all, ``before`` are rows of other tables.
+    """
+    said, of_all = stated
     cells = as_long_as_torque(cells, choices)
     roles = mean_roles(cells, choices, isothermal)
     used = roles | beside(cells.columns, choices, said, roles, cells.name)
     held = {role: in_si(cells, *role_of) for role, role_of in used.items()}
-    lever = in_rotation(held | {"torque": np.ones_like(held["torque"])}, roles, said)["torque"]
+    domain = domain_of(used, of_all)
+    lever = in_domain(held | {"torque": np.ones_like(held["torque"])}, used, said, domain)["torque"]
     error = torque_errors(cells, roles["torque"])
-    values = in_rotation(held, roles, said)
+    values = in_domain(held, used, said, domain)
     needed = {role: values[role] for role in roles}
     if error is not None:
         needed["torque error"] = values["error"] = error * lever
@@ -275,7 +298,7 @@ def _read(
         )
     channels = tuple(Channel(role, column.name, unit.unit) for role, (column, unit) in used.items())
     warnings = (
-        *computed(used, said),
+        *computed(used, said, domain),
         *replaced_units(used),
         *unused(cells.columns, used, said),
         *_rows_left_out(left_out),
@@ -290,7 +313,7 @@ def _read(
         comments=cells.comments,
         warnings=warnings,
     )
-    return rows, file, error is not None
+    return rows, file, error is not None, domain
 
 
 def _with_labels(cells: CellTable, values: dict[str, FloatArray], first_run: int) -> dict[str, Any]:

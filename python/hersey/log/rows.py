@@ -273,10 +273,9 @@ def _recorded(
             begins=begins,
         )
         warnings = (*warnings, start)
-    optional = {role: run.get(role) for role in ("temperature", "load")}
     record = replace(file, name=name, rows=run["time"].size, warnings=warnings)
     torque = run["torque"] if "torque" in run else np.full(run["time"].size, np.nan)
-    return Run(name, run["time"], torque, run["speed"], **optional), record
+    return Run(name, run["time"], torque, run["speed"], run.get("temperature"), run.get("load")), record
 
 
 def _slow(

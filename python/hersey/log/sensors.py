@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+from hersey.schema.domain import TORQUE, Domain
 from hersey.units import convert
 
 #: Zero error of torque as a share of the largest torque measured, where none is stated.
@@ -47,11 +48,19 @@ class Sensors:
 
     def __str__(self) -> str:
         """Return the errors in words, the defaults named as such."""
-        zero = "0.1 % of the largest torque" if self.torque_zero is None else _newton_metre(self.torque_zero)
+        return self.about(TORQUE)
+
+    def about(self, of: Domain) -> str:
+        """Return the same of what was measured."""
+        zero = (
+            f"0.1 % of the largest {of.quantity}"
+            if self.torque_zero is None
+            else _newton_metre(self.torque_zero)
+        )
         said = {
             "temperature": f"temperature {self.temperature_zero:g} K"
             + (f", film heated by up to {self.film_heating:g} K" if self.film_heating else ""),
-            "torque": f"torque {100 * self.torque_gain:.3g} % and {zero}",
+            "torque": f"{of.quantity} {100 * self.torque_gain:.3g} % and {zero}",
             "speed": f"speed {100 * self.speed_gain:.3g} %",
         }
         return ", ".join(text if role in self.stated else f"{text} (default)" for role, text in said.items())

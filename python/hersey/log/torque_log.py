@@ -16,8 +16,9 @@ from hersey.log.long_arrays import passed
 from hersey.log.middle import median_step
 from hersey.log.sensors import Sensors
 from hersey.result import Means, Record, Result
+from hersey.schema.domain import TORQUE, Domain
 from hersey.schema.warning import Warning
-from hersey.units import celsius, rpm, takes_si
+from hersey.units import celsius, takes_si
 
 if TYPE_CHECKING:
     import polars as pl
@@ -31,8 +32,8 @@ CHANNEL_UNITS = {"torque": "N m", "speed": "rad/s", "temperature": "K"}
 NO_CLOCK = "number of the row"
 #: No quantity of a drive comes near this, in SI.
 LARGEST = 1e12
-#: Slower than this, rad/s (a fiftieth of a revolution a minute), the drive stands.
-STANDING = 0.002
+#: Slower than this, rad/s, the drive stands.
+STANDING = TORQUE.standing
 #: What is subtracted from torque, and the directions whose dwells are used.
 TARES, ROTATIONS = Words(("none", "standing")), Words(("both", "forward", "reverse"))
 
@@ -79,6 +80,7 @@ class Run(Record):
     speed: FloatArray
     temperature: FloatArray | None
     load: FloatArray | None = None  #: normal load, N, where it is known
+    domain: Domain = TORQUE  #: what ``torque`` and ``speed`` hold: friction and sliding speed, if it says so
 
     def to_dict(self) -> dict[str, Any]:
         """Return the size of the run and the range of each channel, in SI."""
@@ -169,6 +171,11 @@ class TorqueLog(Result):
         return title_of(self.files)
 
     @property
+    def domain(self) -> Domain:
+        """What was measured: a torque, or a friction force or coefficient, against which speed."""
+        return self.runs[0].domain
+
+    @property
     def has_temperature(self) -> bool:
         """Whether every run has a temperature."""
         return all(run.temperature is not None for run in self.runs)
@@ -223,11 +230,11 @@ def _ends(values: FloatArray) -> tuple[float, float]:
 
 def _ranges(run: Run) -> str:
     """What a run spans, for people."""
-    slow, fast = (rpm(end) for end in _ends(run.speed))
-    least, most = _ends(run.torque)
+    of, (least, most) = run.domain, _ends(run.torque)
     duration = float(run.time[-1] - run.time[0])
     text = (
-        f"{run.time.size} rows, {duration:.5g} s; {slow:.4g} to {fast:.4g} rpm, {least:.4g} to {most:.4g} N m"
+        f"{run.time.size} rows, {duration:.5g} s; {of.between(*_ends(run.speed), '.4g')}, "
+        f"{'' if of.is_torque else f'{of.quantity} '}{least:.4g} to {of.amount(most, '.4g')}"
     )
     if run.temperature is None:
         return text
@@ -240,4 +247,11 @@ def _run_frame(index: int, run: Run) -> pl.DataFrame:
 
     channels = {title: getattr(run, name) for name, title in _COLUMNS.items()}
     columns = {title: values for title, values in channels.items() if values is not None}
+    of = run.domain
+    if not of.is_torque:
+        named = {
+            "torque (N m)": f"{of.quantity} ({of.unit or 1})",
+            "speed (rad/s)": f"{of.speed} ({of.speed_unit})",
+        }
+        columns = {named.get(title, title): values for title, values in columns.items()}
     return pl.DataFrame(columns).insert_column(0, pl.Series("run", np.full(run.time.size, index)))

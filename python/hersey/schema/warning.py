@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
 from hersey.errors import Setting, capital, followed_by, printable, sentence
+from hersey.schema.domain import TORQUE, Domain
 from hersey.schema.record import Means, Record, json_record
 from hersey.units import celsius, rpm
 
@@ -30,14 +31,29 @@ _UNITS: dict[str, Callable[[Any], Any]] = {
     "nm": lambda value: 1e9 * value,
     "GPa": lambda value: 1e-9 * value,
     "mN m": lambda value: 1e3 * value,
+    "N m": lambda value: value,
+    "rad/s": lambda value: value,
 }
+#: Names in words that stand for the quantity that was measured, and the speed against which it was.
+_OF_DOMAIN = ("measured", "against")
 
 
 class _Words(string.Formatter):
     """Words with values, which may be shown in a unit, as a choice of words, with a capital or as a p-value.
 
-    Such as ``{speed:.3g rpm}``, ``{count:row|rows}``, ``{name:capital}`` and ``{chance:p}``.
+    Such as ``{speed:.3g rpm}``, ``{count:row|rows}``, ``{name:capital}`` and ``{chance:p}``. Where friction
+    was measured ``{measured}`` names it, and what is in rpm or N m is shown in the units of the domain.
     """
+
+    def __init__(self, values: Mapping[str, Any]) -> None:
+        self._of = TORQUE
+        if all(name in values for name in _OF_DOMAIN):
+            self._of = Domain(*(str(values[name]) for name in _OF_DOMAIN))
+
+    def get_value(self, key: int | str, args: Any, kwargs: Mapping[str, Any]) -> Any:
+        if key in _OF_DOMAIN and key not in kwargs:
+            return {"measured": self._of.quantity, "against": self._of.speed}[str(key)]
+        return super().get_value(key, args, kwargs)
 
     def format_field(self, value: Any, spec: str) -> str:
         if isinstance(value, Setting):
@@ -52,10 +68,11 @@ class _Words(string.Formatter):
         form, _, unit = spec.partition(" ")
         if not unit:
             return str(super().format_field(value, spec))
+        if not self._of.is_torque and unit in ("mN m", "N m"):
+            return self._of.amount(value, form)
+        if not self._of.is_torque and unit in ("rpm", "rad/s"):
+            return self._of.at(value, form)
         return f"{super().format_field(_UNITS[unit](value), form)} {unit}"
-
-
-_words = _Words()
 
 
 def is_value(name: Any, value: Any) -> bool:
@@ -148,6 +165,10 @@ class Warning(Record):
         """Return the same of what lies within ``where``, such as a file of a specimen."""
         return self._with(where=f"{where}: {self.where}" if self.where else where)
 
+    def about(self, of: Domain) -> Warning:
+        """Return the same of what was measured: words and units are those of friction where it was."""
+        return self if of.is_torque else self._with(measured=of.quantity, against=of.speed)
+
     def titled(self, title: str, *, section: str) -> Warning:
         """Return the same under a title, its evidence in a section; what it concerns leads the words."""
         words = f"{{concerns}}: {self.words}" if self.where else self.words
@@ -183,7 +204,7 @@ class Warning(Record):
         return followed_by(self._shown(self.words), self._shown(self.remedy))
 
     def _shown(self, words: str) -> str:
-        return printable(_words.vformat(words, (), self.values))
+        return printable(_Words(self.values).vformat(words, (), self.values))
 
     def __str__(self) -> str:
         """Return what it concerns, what is wrong and what to do."""

@@ -68,6 +68,15 @@ class Findings:
     @cached_property
     def units(self) -> dict[str, str]:
         """The one unit in which each quantity is shown; torque by the greatest that is spoken of."""
+        if not self.points.domain.is_torque:
+            unit, speed = self.points.domain.shown[0], self.points.domain.shown_speed[0]
+            return {
+                "torque": unit,
+                "belt_speed": "mm/s",
+                "roll_speed": speed,
+                "temperature": "°C",
+                "force": "N",
+            }
         torques = [float(np.abs(self.points.column("torque")).max())]
         if self.map is not None:
             torques += [float(np.max(self.map.holding)), self.map.torque_limit or 0.0]

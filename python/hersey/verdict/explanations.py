@@ -54,7 +54,7 @@ _WORDS = {
     THINNING: "a shear-thinning lubricant",
     HEATING: "a film heated by its own shear",
     OTHER: "a curvature that none of the models describes",
-    UNTRIED: "any film plus a constant torque (too few dwells to test it)",
+    UNTRIED: "any film plus a constant {quantity} (too few dwells to test it)",
 }
 
 
@@ -154,7 +154,7 @@ def explained(
         words = f"{_WORDS[THINNING]} (shear rate^{n:.2f}) in a film of fixed thickness"
         listed.append(Explanation(THINNING, words))
     if too_few and not beside:
-        listed.append(Explanation(UNTRIED, _WORDS[UNTRIED]))
+        listed.append(Explanation(UNTRIED, _WORDS[UNTRIED].format(quantity=points.domain.quantity)))
     if (bent and own is None and lack.drift <= 0) or not listed:
         listed += _bending(lack, bent, surface)
     named = None if bent else _sole(films, surface)
@@ -162,7 +162,10 @@ def explained(
     if named and beside:
         named, why = None, f"{beside[0].name} fits as well"
     if named and too_few:
-        named, why = None, "there are too few dwells to test the film plus a constant torque"
+        named, why = (
+            None,
+            f"there are too few dwells to test the film plus a constant {points.domain.quantity}",
+        )
     power = Explanation(POWER, _WORDS[POWER])
     fitted += [(power, branch.fit, not bent, lack.curvature)]
     fitted += [] if own is None else [(*own, own[0].key in {e.key for e in listed}, own[0].p_value)]
@@ -303,16 +306,16 @@ def _with_constant(regime: str, fit: LawFit, lack: LackOfFit, data: Observations
     assert isinstance(fit.law, ConstantPlusLaw)
     film: FloatArray = fit.law.film_share(fit.values, data.inputs)
     share = float(1.0 - np.median(film))
+    torque, beside = "torque", "no-load torque or "
+    if not data.domain.is_torque:
+        torque, beside = data.domain.quantity, ""
     if regime == "constant film":
         words = (
-            f"a constant torque, e.g. Coulomb friction, {100 * share:.0f} % of the total, plus a viscous "
-            "torque"
+            f"a constant {torque}, e.g. Coulomb friction, {100 * share:.0f} % of the total, plus a viscous "
+            f"{torque}"
         )
         return Explanation(COULOMB_VISCOUS, words, share, lack.curvature)
-    words = (
-        f"{regime} plus a constant torque (no-load torque or Coulomb friction), {100 * share:.0f} % of "
-        "the total"
-    )
+    words = f"{regime} plus a constant {torque} ({beside}Coulomb friction), {100 * share:.0f} % of the total"
     return Explanation(regime + CONSTANT, words, share, lack.curvature)
 
 

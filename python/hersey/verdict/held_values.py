@@ -11,7 +11,6 @@ from hersey.damping.dwells.resolution import quantisation_step
 from hersey.inspection.faults import Fault, clipping, stuck
 from hersey.log.torque_log import Run
 from hersey.schema.warning import Warning
-from hersey.units import rpm
 
 #: Share of the rows of a dwell at the end of a range from which its mean counts as wrong.
 NOTABLE = 0.01
@@ -37,8 +36,9 @@ def held_values(points: SteadyPoints) -> list[Warning]:
 def _stuck(name: str, fault: Fault, file: str) -> Warning:
     return Warning(
         fault.kind,
-        "{channel} is {fault} at "
-        + ("{value:.4g degC}" if name == "temperature" else "{value:.4g} N m")
+        ("{measured}" if name == "torque" else "{channel}")
+        + " is {fault} at "
+        + ("{value:.4g degC}" if name == "temperature" else "{value:.4g N m}")
         + " for {rows} rows, so its true value there is unknown",
         severity="watch",
         where=file,
@@ -53,8 +53,9 @@ def _clipped(name: str, fault: Fault, file: str, dwells: list[str]) -> Warning:
     """A channel at the end of its range, with the dwells that reach it."""
     return Warning(
         fault.kind,
-        "{channel} is {fault} at "
-        + ("{value:.4g degC}" if name == "temperature" else "{value:.4g} N m")
+        ("{measured}" if name == "torque" else "{channel}")
+        + " is {fault} at "
+        + ("{value:.4g degC}" if name == "temperature" else "{value:.4g N m}")
         + " in {rows} rows, where the range of sensor or logger ends"
         + (
             ". {dwells} {dwells:dwell reaches this value and is|dwells reach this value and are} wrong: "
@@ -83,7 +84,7 @@ def _dwells_at(points: SteadyPoints, number: int, name: str, end: float) -> list
     run = points.log.runs[number]
     time, at_end = run.time, getattr(run, name) == end
     return [
-        f"{abs(rpm(speed)):.3g} rpm at {start:.6g} to {last:.6g} s"
+        f"{points.domain.at(abs(speed))} at {start:.6g} to {last:.6g} s"
         for of, start, last, speed in points.table.select("run", "start", "end", "speed").iter_rows()
         if of == number and np.mean(at_end[(time >= start) & (time <= last)]) >= NOTABLE
     ]

@@ -20,10 +20,12 @@ from hersey.damping.trend import Trend, trend_of
 from hersey.lubrication.contact import Contact
 from hersey.lubrication.lubricant import Lubricant
 from hersey.result import Means, Record, Result
+from hersey.schema.domain import TORQUE, Domain
 from hersey.units import celsius, rpm, takes_si
 from hersey.verdict.contact_regimes import film_law, log_regimes
 from hersey.verdict.explanations import Explained, Explanation, Tried, explained
-from hersey.verdict.regimes import REGIMES, Hypothesis, RegimeRow, judged, listed, named_in_words
+from hersey.verdict.friction_verdict import friction_verdict, of_friction
+from hersey.verdict.regimes import FALLING, REGIMES, Hypothesis, RegimeRow, judged, listed, named_in_words
 
 if TYPE_CHECKING:
     import polars as pl
@@ -60,6 +62,7 @@ class Regime(Result):
     lack_of_fit: LackOfFit | None  #: of one exponent; None where too few dwells can say
     verdict: str
     tried: Annotated[tuple[Tried, ...], Means("the likeliest first")] = ()
+    domain: Domain = TORQUE  #: what ``verdict`` is about; exponents are of damping: quantity over speed
 
     def summary(self) -> str:
         """Return the verdict, the hypotheses and the exponents as text."""
@@ -74,7 +77,7 @@ class Regime(Result):
             )
         for e in self.exponents:
             where = "" if e.temperature is None else f" at {celsius(e.temperature):.0f} degC"
-            span = f"{rpm(e.speed_low):.3g} to {rpm(e.speed_high):.3g} rpm"
+            span = self.domain.between(e.speed_low, e.speed_high)
             lines.append(f"exponent of branch {e.branch}{where}, {span}: {e.exponent}")
         return "\n".join(lines)
 
@@ -90,7 +93,8 @@ class Regime(Result):
         """Return one row per exponent: temperature, branch and the exponent with its 95 % interval."""
         import polars as pl
 
-        numbers = ("speed low (rad/s)", "speed high (rad/s)", "exponent (1)", "low (1)", "high (1)")
+        unit = self.domain.speed_unit
+        numbers = (f"speed low ({unit})", f"speed high ({unit})", "exponent (1)", "low (1)", "high (1)")
         schema = {"temperature (K)": pl.Float64, "branch": pl.String, "points": pl.Int64}
         facts = attrgetter("temperature", "branch", "points", "speed_low", "speed_high")
         rows = [(*facts(e), e.exponent.value, e.exponent.low, e.exponent.high) for e in self.exponents]
@@ -123,7 +127,12 @@ def regime(
         law = film_law(contact, lubricant, table, temperature)
     hypotheses = judged(surface.c, table=table)
     by = explained(points, surface, hypotheses, law)
-    verdict = _verdict(surface, by, table, trend_of(Observations.of(points)))
+    trend = trend_of(Observations.of(points))
+    if surface.domain.is_torque:
+        verdict = _verdict(surface, by, table, trend)
+    else:
+        verdict = friction_verdict(points, surface, trend, _of_films(by))
+        hypotheses = tuple(map(of_friction, hypotheses))
     return Regime(
         branch_exponents(points, surface),
         hypotheses,
@@ -133,6 +142,7 @@ def regime(
         by.lack_of_fit,
         " ".join(filter(None, (verdict, _of_film_alone(points), points.dropped()))),
         by.tried,
+        surface.domain,
     )
 
 
@@ -216,6 +226,17 @@ def _exponent(surface: DampingSurface, by: Explained, table: tuple[RegimeRow, ..
     if not _films(by, table):
         return f"{said}, {_between(surface.c.value, table)}.{kept}"
     return f"{said}.{kept}"
+
+
+def _of_films(by: Explained) -> str:
+    """What the exponent of friction says of regimes."""
+    if by.named == FALLING:
+        return "Mixed or boundary lubrication can cause this, and so can heating."
+    if by.named:
+        return f"This is expected for {named_in_words(by.named)}."
+    if not by.explanations:
+        return ""
+    return f"No regime can be named. Not excluded: {_or([each.name for each in by.explanations])}."
 
 
 def _left(by: Explained) -> str:

@@ -44,7 +44,7 @@ def warnings_of(
     found += [each for i in range(len(log.files)) for each in _of_file(log, i)]
     found += [*doubtful_units(log), *held_values(points), *doubtful_tare(points), *points.warnings]
     found += _of_rest(points)
-    if loads := points.varying_load:
+    if (loads := points.varying_load) and points.domain.quantity != "friction coefficient":
         words = "one law is fitted to loads from {low:.3g} to {high:.3g} N. Fit each load separately"
         found.append(Warning("loads differ", words, severity="watch", low=loads[0], high=loads[1]))
     if swinging := sum(each.why.kind == "stick-slip" for each in points.rejected):
@@ -60,7 +60,7 @@ def warnings_of(
         found += _of_scatter(friction.scatter)
     elif surface is not None:
         found += _of_fit(surface)
-    return tuple(found)
+    return tuple(each.about(points.domain) for each in found)
 
 
 def _of_file(log: TorqueLog | MeansTable, i: int) -> Iterator[Warning]:
@@ -72,7 +72,8 @@ def _of_file(log: TorqueLog | MeansTable, i: int) -> Iterator[Warning]:
     if file.cut_off:
         yield Warning("cut off", "the file ends too early", severity="watch", where=file.name)
     yield from (warning.within(file.name) for warning in file.warnings)
-    if run is not None and run.clock.gaps:
+    lifted = any(warning.kind == "rows without contact" for warning in file.warnings)
+    if run is not None and run.clock.gaps and not lifted:
         yield Warning(
             "gaps",
             "rows are missing at {places} {places:place|places} ({share:.1f %} of the time)",
@@ -133,7 +134,7 @@ def _of_directions(points: SteadyPoints, surface: DampingSurface, *, apart: bool
             if abs(difference) > max(NOTABLE_DIFFERENCE, SIGNIFICANT * error):
                 yield Warning(
                     "directions differ",
-                    "torque differs by {share:+.1f %} between {first} and {second}, so one surface "
+                    "{measured} differs by {share:+.1f %} between {first} and {second}, so one surface "
                     "does not describe both"
                     + (". Fit each separately with {how}" if name == "forward" else ""),
                     severity="watch",
@@ -154,7 +155,7 @@ def _of_fit(surface: DampingSurface) -> Iterator[Warning]:
             yield Warning(
                 "fitted in torque",
                 "exponent {name} is {value:.3f} fitted in logarithms, but {other:.3f} fitted in "
-                "torque, where high torques weigh most. Look at the residuals",
+                "{measured}, where high values weigh most. Look at the residuals",
                 severity="watch",
                 name=name,
                 value=value,

@@ -44,7 +44,12 @@ _BRANCH_WORDS = {
     COULOMB_VISCOUS: "coulomb-viscous",
     REST_PLUS: "rest-plus-power",
 }
-_BESIDE = (CONSTANT_PLUS, COULOMB_VISCOUS, REST_PLUS)
+_BESIDE_WORDS = {
+    CONSTANT_PLUS: "constant {quantity} plus power of speed",
+    COULOMB_VISCOUS: "Coulomb plus viscous",
+    REST_PLUS: "constant and viscous {quantity} plus power of speed",
+}
+_BESIDE = tuple(_BESIDE_WORDS)
 
 
 @dataclass(frozen=True)
@@ -57,6 +62,7 @@ class Candidate:
     stribeck: bool = False
     contact: SharedLoad | None = None
     viscosity_known: bool = False
+    quantity: str = "torque"  #: what the law is of, for its name
 
     @property
     def key(self) -> str:
@@ -83,11 +89,8 @@ class Candidate:
         if self.branches == NO_SPEED:
             return temperature
         if self.branches in _BESIDE:
-            return (
-                f"{self.branches}, film by {temperature}"
-                if self.thermal
-                else f"{self.branches}, {temperature}"
-            )
+            parts = _BESIDE_WORDS[self.branches].format(quantity=self.quantity)
+            return f"{parts}, film by {temperature}" if self.thermal else f"{parts}, {temperature}"
         each = ", exponents per temperature" if self.per_temperature else ""
         return f"{temperature} x power of speed, {self.branches}{each}"
 

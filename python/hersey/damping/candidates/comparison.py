@@ -10,6 +10,7 @@ says which parameter is open.
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
@@ -92,6 +93,7 @@ def compare_models(
     data = points if isinstance(points, Observations) else Observations.of(points)
     candidates = candidates or all_candidates()
     candidates += () if contact is None else contact_candidates(contact)
+    candidates = tuple(replace(each, quantity=data.domain.quantity) for each in candidates)
     refused = [(candidate.name, why) for candidate in candidates if (why := candidate.refused(data))]
     carried = [candidate for candidate in candidates if not candidate.refused(data)]
     if not carried:

@@ -35,6 +35,7 @@ from hersey.damping.candidates.thermal import ARRHENIUS, VFT
 from hersey.damping.distributions import normal_quantile, ratio_above
 from hersey.damping.estimate import CONFIDENCE, quantile
 from hersey.result import OPEN, Record
+from hersey.schema.domain import Domain
 from hersey.units import convert
 
 Ends = tuple[float, float]
@@ -93,11 +94,13 @@ _Named = tuple[str, str, str, Callable[[float], float]]
 
 def quantities(law_fit: LawFit, data: Observations) -> tuple[Quantity, ...]:
     """Return what the parameters of a fit are called, in which units, and their values."""
-    law, w = law_fit.law, data.reference_speed
+    law, w, domain = law_fit.law, data.reference_speed, data.domain
     stribeck = isinstance(law, StribeckLaw)
+    kind = "Stribeck" if stribeck else "transition"
+    viscous = f"ln(viscous {domain.quantity} at the Stribeck speed / Coulomb)"
     of_heat, of_transition = _of_temperature(law, data.reference_kelvin)
     named: list[_Named] = [
-        *_of_level(law, w),
+        *_of_level(law, w, domain),
         *of_heat,
         ("c", "c of the film" if isinstance(law, ConstantPlusLaw) else "c", "", float),
         *(
@@ -106,23 +109,24 @@ def quantities(law_fit: LawFit, data: Observations) -> tuple[Quantity, ...]:
         ),
         ("c_mixed", "c below the transition", "", float),
         ("stick", "ln(Stribeck peak / Coulomb)", "", float),
-        *([("viscous", "ln(viscous torque at the Stribeck speed / Coulomb)", "", float)] if stribeck else []),
-        ("at", "Stribeck speed" if stribeck else "transition speed", "rad/s", lambda v: w * _exp(v)),
+        *([("viscous", viscous, "", float)] if stribeck else []),
+        ("at", f"{kind} speed", domain.speed_unit, lambda v: w * _exp(v)),
         *of_transition,
     ]
     index = {name: i for i, name in enumerate(law.names)}
     return tuple(Quantity(name, unit, index[p], of) for p, name, unit, of in named if p in index)
 
 
-def _of_level(law: AnyLaw, w: float) -> list[_Named]:
-    """What stands for the level of a law, or of its parts, at a reference speed (rad/s)."""
+def _of_level(law: AnyLaw, w: float, domain: Domain) -> list[_Named]:
+    """What stands for the level of a law, or of its parts, at a reference speed (SI)."""
+    of, unit = domain.quantity, domain.unit
     if isinstance(law, StribeckLaw):
-        return [("level", "Coulomb torque", "N m", _exp)]
+        return [("level", f"Coulomb {of}", unit, _exp)]
     if isinstance(law, ConstantPlusLaw):
         return [
-            ("level", "torque of the film at reference", "N m", _exp),
-            ("rest", "constant torque over that of the film at reference", "", _exp),
-            ("viscous", "viscous torque over that of the film at reference", "", _exp),
+            ("level", f"{of} of the film at reference", unit, _exp),
+            ("rest", f"constant {of} over that of the film at reference", "", _exp),
+            ("viscous", f"viscous {of} over that of the film at reference", "", _exp),
         ]
     if isinstance(law, SharedLoadLaw):
         stated, torque = law.contact.stated, law.torque
@@ -132,7 +136,9 @@ def _of_level(law: AnyLaw, w: float) -> list[_Named]:
             ("boundary", "boundary friction", "", lambda v: stated["boundary"] * _exp(v)),
             ("rest", "constant torque", "N m", lambda v: torque * v),
         ]
-    return [("level", "damping at reference", "N m s/rad", lambda v: _exp(v) / w)]
+    if not domain.is_torque:
+        return [("level", f"{of} at {domain.at(w)}", unit, _exp)]
+    return [("level", "damping at reference", domain.damping_unit, lambda v: _exp(v) / w)]
 
 
 def _of_temperature(law: AnyLaw, kelvin: float | None) -> tuple[list[_Named], list[_Named]]:

@@ -130,7 +130,8 @@ def _summary(comparison: ModelComparison) -> str:
     """Return the table of candidates, the choice with its reasons, and what follows."""
     data = comparison.data
     lines = [
-        "[[Models]]  (same dwells and robust likelihood of ln torque; parameters include the scatter)",
+        f"[[Models]]  (same dwells and robust likelihood of ln {data.domain.quantity}; parameters include "
+        "the scatter)",
         f"    {'model':<66} {'parameters':>10} {'dAICc':>8} {'dBIC':>8} {'CV error':>9} {'scatter':>8}",
     ]
     lines += [_row(r, chosen=r is comparison.chosen) for r in comparison.candidates]

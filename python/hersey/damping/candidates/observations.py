@@ -20,10 +20,11 @@ from hersey.damping.dwells.constant import refuse_constant_torque
 from hersey.damping.dwells.least_duration import speeds_lost
 from hersey.damping.dwells.misleading import lagging, one_direction, unlinked_runs
 from hersey.damping.dwells.one_speed import is_one_speed, of_one_speed
+from hersey.damping.dwells.several_loads import refuse_several_loads
 from hersey.errors import InsufficientDataError
 from hersey.log.means import MeansTable
 from hersey.log.torque_log import TorqueLog
-from hersey.units import rpm
+from hersey.schema.domain import TORQUE, Domain
 
 #: Change of temperature from dwell to dwell, K, that ends a stay.
 STEP = 6.0
@@ -79,6 +80,7 @@ class Observations:
     temperature_rate: FloatArray = field(default_factory=lambda: np.empty(0))
     #: which runs share temperatures with one another, shape (points,); (0,) where all do
     unlinked: IntArray = field(default_factory=lambda: np.empty(0, dtype=np.intp))
+    domain: Domain = TORQUE  #: what "torque" and "speed" are
 
     @classmethod
     def of(cls, points: SteadyPoints, *, fewest_speeds: int = 3) -> Observations:
@@ -91,7 +93,9 @@ class Observations:
         """
         speed, torque = np.abs(points.column("speed")), np.abs(points.column("torque"))
         if distinct_speeds(speed) < fewest_speeds:
-            held = " and ".join(f"{v} rpm" for v in sorted({f"{rpm(w):.3g}" for w in speed}, key=float)[:2])
+            unit, factor = points.domain.shown_speed
+            levels = sorted({f"{factor * w:.3g}" for w in speed}, key=float)[:2]
+            held = " and ".join(f"{level} {unit}" for level in levels)
             if lost := speeds_lost(points):
                 raise InsufficientDataError(f"all dwells are at {held}: {lost}")
             more = f"all dwells are at {held}. Record dwells at three or more speeds"
@@ -103,6 +107,7 @@ class Observations:
             raise InsufficientDataError(more)
         if fewest_speeds > 1:
             refuse_constant_torque(points)
+            refuse_several_loads(points)
         kelvin = points.column("temperature") if points.log.has_temperature else None
         group, means = _groups(kelvin, speed.size)
         run = points.column("run").astype(np.intp)
@@ -132,6 +137,7 @@ class Observations:
             direction=one_direction(points),
             temperature_rate=lagging(points),
             unlinked=unlinked_runs(points),
+            domain=points.domain,
         )
 
     def __len__(self) -> int:

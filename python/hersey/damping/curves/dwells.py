@@ -39,6 +39,7 @@ class Dwells:
     reference_speed: float  #: rad/s
     thermal: Thermal | None
     scatter: float  #: of the fitted surface, where the search begins
+    quantity: str = "torque"  #: what was measured
 
     def __len__(self) -> int:
         """Return how many dwells there are."""
@@ -119,4 +120,5 @@ def dwells_of(points: SteadyPoints, surface: DampingSurface) -> Dwells:
         reference_speed=data.reference_speed,
         thermal=thermal,
         scatter=max(surface.statistics.scatter, 1e-3),
+        quantity=points.domain.quantity,
     )

@@ -226,7 +226,14 @@ def _weighed(fits: list[FittedLaw], dwells: Dwells) -> CurveMixture:
     weights /= weights.sum()
     kept = weights >= LEAST_WEIGHT
     table = tuple(
-        LawWeight(fit.shape.name, fit.shape.words, float(w), float(fit.aicc - aicc.min()), chance, not lives)
+        LawWeight(
+            fit.shape.name,
+            fit.shape.words.format(quantity=dwells.quantity),
+            float(w),
+            float(fit.aicc - aicc.min()),
+            chance,
+            not lives,
+        )
         for fit, w, chance, lives in zip(fits, weights, chances, alive.tolist(), strict=True)
     )
     laws = tuple(fit for fit, keep in zip(fits, kept.tolist(), strict=True) if keep)

@@ -113,7 +113,7 @@ SATURATING = Shape(
     (_FILM_UP, Prior("ln fall", 0.0, 0.6), _FILM, _FLOOR),
     _saturating,
 )
-PLUS = Shape("plus", "constant torque plus a power of speed", (_FILM_UP, _FLOOR), _plus, falls=False)
+PLUS = Shape("plus", "constant {quantity} plus a power of speed", (_FILM_UP, _FLOOR), _plus, falls=False)
 FREE = tuple(
     Shape("free", f"smooth curve without a formula ({100 * size:.0f} %)", BLEND.priors, _blend, size)
     for size in (0.03, 0.10)

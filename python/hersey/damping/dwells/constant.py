@@ -42,7 +42,8 @@ def refuse_constant_torque(points: SteadyPoints) -> None:
     torque = constant_torque(points)
     if torque is not None:
         raise InsufficientDataError(
-            f"{points.log.files[0].name}: torque ({_name(points, 'torque')}) reads {1e3 * torque:.4g} mN m "
+            f"{points.log.files[0].name}: {points.domain.quantity} ({_name(points, 'torque')}) "
+            f"reads {points.domain.small(torque, '.4g')} "
             "at all speeds, within its resolution, so it does not measure friction. Check the sensor, "
             f"or name another column with {Setting('torque', 'channel').to()}"
         )

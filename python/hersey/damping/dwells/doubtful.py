@@ -27,14 +27,14 @@ def doubtful_tare(points: SteadyPoints) -> list[Warning]:
     if points.tare:
         share = abs(points.tare) / least
         words = (
-            "the tare, {tare:.3g mN m}, is {share:.0f %} of the lowest torque. Check that it is the "
+            "the tare, {tare:.3g mN m}, is {share:.0f %} of the lowest {measured}. Check that it is the "
             "sensor's offset and the drive stood free"
         )
         found = Warning("large tare", words, severity="watch", tare=points.tare, share=share)
         return [found] if share >= LARGE_TARE else []
     share = abs(standing) / least
     words = (
-        "torque at standstill, {standing:.3g mN m} ({share:.1f %} of the lowest dwell), is not "
+        "{measured} at standstill, {standing:.3g mN m} ({share:.1f %} of the lowest dwell), is not "
         "subtracted. If it is the sensor's offset, use {how:standing}"
     )
     found = Warning("zero not subtracted", words, severity="watch", standing=standing, share=share, how=TARE)

@@ -6,7 +6,7 @@ import numpy as np
 
 from hersey.damping.dwells.groups import MIN_SAMPLES
 from hersey.damping.dwells.segments import BLOCK_DURATION, SPEED_TOLERANCE
-from hersey.log.torque_log import STANDING, Run, TorqueLog
+from hersey.log.torque_log import Run, TorqueLog
 
 #: Rows of a held speed at the least, and how many such speeds make a log of them.
 _FEWEST_ROWS, _FEWEST = 3, 3
@@ -52,7 +52,7 @@ def rows_held(run: Run) -> list[int]:
             row < run.speed.size and abs(float(run.speed[row] - run.speed[start])) <= SPEED_TOLERANCE * level
         )
         if not near:
-            if row - start >= _FEWEST_ROWS and level > STANDING:
+            if row - start >= _FEWEST_ROWS and level > run.domain.standing:
                 lengths.append(row - start)
             start = row
     return lengths

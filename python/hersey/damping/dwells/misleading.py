@@ -117,7 +117,7 @@ def _one_way(points: SteadyPoints) -> Warning | None:
     return Warning(
         "one direction",
         "speeds were approached only from {side}, so sensor hysteresis cannot be checked. The sensor "
-        "part of c allows for {allowed:.2g %} of the largest torque. Also record the speeds on the "
+        "part of c allows for {allowed:.2g %} of the largest {measured}. Also record the speeds on the "
         "way {other}",
         severity="watch",
         side="below" if way > 0 else "above",
@@ -140,10 +140,10 @@ def _relaxing(points: SteadyPoints) -> Warning | None:
     return Warning(
         "relaxation",
         (
-            "torque is still relaxing after each change of speed, with a time constant of "
+            "{measured} is still relaxing after each change of speed, with a time constant of "
             "{shortest:.3g} to {longest:.3g} s"
             if unsure
-            else "torque is still relaxing after each change of speed, with a time constant of about "
+            else "{measured} is still relaxing after each change of speed, with a time constant of about "
             "{time:.3g} s"
         )
         + ". Dwell means are off by up to {off:.2g %}, which the intervals include. Hold each speed "
@@ -182,7 +182,7 @@ def _apart(points: SteadyPoints) -> Warning | None:
         return None
     return Warning(
         "unlinked runs",
-        "{sets} sets of runs share no temperature, so changes between sets (e.g. of torque gain) "
+        "{sets} sets of runs share no temperature, so changes between sets (e.g. of {measured} gain) "
         "cannot be separated from temperature. The sensor part of b allows for {off:.2g %} gain "
         "error. Repeat one temperature in every run",
         severity="watch",
@@ -211,8 +211,9 @@ def _resolution(name: str, step: float, off: float, dwells: int) -> Warning:
     torque, kelvin = name == "torque", name == "temperature"
     return Warning(
         "resolution",
-        "{quantity} is recorded with a resolution of "
-        + ("{step:.3g mN m}" if torque else "{step:.3g} K" if kelvin else "{step:.3g} rad/s")
+        ("{measured}" if torque else "{quantity}" if kelvin else "{against}")
+        + " is recorded with a resolution of "
+        + ("{step:.3g mN m}" if torque else "{step:.3g} K" if kelvin else "{step:.3g rad/s}")
         + ", coarser than its noise in {dwells} {dwells:dwell|dwells}. Rounding adds a standard error "
         "of up to "
         + ("{off:.2g} K, " if kelvin else "{off:.2g %}, ")
@@ -222,7 +223,7 @@ def _resolution(name: str, step: float, off: float, dwells: int) -> Warning:
             else "too much for reliable exponents"
         ),
         severity="watch",
-        remedy="record torque in a smaller measuring range"
+        remedy="record {measured} in a smaller measuring range"
         if torque
         else "record more decimals of temperature"
         if kelvin

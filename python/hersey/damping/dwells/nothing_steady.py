@@ -16,7 +16,6 @@ from hersey.damping.dwells.reasons import CAUSES, Reason, opposite_signs, remedi
 from hersey.errors import MOVING, ROTATION, InsufficientDataError, Setting, followed_by, turned, way_in
 from hersey.log.roles import EVERY
 from hersey.log.torque_log import NO_CLOCK, Run, TorqueLog
-from hersey.units import rpm
 
 #: Dwells that a shorter --min-dwell must give to be proposed.
 WORTH_IT = 3
@@ -84,9 +83,9 @@ def _in_short(alike: list[Reason]) -> str:
 def _remedy(alike: list[Reason]) -> str:
     """What to do about reasons of one kind, or nothing."""
     if alike[0].kind == "opposite signs":
-        return f"Flip torque or speed with {turned('torque')}"
+        return f"Flip {alike[0].domain.quantity} or speed with {turned('torque')}"
     if alike[0].kind == "zero torque":
-        return "Check that the torque sensor is connected"
+        return f"Check that the sensor of the {alike[0].domain.quantity} is connected"
     return remedies(alike) if alike[0].kind in CAUSES else ""
 
 
@@ -121,8 +120,9 @@ def _way_out(
         return f"The drive turns in the {other} direction. Use {ROTATION.to(other)}"
     short = [(r.why.lasts, r.why.rows) for r in rejected if r.why.kind == "too short"]
     if _runs_up_and_down(log, rejected):
-        slow, fast = (rpm(float(f([f(np.abs(run.speed)) for run in log.runs]))) for f in (np.min, np.max))
-        span = f"between {slow:.3g} and {fast:.3g} rpm"
+        slow, fast = (float(f([f(np.abs(run.speed)) for run in log.runs])) for f in (np.min, np.max))
+        unit, factor = log.domain.shown_speed
+        span = f"between {slow * factor:.3g} and {fast * factor:.3g} {unit}"
         if steps := _short_steps(log, asked.min_dwell, span):
             return followed_by(steps, other_clock())
         count = sum(map(_ramps, log.runs))
@@ -139,7 +139,7 @@ def _way_out(
             return f"{held}. {count} dwells are found with {how}"
     if (speed := _only_speed(rejected)) is not None:
         return (
-            f"The speed is always {rpm(speed):.3g} rpm. Record dwells at three or more speeds, or "
+            f"The speed is always {log.domain.at(speed)}. Record dwells at three or more speeds, or "
             f"name another column with {Setting('speed', 'channel').to()}"
         )
     return followed_by(held, other_clock())

@@ -16,9 +16,11 @@ from hersey.damping.dwells.relaxation import Relaxation
 from hersey.damping.dwells.resolution import Resolution
 from hersey.damping.no_load_torque import NoLoadTorque
 from hersey.errors import InsufficientDataError, ParameterError
+from hersey.log.as_torque import factors, log_as_torque, one_load
 from hersey.log.means import MeanRow, MeansTable, read_means
 from hersey.log.torque_log import TorqueLog
 from hersey.result import Result, json_record
+from hersey.schema.domain import Domain
 from hersey.schema.warning import Warning
 from hersey.units import rpm, takes_si
 
@@ -26,6 +28,8 @@ from hersey.units import rpm, takes_si
 SAME_LOAD = 0.03
 #: Standard errors by which a torque must exceed the no-load torque, so that a film is left.
 _BEYOND = 2.0
+#: What errors that points share do to each torque.
+_SHARED_ERRORS = ("tare_errors", "rest_errors", "relaxation_errors", "window_errors")
 
 
 class HowRead(Protocol):
@@ -128,7 +132,7 @@ class SteadyPoints(Result):
 
     def __post_init__(self) -> None:
         """Give what has no tare, no rest subtracted or no relaxation, no disturbances of it."""
-        for name in ("tare_errors", "rest_errors", "relaxation_errors", "window_errors"):
+        for name in _SHARED_ERRORS:
             if not getattr(self, name).size:
                 object.__setattr__(self, name, np.empty((self.table.height, 0)))
 
@@ -219,6 +223,7 @@ class SteadyPoints(Result):
         [0.005, 0.0056, 0.0063]
         """
         name = self.log.files[0].name
+        self.domain.require_torque("subtracting a no-load torque")
         self.refuse_subtracted()
         speed, torque, error = (self.column(n) for n in ("speed", "torque", "torque_error"))
         kelvin = None
@@ -259,9 +264,10 @@ class SteadyPoints(Result):
     def summary(self) -> str:
         """Return the number of dwells, their ranges, the tare, and what is excluded, as text."""
         rows = f"{self.table['rows'].sum()} of {self.log.rows} rows used"
-        lines = [f"{self.headline()}; {rows}", f"tare {self.tare:.4g} N m"]
+        of = self.domain
+        lines = [f"{self.headline()}; {rows}", f"tare {of.amount(self.tare, '.4g')}"]
         if self.standing_torque is not None:
-            lines[-1] += f", torque at standstill {self.standing_torque:.4g} N m"
+            lines[-1] += f", {of.quantity} at standstill {of.amount(self.standing_torque, '.4g')}"
         if self.rest is not None:
             lines.append(f"no-load torque subtracted: {self.rest}")
         lines += [f"  excluded: {rows} rows, {why}" for why, rows in self._unused().items()]
@@ -276,9 +282,54 @@ class SteadyPoints(Result):
     def headline(self) -> str:
         """Return the number of dwells and the ranges of speed and torque."""
         speed, torque = np.abs(self.column("speed")), np.abs(self.column("torque"))
+        of = self.domain
+        name = "" if of.is_torque else f"{of.quantity} "
         return (
-            f"{len(self)} dwells, {rpm(float(speed.min())):.4g} to {rpm(float(speed.max())):.4g} rpm, "
-            f"{torque.min():.4g} to {torque.max():.4g} N m"
+            f"{len(self)} dwells, {of.between(float(speed.min()), float(speed.max()), '.4g')}, "
+            f"{name}{torque.min():.4g} to {of.amount(float(torque.max()), '.4g')}"
+        )
+
+    @property
+    def domain(self) -> Domain:
+        """What the points are of: a torque, or a friction force or coefficient, against which speed."""
+        return self.log.domain
+
+    @takes_si(radius="length", load="force")
+    def as_torque(self, *, radius: float, load: float | None = None) -> SteadyPoints:
+        """Return the points as the torque of a rotation at a radius (m), at a normal load (N).
+
+        Parameters
+        ----------
+        radius
+            At which the friction acts.
+        load
+            For a friction coefficient; default: that of the log, if it has one.
+
+        Raises
+        ------
+        ParameterError
+            If a load is needed and the log has none, or several.
+
+        Examples
+        --------
+        >>> table = {"speed [m/s]": [0.1, 0.2, 0.4], "COF": [0.12, 0.12, 0.12]}
+        >>> points = SteadyPoints.from_table(table).as_torque(radius="10 mm", load="50 N")
+        >>> points.column("torque").round(6).tolist()
+        [0.06, 0.06, 0.06]
+        """
+        load = one_load(self.log, load)
+        by, per = factors(self.domain, radius, load)
+        scaled = {"torque": by, "torque_error": by, "tare": by, "speed": per, "speed_error": per}
+        table = self.table.with_columns(**{name: factor * pl.col(name) for name, factor in scaled.items()})
+        standing = None if self.standing_torque is None else by * self.standing_torque
+        return replace(
+            self,
+            table=table,
+            tare=by * self.tare,
+            standing_torque=standing,
+            log=log_as_torque(self.log, radius=radius, load=load),
+            resolutions=tuple(_scaled(each, scaled) for each in self.resolutions),
+            **{name: by * getattr(self, name) for name in _SHARED_ERRORS},
         )
 
     @property
@@ -296,7 +347,7 @@ class SteadyPoints(Result):
         if not lost:
             return ""
         speeds = np.abs([r.speed for r in lost])
-        where = _placed(speeds, np.abs(self.column("speed")))
+        where = _placed(speeds, np.abs(self.column("speed")), self.domain)
         verb = "was" if len(lost) == 1 else "were"
         why = joined([r.why for r in lost])
         return f"{len(lost)} of {len(lost) + len(self)} dwells ({where}) {verb} excluded: {why}."
@@ -321,14 +372,22 @@ class SteadyPoints(Result):
         units = {
             "start": "s",
             "end": "s",
-            "speed": "rad/s",
-            "torque": "N m",
+            "speed": self.domain.speed_unit,
+            "torque": self.domain.unit or "1",
             "temperature": "K",
             "load": "N",
-            "tare": "N m",
+            "tare": self.domain.unit or "1",
         }
         units |= {f"{name}_error": units[name] for name in ("speed", "torque", "temperature")}
-        return self.table.rename({name: f"{name.replace('_', ' ')} ({unit})" for name, unit in units.items()})
+        names = {name: name.replace("_", " ").replace("torque", self.domain.quantity) for name in units}
+        names["speed"], names["speed_error"] = self.domain.speed, f"{self.domain.speed} error"
+        return self.table.rename({name: f"{names[name]} ({unit})" for name, unit in units.items()})
+
+
+def _scaled(resolution: Resolution, by: dict[str, float]) -> Resolution:
+    """The step of a sensor in another unit."""
+    factor = by.get(resolution.quantity, 1.0)
+    return replace(resolution, step=factor * resolution.step, errors=factor * resolution.errors)
 
 
 def _record(rejection: Rejection) -> dict[str, Any]:
@@ -395,13 +454,12 @@ def _of_means(table: MeansTable) -> Warning:
     )
 
 
-def _placed(lost: FloatArray, used: FloatArray) -> str:
+def _placed(lost: FloatArray, used: FloatArray, of: Domain) -> str:
     """Where the speeds of dwells not used lie beside those used."""
     every = "all " if lost.size > 1 else ""
-    slowest, fastest = rpm(float(used.min())), rpm(float(used.max()))
     if lost.max() < used.min():
-        return f"{every}below {slowest:.3g} rpm"
+        return f"{every}below {of.at(float(used.min()))}"
     if lost.min() > used.max():
-        return f"{every}above {fastest:.3g} rpm"
-    low, high = f"{rpm(float(lost.min())):.3g}", f"{rpm(float(lost.max())):.3g}"
-    return f"at {low} rpm" if low == high else f"at {low} to {high} rpm"
+        return f"{every}above {of.at(float(used.max()))}"
+    low, high = of.at(float(lost.min())), of.at(float(lost.max()))
+    return f"at {low}" if low == high else f"at {of.between(float(lost.min()), float(lost.max()))}"

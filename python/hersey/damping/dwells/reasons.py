@@ -8,6 +8,7 @@ from typing import Literal
 
 from hersey.damping.dwells.groups import MIN_SAMPLES
 from hersey.errors import SIGN, InsufficientDataError, capital, turned
+from hersey.schema.domain import TORQUE, Domain
 
 Kind = Literal[
     "changing", "standing", "too slow", "other rotation", "too short", "zero torque", "speed not held",
@@ -28,23 +29,28 @@ CAUSES: tuple[Kind, ...] = ("spikes", "ripple")
 _SPIKES = "check the cable of the sensor, and remove these rows"
 _OWN = "look for an oscillation of the drive, a controller or the mains"
 #: What each kind is called, where the words do not depend on a number.
-LABELS: dict[Kind, str] = {
+_LABELS: dict[Kind, str] = {
     "changing": "speed changing",
     "standing": "drive at standstill",
     "too slow": "drive near standstill, or in no window",
     "other rotation": "other direction of rotation",
     "too short": "dwell too short",
-    "zero torque": "torque is zero",
+    "zero torque": "{quantity} is zero",
     "speed not held": "speed not constant",
     "stick-slip": "stick-slip",
-    "swing": "torque fluctuates",
+    "swing": "{quantity} fluctuates",
     "speed drift": "speed drifts",
     "temperature drift": "temperature drifts",
-    "torque drift": "torque drifts",
-    "opposite signs": "torque and speed have opposite signs",
-    "spikes": "torque spikes",
-    "ripple": "torque ripple",
+    "torque drift": "{quantity} drifts",
+    "opposite signs": "{quantity} and {speed} have opposite signs",
+    "spikes": "{quantity} spikes",
+    "ripple": "{quantity} ripple",
 }
+
+
+def label_of(kind: Kind, of: Domain = TORQUE) -> str:
+    """Return what a kind is called, where that depends on no number."""
+    return _LABELS[kind].format(quantity=of.quantity, speed=of.speed)
 
 
 @dataclass(frozen=True)
@@ -56,8 +62,8 @@ class Reason:
     #: of the spikes, amplitude of the ripple
     share: float | None = None
     kelvin: float | None = None  #: drift of the temperature over the dwell, K
-    slow: float = 0.0  #: least speed, rpm
-    fast: float = 0.0  #: greatest speed, rpm
+    slow: float = 0.0  #: least speed, SI
+    fast: float = 0.0  #: greatest speed, SI
     lasts: float = 0.0  #: how long is settled, s
     rows: int = 0  #: how many rows are settled
     needed: float = 0.0  #: duration that is needed, s
@@ -66,6 +72,7 @@ class Reason:
     per_turn: float = 0.0  #: of a ripple, times per revolution of the roll
     seen_as: Kind | None = None  #: what is wrong with the dwell because of spikes or a ripple
     asked: str = ""  #: rotation that was asked for, ``forward`` or ``reverse``
+    domain: Domain = TORQUE  #: what was measured
 
     @property
     def drifts(self) -> bool:
@@ -77,7 +84,7 @@ class Reason:
         """Return what is wrong, without numbers."""
         if self.kind == "other rotation":
             return f"rotation is not {self.asked}"
-        return LABELS[self.kind] + (self._few() if self.kind == "changing" else "")
+        return label_of(self.kind, self.domain) + (self._few() if self.kind == "changing" else "")
 
     def _few(self) -> str:
         return f", or held for fewer than {MIN_SAMPLES} rows" if 0 < self.rows < MIN_SAMPLES else ""
@@ -92,9 +99,10 @@ class Reason:
             case "zero torque":
                 how = ". Check that the sensor is connected"
             case "speed not held":
-                how = f": {self.slow:.3g} to {self.fast:.3g} rpm, standard deviation {100 * share:.0f} %"
+                how = f": {self.domain.between(self.slow, self.fast)}, standard deviation {100 * share:.0f} %"
             case "stick-slip":
-                how = f": torque rises slowly and drops fast, standard deviation {100 * share:.0f} %"
+                how = f": {self.domain.quantity} rises slowly and drops fast, "
+                how += f"standard deviation {100 * share:.0f} %"
             case "swing":
                 how = f": standard deviation {100 * share:.0f} %, so sliding is not steady"
             case "speed drift" | "torque drift":
@@ -114,7 +122,9 @@ class Reason:
         return self.label + how
 
     def turns(self) -> str:
-        """Return how a ripple goes with the revolution of the roll, in words."""
+        """Return how a ripple goes with the revolution of the roll, in words; nothing if that is unknown."""
+        if self.domain.speed != "speed":
+            return "of unknown cause"
         times = round(self.per_turn)
         if 1 <= times <= MOST_WHOLE and abs(self.per_turn - times) <= WHOLE_TURN:
             return "once per revolution" if times == 1 else f"{times} times per revolution"
@@ -132,7 +142,7 @@ class Reason:
 
 def opposite_signs(where: str) -> InsufficientDataError:
     """Return the error of torque and speed that have opposite signs."""
-    said = f"{where}: {LABELS['opposite signs']}"
+    said = f"{where}: {label_of('opposite signs')}"
     return InsufficientDataError(said, remedy=f"flip one with {turned('torque')}", setting=SIGN)
 
 
@@ -156,7 +166,9 @@ def _shares(alike: list[Reason]) -> str:
     if not shares:
         return ""
     low, high = f"{min(shares):.3g}", f"{max(shares):.3g}"
-    by = {"stick-slip": " with torque varying by", "speed not held": " (varies by"}.get(alike[0].kind, " by")
+    by = {"stick-slip": f" with {alike[0].domain.quantity} varying by", "speed not held": " (varies by"}.get(
+        alike[0].kind, " by"
+    )
     return f"{by} {low if low == high else f'{low} to {high}'} %" + (")" if "(" in by else "")
 
 
@@ -173,7 +185,7 @@ def sizes(alike: list[Reason]) -> str:
     slow, fast = _frequencies(alike)
     low, high = f"{slow:.3g}", f"{fast:.3g}"
     at = f" at {low if low == high else f'{low} to {high}'} Hz, amplitude {size} the mean, "
-    if _once_a_turn(alike):
+    if _once_a_turn(alike) or alike[0].domain.speed != "speed":
         return f"{at}{_longest(alike).turns()}"
     if _same_frequency(alike):
         return f"{at}the same at every speed, so not from what turns"

@@ -122,7 +122,7 @@ class _Reduction:
                 break
         self.zero = self._zero(noise)
         dwells = [o for o in outcomes if isinstance(o, Dwell)]
-        rejected = tuple(o for o in outcomes if isinstance(o, Rejection))
+        rejected = tuple(_about(self.log, o) for o in outcomes if isinstance(o, Rejection))
         if not dwells:
             others = self._dwells_with, self._other_clock
             raise nothing_steady(self.log, rejected, self.asked, *others)
@@ -296,6 +296,12 @@ class _Reduction:
         straight = self._each(partial(_powers_if_drifting, noise), dwells)
         both = zip(straight, powers, strict=True)
         return shared_noise([new or old for new, old in both]) if any(straight) else noise
+
+
+def _about(log: TorqueLog, rejection: Rejection) -> Rejection:
+    """A stretch whose reason speaks of what the log measures."""
+    of = log.domain
+    return rejection if of.is_torque else replace(rejection, why=replace(rejection.why, domain=of))
 
 
 def _in_order(index: int, segments: list[Segment]) -> list[Stretch]:

@@ -35,6 +35,8 @@ _TURN, _AT_ONCE = 2.0 * np.pi, 64
 
 def joined_over_turns(run: Run, segments: list[Segment]) -> list[Segment]:
     """Put together the pieces of dwells whose speed, averaged over revolutions, holds."""
+    if run.domain.speed != "speed":  # how a sliding speed goes with revolutions is not known
+        return segments
     out: list[Segment] = []
     for chain in _chains(segments):
         if len(chain) == 1:

@@ -10,7 +10,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from hersey.arrays import FloatArray
 from hersey.damping.dwells.groups import MIN_SAMPLES
 from hersey.log.long_arrays import means_of
-from hersey.log.torque_log import STANDING, Run
+from hersey.log.torque_log import Run
 
 #: Length of the blocks in which speed is judged, s, and how many a run may have at most.
 BLOCK_DURATION, MAX_BLOCKS = 0.2, 200_000
@@ -37,7 +37,7 @@ class Segment:
 
 def segments_of(run: Run) -> list[Segment]:
     """Cut a run where the speed changes, judged on block means against the noise about them."""
-    rows = run.time.size
+    rows, standing = run.time.size, run.domain.standing
     duration = float(run.time[-1] - run.time[0])
     per_second = rows / duration if duration > 0 else rows
     block = max(1, round(per_second * BLOCK_DURATION), -(-rows // MAX_BLOCKS))
@@ -47,7 +47,7 @@ def segments_of(run: Run) -> list[Segment]:
     total, count = means[0], 1
     for i in range(1, means.size):
         mean = total / count
-        if abs(means[i] - mean) <= max(SPEED_TOLERANCE * abs(mean), SPEED_NOISE * noise[i], STANDING):
+        if abs(means[i] - mean) <= max(SPEED_TOLERANCE * abs(mean), SPEED_NOISE * noise[i], standing):
             total, count = total + means[i], count + 1
         else:
             cuts.append(i)
@@ -59,7 +59,7 @@ def segments_of(run: Run) -> list[Segment]:
         run.passed(start, end)
         long = run.time[end - 1] - run.time[start] >= 5 * BLOCK_DURATION and end - start >= MIN_SAMPLES
         chance = 3.0 * float(np.median(noise[first:last])) / (last - first) ** 0.5
-        still = abs(speed) <= max(STANDING, chance)
+        still = abs(speed) <= max(standing, chance)
         segments.append(Segment(start, end, speed, bool(long), still))
     return _joined(run, _surely_standing(segments))
 

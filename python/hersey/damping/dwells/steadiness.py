@@ -12,7 +12,6 @@ from hersey.damping.dwells.ripple import turned, without_ripple
 from hersey.damping.dwells.shared_noise import Powers, SharedNoise
 from hersey.log.long_arrays import blocks, deviation, each_block, mean
 from hersey.log.torque_log import Run
-from hersey.units import rpm
 
 #: Largest drift of temperature within a dwell, K.
 MAX_TEMPERATURE_DRIFT = 2.0
@@ -56,7 +55,7 @@ def unsteady(
         return Reason("zero torque")
     temperature = None if run.temperature is None else run.temperature[start:end]
     if deviation(speed) > MAX_SPEED_SWING * abs(mean(speed)):
-        slow, fast = sorted(abs(rpm(float(end))) for end in np.quantile(speed, (0.01, 0.99)))
+        slow, fast = sorted(abs(float(end)) for end in np.quantile(speed, (0.01, 0.99)))
         share = deviation(speed) / abs(mean(speed))
         return Reason("speed not held", share=share, slow=slow, fast=fast)
     swing = deviation(torque) / abs(mean(torque))

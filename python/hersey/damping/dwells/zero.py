@@ -226,8 +226,8 @@ class Zero:
             out.append(_drifting(rise, p, count))
         if count == 2:
             words = (
-                "the drive stood still only twice, so only the total change of the torque zero is known, not "
-                "its course between or outside these times"
+                "the drive stood still only twice, so only the total change of the {measured} zero is known, "
+                "not its course between or outside these times"
             )
             out.append(Warning("two standing stretches", words))
         return tuple(out)
@@ -236,7 +236,7 @@ class Zero:
 def _drifting_unsubtracted(rise: float, p_value: float) -> Warning:
     return Warning(
         "zero drifts, not subtracted",
-        "torque at standstill drifts by {rise:.3g} N m ({p_value:p}) and is not subtracted. If the "
+        "{measured} at standstill drifts by {rise:.3g N m} ({p_value:p}) and is not subtracted. If the "
         "drive stands free, use {how:standing}",
         severity="watch",
         rise=rise,
@@ -248,7 +248,7 @@ def _drifting_unsubtracted(rise: float, p_value: float) -> Warning:
 def _drifting(rise: float, p_value: float, count: int) -> Warning:
     return Warning(
         "zero drifts",
-        "the torque zero varies by {rise:.3g} N m ({p_value:p}, {count} standstills), by drift or "
+        "the {measured} zero varies by {rise:.3g N m} ({p_value:p}, {count} standstills), by drift or "
         "hysteresis. Each dwell is corrected by the zero at its time; intervals include its error",
         severity="watch",
         rise=rise,
@@ -260,7 +260,7 @@ def _drifting(rise: float, p_value: float, count: int) -> Warning:
 def _seen_once() -> Warning:
     return Warning(
         "one standing stretch",
-        "the drive stood still only once, so drift of the torque zero cannot be checked. Record "
+        "the drive stood still only once, so drift of the {measured} zero cannot be checked. Record "
         "another standstill at the end, or better, every few dwells",
         severity="watch",
     )

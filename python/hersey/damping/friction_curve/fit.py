@@ -91,7 +91,8 @@ def fit_friction(points: SteadyPoints) -> FrictionCurve:
     InsufficientDataError
         If the points hold fewer than three speeds, or too few dwells.
     ParameterError
-        If ``points`` is a log or its file: the message has the line that reduces it.
+        If ``points`` is a log or its file (the message has the line that reduces it), or of a friction force
+        or coefficient.
 
     Examples
     --------
@@ -102,6 +103,7 @@ def fit_friction(points: SteadyPoints) -> FrictionCurve:
     'Coulomb plus viscous friction: T_C = 494 mN·m [493, 496], k_v = 6.34 mN·m·s/rad [5.85, 6.83]'
     """
     require_points(points, "hersey.fit_friction({points})")
+    points.domain.require_torque("the friction curve of a joint")
     data = Observations.of(points)
     fitted = _fitted(data)
     chosen = _chosen(fitted)

@@ -72,8 +72,10 @@ def fit_moving(log: TorqueLog, *, inertia: float | None = None) -> MovingFit:
     """
     if inertia is not None and not inertia >= 0.0:
         raise ParameterError(f"the moment of inertia is {inertia:g} kg m^2: it must not be negative")
+    log.domain.require_torque("a fit with inertia, of a log that moves,")
     if inertia is None and any(each.name == "inertia" for each in log.corrections):
         inertia = 0.0  # the mapping subtracted it
+    log.domain.require_torque("a fit to every sample")
     name = log.files[0].name
     stretches = stretches_of(log)
     _refuse_constant(name, stretches)

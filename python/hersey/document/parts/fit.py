@@ -13,6 +13,7 @@ from hersey.damping.friction_curve.result import FrictionCurve
 from hersey.damping.moving.result import MovingFit
 from hersey.damping.no_load_torque import NoLoadTorque
 from hersey.document.parts.log import InputFile, Point
+from hersey.schema.domain import TORQUE, Domain
 from hersey.schema.part import Interval, Part
 from hersey.schema.warning import Warning
 from hersey.verdict.regime import Regime
@@ -90,6 +91,7 @@ class FitPart(Part):
     rest: NoLoadTorque | None = Field(
         default=None, description="no-load torque subtracted before the fit, which is of the film alone"
     )
+    domain: Domain = Field(default=TORQUE, description="what torque and speed are: friction, if it says so")
     summary: str
     laws: list[LawWeight] = Field(default=[], description="models of the drag curve behind the decision")
     trend: TrendPart | None = None

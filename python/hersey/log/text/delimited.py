@@ -29,8 +29,8 @@ from hersey.log.friction import (
     Chosen,
     beside,
     computed,
-    in_rotation,
-    is_rotation,
+    in_domain,
+    is_converted,
     rotating,
     slow_roles,
     unused,
@@ -72,7 +72,7 @@ def read_delimited(path: Path, wanted: Wanted, progress: Progress | None = None)
         channels = _channels(layout, wanted, name, dead)
         excluded = _excluded(file, channels) if wanted.isothermal else []
         table = _Table(name, layout, channels, wanted.drop_missing, stated)
-        table.slow = slow_roles(channels)
+        table.slow = slow_roles(channels, wanted.stated)
         table.read(file.opened, end.byte, progress)
         growth = file.opened.growth(table.digest.hexdigest())
     arrays, impossible = table.arrays()
@@ -304,7 +304,7 @@ class _Table:
         )
         self._disbelieved = gone
         arrays = {role: without(values, gone) for role, values in arrays.items()}
-        return in_rotation(arrays, self.channels, self.stated), found
+        return in_domain(arrays, self.channels, self.stated), found
 
     @property
     def impossible_rows(self) -> int:
@@ -322,7 +322,7 @@ class _Table:
         by_role = self._in_si(values)
         needed = [numbers for role, numbers in by_role.items() if role not in self.slow]
         gone = ~np.logical_and.reduce([np.isfinite(numbers) for numbers in needed])
-        if not is_rotation(self.channels):
+        if is_converted(self.channels, self.stated):
             gone |= ~self._has_radius(by_role)
         for role in self.slow & by_role.keys():
             known = np.isfinite(by_role[role])
@@ -354,7 +354,7 @@ class _Table:
 
     def _has_radius(self, by_role: dict[str, FloatArray]) -> BoolArray:
         """Whether a row has a radius where torque or speed can be had only with one."""
-        rotated = in_rotation(dict(by_role), self.channels, self.stated)
+        rotated = in_domain(dict(by_role), self.channels, self.stated)
         unknown = [np.isnan(rotated[role]) for role in rotating(self.channels)]
         return np.asarray(~np.logical_or.reduce(unknown))
 

@@ -2,10 +2,16 @@
 
 const TO_RPM = 60 / (2 * Math.PI);
 const celsius = (kelvin) => kelvin - 273.15;
+// What was measured against which speed: a torque of a rotation, or friction.
+const measured = data.fit.domain?.quantity ?? "torque";
+const friction = measured !== "torque";
+const [PER_SPEED, SPEED_UNIT] = data.fit.domain?.speed === "sliding speed" ? [1, "m/s"] : [TO_RPM, "rpm"];
+const inUnit = (name, unit) => unit ? `${name}, ${unit}` : name;
 const degrees = (kelvin) => data.fit.temperature_scale === "K" ? `${digits(kelvin, 4)} K` : `${digits(celsius(kelvin), 3)} °C`;
 const perSecond = (speed) => speed === null || speed === undefined ? "–" : digits(speed * 1e3, 3);
 // The unit in which the torques of the document read best, with its factor from N·m.
 function torqueUnit() {
+  if (friction) return [1, data.fit.domain.unit];
   const unit = data.units?.torque ?? (Math.max(...data.points.map((p) => Math.abs(p.torque))) >= 1 ? "N·m" : "mN·m");
   return [unit === "mN·m" ? 1e3 : 1, unit];
 }
@@ -31,7 +37,7 @@ function titleLine() {
 
 // Sections by the names that flags use, and their short names.
 const SECTIONS = { film: "regime", verdict: "regime", models: "candidates", quality: "data", log: "data", fit: "torque", damping: "torque", stability: "band", step: "band", plans: "plan", points: "plan", comparison: "compare" };
-const SHORT = { torque: "Torque", regime: "Regime", data: "Data", band: "Speeds", plan: "Profile" };
+const SHORT = { torque: measured[0].toUpperCase() + measured.slice(1), regime: "Regime", data: "Data", band: "Speeds", plan: "Profile" };
 const sectionOf = (name) => SECTIONS[name] ?? name;
 
 function decision() {

@@ -9,8 +9,8 @@ function dataSection(parent) {
   if (data.warnings.length) warnings(part, data.warnings, { heading: "Warnings", folded: "Notes on the data", elsewhere: shown, id: "warnings" });
   if (q.rejected.length) {
     const all = fold(part, `Excluded stretches (${q.rejected.length})`);
-    add(all, "p", `${share(q.rows_settling, q.rows)} of the rows are at the edges of dwells, where torque settles; ${share(q.rows_rejected, q.rows)} are excluded.`
-      + (q.standing_torque === null ? "" : ` Torque at standstill: ${digits(q.standing_torque * 1e3)} mN·m, ${q.tare ? "subtracted from all dwells" : "not subtracted"}.`), "note");
+    add(all, "p", `${share(q.rows_settling, q.rows)} of the rows are at the edges of dwells, where ${measured} settles; ${share(q.rows_rejected, q.rows)} are excluded.`
+      + (q.standing_torque === null ? "" : ` ${capital(measured)} at standstill: ${friction ? digits(q.standing_torque) : `${digits(q.standing_torque * 1e3)} mN·m`}, ${q.tare ? "subtracted from all dwells" : "not subtracted"}.`), "note");
     const reasons = new Map();
     for (const r of q.rejected) {
       const known = reasons.get(r.label) ?? [0, 0];

@@ -13,7 +13,7 @@ const capital = (text) => `${text.slice(0, 1).toUpperCase()}${text.slice(1)}`;
 const noun = data.part; // what slides
 const radius = data.map?.roll_radius ?? null;
 // A rotational speed, where it slides if the radius is known.
-const rolled = (speed) => radius === null ? `${digits(speed * TO_RPM, 2)} rpm` : `${digits(1e3 * speed * radius, 2)} mm/s`;
+const rolled = (speed) => radius === null ? `${digits(speed * PER_SPEED, 2)} ${SPEED_UNIT}` : `${digits(1e3 * speed * radius, 2)} mm/s`;
 const whole = (kelvin) => data.fit.temperature_scale === "K" ? degrees(kelvin) : `${Math.round(celsius(kelvin))} °C`;
 
 // A section with its topic and its finding; listed in the contents.

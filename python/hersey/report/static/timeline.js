@@ -7,8 +7,8 @@ function timeline(parent, says) {
   const { speed, torque, temperature, starts } = data.timeline;
   const [factor, unit] = torqueUnit();
   const rows = [
-    { name: "Speed", unit: "rpm", time: speed.time, value: speed.value.map((each) => each * TO_RPM) },
-    { name: "Torque", unit, time: torque.time, value: torque.value.map((each) => each * factor) },
+    { name: "Speed", unit: SPEED_UNIT, time: speed.time, value: speed.value.map((each) => each * PER_SPEED) },
+    { name: capital(measured), unit, time: torque.time, value: torque.value.map((each) => each * factor) },
     ...(temperature ? [{ name: "Temp.", unit: "°C", time: temperature.time, value: temperature.value.map(celsius) }] : []),
   ];
   const first = Math.min(...rows.map((row) => row.time[0]));
@@ -28,7 +28,7 @@ function timeline(parent, says) {
     const rowHeight = onPaper ? ROW_ON_PAPER : ROW;
     const right = width - 6;
     const x = (time) => left + ((time - first) / (last - first || 1)) * (right - left);
-    const root = svg("svg", { width, role: "img", "aria-label": `The log: speed, torque and temperature against time. ${says}` });
+    const root = svg("svg", { width, role: "img", "aria-label": `The log: speed, ${measured} and temperature against time. ${says}` });
     strip(root, x, left, right);
     const scales = rows.map((row, i) => {
       const floor = top + i * (rowHeight + BETWEEN) + rowHeight;
@@ -45,7 +45,7 @@ function timeline(parent, says) {
       let path = "";
       row.time.forEach((time, k) => { path += `${k && !starts.some((start, n) => n && row.time[k - 1] < start && time >= start) ? "L" : "M"}${x(time).toFixed(1)} ${y(row.value[k]).toFixed(1)}`; });
       svg("path", { d: path, class: "trace thin" }, root);
-      svg("text", { x: left + 6, y: floor - rowHeight + 12, class: "strong" }, root, `${row.name} (${row.unit})`);
+      svg("text", { x: left + 6, y: floor - rowHeight + 12, class: "strong" }, root, row.unit ? `${row.name} (${row.unit})` : row.name);
       return { floor, y };
     });
     const bottom = scales.at(-1).floor;
@@ -64,7 +64,7 @@ function timeline(parent, says) {
       svg("line", { x1: to, x2: to, y1: top - 22, y2: bottom }, cursor);
       const words = rows.map((row, i) => {
         const value = row.value[nearest(row.time, at)];
-        const text = `${digits(value, 3)} ${row.unit}`;
+        const text = `${digits(value, 3)} ${row.unit}`.trim();
         tag(cursor, to, scales[i].floor - rowHeight + 2, text, right);
         return `${row.name} ${text}`;
       });

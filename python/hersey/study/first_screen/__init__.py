@@ -7,6 +7,7 @@ result      what the first screen holds
 words       numbers as the first screen writes them
 reasons     why something cannot be computed
 instruction the sentence, its interval, and what happens otherwise
+friction    the sentence for a log of friction, without a machine
 points      what is said of each operating point
 advice      the next measurement, in words
 questions   a question in the place of a conclusion

@@ -13,6 +13,7 @@ from hersey.decision.plausibility import asked
 from hersey.study.findings import Findings
 from hersey.study.first_screen.advice import advised, next_step
 from hersey.study.first_screen.flags import few_slow_dwells, flags
+from hersey.study.first_screen.friction import of_friction
 from hersey.study.first_screen.instruction import of_log, of_machine
 from hersey.study.first_screen.missing import missing
 from hersey.study.first_screen.points import point_decision, points_of_log, unjudged, worst
@@ -27,7 +28,9 @@ def decision(known: Findings) -> DecisionPart:
     if question is not None:
         return unanswered(question, known)
     trend = trend_of(Observations.of(points))
-    if known.behaviour is None or map_ is None:
+    if not points.domain.is_torque:
+        said = of_friction(known, trend)
+    elif known.behaviour is None or map_ is None:
         said = of_log(known, trend)
     else:
         few = few_slow_dwells(points, surface)

@@ -332,9 +332,9 @@ def _of_log(points: SteadyPoints, surface: DampingSurface, *, asked: bool) -> It
     """
     for each in doubtful_units(points.log)[:1]:
         yield each.titled("A unit is doubtful", section="data")
-    for each in held_values(points)[:1]:
+    for each in (each.about(points.domain) for each in held_values(points)[:1]):
         yield each.titled("{channel:capital} is {fault}", section="data")
-    for each in doubtful_tare(points)[:1]:
+    for each in (each.about(points.domain) for each in doubtful_tare(points)[:1]):
         yield each.titled("The zero is doubtful", section="data")
     if few_slow_dwells(points, surface):
         yield Warning(
@@ -356,7 +356,7 @@ def _of_log(points: SteadyPoints, surface: DampingSurface, *, asked: bool) -> It
             title="The transition is not at a fixed Hersey number",
             where="torque",
         )
-    if loads := points.varying_load:
+    if (loads := points.varying_load) and points.domain.quantity != "friction coefficient":
         yield Warning(
             "loads differ",
             "it ranges from {low:.3g} to {high:.3g} N. Fit each load separately",
@@ -382,7 +382,7 @@ def _left_open(known: Findings, scatter: float) -> Iterator[Warning]:
     yield from (each.titled(each.heading, section="data") for each in doubtful_order(points)[:1])
     if seen.named is None and known.friction is None:
         remedy = ""
-        if points.rest is None and c.value > -1.0:
+        if points.rest is None and c.value > -1.0 and points.domain.is_torque:
             remedy = (
                 "a no-load torque brings the exponent closer to -1. Record the drive without the contact, "
                 "and subtract its torque with {how}"

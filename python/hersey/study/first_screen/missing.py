@@ -19,6 +19,8 @@ def missing(known: Findings) -> list[MissingPart]:
     """Return what is not stated, what most is missing first."""
     points, surface, machine = known.points, known.surface, known.machine
     part = DRIVE if machine is None else machine.part
+    if not points.domain.is_torque:  # friction alone is about no machine
+        return [] if points.log.has_temperature else [_temperature()]
     file = _MACHINE if known.machine_file is None else known.machine_file.name
     out = []
     if machine is None:

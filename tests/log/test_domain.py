@@ -1,0 +1,157 @@
+"""Friction as what was measured: runs at several radii or loads are one coefficient, and words say so."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import numpy as np
+import polars as pl
+import pytest
+
+import hersey
+from hersey import SteadyPoints
+from hersey.errors import InsufficientDataError, ParameterError
+from hersey.schema.domain import Domain
+from hersey.verdict.warnings import warnings_of
+from tests.cli.command import run
+from tests.conftest import shared
+
+SPEEDS = np.repeat([0.01, 0.02, 0.05, 0.1, 0.2, 0.5], 100)
+RADII, LOADS = (0.01, 0.02, 0.04), (5.0, 10.0, 20.0)
+COEFFICIENT = Domain("friction coefficient", "sliding speed")
+
+
+def log(radius: float, load: float, quantity: str, power: float = 0.0) -> pl.DataFrame:
+    """A staircase of speeds on a tribometer whose coefficient is 0.12 at 0.1 m/s."""
+    noise = np.random.default_rng(round(1e4 * radius * load)).normal(1.0, 0.01, SPEEDS.size)
+    friction = 0.12 * (SPEEDS / 0.1) ** power * noise
+    if quantity == "torque":
+        columns = {"Torque [N*m]": friction * load * radius, "Speed [rad/s]": SPEEDS / radius}
+    elif quantity == "force":
+        columns = {"Friction force [N]": friction * load, "Sliding speed [m/s]": SPEEDS}
+    else:
+        columns = {"COF": friction, "Sliding speed [m/s]": SPEEDS}
+    return pl.DataFrame({"Time [s]": 0.1 * np.arange(SPEEDS.size)} | columns)
+
+
+def points_of(quantity: str, power: float = 0.0, **stated: object) -> SteadyPoints:
+    """The dwells of three runs, which differ in what is stated for each; radii if nothing is."""
+    radii = (0.02,) * 3 if "radius" not in stated and "load" in stated else RADII
+    loads = LOADS if np.ndim(stated.get("load")) else (10.0,) * 3
+    tables = [log(*each, quantity, power) for each in zip(radii, loads, strict=True)]
+    return hersey.read(tables, isothermal=True, **stated).steady()
+
+
+@pytest.mark.parametrize(
+    ("quantity", "stated"),
+    [
+        ("coefficient", {}),
+        ("coefficient", {"radius": RADII, "load": 10.0}),
+        ("torque", {"radius": RADII, "load": 10.0}),
+        ("force", {"load": LOADS}),
+    ],
+)
+def test_a_constant_coefficient_at_three_radii_or_loads_is_constant(quantity: str, stated: dict) -> None:
+    points = points_of(quantity, **stated)
+    assert points.domain == COEFFICIENT
+    surface = hersey.fit(points)
+    assert surface.c.low - surface.c.systematic <= -1.0 <= surface.c.high + surface.c.systematic
+    assert surface.predict(speed=0.1).torque == pytest.approx(0.12, rel=5e-3)
+    verdict = hersey.regime(points, surface).verdict
+    assert verdict.startswith("Friction coefficient is constant: 0.12")
+    assert "at 0.01 to 0.5 m/s" in verdict
+    assert not re.search(r"torque|rpm|stick-slip", verdict)
+    said = " ".join(each.sentence for each in warnings_of(points, surface))
+    assert not re.search(r"\btorque|rpm|N m", said)
+
+
+@pytest.mark.parametrize(("power", "does"), [(0.1, "rises"), (-0.1, "falls")])
+def test_a_coefficient_that_changes_with_speed_is_said_to(power: float, does: str) -> None:
+    points = points_of("coefficient", power)
+    surface = hersey.fit(points)
+    assert f"Friction coefficient {does} with sliding speed, as v^" in hersey.regime(points, surface).verdict
+    assert surface.headline().startswith("mu = a v^(1 + c)")
+    assert surface.domain == COEFFICIENT
+    with pytest.raises(ParameterError, match=r"needs a torque.*Give radius='25 mm' and load='50 N'"):
+        surface.drag(roll_radius=0.02, stick_speed=1e-3)
+
+
+def test_a_force_alone_stays_a_force() -> None:
+    points = points_of("force")
+    assert points.domain == Domain("friction force", "sliding speed")
+    assert "friction force 1.19" in points.headline() or "friction force 1.2" in points.headline()
+    assert "Friction force is constant: 1.2" in hersey.regime(points, hersey.fit(points)).verdict
+    assert "friction force (N)" in points.to_frame().columns
+    assert "sliding speed (m/s)" in points.to_frame().columns
+
+
+def test_torques_at_different_loads_are_not_fitted_together() -> None:
+    points = points_of("torque", load=LOADS)
+    with pytest.raises(InsufficientDataError, match=r"loads of 5 to 20 N.*Give the radius, e\.g\. radius="):
+        hersey.fit(points)
+    assert points_of("torque", load=LOADS, radius=0.02).domain == COEFFICIENT
+
+
+def test_a_radius_and_a_load_ask_for_a_torque() -> None:
+    table = log(0.02, 10.0, "coefficient")
+    asked = hersey.read(table, isothermal=True, radius="20 mm", load="10 N").steady()
+    assert asked.domain.is_torque
+    turned = hersey.read(table, isothermal=True).steady().as_torque(radius="20 mm", load="10 N")
+    assert turned.domain.is_torque
+    for name in ("torque", "speed", "torque_error"):
+        np.testing.assert_allclose(turned.column(name), asked.column(name), rtol=1e-9)
+    assert turned.log.domain.is_torque
+    with pytest.raises(ParameterError, match=r"no normal load is known\. Give it, e\.g\. load='50 N'"):
+        hersey.read(table, isothermal=True).steady().as_torque(radius="20 mm")
+
+
+def test_rows_without_contact_are_left_out_of_a_coefficient() -> None:
+    table = log(0.02, 10.0, "force")
+    load = np.full(SPEEDS.size, 10.0)
+    load[:40], load[-40:] = 0.1, -0.2
+    read = hersey.read(
+        table.with_columns(Fn=pl.Series(load)), isothermal=True, channels={"load": "Fn"}, units={"load": "N"}
+    )
+    assert read.rows == SPEEDS.size - 80
+    (said,) = [each for each in read.files[0].warnings if each.kind == "rows without contact"]
+    assert said.values["rows"] == 80
+
+
+def test_what_is_printed_of_friction_speaks_of_friction(tmp_path: Path) -> None:
+    for i, radius in enumerate(RADII):
+        log(radius, 10.0, "coefficient", -0.1).write_csv(tmp_path / f"{i}.csv")
+    for command in ("fit", "models", "inspect"):
+        done = run(command, "0.csv", "1.csv", "2.csv", "--isothermal", cwd=tmp_path)
+        assert done.returncode == 0, done
+        kept = [
+            line
+            for line in done.stdout.splitlines()
+            if not re.match(r" +(COF|Sliding speed|Friction) ", line)
+        ]
+        assert not re.search(r"\btorque|rpm|N·m|stick-slip", "\n".join(kept)), done.stdout
+
+
+def test_no_exponent_is_claimed_of_one_speed() -> None:
+    path = shared("data/friction/te67_pin_on_disc/PPS_60N_2.tsv")
+    channels = {"torque": "Friction Coefficient", "speed": "Sliding Velocity", "time": "Time"}
+    units = {"torque": "1", "speed": "m/s"}
+    points = hersey.read(path, channels=channels, units=units, isothermal=True).steady()
+    with pytest.raises(InsufficientDataError, match=r"all dwells are at 0\.15 m/s"):
+        hersey.fit(points)
+
+
+def test_loads_of_an_oil_film_are_no_stribeck_curve() -> None:
+    folder = shared("data/friction/newport_oil_stribeck/Motor_oil_glass")
+    files = [folder / f"{speed}rps{load}N.txt" for speed in ("0-1", "1", "2-5") for load in (1, 3, 10)]
+    channels = {"time": "#2", "torque": "#4", "speed": "#6", "load": "#3"}
+    units = {"time": "s", "torque": "N*m", "speed": "rev/s", "load": "N"}
+    read = hersey.read(files, channels=channels, units=units, isothermal=True, radius="10 mm")
+    assert read.domain == COEFFICIENT
+    assert any(each.kind == "rows without contact" for file in read.files for each in file.warnings)
+    points = read.steady()
+    surface = hersey.fit(points)
+    assert surface.transition is None
+    verdict = hersey.regime(points, surface).verdict
+    assert "no film regime is judged" in verdict
+    assert "is lowest" not in verdict
