@@ -19,12 +19,11 @@ if TYPE_CHECKING:
 def leading_friction(points: SteadyPoints, surface: DampingSurface, seen: Regime) -> FrictionCurve | None:
     """Return the friction curve if it describes the dwells at least as well as the power law; else None.
 
-    Where the points are windows of a moving log, the fit to every sample has the friction already; friction of
-    a contact (a force or a coefficient) has the words of its own. It never
-    leads where film theory is at stake: a film is named, no-load torque was subtracted, or loads
-    differ. Where temperature varies the power law must be excluded, since a film moves with temperature too.
-    Coulomb plus viscous friction cannot lead where the dwells alone show that torque falls with speed, or
-    where no viscous part is proven.
+    Where the points are windows of a moving log, the fit to every sample has the friction already, and a
+    friction force or coefficient has a verdict of its own. It never leads where film theory is at stake: a
+    film is named, no-load torque was subtracted, or loads differ. Where temperature varies the power law must
+    be excluded, since a film moves with temperature too. Coulomb plus viscous friction cannot lead where the
+    dwells alone show that torque falls with speed, or where no viscous part is proven.
     """
     if seen.named not in (None, COULOMB, FALLING) or points.rest is not None or points.varying_load:
         return None
