@@ -19,11 +19,11 @@ _AXES = {"time": "Time in motion", "distance": "Distance", "revolutions": "Revol
 def trend_chart(found: FrictionTrend) -> Chart:
     """Return friction against age; green is the part in which it is steady."""
     unit, size = age_unit(found.by, found.last_age)
-    named, factor = friction_unit(found.unit, float(abs(found.value).max()))
+    named, factor = friction_unit(found.domain.unit, float(abs(found.value).max()))
     end = found.last_age / size
     title = _AXES[found.by] if found.by == "revolutions" else f"{_AXES[found.by]} ({unit})"
     x = alt.X("time:Q", title=title, scale=alt.Scale(domain=[0.0, end], nice=False))
-    label = f"{capital(found.quantity)} ({named})" if named else capital(found.quantity)
+    label = f"{capital(found.domain.quantity)} ({named})" if named else capital(found.domain.quantity)
     y = alt.Y("value:Q", title=label, scale=alt.Scale(zero=False))
     tips = [tip("time", f"age ({unit})"), tip("value", label)]
     rows: dict[str, Any] = {"time": found.age / size}
@@ -43,7 +43,7 @@ def trend_chart(found: FrictionTrend) -> Chart:
         age = jump.age / size
         layers += moment(age, f"jump {jump.change.value:+.0%}", x, left=age > 0.5 * end, color=RED)
     subtitle = [f"{found.headline()}.", _key(found)]
-    heading = alt.Title(f"{capital(found.quantity)} at one speed", subtitle=subtitle)
+    heading = alt.Title(f"{capital(found.domain.quantity)} at one speed", subtitle=subtitle)
     chart: Chart = alt.layer(*layers, title=heading, width=WIDTH, height=HEIGHT)
     return chart
 

@@ -56,8 +56,8 @@ def trend(
 
     from hersey.life.trend.fit import trend as followed
 
-    speed = amount_of("speed", at, "--at") if at else None
     log = _samples(reading, logs)
+    speed = amount_of("speed" if log.domain.speed == "speed" else "belt speed", at, "--at") if at else None
     radius = reading.recipe(logs).radius
     with working("following friction"):
         found = followed(

@@ -16,9 +16,12 @@ _ONLY = 0.8
 _MOST = 5
 
 
-def speeds_held(speed: FloatArray) -> list[tuple[float, float]]:
-    """Return speeds without sign, the most frequent first, each with its share of the rows in motion."""
-    left = np.sort(speed[speed > STANDING])
+def speeds_held(speed: FloatArray, standing: float = STANDING) -> list[tuple[float, float]]:
+    """Return speeds without sign, the most frequent first, each with its share of the rows in motion.
+
+    At or below ``standing``, in the unit of the speeds, the drive stands.
+    """
+    left = np.sort(speed[speed > standing])
     rows = left.size
     found: list[tuple[float, float]] = []
     while left.size and len(found) < _MOST:
@@ -31,9 +34,9 @@ def speeds_held(speed: FloatArray) -> list[tuple[float, float]]:
     return found
 
 
-def only_speed(speed: FloatArray) -> float | None:
-    """Return the one speed that is held whenever the drive turns, rad/s, or None."""
-    found = speeds_held(speed)
+def only_speed(speed: FloatArray, standing: float = STANDING) -> float | None:
+    """Return the one speed that is held whenever the drive moves, in the unit given, or None."""
+    found = speeds_held(speed, standing)
     return found[0][0] if found and found[0][1] >= _ONLY else None
 
 
@@ -45,4 +48,5 @@ def of_one_speed(reason: str) -> OneSpeedError:
 
 def is_one_speed(log: TorqueLog) -> bool:
     """Return whether a log holds one speed whenever the drive turns."""
-    return only_speed(np.abs(np.concatenate([run.speed for run in log.runs]))) is not None
+    speed = np.abs(np.concatenate([run.speed for run in log.runs]))
+    return only_speed(speed, log.domain.standing) is not None

@@ -41,7 +41,7 @@ _BY = Words(tuple(AGES))
 
 
 @one_thread()
-@takes_si(by=_BY, at="speed", radius="length")
+@takes_si(by=_BY, at=("speed", "belt speed"), radius="length")
 def trend(
     log: TorqueLog,
     *,
@@ -64,9 +64,9 @@ def trend(
     by
         What age is counted in while the drive turns: ``time``, ``distance`` or ``revolutions``.
     at
-        Speed whose rows are used, rad/s. Default: the only one.
+        Speed whose rows are used, rad/s, or m/s if the log has a sliding speed. Default: the only one.
     radius
-        Radius of the track, m, for ages in distance.
+        Radius of the track, m: for a distance at a speed of rotation, or revolutions at a sliding speed.
     share
         Friction is steady once it stays within this share of its steady value.
     seed
@@ -77,7 +77,7 @@ def trend(
     InsufficientDataError
         If the log has several speeds, too few rows at one, or a torque that never changes.
     ParameterError
-        If a parameter is out of range, or the radius for a distance is missing.
+        If a parameter is out of range, or a radius that is needed is missing.
     """
     if not 0.0 < share < 1.0:
         raise ParameterError(f"share is {share}: it must be between 0 and 1", value=share)
@@ -129,8 +129,7 @@ def trend_of(record: Record, *, by: str = "time", share: float = 0.05, seed: int
     scaled = data.age
     low, middle, high = np.quantile(found.curves(scaled), [0.025, 0.5, 0.975], axis=0)
     return FrictionTrend(
-        quantity=record.quantity,
-        unit=record.unit,
+        domain=record.domain,
         by=by,
         age_unit=AGES[by],
         speed=record.speed,

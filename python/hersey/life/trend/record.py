@@ -12,8 +12,8 @@ import numpy as np
 from hersey.arrays import BoolArray, FloatArray
 from hersey.damping.dwells.one_speed import SAME, only_speed, speeds_held
 from hersey.errors import InsufficientDataError, ParameterError, Setting
-from hersey.log.torque_log import STANDING, Run, TorqueLog
-from hersey.units import rpm
+from hersey.log.torque_log import Run, TorqueLog
+from hersey.schema.domain import TORQUE, Domain
 
 #: Share of the rows in motion from which a speed is named.
 _NAMED = 0.05
@@ -36,32 +36,31 @@ class Record:
     time: FloatArray  #: s, runs one after another
     value: FloatArray
     temperature: FloatArray | None
-    speed: float  #: mean without sign, rad/s
-    quantity: str = "torque"
-    unit: str = "N m"
+    speed: float  #: mean without sign, in the unit of the domain
+    domain: Domain = TORQUE  #: what friction and speed are
     restarts: FloatArray = field(default_factory=lambda: np.empty(0))  #: ages at which motion went on
     other_speed: int = 0  #: rows left out: in motion at another speed
     apart: int = 0  #: rows left out at an end without friction
 
 
 def record_of(log: TorqueLog, by: str, at: float | None, radius: float | None) -> Record:
-    """Return the rows of a log at its one speed, or at one that is chosen, rad/s.
+    """Return the rows of a log at its one speed, or at one that is chosen, SI.
 
     Raises
     ------
     ParameterError
-        If a distance is asked for without a radius.
+        If a distance, or revolutions of what slides, are asked for without a radius.
     InsufficientDataError
         If the log has several speeds and none is chosen, or too few rows at one.
     """
-    time, shift = [], 0.0
+    time, shift, of = [], 0.0, log.domain
     for run in log.runs:
         time.append(run.time - run.time[0] + shift)
         shift = float(time[-1][-1]) + run.sampling_interval
     times = np.concatenate(time)
     speed = np.concatenate([run.speed for run in log.runs])
-    moving = np.abs(speed) > STANDING
-    chosen = moving & _at_speed(np.abs(speed), moving, at)
+    moving = np.abs(speed) > of.standing
+    chosen = moving & _at_speed(np.abs(speed), moving, at, of)
     apart = _apart(values := np.concatenate([_friction(run) for run in log.runs]), chosen)
     chosen &= ~apart
     kept = np.flatnonzero(chosen)
@@ -71,10 +70,10 @@ def record_of(log: TorqueLog, by: str, at: float | None, radius: float | None) -
         )
     if float(np.ptp(values[kept])) == 0.0:
         raise InsufficientDataError(
-            f"torque always reads {values[kept[0]]:.4g} N m. Check the sensor, or name another column "
-            f"with {Setting('torque', 'channel').to()}"
+            f"{of.quantity} always reads {of.amount(float(values[kept[0]]), '.4g')}. Check the sensor, or "
+            f"name another column with {Setting('torque', 'channel').to()}"
         )
-    age = _ages(times, np.abs(speed), moving, by, radius)
+    age = _ages(times, np.abs(speed), moving, by, radius, of)
     kelvin = None
     if log.has_temperature:
         kelvin = np.concatenate([r.temperature for r in log.runs if r.temperature is not None])[kept]
@@ -87,6 +86,7 @@ def record_of(log: TorqueLog, by: str, at: float | None, radius: float | None) -
         value=values[kept],
         temperature=kelvin,
         speed=float(np.mean(np.abs(speed[kept]))),
+        domain=of,
         restarts=restarts - age[kept[0]],
         other_speed=int(np.sum(moving) - kept.size - np.sum(apart)),
         apart=int(np.sum(apart)),
@@ -96,34 +96,34 @@ def record_of(log: TorqueLog, by: str, at: float | None, radius: float | None) -
 def _friction(run: Run) -> FloatArray:
     """Friction against the motion: of a drive whose torque is recorded with the other sign, too."""
     against = run.torque * np.sign(run.speed)
-    turning = against[np.abs(run.speed) > STANDING]
+    turning = against[np.abs(run.speed) > run.domain.standing]
     return -against if turning.size and np.median(turning) < 0.0 else against
 
 
-def _at_speed(speed: FloatArray, moving: BoolArray, at: float | None) -> BoolArray:
+def _at_speed(speed: FloatArray, moving: BoolArray, at: float | None, of: Domain) -> BoolArray:
     """Rows near the one speed."""
     if not moving.any():
         raise InsufficientDataError("the drive stands still throughout: friction needs motion")
     if at is not None:
         return np.abs(speed - abs(at)) <= SAME * abs(at)
-    if (only := only_speed(speed)) is not None:
+    if (only := only_speed(speed, of.standing)) is not None:
         return np.abs(speed - only) <= SAME * only
-    held = sorted(each for each in speeds_held(speed) if each[1] >= _NAMED)
+    held = sorted(each for each in speeds_held(speed, of.standing) if each[1] >= _NAMED)
     if not held:
         raise InsufficientDataError(
             "the speed varies throughout, but a trend is followed at one speed. To follow the rows near "
-            f"one, choose it, e.g. {_choice(float(np.median(speed[moving])))}"
+            f"one, choose it, e.g. {_choice(float(np.median(speed[moving])), of)}"
         )
-    named = ", ".join(f"{rpm(each):.3g} rpm ({100 * share:.0f} % of the rows)" for each, share in held)
+    named = ", ".join(f"{of.at(each)} ({100 * share:.0f} % of the rows)" for each, share in held)
     most = max(held, key=lambda each: each[1])[0]
     raise InsufficientDataError(
         f"the log has several speeds, but a trend is followed at one: {named}. Choose one, e.g. "
-        f"{_choice(most)}"
+        f"{_choice(most, of)}"
     )
 
 
-def _choice(speed: float) -> str:
-    return AT.to(f"{rpm(speed):.3g} rpm")
+def _choice(speed: float, of: Domain) -> str:
+    return AT.to(of.at(speed))
 
 
 def _apart(value: FloatArray, chosen: BoolArray) -> BoolArray:
@@ -138,18 +138,21 @@ def _apart(value: FloatArray, chosen: BoolArray) -> BoolArray:
 
 
 def _ages(
-    time: FloatArray, speed: FloatArray, moving: BoolArray, by: str, radius: float | None
+    time: FloatArray, speed: FloatArray, moving: BoolArray, by: str, radius: float | None, of: Domain
 ) -> FloatArray:
-    """Age at each row, counted while the drive turns."""
+    """Age at each row, counted while the drive moves."""
     passed = np.diff(time, prepend=time[0]) * moving
     if by == "time":
         return np.cumsum(passed)
-    turned = np.cumsum(passed * speed)
-    if by == "revolutions":
-        return turned / (2.0 * np.pi)
+    gone = np.cumsum(passed * speed)
+    own = "distance" if of.speed_unit == "m/s" else "revolutions"
+    if by == own:
+        return gone if own == "distance" else gone / (2.0 * np.pi)
     if radius is None:
-        example = RADIUS.to("22 mm", python="'22 mm'")
-        raise ParameterError(
-            f"a distance needs the radius of the track: add {example}, or count {BY.to('revolutions')}"
+        example, what = (
+            RADIUS.to("22 mm", python="'22 mm'"),
+            "a distance" if by == "distance" else "revolutions",
         )
-    return turned * radius
+        verb = "needs" if by == "distance" else "need"
+        raise ParameterError(f"{what} {verb} the radius of the track: add {example}, or count {BY.to(own)}")
+    return gone * radius if by == "distance" else gone / (2.0 * np.pi * radius)

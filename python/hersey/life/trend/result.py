@@ -10,8 +10,8 @@ from hersey.damping.estimate import Estimate
 from hersey.errors import capital
 from hersey.life.trend.shown import age_within, friction_within, greatest_rate, rate_within, shown_age
 from hersey.result import Means, Record, Result
+from hersey.schema.domain import Domain
 from hersey.schema.warning import Warning
-from hersey.units import rpm
 
 if TYPE_CHECKING:
     import polars as pl
@@ -48,11 +48,10 @@ class FrictionTrend(Result):
 
     also_stated = ("law",)
 
-    quantity: Annotated[str, Means("torque, friction force or friction coefficient")]
-    unit: Annotated[str, Means("unit of friction, SI")]
+    domain: Annotated[Domain, Means("what friction and speed are, with their units")]
     by: Annotated[str, Means("what age is counted in: time, distance or revolutions")]
     age_unit: Annotated[str, Means("s, m or rev")]
-    speed: Annotated[float, Means("mean speed, without sign", "rad/s")]
+    speed: Annotated[float, Means("mean speed, without sign, SI")]
     last_age: Annotated[float, Means(_OF_AGE)]
     rows: Annotated[int, Means("rows used")]
     effective_rows: Annotated[float, Means("independent rows, of those that were compared")]
@@ -90,7 +89,7 @@ class FrictionTrend(Result):
 
     def headline(self) -> str:
         """Return what friction does in one sentence."""
-        what, level = capital(self.quantity), friction_within(self.unit, self.last)
+        what, level = capital(self.domain.quantity), friction_within(self.domain.unit, self.last)
         if self.kind == "constant":
             most = greatest_rate(self.by, self.rate, self.last.value, self.last_age)
             count = len(self.jumps)
@@ -98,7 +97,7 @@ class FrictionTrend(Result):
             return f"{what} shows no trend{beside}: {level}; a steady drift is at most {most}"
         moves = self.kind.removesuffix(" and settles")
         if self.steady is not None and self.steady_age is not None:
-            steady = friction_within(self.unit, self.steady)
+            steady = friction_within(self.domain.unit, self.steady)
             when = f"within {100 * self.share:.3g} % of it after {age_within(self.by, self.steady_age)}"
             if self.steady_age.high <= self.last_age:
                 return f"{what} {moves} to a steady {steady}, {when}"
@@ -106,13 +105,13 @@ class FrictionTrend(Result):
         rate = rate_within(self.by, self.rate, self.last.value, self.last_age)
         if self.rate.low * self.rate.high > 0.0:
             return f"{what} {moves}, last by {rate}; no steady value is reached"
-        first = friction_within(self.unit, self.first)
+        first = friction_within(self.domain.unit, self.first)
         return f"{what} {moves}, from {first} to {level}; whether it is steady then is not known"
 
     def lines(self) -> list[str]:
         """Return the conclusion, a line each: headline, values, time constant, law."""
         said = [f"{self.headline()}."]
-        first, last = (friction_within(self.unit, each) for each in (self.first, self.last))
+        first, last = (friction_within(self.domain.unit, each) for each in (self.first, self.last))
         rate = rate_within(self.by, self.rate, self.last.value, self.last_age)
         facts = [("at the begin, at the end", f"{first}, {last}"), ("rate over the last tenth", rate)]
         if self.kind == "constant":
@@ -156,7 +155,7 @@ class FrictionTrend(Result):
         return "\n".join(
             [
                 *self.lines(),
-                f"{self.rows} rows at {rpm(self.speed):.3g} rpm over {shown_age(self.by, self.last_age)}; "
+                f"{self.rows} rows at {self.domain.at(self.speed)} over {shown_age(self.by, self.last_age)}; "
                 f"{noise}, {self.effective_rows:.0f} independent values",
                 "laws compared:",
                 *compared,
@@ -168,11 +167,11 @@ class FrictionTrend(Result):
         """Return mean friction of each block and the law with its interval."""
         import polars as pl
 
-        unit = self.unit
+        of, unit = self.domain, self.domain.unit or "1"
         return pl.DataFrame(
             {
                 f"age ({self.age_unit})": self.age,
-                f"{self.quantity} ({unit})": self.value,
+                f"{of.quantity} ({unit})": self.value,
                 f"fitted ({unit})": self.fitted,
                 f"low ({unit})": self.low,
                 f"high ({unit})": self.high,

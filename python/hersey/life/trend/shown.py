@@ -72,7 +72,7 @@ def friction_unit(unit: str, largest: float) -> tuple[str, float]:
     """Return the unit in which friction reads best, and how many of it are one of its SI unit."""
     if unit == "N m":
         return ("N·m", 1.0) if largest >= 1.0 else ("mN·m", 1e3)
-    return ("" if unit == "1" else unit, 1.0)
+    return (unit, 1.0)
 
 
 def friction_within(unit: str, value: Estimate) -> str:
