@@ -42,6 +42,14 @@ def write_examples(folder: Path) -> None:
             shutil.copy(path, folder)
 
 
+def table_of(page: str) -> str:
+    """Return the table that a how-to page shows."""
+    text = (DOCS / f"how-to/{page}.md").read_text()
+    table = re.search(r"^```text\n(.*?)^```$", text, re.DOTALL | re.MULTILINE)
+    assert table is not None
+    return table[1]
+
+
 def write_files_of_a_reader(folder: Path) -> None:
     """Write the logs that how-to pages call by what is special about them, made of the shipped log."""
     lines = (folder / "bench.csv").read_text().splitlines()
@@ -62,9 +70,6 @@ def write_files_of_a_reader(folder: Path) -> None:
         write(f"{name}.csv", _HEADER, times(factor))
     stuck = [row for row in rows if 2.0 < float(row[2]) < 3.0]  # held for 32 s, sticking and slipping
     write("squeal.csv", _HEADER, stuck)
-    means = re.search(
-        r"^```text\n(.*?)^```$", (DOCS / "how-to/means.md").read_text(), re.DOTALL | re.MULTILINE
-    )
-    assert means is not None
-    (folder / "means.csv").write_text(means[1])
+    for page, name in (("means", "means.csv"), ("joint-friction", "staircase.csv")):
+        (folder / name).write_text(table_of(page))
     sine().to_frame().drop("run").write_csv(folder / "joint.csv")

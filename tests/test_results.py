@@ -19,6 +19,7 @@ import hersey
 from hersey import testbench
 from hersey.charts.render import picture
 from hersey.damping.compare import LogComparison
+from hersey.damping.friction_curve.result import FrictionCurve
 from hersey.damping.no_load_torque import NoLoadTorque
 from hersey.document.parts.cycles import CyclesPart
 from hersey.document.parts.drift import DriftPart
@@ -199,9 +200,11 @@ RESULTS: dict[str, tuple[Callable[[], Any], type]] = {
     ),
     "Drift": (lambda: hersey.fit_drift(table(other("lubricant", 1, units=2, logs=3))), DriftPart),
     "Growth": (growth, hersey.Growth),
+    "FrictionTrend": (lambda: hersey.trend(log(), at="60 rpm"), hersey.FrictionTrend),
     "AgesAtLimit": (lambda: growth().reaches(2.0), hersey.AgesAtLimit),
     "TimeToFailure": (ends, TimeToFailurePart),
     "ModelComparison": (models, ModelsPart),
+    "FrictionCurve": (lambda: hersey.fit_friction(points()), FrictionCurve),
     "LogComparison": (lambda: hersey.compare(points(), points()), LogComparison),
     "CoastDown": (lambda: hersey.coast_down(COASTS, inertia="0.012 kg*m^2 ± 2 %"), hersey.CoastDown),
     "TestDesign": (lambda: hersey.design(models(), count=1), DesignPart),

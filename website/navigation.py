@@ -58,7 +58,7 @@ PARTS = (
     Part(
         "Validation",
         folder="validation",
-        first=("index", "measurements", "layouts", "moving", "paper", "growth"),
+        first=("index", "measurements", "joints", "moving", "coast-down", "trends", "layouts", "paper", "growth"),
     ),
     Part("Glossary", page="glossary.md"),
 )

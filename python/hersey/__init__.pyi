@@ -13,6 +13,8 @@ from .damping.design import design as design
 from .damping.dwells import SteadyPoints as SteadyPoints
 from .damping.estimate import Estimate as Estimate
 from .damping.fit import fit as fit
+from .damping.friction_curve.fit import fit_friction as fit_friction
+from .damping.friction_curve.result import FrictionCurve as FrictionCurve
 from .damping.moving.fit import fit_moving as fit_moving
 from .damping.moving.result import MovingFit as MovingFit
 from .damping.no_load import no_load_torque as no_load_torque
@@ -57,6 +59,8 @@ from .life.population import Population as Population
 from .life.population import weibull as weibull
 from .life.time_to_failure.estimate import TimeToFailure as TimeToFailure
 from .life.time_to_failure.estimate import time_to_failure as time_to_failure
+from .life.trend.fit import trend as trend
+from .life.trend.result import FrictionTrend as FrictionTrend
 from .log import TorqueLog as TorqueLog
 from .log import memory_limit as memory_limit
 from .log import read as read

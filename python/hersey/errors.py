@@ -209,6 +209,10 @@ class InsufficientDataError(HerseyError, ValueError):
     """Data that are not sufficient for the question."""
 
 
+class OneSpeedError(InsufficientDataError):
+    """A log of one speed: no dependence on speed can be fitted, but friction can be followed over time."""
+
+
 class ParameterError(HerseyError, ValueError):
     """A parameter outside what the physics allows.
 

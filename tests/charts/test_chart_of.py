@@ -145,6 +145,7 @@ MADE: dict[str, Callable[[], Any]] = {
     "TorqueLog": log,
     "Inspection": lambda: hersey.inspect([EXAMPLES / "bench.csv"]),
     "SteadyPoints": points,
+    "FrictionCurve": lambda: hersey.fit_friction(points()),
     "NoLoadTorque": lambda: hersey.NoLoadTorque.stated(constant=0.02, per_speed=0.001, uncertainty=0.1),
     "DampingSurface": surface,
     "ModelComparison": models,

@@ -74,7 +74,8 @@ def test_the_terminal_names_the_option() -> None:
 
 def test_a_log_at_one_speed_is_not_helped_by_a_shorter_duration() -> None:
     one = log(lambda speed, hot: 40.0 if (speed, hot) == (10.0, 100.0) else 0.0)
-    with pytest.raises(InsufficientDataError, match=r"at 10 rpm\. Record dwells at three or more speeds$"):
+    says = r"at 10 rpm\. Record dwells at three or more speeds\. To follow friction over time"
+    with pytest.raises(InsufficientDataError, match=says):
         hersey.fit(one.steady(min_dwell=30.0))
 
 

@@ -75,6 +75,21 @@ def test_drive_2_announces_no_transition(rotation: str) -> None:
     assert "no transition" in hersey.regime(points, surface).verdict
 
 
+def test_friction_of_drive_1() -> None:
+    """Published: Stribeck speed 61 rpm; the dwell of least torque, 2.526 mN m, is at 50 rpm."""
+    curve = hersey.fit_friction(hersey.read(files(1), units=UNITS, isothermal=True).steady())
+    assert (curve.kind, curve.apart, curve.scatter) == ("stribeck", True, 0.0)
+    for least in curve.least:
+        assert least.speed.low < 61 * RPM < least.speed.high
+    torque = {least.direction: least.torque for least in curve.least}
+    assert torque["forward"] == pytest.approx(2.526e-3, rel=0.01)
+
+
+def test_friction_of_drive_2() -> None:
+    curve = hersey.fit_friction(hersey.read(files(2), units=UNITS, isothermal=True).steady())
+    assert (curve.kind, curve.apart, curve.rises) == ("coulomb_viscous", True, True)
+
+
 def test_through_the_command(tmp_path: Path) -> None:
     options = ["--torque-unit", UNITS["torque"], "--speed-unit", UNITS["speed"], "--isothermal"]
     result = run("report", *files(1), *options, "--rotation", "forward", cwd=tmp_path)
@@ -82,7 +97,10 @@ def test_through_the_command(tmp_path: Path) -> None:
     assert "torque rises as the drive slows" in result.words
     assert (tmp_path / "report.html").stat().st_size < 2_000_000
     document = json.loads(run("report", *files(1), *options, "--json", cwd=tmp_path).stdout)
-    assert any("reverse rotation" in w["text"] and "--rotation" in w["text"] for w in document["warnings"])
+    friction = document["friction"]
+    assert (friction["kind"], friction["directions"]["differ"]) == ("stribeck", True)
+    # one law per direction describes both: nothing is left to warn of
+    assert not any("reverse rotation" in w["text"] for w in document["warnings"])
 
 
 def test_percent_is_asked_about(tmp_path: Path) -> None:

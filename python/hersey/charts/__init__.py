@@ -17,6 +17,7 @@ coast_down       speeds of a coast-down, and its torque against speed
 moving           friction against speed of a log that moves all the time
 regime           exponents against what each regime predicts
 film             the regime chart, over the Stribeck curve
+friction_curve   torque of a joint against speed, both directions
 friction         the Stribeck curve: dwells, model, regimes, stall
 mixed            torque of film and asperities against speed
 transition       transition speed against temperature
@@ -31,6 +32,7 @@ warm_up          speed, drag and temperatures of a warm-up
 weibull          share failed against age
 ageing_maps      the operating map of a unit when new, now and at its end
 life             the charts of a life test, in the order of its page
+trend            friction against age at one speed
 drift            what moved with age, a panel per quantity
 film_life        the film of units that age, and the layer of oil that feeds it
 growth           growth with age, and the ages at a limit
@@ -58,6 +60,7 @@ CHARTS = {
     "Inspection": ("inspection", "channels_chart"),
     "SteadyPoints": ("damping", "steady_chart"),
     "DampingSurface": ("damping", "surface_chart"),
+    "FrictionCurve": ("friction_curve", "friction_curve_chart"),
     "NoLoadTorque": ("damping", "rest_chart"),
     "ModelComparison": ("damping", "models_chart"),
     "LogComparison": ("damping", "logs_chart"),
@@ -80,6 +83,7 @@ CHARTS = {
     "OtherUses": ("other_uses", "other_uses_chart"),
     "AgeingMaps": ("ageing_maps", "ageing_maps_chart"),
     "LifeTest": ("life", "life_chart"),
+    "FrictionTrend": ("trend", "trend_chart"),
     "Drift": ("drift", "drift_chart"),
     "FilmLife": ("film_life", "film_life_chart"),
     "Growth": ("growth", "growth_chart"),

@@ -15,6 +15,7 @@ import numpy as np
 from hersey.charts.against_speed import against_speed, curve_rows
 from hersey.charts.damping import logs_chart
 from hersey.charts.film import regime_chart
+from hersey.charts.friction_curve import signed_chart
 from hersey.charts.log import log_panel
 from hersey.charts.over_time import over_time, time_axis
 from hersey.charts.plan import profile_chart
@@ -46,6 +47,7 @@ from hersey.charts.style import (
 )
 from hersey.charts.torque_budget import torque_budget_chart
 from hersey.charts.transition import transition_chart
+from hersey.damping.friction_curve.result import FrictionCurve
 from hersey.document.analysis import Analysis
 from hersey.document.parts.fit import Curve
 from hersey.document.parts.log import Point, Series
@@ -90,6 +92,8 @@ def charts(document: Analysis, *, but: tuple[str, ...] = ()) -> dict[str, Chart]
 
 def torque(document: Analysis) -> Chart:
     """Torque against speed per temperature, with the drag curves (the paper's Fig. 2)."""
+    if document.friction is not None:
+        return _friction_curve(document, document.friction)
     of = _of(document)
     heading = "Drag torque" if document.fit.rest is None else "Drag torque, no-load torque subtracted"
     lines = "fitted drag curves" if of.is_torque else "fitted curves"
@@ -161,6 +165,9 @@ def _cells(document: Analysis) -> list[Row]:
 def residuals(document: Analysis) -> Chart:
     """Residuals against speed, by direction of approach."""
     rows = _point_rows(document)
+    if document.friction is not None:
+        for row, residual in zip(rows, document.friction.residuals, strict=True):
+            row["residual"] = 100.0 * float(np.expm1(residual))
     zero = plot([{"y": 0}]).mark_rule(color=INK).encode(y="y:Q")
     shapes = {"from below": "triangle-up", "from above": "triangle-down", "start": "circle"}
     dots = plot(rows).mark_point(filled=True, size=55, opacity=0.85)
@@ -312,13 +319,36 @@ def _against_speed(
         turns=[turn for curve in curves for turn in _turns(curve)] if turns else [],
         speed=_speed_axis(document),
     )
+    shown: Chart = chart.properties(usermeta={"series": _series(rows)})
+    return shown
+
+
+def _friction_curve(document: Analysis, curve: FrictionCurve) -> Chart:
+    """Dwells and the friction curve of a joint, with the signs of the rotation."""
+    scale, unit = _torque_unit(document)
+    thermal = curve.reference_temperature is not None
+    rows = _point_rows(document)
+    for row, point in zip(rows, document.points, strict=True):
+        value, error = point.torque * scale, 2.0 * point.torque_error * scale
+        row |= {
+            "speed": _per_speed(document) * point.speed,
+            "y": value,
+            "low": value - error,
+            "high": value + error,
+        }
+        row["level"] = row["level"] if thermal else temperature_name(None)
+    chart = signed_chart(rows, curve, (scale, unit), _point_tips(document))
+    shown: Chart = chart.properties(usermeta={"series": _series(rows)})
+    return shown
+
+
+def _series(rows: list[Row]) -> list[Row]:
+    """What the page needs to show and hide each temperature."""
     levels = sorted({row["level"] for row in rows})
-    series = [
+    return [
         {"name": f"{level:.0f} °C", "value": level, "color": shade}
         for level, shade in zip(levels, ramp(len(levels)), strict=True)
     ]
-    shown: Chart = chart.properties(usermeta={"series": series})
-    return shown
 
 
 def _curve(curve: Curve, quantity: str, scale: float, of: Domain) -> list[Row]:

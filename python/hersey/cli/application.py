@@ -28,6 +28,7 @@ from hersey.cli.mistyped import (
     unquoted,
     without_value,
 )
+from hersey.cli.one_speed import with_trend
 from hersey.cli.terminal import hush, say, say_wrapped, warnings_said
 from hersey.errors import HerseyError, UnitError, speak
 
@@ -57,6 +58,7 @@ PANELS = {
         "simulate": "Simulate the motion at a drive speed or over a profile.",
         "sweep": "Simulate every combination of parameters and count the outcomes.",
         "design": "Propose the dwells or measurements to record next.",
+        "trend": "Follow friction over time at one speed: run-in, growth, steady value and sudden jumps.",
     },
     "Several logs": {
         "compare": "Compare the damping of two logs: of two lubricants, ages or specimens.",
@@ -178,7 +180,7 @@ def main() -> None:
         with warnings_said():
             code = app(standalone_mode=False)
     except HerseyError as error:
-        _fail(_slip() or f"{error}{_in_full(error)}")
+        _fail(_slip() or f"{with_trend(error, COMMANDS)}{_in_full(error)}")
     except typer.Abort:
         raise KeyboardInterrupt from None
     except OSError:  # stdout takes no more

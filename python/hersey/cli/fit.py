@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from hersey.damping.curves import CurveMixture
     from hersey.damping.dwells import SteadyPoints
     from hersey.damping.estimate import Estimate
+    from hersey.damping.friction_curve.result import FrictionCurve
     from hersey.damping.surface import DampingSurface
     from hersey.machine.machine import Machine
 
@@ -41,6 +42,8 @@ def fit(
     """Fit the damping surface B = a T^b w^c and print it with the lubrication regime.
 
     Example: [bold]hersey fit examples/bench.csv --tare standing[/bold]
+
+    Of a joint or gear motor it prints Coulomb, viscous and Stribeck friction, if that describes the dwells.
 
     Several logs count as runs of one machine and give one fit, unless --each fits them separately. If a log
     then fails, nothing is written; with --keep-going the others are, and the exit code is 1.
@@ -67,6 +70,7 @@ def _fit_one(logs: list[Path], reading: Reading, machine: Machine | None, printi
     """Fit all logs together."""
     log = reading.log(logs, machine)
 
+    from hersey.verdict.friction import excludes_power_law, leading_friction
     from hersey.verdict.regime import regime
     from hersey.verdict.warnings import warnings_of
 
@@ -88,14 +92,38 @@ def _fit_one(logs: list[Path], reading: Reading, machine: Machine | None, printi
 
         print_json(fit_document(log, points, surface, curves, moving))
         return
-    printing.text(*([""] if moving is not None else []), regime(points, surface).verdict)
-    if curves is None:
-        printing.text("", *_estimates(surface))
-    else:
-        from hersey.damping.curves.words import drag_curves
+    seen = regime(points, surface)
+    friction = leading_friction(points, surface, seen)
+    printing.text(*([""] if moving is not None else []))
+    if friction is not None:
+        printing.text(*_friction(friction, points.dropped()))
+    if friction is None or printing.in_full or not excludes_power_law(friction, surface):
+        printing.text(*["", "Damping as one power law:"] * bool(friction), seen.verdict)
+        printing.text("", *_law(surface, curves))
+    printing.warnings(*warnings_of(points, surface, friction))
 
-        printing.text("", surface.summary(), drag_curves(curves.table))
-    printing.warnings(*warnings_of(points, surface))
+
+def _law(surface: DampingSurface, curves: CurveMixture | None) -> list[str]:
+    """The power law: its estimates, or all of its statistics with the drag curves."""
+    if curves is None:
+        return _estimates(surface)
+    from hersey.damping.curves.words import drag_curves
+
+    return [surface.summary(), drag_curves(curves.table)]
+
+
+def _friction(curve: FrictionCurve, dropped: str) -> list[str]:
+    """The friction curve of a joint: what torque does, and the parameters with 95 % intervals.
+
+    ``dropped`` says which dwells were excluded.
+    """
+    from hersey.cli.figures import labelled, three
+    from hersey.damping.friction_curve.words import formula_of, law_of, rows_of
+
+    rows = [*rows_of(curve), ("dwells", str(curve.points))]
+    rows.append(("scatter", f"{three(100 * curve.scatter)} % of torque"))
+    head = f"{formula_of(curve)} (value, 95 % interval)"
+    return [f"{law_of(curve)}. {curve.finding} {dropped}".rstrip(), "", head, *labelled(rows)]
 
 
 def _curves(points: SteadyPoints, surface: DampingSurface, machine: Machine | None) -> CurveMixture:

@@ -10,8 +10,9 @@ from typing import Literal
 from pydantic import Field
 
 from hersey.damping.compare import LogComparison
+from hersey.damping.friction_curve.result import FrictionCurve
 from hersey.decision.behaviour import StickSpeeds
-from hersey.document.parts.fit import FitPart
+from hersey.document.parts.fit import FRICTION, FitPart
 from hersey.document.parts.log import InputFile, MachineFilePart, Point, Quality, RecipePart, Timeline
 from hersey.document.parts.models import ModelsPart
 from hersey.document.parts.posterior import PosteriorPart
@@ -55,6 +56,7 @@ class Analysis(Part):
     points: list[Point]
     fit: FitPart
     regime: Regime
+    friction: FrictionCurve | None = Field(default=None, description=FRICTION)
     film: FilmPart | None = None
     torque_budget: TorqueBudgetPart | None = None
     simulation: SimulationPart | None = Field(

@@ -39,6 +39,7 @@ from hersey.log.torque_log import Channel
 from hersey.schema.noun import DRIVE
 from hersey.study import Study
 from hersey.study.thinning import kept
+from hersey.verdict.friction import leading_friction
 from hersey.verdict.regime import regime
 from hersey.verdict.warnings import warnings_of
 
@@ -77,6 +78,7 @@ def document_of(study: Study, *, command: str = "", made: str | None = None) -> 
         points=_points(points, study.surface),
         fit=_fit_part(points, study.surface, study.curves),
         regime=study.regime,
+        friction=study.friction,
         film=study.nip,
         torque_budget=study.torque_budget,
         simulation=study.simulation,
@@ -120,12 +122,15 @@ def fit_document(
     moving: MovingFit | None = None,
 ) -> FitDocument:
     """Return what a fit needs to be read back: fit and drag curves, dwells and files, and the regime."""
+    seen = regime(points, surface)
+    friction = leading_friction(points, surface, seen)
     return FitDocument(
-        warnings=list(warnings_of(points, surface)),
+        warnings=list(warnings_of(points, surface, friction)),
         files=_files(log),
         points=_points(points, surface),
         fit=_fit_part(points, surface, curves or fit_curves(points, surface)),
-        regime=regime(points, surface),
+        regime=seen,
+        friction=friction,
         moving=moving,
     )
 

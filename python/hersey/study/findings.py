@@ -10,6 +10,7 @@ import numpy as np
 
 from hersey.damping.compare import LogComparison
 from hersey.damping.dwells import SteadyPoints
+from hersey.damping.friction_curve.result import FrictionCurve
 from hersey.damping.surface import DampingSurface
 from hersey.decision.behaviour import Behaviour
 from hersey.machine.machine import Machine
@@ -33,6 +34,8 @@ class Findings:
         Dwells, the fitted law, and what the exponents alone say.
     machine, machine_file
         None without a machine, or where it was not read from a file.
+    friction
+        Coulomb, viscous and Stribeck friction, if that describes the dwells at least as well.
     nip, torque_budget
         Film theory of the nip, and what film, contact and the no-load torque take; None where the machine
         does not state them.
@@ -46,6 +49,7 @@ class Findings:
     points: SteadyPoints
     surface: DampingSurface
     regime: Regime
+    friction: FrictionCurve | None = None
     machine: Machine | None = None
     machine_file: Path | None = None
     nip: FilmPart | None = None

@@ -15,6 +15,7 @@ from hersey.damping.curves import CurveMixture, fit_curves
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.dwells.reduced import require_film, require_points
 from hersey.damping.fit import fit
+from hersey.damping.friction_curve.words import verdict_of
 from hersey.decision.behaviour import Step, Working
 from hersey.errors import HerseyError, ParameterError
 from hersey.log import TorqueLog
@@ -29,6 +30,7 @@ from hersey.study.nip import film_part
 from hersey.study.simulation import simulation
 from hersey.study.torque_budget import torque_budget
 from hersey.units import takes_si
+from hersey.verdict.friction import leading_friction
 from hersey.verdict.regime import regime
 from hersey.verdict.warnings import warnings_of
 
@@ -55,13 +57,15 @@ class Study(Findings, Result):
         """What is doubtful of the machine, of dwells and fit."""
         file = "machine" if self.machine_file is None else self.machine_file.name
         of_machine = () if self.machine is None else self.machine.warnings
-        return (*(each.within(file) for each in of_machine), *warnings_of(self.points, self.surface))
+        of_log = warnings_of(self.points, self.surface, self.friction)
+        return (*(each.within(file) for each in of_machine), *of_log)
 
     @property
     def verdict(self) -> list[str]:
         """What log and nip say of the regime, in paragraphs; a contradiction first."""
         own = [self.nip.verdict] if self.nip is not None and self.nip.verdict else []
-        return [*own, self.regime.verdict]
+        friction = [] if self.friction is None else [verdict_of(self.friction)]
+        return [*own, *friction, self.regime.verdict]
 
     def summary(self) -> str:
         """Return decision, comparison, verdict, warnings and fit, as text."""
@@ -76,8 +80,8 @@ class Study(Findings, Result):
 
     def to_dict(self) -> dict[str, Any]:
         """Return decision, verdict, warnings, fit, regime, nip and torque budget, in SI."""
-        names = ("verdict", "warnings", "regime", "comparison", "decision", "nip", "torque_budget")
-        return json_record({"fit": self.surface} | {name: getattr(self, name) for name in names})
+        plain = "verdict warnings regime friction comparison decision nip torque_budget"
+        return json_record({"fit": self.surface} | {name: getattr(self, name) for name in plain.split()})
 
     def to_frame(self) -> pl.DataFrame:
         """Return the dwells."""
@@ -158,6 +162,7 @@ def study(
             surface=surface,
             curves=curves,
             regime=seen,
+            friction=None if film is not None else leading_friction(points, surface, seen),
             machine=machine,
             machine_file=machine_file,
             nip=film,

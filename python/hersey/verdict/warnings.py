@@ -10,6 +10,7 @@ from hersey.arrays import FloatArray
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.dwells.doubtful import doubtful_order, doubtful_tare
 from hersey.damping.dwells.misleading import misleading
+from hersey.damping.friction_curve.result import FrictionCurve
 from hersey.damping.surface import DampingSurface
 from hersey.errors import ROTATION
 from hersey.log.doubtful import doubtful_units
@@ -30,10 +31,13 @@ LEAST_SPAN = 30.0
 SCATTER = 0.05
 
 
-def warnings_of(points: SteadyPoints, surface: DampingSurface | None) -> tuple[Warning, ...]:
+def warnings_of(
+    points: SteadyPoints, surface: DampingSurface | None, friction: FrictionCurve | None = None
+) -> tuple[Warning, ...]:
     """Return what must be known before a fit is trusted: the same for every command.
 
-    Without a surface, where dwells allow none, what is known of log and dwells alone.
+    Without a surface, where dwells allow none, what is known of log and dwells alone. Where a ``friction``
+    curve leads, it is the fit, and its directions may differ.
     """
     log = points.log
     found = [Warning("corrected", "corrected: {how}", how=str(correction)) for correction in log.corrections]
@@ -50,9 +54,11 @@ def warnings_of(points: SteadyPoints, surface: DampingSurface | None) -> tuple[W
         )
         found.append(Warning("stick-slip", words, count=swinging))
     if surface is not None:
-        found += _of_directions(points, surface)
+        found += _of_directions(points, surface, apart=friction is not None and friction.apart)
     found += [*doubtful_order(points), *misleading(points)]
-    if surface is not None:
+    if friction is not None:
+        found += _of_scatter(friction.scatter)
+    elif surface is not None:
         found += _of_fit(surface)
     return tuple(each.about(points.domain) for each in found)
 
@@ -107,7 +113,8 @@ def _of_rest(points: SteadyPoints) -> Iterator[Warning]:
             )
 
 
-def _of_directions(points: SteadyPoints, surface: DampingSurface) -> Iterator[Warning]:
+def _of_directions(points: SteadyPoints, surface: DampingSurface, *, apart: bool) -> Iterator[Warning]:
+    """Directions of rotation, unless they are fitted ``apart``, and of approach that differ."""
     forward = points.column("speed") > 0
     approach = np.asarray(points.table["approach"].to_list())
     below, above = approach == "from below", approach == "from above"
@@ -120,7 +127,7 @@ def _of_directions(points: SteadyPoints, surface: DampingSurface) -> Iterator[Wa
             "those from above",
         ),
     )
-    for first, second, name, other in pairs:
+    for first, second, name, other in pairs[apart:]:
         if first.size > 2 and second.size > 2:
             difference = float(first.mean() - second.mean())
             error = float(np.hypot(first.std() / first.size**0.5, second.std() / second.size**0.5))
@@ -166,7 +173,12 @@ def _of_fit(surface: DampingSurface) -> Iterator[Warning]:
                 high=high,
             )
     yield from _of_visits(surface)
-    if (scatter := surface.statistics.scatter) > SCATTER:
+    yield from _of_scatter(surface.statistics.scatter)
+
+
+def _of_scatter(scatter: float) -> Iterator[Warning]:
+    """Dwells that scatter about the fit by more than their noise."""
+    if scatter > SCATTER:
         words = (
             "points scatter {scatter:.0f %} about the fit, more than sensor noise explains. "
             "Something unrecorded varied, or the model is wrong"

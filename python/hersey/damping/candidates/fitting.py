@@ -37,8 +37,10 @@ from hersey.damping.candidates.shared_load import SharedLoadLaw
 from hersey.damping.candidates.stribeck import StribeckLaw
 from hersey.damping.candidates.visit_effects import Integrated
 from hersey.damping.estimate import Estimate, estimate
+from hersey.damping.friction_curve.dwell_law import DwellFriction
+from hersey.damping.friction_curve.law import THINNING
 
-AnyLaw = Law | StribeckLaw | ConstantPlusLaw | RestLaw | SharedLoadLaw
+AnyLaw = Law | StribeckLaw | ConstantPlusLaw | RestLaw | SharedLoadLaw | DwellFriction
 
 #: Rounds in which scatter and effective variance settle.
 _ROUNDS = 8
@@ -107,7 +109,7 @@ class LawFit:
         far visits scatter. That leaves open what depends on temperature: its law, and a transition that moves
         with it; levels and exponents of speed are those of these visits.
         """
-        thermal = name in ("e", "q", "at", "d") and self.law.thermal is not None
+        thermal = (name in ("e", "q", "at", "d") and self.law.thermal is not None) or name == THINNING
         moved = self.freedoms.moved_by_untold
         if not thermal or not moved.size or moved[self.law.index(name)] < _LITTLE:
             return ""

@@ -12,6 +12,7 @@ from hersey.damping.candidates.no_load_law import RestLaw
 from hersey.damping.candidates.observations import Observations
 from hersey.damping.candidates.shared_load import BOUND, SharedLoadLaw
 from hersey.damping.candidates.stribeck import StribeckLaw
+from hersey.damping.friction_curve.dwell_law import DwellFriction
 
 
 def not_identified(fit: LawFit, data: Observations) -> dict[str, str]:
@@ -38,7 +39,7 @@ def not_identified(fit: LawFit, data: Observations) -> dict[str, str]:
         return out | _parts_shown(fit, norms)
     if isinstance(law, SharedLoadLaw):
         return out | _contact_shown(fit)
-    if isinstance(law, RestLaw):
+    if isinstance(law, RestLaw | DwellFriction):
         return out
     if law.broken:
         out |= _branches_shown(fit, data)

@@ -19,6 +19,7 @@ from hersey.damping.dwells import (
 from hersey.damping.dwells.constant import refuse_constant_torque
 from hersey.damping.dwells.least_duration import speeds_lost
 from hersey.damping.dwells.misleading import lagging, one_direction, unlinked_runs
+from hersey.damping.dwells.one_speed import is_one_speed, of_one_speed
 from hersey.damping.dwells.several_loads import refuse_several_loads
 from hersey.errors import InsufficientDataError
 from hersey.log.means import MeansTable
@@ -38,6 +39,7 @@ class Inputs:
     log_speed: FloatArray  #: ln(w/w_ref), shape (points,)
     kelvin: FloatArray | None  #: K, shape (points,); None if the log has no temperature
     group: IntArray  #: index of the temperature, coldest first, shape (points,)
+    sign: FloatArray | None = None  #: of the rotation, 1 or -1, shape (points,); None: forward
 
     @cached_property
     def shapes(self) -> dict[object, tuple[FloatArray, FloatArray, FloatArray]]:
@@ -47,7 +49,8 @@ class Inputs:
     def take(self, index: IntArray) -> Inputs:
         """Return the inputs at an index."""
         kelvin = None if self.kelvin is None else self.kelvin[index]
-        return Inputs(self.log_speed[index], kelvin, self.group[index])
+        sign = None if self.sign is None else self.sign[index]
+        return Inputs(self.log_speed[index], kelvin, self.group[index], sign)
 
 
 @dataclass(frozen=True)
@@ -95,9 +98,13 @@ class Observations:
             held = " and ".join(f"{level} {unit}" for level in levels)
             if lost := speeds_lost(points):
                 raise InsufficientDataError(f"all dwells are at {held}: {lost}")
-            if isinstance(points.log, TorqueLog) and (few := held_for_few_rows(points.log)):
-                raise InsufficientDataError(few)
-            raise InsufficientDataError(f"all dwells are at {held}. Record dwells at three or more speeds")
+            more = f"all dwells are at {held}. Record dwells at three or more speeds"
+            if isinstance(points.log, TorqueLog):
+                if is_one_speed(points.log):
+                    raise of_one_speed(more)
+                if few := held_for_few_rows(points.log):
+                    raise InsufficientDataError(few)
+            raise InsufficientDataError(more)
         if fewest_speeds > 1:
             refuse_constant_torque(points)
             refuse_several_loads(points)
@@ -113,7 +120,7 @@ class Observations:
         by_run = np.unique(run).size >= MANY_RUNS
         reference = float(np.exp(np.mean(np.log(speed))))
         return cls(
-            inputs=Inputs(np.log(speed / reference), kelvin, group),
+            inputs=Inputs(np.log(speed / reference), kelvin, group, np.sign(points.column("speed"))),
             log_torque=np.log(torque),
             torque_error=points.column("torque_error") / torque,
             speed_error=points.column("speed_error") / speed,

@@ -27,8 +27,8 @@ def inertia_of(given: Any, name: str = "inertia") -> Estimate:
 
     Examples
     --------
-    >>> inertia_of("0.012 kg*m^2 ± 2 %").high
-    0.01224
+    >>> inertia_of("0.012 kg*m^2 ± 2 %")
+    Estimate(0.0120 [0.0118, 0.0122] at 95 %)
     """
     if isinstance(given, Estimate):
         return given

@@ -224,7 +224,7 @@ class CoastDown(Result):
         slow, fast = (rpm(float(end)) for end in (self.speeds[0], self.speeds[-1]))
         count = len(self.coasts)
         return (
-            f"{count} coast{'s' if count > 1 else ''} from {fast:.4g} to {slow:.4g} rpm: friction torque "
+            f"{count} coast{'s' if count > 1 else ''} from {fast:.4g} rpm to {slow:.4g} rpm: friction torque "
             f"{self.torque[-1]:.3g} N m falling to {self.torque[0]:.3g} N m"
         )
 

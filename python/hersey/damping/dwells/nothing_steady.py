@@ -10,6 +10,7 @@ import numpy as np
 from hersey.damping.dwells.few_rows import LASTS, changes_in_steps, held_for_few_rows, rows_held
 from hersey.damping.dwells.groups import MIN_DWELL, MIN_SAMPLES, distinct_speeds
 from hersey.damping.dwells.judging import Asked
+from hersey.damping.dwells.one_speed import is_one_speed, of_one_speed
 from hersey.damping.dwells.points import Rejection
 from hersey.damping.dwells.reasons import CAUSES, Reason, opposite_signs, remedies, sizes
 from hersey.errors import MOVING, ROTATION, InsufficientDataError, Setting, followed_by, turned, way_in
@@ -50,7 +51,8 @@ def nothing_steady(
     other_clock
         Says which unit of time would give dwells, or nothing.
     """
-    if few := held_for_few_rows(log):
+    one = is_one_speed(log)
+    if (few := held_for_few_rows(log)) and not one:
         return InsufficientDataError(few)
     name = log.files[0].name + (f" and {len(log.files) - 1} more" if len(log.files) > 1 else "")
     held = [r for r in rejected if r.is_dwell]
@@ -65,8 +67,11 @@ def nothing_steady(
     said = f"{name}: no dwell found ({listed})"
     for way in (*(_remedy(alike) for alike in reasons.values()), way_out):
         said = followed_by(said, way)
+    over = bool(too_brief(log, asked.min_dwell))
+    if one and not over:
+        return of_one_speed(said)
     brief = sum(r.rows for r in held) < _CRESTS * log.rows
-    moves = not too_brief(log, asked.min_dwell) and (brief or _runs_up_and_down(log, rejected))
+    moves = not over and (brief or _runs_up_and_down(log, rejected))
     return InsufficientDataError(said, setting=MOVING if moves else None)
 
 

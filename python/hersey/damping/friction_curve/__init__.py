@@ -1,4 +1,9 @@
 """Friction of joints and gear motors in the field's own parameters: Coulomb, viscous and Stribeck.
 
-law    torque against speed and temperature, with its derivatives
+law        torque against speed and temperature, with its derivatives
+dwell_law  the same as the fit of dwells takes it
+fitted     the law that describes the dwells, with its parameters
+words      what these say
+result     both together: `FrictionCurve`
+fit        which law describes the dwells: `fit_friction`
 """

@@ -9,6 +9,7 @@ from pydantic import Field
 from hersey.damping.branches import Transition
 from hersey.damping.candidates.shared_errors import SharedScatter
 from hersey.damping.curves.mixture import LawWeight
+from hersey.damping.friction_curve.result import FrictionCurve
 from hersey.damping.moving.result import MovingFit
 from hersey.damping.no_load_torque import NoLoadTorque
 from hersey.document.parts.log import InputFile, Point
@@ -16,6 +17,9 @@ from hersey.schema.domain import TORQUE, Domain
 from hersey.schema.part import Interval, Part
 from hersey.schema.warning import Warning
 from hersey.verdict.regime import Regime
+
+#: Of the friction curve in a document.
+FRICTION = "Coulomb, viscous and Stribeck friction; null where the power law describes the dwells better"
 
 
 class TrendPart(Part):
@@ -104,4 +108,5 @@ class FitDocument(Part):
     points: list[Point]
     fit: FitPart
     regime: Regime
+    friction: FrictionCurve | None = Field(default=None, description=FRICTION)
     moving: MovingFit | None = Field(default=None, description="of a log that moves all the time")

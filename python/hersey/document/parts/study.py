@@ -5,7 +5,8 @@ from __future__ import annotations
 from pydantic import Field
 
 from hersey.damping.compare import LogComparison
-from hersey.document.parts.fit import FitPart
+from hersey.damping.friction_curve.result import FrictionCurve
+from hersey.document.parts.fit import FRICTION, FitPart
 from hersey.schema.part import Part
 from hersey.schema.warning import Warning
 from hersey.study.first_screen.result import DecisionPart
@@ -22,6 +23,7 @@ class StudyPart(Part):
     warnings: list[Warning]
     fit: FitPart
     regime: Regime
+    friction: FrictionCurve | None = Field(default=None, description=FRICTION)
     nip: FilmPart | None = None
     torque_budget: TorqueBudgetPart | None = None
     comparison: LogComparison | None = Field(

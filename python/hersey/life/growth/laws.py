@@ -121,6 +121,21 @@ def _rested(law: Law) -> Law:
     return Law(law.name, law.formula, log_growth, sloped, age, (*law.shapes, ("logit p", 1.0, 1.0)))
 
 
+def _settled(x: FloatArray, t: FloatArray, a: FloatArray) -> FloatArray:
+    part = -np.expm1(-np.exp(a[1]) * np.log1p(t * np.exp(-a[0])))
+    return np.log1p(_rise(x, part))
+
+
+def _settled_sloped(x: FloatArray, t: FloatArray, a: FloatArray) -> tuple[FloatArray, FloatArray]:
+    return _linear(np.expm1(_settled(x, t, a)))
+
+
+def _settled_age(x: FloatArray, y: FloatArray, a: FloatArray) -> FloatArray:
+    left = 1.0 - np.expm1(y) * np.exp(-x)
+    held = np.where(left > 0.0, left, 1.0)
+    return np.where(left > 0.0, np.exp(a[0]) * np.expm1(-np.log(held) * np.exp(-a[1])), np.inf)
+
+
 def _never(x: FloatArray, y: FloatArray, _: FloatArray) -> FloatArray:
     return np.where(np.asarray(y) > 0.0, np.inf, 0.0) + 0.0 * x
 
@@ -171,4 +186,14 @@ LAWS = (
             (("logit q", -1.0, 1.5),),
         )
     ),
+)
+
+#: A law that settles as slowly as a power of age: none of an indicator over specimens, but of one record.
+SETTLING = Law(
+    "power",
+    "1 + s (1 - (1 + t/tau)^-m)",
+    _settled,
+    _settled_sloped,
+    _settled_age,
+    (("ln(tau/T)", 0.3, 1.0), ("ln m", 0.0, 0.5)),
 )

@@ -6,6 +6,7 @@ function regimeFinding() {
   const nip = data.film?.points[0]?.regime ?? data.film?.dwells[0]?.regime ?? null;
   const fits = data.film?.exponents?.predictions.find((each) => each.film === nip)?.consistent;
   const law = `damping ~ speed^${c}`;
+  if (data.friction) return `Friction of a joint describes the dwells at least as well as one power law (${law}), so no film is determined.`;
   if (nip && named && fits === false) return `The log shows ${named} (${law}), but the contact data predict ${nip}. Use the exponent to predict torque, not film thickness.`;
   if (nip && named) return `The log shows ${named} (${law}). The contact data predict the same: ${nip}.`;
   if (nip) return `The contact data predict ${nip}. The log alone determines no regime (${law}).`;

@@ -1,10 +1,11 @@
 // Torque and damping: the charts, what they say, exponents and dwells.
 
 function torqueNote() {
+  if (data.friction) return `${data.friction.headline}. Bars: two standard errors.`;
   const level = radius === null ? "" : ` 10 rpm = ${perSecond((10 / TO_RPM) * radius)} mm/s.`;
   return `Filled: from a lower speed; open: from a higher; bars: two standard errors.${level}`;
 }
-const torqueHeading = () => friction ? capital(measured) : `Drag torque${data.fit.rest ? ", no-load torque subtracted" : ""}`;
+const torqueHeading = () => data.friction ? "Friction torque" : friction ? capital(measured) : `Drag torque${data.fit.rest ? ", no-load torque subtracted" : ""}`;
 const dampingUnit = () => friction ? `${data.fit.domain.unit} s/${SPEED_UNIT === "m/s" ? "m" : "rad"}`.trim() : `${torqueUnit()[1]}·s/rad`;
 // The models of the drag curves that carry most of the weight.
 function curveNames() {
@@ -23,6 +24,7 @@ function transitions() {
 }
 // How torque varies with speed; whether it rises and falls is decided by the tests on the dwells.
 function torqueFinding() {
+  if (data.friction) return data.friction.finding;
   const { transition, trend, reference_temperature: level } = data.fit, [slow, fast] = data.fit.speed_range;
   const rises = trend?.rises ?? true, falls = trend?.falls ?? transition !== null, curve = transitions();
   if (rises && falls && trend && !(trend.least > 1.01 * slow && trend.least < 0.99 * fast)) {
@@ -49,7 +51,8 @@ async function torqueSection(parent) {
   if (data.map) await chart(columns, "torque", { heading: torqueHeading(), note: "", says: finding });
   await chart(columns, "damping", { heading: `Damping = ${measured} / speed`, note: data.map ? "" : `Dashed: constant ${measured} (slope −1).`, says: finding });
   if (!data.map) await chart(columns, "residuals");
-  if (data.map) add(part, "p", `${torqueNote()} Dashed: constant torque.`, "note");
+  if (data.map) add(part, "p", pretty(`${torqueNote()} Dashed: constant torque.`), "note");
+  if (data.friction) frictionParameters(part, data.friction);
   const all = fold(part, `Models, statistics and ${data.points.length === 1 ? "the dwell" : `all ${data.points.length} dwells`}`, async (inside) => {
     add(inside, "p", `${friction ? "Curves" : "Drag curves"}: ${curveNames()}.`, "text");
     exponents(inside);
@@ -61,6 +64,15 @@ async function torqueSection(parent) {
   });
   all.id = "statistics";
   explained(all.firstChild, "dwell");
+}
+// The parameters of the friction curve of a joint.
+function frictionParameters(parent, { parameters, apart }) {
+  const [factor, unit] = torqueUnit();
+  table(parent, ["Parameter", ...(apart ? ["Direction"] : []), "Value", "95 % interval", "Unit"], parameters.map((p) => {
+    const scale = p.unit.startsWith("N m") ? factor : 1;
+    const shown = p.unit.replace("N m", unit).replace(" s/rad", "·s/rad");
+    return [p.name, ...(apart ? [p.direction] : []), p.bounded ? digits(p.estimate.value * scale) : "not determined", bounds(p.estimate, scale), shown];
+  }), apart ? [2, 3] : [1, 2], { name: "friction", label: "Parameters of the friction curve" });
 }
 function exponents(parent) {
   const { coefficients: c, transition } = data.fit;
@@ -81,9 +93,9 @@ function dwells(parent) {
   const hot = data.points.some((p) => p.temperature !== null);
   const [factor, unit] = torqueUnit();
   table(parent, [`Speed, ${SPEED_UNIT}`, ...(hot ? ["°C"] : []), inUnit(capital(measured), unit), "± (1 s.e.)", `Damping, ${dampingUnit()}`, "Measured / fitted − 1, %", "Approached", "From, s", "To, s"],
-    data.points.map((p) => [
+    data.points.map((p, i) => [
       digits(p.speed * PER_SPEED, 4), ...(hot ? [celsius(p.temperature).toFixed(1)] : []), digits(p.torque * factor, 4),
-      digits(p.torque_error * factor, 2), digits(p.damping * factor, 4), (100 * Math.expm1(p.residual)).toFixed(1).replace("-", "−"),
+      digits(p.torque_error * factor, 2), digits(p.damping * factor, 4), (100 * Math.expm1(data.friction?.residuals[i] ?? p.residual)).toFixed(1).replace("-", "−"),
       p.approach, p.start.toFixed(1), p.end.toFixed(1)]),
     [0, 1, 2, 3, 4, ...(hot ? [5, 7, 8] : [6, 7])], { name: "dwells", label: "All dwells" });
 }

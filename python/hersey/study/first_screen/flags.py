@@ -66,7 +66,8 @@ def flags(known: Findings) -> list[Warning]:
         out += [*_whole(points, found, unit), *_of_machine(found, map_, unit)]
     if found is not None:
         out += [*_not_computed(found), *_plans(found)]
-    scatter = surface.statistics.scatter if found is None else found.posterior.model.curves.scatter
+    of_fit = surface.statistics.scatter if known.friction is None else known.friction.scatter
+    scatter = of_fit if found is None else found.posterior.model.curves.scatter
     out += _left_open(known, scatter)
     grave = {"act": 0, "watch": 1, "note": 2, "good": 3}
     asked = [] if known.comparison is None else [_compared(known.comparison)]
@@ -379,7 +380,7 @@ def _below(points: SteadyPoints, surface: DampingSurface) -> int:
 def _left_open(known: Findings, scatter: float) -> Iterator[Warning]:
     points, seen, c = known.points, known.regime, known.surface.c
     yield from (each.titled(each.heading, section="data") for each in doubtful_order(points)[:1])
-    if seen.named is None:
+    if seen.named is None and known.friction is None:
         remedy = ""
         if points.rest is None and c.value > -1.0 and points.domain.is_torque:
             remedy = (

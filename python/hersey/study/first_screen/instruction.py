@@ -11,6 +11,8 @@ import numpy as np
 
 from hersey.damping.dwells import groups_of_temperature
 from hersey.damping.estimate import Estimate
+from hersey.damping.friction_curve.result import FrictionCurve
+from hersey.damping.friction_curve.words import directions_of, slowing_of
 from hersey.damping.trend import Trend
 from hersey.decision.behaviour import Behaviour, PointBehaviour
 from hersey.decision.edges import Edge, Edges, edges_of
@@ -179,6 +181,8 @@ def _below(edges: Edges) -> str:
 def of_log(known: Findings, trend: Trend) -> Instruction:
     """Return what the log alone tells, in speeds of the shaft: what is known first, then what is missing."""
     surface = known.surface
+    if known.friction is not None:
+        return _of_friction(known.friction)
     if surface.transition is None:
         return _one_branch(known, trend)
     ends = [None] if surface.b is None or surface.temperature_range is None else [*surface.temperature_range]
@@ -196,6 +200,12 @@ def of_log(known: Findings, trend: Trend) -> Instruction:
         otherwise += " To find it, add stiffness and mass in a machine file."
     text = _lead(at(kelvin), f"{lowest}. The safe speed is not yet known")
     return Instruction("watch", text, f"above the minimum, {_exponent(known)}", otherwise)
+
+
+def _of_friction(curve: FrictionCurve) -> Instruction:
+    """What the friction curve of a joint says."""
+    signal: Signal = "good" if curve.rises else "watch"
+    return Instruction(signal, slowing_of(curve), curve.headline(), directions_of(curve))
 
 
 def _sides(known: Findings, kelvin: float | None, turn: Estimate) -> str:

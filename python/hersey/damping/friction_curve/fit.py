@@ -1,0 +1,310 @@
+"""Fitting Coulomb, viscous and Stribeck friction to steady points: which law, and its parameters."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy import optimize
+
+from hersey.arrays import BoolArray, FloatArray
+from hersey.cache.kept import kept
+from hersey.damping.candidates.candidate import LEAST_FREEDOM
+from hersey.damping.candidates.fitting import LawFit, fit_law
+from hersey.damping.candidates.intervals import likelihood_ratio, profile_interval
+from hersey.damping.candidates.likelihood import EVIDENCE
+from hersey.damping.candidates.observations import Observations
+from hersey.damping.dwells import SteadyPoints, distinct_speeds, groups_of_temperature
+from hersey.damping.dwells.reduced import require_points
+from hersey.damping.estimate import Estimate, quantile
+from hersey.damping.friction_curve import law as laws
+from hersey.damping.friction_curve.dwell_law import DwellFriction
+from hersey.damping.friction_curve.fitted import (
+    BOTH,
+    COULOMB_VISCOUS,
+    FORWARD,
+    REVERSE,
+    STRIBECK,
+    DirectionTest,
+    FrictionParameter,
+    LeastTorque,
+    TriedFriction,
+)
+from hersey.damping.friction_curve.law import FrictionLaw
+from hersey.damping.friction_curve.result import FrictionCurve
+from hersey.damping.trend import trend_of
+from hersey.errors import InsufficientDataError
+from hersey.units import takes_si
+
+#: Distinct speeds that a direction needs for Coulomb plus viscous friction, and for a Stribeck curve.
+SPEEDS_OF_LINE, SPEEDS_OF_CURVE = 3, 5
+#: Ratio of an end of an interval to the value from which on the parameter counts as not determined.
+_UNBOUNDED = 10.0
+#: Step of a derivative, in standard errors, and points at which the least torque is looked for.
+_STEP, _GRID = 0.05, 400
+#: Directions by the ends of the names of parameters.
+_WAYS = {laws.FORWARD: FORWARD, laws.REVERSE: REVERSE}
+
+
+@dataclass(frozen=True)
+class _Fitted:
+    """One law as fitted."""
+
+    law: FrictionLaw
+    fit: LawFit
+
+    @property
+    def values(self) -> FloatArray:
+        """Parameters of the law, SI."""
+        assert isinstance(self.fit.law, DwellFriction)
+        return self.fit.law.of(self.fit.values)
+
+    @property
+    def falls_from_rest(self) -> bool:
+        """Whether each Stribeck torque at rest exceeds that of Coulomb friction."""
+        own = dict(zip(self.law.names, self.values.tolist(), strict=True))
+        rests = [name for name in own if name.startswith(laws.STATIC)]
+        return all(own[name] > own[name.replace(laws.STATIC, laws.COULOMB)] for name in rests)
+
+
+@takes_si()
+@kept()
+def fit_friction(points: SteadyPoints) -> FrictionCurve:
+    """Fit Coulomb, viscous and Stribeck friction to the steady points of a joint or gear motor.
+
+    Coulomb plus viscous friction and a Stribeck curve are fitted, for both directions together and for each
+    apart, in the likelihood of `hersey.fit`. A law with more parameters needs a gain of 6 in AICc.
+
+    Parameters
+    ----------
+    points
+        From `TorqueLog.steady`; speed and torque carry the sign of the rotation.
+
+    Returns
+    -------
+    FrictionCurve
+        The law with T_C, T_S (N m), w_S (rad/s) and k_v (N m s/rad), and their 95 % intervals.
+
+    Raises
+    ------
+    InsufficientDataError
+        If the points hold fewer than three speeds, or too few dwells.
+    ParameterError
+        If ``points`` is a log or its file: the message has the line that reduces it.
+
+    Examples
+    --------
+    >>> speed = [-60, -40, -20, -10, 10, 20, 40, 60]
+    >>> torque = [-0.536, -0.521, -0.509, -0.501, 0.501, 0.507, 0.52, 0.533]
+    >>> points = SteadyPoints.from_table({"speed [rpm]": speed, "torque [N*m]": torque})
+    >>> fit_friction(points).headline()
+    'Coulomb plus viscous friction: T_C = 494 mN·m [493, 496], k_v = 6.34 mN·m·s/rad [5.85, 6.83]'
+    """
+    require_points(points, "hersey.fit_friction({points})")
+    data = Observations.of(points)
+    fitted = _fitted(data)
+    chosen = _chosen(fitted)
+    ways = _ways(data)
+    speed = data.speed
+    ends = {
+        name: (float(speed[way].min()), float(speed[way].max())) if np.any(way) else None
+        for name, way in ways.items()
+    }
+    kelvin = data.inputs.kelvin
+    return FrictionCurve(
+        parameters=_parameters(chosen, data),
+        least=_least(chosen, data),
+        tried=_tried(fitted),
+        directions=_directions(chosen, fitted, points),
+        aicc=chosen.fit.aicc,
+        scatter=chosen.fit.scatter,
+        points=len(data),
+        falls=any(trend_of(data.take(np.flatnonzero(way))).falls for way in ways.values() if np.any(way)),
+        forward_speeds=ends[FORWARD],
+        reverse_speeds=ends[REVERSE],
+        temperature_range=None if kelvin is None else (float(kelvin.min()), float(kelvin.max())),
+        reference_temperature=chosen.law.reference_kelvin,
+        law=chosen.law,
+        values=chosen.values,
+        data=data,
+    )
+
+
+def _ways(data: Observations) -> dict[str, BoolArray]:
+    """Which dwells turn in each direction."""
+    sign = data.inputs.sign
+    forward = np.ones(len(data), dtype=bool) if sign is None else sign > 0
+    return {FORWARD: forward, REVERSE: ~forward}
+
+
+def _together(data: Observations) -> str:
+    """What one law for all dwells holds for."""
+    measured = [name for name, way in _ways(data).items() if np.any(way)]
+    return measured[0] if len(measured) == 1 else BOTH
+
+
+def _fitted(data: Observations) -> list[_Fitted]:
+    """Every law that the dwells can carry, as fitted."""
+    kelvin = data.inputs.kelvin
+    warmed = kelvin is not None and sum(1 for _ in groups_of_temperature(kelvin)) > 1
+    reference = data.reference_kelvin if warmed else None
+    least = float(np.exp(data.log_torque.min()))
+    out = []
+    for stribeck in (False, True):
+        for apart in (False, True):
+            law = FrictionLaw(stribeck=stribeck, apart=apart, reference_kelvin=reference)
+            if _carried(law, data):
+                fit = fit_law(DwellFriction(law, data.reference_speed, least), data)
+                out.append(_Fitted(law, fit))
+    if not out:
+        needed = 2 + (reference is not None) + LEAST_FREEDOM
+        raise InsufficientDataError(
+            f"{len(data)} dwells are too few for a friction curve; at least {needed} are needed"
+        )
+    return out
+
+
+def _carried(law: FrictionLaw, data: Observations) -> bool:
+    """Whether there are dwells enough for a law, in each direction if it has them apart."""
+    if len(data) < len(law.names) + LEAST_FREEDOM:
+        return False
+    needed = SPEEDS_OF_CURVE if law.stribeck else SPEEDS_OF_LINE
+    ways = list(_ways(data).values()) if law.apart else [np.ones(len(data), dtype=bool)]
+    return all(np.any(way) and distinct_speeds(data.speed[way]) >= needed for way in ways)
+
+
+def _chosen(fitted: list[_Fitted]) -> _Fitted:
+    """The law of fewest parameters that none excludes; among as many, the likeliest."""
+    sound = [each for each in fitted if each.falls_from_rest] or fitted[:1]
+    best = min(each.fit.aicc for each in sound)
+    kept_ = [each for each in sound if each.fit.aicc <= best + EVIDENCE]
+    return min(kept_, key=lambda each: (each.fit.values.size, each.fit.aicc))
+
+
+def _tried(fitted: list[_Fitted]) -> tuple[TriedFriction, ...]:
+    aicc = np.array([each.fit.aicc for each in fitted])
+    weight = np.exp(-0.5 * (aicc - aicc.min()))
+    out = [
+        TriedFriction(
+            STRIBECK if each.law.stribeck else COULOMB_VISCOUS,
+            each.law.apart,
+            each.fit.parameters,
+            each.fit.aicc,
+            float(share),
+            each.fit.scatter,
+        )
+        for each, share in zip(fitted, weight / weight.sum(), strict=True)
+    ]
+    return tuple(sorted(out, key=lambda tried: tried.aicc))
+
+
+def _directions(chosen: _Fitted, fitted: list[_Fitted], points: SteadyPoints) -> DirectionTest | None:
+    """Whether one law of the chosen kind holds for both directions; None where one cannot say."""
+    same = {each.law.apart: each for each in fitted if each.law.stribeck == chosen.law.stribeck}
+    if len(same) < 2:
+        return None
+    offset = None
+    if chosen.law.apart and not points.tare_errors.shape[1]:
+        own = dict(zip(chosen.law.names, chosen.values.tolist(), strict=True))
+        offset = abs(own[laws.COULOMB + laws.FORWARD] - own[laws.COULOMB + laws.REVERSE]) / 2.0
+    return DirectionTest(likelihood_ratio(same[False].fit, same[True].fit), chosen.law.apart, offset)
+
+
+def _parameters(chosen: _Fitted, data: Observations) -> tuple[FrictionParameter, ...]:
+    out = []
+    for i, label in enumerate(chosen.law.names):
+        name = label.rstrip("+-")
+        direction = _WAYS.get(label[len(name) :], _together(data))
+        known = _estimate(chosen, data, i)
+        out.append(FrictionParameter(name, direction, known, laws.UNITS[name], known.estimable))
+    return tuple(out)
+
+
+def _estimate(chosen: _Fitted, data: Observations, i: int) -> Estimate:
+    """One parameter in SI: by curvature, and by the profile of the likelihood for a Stribeck curve."""
+    fit, label = chosen.fit, chosen.law.names[i]
+    known = fit.estimate(label)
+    if fit.not_estimable(label):
+        return known
+    if chosen.law.stribeck and known.error > 0:
+        low, high = profile_interval(fit, data, i)
+        known = replace(known, low=low, high=high)
+    if label.startswith(laws.STRIBECK_SPEED):
+        value = float(np.exp(known.value))
+        with np.errstate(over="ignore"):
+            low, high = (float(np.exp(end)) for end in (known.low, known.high))
+        known = replace(known, value=value, error=value * known.error, low=low, high=high)
+        if low < value / _UNBOUNDED:
+            known = replace(known, low=0.0, high=high)
+    if label.startswith((laws.STRIBECK_SPEED, laws.STATIC)) and not known.high < _UNBOUNDED * known.value:
+        known = replace(known, high=np.inf)
+    if label.startswith(laws.STATIC) and _is_extrapolated(chosen, data, label):
+        known = replace(known, high=np.inf)
+    return known
+
+
+def _is_extrapolated(chosen: _Fitted, data: Observations, label: str) -> bool:
+    """Whether the slowest dwell is above the Stribeck speed: then it shows little of the rise to T_S."""
+    own = dict(zip(chosen.law.names, chosen.values.tolist(), strict=True))
+    direction = _WAYS.get(label[-1])
+    speed = data.speed if direction is None else data.speed[_ways(data)[direction]]
+    return bool(speed.min() > own[label.replace(laws.STATIC, laws.STRIBECK_SPEED)])
+
+
+def _least(chosen: _Fitted, data: Observations) -> tuple[LeastTorque, ...]:
+    """Where torque is least in each direction, where that lies between the measured speeds."""
+    if not chosen.law.stribeck:
+        return ()
+    out = []
+    ways = _ways(data) if chosen.law.apart else {_together(data): np.ones(len(data), dtype=bool)}
+    for name, way in ways.items():
+        side = -1.0 if name == REVERSE else 1.0
+        ends = float(data.speed[way].min()), float(data.speed[way].max())
+        at = _least_speed(chosen.law, chosen.values, side, ends)
+        if at is None:
+            continue
+        kelvin = None if chosen.law.reference_kelvin is None else np.array([chosen.law.reference_kelvin])
+        torque = abs(float(chosen.law.torque(chosen.values, np.array([side * at]), kelvin)[0]))
+        out.append(LeastTorque(name, _least_estimate(chosen, side, ends, at), torque))
+    return tuple(out)
+
+
+def _least_speed(
+    law: FrictionLaw, values: FloatArray, side: float, ends: tuple[float, float]
+) -> float | None:
+    """The speed of least torque at the reference temperature, rad/s; None where it is an end."""
+    kelvin = None if law.reference_kelvin is None else np.array([law.reference_kelvin])
+
+    def rise(speed: float) -> float:
+        return float(law.slope(values, np.array([side * speed]), kelvin)[0])
+
+    grid = np.geomspace(*ends, _GRID)
+    hot = None if kelvin is None else np.full(grid.shape, law.reference_kelvin)
+    slope = law.slope(values, side * grid, hot)
+    turns = np.nonzero((slope[:-1] < 0.0) & (slope[1:] >= 0.0))[0]
+    if not turns.size:
+        return None
+    return float(optimize.brentq(rise, grid[turns[-1]], grid[turns[-1] + 1]))
+
+
+def _least_estimate(chosen: _Fitted, side: float, ends: tuple[float, float], at: float) -> Estimate:
+    """The speed of least torque with its interval: by the covariance of the fit, in the logarithm."""
+    fit, law = chosen.fit, chosen.fit.law
+    assert isinstance(law, DwellFriction)
+    wide = ends[0] / _UNBOUNDED, ends[1] * _UNBOUNDED
+    slopes = np.zeros(fit.values.size)
+    for i in range(fit.values.size):
+        step = _STEP * fit.error(law.names[i])
+        if not step > 0.0:
+            continue
+        moved = step * np.eye(fit.values.size)[i]
+        above = _least_speed(chosen.law, law.of(fit.values + moved), side, wide)
+        below = _least_speed(chosen.law, law.of(fit.values - moved), side, wide)
+        if above is None or below is None:
+            return Estimate(at, np.inf, -np.inf, np.inf)
+        slopes[i] = math.log(above / below) / (2.0 * step)
+    error = math.sqrt(max(float(slopes @ fit.covariance @ slopes), 0.0))
+    freedom = fit.freedoms.of(slopes) if np.any(slopes) else float(fit.freedom)
+    reach = quantile(freedom) * error
+    return Estimate(at, at * error, at * math.exp(-reach), at * math.exp(reach), freedom)

@@ -1,0 +1,44 @@
+"""Whether friction as of a joint describes the dwells, so that it comes first: no film may be overridden."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from hersey.damping.candidates.likelihood import EVIDENCE
+from hersey.damping.friction_curve.fit import fit_friction
+from hersey.damping.friction_curve.result import FrictionCurve
+from hersey.errors import InsufficientDataError
+from hersey.verdict.regimes import COULOMB, FALLING
+
+if TYPE_CHECKING:
+    from hersey.damping.dwells import SteadyPoints
+    from hersey.damping.surface import DampingSurface
+    from hersey.verdict.regime import Regime
+
+
+def leading_friction(points: SteadyPoints, surface: DampingSurface, seen: Regime) -> FrictionCurve | None:
+    """Return the friction curve if it describes the dwells at least as well as the power law; else None.
+
+    Where the points are windows of a moving log, the fit to every sample has the friction already. It never
+    leads where film theory is at stake: a film is named, no-load torque was subtracted, or loads
+    differ. Where temperature varies the power law must be excluded, since a film moves with temperature too.
+    Coulomb plus viscous friction cannot lead where the dwells alone show that torque falls with speed, or
+    where no viscous part is proven.
+    """
+    if seen.named not in (None, COULOMB, FALLING) or points.rest is not None or points.varying_load:
+        return None
+    if points.window_errors.shape[1] or not points.domain.is_torque:
+        return None
+    try:
+        curve = fit_friction(points)
+    except InsufficientDataError:
+        return None
+    if not curve.law.stribeck and (curve.falls or not any(each.low > 0.0 for each in curve.slopes)):
+        return None
+    needed = 0.0 if surface.b is None else EVIDENCE
+    return curve if curve.aicc + needed <= surface.statistics.aicc else None
+
+
+def excludes_power_law(curve: FrictionCurve, surface: DampingSurface) -> bool:
+    """Return whether the friction curve is so much likelier that the power law need not be spoken of."""
+    return curve.aicc + EVIDENCE <= surface.statistics.aicc
