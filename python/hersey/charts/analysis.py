@@ -331,7 +331,7 @@ def _friction_curve(document: Analysis, curve: FrictionCurve) -> Chart:
     for row, point in zip(rows, document.points, strict=True):
         value, error = point.torque * scale, 2.0 * point.torque_error * scale
         row |= {
-            "speed": _of(document).shown_speed[1] * point.speed,
+            "speed": _per_speed(document) * point.speed,
             "y": value,
             "low": value - error,
             "high": value + error,
