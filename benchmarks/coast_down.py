@@ -299,8 +299,8 @@ def page(count: int) -> str:
         "",
         f"- A term that is truly zero is shown in {np.sum(whole.absent_shown)} of {len(whole.absent_shown)} "
         f"cases, one that is there in {np.sum(whole.present_shown)} of {len(whole.present_shown)}.",
-        f"- A law outside the family (torque as speed^0.6) is reported in {told} of {len(other.torque)} "
-        f"wheels, falsely in {alarms} of {len(whole.torque)} wheels of the family "
+        f"- A law outside the family (speed^0.6) is reported in {told} of {len(other.torque)} wheels, "
+        f"falsely in {alarms} of {len(whole.torque)} wheels of the family "
         f"and in {sum(ripple.warnings[kind] for kind in TOLD)} of {len(ripple.torque)} with ripple.",
         f"- Coasts found: all, except in {len(whole.missed)} wheels ({', '.join(whole.missed) or 'none'}).",
         f"- Warnings over the {len(whole.torque)} wheels: "

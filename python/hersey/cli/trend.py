@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -11,7 +12,7 @@ from hersey.cli.outputs import may_write_table_and_figure
 from hersey.cli.printing import Printing
 from hersey.cli.progress import working
 from hersey.cli.quantities import amount_of
-from hersey.errors import ParameterError
+from hersey.errors import ChannelError, ParameterError, UnitError
 
 if TYPE_CHECKING:
     from hersey.log.torque_log import TorqueLog
@@ -75,7 +76,12 @@ def trend(
 def _samples(reading: Reading, logs: list[Path]) -> TorqueLog:
     from hersey.log.torque_log import TorqueLog
 
-    log = reading.log(logs)
+    try:
+        log = reading.log(logs)
+    except (ChannelError, UnitError) as error:  # temperature is used where one is found
+        if error.setting is None or error.setting.name != "temperature" or reading.temperature:
+            raise
+        log = replace(reading, isothermal=True).log(logs)
     if not isinstance(log, TorqueLog):
         raise ParameterError(f"{logs[0]} is a table of means; a trend needs rows of time, torque and speed")
     return log

@@ -13,7 +13,7 @@ coasts       the coasts of a log, and what else it holds
 ends         rows at the ends of a coast in which something still acts
 departures   another shape of the law, coasts that differ
 windows      friction in windows of speed, for `hersey.fit`
-doubts       warnings: terms that cannot be told apart, misfit, braking
+doubts       warnings: terms that cannot be separated, misfit, braking
 result       `CoastDown`: terms, torque against speed, points
 coasting     from a log to all of that
 ===========  ==========================================================================
