@@ -85,7 +85,7 @@ MISTAKES: dict[str, tuple[bytes, str, str, str]] = {
     "Celsius called kelvin": (
         log("Time [s],Torque [N*m],Speed [rpm],Temperature [K]"),
         "unit:Temperature",
-        "colder than any belt",
+        "colder than any such drive",
         "Read as °C",
     ),
     "another unit for torque": (
@@ -151,12 +151,6 @@ MISTAKES: dict[str, tuple[bytes, str, str, str]] = {
         "Time is out of order. Line 251: time runs ahead",
         "",
     ),
-    "a friction force": (
-        log("Time [s],Friction force [N],Speed [rpm],Temperature [degC]"),
-        "field:radius.value",
-        "A friction force needs its radius.",
-        "",
-    ),
     "not a log": (b"%PDF-1.4\n1 0 obj\n<<>>\nendobj\n", "file:", "has no table of numbers", "Remove"),
     "an empty file": (b"", "file:", "is empty", "Remove"),
     "a damaged file": (b"\x89HDF\r\n\x1a\n" + bytes(200), "file:", "damaged", "Remove"),
@@ -201,7 +195,8 @@ def test_what_is_only_doubtful_can_be_kept(tmp_path: Path) -> None:
 
 
 def test_the_radius_of_a_friction_force_is_given_in_words_of_its_reader(tmp_path: Path) -> None:
-    one = dropped(tmp_path, MISTAKES["a friction force"][0])
+    one = dropped(tmp_path, log("Time [s],Friction force [N],Speed [rpm],Temperature [degC]"))
+    assert one.faults == []  # friction against speed needs no radius
     for text, faults in (("25 kg", 1), ("25", 0)):
         one.choose({"corrections": {"radius.value": text}})
         check(one)
@@ -524,13 +519,11 @@ def test_a_file_of_other_tables_is_neither(tmp_path: Path) -> None:
     assert toml(Analysis(tmp_path), "[project]\n").state == "fault"
 
 
-def test_a_channel_called_a_radius_is_proposed_and_taken_with_its_button_alone(tmp_path: Path) -> None:
+def test_a_channel_called_a_radius_is_taken_only_where_somebody_says_so(tmp_path: Path) -> None:
     header = "Time [s],Friction force [N],Speed [rpm],Temperature [degC],Wear [um],Track radius [mm]"
     one = dropped(tmp_path, log(header, lambda *cells: (*cells, "3", "25")))
     assert {name for name, choice in one.choices.items() if choice["role"] in ("radius", "load")} == set()
-    fault = only(one)
-    assert (fault.at, fault.button) == ("field:radius.value", "Use “Track radius”")
-    assert fault.mend == {"roles": {"Track radius": "radius"}}
+    assert one.faults == []
     one.choices["Track radius"]["role"] = "radius"
     check(one)
     assert one.faults == []

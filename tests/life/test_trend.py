@@ -139,6 +139,19 @@ def test_a_stop_adds_no_age_and_a_jump_after_it_says_so() -> None:
     assert {"jump after a stop", "stops"} <= {*kinds(found)}
 
 
+def test_a_difference_of_the_directions_is_named() -> None:
+    friction, speed = 0.4 + 0.004 * noise(7, 1000), np.full(1000, 60.0)
+    friction[500:] -= 0.08
+    speed[500:] = -60.0
+    friction[500:] *= -1.0
+    found = hersey.trend(log(friction, speed))
+    (jump,) = found.jumps
+    assert jump.turned
+    assert not jump.after_stop
+    assert jump.change.value == pytest.approx(-0.2, abs=0.01)
+    assert "jump with direction" in kinds(found)
+
+
 def test_faces_apart_at_the_ends_are_left_out() -> None:
     friction = 0.4 + 0.004 * noise(6)
     friction[:20] = friction[-30:] = 0.001

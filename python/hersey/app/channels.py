@@ -11,8 +11,6 @@ from hersey.errors import TimeOrderError, UnitError, capital, sentence
 from hersey.log.doubtful import RARE, TOO_HOT
 from hersey.log.roles import ROLES, role_conversion
 from hersey.log.slow_channels import is_slow
-from hersey.log.stating import proposed
-from hersey.log.text.column import Column
 from hersey.units import KINDS, ZERO_CELSIUS, nearest_unit
 
 #: Units to choose from, by role; any other can be written.
@@ -169,9 +167,7 @@ def _of_one(
     name, unit = channel["name"], choices[channel["name"]]["unit"].strip()
     if channel["dead"] and role in ("torque", "speed"):
         return [_dead(role, channel, unit, choices, look)]
-    faults = _unit_faults(role, channel, unit, options) or _lacking_radius(
-        role, channel, unit, choices, look, options
-    )
+    faults = _unit_faults(role, channel, unit, options)
     slow = role == "temperature" and is_slow(channel["rows"], channel["rows"] - channel["missing"])
     many = channel["missing"] > max(1, _FEW * channel["rows"]) and not slow
     if not faults and many and not options["drop_missing"]:
@@ -236,28 +232,6 @@ def _unit_faults(role: str, channel: Mapping[str, Any], unit: str, options: Mapp
     if role != "temperature" or channel["most"] is None:
         return []
     return _doubtful_heat(channel, unit, line.scale, line.offset)
-
-
-def _lacking_radius(
-    role: str,
-    channel: Mapping[str, Any],
-    unit: str,
-    choices: Mapping[str, Mapping[str, str]],
-    look: Mapping[str, Any],
-    options: Mapping[str, Any],
-) -> list[Fault]:
-    """What a friction force lacks; a channel called like a radius is proposed, and never taken."""
-    if role != "torque" or unit in ("A", "mA"):
-        return []
-    stated = options["radius"].strip() or any(choice["role"] == "radius" for choice in choices.values())
-    if stated or role_conversion(role, unit)[0] == "torque":
-        return []
-    listed = tuple(Column(i, c["name"], c["written"]) for i, c in enumerate(look["channels"]))
-    named = next((column.name for column in proposed("radius", listed)), "")
-    title, text = "A friction force needs its radius.", "is a force; torque is force times radius."
-    link = "radius of the friction force"
-    text = f"“{channel['name']}” {text}"
-    return [Fault("field:radius.value", title, text, link, *_use(named, {named: "radius"}))]
 
 
 def _doubtful_heat(channel: Mapping[str, Any], unit: str, scale: float, offset: float) -> list[Fault]:

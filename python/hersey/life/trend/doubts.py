@@ -45,6 +45,9 @@ def doubts_of(
 
 def _of_jump(jump: Jump, by: str) -> Warning:
     values: dict[str, Any] = {"age": jump.age, "change": jump.change.value, "at": shown_age(by, jump.age)}
+    if jump.turned:
+        words = "friction differs by {change:+.0%} from {at} on, in the other direction of motion"
+        return Warning("jump with direction", words, severity="watch", **values)
     if jump.after_stop:
         words = "friction jumped by {change:+.0%} at {at}, as the drive started again"
         return Warning("jump after a stop", words, severity="watch", **values)

@@ -222,6 +222,7 @@ def _jumps(found: Weighed, record: Record) -> tuple[Jump, ...]:
             float(age),
             interval(heights[:, i]),
             bool(np.any(np.abs(record.restarts - age) <= 2.0 * gap)),
+            bool(np.any(np.abs(record.turns - age) <= 2.0 * gap)),
         )
         for i, (age, gap) in enumerate(zip(ages, gaps, strict=True))
     )

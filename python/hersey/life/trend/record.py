@@ -39,6 +39,7 @@ class Record:
     speed: float  #: mean without sign, in the unit of the domain
     domain: Domain = TORQUE  #: what friction and speed are
     restarts: FloatArray = field(default_factory=lambda: np.empty(0))  #: ages at which motion went on
+    turns: FloatArray = field(default_factory=lambda: np.empty(0))  #: ages at which the direction changed
     other_speed: int = 0  #: rows left out: in motion at another speed
     apart: int = 0  #: rows left out at an end without friction
 
@@ -88,6 +89,7 @@ def record_of(log: TorqueLog, by: str, at: float | None, radius: float | None) -
         speed=float(np.mean(np.abs(speed[kept]))),
         domain=of,
         restarts=restarts - age[kept[0]],
+        turns=age[kept[1:][speed[kept[1:]] * speed[kept[:-1]] < 0.0]] - age[kept[0]],
         other_speed=int(np.sum(moving) - kept.size - np.sum(apart)),
         apart=int(np.sum(apart)),
     )

@@ -40,6 +40,7 @@ class Jump(Record):
     age: Annotated[float, Means(_OF_AGE)]
     change: Annotated[Estimate, Means("as a share of friction just before")]
     after_stop: Annotated[bool, Means("whether the drive had just stood still")]
+    turned: Annotated[bool, Means("whether the direction of motion had just changed")]
 
 
 @dataclass(frozen=True, repr=False)
@@ -125,7 +126,7 @@ class FrictionTrend(Result):
         said += [f"  {name}: {text}" for name, text in facts]
         for jump in self.jumps:
             change = [100.0 * each for each in (jump.change.value, jump.change.low, jump.change.high)]
-            stop = ", after a stop" if jump.after_stop else ""
+            stop = ", in the other direction" if jump.turned else ", after a stop" if jump.after_stop else ""
             at = shown_age(self.by, jump.age)
             said.append(f"  jump at {at}: {change[0]:+.3g} % [{change[1]:.3g}, {change[2]:.3g}]{stop}")
         return said

@@ -1,7 +1,7 @@
 // Torque and damping: the charts, what they say, exponents and dwells.
 
 function torqueNote() {
-  if (data.friction) return `${data.friction.headline}. Bars: two standard errors.`;
+  if (data.friction) return "Lines: the fitted friction curve; bars: two standard errors.";
   const level = radius === null ? "" : ` 10 rpm = ${perSecond((10 / TO_RPM) * radius)} mm/s.`;
   return `Filled: from a lower speed; open: from a higher; bars: two standard errors.${level}`;
 }
