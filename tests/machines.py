@@ -12,7 +12,7 @@ _STATED = set(hersey.Machine.__dataclass_fields__)
 
 def machine_of(train: hersey.Drivetrain, **stated: Any) -> hersey.Machine:
     """The machine of a drivetrain, which grips as far as this says."""
-    given = {"roll_radius": 0.02, "stick_speed": 1e-3, **stated}
+    given = {"roll_radius": 0.02, "stick_speed": 1e-3, "part": train.part, **stated}
     if train.grip is not None:
         limits = given.get("limits", hersey.Limits())
         given["limits"] = hersey.Limits(**{**vars(limits), "roll_friction": 1.0, "nip_load": train.grip})

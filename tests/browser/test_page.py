@@ -367,10 +367,11 @@ def test_a_direct_label_has_no_second_key(demo: Opened) -> None:
         assert chart.locator(".toggle:visible").count() == 0
 
 
-def test_the_drag_torque_says_what_was_subtracted(each: tuple[Opened, Analysis]) -> None:
+def test_the_torque_says_what_it_is_and_what_was_subtracted(each: tuple[Opened, Analysis]) -> None:
     opened, document = each
     heading = opened.page.locator("#chart-torque h2, #chart-torque h3").first.text_content()
-    assert heading == "Drag torque" + (", no-load torque subtracted" if document.fit.rest else "")
+    drag = "Drag torque" + (", no-load torque subtracted" if document.fit.rest else "")
+    assert heading == ("Friction torque" if document.friction else drag)
 
 
 def test_dark_and_light(demo: Opened) -> None:

@@ -14,7 +14,7 @@ from hersey.errors import HerseyError, UnreadableLogError
 from hersey.inspection.file_report import ChannelReport, file_report
 from hersey.inspection.raw import Lacking, RawLog, raw_channels
 from hersey.log.channels import ChannelChoice, Stated, find_channel, is_dead
-from hersey.log.layouts.laid_out import reading_by
+from hersey.log.layouts.current import reading_by
 from hersey.log.layouts.proposing import Proposal, proposed_layout
 from hersey.log.layouts.table import LogLayout
 from hersey.log.mapping import LogMapping, read_with_mapping

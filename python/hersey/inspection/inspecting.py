@@ -31,7 +31,7 @@ from hersey.log.channels import ChannelChoice, Stated
 from hersey.log.corrections import Corrected
 from hersey.log.derived.sources import Sources
 from hersey.log.doubtful import doubtful_units
-from hersey.log.layouts.laid_out import reading_by
+from hersey.log.layouts.current import reading_by
 from hersey.log.layouts.proposing import with_layout
 from hersey.log.mapping import (
     LogMapping,

@@ -22,7 +22,7 @@ from hersey.log.channels import (
     taken_columns,
 )
 from hersey.log.friction import Chosen, beside
-from hersey.log.layouts.laid_out import format_of, opened
+from hersey.log.layouts.current import format_of, opened
 from hersey.log.roles import ROLES
 from hersey.log.slow_channels import FEWEST
 from hersey.log.text.column import Column, refuse_ragged

@@ -15,7 +15,7 @@ import polars as pl
 from hersey.arrays import FloatArray
 from hersey.errors import HerseyError, UnreadableLogError
 from hersey.log.formats.frame import is_frame
-from hersey.log.layouts.laid_out import format_of, opened
+from hersey.log.layouts.current import format_of, opened
 from hersey.log.recording import Cells, Signal
 from hersey.log.text.column import Column, split_unit
 from hersey.log.text.delimited import open_delimited

@@ -10,7 +10,7 @@ import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.errors import UnreadableLogError
-from hersey.log.layouts.laid_out import format_of, opened
+from hersey.log.layouts.current import format_of, opened
 from hersey.log.recording import Recording, columns, nothing_to_read
 from hersey.log.text.column import Column
 from hersey.log.text.delimited import DelimitedFile, open_delimited

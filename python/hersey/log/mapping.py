@@ -32,7 +32,7 @@ from hersey.files.toml import Table, naming, read_tables, read_toml
 from hersey.log import corrections
 from hersey.log.channels import Stated
 from hersey.log.corrections import Corrected
-from hersey.log.layouts.laid_out import reading_by
+from hersey.log.layouts.current import reading_by
 from hersey.log.layouts.presets import with_preset
 from hersey.log.layouts.proposing import with_layout
 from hersey.log.layouts.table import LogLayout

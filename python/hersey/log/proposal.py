@@ -11,7 +11,7 @@ from hersey.errors import HerseyError, printable
 from hersey.files.toml import quoted
 from hersey.log.channels import ChannelChoice, called, find_channel, is_dead
 from hersey.log.columns import open_columns
-from hersey.log.layouts.laid_out import reading_by
+from hersey.log.layouts.current import reading_by
 from hersey.log.layouts.proposing import proposed_layout
 from hersey.log.reading import list_channels
 from hersey.log.roles import role_conversion

@@ -17,7 +17,7 @@ from hersey.log.derived.text import text_recording
 from hersey.log.exchanged import refuse_exchanged
 from hersey.log.formats.frame import frame_recording, is_frame
 from hersey.log.given_twice import refuse_given_twice, refuse_rows_shared
-from hersey.log.layouts.laid_out import format_of, opened
+from hersey.log.layouts.current import format_of, opened
 from hersey.log.not_a_log import is_one, refuse_not_a_log
 from hersey.log.pooling import of_each_run
 from hersey.log.recording import columns, nothing_to_read

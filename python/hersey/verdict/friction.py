@@ -23,7 +23,8 @@ def leading_friction(points: SteadyPoints, surface: DampingSurface, seen: Regime
     friction force or coefficient has a verdict of its own. It never leads where film theory is at stake: a
     film is named, no-load torque was subtracted, or loads differ. Where temperature varies the power law must
     be excluded, since a film moves with temperature too. Coulomb plus viscous friction cannot lead where the
-    dwells alone show that torque falls with speed, or where no viscous part is proven.
+    dwells alone show that torque falls with speed, where the drive stuck and slipped, or where no viscous
+    part is proven.
     """
     if seen.named not in (None, COULOMB, FALLING) or points.rest is not None or points.varying_load:
         return None
@@ -33,7 +34,9 @@ def leading_friction(points: SteadyPoints, surface: DampingSurface, seen: Regime
         curve = fit_friction(points)
     except InsufficientDataError:
         return None
-    if not curve.law.stribeck and (curve.falls or not any(each.low > 0.0 for each in curve.slopes)):
+    sticks = any(each.why.kind == "stick-slip" for each in points.rejected)
+    rises = not curve.falls and not sticks and any(each.low > 0.0 for each in curve.slopes)
+    if not (curve.law.stribeck or rises):
         return None
     needed = 0.0 if surface.b is None else EVIDENCE
     return curve if curve.aicc + needed <= surface.statistics.aicc else None

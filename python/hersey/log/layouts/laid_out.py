@@ -1,15 +1,12 @@
-"""A file read by a layout, as a recording; and the layout by which files are read at the moment."""
+"""A file read by a layout, as a recording."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from contextlib import contextmanager
-from contextvars import ContextVar
 from dataclasses import replace
 from pathlib import Path
 
 from hersey.errors import HerseyError, UnreadableLogError
-from hersey.log import formats
 from hersey.log.layouts.grids import grids_of, transposed
 from hersey.log.layouts.pages import Page, Pages, pages_of
 from hersey.log.layouts.pattern import Found, pattern
@@ -19,36 +16,6 @@ from hersey.log.layouts.signals_apart import recording_of_pairs, recording_of_va
 from hersey.log.layouts.stacking import Stack
 from hersey.log.layouts.table import LogLayout
 from hersey.log.recording import Recording
-
-#: What `format_of` says of a file that is read by a layout.
-LAYOUT = "layout"
-_now: ContextVar[LogLayout | None] = ContextVar("layout", default=None)
-
-
-@contextmanager
-def reading_by(layout: LogLayout | None) -> Iterator[None]:
-    """Have files read by a layout, or as they are found (None), inside the context and this thread."""
-    before = _now.set(layout)
-    try:
-        yield
-    finally:
-        _now.reset(before)
-
-
-def format_of(path: Path) -> str | None:
-    """Return the format of a file as `formats.format_of`, or `LAYOUT` inside `reading_by`."""
-    return formats.format_of(path) if _now.get() is None else LAYOUT
-
-
-@contextmanager
-def opened(path: Path, kind: str) -> Iterator[Recording]:
-    """Open a file of any format but text, or any file by its layout."""
-    layout = _now.get()
-    if kind != LAYOUT or layout is None:
-        with formats.opened(path, kind) as recording:
-            yield recording
-        return
-    yield laid_out(path, layout)
 
 
 def laid_out(path: Path, layout: LogLayout) -> Recording:
