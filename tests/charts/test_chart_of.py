@@ -151,6 +151,7 @@ MADE: dict[str, Callable[[], Any]] = {
     "ModelComparison": models,
     "LogComparison": logs,
     "CoastDown": coasts,
+    "FrictionTrend": lambda: hersey.trend(log(), at="60 rpm"),
     "TestDesign": lambda: hersey.design(models(), count=4, quantity="transition speed"),
     "MovingFit": lambda: sine(hot=True).moving(),
     "Regime": lambda: hersey.regime(points(), surface()),
@@ -477,7 +478,7 @@ def test_a_motion_with_temperature_as_a_state_shows_it() -> None:
     assert "Temperature (°C)" not in titles(specification("Trajectory"))
     alt.Chart.from_dict(valid(shown), validate=True)
     panel = shown["vconcat"][2]["data"]["values"]
-    assert [row["value"] for row in panel if row["body"] == "roll"] == pytest.approx(
+    assert [row["value"] for row in panel if row["body"] == "counterbody"] == pytest.approx(
         run.roll_temperature - 273.15
     )
 
