@@ -395,5 +395,5 @@ def test_a_number_beside_a_wrong_value_is_not_taken_for_it() -> None:
         log_points().without(H.Machine(11e3, 11.0, roll_radius=0.015, stick_speed=3e-4))
     with pytest.raises(LookupError, match=r"no column 'torque \[mN\*m\]'\. Did you mean 'torque'\?"):
         log_points().column("torque [mN*m]")
-    with pytest.raises(WrongKindError, match=r"rpm' is that of a speed of rotation, .* radius of the roll"):
+    with pytest.raises(WrongKindError, match=r"rpm' is that of a speed of rotation, .* the radius"):
         H.stick_slip(TRAIN, DRAG, drive_speed="20 rpm")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ import hersey
 from hersey.damping.moving.correlated import autoregression
 from hersey.damping.moving.result import MovingFit
 from hersey.errors import InsufficientDataError, ParameterError
+from hersey.log import corrections
 from tests.damping.moving_logs import (
     COULOMB,
     INERTIA,
@@ -77,6 +79,17 @@ def test_the_viscous_part_falls_with_temperature() -> None:
     fit = sine(hot=True).moving()
     assert off(fit, "s", 0.02) < 3.0
     assert fit.friction_at(8.0).value == pytest.approx(COULOMB + VISCOUS * 8.0, rel=0.01)
+
+
+def test_an_inertia_that_was_subtracted_is_not_subtracted_again() -> None:
+    done = corrections.inertia(sine(), moment_of_inertia=INERTIA)
+    log = replace(done.log, corrections=done.corrections)
+    fit = log.moving()
+    assert "J" not in fit
+    assert fit.inertia_given is None
+    assert fit["T_C"].value == pytest.approx(COULOMB, rel=0.02)
+    with pytest.raises(ParameterError, match="already subtracts the torque of the inertia. Omit inertia"):
+        log.moving(inertia=INERTIA)
 
 
 def test_a_given_inertia(encoder: MovingFit) -> None:

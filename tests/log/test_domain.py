@@ -11,7 +11,7 @@ import pytest
 
 import hersey
 from hersey import SteadyPoints
-from hersey.errors import InsufficientDataError, ParameterError
+from hersey.errors import InsufficientDataError, ParameterError, UnitError
 from hersey.schema.domain import Domain
 from hersey.verdict.warnings import warnings_of
 from tests.cli.command import run
@@ -130,6 +130,32 @@ def test_what_is_printed_of_friction_speaks_of_friction(tmp_path: Path) -> None:
             if not re.match(r" +(COF|Sliding speed|Friction) ", line)
         ]
         assert not re.search(r"\btorque|rpm|N·m|stick-slip", "\n".join(kept)), done.stdout
+
+
+def test_what_is_about_a_torque_refuses_friction() -> None:
+    points = points_of("coefficient")
+    for ask in (hersey.fit_friction, hersey.no_load_torque):
+        with pytest.raises(ParameterError, match="needs a torque, but the log is of a friction coefficient"):
+            ask(points)
+    with pytest.raises(ParameterError, match="needs a speed of rotation, but the log is of a sliding speed"):
+        hersey.coast_down(points.log, inertia="1 kg*m^2")
+
+
+def test_a_dwell_that_is_not_used_is_turned_with_the_others() -> None:
+    table = log(0.02, 10.0, "force").head(510)  # the fastest dwell is too short
+    sliding = hersey.read(table, isothermal=True).steady()
+    turned = sliding.as_torque(radius=0.02)
+    assert sliding.rejected
+    for before, after in zip(sliding.rejected, turned.rejected, strict=True):
+        assert after.speed == pytest.approx(before.speed / 0.02, nan_ok=True)
+        assert after.why.domain.is_torque
+
+
+def test_a_trend_takes_its_speed_in_the_unit_of_the_log() -> None:
+    sliding = hersey.read(log(0.02, 10.0, "force"), isothermal=True)
+    assert hersey.trend(sliding, at="0.1 m/s").speed == pytest.approx(0.1)
+    with pytest.raises(UnitError, match="rpm"):
+        hersey.trend(sliding, at="60 rpm")
 
 
 def test_no_exponent_is_claimed_of_one_speed() -> None:

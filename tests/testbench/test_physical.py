@@ -64,7 +64,7 @@ def test_without_a_contact_it_is_a_no_load_log() -> None:
     stand = testbench.Stand(temperatures_degC=(90.0,), speeds_rpm=(20.0, 40.0), stick_slip=False)
     told = testbench.run(truth=free, stand=stand).truth_document()
     assert told["transition_speeds_rpm"] == [None]
-    with pytest.raises(ParameterError, match="a belt without contact cannot stick"):
+    with pytest.raises(ParameterError, match="a drive without contact cannot stick"):
         testbench.run(truth=free, stand=testbench.Stand(temperatures_degC=(90.0,), speeds_rpm=(20.0,)))
 
 

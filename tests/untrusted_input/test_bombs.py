@@ -272,6 +272,8 @@ BOMBS: dict[str, tuple[str, Callable[[], bytes], bool]] = {
 
 #: Those of which three of four channels are within the limit.
 LARGE = ("zeros by gzip", "runs of one value")
+#: Those that cost a row alone.
+ONE_ROW = ("a cell of 3 million digits",)
 
 
 @contextlib.contextmanager
@@ -307,7 +309,9 @@ def test_a_bomb(bomb: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
         told = ""
         with measured() as taken:
             try:
-                call(path)
+                done = call(path)
+                if bomb in ONE_ROW and call is hersey.read:
+                    told = " ".join([path.name, *map(str, done.files[0].warnings)])
             except HerseyError as error:
                 told = str(error)
         assert taken["here"] < LIMIT, call
@@ -317,6 +321,7 @@ def test_a_bomb(bomb: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
         assert len(told) < 3000
         if call is hersey.read:
             assert path.name in told
+            assert bomb not in ONE_ROW or "1 row was excluded" in told
             assert not by_memory or "memory_limit" in told
     peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss * 1024.0
     assert peak == ended or peak < LIMIT + BESIDE

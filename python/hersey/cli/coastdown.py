@@ -36,6 +36,7 @@ def coastdown(
 
     No torque is needed. Standstill, run-up and braking are found and left out.
     """
+    reading.refuse_dwells("a coast-down", "inertia")
     if not reading.inertia:
         raise ParameterError("the moment of inertia is missing: add --inertia '0.012 kg*m^2 ± 2 %'")
     written = may_write(points, force, reading.inputs(logs), flag="--points", ends=[".csv"])

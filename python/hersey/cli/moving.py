@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from hersey.cli.options import Reading
 from hersey.cli.terminal import note
-from hersey.errors import MOVING, HerseyError, InsufficientDataError, ParameterError
+from hersey.errors import MOVING, HerseyError, InsufficientDataError
 from hersey.log import TorqueLog
 from hersey.units import rpm
 
@@ -50,8 +50,6 @@ def fitted(
     """Fit the dwells of a log, or every sample if that is asked for or the log has no dwells but moves."""
     from hersey.damping.fit import fit
 
-    if reading.inertia and not reading.moving:
-        raise ParameterError("--inertia is for --moving: add it, or omit --inertia")
     if reading.moving and isinstance(log, TorqueLog):
         return _as_it_moves(logs, log, reading, machine, reading.recipe(logs).moving_fit(log))
     points = None
@@ -86,7 +84,7 @@ def _as_it_moves(
     try:
         points = reading.points(logs, log, machine, moving)
         return Fitted(points, fit(points, temperature_scale=reading.temperature_scale), moving)
-    except HerseyError as error:
+    except InsufficientDataError as error:
         note(f"No surface B = a w^c can be fitted to the windows of this log: {error}")
         return Fitted(points, None, moving)
 

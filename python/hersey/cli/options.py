@@ -176,6 +176,8 @@ class Reading:
         with loading():
             from hersey.damping.recipe import Recipe
 
+        if self.inertia and not self.moving:
+            raise ParameterError("--inertia is for --moving: add it, or omit --inertia")
         amounts = {role: amounts_in(getattr(self, role)) for role in ("load", "radius")}
         names = {role: name for role in ROLES if (name := getattr(self, role)) and not amounts.get(role)}
         units = {role: unit for role in ROLES if (unit := getattr(self, f"{role}_unit", ""))}
@@ -215,6 +217,15 @@ class Reading:
             for name in ratios
             if (text := getattr(self, name))
         }
+
+    def refuse_dwells(self, what: str, *needed: str) -> None:
+        """Refuse options that make dwells of a log, but those ``needed``, for ``what`` uses its rows."""
+        usual = Reading()
+        names = (*_OF_DWELLS, "moving", "inertia")
+        typed = [n for n in names if n not in needed and getattr(self, n) != getattr(usual, n)]
+        if typed:
+            flags = " and ".join(f"--{name.replace('_', '-')}" for name in typed)
+            raise ParameterError(f"{what} is made of rows, not of dwells: omit {flags}")
 
     def inputs(self, *given: Path | list[Path] | None) -> list[Path]:
         """Return the files that a command reads, of which none may be an output."""
@@ -357,6 +368,8 @@ _AS_GIVEN = (
     *("isothermal", "drop_missing", "means", "tare", "rotation", "temperature_scale", "moving"),
     *("name_pattern", "name_decimal"),
 )
+#: Options that make dwells of a log.
+_OF_DWELLS = ("min_dwell", "tare", "rotation", "temperature_scale", "no_load")
 _NOT_OF_FILE = "not from the machine file"
 
 

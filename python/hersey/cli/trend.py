@@ -21,14 +21,6 @@ _BY = "Count age in time, distance or revolutions."
 _AT = "Follow this speed, of a log with several, e.g. '60 rpm'.  [default: the only one]"
 _SHARE = "Friction is steady within this share of its steady value."
 _OUT = "Write means of blocks with the law and its interval (.csv)."
-#: Options that make dwells of a log, and what they are if nobody types them.
-_OF_DWELLS = {
-    "min_dwell": "2 s",
-    "tare": "none",
-    "rotation": "both",
-    "temperature_scale": "degC",
-    "no_load": "",
-}
 
 
 @grouped
@@ -53,7 +45,7 @@ def trend(
     """
     inputs = reading.inputs(logs)
     table, drawing = may_write_table_and_figure(out, figure, force, inputs)
-    _refuse_dwells(reading)
+    reading.refuse_dwells("a trend")
 
     from hersey.life.trend.fit import trend as followed
 
@@ -85,11 +77,3 @@ def _samples(reading: Reading, logs: list[Path]) -> TorqueLog:
     if not isinstance(log, TorqueLog):
         raise ParameterError(f"{logs[0]} is a table of means; a trend needs rows of time, torque and speed")
     return log
-
-
-def _refuse_dwells(reading: Reading) -> None:
-    """Refuse options that a trend does not use."""
-    typed = [name for name, usual in _OF_DWELLS.items() if getattr(reading, name) != usual]
-    if typed:
-        flags = " and ".join(f"--{name.replace('_', '-')}" for name in typed)
-        raise ParameterError(f"a trend is made of rows, not of dwells: omit {flags}")

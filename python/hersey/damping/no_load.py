@@ -60,6 +60,7 @@ def no_load_torque(points: SteadyPoints) -> NoLoadTorque:
     20 mN m + 1 mN m s/rad times speed (table)
     """
     require_points(points, "hersey.no_load_torque({points})")
+    points.domain.require_torque("a no-load torque")
     name = points.log.files[0].name
     _refuse_corrected(points, name)
     speed = np.abs(points.column("speed"))

@@ -228,7 +228,7 @@ class Recipe:
         InsufficientDataError, ParameterError
             If there is no dwell, or a setting is wrong or given twice.
         """
-        rest = self.rest(None if drive is None else drive.rest)
+        rest = self.rest(None if drive is None else drive.rest, drive)
         try:
             found = self._dwells(log) if fit is None else fit.points(rotation=self.rotation)
             points = replace(found, recipe=self)
@@ -262,8 +262,12 @@ class Recipe:
         with naming_logs(self.logs):
             return self.dwells(self.log(drive, progress=progress), drive)
 
-    def rest(self, stated: NoLoadTorque | None = None) -> NoLoadTorque | None:
+    def rest(
+        self, stated: NoLoadTorque | None = None, drive: KnownDrive | None = None
+    ) -> NoLoadTorque | None:
         """Return the no-load torque from its log, or what is ``stated`` if there is no such log.
+
+        The log is read as that of the ``drive``, as the other logs are.
 
         Raises
         ------
@@ -277,7 +281,7 @@ class Recipe:
             raise ParameterError(f"{how} and {stated.source} both give the no-load torque. Omit one of them")
         channels, units = _without("load", self.channels), _without("load", self.units)
         alone = replace(self, logs=(self.no_load,), no_load=None, load=None, channels=channels, units=units)
-        return no_load_torque(alone._dwells(alone.log()))
+        return no_load_torque(alone._dwells(alone.log(drive)))
 
     @property
     def chosen(self) -> LogMapping:

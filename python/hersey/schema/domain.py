@@ -126,6 +126,14 @@ class Domain(Record):
                 remedy=f"give {needed}, with your values",
             )
 
+    def require_rotation(self, what: str) -> None:
+        """Raise `ParameterError` if this is about sliding, and ``what`` about a speed of rotation."""
+        if self.speed != "speed":
+            raise ParameterError(
+                f"{what} needs a speed of rotation, but the log is of a {self.speed}",
+                remedy=f"give {Setting('radius').to('25 mm')}, with your value",
+            )
+
     def powers(self, to: Domain) -> dict[str, tuple[int, int]]:
         """Return the powers of load and radius by which quantity and speed become those of another domain."""
         of, other = _QUANTITIES[self.quantity][3], _QUANTITIES[to.quantity][3]

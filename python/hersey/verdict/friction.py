@@ -28,7 +28,7 @@ def leading_friction(points: SteadyPoints, surface: DampingSurface, seen: Regime
     """
     if seen.named not in (None, COULOMB, FALLING) or points.rest is not None or points.varying_load:
         return None
-    if points.window_errors.shape[1] or not points.domain.is_torque:
+    if points.of_every_sample or not points.domain.is_torque:
         return None
     try:
         curve = fit_friction(points)

@@ -51,6 +51,7 @@ def coast_down(log: Any, *, inertia: Any) -> CoastDown:
     """
     known = inertia_of(inertia)
     read_log = log if isinstance(log, TorqueLog) else read(log, without_torque=True)
+    read_log.domain.require_rotation("a coast-down")
     coasts, left_out = _found(read_log)
     if not coasts:
         raise no_coast(read_log, left_out)

@@ -153,7 +153,7 @@ class CoastDown(Result):
         shared = (self.friction.shared * torque * signs)[:, None]
         return SteadyPoints(
             table, (), 0.0, None, log, warnings=self.warnings, window_errors=shared if shared.any() else
-            np.empty((0, 0)), temperature_rates=np.zeros(torque.size)
+            np.empty((0, 0)), temperature_rates=np.zeros(torque.size), of_every_sample=True
         )  # fmt: skip
 
     def table(self) -> str:
@@ -163,6 +163,7 @@ class CoastDown(Result):
         head = ["speed [rpm]", *(["temperature [degC]"] if hot else []), "torque [N*m]", "torque error [N*m]"]
         lines = [
             f"# coast-down: windows of speed; moment of inertia {self.inertia.value:g} kg m^2",
+            f"# not in the table: {100.0 * self.friction.shared:.2g} % standard error that all torques share",
             ",".join(head),
         ]
         for row in points.iter_rows(named=True):

@@ -20,7 +20,7 @@ from hersey.log.as_torque import factors, log_as_torque, one_load
 from hersey.log.means import MeanRow, MeansTable, read_means
 from hersey.log.torque_log import TorqueLog
 from hersey.result import Result, json_record
-from hersey.schema.domain import Domain
+from hersey.schema.domain import TORQUE, Domain
 from hersey.schema.warning import Warning
 from hersey.units import rpm, takes_si
 
@@ -108,6 +108,8 @@ class SteadyPoints(Result):
     window_errors
         What one standard error of each number that all windows of a moving log share (inertia, offset, the
         moment of inertia of a coast-down) does to the torque of each point, N m, shape (points, errors).
+    of_every_sample
+        Whether the points are windows of a fit to every sample of a log, not dwells.
     temperature_rates
         How fast the reading of temperature changes over each dwell, K/s, 0 within its noise, shape (points,).
     recipe
@@ -128,6 +130,7 @@ class SteadyPoints(Result):
     relaxation_errors: FloatArray = field(default_factory=lambda: np.empty((0, 0)))
     window_errors: FloatArray = field(default_factory=lambda: np.empty((0, 0)))
     temperature_rates: FloatArray = field(default_factory=lambda: np.empty(0))
+    of_every_sample: bool = False
     recipe: HowRead | None = None
 
     def __post_init__(self) -> None:
@@ -327,6 +330,7 @@ class SteadyPoints(Result):
             table=table,
             tare=by * self.tare,
             standing_torque=standing,
+            rejected=tuple(_turned(each, per) for each in self.rejected),
             log=log_as_torque(self.log, radius=radius, load=load),
             resolutions=tuple(_scaled(each, scaled) for each in self.resolutions),
             **{name: by * getattr(self, name) for name in _SHARED_ERRORS},
@@ -388,6 +392,12 @@ def _scaled(resolution: Resolution, by: dict[str, float]) -> Resolution:
     """The step of a sensor in another unit."""
     factor = by.get(resolution.quantity, 1.0)
     return replace(resolution, step=factor * resolution.step, errors=factor * resolution.errors)
+
+
+def _turned(rejection: Rejection, per: float) -> Rejection:
+    """A rejection of sliding as one of a rotation, which has ``per`` times its speed."""
+    why = replace(rejection.why, slow=per * rejection.why.slow, fast=per * rejection.why.fast, domain=TORQUE)
+    return replace(rejection, speed=per * rejection.speed, why=why)
 
 
 def _record(rejection: Rejection) -> dict[str, Any]:

@@ -19,7 +19,7 @@ from hersey.damping.moving.moving_warnings import moving_warnings
 from hersey.damping.moving.result import LawTried, MovingFit, MovingParameter
 from hersey.damping.moving.speed_noise import SpeedNoise, low_pass_for, speed_noise
 from hersey.damping.moving.stretches import Stretch, stretches_of
-from hersey.errors import MOVING, InsufficientDataError, ParameterError
+from hersey.errors import MOVING, InsufficientDataError, ParameterError, Setting
 from hersey.log.torque_log import TorqueLog
 from hersey.units import rpm, takes_si
 
@@ -73,9 +73,10 @@ def fit_moving(log: TorqueLog, *, inertia: float | None = None) -> MovingFit:
     if inertia is not None and not inertia >= 0.0:
         raise ParameterError(f"the moment of inertia is {inertia:g} kg m^2: it must not be negative")
     log.domain.require_torque("a fit with inertia, of a log that moves,")
-    if inertia is None and any(each.name == "inertia" for each in log.corrections):
-        inertia = 0.0  # the mapping subtracted it
-    log.domain.require_torque("a fit to every sample")
+    subtracted = any(each.name == "inertia" for each in log.corrections)
+    if subtracted and inertia is not None:
+        given = Setting("inertia").to("0.01 kg*m^2")
+        raise ParameterError(f"the mapping already subtracts the torque of the inertia. Omit {given}")
     name = log.files[0].name
     stretches = stretches_of(log)
     _refuse_constant(name, stretches)
@@ -86,10 +87,12 @@ def fit_moving(log: TorqueLog, *, inertia: float | None = None) -> MovingFit:
     equations, least = _equations(stretches, noise, low_pass)
     if len(equations) < LEAST_EQUATIONS:
         raise _too_few(name, equations, least)
-    fitting, fits = _fitted(log, equations, noise, low_pass, inertia)
+    fitting, fits = _fitted(log, equations, noise, low_pass, 0.0 if subtracted else inertia)
     chosen = _chosen(fits, equations)
     result = _result(log, _Made(fitting, equations, least, low_pass, noise), chosen, fits)
     _refuse_no_friction(name, result, equations)
+    if subtracted:
+        result = replace(result, inertia_given=None)
     return replace(result, warnings=moving_warnings(result, equations))
 
 

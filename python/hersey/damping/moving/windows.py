@@ -86,6 +86,7 @@ def windows(fit: FittedLog, rotation: str) -> SteadyPoints:
         warnings=fit.warnings,
         window_errors=_shared(fit, [of[i] for i in kept]),
         temperature_rates=np.zeros(len(kept)),
+        of_every_sample=True,
     )
 
 

@@ -27,7 +27,7 @@ from hersey.life.trend.said import (
 )
 from hersey.life.trend.shapes import shapes
 from hersey.log.torque_log import TorqueLog
-from hersey.units import takes_si
+from hersey.units import argument, takes_si
 
 #: Change of temperature, K, from which on it counts as a possible cause.
 _WARM = 0.5
@@ -41,12 +41,12 @@ _BY = Words(tuple(AGES))
 
 
 @one_thread()
-@takes_si(by=_BY, at=("speed", "belt speed"), radius="length")
+@takes_si(by=_BY, radius="length")
 def trend(
     log: TorqueLog,
     *,
     by: str = "time",
-    at: float | None = None,
+    at: Any = None,
     radius: float | None = None,
     share: float = 0.05,
     seed: int = 1,
@@ -81,6 +81,7 @@ def trend(
     """
     if not 0.0 < share < 1.0:
         raise ParameterError(f"share is {share}: it must be between 0 and 1", value=share)
+    at = argument("at", "speed" if log.domain.speed == "speed" else "belt speed", at, one=True)
     if at is not None and not (np.isfinite(at) and at != 0.0):
         raise ParameterError(f"the speed to follow is {at}: it must not be 0", value=at)
     if radius is not None and not (np.isfinite(radius) and radius > 0.0):
