@@ -88,7 +88,7 @@ def test_an_inertia_that_was_subtracted_is_not_subtracted_again() -> None:
     assert "J" not in fit
     assert fit.inertia_given is None
     assert fit["T_C"].value == pytest.approx(COULOMB, rel=0.02)
-    with pytest.raises(ParameterError, match="already subtracts the torque of the inertia. Omit inertia"):
+    with pytest.raises(ParameterError, match="already subtracts the torque of the inertia"):
         log.moving(inertia=INERTIA)
 
 
