@@ -81,7 +81,7 @@ class CoastDown(Result):
     torque: Annotated[FloatArray, Means("friction torque", "N m")]
     low: Annotated[FloatArray, Means("95 % limit at each speed", "N m")]
     high: Annotated[FloatArray, Means("95 % limit at each speed", "N m")]
-    coasts: tuple[Coast, ...]
+    coasts: Annotated[tuple[Coast, ...], Means("one for each coast-down that was found")]
     left_out: Annotated[tuple[LeftOut, ...], Means("stretches of the log that are no coast")]
     noise: Annotated[float, Means("standard deviation of the speeds about the fit", "rad/s")]
     effective_rows: Annotated[float, Means("rows of independent noise that tell as much")]
