@@ -19,7 +19,7 @@ from website.navigation import DOCS
 
 WORDS: dict[str, Any] = tomllib.loads((ROOT / "tests" / "website" / "words.toml").read_text(encoding="utf-8"))
 MOST_ENTRIES = 30
-MOST_WORDS = 30_000
+MOST_WORDS = 31_000
 
 
 def explained() -> set[str]:
@@ -51,11 +51,13 @@ def test_an_unknown_abbreviation_is_seen() -> None:
 
 
 def test_the_docs_stay_short() -> None:
-    """README and the pages that people write; what follows from the code has its length from there."""
+    """README and the pages that people write; what is generated has its length from its source."""
     generated = {"commands.md", "files.md", "document.md"}
-    pages = [
-        ROOT / "README.md",
-        *(page for page in DOCS.rglob("*.md") if page.name not in generated and page.parent.name != "python"),
+    written = [
+        page
+        for page in DOCS.rglob("*.md")
+        if page.name not in generated and page.parent.name not in ("python", "validation")
     ]
+    pages = [ROOT / "README.md", *written]
     words = sum(len(re.findall(r"\S*\w\S*", page.read_text(encoding="utf-8"))) for page in pages)
     assert 20_000 < words <= MOST_WORDS

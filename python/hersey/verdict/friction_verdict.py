@@ -28,6 +28,10 @@ _MEANINGS = {
 NEGLIGIBLE = 0.01
 #: Change over the range of speeds up to which an exponent that may be zero makes friction constant.
 CLOSE = 0.1
+#: Scatter about a power of speed from which a lowest speed between the ends is spoken of.
+_BENDS = 0.05
+#: Share by which that speed must be off either end.
+_INSIDE = 0.2
 
 
 def of_friction(hypothesis: Hypothesis) -> Hypothesis:
@@ -110,6 +114,14 @@ def _of_range(surface: DampingSurface, trend: Trend) -> str:
             f"{_size(change)} over this range is not excluded."
         )
     does = "rises" if least > 0.0 else "falls"
+    slowest, fastest = (
+        speed * (1.0 + s * _INSIDE) for speed, s in zip(surface.speed_range, (1, -1), strict=True)
+    )
+    if surface.statistics.scatter > _BENDS and slowest < trend.least < fastest:
+        return (
+            f"{name} is lowest near {of.at(trend.least)}, within {span}, so no one power of {of.speed} "
+            "describes it. More dwells on either side would show how it falls and rises."
+        )
     first, last = (_at(surface, speed) for speed in surface.speed_range)
     power_law = f"{of.speed_symbol}^{_with_sensors(power)}"
     return f"{name} {does} with {of.speed}, as {power_law}: from {first} to {last} at {span}."

@@ -239,6 +239,12 @@ def _parameters(fitted: MovingLawFit, freedom: float) -> list[MovingParameter]:
 
 def _refuse_no_friction(name: str, result: MovingFit, equations: Equations) -> None:
     """Refuse what is no friction: torque that drives, or a load that the log does not hold."""
+    if INERTIA in result and result[INERTIA].high < 0.0:
+        raise InsufficientDataError(
+            f"{name}: the moment of inertia would be negative, {result[INERTIA]} kg m^2. Something other "
+            "than friction and inertia loads the drive, such as gravity or a spring",
+            remedy="record the drive without that load",
+        )
     fast = np.array([result.speed_range[1], -result.speed_range[1]])
     ways = fast[[np.any(equations.speed > 0), np.any(equations.speed < 0)]]
     friction = np.sign(ways) * result.friction(ways)
