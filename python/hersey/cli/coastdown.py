@@ -34,7 +34,7 @@ def coastdown(
 
     Example: [bold]hersey coastdown examples/coast-down.csv --inertia "0.012 kg*m^2 ± 2 %"[/bold]
 
-    No torque is needed. Standstill, run-up and braking are found and left out.
+    No torque is needed. Standstill, run-up and braking are detected and excluded.
     """
     if not reading.inertia:
         raise ParameterError("the moment of inertia is missing: add --inertia '0.012 kg*m^2 ± 2 %'")
