@@ -210,7 +210,15 @@ class InsufficientDataError(HerseyError, ValueError):
 
 
 class OneSpeedError(InsufficientDataError):
-    """A log of one speed: no dependence on speed can be fitted, but friction can be followed over time."""
+    """A log of one speed: no dependence on speed can be fitted, but friction can be followed over time.
+
+    ``files`` are the names of its files, without folders.
+    """
+
+    def __init__(self, *message: object, files: tuple[str, ...] = (), **remedy: Any) -> None:
+        """Take the message, the names of the files, and ``remedy`` and ``setting``."""
+        super().__init__(*message, **remedy)
+        self.files = files
 
 
 class ParameterError(HerseyError, ValueError):

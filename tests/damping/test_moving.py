@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+import polars as pl
 import pytest
 
 import hersey
@@ -69,7 +70,7 @@ def test_friction_of_each_direction() -> None:
     speed, rate = waves(times())
     friction = np.where(speed > 0, COULOMB + VISCOUS * speed, -0.5 + 0.04 * speed)
     fit = made(speed, rate, friction - OFFSET).moving()
-    assert fit.law == "Coulomb and viscous friction, each direction apart"
+    assert fit.law == "Coulomb and viscous friction, each direction separately"
     assert "offset" not in fit
     for name, truth in {"T_C+": 0.3, "k_v+": 0.02, "T_C-": 0.5, "k_v-": 0.04}.items():
         assert off(fit, name, truth) < 3.0, name
@@ -201,7 +202,7 @@ def loaded(time: Any) -> hersey.TorqueLog:
 @pytest.mark.parametrize(
     ("log", "said"),
     [
-        (constant, "the speed hardly changes, so inertia and friction cannot be told apart. Omit moving"),
+        (constant, "the speed hardly changes, so inertia and friction cannot be separated. Omit moving"),
         (motoring, "torque and speed have opposite signs. Flip one with signs="),
         (loaded, "torque does not follow speed: friction and a constant explain"),
     ],
@@ -210,6 +211,18 @@ def test_what_is_no_friction_is_refused(log: Any, said: str) -> None:
     with pytest.raises(InsufficientDataError) as error:
         log(times()).moving()
     assert said in str(error.value)
+
+
+def test_a_coefficient_asks_for_radius_and_load() -> None:
+    speed = 0.5 + 0.2 * np.sin(2.0 * times())
+    columns = {"time (s)": times(), "mu": np.full(speed.size, 0.1), "sliding speed (m/s)": speed}
+    log = hersey.read(pl.DataFrame(columns), isothermal=True)
+    with pytest.raises(ParameterError) as error:
+        log.moving()
+    assert str(error.value) == (
+        "a fit to every sample needs a torque, but the log is of a friction coefficient against sliding "
+        "speed. Give radius='25 mm' and load='50 N', with your values"
+    )
 
 
 def test_too_short_a_log_is_refused() -> None:

@@ -123,6 +123,7 @@ def test_a_sudden_rise_is_a_jump_that_must_be_looked_at() -> None:
     assert not jump.after_stop
     warning = next(each for each in found.warnings if each.kind == "jump")
     assert warning.severity == "act"
+    assert re.match(r"Friction rose suddenly by \+(39|40|41) % at ", warning.sentence)
     assert found.kind == "constant"
     assert found.steady is not None
     assert found.steady.low < 0.56 < found.steady.high
@@ -247,6 +248,14 @@ def test_a_notebook_gets_the_function() -> None:
     with pytest.raises(OneSpeedError) as refused:
         hersey.fit(log(0.4 + 0.01 * noise(11)).steady())
     assert refused.value.remedy == "To follow friction over time, use hersey.trend(log)"
+    assert refused.value.files == ("frame",)
+
+
+def test_all_logs_of_one_speed_are_in_the_line(tmp_path: Path) -> None:
+    for seed in (1, 2):
+        frame(0.4 + 0.01 * noise(seed)).write_csv(tmp_path / f"{seed}.csv")
+    done = run("fit", "1.csv", "2.csv", "--isothermal", "--min-dwell", "3 s", cwd=tmp_path)
+    assert done.stderr.rstrip().endswith("type: hersey trend 1.csv 2.csv --isothermal")
 
 
 def test_options_of_dwells_are_refused(tmp_path: Path) -> None:

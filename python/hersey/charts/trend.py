@@ -41,7 +41,7 @@ def trend_chart(found: FrictionTrend) -> Chart:
         layers += level(factor * found.steady.value, "steady")
     for jump in found.jumps:
         age = jump.age / size
-        layers += moment(age, f"jump {jump.change.value:+.0%}", x, left=age > 0.5 * end, color=RED)
+        layers += moment(age, f"jump {100.0 * jump.change.value:+.0f} %", x, left=age > 0.5 * end, color=RED)
     subtitle = [f"{found.headline()}.", _key(found)]
     heading = alt.Title(f"{capital(found.domain.quantity)} at one speed", subtitle=subtitle)
     chart: Chart = alt.layer(*layers, title=heading, width=WIDTH, height=HEIGHT)

@@ -34,7 +34,7 @@ def coastdown(
 
     Example: [bold]hersey coastdown examples/coast-down.csv --inertia "0.012 kg*m^2 ± 2 %"[/bold]
 
-    No torque is needed. Standstill, run-up and braking are found and left out.
+    No torque is needed. Standstill, run-up and braking are detected and excluded.
     """
     reading.refuse_dwells("a coast-down", "inertia")
     if not reading.inertia:

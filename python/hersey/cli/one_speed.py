@@ -20,7 +20,7 @@ def with_trend(error: HerseyError, commands: Commands) -> str:
     if not isinstance(error, OneSpeedError):
         return str(error)
     logs, options = _typed(commands)
-    logs = [each for each in logs if Path(each).name in error.reason] or logs or ["LOG"]
+    logs = [each for each in logs if Path(each).name in error.files] or logs or ["LOG"]
     line = retyped(_TREND, *logs, *options)
     return followed_by(str(error), f"To follow friction over time, type: {line}")
 

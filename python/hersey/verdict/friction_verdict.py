@@ -95,9 +95,9 @@ def _of_range(surface: DampingSurface, trend: Trend) -> str:
     name, span = capital(of.quantity), of.between(*surface.speed_range)
     if not power.estimable:
         return f"{name} is {_level(surface)} at {span}; its dependence on {of.speed} cannot be determined."
-    octaves = math.log(surface.speed_range[1] / surface.speed_range[0])
+    log_span = math.log(surface.speed_range[1] / surface.speed_range[0])
     least, most = power.low - power.systematic, power.high + power.systematic
-    change = math.expm1(max(abs(least), abs(most)) * octaves)
+    change = math.expm1(max(abs(least), abs(most)) * log_span)
     if change < NEGLIGIBLE or (least <= 0.0 <= most and change < CLOSE and trend.constant):
         return (
             f"{name} is constant: {_level(surface)} at {span}. It varies as {of.speed_symbol}^"

@@ -101,7 +101,7 @@ class Observations:
             more = f"all dwells are at {held}. Record dwells at three or more speeds"
             if isinstance(points.log, TorqueLog):
                 if is_one_speed(points.log):
-                    raise of_one_speed(more)
+                    raise of_one_speed(more, points.log)
                 if few := held_for_few_rows(points.log):
                     raise InsufficientDataError(few)
             raise InsufficientDataError(more)

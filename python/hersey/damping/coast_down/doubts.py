@@ -83,7 +83,7 @@ class Doubts:
                 Warning(
                     NEGATIVE,
                     "Coulomb, viscous and windage friction do not describe these coasts: one of them "
-                    "would have to be negative ({chance:p}), so the terms mean nothing",
+                    "would have to be negative ({chance:p}), so the three terms must not be used",
                     severity="act",
                     remedy="fit another law to the points, the torque in windows of speed, which stay valid",
                     chance=self.bound.p_value,
@@ -112,7 +112,7 @@ class Doubts:
                 "the torque of {count} coasts differs by up to {share:.2g %} from their mean ({chance:p}); "
                 "the intervals include that",
                 severity="watch" if self.differing.share < _UNLIKE else "act",
-                remedy="bearings that warm up, and the direction, are common reasons: fit the coasts apart",
+                remedy="warm-up of bearings and the direction are common reasons: fit the coasts separately",
                 count=len(self.coasts),
                 share=self.differing.share,
                 chance=self.differing.p_value,
@@ -157,7 +157,7 @@ class Doubts:
                 found.append(
                     Warning(
                         CUT,
-                        "{count} {count:stretch was|stretches were} {what} and left out, the first at "
+                        "{count} {count:stretch was|stretches were} {what} and excluded, the first at "
                         "{start:.4g} to {end:.4g} s",
                         severity="watch",
                         where=self.log.runs[parts[0].run].name,

@@ -69,7 +69,7 @@ def nothing_steady(
         said = followed_by(said, way)
     over = bool(too_brief(log, asked.min_dwell))
     if one and not over:
-        return of_one_speed(said)
+        return of_one_speed(said, log)
     brief = sum(r.rows for r in held) < _CRESTS * log.rows
     moves = not over and (brief or _runs_up_and_down(log, rejected))
     return InsufficientDataError(said, setting=MOVING if moves else None)

@@ -40,10 +40,10 @@ def only_speed(speed: FloatArray, standing: float = STANDING) -> float | None:
     return found[0][0] if found and found[0][1] >= _ONLY else None
 
 
-def of_one_speed(reason: str) -> OneSpeedError:
+def of_one_speed(reason: str, log: TorqueLog) -> OneSpeedError:
     """Return the error of a log of one speed, with what it is good for; a terminal adds the line."""
     way = "To follow friction over time, use hersey.trend(log)" if way_in() == "python" else ""
-    return OneSpeedError(reason, remedy=way)
+    return OneSpeedError(reason, files=tuple(each.name for each in log.files), remedy=way)
 
 
 def is_one_speed(log: TorqueLog) -> bool:

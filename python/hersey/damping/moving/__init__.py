@@ -7,7 +7,7 @@ speed_noise      noise of the speed, and how wide the low-pass must be
 model            the torque of a law of friction with inertia, offset and delay
 correlated       noise whose neighbours are correlated
 fitting          least squares with such noise
-fit              `fit_moving`: the law is chosen, and what is no friction refused
+fit              `fit_moving`: the law is chosen, and what is not friction refused
 result           `MovingFit`
 moving_warnings  what is to be known of it
 windows          windows of speed and temperature as steady points

@@ -26,8 +26,9 @@ from hersey.units import rpm, takes_si
 #: A drive slower than so many standard deviations of the noise of its speed, or than this share of its
 #: greatest speed, may stand or turn either way: such rows are not used.
 _CLEAR, _SLOW = 5.0, 0.01
-#: AICc by which a law with more numbers must be better than one with fewer.
-EVIDENCE = 10.0
+#: AICc by which a law with more numbers must be better than one with fewer. It is not the
+#: `EVIDENCE` of dwells: with this the laws of virtual joints come out right (`benchmarks.moving`).
+MOVING_EVIDENCE = 10.0
 #: Greatest error of the logarithm of a Stribeck speed that counts as known.
 _KNOWN = 0.5
 #: Least equations, and least share of the speed (standard deviation over the greatest) that is a motion.
@@ -72,7 +73,7 @@ def fit_moving(log: TorqueLog, *, inertia: float | None = None) -> MovingFit:
     """
     if inertia is not None and not inertia >= 0.0:
         raise ParameterError(f"the moment of inertia is {inertia:g} kg m^2: it must not be negative")
-    log.domain.require_torque("a fit with inertia, of a log that moves,")
+    log.domain.require_torque("a fit to every sample")
     subtracted = any(each.name == "inertia" for each in log.corrections)
     if subtracted and inertia is not None:
         given = Setting("inertia").to("0.01 kg*m^2")
@@ -111,7 +112,7 @@ def _refuse_constant(name: str, stretches: Sequence[Stretch]) -> None:
     speed = np.concatenate([each.speed for each in stretches]) if stretches else np.zeros(1)
     if np.std(speed) <= _MOVES * np.max(np.abs(speed)):
         raise InsufficientDataError(
-            f"{name}: the speed hardly changes, so inertia and friction cannot be told apart",
+            f"{name}: the speed hardly changes, so inertia and friction cannot be separated",
             remedy=f"omit {MOVING.to()}",
             setting=MOVING,
         )
@@ -169,7 +170,7 @@ def _chosen(fits: Sequence[MovingLawFit], equations: Equations) -> MovingLawFit:
     """The simplest law, unless a larger one that is determined is beyond doubt."""
     best = fits[0]
     for each in fits[1:]:
-        if _determined(each, equations) and each.criterion() < best.criterion() - EVIDENCE:
+        if _determined(each, equations) and each.criterion() < best.criterion() - MOVING_EVIDENCE:
             best = each
     return best
 
@@ -238,7 +239,7 @@ def _parameters(fitted: MovingLawFit, freedom: float) -> list[MovingParameter]:
 
 
 def _refuse_no_friction(name: str, result: MovingFit, equations: Equations) -> None:
-    """Refuse what is no friction: torque that drives, or a load that the log does not hold."""
+    """Refuse what is not friction: torque that drives, or a load that the log does not hold."""
     if INERTIA in result and result[INERTIA].high < 0.0:
         raise InsufficientDataError(
             f"{name}: the moment of inertia would be negative, {result[INERTIA]} kg m^2. Something other "
@@ -253,7 +254,7 @@ def _refuse_no_friction(name: str, result: MovingFit, equations: Equations) -> N
     if np.any(friction <= 0.0) or result.explained < LEAST_EXPLAINED:
         raise InsufficientDataError(
             f"{name}: torque does not follow speed: friction and a constant explain "
-            f"{max(100 * result.explained, 0.0):.0f} % of its square. A load acts that is no friction, such "
-            "as a brake, gravity or the torque of a motor under test",
+            f"{max(100 * result.explained, 0.0):.0f} % of its square. Something other than friction "
+            "loads the drive, such as a brake, gravity or the torque of a motor under test",
             remedy="record the drive without that load",
         )

@@ -98,8 +98,9 @@ class MovingLaw:
         """The law of friction in words."""
         of = self.friction
         name = "Stribeck, Coulomb and viscous friction" if of.stribeck else "Coulomb and viscous friction"
-        apart = ", each direction apart" if of.apart else ""
-        return name + apart + (", thinner when warmer" if of.reference_kelvin is not None else "")
+        apart = ", each direction separately" if of.apart else ""
+        warm = ", viscosity falls with temperature" if of.reference_kelvin is not None else ""
+        return name + apart + warm
 
     @property
     def units(self) -> dict[str, str]:

@@ -38,8 +38,8 @@ def _one_way(equations: Equations) -> Warning | None:
         return None
     return Warning(
         "torque zero unknown",
-        "the drive moves in one direction only, so a torque zero cannot be told from Coulomb friction; it is "
-        "taken as 0",
+        "the drive moves in one direction only, so a torque zero cannot be separated from Coulomb friction; "
+        "it is taken as 0",
         severity="watch",
         remedy='record both directions, or set tare = "4 mN*m" under [torque] in hersey.toml',
     )

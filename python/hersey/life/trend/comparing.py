@@ -19,7 +19,9 @@ _COARSE, _FINE = 24, 32
 #: Logarithm of the likelihood below the greatest at which a value no longer counts.
 _FAINT = 12.0
 #: Parts of a record of which temperature is the mean.
-_PARTS = 10
+PARTS = 10
+#: Change of temperature, K, from which on it counts as a possible cause.
+WARM = 0.5
 #: Parameters of the noise: its variance, how long it lasts and how much of it does.
 _OF_NOISE = 3
 
@@ -43,7 +45,7 @@ class Data:
         kelvin = record.temperature
         blocks = blocks_of(record.age, record.time, record.value, kelvin, cuts)
         scale = float(record.age[-1])
-        last = 0.0 if kelvin is None else float(np.array_split(kelvin, _PARTS)[-1].mean())
+        last = 0.0 if kelvin is None else float(np.array_split(kelvin, PARTS)[-1].mean())
         age = blocks.age / scale
         return cls(record, blocks, noises(blocks), float(age[0]), age, scale, last)
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from hersey.arrays import FloatArray
-from hersey.life.trend.comparing import Data, Fitted, effective_rows
+from hersey.life.trend.comparing import WARM, Data, Fitted, effective_rows
 from hersey.life.trend.record import Record
 from hersey.life.trend.result import Jump
 from hersey.life.trend.shown import shown_age
@@ -16,12 +16,10 @@ from hersey.schema.warning import Warning
 
 #: A jump up by this share of friction may be a failure.
 _FAILURE = 0.2
-#: Share of a trend's squares that temperature follows, from which on the two cannot be told apart.
+#: Share of a trend's squares that temperature follows, from which on the two cannot be separated.
 _TOGETHER = 0.8
 #: Fewest independent values for a trend.
 _FEW = 8.0
-#: Change of temperature, K, that is worth a word.
-_WARM = 0.5
 
 
 def doubts_of(
@@ -46,20 +44,20 @@ def doubts_of(
 def _of_jump(jump: Jump, by: str) -> Warning:
     values: dict[str, Any] = {"age": jump.age, "change": jump.change.value, "at": shown_age(by, jump.age)}
     if jump.turned:
-        words = "friction differs by {change:+.0%} from {at} on, in the other direction of motion"
+        words = "friction differs by {change:+.0f %} from {at} on, in the other direction of motion"
         return Warning("jump with direction", words, severity="watch", **values)
     if jump.after_stop:
-        words = "friction jumped by {change:+.0%} at {at}, as the drive started again"
+        words = "friction jumped by {change:+.0f %} at {at}, as the drive started again"
         return Warning("jump after a stop", words, severity="watch", **values)
     if jump.change.value > _FAILURE:
         return Warning(
             "jump",
-            "friction rose suddenly by {change:+.0%} at {at}, faster than wear or heating does",
+            "friction rose suddenly by {change:+.0f %} at {at}, faster than wear or heating does",
             severity="act",
             remedy="look at the faces: the film may have broken down, or the parts seized",
             **values,
         )
-    words = "friction jumped by {change:+.0%} at {at}: contact, load or sensor changed suddenly"
+    words = "friction jumped by {change:+.0f %} at {at}: contact, load or sensor changed suddenly"
     return Warning("jump", words, severity="watch", remedy="look at what happened then", **values)
 
 
@@ -70,10 +68,10 @@ def _of_temperature(
     if kelvin is None:
         if not changing:
             return []
-        words = "no temperature is recorded, so heating cannot be told from run-in or wear"
+        words = "no temperature is recorded, so heating cannot be separated from run-in or wear"
         return [Warning("no temperature", words, severity="watch", remedy="record the temperature")]
     low, high = (float(each) for each in np.quantile(kelvin, [0.05, 0.95]))
-    if high - low < _WARM:
+    if high - low < WARM:
         return []
     values: dict[str, Any] = {"low": low, "high": high, "span": high - low}
     warm = float(weights[np.array([each.warm for each in fitting])].sum() / weights.sum())
@@ -134,12 +132,12 @@ def _of_rows(record: Record) -> list[Warning]:
     found = []
     if record.apart:
         words = (
-            "{rows} {rows:row|rows} with hardly any friction at the begin or end of the log "
+            "{rows} {rows:row|rows} with hardly any friction at the start or end of the log "
             "{rows:was|were} excluded"
         )
         found.append(Warning("faces apart", words, rows=record.apart))
     if record.other_speed:
-        words = "{rows} {rows:row|rows} at another speed, as of a start, {rows:was|were} excluded"
+        words = "{rows} {rows:row|rows} at another speed, e.g. during a start-up, {rows:was|were} excluded"
         found.append(Warning("another speed", words, rows=record.other_speed))
     if record.restarts.size:
         words = "the drive stopped {stops} {stops:time|times} within the log; age counts only while it turns"

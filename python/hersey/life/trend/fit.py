@@ -11,7 +11,7 @@ from hersey.arguments.door import Words
 from hersey.arrays import FloatArray, one_thread
 from hersey.damping.candidates.likelihood import EVIDENCE
 from hersey.errors import ParameterError
-from hersey.life.trend.comparing import Data, Draws, Fitted, effective_rows
+from hersey.life.trend.comparing import PARTS, WARM, Data, Draws, Fitted, effective_rows
 from hersey.life.trend.doubts import doubts_of
 from hersey.life.trend.jumps import with_jumps
 from hersey.life.trend.record import AGES, Record, record_of
@@ -29,10 +29,6 @@ from hersey.life.trend.shapes import shapes
 from hersey.log.torque_log import TorqueLog
 from hersey.units import argument, takes_si
 
-#: Change of temperature, K, from which on it counts as a possible cause.
-_WARM = 0.5
-#: Parts of a record of which temperature is the mean.
-_PARTS = 10
 #: Blocks that the fastest change that shows must last.
 _FASTEST = 1.5
 #: Weight that laws with a steady value must have, and greatest half width of its interval, as a share.
@@ -156,8 +152,8 @@ def _causes(kelvin: FloatArray | None) -> tuple[bool, ...]:
     """Whether temperature is left out, or tried, too, as a cause: it is if it changed."""
     if kelvin is None:
         return (False,)
-    means = [float(part.mean()) for part in np.array_split(kelvin, _PARTS)]
-    return (False, True) if max(means) - min(means) >= _WARM else (False,)
+    means = [float(part.mean()) for part in np.array_split(kelvin, PARTS)]
+    return (False, True) if max(means) - min(means) >= WARM else (False,)
 
 
 def _fastest(data: Data) -> float:

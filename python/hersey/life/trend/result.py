@@ -114,7 +114,7 @@ class FrictionTrend(Result):
         said = [f"{self.headline()}."]
         first, last = (friction_within(self.domain.unit, each) for each in (self.first, self.last))
         rate = rate_within(self.by, self.rate, self.last.value, self.last_age)
-        facts = [("at the begin, at the end", f"{first}, {last}"), ("rate over the last tenth", rate)]
+        facts = [("at the start, at the end", f"{first}, {last}"), ("rate over the last tenth", rate)]
         if self.kind == "constant":
             facts = [] if not self.jumps else facts[:1]
         if self.time_constant is not None:

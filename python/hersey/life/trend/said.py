@@ -90,7 +90,7 @@ def steady_ages(found: Weighed, share: float, random: np.random.Generator) -> Fl
 
 
 def _followed(found: Weighed) -> FloatArray:
-    """Ages at which curves are followed: denser at the begin, and at both sides of a jump."""
+    """Ages at which curves are followed: denser at the start, and at both sides of a jump."""
     start = found.data.start
     within = start + (1.0 - start) * np.linspace(0.0, 1.0, _WITHIN) ** 2
     beyond = np.geomspace(1.0, _FAR, _BEYOND)[1:]

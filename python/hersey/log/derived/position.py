@@ -1,4 +1,4 @@
-"""Speed from a position: unwrapped where it starts anew with every turn, and its slope over a window."""
+"""Speed from a position: unwrapped where it restarts at every turn, and its slope over a window."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ _TURN = 2.0 * np.pi
 #: Fewest changes that show a step, how near to a multiple of it they are, as many of them as that, and steps
 #: in a change at the most: any number is near a multiple of a small one.
 _FEWEST, _NEAR, _SHARE, _MOST_STEPS = 10, 0.05, 0.98, 1e4
-#: An angle starts anew with every turn if it spans no more than one, within this share, and jumps back by
+#: An angle restarts at every turn if it spans no more than one, within this share, and jumps back by
 #: more than half a turn.
 _WHOLE, _JUMP = 1.001, 0.5
 
 
 def unwrapped(angle: FloatArray) -> tuple[FloatArray, int]:
-    """Return an angle, rad, that goes on where it starts anew with every turn, and how often it did so."""
+    """Return an angle, rad, that goes on where it restarts at every turn, and how often it did so."""
     known = np.isfinite(angle)
     if not known.any() or np.ptp(angle[known]) > _WHOLE * _TURN:
         return angle, 0

@@ -64,7 +64,7 @@ def sheets_of(file: BinaryIO) -> dict[str, pl.DataFrame]:
         sheet_id=0,
         engine="calamine",
         has_header=False,
-        # as text: a word in a column of numbers costs its row alone
+        # as text: a word in a column of numbers drops only its row
         read_options={"dtypes": "string", "skip_rows": 0},
         drop_empty_rows=False,
         drop_empty_cols=False,

@@ -66,11 +66,6 @@ class Pattern:
         """Placeholders of numbers."""
         return tuple(part.text for part in self.parts if part.kind == "number")
 
-    @property
-    def names_channels(self) -> bool:
-        """Whether it has a placeholder for the name of a channel."""
-        return any(part.kind == "channel" for part in self.parts)
-
     def match(self, text: str) -> Found | None:
         """Return what a text holds, or None if it does not match."""
         plain = _plain(text[: _LONGEST_LINE + 1])
