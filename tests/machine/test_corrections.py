@@ -158,6 +158,11 @@ def test_the_corrected_value_is_the_one_meant(
         ('mass = "11 kg"', 'mass = "11 kg"\nmass = "12 kg"', "line 5: the key 'mass' is already in line 4"),
         ("[limits]", "[drivetrain]", r"line 8: the table \[drivetrain\] is already in line 2"),
         ('"3 mm/s"', '"1 mm/s to 4 mm/s"', r'line 6: .* "2 mm/s".*\[uncertainty\]: stick_speed = "1 mm/s to'),
+        (
+            '"3 mm/s"',
+            '"0.01 rad/s to 0.04 rad/s"',
+            r'line 6: .* "0.02 rad/s".*\[uncertainty\]: stick_speed = "0.01 rad/s to',
+        ),
         ('stick_speed = "3 mm/s"\n', "", 'line 2: .* Add e.g. stick_speed = "'),
         (
             '"11 N/mm"',

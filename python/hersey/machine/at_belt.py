@@ -11,9 +11,10 @@ from pydantic import ValidationInfo
 from hersey.errors import HerseyError, UnitError
 from hersey.files.toml import Quantity
 from hersey.machine.rotational import has_angle, turning_at_radius
-from hersey.machine.uncertainty import read_uncertainty
+from hersey.machine.uncertainty import range_ends, read_uncertainty
 from hersey.motion.parameters import OF_THE_BELT
 from hersey.units import KINDS, convert, parse
+from hersey.units.spelling import NUMBER
 
 #: Standard gravity, m/s^2.
 _GRAVITY = 9.80665
@@ -57,7 +58,7 @@ class AtBelt(Quantity):
                 return turning
             key = str(info.field_name)
             meant = (
-                self._range(given, key)
+                self._range(given, key, info.context.document)
                 or self._known_to(given, key)
                 or self._converted(given, info.context.document)
             )
@@ -65,17 +66,20 @@ class AtBelt(Quantity):
                 raise UnitError(f"is {given}, {meant}") from None
             raise
 
-    def _range(self, given: object, key: str) -> str:
+    def _range(self, given: object, key: str, document: Any) -> str:
         """What to say of a range; nothing if it is none."""
         if key not in OF_THE_BELT:
             return ""
         try:
-            limits = read_uncertainty(key, given).limits
+            # the unit that was typed is proposed, so any radius will do
+            limits = read_uncertainty(key, given, roll_radius=_radius(document) or 1.0).limits
         except HerseyError:
             return ""
-        if limits is None:
+        ends = range_ends(str(given))
+        low = re.match(rf"({NUMBER})\s*(.*)", ends[0]) if ends else None
+        if limits is None or low is None:
             return ""
-        middle = self._written(math.sqrt(limits[0] * limits[1]))
+        middle = f"{float(low[1]) * math.sqrt(limits[1] / limits[0]):.4g} {low[2]}"
         return f'a range. Write one value here, e.g. "{middle}", and below [uncertainty]: {key} = "{given}"'
 
     def _known_to(self, given: object, key: str) -> str:
