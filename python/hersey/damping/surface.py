@@ -220,7 +220,7 @@ class DampingSurface(FittedLaw):
         ParameterError
             If a no-load torque is stated, but the fit is of the whole torque.
         """
-        self.domain.require_torque("the drag on a belt")
+        self.domain.require_torque("the drag")
         self.refuse_whole_torque(rest)
         self._warn_of(temperature, stick_speed_temperature)
         sticking: dict[str, Any] = {
@@ -330,7 +330,7 @@ class DampingSurface(FittedLaw):
         self, count: int, seed: int, *, roll_radius: float, temperature: float | None = None, **sticking: Any
     ) -> tuple[dict[str, FloatArray], tuple[Warning, ...]]:
         """Return the draws of `drag_samples` and its warnings; for threads, which share warnings."""
-        self.domain.require_torque("the drag on a belt")
+        self.domain.require_torque("the drag")
         self.refuse_whole_torque(sticking.pop("rest", None))
         if self.transition is None:
             raise InsufficientDataError(
