@@ -253,8 +253,9 @@ def test_a_notebook_gets_the_function() -> None:
 
 def test_all_logs_of_one_speed_are_in_the_line(tmp_path: Path) -> None:
     for seed in (1, 2):
-        frame(0.4 + 0.01 * noise(seed)).write_csv(tmp_path / f"{seed}.csv")
-    done = run("fit", "1.csv", "2.csv", "--isothermal", "--min-dwell", "3 s", cwd=tmp_path)
+        frame(0.4 + 0.001 * TIME + 0.01 * noise(seed)).write_csv(tmp_path / f"{seed}.csv")
+    done = run("fit", "1.csv", "2.csv", "--isothermal", "--min-dwell", "100 s", cwd=tmp_path)
+    assert "1.csv and 1 more: no dwell found" in done.stderr
     assert done.stderr.rstrip().endswith("type: hersey trend 1.csv 2.csv --isothermal")
 
 
