@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -182,3 +183,63 @@ def test_no_load_is_said_once(tmp_path: Path) -> None:
     without = Recipe(logs=(log,)).points(drive)
     whole = Recipe(logs=(log,)).points()
     np.testing.assert_allclose(without.column("torque"), whole.column("torque") - 0.01, rtol=1e-12)
+
+
+MEANS = "n [rpm],M [mN*m],way,x [deg]\n10,20,1,1\n20,25,1,2\n40,30,-1,3\n80,38,-1,4\n"
+
+
+@pytest.mark.parametrize(
+    ("mapping", "given", "omit"),
+    [
+        ('[direction]\nchannel = "way"\n', {}, r"\[direction\] channel in hersey.toml"),
+        ('[names]\npattern = "{load} N.csv"\n', {}, r"\[names\] pattern in hersey.toml"),
+        ('[position]\nchannel = "x"\n', {"means": True}, r"\[position\] channel in hersey.toml"),
+        ("", {"name_pattern": "{load} N.csv"}, "name_pattern"),
+        ("", {"position_window": 0.2}, "position_window"),
+        ("", {"channels": {"direction": "way"}, "means": True}, r"channels=\{'direction': ...\}"),
+    ],
+)
+def test_a_table_of_means_takes_nothing_in_the_place_of_a_column(
+    mapping: str, given: dict[str, Any], omit: str, tmp_path: Path
+) -> None:
+    (tmp_path / "5 N.csv").write_text(MEANS)
+    (tmp_path / "hersey.toml").write_text(mapping)
+    recipe = Recipe(logs=(tmp_path / "5 N.csv",), isothermal=True)
+    says = f"a table of means holds its speed, sign and load as columns. Write them there, and omit {omit}$"
+    with pytest.raises(ParameterError, match=says):
+        replace(recipe, **given).log()
+    (tmp_path / "hersey.toml").write_text("")
+    assert recipe.log().rows == 4
+
+
+def test_corrections_of_a_table_of_means_are_named_as_they_were_given(tmp_path: Path) -> None:
+    (tmp_path / "means.csv").write_text(MEANS)
+    recipe = Recipe(logs=(tmp_path / "means.csv",), isothermal=True)
+    with pytest.raises(ParameterError, match=r"^gear_ratio and speed_gear_ratio cannot .* omit gear_ratio"):
+        replace(recipe, gear_ratio=10.0, speed_gear_ratio=10.0).log()
+    (tmp_path / "hersey.toml").write_text("[torque]\ngear_ratio = 10\n")
+    with pytest.raises(ParameterError, match=r"^hersey\.toml contains corrections"):
+        recipe.log()
+
+
+def test_the_unit_of_a_current_outranks_that_of_the_mapping(tmp_path: Path) -> None:
+    time = np.arange(400) * 0.05
+    rows = "".join(f"{t:.2f},2.0,{100 * (1 + t // 10):g}\n" for t in time)
+    (tmp_path / "log.csv").write_text("t [s],I,n [rpm]\n" + rows)
+    (tmp_path / "hersey.toml").write_text('[torque]\nunit = "N*m"\n')
+    log = Recipe(
+        logs=(tmp_path / "log.csv",),
+        channels={"torque": "I"},
+        units={"torque": "A"},
+        torque_constant=0.11,
+        isothermal=True,
+    ).log()
+    np.testing.assert_allclose(log.runs[0].torque, 0.22)
+
+
+def test_a_zero_error_of_a_torque_is_none_of_a_friction_force(tmp_path: Path) -> None:
+    log = friction(tmp_path)
+    (tmp_path / "hersey.toml").write_text('[torque]\nzero_error = "0.1 N*m"\n')
+    with pytest.raises(ParameterError, match=r"^\[torque\] zero_error needs a torque, .* a friction force"):
+        Recipe(logs=(log,)).log()
+    assert Recipe(logs=(log,), radius=0.025).log().sensors.torque_zero == 0.1

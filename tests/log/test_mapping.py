@@ -147,6 +147,41 @@ def test_a_no_load_log_beside_the_mapping_is_subtracted(tmp_path: Path) -> None:
     assert "dwells of free.csv" in str(done.corrections[-1])
 
 
+def test_a_no_load_log_is_read_by_the_schedule_of_its_mapping(tmp_path: Path) -> None:
+    steps = '[[schedule]]\nfrom = "0 s"\nto = "20 s"\nspeed = "60 rpm"\n'
+    write(tmp_path / "free.csv", "t [s],Torque [N*m]", 0.1)
+    path = write(tmp_path / "5 N.csv", "t [s],Torque [N*m]", 0.5)
+    text = '[torque]\nno_load = "free.csv"\n[names]\npattern = "{load} N.csv"\n'
+    (tmp_path / FILE_NAME).write_text(text + steps)
+    np.testing.assert_allclose(read_with_mapping(path, isothermal=True).log.runs[0].torque, 0.4)
+
+
+def test_a_no_load_log_is_read_by_the_names_of_its_mapping(tmp_path: Path) -> None:
+    write(tmp_path / "free_60 rpm.csv", "t [s],Torque [N*m]", 0.1)
+    path = write(tmp_path / "film_60 rpm.csv", "t [s],Torque [N*m]", 0.5)
+    text = '[torque]\nno_load = "free_60 rpm.csv"\n[names]\npattern = "*_{speed} rpm.csv"\n'
+    (tmp_path / FILE_NAME).write_text(text)
+    np.testing.assert_allclose(read_with_mapping(path, isothermal=True).log.runs[0].torque, 0.4)
+
+
+def test_a_no_load_log_is_read_by_the_layout_of_its_mapping(tmp_path: Path) -> None:
+    header = "a,b,c\nt [s],Torque [N*m],n [rpm]\nx,y,z"
+    write(tmp_path / "free.csv", header, 0.1, 5.0)
+    path = write(tmp_path / "film.csv", header, 0.5, 5.0)
+    text = '[torque]\nno_load = "free.csv"\n[layout]\nheader_line = 2\nfirst_row = 4\n'
+    (tmp_path / FILE_NAME).write_text(text)
+    np.testing.assert_allclose(read_with_mapping(path, isothermal=True).log.runs[0].torque, 0.4)
+
+
+def test_a_zero_error_in_newton_metres_is_none_of_a_friction_force(tmp_path: Path) -> None:
+    path = write(tmp_path / "wear.csv", "t [s],Friction force [N],v [mm/s]", 5.0, 20.0)
+    (tmp_path / FILE_NAME).write_text('[torque]\nzero_error = "0.1 N*m"\n')
+    with pytest.raises(ParameterError, match=r"^\[torque\] zero_error needs a torque, .* a friction force"):
+        read_with_mapping(path, isothermal=True)
+    done = read_with_mapping(path, isothermal=True, radius=0.025)
+    assert done.log.sensors.torque_zero == 0.1
+
+
 BAD = {
     "a table that is not known": ('[torqe]\nchannel = "x"\n', "unknown table 'torqe'"),
     "a key that is not known": ('[torque]\ngear = 2\n', r"\[torque\] has an unknown key 'gear'"),

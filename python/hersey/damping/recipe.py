@@ -36,7 +36,13 @@ from hersey.files.toml import Quantity, Table, quoted, read_tables
 from hersey.log import TorqueLog
 from hersey.log.as_torque import log_as_torque
 from hersey.log.mapping import LogMapping, Motor, mapping_of, read_with_mapping
-from hersey.log.means import MeansTable, is_means_table, read_means, refuse_corrections
+from hersey.log.means import (
+    MeansTable,
+    is_means_table,
+    read_means,
+    refuse_corrections,
+    refuse_sources,
+)
 from hersey.log.sensors import Sensors
 from hersey.log.text.delimited import Progress
 from hersey.result import json_record
@@ -286,7 +292,12 @@ class Recipe:
     @property
     def chosen(self) -> LogMapping:
         """The mapping by which the logs are read."""
-        return self._motor.added(mapping_of(self.logs, self.mapping), {}, {})[0]
+        return self._asked[0]
+
+    @property
+    def _asked(self) -> tuple[LogMapping, dict[str, str], dict[str, str]]:
+        """The mapping, and the channels and units that are given beside it."""
+        return self._motor.added(mapping_of(self.logs, self.mapping), self.channels, self.units)
 
     @property
     def _motor(self) -> Motor:
@@ -298,12 +309,12 @@ class Recipe:
         rows = {"time", "run", "position", "direction"} & self.channels.keys()
         if self.means or self.every is not None or self.schedule or rows:
             return self.means
-        mapping = self.chosen
+        mapping, channels, units = self._asked
         if mapping.schedule is not None or mapping.position.channel:
             return False
         if mapping.time.every is not None or mapping.layout is not None:
             return False
-        channels, units = mapping.channels | self.channels, mapping.units | self.units
+        channels, units = mapping.channels | channels, mapping.units | units
         return all(is_means_table(path, channels, units) for path in self.logs)
 
     def save(self, path: str | Path, *, overwrite: bool = False) -> None:
@@ -398,7 +409,9 @@ class Recipe:
 
     def _means(self) -> MeansTable:
         mapping = self.chosen
-        refuse_corrections(mapping.corrects, str(mapping.source and mapping.source.name))
+        by_hand = [Setting(name).to() for name, value in vars(self._motor).items() if value is not None]
+        refuse_corrections(mapping.corrects, str(mapping.source and mapping.source.name), by_hand)
+        refuse_sources(self._sources(mapping))
         stated = {
             role: getattr(self, role) or (None if role in self.channels else getattr(mapping.stated, role))
             for role in ("radius", "load")
@@ -411,7 +424,25 @@ class Recipe:
             signs=self.signs,
             **stated,
         )
+        if mapping.torque.zero_error is not None:
+            table.domain.require_torque("[torque] zero_error")
         return replace(table, sensors=mapping.sensors)
+
+    def _sources(self, mapping: LogMapping) -> list[str]:
+        """What says of channels what no column holds."""
+        options = ("name_pattern", "schedule", "position_window")
+        roles = ("direction", "position")
+        stated = {
+            "[names] pattern": mapping.names.pattern,
+            "[[schedule]]": mapping.schedule,
+            "[direction] channel": mapping.direction.channel,
+            "[position] channel": mapping.position.channel,
+        }
+        return [
+            *(Setting(name).to() for name in options if getattr(self, name)),
+            *(Setting(role, "channel").to() for role in roles if role in self.channels),
+            *(f"{key} in {mapping.source and mapping.source.name}" for key, value in stated.items() if value),
+        ]
 
     def _dwells(self, log: TorqueLog | MeansTable) -> SteadyPoints:
         if isinstance(log, MeansTable):

@@ -61,6 +61,8 @@ from hersey.units import registry, takes_si
 FILE_NAME = "hersey.toml"
 _SUFFIX = ".hersey.toml"
 _ALL_ROLES = (*ROLES, *OTHER_ROLES)
+#: Sources of a log whose name states nothing.
+_NO_NAMES = {"name_pattern": None, "name_decimal": None}
 #: Keys of a role that state no correction.
 _NO_CORRECTIONS = ("channel", "unit", "gain_error", "zero_error", "film_heating")
 
@@ -175,7 +177,7 @@ class LogMapping(_Roles):
         torque, speed, temperature = self.torque, self.speed, self.temperature
         if isinstance(torque.no_load, Path):
             channels, units = map(_without_temperature, (self.channels, self.units))
-            given = vars(self.stated)
+            given = vars(self.stated) | self._sources_without_film
             other = read(torque.no_load, channels=channels, units=units, isothermal=True, **given)
             done = corrections.no_load(done, torque=self._at_the_sensor(other))
         elif torque.no_load:
@@ -194,6 +196,12 @@ class LogMapping(_Roles):
         if done.log.has_temperature and temperature.offset:
             done = corrections.temperature_offset(done, offset=temperature.offset)
         return done
+
+    @property
+    def _sources_without_film(self) -> dict[str, Any]:
+        """`sources` of a log without the film, whose name need not state load or temperature."""
+        named = {} if re.search(r"\{\s*(speed|radius)\b", self.names.pattern) else _NO_NAMES
+        return self.sources | named
 
     def _at_the_sensor(self, log: Any) -> Corrected:
         done = Corrected(log)
@@ -344,7 +352,7 @@ def read_with_mapping(
                 **sources,
                 progress=progress,
             )
-        done = chosen.correct(log)
+            done = chosen.correct(log)
     except HerseyError as error:
         if chosen.layout is None and len(files) == 1:
             with_advice = with_layout(error, Path(files[0]), channels, units)
@@ -353,6 +361,8 @@ def read_with_mapping(
         if chosen.source is None or not isinstance(error, ChannelError | UnitError):
             raise
         raise error.saying(f"{error.reason} (channels and units come from {chosen.source.name})") from None
+    if chosen.torque.zero_error is not None:
+        done.log.domain.require_torque("[torque] zero_error")
     logged = tuple(_as_written(file, chosen) for file in log.files)
     return Corrected(replace(done.log, files=logged, sensors=chosen.sensors), done.corrections)
 
