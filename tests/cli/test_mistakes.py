@@ -297,10 +297,9 @@ MISTAKES: dict[str, Mistake] = {
         {"log.csv": named(1, "Current [A]")}, "fit log.csv", ("no torque column", "motor current")
     ),
     "torque in newtons": Mistake(
-        {"log.csv": named(1, "Torque [N]")}, "fit log.csv", ("'Torque [N]' is a force", "radius")
-    ),
-    "a friction coefficient alone": Mistake(
-        {"log.csv": named(1, "COF")}, "fit log.csv", ("'COF' is a friction coefficient", "normal load")
+        {"log.csv": named(1, "Torque [N]")},
+        "fit log.csv",
+        ("'Torque' is called a torque", "--torque-unit 'N'"),
     ),
     "negative torque in mN m": Mistake(
         {"log.csv": table(column(1, lambda x: -1000 * x), HEADER[0], "Torque [mN*m]", *HEADER[2:])},

@@ -47,7 +47,7 @@ def test_spikes_are_named_with_their_number_and_size() -> None:
     assert "check the cable" in points.dropped()
 
 
-@pytest.mark.parametrize(("per_turn", "said"), [(1.0, "once per roll"), (2.0, "2 times per roll")])
+@pytest.mark.parametrize(("per_turn", "said"), [(1.0, "once per rev"), (2.0, "2 times per rev")])
 def test_a_ripple_of_the_roll_is_named(per_turn: float, said: str) -> None:
     with pytest.raises(InsufficientDataError, match=said) as caught:
         log(lambda torque: torque * (1.0 + 0.6 * np.sin(per_turn * ANGLE))).steady()

@@ -40,7 +40,7 @@ HELD = 1000  # rows of a dwell, at 10 Hz
 @pytest.fixture
 def short(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let a few hundred rows count as long."""
-    for module in (long_arrays, friction):
+    for module in (long_arrays, friction, counted_speed):
         monkeypatch.setattr(module, "HELD", 512)
     monkeypatch.setattr(long_arrays, "BLOCK", 256)
     monkeypatch.setattr(long_arrays, "_LET_GO", 1024)

@@ -57,7 +57,8 @@ def fitted(
         points = reading.points(logs, log, machine)
         return Fitted(points, fit(points, temperature_scale=reading.temperature_scale), None)
     except InsufficientDataError as error:
-        if not isinstance(log, TorqueLog) or not _moves(log, points, error) or reading.tare != "none":
+        asked = (reading.tare, reading.rotation) != ("none", "both")
+        if asked or not isinstance(log, TorqueLog) or not _moves(log, points, error):
             raise
         try:
             moving = reading.recipe(logs).moving_fit(log)

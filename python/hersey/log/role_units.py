@@ -12,6 +12,7 @@ from hersey.log.roles import (
     ROLES,
     channels_to,
     could_be,
+    is_called,
     is_named,
     role_conversion,
 )
@@ -66,7 +67,7 @@ def with_unit(
             setting=Setting(role, "unit"),
         )
     try:
-        line = role_conversion(role, unit)[1]
+        kind, line = role_conversion(role, unit)
     except UnitError as error:
         swapped = _swapped(role, column, unit, columns, taken)
         unlike = swapped[1] or is_signal(unit) or (role == "speed" and of_encoder(unit))
@@ -77,7 +78,20 @@ def with_unit(
             setting=Setting(role, "unit"),
             likely="" if unlike else nearest_unit(ROLE_KINDS[role][0], unit),
         ) from None
+    if role == "torque" and kind == "force" and not given and is_called(role, column):
+        raise _called_a_torque(column, unit, file)
     return column, replace(line, scale=line.scale * _signal_in(role, column, unit, file))
+
+
+def _called_a_torque(column: Column, unit: str, file: str) -> UnitError:
+    """The error of a column called a torque whose unit is that of a force: one of both is a slip."""
+    of = Setting("torque", "unit")
+    return UnitError(
+        f"{file}: column '{column.path}' is called a torque, but its unit is that of a force",
+        columns=(column.index,),
+        remedy=f"use {of.to('N*m')}, or {of.to(unit)} if it is a friction force",
+        setting=of,
+    )
 
 
 def _signal_in(role: str, column: Column, unit: str, file: str) -> float:

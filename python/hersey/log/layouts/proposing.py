@@ -65,7 +65,8 @@ def with_layout(
     """Return the error of a log with the advice to read it by a layout, if one is known; else as it is."""
     if isinstance(error, MissingFileError | ParameterError) or not path.is_file():
         return error
-    if proposed_layout(path, channels, units) is None:
+    found = proposed_layout(path, channels, units)
+    if found is None or isinstance(error, UnitError):
         return error
     again = error.saying(error.reason)
     again.setting, again.likely = None, ""
