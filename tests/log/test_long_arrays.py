@@ -14,7 +14,7 @@ import pytest
 
 import hersey
 from hersey.arrays import FloatArray
-from hersey.damping.dwells import noise, resolution, ripple, segments
+from hersey.damping.dwells import counted_speed, noise, resolution, ripple, segments
 from hersey.log import exchanged, friction, impossible, long_arrays, middle
 from hersey.log.long_arrays import (
     Filling,
