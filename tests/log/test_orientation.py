@@ -128,6 +128,11 @@ def test_names_may_end_with_their_units(tmp_path: Path) -> None:
     np.testing.assert_array_equal(named.torque, run.torque)
 
 
+def test_a_unit_with_a_stroke_may_end_a_name(tmp_path: Path) -> None:
+    path = written(tmp_path, f"t_s,torque_N*m,speed_rad/s,temp_degC\n{ROWS}\n")
+    assert list_channels(path)[1:3] == [("torque", "N*m"), ("speed", "rad/s")]
+
+
 def test_names_that_differ_only_in_their_units_stay_whole(tmp_path: Path) -> None:
     path = written(tmp_path, f"t_s,M_Nm,n_rpm,temp_degC,temp_K\n{ROWS.replace(',150', ',150,423')}\n")
     assert list_channels(path)[3:] == [("temp_degC", "degC"), ("temp_K", "K")]
