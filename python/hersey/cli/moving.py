@@ -30,7 +30,7 @@ _SMALL = {
     "1/K": ("1/K", "1/kK"),
 }
 #: Share of the rows in dwells below which a log moves all the time.
-_HELD = 0.2
+_HELD = 0.3
 #: A number below this is shown in the smaller unit.
 _BELOW = 0.1
 

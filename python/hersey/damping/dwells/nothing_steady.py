@@ -29,6 +29,9 @@ _HELD = 0.9
 _TOO_BRIEF, _RARER = 1.0, 50
 #: Share of the rows in which speed holds for a moment, as on the crests of sines, of a log that moves.
 _CRESTS = 0.3
+#: Parts of a least dwell over which speed is averaged, change between two of them, as a share of the greatest
+#: speed, that is motion, and share of such changes of a log that moves.
+_PARTS, _CHANGE, _MOST_CHANGE = 8, 0.02, 0.5
 #: Rows from which a log without dwells may be fitted as it moves.
 _TO_FIT = 300
 #: A log of so many dwells of the usual duration is long enough: the duration asked for is the mistake.
@@ -71,8 +74,18 @@ def nothing_steady(
     if one and not over:
         return of_one_speed(said, log)
     brief = sum(r.rows for r in held) < _CRESTS * log.rows
-    moves = not over and (brief or _runs_up_and_down(log, rejected))
+    moves = not over and (brief or _runs_up_and_down(log, rejected) or _moves_on(log, asked.min_dwell))
     return InsufficientDataError(said, setting=MOVING if moves else None)
+
+
+def _moves_on(log: TorqueLog, min_dwell: float) -> bool:
+    """Whether the speed changes from moment to moment, as in sines, and not in steps."""
+    changes = []
+    for run in log.runs:
+        rows = max(int(min_dwell / _PARTS / run.sampling_interval), 1)
+        whole = run.speed[: run.speed.size // rows * rows].reshape(-1, rows).mean(axis=1)
+        changes.append(np.abs(np.diff(whole)) > _CHANGE * float(np.max(np.abs(run.speed))))
+    return bool(np.mean(np.concatenate(changes)) > _MOST_CHANGE)
 
 
 def _in_short(alike: list[Reason]) -> str:

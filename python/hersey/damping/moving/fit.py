@@ -246,6 +246,13 @@ def _refuse_no_friction(name: str, result: MovingFit, equations: Equations) -> N
             "than friction and inertia loads the drive, such as gravity or a spring",
             remedy="record the drive without that load",
         )
+    apart = [name for name in ("T_C+", "T_C-") if name in result and result[name].low <= 0.0]
+    if apart:
+        raise InsufficientDataError(
+            f"{name}: Coulomb friction would vanish in one direction alone, {apart[0]} = {result[apart[0]]} N m. "
+            "Something other than friction loads the drive, such as gravity",
+            remedy="record the drive without that load",
+        )
     fast = np.array([result.speed_range[1], -result.speed_range[1]])
     ways = fast[[np.any(equations.speed > 0), np.any(equations.speed < 0)]]
     friction = np.sign(ways) * result.friction(ways)
