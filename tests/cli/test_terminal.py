@@ -87,7 +87,7 @@ TYPED: dict[str, list[list[str]]] = {
         [LOG, "--at", "20 rpm", "--out", f"{IN_FILE}-trend.csv"],
         [LOG],
         [LOG, "--at", HOSTILE],
-        [LOG, "--by", HOSTILE],
+        [LOG, "--at", "20 rpm", "--by", HOSTILE],
     ],
     "compare": [[LOG, OTHER]],
     "campaign": [
