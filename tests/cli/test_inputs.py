@@ -63,6 +63,10 @@ def test_a_map_and_a_plan_never_replace_what_they_read(bench_csv: Path, tmp_path
         "plan none.toml none.csv --target 1 --figure kept.svg",
         "cycles none.csv --figure kept.svg",
         "sweep none.toml --out kept.csv",
+        "coastdown none.csv --inertia 1 --points kept.csv",
+        "coastdown none.csv --inertia 1 --figure kept.svg",
+        "trend none.csv --out kept.csv",
+        "trend none.csv --figure kept.svg",
         "campaign export none.hersey --out kept.csv",
         "export fmu none.json none.toml --out kept.fmu",
         "life none.hersey --machine none.toml --out kept.html",
@@ -114,6 +118,10 @@ def test_outputs_are_refused_before_inputs_are_read(typed: str, tmp_path: Path) 
         ("posterior none.csv --machine none.toml --out d.xlsx", ".csv, .parquet or .nc"),
         ("sweep none.toml --out s.xlsx", ".csv, .parquet or .zarr"),
         ("fit none.csv --each f.xlsx", ".csv or .parquet"),
+        ("coastdown none.csv --inertia 1 --points c.xlsx", ".csv"),
+        ("coastdown none.csv --inertia 1 --figure c.jpg", ".html, .png, .svg or .pdf"),
+        ("trend none.csv --out t.xlsx", ".csv"),
+        ("trend none.csv --figure t.jpg", ".html, .png, .svg or .pdf"),
         ("campaign export none.hersey --out d.xlsx", ".csv or .parquet"),
         ("export fmu none.json none.toml --out d.zip", ".fmu"),
         ("new none.csv --machine m.json", ".toml"),
@@ -137,7 +145,7 @@ def test_every_verb_that_writes_is_refused_above() -> None:
     """A new option that writes a file belongs on the list."""
     (marks,) = test_outputs_are_refused_before_inputs_are_read.pytestmark  # type: ignore[attr-defined]
     listed = {(line.split()[0], flag) for line in marks.args[1] for flag in line.split() if "--" in flag}
-    outputs = {"--out", "--figure", "--figures", "--csv", "--truth"}
+    outputs = {"--out", "--figure", "--figures", "--csv", "--truth", "--points"}
     writes = {
         (name, flag)
         for name in VERBS

@@ -23,6 +23,7 @@ from tests.life import shipped
 
 EXAMPLES = ROOT / "examples"
 BENCH = [str(EXAMPLES / "bench.csv"), "--tare", "standing"]
+COAST = [str(EXAMPLES / "coast-down.csv"), "--inertia", "0.012 kg*m^2"]
 MACHINE = str(EXAMPLES / "machine.toml")
 #: Each verb with an input that keeps it busy, and roughly how long on a quiet machine, s.
 TYPED: dict[str, tuple[list[str], float]] = {
@@ -42,6 +43,8 @@ TYPED: dict[str, tuple[list[str], float]] = {
     ),
     "posterior": ([BENCH[0], "--machine", MACHINE, "--tare", "standing"], 6.0),
     "warmup": ([MACHINE, *BENCH, "--target", "200 mm/s", "--from", "20 degC", "--out", "w.csv"], 3.0),
+    "coastdown": ([*COAST, "--points", "c.csv", "--figure", "c.png"], 2.5),
+    "trend": ([BENCH[0], "--at", "60 rpm", "--out", "t.csv", "--figure", "t.png"], 3.0),
     "compare": ([*BENCH, BENCH[0], "--json"], 2.5),
     "campaign": (["add", "life.hersey", *BENCH, "--unit", "F12", "--age", "120000 pages"], 2.0),
     "life": (["units.hersey", "--machine", MACHINE, "--out", "l.html", "--figures", "pictures"], 6.0),

@@ -40,6 +40,7 @@ ARGUMENTS: dict[str, list[str]] = {
     "design": [BENCH, *TARE, "--count", "1"],
     "coastdown": [str(EXAMPLES / "coast-down.csv"), "--inertia", "0.012 kg*m^2"],
     "compare": [BENCH, BENCH, *TARE],
+    "trend": [BENCH, "--at", "60 rpm"],
     "campaign": ["check", "CAMPAIGN"],
     "life": ["LIFE", "--machine", MACHINE],
     "cycles": [TRACE, "--drive-speed", "20 mm/s", "--identify", "--closures", "retained"],
@@ -142,7 +143,8 @@ def test_a_printed_fit_is_read_back(files: dict[str, str]) -> None:
 
 
 def test_what_a_fit_prints_stands_in_the_document() -> None:
-    assert set(part_of(PRINTED["fit"]).model_fields) <= set(Analysis.model_fields)
+    """All but the fit to every sample, which no report shows."""
+    assert set(part_of(PRINTED["fit"]).model_fields) - set(Analysis.model_fields) == {"moving"}
 
 
 def test_every_part_says_what_it_is() -> None:
@@ -176,7 +178,9 @@ def test_fit_builds_no_simulation(files: dict[str, str], monkeypatch: pytest.Mon
     monkeypatch.setattr(simulation, "stick_slip", refuse)
     monkeypatch.setattr(simulation, "simulate", refuse)
     assert Path(files["FIT"]).exists()
-    assert set(printed(["fit", BENCH, *TARE])) == HEADER | {"warnings", "files", "points", "fit", "regime"}
+    told = printed(["fit", BENCH, *TARE])
+    assert set(told) == HEADER | {"warnings", "files", "points", "fit", "regime", "friction", "moving"}
+    assert told["moving"] is None
 
 
 def test_a_simulation_with_heat_prints_its_temperatures(files: dict[str, str]) -> None:

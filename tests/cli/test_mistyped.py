@@ -439,7 +439,7 @@ def test_where_there_is_no_machine_file_the_line_that_writes_one_is_named(typed:
     assert "machine.toml" not in refused.stderr
     line = shlex.split(refused.stderr.rpartition("type: ")[2].replace("LOG", "a.csv"))
     assert line == ["hersey", "new", "a.csv"]
-    answers = ["", "", "", "", "", "", "", "", "11 N/mm", "11 kg", "15 mm", "3 mm/s", ""]
+    answers = ["", "", "", "", "", "", "", "", "belt", "11 N/mm", "11 kg", "15 mm", "3 mm/s", ""]
     written = run(*line[1:], cwd=tmp_path, answers="\n".join([*answers, *[""] * 12, ""]))
     assert written.returncode == 0, written.stderr
     assert (tmp_path / "machine.toml").is_file()

@@ -20,7 +20,7 @@ from tests.cli.command import HERSEY, run
 from tests.cli.test_bad_input import staircase, text
 from tests.life.test_campaign import means
 
-#: Eight answers about channels, all as proposed; then the machine, one point.
+#: Eight answers about channels, all as proposed; then what slides, the machine, one point.
 CHANNELS = [""] * 8
 MACHINE = [
     "",
@@ -179,18 +179,23 @@ def test_by_hand_one_stick_speed_is_asked_for_its_range_and_a_point_gets_a_name(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(Asking, "by_hand", True)
-    answers = [*MACHINE[:3], "2 mm/s", "± 50 %", MACHINE[4], *MACHINE[5:7], "", ""]
+    answers = [*MACHINE[:4], "2 mm/s", "± 50 %", MACHINE[5], *MACHINE[6:8], "", ""]
     assert run("new", cwd=folder, answers=lines(*answers)).returncode == 0
     machine = read_machine(folder / "machine.toml")
     assert (machine.stick_speed, machine.uncertainty["stick_speed"].share) == (0.002, 0.5)
     assert machine.points[0].name == "200 mm/s at 180 degC"
-    answers[4] = "1 mm/s to 4 mm/s"
+    answers[5] = "1 mm/s to 4 mm/s"
     assert run("new", "--force", cwd=folder, answers=lines(*answers)).returncode == 0
     assert read_machine(folder / "machine.toml").uncertainty["stick_speed"].limits == (0.001, 0.004)
 
 
 def test_in_a_terminal_a_wrong_answer_is_asked_again_and_ctrl_c_leaves_nothing(folder: Path) -> None:
     terminal = Terminal(folder, "new", "--machine", "m.toml")
+    terminal.until("part (")
+    terminal.type("bread")
+    terminal.until("part is 'bread'. Write 'drive', 'belt', 'joint'")
+    terminal.until("part (")
+    terminal.type("")
     terminal.until("k stiffness")
     terminal.type("11")
     terminal.until("'11' has no unit: write '11 N/mm', for example")

@@ -48,6 +48,8 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (folder / f"{IN_FILE}2.csv").write_text(log.replace(",20,", ",20.5,"), encoding="utf-8", newline="")
     trace = (ROOT / "examples" / "stick-slip.csv").read_text().replace("force", f"force {IN_CELL}")
     (folder / f"{IN_FILE}-trace.csv").write_text(trace, encoding="utf-8", newline="")
+    coasts = (ROOT / "examples" / "coast-down.csv").read_text().replace("speed [", f"speed {IN_CELL} [")
+    (folder / f"{IN_FILE}-coast.csv").write_text(coasts, encoding="utf-8", newline="")
     for name, home in (("machine", ROOT / "tests" / "stand"), ("scenario", ROOT / "examples")):
         text = (home / f"{name}.toml").read_text()
         (folder / f"{IN_FILE}-{name}.toml").write_text(text, encoding="utf-8")
@@ -56,6 +58,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 LOG, OTHER, TRACE = f"{IN_FILE}.csv", f"{IN_FILE}2.csv", f"{IN_FILE}-trace.csv"
+COAST = [f"{IN_FILE}-coast.csv", "--inertia", "0.012 kg*m^2"]
 MACHINE, SCENARIO, BROKEN = (f"{IN_FILE}-{name}.toml" for name in ("machine", "scenario", "broken"))
 TYPED: dict[str, list[list[str]]] = {
     "app": [["--port", "99999"], ["--port", HOSTILE]],
@@ -71,6 +74,21 @@ TYPED: dict[str, list[list[str]]] = {
     "posterior": [[LOG, "--machine", BROKEN], [LOG, "--machine", MACHINE, "--trace", HOSTILE]],
     "plan": [[MACHINE, LOG, "--to", HOSTILE]],
     "warmup": [[MACHINE, LOG, "--target", HOSTILE], [BROKEN, LOG]],
+    "coastdown": [
+        COAST,
+        [*COAST, "--json"],
+        [*COAST, "--points", f"{IN_FILE}-points.csv"],
+        [COAST[0], "--inertia", HOSTILE],
+        [LOG, *COAST[1:]],
+    ],
+    "trend": [
+        [LOG, "--at", "20 rpm"],
+        [LOG, "--at", "20 rpm", "--json"],
+        [LOG, "--at", "20 rpm", "--out", f"{IN_FILE}-trend.csv"],
+        [LOG],
+        [LOG, "--at", HOSTILE],
+        [LOG, "--at", "20 rpm", "--by", HOSTILE],
+    ],
     "compare": [[LOG, OTHER]],
     "campaign": [
         ["add", f"{IN_FILE}.hersey", LOG, "--unit", "F12", "--age", "1 h"],

@@ -16,6 +16,7 @@ from hersey.document.parts.motion import StickSlipPart, SweepPart
 from hersey.document.parts.posterior import PosteriorPart
 from hersey.document.parts.stability import BandPart
 from hersey.inspection.inspecting import Inspection
+from hersey.life.trend.result import FrictionTrend
 from hersey.stability.operating_map.result import OperatingMap
 from hersey.stability.plan.result import Plan
 from hersey.stability.warm_up_result import WarmUp
@@ -31,6 +32,7 @@ PRINTED: dict[str, type] = {
     "design": DesignPart,
     "coastdown": CoastDown,
     "compare": LogComparison,
+    "trend": FrictionTrend,
     "campaign": CampaignPart,
     "life": LifeTestPart,
     "cycles": CyclesPart,
