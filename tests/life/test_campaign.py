@@ -24,7 +24,10 @@ from hersey.errors import HerseyError, MissingFileError, OutputError, ParameterE
 from hersey.life.age import Age
 from hersey.life.campaign import Campaign, Entry
 from hersey.life.campaign import store as storing
-from hersey.life.campaign.conversion import entry_of
+from hersey.life.campaign.conversion import entry_of, points_of
+from hersey.log.impossible import Impossible
+from hersey.log.impossible import Reason as Cause
+from hersey.schema.domain import Domain
 from tests.conftest import ROOT
 
 pytestmark = pytest.mark.usefixtures("one_branch")
@@ -100,6 +103,46 @@ def test_points_come_back_whole(campaign: Campaign, points: hersey.SteadyPoints,
             == surface.to_dict()
             == campaign.fit(added.run)
         )
+
+
+def test_points_of_every_sample_of_friction_come_back_whole(
+    campaign: Campaign, points: hersey.SteadyPoints, run_csv: Path
+) -> None:
+    rows = len(points)
+    shares = {"window_errors": 1e-5, "relaxation_errors": 2e-5}
+    friction = Domain("friction coefficient", "sliding speed")
+    spoilt = Impossible("torque", "COF", "", Cause.CODE, 1, ((9e301, 1),), 9e301, 9e301, "row 7")
+    file = replace(points.log.files[0], impossible=(spoilt,))
+    why = replace(points.rejected[0].why, domain=friction)
+    each = replace(
+        points,
+        of_every_sample=True,
+        rejected=(replace(points.rejected[0], why=why),),
+        temperature_rates=np.full(rows, 1e-3),
+        log=replace(
+            points.log, files=(file,), runs=tuple(replace(run, domain=friction) for run in points.log.runs)
+        ),
+        **{name: np.full((rows, 1), share) for name, share in shares.items()},
+    )
+    again = campaign.points(campaign.add(each, log=run_csv, unit="F1", age="0 pages").run)
+    assert again.domain == friction
+    assert again.of_every_sample
+    assert again.rejected == each.rejected
+    assert again.log.files == (file,)
+    assert again.to_dict() == each.to_dict()
+    assert np.array_equal(again.zero_errors, each.zero_errors)
+    assert np.array_equal(again.temperature_rates, each.temperature_rates)
+
+
+def test_points_kept_before_friction_was_read_are_torques(points: hersey.SteadyPoints) -> None:
+    kept = entry_of(points, "a.csv")
+    older = json.loads(kept.reduction)
+    del older["log"]["domain"]
+    for name in ("relaxation_errors", "window_errors", "temperature_rates", "of_every_sample"):
+        del older[name]
+    again = points_of(json.dumps(older), kept.dwells)
+    assert again.domain.is_torque
+    assert not again.of_every_sample
 
 
 def test_means_come_back_whole(campaign: Campaign, run_csv: Path) -> None:

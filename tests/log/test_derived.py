@@ -80,6 +80,43 @@ def test_a_name_that_does_not_match_is_named() -> None:
 
 
 @pytest.mark.parametrize(
+    ("template", "name", "decimal", "speed"),
+    [
+        ("* {speed} rpm.csv", "free 60 rpm.csv", ".", "60 rpm"),
+        ("* {speed} rpm.csv", "free -60.5 rpm.csv", ".", "-60.5 rpm"),
+        ("*{speed} rpm.csv", "a-1.5 rpm.csv", ".", "1.5 rpm"),
+        ("*{speed} rpm*", "R3 120rpm, not 5 rpm.csv", ".", "120 rpm"),
+        ("*{speed}rps{load}N.txt", "x 0-1rps0-3N.txt", "-", "0.1 rps"),
+        ("run.{speed} rpm.csv", "run.60 rpm.csv", ".", "60 rpm"),
+        ("V2{speed} rpm.csv", "V260 rpm.csv", ".", "60 rpm"),
+        ("{speed} rpm.csv", "-60 rpm.csv", ".", "-60 rpm"),
+    ],
+)
+def test_any_text_takes_no_digit_of_a_number(template: str, name: str, decimal: str, speed: str) -> None:
+    assert NamePattern(template, decimal).values(name)["speed"] == speed
+
+
+@pytest.mark.parametrize("name", ["a1,5 rpm.csv", "a .5 rpm.csv"])
+def test_the_end_of_a_number_is_not_read_as_one(name: str) -> None:
+    with pytest.raises(ParameterError, match="the name does not match"):
+        NamePattern("*{speed} rpm.csv").values(name)
+
+
+@pytest.mark.parametrize(
+    ("template", "name"),
+    [
+        ("*1" * 140 + "{speed} rpm", "1" * 300),
+        ("*" * 280 + "{speed} rpm", "1 " * 150),
+        ("*{speed} rpm x", "1" + " " * 300),
+    ],
+)
+def test_a_pattern_of_many_texts_is_told_soon_not_to_match(template: str, name: str) -> None:
+    """A search that tries every share of the name would not end."""
+    with pytest.raises(ParameterError, match="the name does not match"):
+        NamePattern(template).values(name)
+
+
+@pytest.mark.parametrize(
     ("name", "proposed"),
     [
         ("0-1rps0-3N.txt", ("{speed}rps{load}N.txt", "-")),

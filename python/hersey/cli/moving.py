@@ -9,8 +9,6 @@ from typing import TYPE_CHECKING
 from hersey.cli.options import Reading
 from hersey.cli.terminal import note
 from hersey.errors import MOVING, HerseyError, InsufficientDataError
-from hersey.log import TorqueLog
-from hersey.units import rpm
 
 if TYPE_CHECKING:
     from hersey.damping.dwells import SteadyPoints
@@ -18,6 +16,7 @@ if TYPE_CHECKING:
     from hersey.damping.moving.result import MovingFit
     from hersey.damping.surface import DampingSurface
     from hersey.log.means import MeansTable
+    from hersey.log.torque_log import TorqueLog
     from hersey.machine.machine import Machine
 
 #: Unit in which small numbers are shown, by that of large ones, and how many of it make one.
@@ -49,6 +48,7 @@ def fitted(
 ) -> Fitted:
     """Fit the dwells of a log, or every sample if that is asked for or the log has no dwells but moves."""
     from hersey.damping.fit import fit
+    from hersey.log.torque_log import TorqueLog
 
     if reading.moving and isinstance(log, TorqueLog):
         return _as_it_moves(logs, log, reading, machine, reading.recipe(logs).moving_fit(log))
@@ -93,6 +93,7 @@ def _as_it_moves(
 def fitted_lines(fit: MovingFit) -> list[str]:
     """Return law and numbers with their intervals, and what was not used."""
     from hersey.cli.figures import labelled, three
+    from hersey.units import rpm
 
     rows = [(each.name, _shown(each.estimate, each.unit)) for each in fit.parameters]
     if fit.inertia_given is not None:

@@ -57,7 +57,9 @@ def trend(
             log, by=by, at=speed, radius=radius if isinstance(radius, float) else None, share=share, seed=seed
         )
     if out is not None:
-        table.write(found.to_frame().write_csv())
+        from hersey.files.tables import table as content
+
+        table.write(content(found.to_frame(), ".csv"))
     drawing.draw(found, "drawing the trend")
     if printing.json(found):
         return

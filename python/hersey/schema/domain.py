@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
-from hersey.arrays import FloatArray
 from hersey.errors import ParameterError, Setting
 from hersey.schema.record import Record
 from hersey.units import rpm
+
+if TYPE_CHECKING:
+    from hersey.arrays import FloatArray
 
 #: Of each quantity: its unit and symbol, how it is shown (unit, factor), and its powers in normal load and
 #: radius.

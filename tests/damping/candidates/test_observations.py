@@ -13,6 +13,7 @@ from hersey.damping.candidates.observations import Inputs, Observations
 from hersey.damping.dwells import SteadyPoints
 from hersey.errors import InsufficientDataError
 from hersey.log.sensors import Sensors
+from hersey.schema.domain import Domain
 
 SPEED = [-10.0, 30.0, 20.0, 10.2, 30.2, 20.0, 10.0, 30.0, 30.1]
 TORQUE = [-0.5, 0.4, 0.45, 0.52, 0.38, 0.41, 0.6, 0.35, 0.36]
@@ -42,6 +43,7 @@ def points(
     )
     return SimpleNamespace(  # type: ignore[return-value]
         table=table,
+        domain=Domain(),
         zero_errors=0.002 * np.column_stack([np.ones(9), np.linspace(-1.0, 1.0, 9)]),
         log=SimpleNamespace(
             has_temperature=temperature, sensors=Sensors(film_heating=heating), corrections=(), runs=()

@@ -20,6 +20,7 @@ from hersey.life.campaign.records import plain, read_json, refuse_others, restor
 from hersey.log.means import MeansTable
 from hersey.log.sensors import OF_ROLE, Sensors
 from hersey.log.torque_log import Correction, LogFile, TorqueLog
+from hersey.schema.domain import TORQUE, Domain
 from hersey.schema.warning import Warning
 
 if TYPE_CHECKING:
@@ -35,6 +36,7 @@ _LOG = {
     "sensors": Sensors,
     "kept_rows": int,
     "thermal": bool,
+    "domain": Domain,
 }
 _MEANS = {"means": tuple[()], "stated_errors": bool}
 _REDUCTION = {
@@ -47,6 +49,20 @@ _REDUCTION = {
     "warnings": tuple[Warning, ...],
     "rest": NoLoadTorque | None,
     "rest_errors": FloatArray,
+    "relaxation_errors": FloatArray,
+    "window_errors": FloatArray,
+    "temperature_rates": FloatArray,
+    "of_every_sample": bool,
+}
+#: Kept since later than the rest: of dwells, and of a torque, where they are not stated.
+_LATER = ("relaxation_errors", "window_errors", "temperature_rates", "of_every_sample")
+#: Numbers of each dwell in rows of a table, and one by one.
+_OF_DWELLS = {
+    "tare_errors": 2,
+    "rest_errors": 2,
+    "relaxation_errors": 2,
+    "window_errors": 2,
+    "temperature_rates": 1,
 }
 
 
@@ -116,11 +132,15 @@ def points_of(reduction: str, dwells: Iterable[tuple[Any, ...]]) -> SteadyPoints
 
     kinds = {"INTEGER": pl.Int64, "REAL": pl.Float64, "TEXT": pl.String}
     schema = {name: kinds[kind]() for name, kind in COLUMNS.items()}
-    held = restored(read_json(reduction), _REDUCTION)
+    read = read_json(reduction)
+    held = restored(
+        read, {name: kind for name, kind in _REDUCTION.items() if name in read or name not in _LATER}
+    )
     means, about, table = held.pop("means"), held.pop("log"), list(dwells)
+    about = {"domain": TORQUE} | about
     refuse_others(about, _LOG | _MEANS if means else _LOG, "log.")
-    for name in ("tare_errors", "rest_errors"):
-        if held[name].ndim != 2 or len(held[name]) not in (0, len(table)):
+    for name, ndim in _OF_DWELLS.items():
+        if name in held and (held[name].ndim != ndim or len(held[name]) not in (0, len(table))):
             raise ParameterError(f"'{name}' does not have one row per dwell")
     _refuse_unsound(held["rest"], about["sensors"])
     log = (_KeptMeans if means else _KeptLog)(**about)
@@ -197,7 +217,9 @@ class _WithoutRows:
 
 @dataclass(frozen=True, repr=False)
 class _KeptLog(_WithoutRows, TorqueLog):
-    """A log of which only its files, corrections and sensors are kept."""
+    """A log of which only its files, corrections, sensors and domain are kept."""
+
+    domain: Domain = TORQUE
 
 
 @dataclass(frozen=True, repr=False)
@@ -214,8 +236,9 @@ def _reduction(points: SteadyPoints) -> dict[str, Any]:
         "sensors": log.sensors,
         "kept_rows": log.rows,
         "thermal": log.has_temperature,
+        "domain": log.domain,
     }
     if isinstance(log, MeansTable):
         about |= {"means": (), "stated_errors": log.stated_errors}
-    names = ("rejected", "tare", "standing_torque", "tare_errors", "warnings", "rest", "rest_errors")
-    return {"means": means, "log": about} | {name: getattr(points, name) for name in names}
+    names = _REDUCTION.keys() - {"means", "log"}
+    return {"means": means, "log": about} | {name: getattr(points, name) for name in sorted(names)}

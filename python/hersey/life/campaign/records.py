@@ -6,6 +6,7 @@ import json
 import math
 from collections.abc import Mapping, Set
 from dataclasses import MISSING, fields, is_dataclass
+from enum import Enum
 from functools import cache
 from types import UnionType
 from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
@@ -19,14 +20,19 @@ from hersey.damping.estimate import Estimate
 from hersey.damping.no_load_torque import NoLoadTorque
 from hersey.errors import ParameterError
 from hersey.life.campaign.kept_warnings import kept_warning, warning_of, with_warnings
+from hersey.log.impossible import Impossible
 from hersey.log.sensors import Sensors
 from hersey.log.torque_log import Channel, Correction, Effect, LogFile
+from hersey.schema.domain import Domain
 from hersey.schema.warning import Warning
 
 #: Records that are written and read back, by name.
 _RECORDS = {
     kind.__name__: kind
-    for kind in (Channel, Correction, Effect, Estimate, LogFile, Reason, Rejection, NoLoadTorque, Sensors)
+    for kind in (
+        *(Channel, Correction, Domain, Effect, Estimate, Impossible, LogFile),
+        *(NoLoadTorque, Reason, Rejection, Sensors),
+    )
 }
 #: The name of a record stands under "kind", a field of that name under this.
 _OWN_KIND = "its kind"
@@ -36,6 +42,9 @@ _UNBOUNDED = {
     ("Estimate", "high"),
     ("Estimate", "freedom"),
     ("NoLoadTorque", "freedom"),
+    ("Impossible", "values"),
+    ("Impossible", "low"),
+    ("Impossible", "high"),
     ("Rejection", "speed"),
 }
 
@@ -114,8 +123,13 @@ def _restored(value: Any) -> Any:
     defaults = {f.name for f in fields(record) if f.name not in inside and _has_default(f)}
     kinds = {name: kind for name, kind in _kinds_of(record).items() if name not in defaults}
     refuse_others(inside, kinds, f"{name}.", {field for of, field in _UNBOUNDED if of == name})
-    made: Any = record(**inside)
+    made: Any = record(**{name: _member(value, kinds.get(name)) for name, value in inside.items()})
     return made
+
+
+def _member(value: Any, kind: Any) -> Any:
+    """The member of an enumeration, of which its value is kept."""
+    return kind(value) if isinstance(kind, type) and issubclass(kind, Enum) else value
 
 
 def _has_default(field: Any) -> bool:
@@ -168,6 +182,8 @@ def _is(value: Any, kind: Any, *, finite: bool) -> bool:
         return any(_is(value, each, finite=finite) for each in inside)
     if origin is Literal:
         return isinstance(value, str) and value in inside
+    if isinstance(kind, type) and issubclass(kind, Enum):
+        return value in [each.value for each in kind]
     if origin is tuple:
         each = [inside[0]] * len(value) if inside[-1:] == (...,) and isinstance(value, tuple) else inside
         return (

@@ -74,14 +74,29 @@ class NamePattern:
         return text if self.decimal == "." else text.replace(self.decimal, ".")
 
     def _regex(self) -> str:
-        mark = re.escape(self.decimal)
-        sign = "" if self.decimal == "-" else "[-+]?"
-        number = rf"{sign}[0-9]{{1,15}}(?:{mark}[0-9]{{1,15}})?"
-        found = []
+        """The pattern between texts of any kind; one that is found is not searched again for a later one."""
+        pieces, words = [""], False
         for role, _, literal in self._parts():
-            words = r"\s*".join(re.escape(word) for word in literal.split())
-            found.append(f"(?P<{role}>{number})" if role else r".*" if literal == "*" else rf"\s*{words}\s*")
-        return "".join(found)
+            if literal == "*":
+                pieces.append("")
+            elif role:
+                pieces[-1] += f"(?P<{role}>{self._digits(is_told_apart=words)})"
+            else:
+                pieces[-1] += r"\s*".join(["", *map(re.escape, literal.split()), ""]) or r"\s*"
+            words = literal != "*" and bool(literal.strip())
+        first, *between = pieces
+        last = [f".*?{between.pop()}"] if between else []
+        return "".join([first, *(f"(?>.*?{piece})" for piece in between), *last])
+
+    def _digits(self, *, is_told_apart: bool) -> str:
+        """A number; where no word before it tells where it begins, never the end of a longer one.
+
+        There a hyphen behind a letter or a digit is no sign.
+        """
+        mark = re.escape(self.decimal)
+        sign = "" if self.decimal == "-" else "[-+]" if is_told_apart else "(?<![0-9A-Za-z])[-+]"
+        begins = "" if is_told_apart else rf"(?<![0-9.])(?<![0-9][,{mark}])"
+        return rf"{begins}{f'(?:{sign})?' * bool(sign)}[0-9]{{1,15}}(?:{mark}[0-9]{{1,15}})?"
 
     def _parts(self) -> list[tuple[str, str, str]]:
         """Role and unit of each placeholder, or the text between two of them (``*`` for any)."""
