@@ -249,8 +249,8 @@ def _refuse_no_friction(name: str, result: MovingFit, equations: Equations) -> N
     apart = [name for name in ("T_C+", "T_C-") if name in result and result[name].low <= 0.0]
     if apart:
         raise InsufficientDataError(
-            f"{name}: Coulomb friction would vanish in one direction alone, {apart[0]} = {result[apart[0]]} N m. "
-            "Something other than friction loads the drive, such as gravity",
+            f"{name}: Coulomb friction would vanish in one direction alone, {apart[0]} = "
+            f"{result[apart[0]]} N m. Something other than friction loads the drive, such as gravity",
             remedy="record the drive without that load",
         )
     fast = np.array([result.speed_range[1], -result.speed_range[1]])
