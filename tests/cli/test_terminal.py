@@ -48,7 +48,8 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (folder / f"{IN_FILE}2.csv").write_text(log.replace(",20,", ",20.5,"), encoding="utf-8", newline="")
     trace = (ROOT / "examples" / "stick-slip.csv").read_text().replace("force", f"force {IN_CELL}")
     (folder / f"{IN_FILE}-trace.csv").write_text(trace, encoding="utf-8", newline="")
-    coasts = (ROOT / "examples" / "coast-down.csv").read_text().replace("speed [", f"speed {IN_CELL} [")
+    coasts = (ROOT / "examples" / "coast-down.csv").read_text()
+    coasts = coasts.replace("time [s],speed [", f"Time {IN_CELL} [s],Speed {IN_CELL} [")
     (folder / f"{IN_FILE}-coast.csv").write_text(coasts, encoding="utf-8", newline="")
     for name, home in (("machine", ROOT / "tests" / "stand"), ("scenario", ROOT / "examples")):
         text = (home / f"{name}.toml").read_text()
@@ -58,7 +59,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 LOG, OTHER, TRACE = f"{IN_FILE}.csv", f"{IN_FILE}2.csv", f"{IN_FILE}-trace.csv"
-COAST = [f"{IN_FILE}-coast.csv", "--inertia", "0.012 kg*m^2"]
+COAST = [f"{IN_FILE}-coast.csv", "--inertia", "0.012 kg*m^2", "--isothermal"]
 MACHINE, SCENARIO, BROKEN = (f"{IN_FILE}-{name}.toml" for name in ("machine", "scenario", "broken"))
 TYPED: dict[str, list[list[str]]] = {
     "app": [["--port", "99999"], ["--port", HOSTILE]],
