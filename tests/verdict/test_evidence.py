@@ -342,7 +342,7 @@ def test_what_is_said_of_the_lubricant(machine: Machine, contact: Contact, oil: 
     thickening = 20e-9 * contact.nip.pressure_max
     assert (
         f"pressure does not thicken this lubricant here (alpha p = {thickening:.2g}), so Eqs. 5, 9 "
-        "and 10 of the paper do not apply"
+        "and 10 do not apply"
     ) in check_film(machine, film)
     hard = replace(oil, pressure_viscosity=((300.0, 0.11 / contact.nip.pressure_max),))
     notes = check_film(replace(machine, lubricant=hard), film_at(contact, hard))

@@ -28,7 +28,7 @@ class TrendLaw(Record):
     """A law that was compared, without and with temperature as a cause, taken together."""
 
     name: str
-    formula: str
+    formula: Annotated[str, Means("friction against age, in symbols")]
     delta_aicc: Annotated[float, Means("above the likeliest law", open=True)]
     weight: Annotated[float, Means("weight of the law by AICc; all sum to 1")]
 
@@ -73,7 +73,7 @@ class FrictionTrend(Result):
     time_constant: Annotated[
         Estimate | None, Means(f"after which 63 % of the change has come, {_OF_AGE}; null if none")
     ]
-    jumps: tuple[Jump, ...]
+    jumps: Annotated[tuple[Jump, ...], Means("one for each sudden change")]
     warnings: tuple[Warning, ...]
     age: Annotated[FloatArray, Means(f"mean age of blocks of rows, {_OF_AGE}")]
     value: Annotated[FloatArray, Means(f"mean friction of each block, {_OF_FRICTION}")]
