@@ -57,13 +57,19 @@ def test_a_current_as_arguments_is_that_of_a_mapping(log: Path, tmp_path: Path) 
 
 def test_options_recipe_and_file_agree(log: Path, tmp_path: Path) -> None:
     typed = Reading(
-        current="Iq", torque_constant="0.11 N*m/A", gear_ratio="50:1", inertia="2e-4 kg*m^2", isothermal=True
+        current="Iq",
+        torque_constant="0.11 N*m/A",
+        gear_ratio="50:1",
+        moving=True,
+        inertia="2e-4 kg*m^2",
+        isothermal=True,
     ).recipe([log])
     written = Recipe(
         logs=(log,),
         channels={"torque": "Iq"},
         torque_constant="0.11 N*m/A",  # type: ignore[arg-type]
         gear_ratio=50.0,
+        moving=True,
         inertia=2e-4,
         isothermal=True,
     )
