@@ -245,9 +245,9 @@ def rippled(count: int, seed: int) -> Tally:
 
 
 def outside(count: int, seed: int) -> tuple[Tally, int]:
-    """Return the tally of wheels with a torque as speed^0.6, and of how many that is told."""
+    """Return the tally of wheels with a torque as speed^0.6, and how many of them are reported."""
     rng = np.random.default_rng(seed)
-    tally, told = Tally.empty(), 0
+    tally, reported = Tally.empty(), 0
     for _ in range(count):
         wheel = draw(rng)
         scale = wheel.inertia * wheel.first / rng.uniform(8.0, 40.0) / wheel.first**0.6
@@ -259,8 +259,8 @@ def outside(count: int, seed: int) -> tuple[Tally, int]:
 
         found = measured(wheel, record(wheel, torque, rng))
         tally.add(wheel, found, lambda w, torque=torque: torque(w, 0.0), wheel.coasts)
-        told += any(each.kind in TOLD for each in found.warnings)
-    return tally, told
+        reported += any(each.kind in TOLD for each in found.warnings)
+    return tally, reported
 
 
 def row(name: str, tally: Tally) -> str:
@@ -276,7 +276,7 @@ def row(name: str, tally: Tally) -> str:
 
 def page(count: int) -> str:
     """Return the page."""
-    family, ripple, (other, told) = wheels(count, 20), rippled(40, 21), outside(20, 22)
+    family, ripple, (other, reported) = wheels(count, 20), rippled(40, 21), outside(20, 22)
     whole = family["all"]
     alarms = sum(whole.warnings[kind] for kind in TOLD)
     lines = [
@@ -299,7 +299,7 @@ def page(count: int) -> str:
         "",
         f"- A term that is truly zero is shown in {np.sum(whole.absent_shown)} of {len(whole.absent_shown)} "
         f"cases, one that is there in {np.sum(whole.present_shown)} of {len(whole.present_shown)}.",
-        f"- A law outside the family (speed^0.6) is reported in {told} of {len(other.torque)} wheels, "
+        f"- A law outside the family (speed^0.6) is reported in {reported} of {len(other.torque)} wheels, "
         f"falsely in {alarms} of {len(whole.torque)} wheels of the family "
         f"and in {sum(ripple.warnings[kind] for kind in TOLD)} of {len(ripple.torque)} with ripple.",
         f"- Coasts found: all, except in {len(whole.missed)} wheels ({', '.join(whole.missed) or 'none'}).",

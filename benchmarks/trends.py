@@ -231,8 +231,8 @@ def _cells(kind: str, some: list[Judged]) -> list[str]:
 
 
 def _share(held: list[str]) -> str:
-    told = [each for each in held if each != "none"]
-    return f"{sum(each == 'held' for each in told)} of {len(told)}" if told else ""
+    known = [each for each in held if each != "none"]
+    return f"{sum(each == 'held' for each in known)} of {len(known)}" if known else ""
 
 
 def files(folder: Path) -> list[str]:

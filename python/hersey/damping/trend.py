@@ -15,7 +15,7 @@ from scipy import optimize
 
 from hersey.arrays import FloatArray, IntArray
 from hersey.damping.candidates.observations import Observations
-from hersey.damping.distributions import student_quantile
+from hersey.damping.distributions import MEDIAN_MAGNITUDE, student_quantile
 from hersey.damping.dwells import SAME_SPEED
 from hersey.damping.dwells.groups import levels_of_speed
 from hersey.damping.order import MOST, chances, off_parabolas
@@ -136,8 +136,8 @@ def _scatter(data: Observations) -> tuple[float, float]:
         freedom += _freedom(y.size)
         apart += _about_parabolas(data, levels_of_speed(data.inputs.log_speed, members, SAME_SPEED))
     scatter = float(np.sqrt(squares / max(freedom, 1.0)))
-    if len(apart) >= _ENOUGH:  # the median of the magnitude of noise of one is 0.6745
-        scatter = max(scatter, float(np.median(apart)) / 0.6745)
+    if len(apart) >= _ENOUGH:
+        scatter = max(scatter, float(np.median(apart)) / MEDIAN_MAGNITUDE)
     return max(scatter, _LEAST_SCATTER), max(freedom, 2.0)
 
 

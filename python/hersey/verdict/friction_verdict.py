@@ -16,6 +16,7 @@ from hersey.damping.estimate import Estimate, rounded
 from hersey.damping.surface import DampingSurface
 from hersey.damping.trend import Trend
 from hersey.errors import InsufficientDataError, capital
+from hersey.log.pooling import SAME_LOAD
 from hersey.verdict.regimes import COULOMB, FALLING, Hypothesis
 
 #: What a regime means where friction was measured, for those whose meaning is about torque.
@@ -153,7 +154,7 @@ def _of_loads(points: SteadyPoints, loads: tuple[float, float]) -> str:
     if points.domain.quantity != "friction coefficient":
         return apart
     speed, friction, load = (np.abs(points.column(name)) for name in ("speed", "torque", "load"))
-    group = np.round(np.log(load / load.min()) / math.log(1.03)).astype(int)
+    group = np.round(np.log(load / load.min()) / math.log(SAME_LOAD)).astype(int)
     try:
         found = hersey_collapse(np.log(speed / load), np.log(friction), group)
     except InsufficientDataError:

@@ -15,7 +15,7 @@ from typing import Annotated, Literal
 import numpy as np
 
 from hersey.arrays import FloatArray
-from hersey.damping.coast_down.fitting import step_of
+from hersey.damping.coast_down.fitting import BEND_OF_NOISE, step_of
 from hersey.log.torque_log import STANDING, Run
 from hersey.result import Means, Record
 
@@ -37,8 +37,6 @@ _RISES, _SURELY = 1.25, 6.0
 _SUDDEN = 0.6
 #: Neighbouring parts whose scatter counts: that of a ripple grows as the wheel slows.
 _NEAR = 9
-#: From second differences, and from a median deviation, to the standard deviation of white noise.
-_BEND, _MEDIAN = np.sqrt(6.0), 0.6745
 
 
 @dataclass(frozen=True)
@@ -133,7 +131,7 @@ def _means(values: FloatArray, size: int) -> FloatArray:
 def noise_of_rows(speed: FloatArray) -> float:
     """Return the standard deviation of the noise of one row, that of rounding included."""
     bends = np.abs(np.diff(speed, 2))
-    white = float(np.median(bends)) / (_MEDIAN * _BEND) if bends.size else 0.0
+    white = float(np.median(bends)) / BEND_OF_NOISE if bends.size else 0.0
     return max(white, float(step_of(speed) / np.sqrt(12.0)))
 
 
@@ -222,7 +220,7 @@ def _rates(
     bends = np.abs(np.diff(rates, 2))
     around = np.pad(bends, 1 + _NEAR // 2, mode="edge")
     near = np.median(np.lib.stride_tricks.sliding_window_view(around, _NEAR), axis=1)[: rates.size]
-    scatter = np.maximum(near, np.median(bends)) / (_MEDIAN * _BEND)
+    scatter = np.maximum(near, np.median(bends)) / BEND_OF_NOISE
     return rates, np.hypot(errors, scatter)
 
 

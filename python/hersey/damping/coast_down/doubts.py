@@ -24,7 +24,7 @@ CUT = "parts left out"
 EXACT = "inertia taken as exact"
 WARMED = "temperature changed"
 TORQUE_UNUSED = "torque not used"
-#: Share of the torque that a term may take without being told.
+#: Share of the torque that a term may take without being reported.
 _MATTERS = 0.1
 #: A difference between coasts above this share is none of bearings: one of them is driven or braked.
 _UNLIKE = 0.5

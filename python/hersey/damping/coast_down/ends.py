@@ -10,6 +10,7 @@ import numpy as np
 from hersey.damping.coast_down.closed_form import speeds
 from hersey.damping.coast_down.coasts import FEWEST_ROWS, Coast, noise_of_rows
 from hersey.damping.coast_down.fitting import Trace, fit_coasts
+from hersey.damping.distributions import MEDIAN_MAGNITUDE
 
 #: Shares of a coast at its beginning and its end that are looked at.
 _BEGINNING, _END = 0.02, 0.06
@@ -19,8 +20,6 @@ _ROWS, _BEYOND = 3, 4.0
 _MARGIN = 3
 #: Scatter about the law, as a share of the fall, that is no noise of a sensor, over so many rows.
 _UNEVEN, _SMOOTHED = 0.04, 5
-#: From the median of absolute values to the standard deviation.
-_MEDIAN = 0.6745
 
 
 def without_ends(coasts: Sequence[Coast]) -> list[Coast]:
@@ -34,7 +33,7 @@ def without_ends(coasts: Sequence[Coast]) -> list[Coast]:
         after = speeds(fit.law, float(fit.first[index]), time[rows.start :])[0]
         before = speeds(fit.law, float(fit.first[index]), time[: rows.start + 1][::-1])[0][::-1]
         rest = coast.speed - np.concatenate([before[:-1], after])
-        scale = float(np.median(np.abs(rest[rows]))) / _MEDIAN
+        scale = float(np.median(np.abs(rest[rows]))) / MEDIAN_MAGNITUDE
         odd = np.abs(rest) > _BEYOND * scale
         run = np.convolve(odd, np.ones(_ROWS), mode="valid") >= _ROWS
         first = int(np.flatnonzero(run[: rows.start])[-1]) + _ROWS if run[: rows.start].any() else 0
@@ -56,7 +55,7 @@ def is_free(coast: Coast) -> bool:
     smooth = np.convolve(rest, np.ones(_SMOOTHED) / _SMOOTHED, mode="valid")
     noise = 2.0 * noise_of_rows(coast.speed) / np.sqrt(_SMOOTHED)
     allowed = np.hypot(_UNEVEN * float(coast.speed[0] - coast.speed[-1]), noise)
-    return bool(np.median(np.abs(smooth)) < _MEDIAN * allowed)
+    return bool(np.median(np.abs(smooth)) < MEDIAN_MAGNITUDE * allowed)
 
 
 def _part(coast: Coast, first: int, last: int) -> Coast:

@@ -11,14 +11,14 @@ import numpy as np
 from hersey.arrays import BoolArray, FloatArray, IntArray
 from hersey.damping.coast_down.closed_form import speeds
 from hersey.damping.coast_down.noise import Noise, covariance_of_fit, noise_of
-from hersey.damping.distributions import ratio_above
+from hersey.damping.distributions import MEDIAN_MAGNITUDE, ratio_above
 
 #: Coefficients of the deceleration: constant, linear and quadratic in speed.
 TERMS = 3
 #: A step this many times the scatter of the rows is not hidden by noise.
 _COARSE = 1.0
 #: Of white noise, the median of the absolute second differences over the standard deviation.
-_BEND = 0.6745 * np.sqrt(6.0)
+BEND_OF_NOISE = MEDIAN_MAGNITUDE * np.sqrt(6.0)
 #: A reading counts in steps if its values are fewer than this share of the rows.
 _FEW_LEVELS = 0.5
 #: Steps of a coarse reading in a block at the most, and blocks of a coast that are wanted.
@@ -171,7 +171,7 @@ def in_steps(traces: Sequence[Trace]) -> tuple[Trace, ...] | None:
     """
     step = step_of(np.concatenate([trace.speed for trace in traces]))
     bends = [np.diff(trace.speed, 2) for trace in traces]
-    scatter = float(np.median(np.abs(np.concatenate(bends)))) / _BEND
+    scatter = float(np.median(np.abs(np.concatenate(bends)))) / BEND_OF_NOISE
     if not step or step < _COARSE * scatter or any(trace.blocks.size for trace in traces):
         return None
     drop = min(float(trace.speed[0] - trace.speed[-1]) for trace in traces)

@@ -18,14 +18,13 @@ from hersey.damping.no_load_torque import NoLoadTorque
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.log.as_torque import factors, log_as_torque, one_load
 from hersey.log.means import MeanRow, MeansTable, read_means
+from hersey.log.pooling import SAME_LOAD
 from hersey.log.torque_log import TorqueLog
 from hersey.result import Result, json_record
 from hersey.schema.domain import TORQUE, Domain
 from hersey.schema.warning import Warning
 from hersey.units import rpm, takes_si
 
-#: Loads closer than this share count as the same.
-SAME_LOAD = 0.03
 #: Standard errors by which a torque must exceed the no-load torque, so that a film is left.
 _BEYOND = 2.0
 #: What errors that points share do to each torque.
@@ -338,12 +337,12 @@ class SteadyPoints(Result):
 
     @property
     def varying_load(self) -> tuple[float, float] | None:
-        """Least and greatest load of the dwells, N, if they differ by more than `SAME_LOAD`."""
+        """Least and greatest load of the dwells, N, if their ratio is beyond `SAME_LOAD`."""
         loads = self.table["load"].drop_nulls() if "load" in self.table.columns else pl.Series()
         if loads.is_empty():
             return None
         low, high = (float(np.asarray(loads).min()), float(np.asarray(loads).max()))
-        return (low, high) if high > (1.0 + SAME_LOAD) * low else None
+        return (low, high) if high > SAME_LOAD * low else None
 
     def dropped(self) -> str:
         """Return a sentence on the excluded dwells, their speeds and the reasons; empty if there are none."""
