@@ -13,6 +13,7 @@ import hersey
 from hersey.arrays import FloatArray
 from hersey.damping.coast_down import CoastDown
 from hersey.damping.coast_down.closed_form import speeds
+from hersey.damping.coast_down.coasts import noise_of_rows
 from hersey.damping.coast_down.inertia import inertia_of
 from hersey.errors import InsufficientDataError, ParameterError, UnitError
 from tests.cli.command import run
@@ -163,6 +164,14 @@ def test_coasts_that_differ_are_told_and_widen_the_intervals() -> None:
     assert found.difference == pytest.approx(0.2, abs=0.03)
     truth = 0.01 * (1.0 + 0.05 * found.speeds)
     assert ((found.low < truth) & (truth < found.high)).all()
+    points = found.points()  # Student's t of two freedoms beside the normal: 4.303 and 1.960
+    shared = np.abs(points.window_errors[:, 0] / points.column("torque"))
+    assert shared == pytest.approx(found.difference / np.sqrt(3.0) * 4.303 / 1.960, rel=2e-3)
+
+
+def test_noise_of_rows_is_seen_beside_a_fall() -> None:
+    seen = np.linspace(100.0, 20.0, 4000) + np.random.default_rng(3).normal(0.0, 0.3, 4000)
+    assert noise_of_rows(seen) == pytest.approx(0.3, rel=0.05)
 
 
 def test_counts_of_an_encoder_are_fitted_as_an_angle() -> None:
