@@ -1,4 +1,4 @@
-"""Exports of instruments that were written before anyone looked at how they are read; no code was fitted to them."""
+"""Exports of instruments, written before anyone looked at how they are read."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def tektronix(path: Path) -> Made:
 
 
 def hobo(path: Path) -> Made:
-    """Onset HOBO: a title, names with a comma before the unit and serial numbers behind, dates with AM and PM."""
+    """Onset HOBO: a title, a comma before the unit and serial numbers behind, AM and PM."""
     steps = staircase(63, every=1.0)
     lines = ['"Plot Title: seal bench"']
     serial = "(LGR S/N: 20412345, SEN S/N: 20412345)"
@@ -52,7 +52,7 @@ def hobo(path: Path) -> Made:
 
 
 def mts(path: Path) -> Made:
-    """MTS TestWare: a line of marks, then for each acquisition a line, names and units, a clock that runs on."""
+    """MTS TestWare: a line of marks, then a line, names and units for each acquisition."""
     steps = staircase(64)
     lines = ["MTS793|MPT|ENU|1|2|.|/|:|1|0|0|A", ""]
     for step in steps:
@@ -94,8 +94,13 @@ def rtde(path: Path) -> Made:
     # a robot writes rad/s and N m
     made = Truth(made.torque, made.speed * 30 / np.pi, made.time, made.temperature)
     options = {
-        **{"--speed": "actual_qd_2", "--torque": "target_moment_2", "--temperature": "joint_temperatures_2"},
-        **{"--speed-unit": "rad/s", "--torque-unit": "N*m", "--temperature-unit": "degC", "--time-unit": "s"},
+        "--speed": "actual_qd_2",
+        "--torque": "target_moment_2",
+        "--temperature": "joint_temperatures_2",
+        "--speed-unit": "rad/s",
+        "--torque-unit": "N*m",
+        "--temperature-unit": "degC",
+        "--time-unit": "s",
     }
     return Made(made, options)
 
@@ -117,8 +122,11 @@ def dynamixel(path: Path) -> Made:
             warm.append(round(float(c)) + 273.15)
     _write(path, lines)
     options = {
-        **{"--speed-unit": "0.229 rpm", "--torque-unit": "3.228 mN*m", "--temperature-unit": "degC"},
-        **{"--time-unit": "ms", "--torque": "present_current"},
+        "--speed-unit": "0.229 rpm",
+        "--torque-unit": "3.228 mN*m",
+        "--temperature-unit": "degC",
+        "--time-unit": "ms",
+        "--torque": "present_current",
     }
     made = Truth(np.array(torques), np.array(speeds), np.array(times), np.array(warm))
     return Made(made, options)
@@ -147,7 +155,7 @@ def bare(path: Path) -> Made:
 
 
 def hioki(path: Path) -> Made:
-    """HIOKI Memory HiCorder: quoted keys and a value for each channel, comments as names, units with channels."""
+    """HIOKI Memory HiCorder: a value for each channel, comments as names, units with channels."""
     steps = staircase(70)
     lines = ['"File name","AUTO0001.CSV","V 1.01"', '"Title comment","seal"']
     lines += ['"Trigger Time","\'24-12-03 14:22:03.000"', '"CH","CH1","CH2","CH3"']

@@ -175,7 +175,7 @@ def with_doubt(path: Path) -> Made:
 def test_a_layout_that_is_a_guess_is_advised_not_used(tmp_path: Path) -> None:
     path = tmp_path / "log.csv"
     made = with_doubt(path)
-    with pytest.raises(HerseyError, match="Torque1.*propose_mapping"):
+    with pytest.raises(HerseyError, match=r"Torque1.*propose_mapping"):
         read_with_mapping(path)
     outcome = tried(path, made)
     assert outcome.commands[1] == f"hersey inspect {path} --save-mapping"

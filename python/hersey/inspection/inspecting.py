@@ -33,7 +33,7 @@ from hersey.log.derived.sources import Sources
 from hersey.log.doubtful import doubtful_units
 from hersey.log.layouts.current import reading_by
 from hersey.log.layouts.proposing import Proposal, proposed_layout
-from hersey.log.layouts.recognized import LAYOUT_RECOGNIZED, recognized
+from hersey.log.layouts.recognized import recognized
 from hersey.log.mapping import (
     LogMapping,
     Motor,

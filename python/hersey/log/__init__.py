@@ -12,6 +12,7 @@ roles                 roles of columns: their names, and the kinds of units that
 role_units            the unit of a column with a role
 channels              which column plays which role
 without_units         columns without units: named at once
+lacking_roles         several roles that a file leaves open: asked for at once
 friction              which of them a file holds, and what it becomes with a load and a radius
 pooling               runs that are fitted together: one domain for all
 as_torque             friction as a torque, where somebody has a radius and asks for it

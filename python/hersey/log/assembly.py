@@ -39,6 +39,7 @@ from hersey.log.derived.speeds import (
 from hersey.log.formats.frame import FRAME
 from hersey.log.friction import Chosen, beside, computed, in_domain, slow_roles, unused
 from hersey.log.impossible import Impossible, Reading, impossible_rows, marked_rows
+from hersey.log.lacking_roles import asking_all
 from hersey.log.long_arrays import HELD, each_block, ends, rows_before, rows_where, without
 from hersey.log.recording import INVALID, INVALID_TIME, Recording, Signal, columns, nothing_to_read
 from hersey.log.replaced import replaced_units
@@ -48,7 +49,6 @@ from hersey.log.text.column import Column
 from hersey.log.text.stamps import clock_without_unit, counted_unit, is_clock_name
 from hersey.log.torque_log import NO_CLOCK, Channel, LogFile, Run
 from hersey.log.wanted import Wanted
-from hersey.log.without_units import naming_all
 from hersey.schema.warning import Warning
 from hersey.units import Conversion
 
@@ -110,8 +110,8 @@ class Assembly:
         self.derived, self._said = wanted.derived, list[Warning]()
         try:
             self._choose(wanted.roles, isothermal=wanted.isothermal)
-        except UnitError as error:
-            raise self._naming_all(error, wanted.roles) from None
+        except (ChannelError, UnitError) as error:
+            raise self._asking_all(error, wanted.roles) from None
 
     def _choose(self, roles: tuple[str, ...], *, isothermal: bool) -> None:
         """Find the channel of each role, and load it."""
@@ -129,13 +129,17 @@ class Assembly:
         for role in self.chosen:
             self.parts[role] = self._part(role)
 
-    def _naming_all(self, error: UnitError, roles: tuple[str, ...]) -> UnitError:
-        """The error of a channel without a unit, with all others that lack one."""
+    def _asking_all(self, error: HerseyError, roles: tuple[str, ...]) -> HerseyError:
+        """The error of a role that is open, with all others that are; of parts apart only those of units."""
+        if isinstance(error, ChannelError) and len({column.group for column in self.columns}) > 1:
+            return error
+        elsewhere = set(self.derived.channels) | ({"speed"} if self.choices["position"].name else set())
+        roles = tuple(role for role in roles if role not in elsewhere)
         if not self.choices["time"].name and any(each.clock is not None for each in self.recording.signals):
             roles = tuple(role for role in roles if role != "time")
         columns = tuple(map(self._with_epoch, self.columns)) if "time" in roles else self.columns
         of_a_frame = self.recording.format == FRAME
-        return naming_all(
+        return asking_all(
             error,
             roles,
             columns,

@@ -154,16 +154,14 @@ def _candidates(role: str, columns: tuple[Column, ...]) -> list[Column]:
         others = [c for c in columns if c not in named and c.unit and could_be(role, c, surely=True)]
         measured = named + (others if named and role != "time" else [])
     # a column of another kind of unit is out; one without a unit could still be it
-    return (
-        _telling(role, [c for c in measured if could_be(role, c)])
-        or _in_friction(role, columns, measured)
-        or [
-            c
-            for c in columns
-            if c.unit and could_be(role, c, surely=True) and not _OSCILLATION.search(c.name)
-        ]
-        or measured
-    )
+    if called := _telling(role, [c for c in measured if could_be(role, c)]):
+        return called
+    by_unit = [
+        c for c in columns if c.unit and could_be(role, c, surely=True) and not _OSCILLATION.search(c.name)
+    ]
+    friction = _in_friction(role, columns, measured)
+    beside = by_unit if role == "torque" else []  # a torque beside its friction: which is meant is not known
+    return [*friction, *beside] if friction else by_unit or measured
 
 
 def _choose(role: str, path: str) -> dict[str, Any]:
@@ -215,23 +213,32 @@ def no_channel(
         way_out += _speed_elsewhere(columns, file)
     if role == "temperature":
         way_out += f", or use {ISOTHERMAL.to()} to exclude temperature"
-    said = f"{file}: no {role} column found. Columns: {_listed(columns)}"
+    said = f"{file}: no {role} column found. Columns: {columns_listed(columns)}"
     said += not_numbers(others)
     return ChannelError(said, absent=True, remedy=way_out, setting=channel)
 
 
-def _speed_elsewhere(columns: tuple[Column, ...], file: str) -> str:
-    """The name of the file, or a position, where a log without a speed may have it."""
+def elsewhere(columns: tuple[Column, ...], file: str) -> list[tuple[Setting, str]]:
+    """Return what states the speed of a log without one: a pattern of its name, or a position."""
     if found := proposed_pattern(file):
         template, decimal = found
-        mark = "" if decimal == "." else f" {Setting('name_decimal').to(decimal)}"
-        return f". If the name of the file states it, use {Setting('name_pattern').to(template)}{mark}"
+        mark = [] if decimal == "." else [(Setting("name_decimal"), decimal)]
+        return [(Setting("name_pattern"), template), *mark]
     angle = next(
         (c for c in columns if c.unit and is_called("position", c) and could_be("position", c)), None
     )
-    if angle is not None:
-        return f". If '{angle.path}' is the position, use {Setting('position', 'channel').to(angle.path)}"
-    return f", or give set points by time with {Setting('schedule').to('schedule.csv')}"
+    return [] if angle is None else [(Setting("position", "channel"), angle.path)]
+
+
+def _speed_elsewhere(columns: tuple[Column, ...], file: str) -> str:
+    """The name of the file, or a position, where a log without a speed may have it."""
+    found = elsewhere(columns, file)
+    if not found:
+        return f", or give set points by time with {Setting('schedule').to('schedule.csv')}"
+    use = " ".join(setting.to(value) for setting, value in found)
+    if found[0][0].kind == "channel":
+        return f". If '{found[0][1]}' is the position, use {use}"
+    return f". If the name of the file states it, use {use}"
 
 
 def not_numbers(others: tuple[str, ...]) -> str:
@@ -320,7 +327,7 @@ def named_channel(
         near = meant(name, [*(c.path for c in free), *(str(c) for c in free)])
         channel = Setting(role, "channel")
         raise ChannelError(
-            f"{file}: there is no column '{name}' ({role}). Columns: {_listed(columns)}",
+            f"{file}: there is no column '{name}' ({role}). Columns: {columns_listed(columns)}",
             remedy=f"did you mean {channel.to(near)}?" if near else "",
             setting=channel,
         )
@@ -348,10 +355,10 @@ def _either(names: list[str]) -> str:
     return listed + (f" or {len(names) - _SHOWN} more" if len(names) > _SHOWN else "")
 
 
-def _listed(columns: tuple[Column, ...]) -> str:
-    """Columns with their units, the first of them where there are very many."""
-    listed = ", ".join(f"'{c}'" for c in columns[:_SHOWN])
-    return listed + (f" and {len(columns) - _SHOWN} more" if len(columns) > _SHOWN else "")
+def columns_listed(columns: tuple[Column, ...]) -> str:
+    """Return columns with their units, the first of them where there are very many."""
+    names = ", ".join(f"'{c}'" for c in columns[:_SHOWN])
+    return names + (f" and {len(columns) - _SHOWN} more" if len(columns) > _SHOWN else "")
 
 
 def _telling(role: str, candidates: list[Column]) -> list[Column]:

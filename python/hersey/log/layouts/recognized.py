@@ -1,4 +1,4 @@
-"""What becomes of a file that is no log as it stands: it is read by a layout beyond doubt, or one is advised."""
+"""A file that is no log as it stands: read by the layout that it shows, or with the advice to describe it."""
 
 from __future__ import annotations
 
