@@ -62,7 +62,7 @@ def asking_all(
         f"{file}: {'; '.join(said)}. Columns: {columns_listed(columns)}",
         columns=error.columns if isinstance(error, ChannelError | UnitError) else (),
         examples=tuple(is_open.examples),
-        remedy=f"use {stated(is_open.examples)}{_own(is_open.examples)}",
+        remedy=f"use {stated(is_open.examples)}{_own(is_open.examples)}{_without_clock(is_open)}",
         setting=setting,
     )
 
@@ -103,8 +103,6 @@ def _of_absent(role: str, columns: tuple[Column, ...], file: str, unit: str) -> 
     """What to state for a role that no column plays by name or unit."""
     if role == "temperature":
         return [(ISOTHERMAL, "")]
-    if role == "time":
-        return [(EVERY, "2 ms")]
     if role == "speed" and (other := elsewhere(columns, file)):
         return other
     channel = Setting(role, "channel")
@@ -120,6 +118,14 @@ def _own(examples: Sequence[Example]) -> str:
     columns = f"columns for {_COLUMN}" if any(value == _COLUMN for _, value in examples) else ""
     units = "units" if any(of.kind == "unit" for of, _ in examples) else ""
     return f", with your {' and '.join(filter(None, [columns, units]))}" if columns or units else ""
+
+
+def _without_clock(is_open: _Open) -> str:
+    """What to state instead of a column of the time, where none is found."""
+    if (Setting("time", "channel"), _COLUMN) not in is_open.examples:
+        return ""
+    every, clock = EVERY.to("2 ms", python="0.002"), Setting("time", "channel").to()
+    return f", or omit {clock} and set the time between rows with {every}"
 
 
 def stated(examples: Sequence[Example]) -> str:
