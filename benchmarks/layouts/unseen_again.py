@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import numpy as np
 from tests.untrusted_input.other_blocks import xlsx
 
 from benchmarks.layouts.sections import _ALL, _lines, _write
@@ -18,7 +17,7 @@ def vesc(path: Path) -> Made:
     for step in steps:
         for t, m, n, c in step.cells(*_ALL):
             lines.append(
-                f"{36000000 + round(1000 * float(t))};24.1;{float(c) - 3:.1f};{c};{m};0.8;0.2;{n};{len(lines)}"
+                f"{36000000 + round(1000 * float(t))};24.1;{float(c) - 3:.1f};{c};{m};0.8;.2;{n};{len(lines)}"
             )
     _write(path, lines, end="\n")
     options = {
@@ -50,7 +49,9 @@ def canape(path: Path) -> Made:
     lines = ["Time[s];EM_Trq[mNm];EM_Spd[rpm];OilTemp[degC]"]
     for step in steps:
         for i, (t, m, n, _) in enumerate(step.cells(*_ALL)):
-            lines.append(f"{t};{m};{n};{step.temperature[0] if i % 10 == 0 or t == steps[-1].time[-1] else ''}")
+            lines.append(
+                f"{t};{m};{n};{step.temperature[0] if i % 10 == 0 or t == steps[-1].time[-1] else ''}"
+            )
     _write(path, lines)
     made = truth(steps)
     return Made(Truth(made.torque, made.speed, made.time))
@@ -70,9 +71,13 @@ def instron(path: Path) -> Made:
 
 
 def famos(path: Path) -> Made:
-    """imc FAMOS ASCII: names, units in brackets below, tabs, decimal comma, a comment line above."""
+    """FAMOS of imc, ASCII: names, units in brackets below, tabs, decimal comma, a comment line above."""
     steps = staircase(85)
-    lines = ["Exportiert mit imc FAMOS am 03.12.2024", "Zeit\tM_Welle\tn_Welle\tT_Oel", "[s]\t[mNm]\t[1/min]\t[°C]"]
+    lines = [
+        "Exportiert mit imc FAMOS am 03.12.2024",
+        "Zeit\tM_Welle\tn_Welle\tT_Oel",
+        "[s]\t[mNm]\t[1/min]\t[°C]",
+    ]
     lines += [line for step in steps for line in _lines(step.cells(*_ALL), comma=True)]
     _write(path, lines, "cp1252")
     return Made(truth(steps))
@@ -148,9 +153,20 @@ def split_date(path: Path) -> Made:
 def info_sheet(path: Path) -> Made:
     """A workbook with a sheet of information before the data, whose names and units begin in row 3."""
     steps = staircase(90)
-    info: list[list[object]] = [["Operator", "M."], ["Specimen", "S4"], ["Load", "50 N"], ["Date", "2024-03-01"]]
+    info: list[list[object]] = [
+        ["Operator", "M."],
+        ["Specimen", "S4"],
+        ["Load", "50 N"],
+        ["Date", "2024-03-01"],
+    ]
     rows = [list(map(float, row)) for step in steps for row in step.cells(*_ALL)]
-    data = [["Export of bench 3"], [], ["Time", "Torque", "Speed", "Oil"], ["s", "mN·m", "1/min", "°C"], *rows]
+    data = [
+        ["Export of bench 3"],
+        [],
+        ["Time", "Torque", "Speed", "Oil"],
+        ["s", "mN·m", "1/min", "°C"],
+        *rows,
+    ]
     path.write_bytes(xlsx({"Info": info, "Data": data}))
     return Made(truth(steps))
 

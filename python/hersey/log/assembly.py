@@ -107,7 +107,7 @@ class Assembly:
         self.chosen: Chosen = {}
         self._timed: Chosen = {}
         self.parts: dict[str, _Part] = {}
-        self.derived, self._said = wanted.derived, list[Warning]()
+        self.derived, self._said, self._names = wanted.derived, list[Warning](), wanted.names
         try:
             self._choose(wanted.roles, isothermal=wanted.isothermal)
         except (ChannelError, UnitError) as error:
@@ -147,6 +147,7 @@ class Assembly:
             self.source.name,
             dead=self._says_nothing,
             of_a_frame=of_a_frame,
+            names=self._names,
         )
 
     def runs(self) -> list[tuple[Run, LogFile]]:
@@ -253,7 +254,7 @@ class Assembly:
             among = self._beside_a_speed(role)
             channel = find_channel(role, among, choice, file, self._says_nothing, taken)
         if channel is None:
-            raise no_channel(role, self.columns, file, self.recording.others)
+            raise no_channel(role, self.columns, file, self.recording.others, self._names)
         refuse_two_roles(role, channel[0], self.chosen, file)
         return channel
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
@@ -19,7 +19,7 @@ from hersey.errors import (
     printable,
     way_in,
 )
-from hersey.log.derived.file_names import proposed_pattern
+from hersey.log.derived.file_names import differing, proposed_pattern
 from hersey.log.long_arrays import ends
 from hersey.log.own_tables import not_a_log, own_table
 from hersey.log.role_units import with_unit
@@ -188,9 +188,16 @@ def constant_channel(column: Column) -> Warning:
 
 
 def no_channel(
-    role: str, columns: tuple[Column, ...], file: str, others: tuple[str, ...] = ()
+    role: str,
+    columns: tuple[Column, ...],
+    file: str,
+    others: tuple[str, ...] = (),
+    names: Sequence[str] = (),
 ) -> ChannelError:
-    """Return the error for a role that no column plays; ``others`` hold no numbers."""
+    """Return the error for a role that no column plays; ``others`` hold no numbers.
+
+    ``names`` are those of all files that are read together.
+    """
     if what := own_table(column.name for column in columns):
         return not_a_log(what, file)
     channel = Setting(role, "channel")
@@ -210,32 +217,45 @@ def no_channel(
             f"for 2 use {named}"
         )
     if role == "speed":
-        way_out += _speed_elsewhere(columns, file)
+        way_out += _speed_elsewhere(columns, file, names)
     if role == "temperature":
+        if found := stated_in_names(file, names, role):
+            way_out += f". If the names of the files state it, use {_typed(found)}"
         way_out += f", or use {ISOTHERMAL.to()} to exclude temperature"
     said = f"{file}: no {role} column found. Columns: {columns_listed(columns)}"
     said += not_numbers(others)
     return ChannelError(said, absent=True, remedy=way_out, setting=channel)
 
 
-def elsewhere(columns: tuple[Column, ...], file: str) -> list[tuple[Setting, str]]:
+def stated_in_names(file: str, names: Sequence[str], role: str) -> list[tuple[Setting, str]]:
+    """Return the pattern of file names that state a role, and its decimal mark; temperatures must differ."""
+    found = proposed_pattern(file, names, needed=(role,))
+    if found is None or (role == "temperature" and "temperature" not in differing(found, names or (file,))):
+        return []
+    mark = [] if found[1] == "." else [(Setting("name_decimal"), found[1])]
+    return [(Setting("name_pattern"), found[0]), *mark]
+
+
+def _typed(settings: Sequence[tuple[Setting, str]]) -> str:
+    return " ".join(setting.to(value) for setting, value in settings)
+
+
+def elsewhere(columns: tuple[Column, ...], file: str, names: Sequence[str] = ()) -> list[tuple[Setting, str]]:
     """Return what states the speed of a log without one: a pattern of its name, or a position."""
-    if found := proposed_pattern(file):
-        template, decimal = found
-        mark = [] if decimal == "." else [(Setting("name_decimal"), decimal)]
-        return [(Setting("name_pattern"), template), *mark]
+    if found := stated_in_names(file, names, "speed"):
+        return found
     angle = next(
         (c for c in columns if c.unit and is_called("position", c) and could_be("position", c)), None
     )
     return [] if angle is None else [(Setting("position", "channel"), angle.path)]
 
 
-def _speed_elsewhere(columns: tuple[Column, ...], file: str) -> str:
+def _speed_elsewhere(columns: tuple[Column, ...], file: str, names: Sequence[str]) -> str:
     """The name of the file, or a position, where a log without a speed may have it."""
-    found = elsewhere(columns, file)
+    found = elsewhere(columns, file, names)
     if not found:
         return f", or give set points by time with {Setting('schedule').to('schedule.csv')}"
-    use = " ".join(setting.to(value) for setting, value in found)
+    use = _typed(found)
     if found[0][0].kind == "channel":
         return f". If '{found[0][1]}' is the position, use {use}"
     return f". If the name of the file states it, use {use}"

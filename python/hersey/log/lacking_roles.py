@@ -6,7 +6,14 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from hersey.errors import ISOTHERMAL, ChannelError, HerseyError, Setting, UnitError, way_in
-from hersey.log.channels import ChannelChoice, columns_listed, elsewhere, find_column, taken_columns
+from hersey.log.channels import (
+    ChannelChoice,
+    columns_listed,
+    elsewhere,
+    find_column,
+    stated_in_names,
+    taken_columns,
+)
 from hersey.log.role_units import example_unit, known_unit
 from hersey.log.roles import EVERY
 from hersey.log.signals import CURRENT_EXAMPLE, may_be_current
@@ -38,6 +45,7 @@ def asking_all(
     *,
     dead: Callable[[Column], bool] = lambda _: False,
     of_a_frame: bool = False,
+    names: Sequence[str] = (),
 ) -> HerseyError:
     """Return an error of a role without column or unit, or with several columns, with all else that is open.
 
@@ -49,7 +57,7 @@ def asking_all(
         return error
     if setting.kind == "channel" and choices[setting.name].name:  # of which the name is wrong
         return error
-    is_open, found = _all_open(roles, columns, choices, file, dead)
+    is_open, found = _all_open(roles, columns, choices, file, dead, names)
     if isinstance(error, UnitError) and (not is_open.roles or setting not in dict(is_open.examples)):
         return naming_all(error, roles, columns, choices, file, dead=dead, of_a_frame=of_a_frame)
     if len(is_open.roles) + len(is_open.without_unit) < 2 or not {"torque", "speed"} & found:
@@ -62,7 +70,7 @@ def asking_all(
         f"{file}: {'; '.join(said)}. Columns: {columns_listed(columns)}",
         columns=error.columns if isinstance(error, ChannelError | UnitError) else (),
         examples=tuple(is_open.examples),
-        remedy=f"use {stated(is_open.examples)}{_own(is_open.examples)}{_without_clock(is_open)}",
+        remedy=f"use {stated(is_open.examples)}{_own(is_open.examples)}{_instead(is_open.examples)}",
         setting=setting,
     )
 
@@ -73,6 +81,7 @@ def _all_open(
     choices: Mapping[str, ChannelChoice],
     file: str,
     dead: Callable[[Column], bool],
+    names: Sequence[str],
 ) -> tuple[_Open, set[str]]:
     """What is open, and the roles of which a column, or one of several, is there."""
     is_open, found = _Open(), set[str]()
@@ -89,22 +98,30 @@ def _all_open(
             is_open.examples.append((Setting(role, "channel"), column.path))
         if column is None:
             is_open.roles.append(f"no {role} column found")
-            is_open.examples += _of_absent(role, columns, file, choices[role].unit)
+            free = tuple(c for c in columns if c not in taken.values())
+            is_open.examples += _of_absent(role, free, file, names, choices[role].unit)
             continue
         found.add(role)
         chosen[role] = column, None
         if not (choices[role].unit or column.unit or known_unit(role, column)):
             is_open.without_unit.append(column)
             is_open.examples.append((Setting(role, "unit"), example_unit(role, column)))
+    is_open.examples = list(dict.fromkeys(is_open.examples))  # a pattern may state two roles
     return is_open, found
 
 
-def _of_absent(role: str, columns: tuple[Column, ...], file: str, unit: str) -> list[Example]:
-    """What to state for a role that no column plays by name or unit."""
+def _of_absent(
+    role: str, columns: tuple[Column, ...], file: str, names: Sequence[str], unit: str
+) -> list[Example]:
+    """What to state for a role that none of the free columns plays by name or unit."""
     if role == "temperature":
-        return [(ISOTHERMAL, "")]
-    if role == "speed" and (other := elsewhere(columns, file)):
+        return stated_in_names(file, names, role) or [(ISOTHERMAL, "")]
+    if role == "speed" and (other := elsewhere(columns, file, names)):
         return other
+    if role == "speed" and not columns:
+        return [(Setting("schedule"), "schedule.csv")]
+    if role == "time" and not columns:
+        return [(EVERY, "2 ms")]
     channel = Setting(role, "channel")
     current = next((c for c in columns if role == "torque" and may_be_current(c.name, c.unit)), None)
     if current is not None:
@@ -120,12 +137,16 @@ def _own(examples: Sequence[Example]) -> str:
     return f", with your {' and '.join(filter(None, [columns, units]))}" if columns or units else ""
 
 
-def _without_clock(is_open: _Open) -> str:
-    """What to state instead of a column of the time, where none is found."""
-    if (Setting("time", "channel"), _COLUMN) not in is_open.examples:
-        return ""
-    every, clock = EVERY.to("2 ms", python="0.002"), Setting("time", "channel").to()
-    return f", or omit {clock} and set the time between rows with {every}"
+def _instead(examples: Sequence[Example]) -> str:
+    """What to state instead of a column of the time, or of the speed, of which nothing is known."""
+    every, schedule = EVERY.to("2 ms", python="0.002"), Setting("schedule").to("schedule.csv")
+    ways = {"time": f"set the time between rows with {every}", "speed": f"give set points with {schedule}"}
+    columns = {role: Setting(role, "channel") for role in ways}
+    return "".join(
+        f", or omit {column.to()} and {ways[role]}"
+        for role, column in columns.items()
+        if (column, _COLUMN) in examples
+    )
 
 
 def stated(examples: Sequence[Example]) -> str:

@@ -234,9 +234,11 @@ def _channels(
         try:
             channel = find_channel(role, layout.named, choices[role], name, dead, taken)
             if channel is None:
-                raise no_channel(role, layout.named, name)
+                raise no_channel(role, layout.named, name, names=wanted.names)
         except (ChannelError, UnitError) as error:
-            raise asking_all(error, used, layout.named, choices, name, dead=dead) from None
+            raise asking_all(
+                error, used, layout.named, choices, name, dead=dead, names=wanted.names
+            ) from None
         refuse_two_roles(role, channel[0], chosen, name)
         chosen[role] = channel
     others = beside(layout.named, choices, wanted.stated, chosen, name)
