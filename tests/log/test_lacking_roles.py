@@ -39,7 +39,8 @@ def test_columns_and_units_that_are_open_are_asked_for_at_once(tmp_path: Path) -
         hersey.read(path)
     assert refused.value.reason == (
         "log.txt: the torque column could be 'moment_0' or 'moment_1'; no speed column found; the "
-        "temperature column could be 'temp_0' or 'temp_1'; no unit for 'timestamp', 'moment_0', 'temp_0'. Columns: "
+        "temperature column could be 'temp_0' or 'temp_1'; no unit for 'timestamp', 'moment_0', 'temp_0'. "
+        "Columns: "
         "'timestamp', 'qd_0', 'qd_1', 'moment_0', 'moment_1', 'temp_0', 'temp_1'"
     )
     assert refused.value.examples == (

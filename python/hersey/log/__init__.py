@@ -10,6 +10,7 @@ formats               one reader per format, and which one opens a file
 signals               currents, voltages and percentages, and how much one of them stands for
 roles                 roles of columns: their names, and the kinds of units that they may have
 role_units            the unit of a column with a role
+elsewhere             a speed or a temperature in the names of files, or in a position
 channels              which column plays which role
 without_units         columns without units: named at once
 lacking_roles         several roles that a file leaves open: asked for at once

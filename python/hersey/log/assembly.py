@@ -29,6 +29,7 @@ from hersey.log.channels import (
     taken_columns,
 )
 from hersey.log.constant_temperature import constant_temperature
+from hersey.log.derived.direction import without_sign
 from hersey.log.derived.speeds import (
     outside_schedule,
     speed_column,
@@ -174,6 +175,9 @@ class Assembly:
         arrays = {role: without(values, bad) for role, values in arrays.items()}
         warnings += computed(self.chosen, self.stated)
         warnings += replaced_units(self._timed | self.chosen)
+        if not self.choices["direction"].name:
+            names = (each.name for each in (*self.recording.cells, *self.recording.signals))
+            warnings += without_sign(names, arrays["speed"])
         warnings += [*filter(None, self._dead.values()), *self._unused, *self._said]
         log = self._record(tuple(warnings))
         log = replace(log, missing_rows=rows_marked + rows_impossible, impossible=impossible)

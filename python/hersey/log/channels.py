@@ -19,7 +19,7 @@ from hersey.errors import (
     printable,
     way_in,
 )
-from hersey.log.derived.file_names import differing, proposed_pattern
+from hersey.log.elsewhere import speed_elsewhere, stated_in_names, typed
 from hersey.log.long_arrays import ends
 from hersey.log.own_tables import not_a_log, own_table
 from hersey.log.role_units import with_unit
@@ -217,48 +217,14 @@ def no_channel(
             f"for 2 use {named}"
         )
     if role == "speed":
-        way_out += _speed_elsewhere(columns, file, names)
+        way_out += speed_elsewhere(columns, file, names)
     if role == "temperature":
         if found := stated_in_names(file, names, role):
-            way_out += f". If the names of the files state it, use {_typed(found)}"
+            way_out += f". If the names of the files state it, use {typed(found)}"
         way_out += f", or use {ISOTHERMAL.to()} to exclude temperature"
     said = f"{file}: no {role} column found. Columns: {columns_listed(columns)}"
     said += not_numbers(others)
     return ChannelError(said, absent=True, remedy=way_out, setting=channel)
-
-
-def stated_in_names(file: str, names: Sequence[str], role: str) -> list[tuple[Setting, str]]:
-    """Return the pattern of file names that state a role, and its decimal mark; temperatures must differ."""
-    found = proposed_pattern(file, names, needed=(role,))
-    if found is None or (role == "temperature" and "temperature" not in differing(found, names or (file,))):
-        return []
-    mark = [] if found[1] == "." else [(Setting("name_decimal"), found[1])]
-    return [(Setting("name_pattern"), found[0]), *mark]
-
-
-def _typed(settings: Sequence[tuple[Setting, str]]) -> str:
-    return " ".join(setting.to(value) for setting, value in settings)
-
-
-def elsewhere(columns: tuple[Column, ...], file: str, names: Sequence[str] = ()) -> list[tuple[Setting, str]]:
-    """Return what states the speed of a log without one: a pattern of its name, or a position."""
-    if found := stated_in_names(file, names, "speed"):
-        return found
-    angle = next(
-        (c for c in columns if c.unit and is_called("position", c) and could_be("position", c)), None
-    )
-    return [] if angle is None else [(Setting("position", "channel"), angle.path)]
-
-
-def _speed_elsewhere(columns: tuple[Column, ...], file: str, names: Sequence[str]) -> str:
-    """The name of the file, or a position, where a log without a speed may have it."""
-    found = elsewhere(columns, file, names)
-    if not found:
-        return f", or give set points by time with {Setting('schedule').to('schedule.csv')}"
-    use = _typed(found)
-    if found[0][0].kind == "channel":
-        return f". If '{found[0][1]}' is the position, use {use}"
-    return f". If the name of the file states it, use {use}"
 
 
 def not_numbers(others: tuple[str, ...]) -> str:

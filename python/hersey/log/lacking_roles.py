@@ -6,14 +6,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from hersey.errors import ISOTHERMAL, ChannelError, HerseyError, Setting, UnitError, way_in
-from hersey.log.channels import (
-    ChannelChoice,
-    columns_listed,
-    elsewhere,
-    find_column,
-    stated_in_names,
-    taken_columns,
-)
+from hersey.log.channels import ChannelChoice, columns_listed, find_column, taken_columns
+from hersey.log.elsewhere import elsewhere, stated_in_names
 from hersey.log.role_units import example_unit, known_unit
 from hersey.log.roles import EVERY
 from hersey.log.signals import CURRENT_EXAMPLE, may_be_current

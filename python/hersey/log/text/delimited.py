@@ -26,6 +26,7 @@ from hersey.log.channels import (
     taken_columns,
 )
 from hersey.log.constant_temperature import constant_temperature
+from hersey.log.derived.direction import without_sign
 from hersey.log.friction import (
     Chosen,
     beside,
@@ -102,6 +103,7 @@ def read_delimited(path: Path, wanted: Wanted, progress: Progress | None = None)
             *dead.warnings,
             *excluded,
             *unused(layout.named, channels, stated),
+            *without_sign((column.name for column in layout.named), arrays["speed"]),
             *end.warnings,
             *growth,
             *(each.warning() for each in impossible),
