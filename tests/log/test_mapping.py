@@ -290,8 +290,6 @@ def test_a_proposal_writes_a_position_and_what_is_said_beside_columns(tmp_path: 
     assert '[position]\nchannel = "phi"\nunit = "deg"\nwindow = "0.5 s"\n' in text
     current = 'channel = "Current"\nunit = "A"\nmotor_constant = "0.1 N*m/A"\ngear_ratio = 30\n'
     assert f"[torque]\n{current}" in text
-        '[torque]\nchannel = "Current"\nunit = "A"\nmotor_constant = "0.1 N*m/A"\ngear_ratio = 30\n' in text
-    )
     assert '[load]\nvalues = ["5 N", "7 N"]\n' in text
     assert '# channel = "dir"' in text
     assert text.count("motor_constant") == 1

@@ -42,6 +42,7 @@ from hersey.log.mapping import (
     read_with_mapping,
     without_what_is_said,
 )
+from hersey.log.mean_refusals import refuse_corrections, refuse_sources
 from hersey.log.means import MeansTable, read_means
 from hersey.log.roles import CHANNELS, OTHER_ROLES, ROLES, SIGNS, UNITS
 from hersey.log.torque_log import ROTATIONS, TARES, Correction, LogFile, TorqueLog
@@ -258,7 +259,7 @@ def inspect(
     chosen, channels, units = motor.added(chosen, reading.get("channels") or {}, reading.get("units") or {})
     rest = {name: value for name, value in reading.items() if name not in vars(motor)}
     reading = cast("Reading", rest | {"channels": channels, "units": units})
-    chosen = chosen.turned(reading.get("signs") or {})
+    corrects, chosen = chosen.corrects, chosen.turned(reading.get("signs") or {})
     choices, known = _said(chosen, reading)
     made = _made(chosen, reading)
 
@@ -287,6 +288,9 @@ def inspect(
     try:
         if means:
             reports = tuple(replace(each, format=f"{each.format}, {MEANS}", lacking={}) for each in reports)
+            by_hand = [Setting(name).to() for name in vars(motor) if said.get(name) is not None]
+            refuse_corrections(corrects, str(chosen.source and chosen.source.name), by_hand)
+            refuse_sources(chosen, said, channels)
             log = replace(_table(files, choices, known, reading), sensors=chosen.sensors)
             done = log.corrections
         else:
