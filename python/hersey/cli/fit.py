@@ -80,12 +80,12 @@ def _fit_one(logs: list[Path], reading: Reading, machine: Machine | None, printi
         curves = None
         if points is not None and surface is not None and printing.in_full:
             curves = _curves(points, surface, machine)
-    if moving is not None and not printing.as_json:
-        printing.text(*fitted_lines(moving))
-        printing.warnings(*moving.warnings)
     if points is None or surface is None:
         if printing.as_json:
             raise ParameterError(_NO_SURFACE)
+        if moving is not None:
+            printing.text(*fitted_lines(moving))
+            printing.warnings(*moving.warnings)
         return
     if printing.as_json:
         from hersey.document.assembly import fit_document
@@ -94,11 +94,14 @@ def _fit_one(logs: list[Path], reading: Reading, machine: Machine | None, printi
         return
     seen = regime(points, surface)
     friction = leading_friction(points, surface, seen)
-    printing.text(*([""] if moving is not None else []))
-    if friction is not None:
+    if moving is not None:
+        printing.text(*fitted_lines(moving, "" if friction is None else friction.finding))
+    elif friction is not None:
         printing.text(*_friction(friction, points.dropped()))
     if friction is None or printing.in_full or not excludes_power_law(friction, surface):
-        printing.text(*["", "Damping as one power law:"] * bool(friction), seen.verdict)
+        of = "of the windows of speed " if moving is not None else ""
+        said = moving is not None or friction is not None
+        printing.text(*["", f"Damping {of}as one power law:"] * said, seen.verdict)
         printing.text("", *_law(surface, curves))
     printing.warnings(*warnings_of(points, surface, friction))
 
