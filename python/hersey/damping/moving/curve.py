@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
+
 from hersey.damping.friction_curve import law as laws
 from hersey.damping.friction_curve.fit import fit_friction
 from hersey.damping.friction_curve.fitted import (
@@ -17,7 +19,7 @@ from hersey.damping.friction_curve.fitted import (
 )
 from hersey.damping.friction_curve.least import Searched, least_torques
 from hersey.damping.friction_curve.result import FrictionCurve
-from hersey.damping.moving.friction import MovingFriction, MovingPoints
+from hersey.damping.moving.friction import Moments, MovingFriction, MovingPoints
 
 
 def moving_curve(points: MovingPoints) -> FrictionCurve | None:
@@ -32,6 +34,7 @@ def moving_curve(points: MovingPoints) -> FrictionCurve | None:
     alike = [each for each in of_windows.tried if (each.kind, each.apart) == (kind, law.apart)]
     if not alike:
         return None
+    of_windows = replace(of_windows, **_ends(own.moments, of_windows))
     return replace(
         of_windows,
         parameters=_parameters(own, of_windows),
@@ -48,8 +51,19 @@ def moving_curve(points: MovingPoints) -> FrictionCurve | None:
     )
 
 
+def _ends(moments: Moments, curve: FrictionCurve) -> dict[str, tuple[float, float]]:
+    """Slowest and fastest moment of each direction that has windows."""
+    sides = {"forward_speeds": moments.speed > 0.0, "reverse_speeds": moments.speed < 0.0}
+    sizes = np.abs(moments.speed)
+    return {
+        name: (float(sizes[side].min()), float(sizes[side].max()))
+        for name, side in sides.items()
+        if getattr(curve, name) is not None
+    }
+
+
 def _ways(curve: FrictionCurve) -> dict[str, tuple[float, float]]:
-    """Slowest and fastest window of each direction."""
+    """Slowest and fastest speed of each direction."""
     ends = {FORWARD: curve.forward_speeds, REVERSE: curve.reverse_speeds}
     return {name: each for name, each in ends.items() if each is not None}
 
