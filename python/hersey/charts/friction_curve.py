@@ -66,8 +66,8 @@ def signed_chart(
 ) -> Chart:
     """Return dwells (``speed``, ``y``, ``low``, ``high``, ``level``) and the lines of a friction curve.
 
-    Of one direction, both are drawn as positive. ``unit`` is its factor from N m, and its name. ``moments`` of
-    a moving log are drawn pale under them.
+    Of one direction, both are drawn as positive. ``unit`` is its factor from N m, and its name. ``moments``
+    of a moving log are drawn pale under them.
     """
     both = curve.forward_speeds is not None and curve.reverse_speeds is not None
     shown = dwells if both else [_positive(row) for row in dwells]
@@ -127,7 +127,8 @@ def _moments(moments: Moments, curve: FrictionCurve, factor: float, *, both: boo
     of = np.isin(side, [way for way, ends in ways.items() if ends is not None])
     up = np.ones_like(side) if both else side
     rows = rows_of(speed=rpm(up * speed)[of], y=factor * (up * torque)[of])
-    return plot(rows).mark_point(size=12, filled=True, color=EDGE, opacity=0.45, clip=True)
+    dots: alt.Chart = plot(rows).mark_point(size=12, filled=True, color=EDGE, opacity=0.45, clip=True)
+    return dots
 
 
 def _legend(lines: list[Row], moments: Moments | None) -> str:

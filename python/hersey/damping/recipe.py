@@ -246,7 +246,7 @@ class Recipe:
         return points if rest is None else points.without(rest)
 
     def found(self, log: TorqueLog | MeansTable) -> SteadyPoints | MovingFit:
-        """Return the dwells of a log, or the fit to every sample if it moves all the time or that is asked for.
+        """Return the dwells of a log, or the fit to every sample: if asked for, or if it moves all the time.
 
         Raises
         ------

@@ -59,7 +59,7 @@ class Analysis(Part):
     regime: Regime
     friction: FrictionCurve | None = Field(default=None, description=FRICTION)
     moving: MovingFriction | None = Field(default=None, description="of a log that moves all the time")
-    moments: Moments | None = Field(default=None, description="some of the moments of such a log, to be drawn")
+    moments: Moments | None = Field(default=None, description="some moments of such a log, to be drawn")
     film: FilmPart | None = None
     torque_budget: TorqueBudgetPart | None = None
     simulation: SimulationPart | None = Field(

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import numpy as np
-
+from hersey.arrays import FloatArray
 from hersey.damping.friction_curve import law as laws
 from hersey.damping.friction_curve.fit import fit_friction
 from hersey.damping.friction_curve.fitted import (
@@ -19,7 +18,7 @@ from hersey.damping.friction_curve.fitted import (
 )
 from hersey.damping.friction_curve.least import Searched, least_torques
 from hersey.damping.friction_curve.result import FrictionCurve
-from hersey.damping.moving.friction import Moments, MovingFriction, MovingPoints
+from hersey.damping.moving.friction import MovingFriction, MovingPoints
 
 
 def moving_curve(points: MovingPoints) -> FrictionCurve | None:
@@ -34,7 +33,12 @@ def moving_curve(points: MovingPoints) -> FrictionCurve | None:
     alike = [each for each in of_windows.tried if (each.kind, each.apart) == (kind, law.apart)]
     if not alike:
         return None
-    of_windows = replace(of_windows, **_ends(own.moments, of_windows))
+    speed = own.moments.speed
+    of_windows = replace(
+        of_windows,
+        forward_speeds=_ends(speed[speed > 0.0], of_windows.forward_speeds),
+        reverse_speeds=_ends(-speed[speed < 0.0], of_windows.reverse_speeds),
+    )
     return replace(
         of_windows,
         parameters=_parameters(own, of_windows),
@@ -51,15 +55,9 @@ def moving_curve(points: MovingPoints) -> FrictionCurve | None:
     )
 
 
-def _ends(moments: Moments, curve: FrictionCurve) -> dict[str, tuple[float, float]]:
-    """Slowest and fastest moment of each direction that has windows."""
-    sides = {"forward_speeds": moments.speed > 0.0, "reverse_speeds": moments.speed < 0.0}
-    sizes = np.abs(moments.speed)
-    return {
-        name: (float(sizes[side].min()), float(sizes[side].max()))
-        for name, side in sides.items()
-        if getattr(curve, name) is not None
-    }
+def _ends(moments: FloatArray, windows: tuple[float, float] | None) -> tuple[float, float] | None:
+    """Slowest and fastest moment of a direction, if it has windows."""
+    return None if windows is None else (float(moments.min()), float(moments.max()))
 
 
 def _ways(curve: FrictionCurve) -> dict[str, tuple[float, float]]:

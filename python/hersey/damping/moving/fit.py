@@ -22,9 +22,9 @@ from hersey.damping.friction_curve.law import (
 from hersey.damping.moving.correlated import Autoregression
 from hersey.damping.moving.filtering import Filtered, LowPass
 from hersey.damping.moving.fitting import LEAST_SEEN, Fitting, MovingLawFit
+from hersey.damping.moving.friction import LawTried, Moments, MovingParameter
 from hersey.damping.moving.model import INERTIA, OFFSET, Equations, MovingLaw
 from hersey.damping.moving.moving_warnings import CLEAR_OFFSET, moving_warnings
-from hersey.damping.moving.friction import LawTried, Moments, MovingParameter
 from hersey.damping.moving.result import MovingFit
 from hersey.damping.moving.speed_noise import SpeedNoise, low_pass_for, speed_noise
 from hersey.damping.moving.stretches import Stretch, stretches_of
@@ -245,7 +245,9 @@ def _result(log: TorqueLog, made: _Made, chosen: MovingLawFit, fits: Sequence[Mo
 def _directions(chosen: MovingLawFit, fits: Sequence[MovingLawFit]) -> DirectionTest | None:
     """Whether one law holds for both directions beside an offset, by the fall of chi-square."""
     of = chosen.law.friction
-    same = {each.law.friction.apart: each for each in fits if replace(each.law.friction, apart=of.apart) == of}
+    same = {
+        each.law.friction.apart: each for each in fits if replace(each.law.friction, apart=of.apart) == of
+    }
     if len(same) < 2:
         return None
     gain = max(same[False].chi_square - same[True].chi_square, 0.0)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 from hersey.arrays import FloatArray
 from hersey.damping.dwells.points import SteadyPoints
@@ -45,8 +45,8 @@ class Moments(Record):
 class MovingFriction(Record):
     """Friction, inertia and offset of a log that moves all the time, with what was used of it."""
 
-    not_stated = ("friction_law", "values", "covariance", "moments")
-    also_stated = ("cost",)
+    not_stated: ClassVar[tuple[str, ...]] = ("friction_law", "values", "covariance", "moments")
+    also_stated: ClassVar[tuple[str, ...]] = ("cost",)
 
     law: Annotated[str, Means("law of friction that was chosen")]
     parameters: Annotated[tuple[MovingParameter, ...], Means("friction first, then inertia, offset, delay")]

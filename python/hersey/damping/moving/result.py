@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -25,8 +25,8 @@ if TYPE_CHECKING:
 class MovingFit(MovingFriction, Result):
     """Friction, inertia and offset of a log that moves all the time, as returned by `hersey.fit_moving`."""
 
-    not_stated = (*MovingFriction.not_stated, "log", "fitted", "fitting")
-    also_stated = ()
+    not_stated: ClassVar[tuple[str, ...]] = (*MovingFriction.not_stated, "log", "fitted", "fitting")
+    also_stated: ClassVar[tuple[str, ...]] = ()
 
     warnings: tuple[Warning, ...]
     log: TorqueLog
