@@ -11,8 +11,8 @@ from hersey.schema.warning import Warning
 
 #: Rows from which on a log may be fitted as it moves.
 ROWS_TO_FIT = 300
-#: Share of the rows of a turning drive from which motion beside the dwells is spoken of: beyond the ramps from
-#: speed to speed of a usual staircase.
+#: Share of the rows of a turning drive from which motion beside the dwells is spoken of: more than the ramps
+#: of a usual staircase.
 _MUCH = 0.25
 
 

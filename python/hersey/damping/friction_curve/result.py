@@ -23,7 +23,7 @@ class FrictionCurve(FittedFriction, Result):
     """
 
     not_stated = ("law", "values", "covariance", "freedom", "data")
-    also_stated = ("kind", "apart", "headline", "formula", "finding", "lines", "residuals")
+    also_stated = ("kind", "apart", "headline", "formula", "finding", "summary", "lines", "residuals")
 
     def headline(self) -> str:
         """Return the law and its parameters."""

@@ -65,7 +65,7 @@ def summary_of(curve: FittedFriction) -> str:
     lines.append(f"{curve.points} {curve.what}, scatter {100 * curve.scatter:.2g} % of torque; laws tried:")
     best = curve.tried[0].aicc
     for each in curve.tried:
-        way = "each direction separately" if each.apart else "one law for all dwells"
+        way = "each direction separately" if each.apart else f"one law for all {curve.what}"
         worse = f"AICc +{each.aicc - best:.1f}, weight {each.weight:.2g}"
         lines.append(f"  {_LAWS[each.kind]}, {way}: {worse}")
     return "\n".join(lines)

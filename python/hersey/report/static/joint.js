@@ -20,7 +20,7 @@ function together({ value, low, high }, factor = 1) {
 }
 async function frictionSection(parent) {
   const { friction: curve } = data;
-  const part = section(parent, "torque", "Friction torque", curve.finding);
+  const part = section(parent, "torque", "Friction curve", curve.finding);
   if (data.map) add(part, "p", pretty(lawOfStability()), "text");
   const columns = add(part, "div", "", "columns");
   if (data.map) await chart(columns, "torque", { heading: torqueHeading(), note: torqueNote(), says: curve.finding });
@@ -28,7 +28,10 @@ async function frictionSection(parent) {
   await chart(columns, "residuals");
   frictionParameters(box, curve);
   if (moving) add(box, "p", pretty(moving.cost), "text");
-  const all = fold(part, `All ${plural(data.points.length, moving ? "window of speed" : "dwell", moving ? "windows of speed" : "dwells")}`, (inside) => dwells(inside));
+  const all = fold(part, `Statistics and all ${data.points.length} ${moving ? "windows of speed" : "dwells"}`, (inside) => {
+    add(inside, "pre", curve.summary).id = "summary";
+    dwells(inside);
+  });
   all.id = "statistics";
   if (!moving) explained(all.firstChild, "dwell");
 }

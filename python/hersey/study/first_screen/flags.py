@@ -338,7 +338,8 @@ def _of_log(points: SteadyPoints, surface: DampingSurface, *, asked: bool) -> It
     for each in (each.about(points.domain) for each in doubtful_tare(points)[:1]):
         yield each.titled("The zero is doubtful", section="data")
     yield from (
-        each.titled("Motion between the dwells is not used", section="data") for each in motion_between(points)
+        each.titled("Motion between the dwells is not used", section="data")
+        for each in motion_between(points)
     )
     if few_slow_dwells(points, surface):
         yield Warning(
