@@ -282,16 +282,26 @@ class Reading:
         paths: list[Path],
         log: TorqueLog | MeansTable,
         machine: Machine | None = None,
-        fit: MovingFit | None = None,
+        found: SteadyPoints | MovingFit | None = None,
     ) -> SteadyPoints:
-        """Reduce the log of these files to dwells; print what the no-load log shows."""
+        """Reduce the log of these files to dwells; print that it moves, and what the no-load log shows."""
         if machine is not None and machine.rest is not None:
             refuse_no_load_log(paths, machine.rest)
-        points = self.recipe(paths).dwells(log, machine, fit)
+        reduced = self.found(paths, log) if found is None else found
+        points = self.recipe(paths).dwells(log, machine, reduced)
         if self.no_load and points.rest is not None:
             note(f"No-load torque subtracted: {points.rest}.")
             note(*(f"- {warning.sentence}" for warning in points.rest.warnings))
         return points
+
+    def found(self, paths: list[Path], log: TorqueLog | MeansTable) -> SteadyPoints | MovingFit:
+        """Return the dwells of the log, or the fit to every sample of one that moves; print that it moves."""
+        from hersey.damping.dwells import SteadyPoints
+
+        found = self.recipe(paths).found(log)
+        if not (self.moving or isinstance(found, SteadyPoints)):
+            note("The speed hardly ever holds, so friction is fitted to every sample, as with --moving.")
+        return found
 
     def points_of(
         self, paths: list[Path], machine: Machine | None = None, others: Sequence[Path] = ()

@@ -18,6 +18,7 @@ from pydantic import ValidationInfo
 
 from hersey.arguments.frozen import explained
 from hersey.damping.dwells import SteadyPoints
+from hersey.damping.held_or_moving import held_or_moving
 from hersey.damping.moving.result import MovingFit
 from hersey.damping.no_load import no_load_torque
 from hersey.damping.no_load_torque import NoLoadTorque
@@ -221,12 +222,15 @@ class Recipe:
         return log if log.domain.is_torque else log_as_torque(log, radius=drive.roll_radius)
 
     def dwells(
-        self, log: TorqueLog | MeansTable, drive: KnownDrive | None = None, fit: MovingFit | None = None
+        self,
+        log: TorqueLog | MeansTable,
+        drive: KnownDrive | None = None,
+        found: SteadyPoints | MovingFit | None = None,
     ) -> SteadyPoints:
         """Reduce a log, or a table of means, to dwells with the torque of the film.
 
-        The no-load torque is that of ``no_load``, or else of the drive. The dwells keep the recipe. ``fit``
-        is that of a moving log, whose windows become the dwells; without it, one is made where it is needed.
+        The no-load torque is that of ``no_load``, or else of the drive. The dwells keep the recipe. ``found``
+        is what `found` returned, if it was called before; windows of a moving log become the dwells.
 
         Raises
         ------
@@ -234,15 +238,32 @@ class Recipe:
             If there is no dwell, or a setting is wrong or given twice.
         """
         rest = self.rest(None if drive is None else drive.rest, drive)
+        reduced = self.found(log) if found is None else found
+        if isinstance(reduced, MovingFit):
+            reduced = reduced.points(rotation=self.rotation)
+        points = replace(reduced, recipe=self)
+        return points if rest is None else points.without(rest)
+
+    def found(self, log: TorqueLog | MeansTable) -> SteadyPoints | MovingFit:
+        """Return the dwells of a log, or the fit to every sample: if asked for, or if it moves all the time.
+
+        Raises
+        ------
+        InsufficientDataError, ParameterError
+            As `dwells` does.
+        """
         try:
-            found = self._dwells(log) if fit is None else fit.points(rotation=self.rotation)
-            points = replace(found, recipe=self)
+            if isinstance(log, TorqueLog) and self.moving:
+                return self.moving_fit(log)
+            asked = (self.tare, self.rotation) != ("none", "both")
+            if asked or not isinstance(log, TorqueLog):
+                return self._dwells(log)
+            return held_or_moving(log.rows, lambda: self._dwells(log), lambda: self.moving_fit(log))
         except InsufficientDataError as error:
             flipped = [turned(role) for role, sign in self.signs.items() if sign == -1]
             if error.setting == SIGN and len(flipped) == 1:
                 error.remedy = f"omit {flipped[0]}"
             raise
-        return points if rest is None else points.without(rest)
 
     def moving_fit(self, log: TorqueLog) -> MovingFit:
         """Fit friction, inertia and offset to every sample of a log.

@@ -20,13 +20,13 @@ def missing(known: Findings) -> list[MissingPart]:
     points, surface, machine = known.points, known.surface, known.machine
     part = DRIVE if machine is None else machine.part
     if not points.domain.is_torque:  # friction alone is about no machine
-        return [] if points.log.has_temperature else [_temperature()]
+        return [] if points.log.has_temperature else [_temperature(known)]
     file = _MACHINE if known.machine_file is None else known.machine_file.name
     out = []
     if machine is None:
         out.append(_drivetrain(file))
     if not points.log.has_temperature:
-        out.append(_temperature())
+        out.append(_temperature(known))
     if machine is None or not machine.points:
         out.append(_points(file, surface, machine))
     if machine is None or (machine.limits.motor_torque is None and machine.limits.grip is None):
@@ -67,9 +67,10 @@ def _drivetrain(file: str) -> MissingPart:
     )
 
 
-def _temperature() -> MissingPart:
+def _temperature(known: Findings) -> MissingPart:
+    changes = "the transition moves" if known.friction is None else "friction changes"
     return MissingPart(
-        purpose="how the transition moves with temperature",
+        purpose=f"how {changes} with temperature",
         file=_MAPPING,
         lines=(
             "[temperature]\n"
