@@ -7,8 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from benchmarks.layouts import unseen_again
-from benchmarks.layouts.cases import CASES
+from benchmarks.layouts.cases import CASES, UNSEEN
 from benchmarks.layouts.truth import Made, Step, staircase, truth
 from benchmarks.layouts.trying import tried, wrong_with
 
@@ -66,7 +65,7 @@ HEAD = "Time [s];Torque [mN*m];Temp [degC]"
 
 
 def written(folder: Path, name: str) -> tuple[Path, Made]:
-    write, ending = CASES.get(name) or unseen_again.CASES[name]
+    write, ending = (CASES | UNSEEN)[name]
     path = folder / f"log{ending}"
     return path, write(path)
 
