@@ -349,6 +349,19 @@ def test_units_of_another_part_are_converted(tmp_path: Path) -> None:
     np.testing.assert_allclose(log.runs[0].torque, made.truth.torque, rtol=1e-12)
 
 
+def test_speeds_in_names_beside_a_speed_are_a_guess(tmp_path: Path) -> None:
+    """Two sensors, each named with the speed that it bears."""
+    path = tmp_path / "log.csv"
+    lines = ["Time [s];Torque 3000 rpm [mN*m];Torque 9000 rpm [mN*m];Speed [rpm];Temp [degC]"]
+    for step in staircase(5, rows=30):
+        lines += [
+            f"{t};{m};{m}1;{n};{c}" for t, m, n, c in step.cells("time", "torque", "turning", "temperature")
+        ]
+    path.write_text("\n".join(lines) + "\n")
+    with pytest.raises(HerseyError, match="the torque column could be"):
+        read_with_mapping(path)
+
+
 def test_advice_suits_who_asks(tmp_path: Path) -> None:
     path = tmp_path / "log.csv"
     with_doubt(path)

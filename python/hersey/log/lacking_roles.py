@@ -89,7 +89,9 @@ def _all_open(
             if column is None:  # a name that a person gave, which is another mistake
                 continue
             is_open.roles.append(several.reason.removeprefix(f"{file}: "))
-            is_open.examples.append((Setting(role, "channel"), column.path))
+            alike = sum(c.path == column.path for c in columns)
+            name = f"{column.path}#1" if alike > 1 else column.path
+            is_open.examples.append((Setting(role, "channel"), name))
         if column is None:
             is_open.roles.append(f"no {role} column found")
             free = tuple(c for c in columns if c not in taken.values())
