@@ -176,7 +176,7 @@ class Assembly:
         warnings += computed(self.chosen, self.stated)
         warnings += replaced_units(self._timed | self.chosen)
         if not self.choices["direction"].name:
-            names = (each.name for each in (*self.recording.cells, *self.recording.signals))
+            names = [each.name for each in self.recording.cells] + [c.name for c in self.columns]
             warnings += without_sign(names, arrays["speed"])
         warnings += [*filter(None, self._dead.values()), *self._unused, *self._said]
         log = self._record(tuple(warnings))

@@ -17,6 +17,8 @@ from hersey.units import Conversion
 
 #: What stands for the name of a column of which nothing is known.
 _COLUMN = "COLUMN"
+#: Columns of which it is asked whether they say nothing, at the most.
+_LOOKED_AT = 40
 #: A setting and its value, as an example.
 Example = tuple[Setting, str]
 
@@ -51,7 +53,10 @@ def asking_all(
         return error
     if setting.kind == "channel" and choices[setting.name].name:  # of which the name is wrong
         return error
-    is_open, found = _all_open(roles, columns, choices, file, dead, names)
+    few = {column.index for column in columns[:_LOOKED_AT]}  # each is read from the file
+    is_open, found = _all_open(
+        roles, columns, choices, file, lambda column: column.index in few and dead(column), names
+    )
     if isinstance(error, UnitError) and (not is_open.roles or setting not in dict(is_open.examples)):
         return naming_all(error, roles, columns, choices, file, dead=dead, of_a_frame=of_a_frame)
     if len(is_open.roles) + len(is_open.without_unit) < 2 or not {"torque", "speed"} & found:
