@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -150,8 +151,9 @@ def test_brake_and_drive_are_left_out() -> None:
 
 def test_a_wheel_driven_through_standstill_does_not_coast() -> None:
     down = np.concatenate([np.full(200, 100.0), np.linspace(100.0, -100.0, 400), np.full(200, -100.0)])
-    with pytest.raises(InsufficientDataError, match="speed falls freely nowhere"):
+    with pytest.raises(InsufficientDataError, match="speed falls freely nowhere") as error:
         hersey.coast_down(frame(down), inertia=0.01)
+    assert "without drive and brake" in error.value.remedy
 
 
 def test_coasts_that_differ_are_told_and_widen_the_intervals() -> None:
@@ -199,7 +201,47 @@ def test_a_log_of_dwells_does_not_coast() -> None:
     stairs = np.repeat([100.0, 80.0, 60.0, 40.0, 20.0, 10.0, 5.0], 200)
     with pytest.raises(InsufficientDataError, match="speed falls freely nowhere") as error:
         hersey.coast_down(frame(stairs, noise=0.2), inertia=0.01)
-    assert "without drive and brake" in error.value.remedy
+    assert "let the wheel coast to rest" in error.value.remedy
+
+
+def stairs(levels: list[float], rows: int = 150, settling: float = 5.0) -> FloatArray:
+    """A staircase of held speeds, each approached exponentially in so many rows."""
+    parts = [np.full(rows, levels[0])]
+    for before, level in pairwise(levels):
+        parts.append(level + (before - level) * np.exp(-np.arange(1, rows) / settling))
+    return np.concatenate(parts)
+
+
+def test_a_staircase_that_settles_shortly_is_no_coast() -> None:
+    """Its eight falls were taken for coasts, each with the speed that is held after it."""
+    with pytest.raises(InsufficientDataError, match="steps between held speeds 3 %") as error:
+        hersey.coast_down(ROOT / "examples" / "no-load.csv", inertia=0.01)
+    assert "let the wheel coast to rest, or end the log where the drive takes hold" in error.value.remedy
+    for noise in (0.02, 0.2):
+        with pytest.raises(InsufficientDataError, match="steps between held speeds"):
+            hersey.coast_down(frame(stairs([100.0, 60.0, 35.0, 20.0, 12.0]), 0.1, noise), inertia=0.01)
+
+
+def test_a_coast_beside_a_staircase_is_found() -> None:
+    coasting = falling((1.0, 0.05, 0.0), 100.0, 40.0, 0.1)
+    up = np.concatenate([np.linspace(10.0, 100.0, 40), np.full(50, 100.0)])
+    whole = np.concatenate([stairs([100.0, 60.0, 30.0, 10.0]), up, np.maximum(coasting, 0.0)])
+    found = hersey.coast_down(frame(whole, 0.1), inertia="0.01 kg*m^2 ± 1 %")
+    (coast,) = found.coasts
+    assert coast.stops
+    assert coast.start > 0.1 * (4 * 149)
+    assert found.coulomb.low < 0.01 < found.coulomb.high
+    (told,) = [each for each in found.warnings if each.kind == "parts left out"]
+    assert (told.values["what"], told.values["count"]) == ("steps between held speeds", 3)
+
+
+def test_a_coast_that_a_drive_ends_is_found_once_the_log_ends_there() -> None:
+    coasting = falling((1.0, 0.05, 0.0), 100.0, 18.0, 0.1)
+    whole = np.concatenate([np.full(50, 100.0), coasting, np.full(300, coasting[-1])])
+    with pytest.raises(InsufficientDataError, match="steps between held speeds"):
+        hersey.coast_down(frame(whole, 0.1), inertia=0.01)
+    found = hersey.coast_down(frame(whole[:230], 0.1), inertia="0.01 kg*m^2 ± 1 %")
+    assert found.viscous.low < 5e-4 < found.viscous.high
 
 
 @pytest.mark.parametrize(

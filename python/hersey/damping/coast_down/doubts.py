@@ -31,7 +31,16 @@ _UNLIKE = 0.5
 #: Change of temperature, K, that is worth a word.
 _WARMER = 2.0
 #: Stretches that are worth a word.
-_WORDS = {"braking": "braked", "driven": "driven", "reversed": "driven through standstill"}
+_WORDS = {
+    "stepped": "steps between held speeds",
+    "braking": "braked",
+    "driven": "driven",
+    "reversed": "driven through standstill",
+}
+_OF_STEPS = (
+    "a drive that holds the speed after a fall may have set the fall, too: let the wheel coast to rest, or "
+    "end the log where the drive takes hold"
+)
 _TERMS = ("Coulomb friction", "viscous friction", "windage")
 
 
@@ -49,10 +58,13 @@ def no_coast(log: TorqueLog, left_out: Sequence[LeftOut]) -> InsufficientDataErr
         "short": "falls of too few rows",
     } | _WORDS
     most = sorted(rows, key=lambda why: -rows[why])
-    held = ", ".join(f"{named[why]} {100 * rows[why] / whole:.0f} %" for why in most[:3])
+    shares = [(named[why], 100 * rows[why] / whole) for why in most[:3]]
+    held = ", ".join(f"{name} {share:.0f} %" for name, share in shares if share >= 0.5)
     return InsufficientDataError(
         f"{log.files[0].name}: speed falls freely nowhere in this log ({held})",
-        remedy="record the speed while the wheel coasts down without drive and brake, at 20 rows or more",
+        remedy=_OF_STEPS
+        if rows.get("stepped")
+        else "record the speed while the wheel coasts down without drive and brake, at 20 rows or more",
     )
 
 
@@ -161,6 +173,7 @@ class Doubts:
                         "{start:.4g} to {end:.4g} s",
                         severity="watch",
                         where=self.log.runs[parts[0].run].name,
+                        remedy=_OF_STEPS if why == "stepped" else "",
                         count=len(parts),
                         what=words,
                         start=parts[0].start,
