@@ -16,6 +16,7 @@ from hersey.damping.coast_down import CoastDown
 from hersey.damping.coast_down.closed_form import speeds
 from hersey.damping.coast_down.coasts import noise_of_rows
 from hersey.damping.coast_down.inertia import inertia_of
+from hersey.damping.recipe import Recipe
 from hersey.errors import InsufficientDataError, ParameterError, UnitError
 from tests.cli.command import run
 from tests.conftest import ROOT
@@ -78,7 +79,7 @@ def test_the_terms_of_the_example_are_found() -> None:
     assert [each.stops for each in found.coasts] == [True, False]
     assert found.coasts[1].slowest == pytest.approx(60.0, rel=0.05)
     assert {"standing", "rising", "ends"} <= {each.why for each in found.left_out}
-    assert found.warnings == ()
+    assert kinds(found) == {"temperature not known"}
     value, low, high = found.torque_at("1000 rpm")
     speed = 1000.0 * np.pi / 30.0
     truth = TERMS[0] + TERMS[1] * speed + TERMS[2] * speed**2
@@ -88,7 +89,7 @@ def test_the_terms_of_the_example_are_found() -> None:
 
 def test_an_inertia_without_an_error_is_told() -> None:
     found = hersey.coast_down(LOG, inertia="0.012 kg*m^2")
-    (exact,) = found.warnings
+    (exact,) = [each for each in found.warnings if each.kind == "inertia taken as exact"]
     assert exact.values == {"inertia": 0.012}
     assert "0.012 kg*m^2 ± 2 %" in exact.sentence
     assert (found.coulomb.high - found.coulomb.low) / found.coulomb.value < 0.02
@@ -195,6 +196,41 @@ def test_a_temperature_that_changes_is_told() -> None:
     assert told.kind == "temperature changed"
     assert told.number("hot") - told.number("cold") == pytest.approx(10.0, abs=1.0)
     assert found.points().log.has_temperature
+
+
+@pytest.mark.parametrize(
+    ("column", "mapped", "units", "why"),
+    [
+        ("", "", {}, None),
+        ("", "", {"temperature": "degC"}, "no temperature column found"),
+        ("", "oil", {}, "there is no column 'oil' (temperature)"),
+        ("oil temp", "", {}, "column 'oil temp' has no unit, so no temperature is used"),
+        ("oil temp", "", {"temperature": "degC"}, ""),
+    ],
+)
+def test_a_temperature_is_used_if_it_is_there(
+    column: str, mapped: str, units: dict[str, str], why: str | None, tmp_path: Path
+) -> None:
+    """A mapping that named one stopped the command, where none at all was no matter."""
+    log = tmp_path / "coast.csv"
+    head, *rows = [line for line in LOG.read_text().splitlines() if not line.startswith("#")]
+    more = (f",{column}", ",20") if column else ("", "")
+    log.write_text("\n".join([head + more[0], *(row + more[1] for row in rows)]))
+    if mapped:
+        (tmp_path / "hersey.toml").write_text(f"[temperature]\nchannel = '{mapped}'\n")
+    found = hersey.coast_down(Recipe(logs=(log,), units=units).speeds(), inertia="0.012 kg*m^2 ± 2 %")
+    of_temperature = {each.kind: each.sentence for each in found.warnings if "temperature" in each.kind}
+    assert set(of_temperature) == (
+        set() if why == "" else {"temperature not known"} | ({"temperature not read"} if why else set())
+    )
+    assert (why or "") in of_temperature.get("temperature not read", "")
+
+
+def test_a_temperature_that_is_asked_for_must_be_there(tmp_path: Path) -> None:
+    typed = ["coastdown", str(LOG), "--inertia", "0.012 kg*m^2", "--temperature", "oil"]
+    done = run(*typed, cwd=tmp_path)
+    assert done.returncode == 2
+    assert "there is no column 'oil' (temperature)" in done.stderr
 
 
 def test_a_log_of_dwells_does_not_coast() -> None:

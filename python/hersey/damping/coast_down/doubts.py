@@ -13,6 +13,7 @@ from hersey.damping.coast_down.departures import Departure
 from hersey.damping.coast_down.fitting import CoastFit
 from hersey.damping.estimate import Estimate
 from hersey.errors import InsufficientDataError
+from hersey.log.reading import NOT_READ
 from hersey.log.torque_log import TorqueLog
 from hersey.schema.warning import Warning
 
@@ -23,6 +24,7 @@ NOT_SEPARATED = "friction terms not separated"
 CUT = "parts left out"
 EXACT = "inertia taken as exact"
 WARMED = "temperature changed"
+UNKNOWN = "temperature not known"
 TORQUE_UNUSED = "torque not used"
 #: Share of the torque that a term may take without being reported.
 _MATTERS = 0.1
@@ -196,6 +198,16 @@ class Doubts:
         ]
 
     def _temperature(self) -> list[Warning]:
+        if not self.log.has_temperature:
+            unread = [each for file in self.log.files for each in file.warnings if each.kind == NOT_READ]
+            return [
+                *unread,
+                Warning(
+                    UNKNOWN,
+                    "without a temperature, warm-up of the bearings cannot be distinguished from a dependence "
+                    "of friction on speed, and the points have no temperature",
+                ),
+            ]
         readings = [self._readings(coast) for coast in self.coasts]
         known = np.concatenate([each for each in readings if each is not None] or [np.empty(0)])
         if not known.size or np.ptp(known) < _WARMER:
