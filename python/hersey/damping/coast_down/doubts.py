@@ -204,7 +204,7 @@ class Doubts:
                 *unread,
                 Warning(
                     UNKNOWN,
-                    "without a temperature, warm-up of the bearings cannot be distinguished from a dependence "
+                    "without a temperature, warm-up of bearings cannot be distinguished from a dependence "
                     "of friction on speed, and the points have no temperature",
                 ),
             ]
