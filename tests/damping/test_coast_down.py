@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from itertools import pairwise
 from pathlib import Path
 
@@ -17,7 +18,7 @@ from hersey.damping.coast_down.closed_form import speeds
 from hersey.damping.coast_down.coasts import noise_of_rows
 from hersey.damping.coast_down.inertia import inertia_of
 from hersey.damping.recipe import Recipe
-from hersey.errors import InsufficientDataError, ParameterError, UnitError
+from hersey.errors import ChannelError, InsufficientDataError, ParameterError, UnitError
 from tests.cli.command import run
 from tests.conftest import ROOT
 
@@ -316,6 +317,45 @@ def test_the_command_prints_torque_and_terms(tmp_path: Path) -> None:
     assert "2 coast-downs found." in done.stdout
     assert "Coulomb: 7.9" in done.stdout
     assert "[7.77, 8.10] mN m" in done.stdout
+
+
+def followed(said: str, tmp_path: Path) -> str:
+    """What the line that is proposed prints."""
+    line = said.partition("its moment of inertia: ")[2].split("\n")[0]
+    done = run(*shlex.split(line)[1:], cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def test_a_log_without_torque_that_coasts_is_sent_to_coastdown(tmp_path: Path) -> None:
+    (tmp_path / "a coast.csv").write_text(LOG.read_text())
+    done = run("fit", "a coast.csv", cwd=tmp_path)
+    assert done.returncode == 2
+    assert "hersey cycles" not in done.stderr
+    assert "2 coast-downs found." in followed(done.stderr, tmp_path)
+    shown = run("inspect", "a coast.csv", cwd=tmp_path).words
+    assert "hersey coastdown 'a coast.csv' --inertia" in shown
+
+
+def test_options_of_the_speed_are_kept_in_the_line_that_is_proposed(tmp_path: Path) -> None:
+    text = LOG.read_text().replace("time [s],speed [rpm]", "t,n")
+    (tmp_path / "coast.csv").write_text(text)
+    units = ("--time-unit", "s", "--speed-unit", "rpm", "--speed-sign", "-1")
+    done = run("fit", "coast.csv", *units, "--moving", "--inertia", "0.012 kg*m^2", cwd=tmp_path)
+    assert "Coulomb: 7.9" in followed(done.stderr, tmp_path)
+    bare = run("models", "coast.csv", cwd=tmp_path)
+    assert "type, with its moment of inertia: hersey coastdown coast.csv --inertia" in bare.stderr
+
+
+def test_a_staircase_without_torque_is_not_sent_to_coastdown(tmp_path: Path) -> None:
+    frame(stairs([100.0, 60.0, 35.0, 20.0])).write_csv(tmp_path / "stairs.csv")
+    assert "coastdown" not in run("fit", "stairs.csv", cwd=tmp_path).stderr
+
+
+def test_python_is_sent_to_coast_down_too() -> None:
+    with pytest.raises(ChannelError, match="no torque column") as error:
+        hersey.read(LOG)
+    assert "use hersey.coast_down('coast-down.csv', inertia='0.012 kg" in error.value.remedy
 
 
 def test_a_missing_inertia_is_asked_for(tmp_path: Path) -> None:

@@ -102,6 +102,14 @@ def coast_down(log: Any, *, inertia: Any) -> CoastDown:
     )
 
 
+def falls_freely(log: TorqueLog) -> bool:
+    """Return whether a wheel may coast in a log of its speed: its longest fall is looked at."""
+    if log.domain.speed != "speed":
+        return False
+    falls = [coast for index, run in enumerate(log.runs) for coast in coasts_in(run, index)[0]]
+    return bool(falls) and is_free(max(falls, key=lambda each: each.rows))
+
+
 def _found(log: TorqueLog) -> tuple[list[Coast], list[LeftOut]]:
     """The coasts of a log, and what else it holds.
 
