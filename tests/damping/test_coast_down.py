@@ -106,6 +106,26 @@ def test_points_carry_their_own_errors_and_the_shared_one() -> None:
     assert set(points.column("approach")) == {"from above"}
 
 
+def test_points_and_what_is_excluded_are_all_rows() -> None:
+    for log in (LOG, frame(falling((1.0, 0.05, 0.0), 100.0, 40.0, 0.001), 0.001)):
+        points = hersey.coast_down(log, inertia=0.012).points()
+        excluded = sum(each.rows for each in points.rejected)
+        assert points.column("rows").sum() + excluded == points.log.rows
+    kinds_of = {each.why.kind for each in hersey.coast_down(LOG, inertia=0.012).points().rejected}
+    assert kinds_of == {"standing", "rising", "ends", "no window"}
+
+
+def test_the_table_of_points_holds_the_shared_error_and_what_is_excluded(tmp_path: Path) -> None:
+    found = hersey.coast_down(LOG, inertia="0.012 kg*m^2 ± 2 %")
+    (tmp_path / "points.csv").write_text(found.table())
+    again, points = hersey.SteadyPoints.from_table(tmp_path / "points.csv"), found.points()
+    assert again.window_errors == pytest.approx(points.window_errors, rel=1e-5)
+    assert again.column("torque_error") == pytest.approx(points.column("torque_error"), rel=1e-5)
+    assert hersey.fit(again).c.error == pytest.approx(hersey.fit(points).c.error, rel=1e-3)
+    assert "# excluded: 41 rows at 0 to 4 s, drive at standstill" in found.table()
+    assert "shared" not in hersey.coast_down(LOG, inertia=0.012).table()
+
+
 def test_points_are_fitted_like_dwells() -> None:
     """Torque as speed^0.6 is no law of three terms, and is found from the windows."""
     time = np.arange(0.0, 25.0, 0.02)

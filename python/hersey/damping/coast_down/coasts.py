@@ -86,7 +86,7 @@ class LeftOut(Record):
 
 def coasts_in(run: Run, index: int) -> tuple[list[Coast], list[LeftOut]]:
     """Return the coasts of a run, and the stretches between them, which together are all its rows."""
-    size = max(1, -(-run.time.size // _LOOKED_AT))
+    size = rows_averaged(run)
     time, signed = (_means(values, size) for values in (run.time, run.speed))
     speed = np.abs(signed)
     noise = noise_of_rows(signed)
@@ -129,6 +129,11 @@ def coasts_in(run: Run, index: int) -> tuple[list[Coast], list[LeftOut]]:
         for start, end, stops in found
     ]
     return coasts, list(_stretches(index, time, why, size))
+
+
+def rows_averaged(run: Run) -> int:
+    """Return how many rows of a run make one row of its coasts."""
+    return max(1, -(-run.time.size // _LOOKED_AT))
 
 
 def _means(values: FloatArray, size: int) -> FloatArray:

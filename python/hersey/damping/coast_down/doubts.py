@@ -8,9 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from hersey.arrays import FloatArray
-from hersey.damping.coast_down.coasts import Coast, LeftOut
+from hersey.damping.coast_down.coasts import Coast, LeftOut, Why
 from hersey.damping.coast_down.departures import Departure
 from hersey.damping.coast_down.fitting import CoastFit
+from hersey.damping.dwells.reasons import label_of
 from hersey.damping.estimate import Estimate
 from hersey.errors import InsufficientDataError
 from hersey.log.reading import NOT_READ
@@ -33,12 +34,7 @@ _UNLIKE = 0.5
 #: Change of temperature, K, that is worth a word.
 _WARMER = 2.0
 #: Stretches that are worth a word.
-_WORDS = {
-    "stepped": "steps between held speeds",
-    "braking": "braked",
-    "driven": "driven",
-    "reversed": "driven through standstill",
-}
+_TOLD: tuple[Why, ...] = ("stepped", "braking", "driven", "reversed")
 _OF_STEPS = (
     "a drive that holds the speed after a fall may have set the fall, too: let the wheel coast to rest, or "
     "end the log where the drive takes hold"
@@ -52,15 +48,8 @@ def no_coast(log: TorqueLog, left_out: Sequence[LeftOut]) -> InsufficientDataErr
     rows = {
         why: sum(e.rows for e in left_out if e.why == why) for why in dict.fromkeys(e.why for e in left_out)
     }
-    named = {
-        "standing": "standstill",
-        "rising": "rising speed",
-        "held": "constant speed",
-        "ends": "beginning or end of a fall",
-        "short": "falls of too few rows",
-    } | _WORDS
     most = sorted(rows, key=lambda why: -rows[why])
-    shares = [(named[why], 100 * rows[why] / whole) for why in most[:3]]
+    shares = [(label_of(why), 100 * rows[why] / whole) for why in most[:3]]
     held = ", ".join(f"{name} {share:.0f} %" for name, share in shares if share >= 0.5)
     return InsufficientDataError(
         f"{log.files[0].name}: speed falls freely nowhere in this log ({held})",
@@ -165,19 +154,19 @@ class Doubts:
 
     def _parts(self) -> list[Warning]:
         found = []
-        for why, words in _WORDS.items():
+        for why in _TOLD:
             parts = [each for each in self.left_out if each.why == why]
             if parts:
                 found.append(
                     Warning(
                         CUT,
-                        "{count} {count:stretch was|stretches were} {what} and excluded, the first at "
+                        "{count} {count:stretch was|stretches were} excluded ({what}), the first at "
                         "{start:.4g} to {end:.4g} s",
                         severity="watch",
                         where=self.log.runs[parts[0].run].name,
                         remedy=_OF_STEPS if why == "stepped" else "",
                         count=len(parts),
-                        what=words,
+                        what=label_of(why),
                         start=parts[0].start,
                         end=parts[0].end,
                     )
