@@ -27,10 +27,12 @@ from hersey.errors import (
     MOVING,
     SIGN,
     TARE,
+    ChannelError,
     HerseyError,
     InsufficientDataError,
     ParameterError,
     Setting,
+    UnitError,
     turned,
 )
 from hersey.files.toml import Quantity, Table, quoted, read_tables
@@ -44,6 +46,7 @@ from hersey.log.means import (
     refuse_corrections,
     refuse_sources,
 )
+from hersey.log.reading import is_of_temperature, temperature_not_read
 from hersey.log.sensors import Sensors
 from hersey.log.text.delimited import Progress
 from hersey.result import json_record
@@ -401,12 +404,24 @@ class Recipe:
     def speeds(self, *, progress: Progress | None = None) -> TorqueLog:
         """Read the logs without a torque, for `hersey.coast_down`.
 
+        A temperature that the mapping names need not be there; one named by ``channels`` must be.
+
         Raises
         ------
         HerseyError
             As `hersey.read` does.
         """
-        return self._trace(progress, without_torque=True)
+        try:
+            return self._trace(progress, without_torque=True)
+        except (ChannelError, UnitError) as error:
+            asked = self.channels if isinstance(error, ChannelError) else self.channels | self.units
+            if not is_of_temperature(error) or "temperature" in asked:
+                raise
+            why = temperature_not_read(error)
+        alone = replace(self, isothermal=True, units=_without("temperature", self.units))
+        log = alone._trace(progress, without_torque=True)
+        first, *others = log.files
+        return replace(log, files=(replace(first, warnings=(*first.warnings, why)), *others))
 
     def read_files(self, progress: Progress | None = None) -> TorqueLog | MeansTable:
         """Read the logs as they are now."""

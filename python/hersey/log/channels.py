@@ -211,6 +211,11 @@ def no_channel(
             f". If '{of.path}' is the frequency of an inverter, divide by the pole pairs of the motor, e.g. "
             f"for 2 use {named}"
         )
+    if role == "torque" and way_in() == "python" and _may_coast(columns):
+        way_out += (
+            f". If the wheel coasts down without a drive, use hersey.coast_down({file!r}, "
+            "inertia='0.012 kg*m^2 ± 2 %'), with its moment of inertia"
+        )
     if role == "speed":
         way_out += _speed_elsewhere(columns, file)
     if role == "temperature":
@@ -218,6 +223,12 @@ def no_channel(
     said = f"{file}: no {role} column found. Columns: {_listed(columns)}"
     said += not_numbers(others)
     return ChannelError(said, absent=True, remedy=way_out, setting=channel)
+
+
+def _may_coast(columns: tuple[Column, ...]) -> bool:
+    """Whether columns are those of time and speed, perhaps with a temperature, and no others."""
+    roles = [next((r for r in ("time", "speed", "temperature") if is_called(r, c)), "") for c in columns]
+    return {"time", "speed"} <= set(roles) and "" not in roles
 
 
 def _speed_elsewhere(columns: tuple[Column, ...], file: str) -> str:
