@@ -123,7 +123,10 @@ class Assembly:
         self.chosen |= others
         near = tuple(c for c in self.columns if c.group == first.group)
         self.chosen |= beside(near, self.choices, self.stated, self.chosen, self.source.name)
-        self._unused = [*clocks_passed_over(near, self.stated), *unused(near, self.chosen, self.stated)]
+        self._unused = [
+            *clocks_passed_over(near, self.stated),
+            *unused(near, self.chosen, self.stated, self._numbers),
+        ]
         if isothermal:
             self._unused += constant_temperature(near, self.chosen, self.source.name, self._numbers)
         for role in self.chosen:

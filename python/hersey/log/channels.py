@@ -367,7 +367,7 @@ def _telling(role: str, candidates: list[Column]) -> list[Column]:
 
 
 def _in_friction(role: str, columns: tuple[Column, ...], measured: list[Column]) -> list[Column]:
-    """Columns of a friction force, or else a coefficient, or of a sliding speed."""
+    """Columns of a friction coefficient, or else a force, or of a sliding speed."""
     if role == "speed":
         sliding = [c for c in columns if is_named(FRICTION_NAMES["belt speed"], c)]
         return [c for c in measured or sliding if is_of_kind("belt speed", c.unit)]
@@ -377,7 +377,7 @@ def _in_friction(role: str, columns: tuple[Column, ...], measured: list[Column])
     forces = [c for c in columns if is_named(FRICTION_NAMES["force"], c) and c not in coefficients]
     forces = [c for c in forces if not c.unit or is_of_kind("force", c.unit)]
     return (
-        forces
+        [c for c in coefficients if not c.unit or c.unit in ("1", "-", "\u2013")]
+        or forces
         or [c for c in measured if is_of_kind("force", c.unit)]
-        or [c for c in coefficients if not c.unit or c.unit in ("1", "-", "\u2013")]
     )

@@ -8,7 +8,7 @@ Several radii or loads give a force or a coefficient against sliding speed, whic
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -63,11 +63,22 @@ def beside(
     return others
 
 
-def unused(columns: tuple[Column, ...], chosen: Chosen, stated: Stated) -> list[Warning]:
-    """Return which columns may be the load or the radius that nobody stated, and how to state it."""
-    roles = ("load",) if _kinds(chosen).get("torque", "torque") == "torque" else ("load", "radius")
-    left = _without(columns, chosen)
-    return [each for role in roles if not _known(role, chosen, stated) for each in proposals(role, left)]
+def unused(
+    columns: tuple[Column, ...], chosen: Chosen, stated: Stated, numbers: Callable[[Column], FloatArray]
+) -> list[Warning]:
+    """Return which columns may be the load or the radius that nobody stated, and how to state it.
+
+    ``numbers`` returns those of a column as written.
+    """
+    kind = _kinds(chosen).get("torque", "torque") if "torque" in chosen else ""
+    left, found = _without(columns, chosen), list[Warning]()
+    for role in ("load", "radius"):
+        counts = kind == "torque" or (kind == "force" and role == "load")
+        if not _known(role, chosen, stated):
+            found += proposals(role, left, numbers, counts=counts)
+    # a torque needs no radius, unless it was recorded at several
+    idle = "" if kind in ("force", "friction coefficient") else "radius"
+    return [each for each in found if each.values["role"] != idle or each.severity == "watch"]
 
 
 def _without(columns: tuple[Column, ...], chosen: Chosen) -> tuple[Column, ...]:

@@ -300,7 +300,7 @@ def _read(
     warnings = (
         *computed(used, said, domain),
         *replaced_units(used),
-        *unused(cells.columns, used, said),
+        *unused(cells.columns, used, said, cells.numbers),
         *_rows_left_out(left_out),
     )
     file = LogFile(

@@ -1,14 +1,12 @@
-"""Torques of runs at different loads, which one law cannot describe: refused."""
+"""Torques at different loads, or forces beside a load that changes, which no one law describes: refused."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from hersey.damping.dwells.points import SteadyPoints
-from hersey.errors import InsufficientDataError, Setting
-
-#: Ratio of the loads of two runs above which they differ.
-_DIFFERENT = 1.1
+from hersey.errors import InsufficientDataError, Setting, way_in
+from hersey.log.stating import CHANGED, MAY_PLAY, by_amount
 
 
 def refuse_several_loads(points: SteadyPoints) -> None:
@@ -23,11 +21,43 @@ def refuse_several_loads(points: SteadyPoints) -> None:
         return
     known = points.table.select("run", "load").drop_nulls()
     loads = [float(np.median(part["load"].to_numpy())) for part in known.partition_by("run")]
-    if len(loads) < 2 or max(loads) <= _DIFFERENT * min(loads):
+    if len(loads) < 2 or max(loads) <= CHANGED * min(loads):
         return
     raise InsufficientDataError(
         f"the runs have loads of {min(loads):.3g} to {max(loads):.3g} N, so their torques cannot be fitted "
         "together",
         remedy=f"give the radius, e.g. {Setting('radius').to('25 mm')}, to fit the friction coefficient, or "
         "fit each load separately",
+    )
+
+
+def refuse_unused_load(points: SteadyPoints) -> None:
+    """Raise if the points are friction forces, and a column that is called the normal load changes.
+
+    A force that rises with the load would be said to rise with speed.
+
+    Raises
+    ------
+    InsufficientDataError
+        It says how to use the column, and how to say that the load is another.
+    """
+    if points.domain.quantity != "friction force":
+        return
+    found = [
+        (file.name, each.values)
+        for file in points.log.files
+        for each in file.warnings
+        if each.kind == MAY_PLAY and each.values["role"] == "load" and each.values["unit"]
+    ]
+    low = min((seen["low"] for _, seen in found), default=0.0)
+    high = max((seen["high"] for _, seen in found), default=0.0)
+    if not high > CHANGED * low:
+        return
+    name, seen = next((n, v) for n, v in found if v["high"] == high)
+    or_use = "" if way_in() == "page" else "use "
+    raise InsufficientDataError(
+        f"{name}: column '{seen['column']}' may be the normal load, and it changes from {low:.3g} to "
+        f"{high:.3g}{seen['unit']}, so the friction force does not show what speed does",
+        remedy=f"to fit the friction coefficient, {or_use}{seen['how']}. If the normal load is another, give "
+        f"it, e.g. {by_amount('load')}",
     )
