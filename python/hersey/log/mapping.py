@@ -79,7 +79,7 @@ class _Roles(Table):
     position: PositionMapping = field(default_factory=PositionMapping)
     direction: RoleMapping = field(default_factory=RoleMapping)
     names: NamesMapping = field(default_factory=NamesMapping)
-    #: Set points by time: one ``[[schedule]]`` per step, with from, to, and speed, temperature or load.
+    #: Set points by time or distance: one ``[[schedule]]`` per step, with from, to, and e.g. speed or load.
     schedule: Annotated[Any, Steps(None)] = None
     layout: LogLayout | None = None
 

@@ -85,7 +85,7 @@ def read(
     schedule
         Speed, temperature or load by time, if the log has no channel of it: a file (``from [s]``,
         ``to [s]``, ``speed [rpm]``), or a list of ``{"from": "0 s", "to": "60 s", "speed": "10 rpm"}``.
-        Times are counted from the first row.
+        Times are counted from the first row. With sliding speeds, distances may stand in their place.
     position_window
         Time over which speed is the slope of a ``position`` column, s (0.2 s).
     progress

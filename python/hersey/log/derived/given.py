@@ -13,7 +13,7 @@ from hersey.log.derived.set_points import SetPoints
 from hersey.log.roles import role_conversion
 from hersey.log.text.column import Column
 from hersey.schema.warning import Warning
-from hersey.units import KINDS, Conversion, parse
+from hersey.units import Conversion, parse
 
 
 @dataclass(frozen=True)
@@ -27,7 +27,9 @@ class Given:
     @property
     def unit(self) -> str:
         """The unit in which it is stated."""
-        return self.text.partition(" ")[2] or {"load": "N"}.get(self.role, KINDS[self.role][0])
+        if self.schedule is not None:
+            return self.schedule.unit(self.role)
+        return self.text.partition(" ")[2]
 
     def column(self, group: str) -> tuple[Column, Conversion]:
         """Return what stands for its column, beside those of a group, and its unit."""
