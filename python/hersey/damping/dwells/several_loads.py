@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any
+
 import numpy as np
 
 from hersey.damping.dwells.points import SteadyPoints
@@ -43,7 +46,7 @@ def refuse_unused_load(points: SteadyPoints) -> None:
     """
     if points.domain.quantity != "friction force":
         return
-    found = [
+    found: list[tuple[str, Mapping[str, Any]]] = [
         (file.name, each.values)
         for file in points.log.files
         for each in file.warnings
