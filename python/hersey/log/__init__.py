@@ -13,6 +13,7 @@ role_units            the unit of a column with a role
 channels              which column plays which role
 without_units         columns without units: named at once
 friction              which of them a file holds, and what it becomes with a load and a radius
+rolling               contacts that roll and slide, whose speed is that of entrainment
 pooling               runs that are fitted together: one domain for all
 as_torque             friction as a torque, where somebody has a radius and asks for it
 stating               a radius or a load: proposed, used once a person states it

@@ -9,6 +9,7 @@ import numpy as np
 from hersey.errors import ParameterError, Setting
 from hersey.log.channels import Stated
 from hersey.log.friction import Chosen, computed, domain_of, measured
+from hersey.log.rolling import of_rolling
 from hersey.log.stating import LIFTED
 from hersey.log.text.column import Column
 from hersey.log.torque_log import LogFile, Run
@@ -18,7 +19,7 @@ from hersey.units import Conversion
 
 #: Ratio of loads up to which they count as the same.
 SAME_LOAD = 1.03
-_SPEED_WORDS = {"speed": "speed of rotation", "sliding speed": "sliding speed"}
+_SPEED_WORDS = {"speed": "speed of rotation"}
 
 
 def of_each_run(runs: list[tuple[Run, LogFile]], stated: Stated) -> list[tuple[Run, LogFile]]:
@@ -99,7 +100,7 @@ def _in_contact(run: Run, log: LogFile, of: Domain) -> tuple[Run, LogFile]:
 def _recorded(log: LogFile, stated: Stated) -> tuple[Domain, Domain]:
     """What a file was measured in, and the domain that it has, from the record of its channels."""
     chosen = _chosen(log)
-    return measured(chosen), domain_of(chosen, stated)
+    return measured(chosen), of_rolling(domain_of(chosen, stated), log.warnings)
 
 
 def _chosen(log: LogFile) -> Chosen:
@@ -130,6 +131,9 @@ def refuse_mixed(domains: list[tuple[str, Domain]]) -> None:
             )
         if other.speed != of.speed:
             raise ParameterError(
-                f"{first} holds a {_SPEED_WORDS[of.speed]} and {name} a {_SPEED_WORDS[other.speed]}",
-                remedy=f"state the radius, e.g. {Setting('radius').to('25 mm')}",
+                f"{first} holds a {_SPEED_WORDS.get(of.speed, of.speed)} and {name} a "
+                f"{_SPEED_WORDS.get(other.speed, other.speed)}",
+                remedy=f"state the radius, e.g. {Setting('radius').to('25 mm')}"
+                if "speed" in (of.speed, other.speed)
+                else "fit them separately",
             )

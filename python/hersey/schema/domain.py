@@ -24,6 +24,7 @@ _QUANTITIES: Final = {
 _SPEEDS: Final = {
     "speed": ("rad/s", "w", ("rpm", float(rpm(1.0))), 0, 0.002),
     "sliding speed": ("m/s", "v", ("m/s", 1.0), 1, 2e-5),
+    "entrainment speed": ("m/s", "U", ("m/s", 1.0), 1, 2e-5),
 }
 
 
@@ -37,7 +38,7 @@ class Domain(Record):
     also_stated = ("unit", "speed_unit")
 
     quantity: str = "torque"  #: ``torque``, ``friction force`` or ``friction coefficient``
-    speed: str = "speed"  #: ``speed`` of rotation, or ``sliding speed``
+    speed: str = "speed"  #: ``speed`` of rotation, ``sliding speed`` or ``entrainment speed``
 
     @classmethod
     def read(cls, part: Any) -> Domain:

@@ -17,6 +17,7 @@ from hersey.damping.surface import DampingSurface
 from hersey.damping.trend import Trend
 from hersey.errors import InsufficientDataError, capital
 from hersey.log.pooling import SAME_LOAD
+from hersey.schema.domain import Domain
 from hersey.verdict.regimes import COULOMB, FALLING, Hypothesis
 
 #: What a regime means where friction was measured, for those whose meaning is about torque.
@@ -82,12 +83,17 @@ def _lowest(surface: DampingSurface) -> str:
     known = (
         rounded(value, low, high, unit) if t.speed.estimable else f"{value:.3g} {unit} (interval not known)"
     )
-    mixed = _with_sensors(_raised(t.mixed_exponent))
+    mixed, name = _with_sensors(_raised(t.mixed_exponent)), capital(of.quantity)
     return (
-        f"{capital(of.quantity)} is lowest at {known}. Above it, it rises as {of.speed_symbol}^"
+        f"{name} is lowest at {_named_speed(of)}{known}. Above it, it rises as {of.speed_symbol}^"
         f"{_with_sensors(power_of(surface))}; below it, it falls as {of.speed_symbol}^{mixed}, as in mixed "
         "lubrication."
     )
+
+
+def _named_speed(of: Domain) -> str:
+    """What comes before a speed that is not the one that everybody expects."""
+    return "an entrainment speed of " if of.speed == "entrainment speed" else ""
 
 
 def _of_range(surface: DampingSurface, trend: Trend) -> str:

@@ -1,4 +1,4 @@
-"""Torques at different loads, or forces beside a load that changes, which no one law describes: refused."""
+"""What another column changes beside the speed, so that no one law of speed describes it: refused."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import numpy as np
 
 from hersey.damping.dwells.points import SteadyPoints
 from hersey.errors import InsufficientDataError, Setting, way_in
+from hersey.log.rolling import ENTRAINMENT
 from hersey.log.stating import CHANGED, MAY_PLAY, by_amount
 
 
@@ -63,4 +64,23 @@ def refuse_unused_load(points: SteadyPoints) -> None:
         f"{high:.3g}{seen['unit']}, so the friction force does not show what speed does",
         remedy=f"to fit the friction coefficient, {or_use}{seen['how']}. If the normal load is another, give "
         f"it, e.g. {by_amount('load')}",
+    )
+
+
+def refuse_traction_curve(points: SteadyPoints, held: str) -> None:
+    """Raise if all dwells are at one entrainment speed (in words), and the slide-roll ratio varies.
+
+    Raises
+    ------
+    InsufficientDataError
+        It says how friction is fitted to the sliding speed.
+    """
+    warnings = [each for file in points.log.files for each in file.warnings]
+    seen = next((w.values for w in warnings if w.kind == ENTRAINMENT and w.severity == "watch"), None)
+    if seen is None:
+        return
+    raise InsufficientDataError(
+        f"all dwells are at an entrainment speed of {held}, while '{seen['ratio']}' varies",
+        remedy=f"to fit friction to the sliding speed, add a column of it, '{seen['ratio']}' times "
+        f"'{seen['column']}', and name it with {Setting('speed', 'channel').to('Sliding speed')}",
     )
