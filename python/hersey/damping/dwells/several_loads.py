@@ -25,6 +25,7 @@ def refuse_several_loads(points: SteadyPoints) -> None:
         return
     known = points.table.select("run", "load").drop_nulls()
     loads = [float(np.median(part["load"].to_numpy())) for part in known.partition_by("run")]
+    # a refusal ends all, so it takes more than the loads that count as one beside a coefficient
     if len(loads) < 2 or max(loads) <= CHANGED * min(loads):
         return
     raise InsufficientDataError(
