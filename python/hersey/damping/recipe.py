@@ -130,6 +130,8 @@ class Recipe:
         temperature.
     name_decimal
         Decimal mark of the numbers in the names.
+    run_table
+        Table with a row for each file: its speed, load, radius or temperature.
     schedule
         Table of speed, temperature or load by time, if the log has no channel of it.
     position_window
@@ -172,6 +174,7 @@ class Recipe:
     load: Annotated[Amount, _OneOrMore("force", 1e-9, 1e9, "50 N")] = None
     name_pattern: str = ""
     name_decimal: str = ""
+    run_table: Annotated[Path | None, _Path(None)] = None
     schedule: Annotated[Path | None, _Path(None)] = None
     position_window: Annotated[float | None, _OneOrMore("time", 1e-6, 1e4, "0.2 s")] = None
     torque_constant: Annotated[float | None, _OneOrMore("motor constant", 1e-6, 1e3, "0.11 N*m/A")] = None
@@ -466,10 +469,11 @@ class Recipe:
 
     def _sources(self, mapping: LogMapping) -> list[str]:
         """What says of channels what no column holds."""
-        options = ("name_pattern", "schedule", "position_window")
+        options = ("name_pattern", "run_table", "schedule", "position_window")
         roles = ("direction", "position")
         stated = {
             "[names] pattern": mapping.names.pattern,
+            "[names] table": mapping.names.table,
             "[[schedule]]": mapping.schedule,
             "[direction] channel": mapping.direction.channel,
             "[position] channel": mapping.position.channel,
@@ -512,7 +516,7 @@ class _RecipeFile(Table, Recipe):
 
 
 #: Fields that name one file each.
-_FILES = ("mapping", "schedule", "no_load")
+_FILES = ("mapping", "run_table", "schedule", "no_load")
 #: Kind of unit of each amount.
 _KINDS = {
     "every": "time",
@@ -524,7 +528,10 @@ _KINDS = {
     "inertia": "moment of inertia",
 }
 #: What is said of a log and a file need not hold.
-_STATED = ("every", "radius", "load", "name_pattern", "name_decimal", "schedule", "position_window")
+_STATED = (
+    *("every", "radius", "load", "name_pattern", "name_decimal"),
+    *("run_table", "schedule", "position_window"),
+)
 
 
 def _distinct(paths: Sequence[Path]) -> tuple[Path, ...]:
