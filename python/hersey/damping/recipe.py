@@ -39,12 +39,11 @@ from hersey.files.toml import Quantity, Table, quoted, read_tables
 from hersey.log import TorqueLog
 from hersey.log.as_torque import log_as_torque
 from hersey.log.mapping import LogMapping, Motor, mapping_of, read_with_mapping
+from hersey.log.mean_refusals import refuse_corrections, refuse_sources
 from hersey.log.means import (
     MeansTable,
     is_means_table,
     read_means,
-    refuse_corrections,
-    refuse_sources,
 )
 from hersey.log.reading import is_of_temperature, temperature_not_read
 from hersey.log.sensors import Sensors
@@ -450,7 +449,7 @@ class Recipe:
         mapping = self.chosen
         by_hand = [Setting(name).to() for name, value in vars(self._motor).items() if value is not None]
         refuse_corrections(mapping.corrects, str(mapping.source and mapping.source.name), by_hand)
-        refuse_sources(self._sources(mapping))
+        refuse_sources(mapping, vars(self), self.channels)
         stated = {
             role: getattr(self, role) or (None if role in self.channels else getattr(mapping.stated, role))
             for role in ("radius", "load")
@@ -466,23 +465,6 @@ class Recipe:
         if mapping.torque.zero_error is not None:
             table.domain.require_torque("[torque] zero_error")
         return replace(table, sensors=mapping.sensors)
-
-    def _sources(self, mapping: LogMapping) -> list[str]:
-        """What says of channels what no column holds."""
-        options = ("name_pattern", "run_table", "schedule", "position_window")
-        roles = ("direction", "position")
-        stated = {
-            "[names] pattern": mapping.names.pattern,
-            "[names] table": mapping.names.table,
-            "[[schedule]]": mapping.schedule,
-            "[direction] channel": mapping.direction.channel,
-            "[position] channel": mapping.position.channel,
-        }
-        return [
-            *(Setting(name).to() for name in options if getattr(self, name)),
-            *(Setting(role, "channel").to() for role in roles if role in self.channels),
-            *(f"{key} in {mapping.source and mapping.source.name}" for key, value in stated.items() if value),
-        ]
 
     def _dwells(self, log: TorqueLog | MeansTable) -> SteadyPoints:
         if isinstance(log, MeansTable):

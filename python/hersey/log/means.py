@@ -375,26 +375,3 @@ def _rows_left_out(named: list[str]) -> list[Warning]:
             others=max(0, len(named) - _NAMED),
         )
     ]
-
-
-def refuse_corrections(stated: bool, name: str, by_hand: Sequence[str]) -> None:
-    """Refuse corrections of a mapping, or of options given by hand: they are made on a trace."""
-    if stated and by_hand:
-        given = " and ".join(by_hand)
-        raise ParameterError(
-            f"{given} cannot be applied to a table of means. Correct the values in it, and omit {given}"
-        )
-    if stated:
-        raise ParameterError(
-            f"{name} contains corrections (signs, tare, gears, lag), which cannot be applied to a table "
-            "of means. Correct the values in the table, and name only its columns in the mapping"
-        )
-
-
-def refuse_sources(named: Sequence[str]) -> None:
-    """Refuse what stands in the place of a column of a log."""
-    if named:
-        raise ParameterError(
-            "a table of means holds its speed, sign and load as columns. Write them there, and omit "
-            f"{' and '.join(named)}"
-        )

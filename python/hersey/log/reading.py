@@ -131,7 +131,8 @@ def read(
     sources = Sources.of(name_pattern, name_decimal, run_table, schedule, position_window)
     sources.refuse_twice(choices, stated)
     stated = sources.stated(stated, files)
-    wanted = Wanted(choices, stated, isothermal, drop_missing, without_torque)
+    names = tuple(Path(file).name for file in files if isinstance(file, str | Path))
+    wanted = Wanted(choices, stated, isothermal, drop_missing, without_torque, names=names)
     done: list[tuple[Run, LogFile]] = []
     for number, file in enumerate(files, start=1):
         of_file = replace(wanted, derived=sources.of_file(file))
@@ -142,6 +143,9 @@ def read(
             raise ParameterError(f"{name} has the same content as an earlier file. Give each file once")
         done += read_here
     done = of_each_run(done, stated)
+    if told := sources.unused(names, choices, stated):
+        run, first = done[0]
+        done[0] = run, replace(first, warnings=(*first.warnings, *told))
     log = TorqueLog(tuple(run for run, _ in done), tuple(log for _, log in done))
     refuse_given_twice(log.runs)
     refuse_rows_shared(log.runs)
