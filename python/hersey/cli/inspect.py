@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 from hersey.cli.groups import grouped, option
+from hersey.cli.no_torque import other_use
 from hersey.cli.options import Force, Logs, Reading, SaveRecipe, drawn
 from hersey.cli.outputs import may_draw, may_save_recipe, may_write
 from hersey.cli.printing import Printing
@@ -75,15 +76,18 @@ def inspect(
         printing.text(inspection.summary())
     else:
         printing.text(*_lines(inspection))
-    printing.text(*filter(None, [of_a_trace(logs)] if _may_be_a_trace(inspection) else []))
+    if _lacks_channels(inspection):
+        printing.text(*filter(None, [other_use(logs, reading)]))
+    elif inspection.support is not None and inspection.support.dwells == 0:
+        printing.text(*filter(None, [of_a_trace(logs)]))
     printing.files(kept, save_recipe, figure)
 
 
-def _may_be_a_trace(inspection: Inspection) -> bool:
-    """Whether no fit is possible because the file has no dwell, or not the channels of a log."""
-    if inspection.support is not None:
-        return inspection.support.dwells == 0
-    return any(why.absent for file in inspection.files for why in file.lacking.values())
+def _lacks_channels(inspection: Inspection) -> bool:
+    """Whether no fit is possible because the files have not the channels of a log."""
+    return inspection.support is None and any(
+        why.absent for file in inspection.files for why in file.lacking.values()
+    )
 
 
 def _lines(inspection: Inspection) -> list[str]:

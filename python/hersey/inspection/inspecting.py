@@ -73,6 +73,7 @@ class Reading(TypedDict, total=False):
     load: float | Sequence[float] | None
     name_pattern: str | None
     name_decimal: str | None
+    run_table: str | Path | None
     schedule: Any
     position_window: float | None
     torque_constant: float | None
@@ -287,7 +288,7 @@ def inspect(
             proposal = _shown_layout(files, reports, reading)
     if proposal is not None:
         chosen = replace(chosen, layout=proposal.layout)
-        reading = cast("Reading", reading | {"channels": {**proposal.channels, **channels}})
+        reading = reading | {"channels": {**proposal.channels, **channels}}
         reports = reported(chosen, proposal.channels)
     needed: tuple[str, ...] = ()
     log: TorqueLog | MeansTable
@@ -345,8 +346,7 @@ def _said(mapping: LogMapping, reading: Reading) -> tuple[dict[str, ChannelChoic
 def _made(mapping: LogMapping, reading: Mapping[str, Any]) -> frozenset[str]:
     """The roles that no column needs to play: a schedule, file names or a position do."""
     said = mapping.sources | {name: value for name in mapping.sources if (value := reading.get(name))}
-    names = {name: said[name] for name in ("name_pattern", "name_decimal", "schedule", "position_window")}
-    sources = Sources.of(**names)
+    sources = Sources.of(**said)
     position = (reading.get("channels") or {}).get("position") or mapping.position.channel
     return sources.roles | ({"speed"} if position else set())
 

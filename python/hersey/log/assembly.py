@@ -31,9 +31,11 @@ from hersey.log.channels import (
 from hersey.log.constant_temperature import constant_temperature
 from hersey.log.derived.direction import without_sign
 from hersey.log.derived.speeds import (
+    clock_of_distance,
     outside_schedule,
     speed_column,
     speed_of_position,
+    times_of_distance,
     unscheduled,
     with_direction,
 )
@@ -124,7 +126,10 @@ class Assembly:
         self.chosen |= others
         near = tuple(c for c in self.columns if c.group == first.group)
         self.chosen |= beside(near, self.choices, self.stated, self.chosen, self.source.name)
-        self._unused = [*clocks_passed_over(near, self.stated), *unused(near, self.chosen, self.stated)]
+        self._unused = [
+            *clocks_passed_over(near, self.stated),
+            *unused(near, self.chosen, self.stated, self._numbers),
+        ]
         if isothermal:
             self._unused += constant_temperature(near, self.chosen, self.source.name, self._numbers)
         for role in self.chosen:
@@ -176,7 +181,8 @@ class Assembly:
         warnings += computed(self.chosen, self.stated)
         warnings += replaced_units(self._timed | self.chosen)
         if not self.choices["direction"].name:
-            names = [each.name for each in self.recording.cells] + [c.name for c in self.columns]
+            names = [*(each.name for each in self.recording.cells)]
+            names += [each.name for each in self.recording.signals]
             warnings += without_sign(names, arrays["speed"])
         warnings += [*filter(None, self._dead.values()), *self._unused, *self._said]
         log = self._record(tuple(warnings))
@@ -360,6 +366,8 @@ class Assembly:
             for c in self.columns
             if c != column and self._may_time(c, signal, column, bool(choice.name))
         )
+        if (of_distance := self._clock_of_distance(near)) is not None:
+            return of_distance
         taken = taken_columns("time", near, self.choices, self.chosen)
         clock = (
             find_channel("time", near, choice, file, self._says_nothing, taken)
@@ -382,6 +390,20 @@ class Assembly:
         if tick not in self._clocks:
             values = _in_si(self.recording.signals[chosen.index].load(), unit)
             self._clocks[tick] = (values, tick, Channel("time", chosen.path, unit.unit))
+        return self._clocks[tick]
+
+    def _clock_of_distance(self, near: tuple[Column, ...]) -> tuple[FloatArray, str, Channel] | None:
+        """The time from a distance slid, beside a schedule of distances."""
+        steps = next((of.schedule for of in self.derived.channels.values() if of.schedule), None)
+        found = clock_of_distance(near, self.choices["time"].name, steps) if steps else None
+        if steps is None or found is None:
+            return None
+        column, unit = found
+        if (tick := f"distance {column.index}") not in self._clocks:
+            written = self.recording.signals[column.index].load()
+            values, warning = times_of_distance(column, unit, written, steps)
+            self._said.append(warning)
+            self._clocks[tick] = (values, tick, Channel("time", f"by {column.path}", "s"))
         return self._clocks[tick]
 
     def _may_time(self, candidate: Column, signal: Signal, column: Column, named: bool) -> bool:

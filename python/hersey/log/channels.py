@@ -42,6 +42,8 @@ from hersey.units import Conversion
 _OSCILLATION = re.compile(r"frequen[cz]|oscillat|oszillat", re.IGNORECASE)
 #: As many numbers, all the same, make a dead channel.
 _TELLING = 20
+#: Names of the temperature of the lubricant, beside which that of a heater, a room or a motor is another.
+_OF_LUBRICANT = re.compile(r"\b(lub\w*|oil|grease|pot|bath|[oö]l|schmier\w*)", re.IGNORECASE)
 #: A clock of a part of a run, beside which that of the whole run counts.
 _PART_OF_A_RUN = re.compile(r"step|segment|interval|cycle|lap", re.IGNORECASE)
 #: Kind of the warning of a clock that is not used.
@@ -219,6 +221,11 @@ def no_channel(
             f". If '{of.path}' is the frequency of an inverter, divide by the pole pairs of the motor, e.g. "
             f"for 2 use {named}"
         )
+    if role == "torque" and way_in() == "python" and _may_coast(columns):
+        way_out += (
+            f". If the wheel coasts down without a drive, use hersey.coast_down({file!r}, "
+            "inertia='0.012 kg*m^2 ± 2 %'), with its moment of inertia"
+        )
     if role == "speed":
         way_out += speed_elsewhere(columns, file, names)
     if role == "temperature":
@@ -228,6 +235,12 @@ def no_channel(
     said = f"{file}: no {role} column found. Columns: {columns_listed(columns)}"
     said += not_numbers(others)
     return ChannelError(said, absent=True, remedy=way_out, setting=channel)
+
+
+def _may_coast(columns: tuple[Column, ...]) -> bool:
+    """Whether columns are those of time and speed, perhaps with a temperature, and no others."""
+    roles = [next((r for r in ("time", "speed", "temperature") if is_called(r, c)), "") for c in columns]
+    return {"time", "speed"} <= set(roles) and "" not in roles
 
 
 def not_numbers(others: tuple[str, ...]) -> str:
@@ -353,17 +366,20 @@ def columns_listed(columns: tuple[Column, ...]) -> str:
 def _telling(role: str, candidates: list[Column]) -> list[Column]:
     """The candidates without those that others put in the shade.
 
-    A letter without a unit beside a name with one, and the clock of a step beside that of the run.
+    A letter without a unit beside a name with one, the clock of a step beside that of the run, and the
+    temperature of another part beside that of the lubricant.
     """
     if any(c.unit and could_be(role, c, surely=True) for c in candidates):
         candidates = [c for c in candidates if c.unit or len(c.name) > 1]
     if role == "time":
         candidates = [c for c in candidates if not _PART_OF_A_RUN.search(c.name)] or candidates
+    if role == "temperature":
+        candidates = [c for c in candidates if _OF_LUBRICANT.search(c.name)] or candidates
     return candidates
 
 
 def _in_friction(role: str, columns: tuple[Column, ...], measured: list[Column]) -> list[Column]:
-    """Columns of a friction force, or else a coefficient, or of a sliding speed."""
+    """Columns of a friction coefficient, or else a force, or of a sliding speed."""
     if role == "speed":
         sliding = [c for c in columns if is_named(FRICTION_NAMES["belt speed"], c)]
         return [c for c in measured or sliding if is_of_kind("belt speed", c.unit)]
@@ -373,7 +389,7 @@ def _in_friction(role: str, columns: tuple[Column, ...], measured: list[Column])
     forces = [c for c in columns if is_named(FRICTION_NAMES["force"], c) and c not in coefficients]
     forces = [c for c in forces if not c.unit or is_of_kind("force", c.unit)]
     return (
-        forces
+        [c for c in coefficients if not c.unit or c.unit in ("1", "-", "\u2013")]
+        or forces
         or [c for c in measured if is_of_kind("force", c.unit)]
-        or [c for c in coefficients if not c.unit or c.unit in ("1", "-", "\u2013")]
     )

@@ -84,7 +84,7 @@ class _Roles(Table):
     position: PositionMapping = field(default_factory=PositionMapping)
     direction: RoleMapping = field(default_factory=RoleMapping)
     names: NamesMapping = field(default_factory=NamesMapping)
-    #: Set points by time: one ``[[schedule]]`` per step, with from, to, and speed, temperature or load.
+    #: Set points by time or distance: one ``[[schedule]]`` per step, with from, to, and e.g. speed or load.
     schedule: Annotated[Any, Steps(None)] = None
     layout: LogLayout | None = None
 
@@ -152,6 +152,7 @@ class LogMapping(_Roles):
         return {
             "name_pattern": self.names.pattern or None,
             "name_decimal": self.names.decimal if self.names.pattern else None,
+            "run_table": self.names.table,
             "schedule": self.schedule,
             "position_window": self.position.window,
         }
@@ -292,6 +293,7 @@ def read_with_mapping(
     inertia: float | None = None,
     name_pattern: str | None = None,
     name_decimal: str | None = None,
+    run_table: str | Path | None = None,
     schedule: Any = None,
     position_window: float | None = None,
     progress: Progress | None = None,
@@ -307,8 +309,8 @@ def read_with_mapping(
         the motor constant of the mapping.
     signs
         -1 by role, ``torque`` or ``speed``, flips the sign in addition to the mapping.
-    isothermal, drop_missing, every, radius, load, name_pattern, name_decimal, schedule, position_window,
-    without_torque, progress
+    isothermal, drop_missing, every, radius, load, name_pattern, name_decimal, run_table, schedule,
+    position_window, without_torque, progress
         As for `hersey.read`; they override the mapping.
     torque_constant
         Torque of the motor per ampere, N m/A, if the torque column is its current.
@@ -338,6 +340,7 @@ def read_with_mapping(
     said = {
         "name_pattern": name_pattern,
         "name_decimal": name_decimal,
+        "run_table": run_table,
         "schedule": schedule,
         "position_window": position_window,
     }

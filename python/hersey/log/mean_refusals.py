@@ -24,9 +24,10 @@ def refuse_corrections(stated: bool, name: str, by_hand: Sequence[str]) -> None:
 
 def refuse_sources(mapping: Any, given: Mapping[str, Any], channels: Mapping[str, str]) -> None:
     """Refuse what stands in the place of a column of a log: in a mapping, or given by hand."""
-    options = ("name_pattern", "schedule", "position_window")
+    options = ("name_pattern", "run_table", "schedule", "position_window")
     stated = {
         "[names] pattern": mapping.names.pattern,
+        "[names] table": mapping.names.table,
         "[[schedule]]": mapping.schedule,
         "[direction] channel": mapping.direction.channel,
         "[position] channel": mapping.position.channel,

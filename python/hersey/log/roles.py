@@ -39,8 +39,8 @@ _NAMES = {
     "torque": r".*torque.*|tq.*|.*\btq|.*moment.*|m",
     "speed": r".*speed.*|.*velocity.*|.*rpm.*|.*omega.*|.*drehzahl.*|n|w|ω",
     "temperature": r".*temp.*|.*thermistor.*|.*heater.*|.*thermocouple.*|.*film t.*",
-    "load": r".*\bload(?! ?cell).*|.*normal ?(force|kraft).*|.*normalkraft.*|f_?n|.*axial ?force",
-    "radius": r".*radius.*",
+    "load": r".*\bload(?! ?cell).*|.*normal ?(force|kraft).*|.*normalkraft.*|f_?[nz]|.*axial ?force",
+    "radius": r".*radius.*|.*\btrack",
     "position": r".*(angle|position|encoder|winkel|lage).*|phi|theta|pos",
 }
 #: Names of what stands for a torque, or a speed of rotation, where the radius is known.

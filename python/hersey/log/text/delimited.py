@@ -74,6 +74,7 @@ def read_delimited(path: Path, wanted: Wanted, progress: Progress | None = None)
         dead = _Dead(file)
         channels = _channels(layout, wanted, name, dead)
         excluded = _excluded(file, channels) if wanted.isothermal else []
+        not_used = unused(layout.named, channels, stated, file.as_far_as_known)
         table = _Table(name, layout, channels, wanted.drop_missing, stated)
         table.slow = slow_roles(channels, wanted.stated)
         table.read(file.opened, end.byte, progress)
@@ -102,7 +103,7 @@ def read_delimited(path: Path, wanted: Wanted, progress: Progress | None = None)
             *replaced_units(table.channels),
             *dead.warnings,
             *excluded,
-            *unused(layout.named, channels, stated),
+            *not_used,
             *without_sign((column.name for column in layout.named), arrays["speed"]),
             *end.warnings,
             *growth,
@@ -168,6 +169,11 @@ class DelimitedFile:
         self.opened.growth(table.digest.hexdigest())
         return numbers
 
+    def as_far_as_known(self, column: Column) -> FloatArray:
+        """Return a column as written, NaN where no number stands, whatever else does."""
+        (values,) = self.numbers([column], complete=False, odd_as_missing=True)
+        return values
+
 
 @contextmanager
 def open_delimited(path: Path) -> Iterator[DelimitedFile]:
@@ -184,12 +190,7 @@ def open_delimited(path: Path) -> Iterator[DelimitedFile]:
 
 def _excluded(file: DelimitedFile, channels: Chosen) -> list[Warning]:
     """What is to be known of a temperature that is excluded."""
-
-    def numbers(column: Column) -> FloatArray:
-        (values,) = file.numbers([column], complete=False, odd_as_missing=True)
-        return values
-
-    return constant_temperature(file.layout.named, channels, file.opened.path.name, numbers)
+    return constant_temperature(file.layout.named, channels, file.opened.path.name, file.as_far_as_known)
 
 
 class _Dead:
@@ -200,8 +201,7 @@ class _Dead:
 
     def __call__(self, column: Column) -> bool:
         if column.index not in self._known:
-            (values,) = self.file.numbers([column], complete=False, odd_as_missing=True)
-            self._known[column.index] = is_dead(values)
+            self._known[column.index] = is_dead(self.file.as_far_as_known(column))
             if self._known[column.index]:
                 self.warnings.append(constant_channel(column))
         return self._known[column.index]
