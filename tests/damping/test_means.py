@@ -14,7 +14,8 @@ from scipy.io import savemat
 
 import hersey
 from hersey.errors import ChannelError, InsufficientDataError, UnitError, UnreadableLogError
-from hersey.log.means import is_means_table, read_means
+from hersey.log.mean_signs import is_means_table
+from hersey.log.means import read_means
 from tests.cli.command import run
 from tests.damping.test_dwells import RPM
 

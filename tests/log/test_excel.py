@@ -16,7 +16,8 @@ import hersey
 from hersey.errors import ChannelError, UnreadableLogError
 from hersey.log import list_channels
 from hersey.log.formats import format_of, opened
-from hersey.log.means import is_means_table, read_means
+from hersey.log.mean_signs import is_means_table
+from hersey.log.means import read_means
 from hersey.log.recording import LONGEST_CELL
 from tests.conftest import shared
 from tests.untrusted_input.other_blocks import xlsx

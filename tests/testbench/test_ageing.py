@@ -14,7 +14,7 @@ import pytest
 import hersey
 from hersey.damping.no_load_torque import NoLoadTorque
 from hersey.errors import ParameterError
-from hersey.log.means import is_means_table
+from hersey.log.mean_signs import is_means_table
 from hersey.lubrication.film import drag_torque
 from hersey.machine.machine import Machine, read_machine
 from hersey.testbench import (

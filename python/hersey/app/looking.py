@@ -18,7 +18,7 @@ from hersey.log.layouts.current import reading_by
 from hersey.log.layouts.proposing import Proposal, proposed_layout
 from hersey.log.layouts.table import LogLayout
 from hersey.log.mapping import LogMapping, read_with_mapping
-from hersey.log.means import is_means_table
+from hersey.log.mean_signs import is_means_table
 from hersey.log.roles import OTHER_ROLES, ROLES, is_called
 from hersey.log.stating import proposed
 from hersey.log.text.column import Column, distinct_names

@@ -95,6 +95,7 @@ _SCHEDULE = "Table of set points by time or distance: columns from, to, e.g. spe
 _MAPPING = "File with roles, units and corrections.  [default: hersey.toml beside the log]"
 _DROP_MISSING = "Drop rows with a missing or impossible number, however many."
 _MEANS = "Read a table of means: one row per dwell, no time column."
+_BLOCKS = "Read only the blocks of a table of means below such a line, e.g. 'Load = 400 N*'."
 _NO_LOAD = "Log of the drive without the lubricated contact; its torque is subtracted."
 _MOVING = "Fit every sample of a log whose speed changes all the time."
 _INERTIA = "Moment of inertia at the output shaft, e.g. '2e-4 kg*m^2'; used where speed changes."
@@ -139,6 +140,7 @@ class Reading:
     isothermal: Annotated[bool, reduced("Ignore temperature: fit B = a w^c.", "--isothermal")] = False
     drop_missing: Annotated[bool, read(_DROP_MISSING, "--drop-missing")] = False
     means: Annotated[bool, read(_MEANS, "--means")] = False
+    blocks: Annotated[str, read(_BLOCKS)] = ""
     max_memory: Annotated[str, read(_MEMORY)] = "2 GB"
     min_dwell: Annotated[str, reduced("Shortest dwell, e.g. '2 s'.")] = "2 s"
     tare: Annotated[str, reduced("Torque zero to subtract: none, or standing (read at rest).")] = "none"
@@ -380,7 +382,7 @@ class Reading:
 
 _AS_GIVEN = (
     *("isothermal", "drop_missing", "means", "tare", "rotation", "temperature_scale", "moving"),
-    *("name_pattern", "name_decimal"),
+    *("name_pattern", "name_decimal", "blocks"),
 )
 #: Options that name a file.
 _FILES = ("mapping", "run_table", "schedule", "no_load")

@@ -38,13 +38,11 @@ from hersey.errors import (
 from hersey.files.toml import Quantity, Table, quoted, read_tables
 from hersey.log import TorqueLog
 from hersey.log.as_torque import log_as_torque
+from hersey.log.layouts.current import reading_by
 from hersey.log.mapping import LogMapping, Motor, mapping_of, read_with_mapping
 from hersey.log.mean_refusals import refuse_corrections, refuse_sources
-from hersey.log.means import (
-    MeansTable,
-    is_means_table,
-    read_means,
-)
+from hersey.log.mean_signs import is_means_table
+from hersey.log.means import MeansTable, read_means
 from hersey.log.reading import is_of_temperature, temperature_not_read
 from hersey.log.sensors import Sensors
 from hersey.log.text.delimited import Progress
@@ -147,6 +145,8 @@ class Recipe:
         Whether rows with a missing or impossible number are dropped also where they are many.
     means
         Whether the files are tables of means. Those that plainly are need not be called so.
+    blocks
+        Pattern of the line below which blocks of such a table are read, if its header is repeated.
     min_dwell
         Shortest dwell, s.
     tare
@@ -182,6 +182,7 @@ class Recipe:
     isothermal: bool = False
     drop_missing: bool = False
     means: bool = False
+    blocks: str = ""
     min_dwell: Annotated[float, Quantity("time", 0.0, 1e9, "2 s")] = 2.0
     tare: str = "none"
     rotation: str = "both"
@@ -333,6 +334,8 @@ class Recipe:
     def are_means(self) -> bool:
         """Whether the logs are tables of means, by statement or by their content."""
         rows = {"time", "run", "position", "direction"} & self.channels.keys()
+        if self.blocks:
+            return True
         if self.means or self.every is not None or self.schedule or rows:
             return self.means
         mapping, channels, units = self._asked
@@ -454,14 +457,16 @@ class Recipe:
             role: getattr(self, role) or (None if role in self.channels else getattr(mapping.stated, role))
             for role in ("radius", "load")
         }
-        table = read_means(
-            self.logs,
-            channels=_without("time", mapping.channels | self.channels),
-            units=_without("time", mapping.units | self.units),
-            isothermal=self.isothermal,
-            signs=self.signs,
-            **stated,
-        )
+        with reading_by(mapping.layout):
+            table = read_means(
+                self.logs,
+                channels=_without("time", mapping.channels | self.channels),
+                units=_without("time", mapping.units | self.units),
+                isothermal=self.isothermal,
+                signs=self.signs,
+                blocks=self.blocks,
+                **stated,
+            )
         if mapping.torque.zero_error is not None:
             table.domain.require_torque("[torque] zero_error")
         return replace(table, sensors=mapping.sensors)

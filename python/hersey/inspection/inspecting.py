@@ -80,6 +80,7 @@ class Reading(TypedDict, total=False):
     gear_ratio: float | None
     speed_gear_ratio: float | None
     inertia: float | None
+    blocks: str
 
 
 @dataclass(frozen=True, repr=False)
@@ -298,7 +299,8 @@ def inspect(
             by_hand = [Setting(name).to() for name in vars(motor) if said.get(name) is not None]
             refuse_corrections(corrects, str(chosen.source and chosen.source.name), by_hand)
             refuse_sources(chosen, said, channels)
-            log = replace(_table(files, choices, known, reading), sensors=chosen.sensors)
+            with reading_by(chosen.layout):
+                log = replace(_table(files, choices, known, reading), sensors=chosen.sensors)
             done = log.corrections
         else:
             read, needed = _read(files, {**reading, "mapping": chosen, "signs": None}, reports)
@@ -392,6 +394,7 @@ def _table(
         radius=known.radius,
         load=known.load,
         signs=reading.get("signs"),
+        blocks=reading.get("blocks", ""),
     )
 
 
@@ -412,8 +415,9 @@ def _read(
     isothermal = _tries(reading.get("isothermal", False), cold and not hopeless)
     drop_missing = _tries(reading.get("drop_missing", False), holes and not hopeless)
     first: HerseyError | None = None
+    rest = {name: value for name, value in reading.items() if name != "blocks"}
     for without, drop in itertools.product(isothermal, drop_missing):
-        tried: Reading = {**reading, "isothermal": without, "drop_missing": drop}
+        tried: Any = {**rest, "isothermal": without, "drop_missing": drop}
         try:
             log = read_with_mapping(files, **tried)
         except HerseyError as error:

@@ -43,7 +43,9 @@ many                  many files, each a log of its own: in turn, in threads, or
 corrections           what lies between sensor and film, subtracted with a record
 cell_table            a table as it stands: cells of text or numbers
 mean_roles            which column of a table of means plays which role
+mean_blocks           a table of means in blocks below one header
 mean_refusals         what cannot be applied to a table of means: refused
+mean_signs            whether a file is a table of means by its content
 means                 a table of means: a row per dwell, no clock
 doubtful              numbers that would be ordinary in another unit
 quantities            quantities that no log holds

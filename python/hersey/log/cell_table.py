@@ -22,6 +22,7 @@ from hersey.log.text.delimited import open_delimited
 from hersey.log.text.numbers import style_of
 from hersey.log.text.repeated_header import refuse_another_header
 from hersey.log.text.separators import split
+from hersey.schema.warning import Warning
 
 
 @dataclass(frozen=True)
@@ -36,6 +37,7 @@ class CellTable:
     number: Any  #: from a cell of text to a number
     comments: tuple[str, ...] = ()
     of_a_frame: bool = False  #: without a header or a row of units
+    warnings: tuple[Warning, ...] = ()
 
     def numbers(self, column: Column) -> FloatArray:
         """Return a column as written, NaN where a cell is no number."""
@@ -71,8 +73,10 @@ def cells_of(table: Any, name: str) -> CellTable:
             held: Sequence[Cells | Signal] = recording.cells or recording.signals
             columns = tuple(Column(i, s.name, s.unit, s.group) for i, s in enumerate(held))
             loaded: tuple[Sequence[object], ...] = tuple(list(each.load()) for each in held)
-            source, comments = recording.source, recording.comments
-        return CellTable(path.name, source.sha256, source.bytes, columns, loaded, float, comments)
+            source, comments, warnings = recording.source, recording.comments, tuple(recording.warnings)
+        return CellTable(
+            path.name, source.sha256, source.bytes, columns, loaded, float, comments, warnings=warnings
+        )
     with open_delimited(path) as file:
         layout = file.layout
         text, _ = file.text()

@@ -22,7 +22,7 @@ _DEVIATION = re.compile(r"\bsd\b|\bstd|st\.? ?dev|deviation|scatter", re.IGNOREC
 _PLAIN = {
     "load": re.compile(r".*\bload\b.*|normal force|n force|f_?n|weight", re.IGNORECASE),
     "count": re.compile(r"counts?|samples|rows|repeats?|n samples|number.*", re.IGNORECASE),
-    "run": re.compile(r"run|series|specimen|sample|unit|test", re.IGNORECASE),
+    "run": re.compile(r"run|section|series|specimen|sample|unit|test", re.IGNORECASE),
     "approach": re.compile(r"approach|direction|branch|way", re.IGNORECASE),
 }
 #: A column and its conversion to SI.

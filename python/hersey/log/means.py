@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -18,16 +17,16 @@ import polars as pl
 from hersey.arguments.door import Keys
 from hersey.arguments.numbers import described
 from hersey.arrays import FloatArray
-from hersey.errors import HerseyError, InsufficientDataError, ParameterError
-from hersey.log.cell_table import CellTable, cells_of
-from hersey.log.channels import ChannelChoice, Stated, called, find_channel
+from hersey.errors import InsufficientDataError, ParameterError
+from hersey.log.cell_table import CellTable
+from hersey.log.channels import ChannelChoice, Stated
 from hersey.log.friction import beside, computed, domain_of, in_domain, unused
+from hersey.log.mean_blocks import at_one_speed, blocks_of, with_set_points
 from hersey.log.mean_roles import (
     Role,
     as_long_as_torque,
     in_si,
     mean_roles,
-    measured,
     plain_column,
     shared_errors,
     torque_errors,
@@ -38,17 +37,12 @@ from hersey.log.replaced import replaced_units
 from hersey.log.roles import CHANNELS, SIGNS, UNITS
 from hersey.log.rolling import of_rolling
 from hersey.log.sensors import Sensors
-from hersey.log.text.column import Column
 from hersey.log.torque_log import LARGEST, Channel, LogFile, TorqueLog, title_of
 from hersey.result import Result, json_record
 from hersey.schema.domain import TORQUE, Domain
 from hersey.schema.warning import Warning
 from hersey.units import takes_si
 
-#: Rows and bytes of a file that is taken for a table of means without being called one, at the most.
-FEW_ROWS, FEW_BYTES = 300, 200_000
-#: Share of neighbouring rows at one speed from which on rows are samples and no means.
-SAMPLED = 0.7
 #: Roles of the columns, and the dictionaries by role.
 _ROLES = ("torque", "speed", "temperature", "load", "radius")
 _CHANNELS, _UNITS = Keys(_ROLES, CHANNELS.example), Keys(_ROLES, UNITS.example, UNITS.suffix)
@@ -140,6 +134,7 @@ def read_means(
     radius: float | Sequence[float] | None = None,
     load: float | Sequence[float] | None = None,
     signs: Mapping[str, int] | None = None,
+    blocks: str = "",
 ) -> MeansTable:
     """Read a table of means, or several.
 
@@ -157,6 +152,8 @@ def read_means(
         holds them; one for all tables, or one for each.
     signs
         -1 by role, ``torque`` or ``speed``, turns the sign.
+    blocks
+        Pattern of the line below which blocks are read, if the header is repeated, e.g. ``"Load = 400 N*"``.
 
     Raises
     ------
@@ -174,7 +171,7 @@ def read_means(
     radii, loads = (_for_each(name, of, len(listed)) for name, of in (("radius", radius), ("load", load)))
     whole = Stated(None, _of_all(radii), _of_all(loads))
     for number, table in enumerate(listed):
-        cells = cells_of(table, f"table {number + 1}" if len(listed) > 1 else "table")
+        cells = blocks_of(table, f"table {number + 1}" if len(listed) > 1 else "table", blocks)
         said = Stated(None, radii[number], loads[number])
         rows, file, errors, domain = _read(cells, choices, (said, whole), isothermal, means)
         means += [replace(row, table=number) for row in rows]
@@ -216,38 +213,6 @@ def _of_all(values: list[float | None]) -> tuple[float, ...] | float | None:
     return (known if len(set(known)) > 1 else known[0]) if known else None
 
 
-def is_means_table(path: Path, channels: Mapping[str, str], units: Mapping[str, str]) -> bool:
-    """Return whether a file is one: few rows with speed and torque, no clock, few speeds twice running."""
-    try:
-        if not path.is_file() or path.stat().st_size > FEW_BYTES:
-            return False
-        cells = cells_of(path, path.name)
-        lengths = {len(each) for each in cells.cells}
-        if len(lengths) != 1 or not 0 < max(lengths) <= FEW_ROWS or _clock(cells.columns):
-            return False
-        if (clock := channels.get("time")) and called(clock, cells.columns):
-            return False
-        columns = measured(cells.columns)
-        choices = {r: ChannelChoice(channels.get(r, ""), units.get(r, "")) for r in ("speed", "torque")}
-        found = {role: find_channel(role, columns, choice, cells.name) for role, choice in choices.items()}
-    except (HerseyError, OSError):  # whoever reads it as a log says what is wrong
-        return False
-    speed, torque = found["speed"], found["torque"]
-    if speed is None or torque is None:
-        return False
-    held = cells.numbers(speed[0])
-    same = np.abs(np.diff(held)) <= 0.01 * np.abs(held[1:])
-    return bool(held.size < 2 or np.mean(same) < SAMPLED)
-
-
-def _clock(columns: tuple[Column, ...]) -> bool:
-    """Whether a column may be a clock."""
-    try:
-        return find_channel("time", columns, ChannelChoice(), "") is not None
-    except HerseyError:
-        return True
-
-
 def _refuse_other(table: Any) -> None:
     """Refuse what is no table of means."""
     if isinstance(table, TorqueLog):
@@ -276,10 +241,12 @@ def _read(
     """
     said, of_all = stated
     cells = as_long_as_torque(cells, choices)
+    choices = with_set_points(choices, cells, said)
     roles = mean_roles(cells, choices, isothermal)
     used = roles | beside(cells.columns, choices, said, roles, cells.name)
     held = {role: in_si(cells, *role_of) for role, role_of in used.items()}
-    seen = unused(cells.columns, used, said, cells.numbers)
+    aside, skipped = at_one_speed(cells, held["speed"])
+    seen = unused(cells.columns, used, said, lambda column: cells.numbers(column)[~aside])
     domain = of_rolling(domain_of(used, of_all), seen)
     lever = in_domain(held | {"torque": np.ones_like(held["torque"])}, used, said, domain)["torque"]
     error = torque_errors(cells, roles["torque"])
@@ -292,7 +259,7 @@ def _read(
     bad = {name: ~np.isfinite(column) for name, column in needed.items()}
     gone = np.logical_or.reduce(list(bad.values()))
     known = _with_labels(cells, values, max((row.run for row in before), default=-1) + 1)
-    rows = [_row({name: each[i] for name, each in known.items()}) for i in np.flatnonzero(~gone)]
+    rows = [_row({name: each[i] for name, each in known.items()}) for i in np.flatnonzero(~gone & ~aside)]
     left_out = [
         _bad(cells, int(i), next(name for name in bad if bad[name][i]), roles) for i in np.flatnonzero(gone)
     ]
@@ -305,6 +272,8 @@ def _read(
         )
     channels = tuple(Channel(role, column.name, unit.unit) for role, (column, unit) in used.items())
     warnings = (
+        *cells.warnings,
+        *skipped,
         *computed(used, said, domain),
         *replaced_units(used),
         *seen,

@@ -37,7 +37,7 @@ ROLE_KINDS: dict[str, tuple[str, ...]] = {
 _NAMES = {
     "time": r"t|time.*|.*\btime|.*datetime|.*zeit|timestamp|elapsed.*|.*seconds|epoch.*|unix.*",
     "torque": r".*torque.*|tq.*|.*\btq|.*moment.*|m",
-    "speed": r".*speed.*|.*velocity.*|.*rpm.*|.*omega.*|.*drehzahl.*|n|w|ω",
+    "speed": r".*speed.*|.*velocity.*|.*velo|.*rpm.*|.*omega.*|.*drehzahl.*|n|w|ω",
     "temperature": r".*temp.*|.*thermistor.*|.*heater.*|.*thermocouple.*|.*film t.*",
     "load": r".*\bload(?! ?cell).*|.*normal ?(force|kraft).*|.*normalkraft.*|f_?[nz]|.*axial ?force",
     "radius": r".*radius.*|.*\btrack",

@@ -21,6 +21,7 @@ from hersey.damping.dwells.least_duration import speeds_lost
 from hersey.damping.dwells.misleading import lagging, one_direction, unlinked_runs
 from hersey.damping.dwells.one_speed import is_one_speed, of_one_speed
 from hersey.damping.dwells.several_loads import (
+    refuse_curves_of_loads,
     refuse_several_loads,
     refuse_traction_curve,
     refuse_unused_load,
@@ -113,6 +114,7 @@ class Observations:
         if fewest_speeds > 1:
             refuse_constant_torque(points)
             refuse_several_loads(points)
+            refuse_curves_of_loads(points)
             refuse_unused_load(points)
         kelvin = points.column("temperature") if points.log.has_temperature else None
         group, means = _groups(kelvin, speed.size)

@@ -9,6 +9,8 @@ import numpy as np
 
 from hersey.damping.dwells.points import SteadyPoints
 from hersey.errors import InsufficientDataError, Setting, way_in
+from hersey.log.mean_blocks import BLOCKS, IN_BLOCKS
+from hersey.log.pooling import SAME_LOAD
 from hersey.log.rolling import ENTRAINMENT
 from hersey.log.stating import CHANGED, MAY_PLAY, by_amount
 
@@ -33,6 +35,32 @@ def refuse_several_loads(points: SteadyPoints) -> None:
         "together",
         remedy=f"give the radius, e.g. {Setting('radius').to('25 mm')}, to fit the friction coefficient, or "
         "fit each load separately",
+    )
+
+
+def refuse_curves_of_loads(points: SteadyPoints) -> None:
+    """Raise if blocks of a table are friction coefficients at several loads that are no one curve of speed.
+
+    Raises
+    ------
+    InsufficientDataError
+        It says how far they lie apart, and how one of them is fitted.
+    """
+    from hersey.damping.candidates.collapse import hersey_collapse  # which is made of observations
+
+    loads, of = points.varying_load, points.domain
+    seen = [each.values for file in points.log.files for each in file.warnings if each.kind == IN_BLOCKS]
+    if not loads or not seen or of.quantity != "friction coefficient":
+        return
+    speed, friction, load = (np.abs(points.column(name)) for name in ("speed", "torque", "load"))
+    heavy = np.round(np.log(load / load.min()) / np.log(SAME_LOAD))
+    found = hersey_collapse(np.log(speed), np.log(friction), heavy)
+    if found.collapses is not False:
+        return
+    raise InsufficientDataError(
+        f"friction coefficients at {loads[0]:.4g} to {loads[1]:.4g} N lie {100.0 * found.deviation:.2g} % "
+        "apart at the same speed, so they are no one curve of speed",
+        remedy=f"fit each load separately, e.g. with {BLOCKS.to(str(seen[0]['first']))}",
     )
 
 

@@ -12,6 +12,7 @@ signals_apart  channels with clocks of their own
 current        the layout by which files are read at the moment
 laid_out       a file read by a layout
 seen           what of a file may be its layout
+repeated       the layout of a table in blocks below one header
 proposing      the layout proposed for a file
 recognized     what becomes of a file that is no log as it stands
 =============  ====================================================================

@@ -29,6 +29,11 @@ def reading_by(layout: LogLayout | None) -> Iterator[None]:
         _now.reset(before)
 
 
+def stated_layout() -> LogLayout | None:
+    """Return the layout by which files are read at the moment."""
+    return _now.get()
+
+
 def format_of(path: Path) -> str | None:
     """Return the format of a file as `formats.format_of`, or `LAYOUT` inside `reading_by`."""
     return formats.format_of(path) if _now.get() is None else LAYOUT

@@ -27,7 +27,7 @@ PRESETS: dict[str, Preset] = {
     ),
     "twincat": Preset(
         LogLayout(
-            header="Name * Name *",
+            header="Name*Name*",
             paired_clocks="ms",
             skip=(
                 *("SymbolComment*", "Data-Type*", "SampleTime*", "VariableSize*", "SymbolBased*"),

@@ -152,7 +152,8 @@ def _tried(
                 continue
             if _varies(runs):
                 return Proposal(layout, more, isothermal)
-    return Proposal(layout, {}, lacks_units=True) if lacks_units and not _is_of_lines(layout) else None
+    is_known = bool(layout.preset) or (lacks_units and not _is_of_lines(layout))
+    return Proposal(layout, {}, lacks_units=True) if is_known else None
 
 
 def _is_of_lines(layout: LogLayout) -> bool:
@@ -227,9 +228,9 @@ def _of_sections(seen: Seen, values: tuple[str, ...]) -> Iterator[LogLayout]:
     if len(seen.blocks) < 2:
         return
     for at in reversed(list(seen.words_above())):
-        template = _beginning(seen, at)
+        template = beginning(seen, at)
         if template and all(
-            any(_same_beginning(seen, at, other) for other in block.above) for block in seen.blocks
+            any(same_beginning(seen, at, other) for other in block.above) for block in seen.blocks
         ):
             yield LogLayout(header=template)
             if values:
@@ -238,8 +239,8 @@ def _of_sections(seen: Seen, values: tuple[str, ...]) -> Iterator[LogLayout]:
         yield LogLayout(values=values)
 
 
-def _beginning(seen: Seen, at: int) -> str:
-    """A pattern of lines that begin as a header does."""
+def beginning(seen: Seen, at: int) -> str:
+    """Return a pattern of lines that begin as a header does; nothing if there is none."""
     line = " ".join(seen.lines[at].split())
     first = next((cell for cell in seen.cells(at) if cell), "")
     end = line.find(first) + len(first) if first in line else 0
@@ -247,7 +248,8 @@ def _beginning(seen: Seen, at: int) -> str:
     return f"{line[:end]}{behind}*" if end and not set(line[:end]) & set("{}*") else ""
 
 
-def _same_beginning(seen: Seen, at: int, other: int) -> bool:
+def same_beginning(seen: Seen, at: int, other: int) -> bool:
+    """Return whether two lines begin with the same cell."""
     first = next((cell for cell in seen.cells(at) if cell), "")
     return first == next((cell for cell in seen.cells(other) if cell), "")
 

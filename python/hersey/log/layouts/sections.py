@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from hersey.errors import UnreadableLogError
@@ -40,15 +40,16 @@ def sections_of(
         If a line stands among the rows that is none, or a section lacks a number that others state.
     """
     found = _Cutting(layout, place, stated)
-    for number, line in _kept(lines, layout):
+    for number, line in _kept(lines, layout, found.read_on):
         found.add(number, line)
     return found.whole()
 
 
-def _kept(lines: Sequence[str], layout: LogLayout) -> Iterator[Line]:
-    """The lines that are not left out."""
+def _kept(lines: Sequence[str], layout: LogLayout, look: Callable[[str], None]) -> Iterator[Line]:
+    """The lines that are not left out, after a look at each."""
     skipped = [pattern(each) for each in layout.skip]
     for number, line in enumerate(lines, start=1):
+        look(line)
         if not line.strip() or (layout.comment and line.lstrip().startswith(layout.comment)):
             continue
         if not any(each.match(line) for each in skipped):
@@ -63,8 +64,20 @@ class _Cutting:
         self.section = pattern(layout.section) if layout.section else None
         self.header = pattern(layout.header) if layout.header else None
         self.values = [pattern(each) for each in layout.values]
+        self.only = pattern(layout.only) if layout.only else None
+        self.reads, self.word = self.only is None, ""
         self.done: list[Section] = []
         self.now = Section(1, dict(stated))
+
+    def read_on(self, line: str) -> None:
+        """Note whether rows below a line are read: those up to the next line that begins with its word."""
+        if self.only is None or not line.strip():
+            return
+        word = line.split(maxsplit=1)[0]
+        if self.only.match(line):
+            self.reads, self.word = True, word
+        elif word == self.word:
+            self.reads = False
 
     def add(self, number: int, line: str) -> None:
         """Take the next line."""
@@ -81,7 +94,8 @@ class _Cutting:
                 self.now.head = [line for line in self.now.head if line[0] == self.layout.units_line]
             self.now.head.append((number, line))
         elif self._is_row(number, line):
-            self._add_row(number, line)
+            if self.reads:
+                self._add_row(number, line)
         elif self.now.rows:
             self.now.below.append((number, line))
         elif not self._is_passed_over(number):
@@ -135,6 +149,10 @@ class _Cutting:
         """Return all sections, each with a header."""
         if self.now.rows:
             self.done.append(self.now)
+        if self.only and not self.done:
+            raise UnreadableLogError(
+                f"{self.place}: no rows stand below a line that matches '{self.layout.only}'"
+            )
         if self.layout.header_line and self.layout.units_line:
             for each in self.done[:1]:  # the units may stand above the names
                 each.head.sort(key=lambda line: line[0] != self.layout.header_line)

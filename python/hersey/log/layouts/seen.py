@@ -31,8 +31,12 @@ _NO_SET_POINT = re.compile(
 )
 #: A number behind a unit that is called instead of the quantity.
 _CALLED = re.compile(rf"(?i)(?<![\w/])(rpm|1/min|U/min|rad/s)\s?[:=]\s?({_NUMBER})(?![\w.])")
-#: Roles that a line above a table may state.
-_STATED = ("speed", "temperature")
+#: Roles that a line above a table may state; force and length are no load and no radius but by their word.
+_STATED = ("speed", "temperature", "load", "radius")
+_WORDS = {
+    "load": re.compile(r"(?i)\b(load|last|normal ?force|normalkraft|axial ?force|weight)\b[^0-9]{0,20}$"),
+    "radius": re.compile(r"(?i)\b(radius|track)\b[^0-9]{0,20}$"),
+}
 
 
 @dataclass(frozen=True)
@@ -105,7 +109,7 @@ def stated_in(text: str) -> str:
     placeholders: dict[tuple[int, int], str] = {}
     roles = set[str]()
     for match in _BEHIND.finditer(plain):
-        if role := _role_of(match[3]):
+        if role := _role_of(match[3], plain[: match.start()]):
             if role in roles:  # from one speed to another: no set point
                 return ""
             roles.add(role)
@@ -113,7 +117,7 @@ def stated_in(text: str) -> str:
             unit = "" if alone else f":{match[3]}"
             placeholders[match.span()] = f"{{{role}{unit}}}{match[2]}{match[3]}"
     for match in (*_BEFORE.finditer(plain), *_CALLED.finditer(plain)):
-        if (role := _role_of(match[1])) and role not in roles:
+        if (role := _role_of(match[1], plain[: match.start()])) and role not in roles:
             roles.add(role)
             placeholders[match.span(2)] = f"{{{role}:{match[1].strip()}}}"
     if not placeholders:
@@ -130,9 +134,11 @@ def _without_numbers(text: str) -> str:
     return re.sub(rf"(?<!\w){_NUMBER}", "*", text)
 
 
-def _role_of(unit: str) -> str:
-    """The role of which a unit is, among those that lines state."""
+def _role_of(unit: str, before: str) -> str:
+    """The role of which a unit is, among those that lines state; ``before`` stands before the number."""
     for role in _STATED:
+        if role in _WORDS and not _WORDS[role].search(before):
+            continue
         try:
             role_conversion(role, unit.strip())
         except UnitError:

@@ -106,6 +106,8 @@ class LogLayout(Table):
     header: Pattern | None = None
     #: Line with which a section begins; its numbers hold for the whole section.
     section: Pattern | None = None
+    #: Line below which blocks are read, up to the next line that begins with its word; all others are not.
+    only: Pattern | None = None
     #: Lines above a table whose numbers hold for its rows.
     values: Annotated[tuple[Pattern, ...], AfterValidator(_patterns)] = ()
     #: Lines that are left out.
