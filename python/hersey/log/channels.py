@@ -32,6 +32,7 @@ from hersey.log.roles import (
     is_frequency,
     is_named,
     is_of_kind,
+    only_left,
 )
 from hersey.log.signals import may_be_current, signal_kind, way_out_unnamed
 from hersey.log.text.column import Column, with_ending
@@ -203,7 +204,7 @@ def no_channel(
     if what := own_table(column.name for column in columns):
         return not_a_log(what, file)
     channel = Setting(role, "channel")
-    way_out = f"name it with {channel.to()}"
+    way_out = f"name it with {channel.to(only_left(columns) if role == 'torque' else '')}"
     if role in ("torque", "speed") and any(not c.unit for c in columns):
         example = {"torque": "N*m", "speed": "rpm"}[role]
         way_out += f", and state its unit with {Setting(role, 'unit').to(example)}"

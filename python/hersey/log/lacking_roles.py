@@ -9,7 +9,7 @@ from hersey.errors import ISOTHERMAL, ChannelError, HerseyError, Setting, UnitEr
 from hersey.log.channels import ChannelChoice, columns_listed, find_column, taken_columns
 from hersey.log.elsewhere import elsewhere, stated_in_names
 from hersey.log.role_units import example_unit, known_unit
-from hersey.log.roles import EVERY
+from hersey.log.roles import EVERY, only_left
 from hersey.log.signals import CURRENT_EXAMPLE, may_be_current
 from hersey.log.text.column import Column
 from hersey.log.without_units import naming_all
@@ -128,7 +128,8 @@ def _of_absent(
     if current is not None:
         return [(channel, current.path), (Setting(role, "unit"), CURRENT_EXAMPLE)]
     needs_unit = not unit and not all(c.unit for c in columns)
-    return [(channel, _COLUMN)] + [(Setting(role, "unit"), example_unit(role, columns[0]))] * needs_unit
+    named = (only_left(columns) if role == "torque" else "") or _COLUMN
+    return [(channel, named)] + [(Setting(role, "unit"), example_unit(role, columns[0]))] * needs_unit
 
 
 def _own(examples: Sequence[Example]) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
 from hersey.arguments.door import Keys
@@ -51,6 +51,8 @@ FRICTION_NAMES = {
 }
 #: Words of a name of a frequency, and what to do with that of an inverter.
 _FREQUENCY = re.compile(r"fr[eé]q", re.IGNORECASE)
+#: Names of columns that number rows or runs.
+_NUMBER = re.compile(r"section|run|point|nr\.?|no\.?|index|step|#", re.IGNORECASE)
 #: Characters of a name at the most.
 _LONGEST_NAME = 200
 
@@ -71,6 +73,12 @@ def is_called(role: str, column: Column) -> bool:
 def is_named(pattern: str, column: Column) -> bool:
     """Return whether a column is called so; a very long name is not, as patterns take long."""
     return len(column.name) <= _LONGEST_NAME and bool(re.fullmatch(pattern, column.name, re.IGNORECASE))
+
+
+def only_left(columns: Iterable[Column]) -> str:
+    """Return the column that is called like no role, if there is one alone; nothing otherwise."""
+    left = [c for c in columns if not _NUMBER.fullmatch(c.name) and not any(is_called(r, c) for r in _NAMES)]
+    return left[0].path if len(left) == 1 else ""
 
 
 def is_frequency(name: str) -> bool:

@@ -15,12 +15,14 @@ from hersey.damping.dwells import (
     distinct_speeds,
     groups_of_temperature,
     held_for_few_rows,
+    rows_of_means,
 )
 from hersey.damping.dwells.constant import refuse_constant_torque
 from hersey.damping.dwells.least_duration import speeds_lost
 from hersey.damping.dwells.misleading import lagging, one_direction, unlinked_runs
 from hersey.damping.dwells.one_speed import is_one_speed, of_one_speed
 from hersey.damping.dwells.several_loads import (
+    refuse_constant_load,
     refuse_curves_of_loads,
     refuse_several_loads,
     refuse_traction_curve,
@@ -106,6 +108,8 @@ class Observations:
                 raise InsufficientDataError(f"all dwells are at {held}: {lost}")
             more = f"all dwells are at {held}. Record dwells at three or more speeds"
             if isinstance(points.log, TorqueLog):
+                if sweep := rows_of_means(points.log):
+                    raise sweep
                 if is_one_speed(points.log):
                     raise of_one_speed(more, points.log)
                 if few := held_for_few_rows(points.log):
@@ -113,6 +117,7 @@ class Observations:
             raise InsufficientDataError(more)
         if fewest_speeds > 1:
             refuse_constant_torque(points)
+            refuse_constant_load(points)
             refuse_several_loads(points)
             refuse_curves_of_loads(points)
             refuse_unused_load(points)

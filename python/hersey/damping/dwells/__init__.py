@@ -35,7 +35,7 @@ The settling at the start of a dwell is cut by the marginal standard error rule 
 (1997) 323): drop as many samples as makes the standard error of the rest least.
 """
 
-from hersey.damping.dwells.few_rows import held_for_few_rows
+from hersey.damping.dwells.few_rows import held_for_few_rows, rows_of_means
 from hersey.damping.dwells.groups import SAME_SPEED, distinct_speeds, groups_of_temperature
 from hersey.damping.dwells.noise import mean_and_error
 from hersey.damping.dwells.points import Rejection, SteadyPoints
@@ -49,5 +49,6 @@ __all__ = [
     "groups_of_temperature",
     "held_for_few_rows",
     "mean_and_error",
+    "rows_of_means",
     "steady_points",
 ]

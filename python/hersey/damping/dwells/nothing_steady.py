@@ -7,7 +7,13 @@ from collections.abc import Callable
 
 import numpy as np
 
-from hersey.damping.dwells.few_rows import LASTS, changes_in_steps, held_for_few_rows, rows_held
+from hersey.damping.dwells.few_rows import (
+    LASTS,
+    changes_in_steps,
+    held_for_few_rows,
+    rows_held,
+    rows_of_means,
+)
 from hersey.damping.dwells.groups import MIN_DWELL, MIN_SAMPLES, distinct_speeds
 from hersey.damping.dwells.judging import Asked
 from hersey.damping.dwells.motion_between import ROWS_TO_FIT
@@ -53,6 +59,8 @@ def nothing_steady(
     other_clock
         Says which unit of time would give dwells, or nothing.
     """
+    if means := rows_of_means(log):
+        return means
     one = is_one_speed(log)
     if (few := held_for_few_rows(log)) and not one:
         return InsufficientDataError(few)

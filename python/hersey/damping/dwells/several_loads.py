@@ -8,11 +8,15 @@ from typing import Any
 import numpy as np
 
 from hersey.damping.dwells.points import SteadyPoints
-from hersey.errors import InsufficientDataError, Setting, way_in
+from hersey.errors import MOVING, InsufficientDataError, Setting, way_in
 from hersey.log.mean_blocks import BLOCKS, IN_BLOCKS
 from hersey.log.pooling import SAME_LOAD
 from hersey.log.rolling import ENTRAINMENT
 from hersey.log.stating import CHANGED, MAY_PLAY, by_amount
+from hersey.log.torque_log import TorqueLog
+
+#: Dwells of each direction at the least, of which it is said that torque has one sign.
+_DIRECTION = 3
 
 
 def refuse_several_loads(points: SteadyPoints) -> None:
@@ -61,6 +65,29 @@ def refuse_curves_of_loads(points: SteadyPoints) -> None:
         f"friction coefficients at {loads[0]:.4g} to {loads[1]:.4g} N lie {100.0 * found.deviation:.2g} % "
         "apart at the same speed, so they are no one curve of speed",
         remedy=f"fit each load separately, e.g. with {BLOCKS.to(str(seen[0]['first']))}",
+    )
+
+
+def refuse_constant_load(points: SteadyPoints) -> None:
+    """Raise if torque has one sign in both directions of a log: it holds a load greater than friction.
+
+    Raises
+    ------
+    InsufficientDataError
+        It says how the load is told from friction.
+    """
+    against = [r.speed for r in points.rejected if r.is_dwell and r.why.kind == "opposite signs"]
+    speed = points.column("speed")
+    if not isinstance(points.log, TorqueLog) or min(len(against), speed.size) < _DIRECTION:
+        return
+    signs, other = np.unique(np.sign(speed)), np.unique(np.sign(against))
+    if signs.size > 1 or other.size > 1 or signs[0] == other[0]:
+        return
+    raise InsufficientDataError(
+        f"{points.domain.quantity} has the same sign in both directions ({speed.size} and {len(against)} "
+        "dwells), so it contains a constant load, such as gravity",
+        remedy=f"use {MOVING.to()}, which fits that load as an offset",
+        setting=MOVING,
     )
 
 

@@ -23,6 +23,10 @@ _MOST_ABOVE = SNIFFED // 4
 _MOST_CONDITIONS = 1000
 
 
+#: Name of the columns of conditions whose names say no more than that.
+VALUE = "value"
+
+
 @dataclass(frozen=True)
 class Grid:
     """Rows of one run: the cells of each column, which lines they stand in, and numbers that hold for all."""
@@ -152,16 +156,20 @@ def _conditions(grid: Grid, layout: LogLayout, above: dict[int, str], place: str
     of = pattern(layout.wide or "*")
     runs: dict[tuple[Value, ...], dict[int, Column]] = {}
     shared: dict[int, Column] = {}
+    counts = Counter(column.name.lower() for column in grid.columns)
+    before: dict[int, Column] = {}  # columns of one name, each of the condition to its right
     for at, column in enumerate(grid.columns):
         text = above.get(column.index, "") if layout.condition_line else column.name
         match = of.match(text) if text else None
         if match is None:
-            shared[at] = column
+            (shared if counts[column.name.lower()] == 1 else before)[at] = column
             continue
-        name = column.name if layout.condition_line else match.channel or column.name
+        name = column.name if layout.condition_line else match.channel or VALUE
         plain, own = split_unit(name)
         own_column = replace(column, name=name if column.unit else plain, unit=column.unit or own)
-        runs.setdefault(tuple(match.values.values()), {})[at] = own_column
+        runs.setdefault(tuple(match.values.values()), {}).update({**before, at: own_column})
+        before = {}
+    shared |= before
     if not runs:
         raise UnreadableLogError(
             f'{place}: no column matches wide = "{layout.wide}"', remedy="mend wide of [layout]"

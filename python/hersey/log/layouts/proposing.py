@@ -11,6 +11,7 @@ from pathlib import Path
 from hersey.errors import HerseyError, TimeOrderError, UnitError
 from hersey.log.assembly import Assembly
 from hersey.log.channels import ChannelChoice, Stated
+from hersey.log.layouts.grids import VALUE
 from hersey.log.layouts.laid_out import recording_of
 from hersey.log.layouts.pages import Page, Pages, pages_of
 from hersey.log.layouts.pattern import pattern
@@ -153,6 +154,7 @@ def _tried(
             if _varies(runs):
                 return Proposal(layout, more, isothermal)
     is_known = bool(layout.preset) or (lacks_units and not _is_of_lines(layout))
+    is_known = is_known or any(signal.name == VALUE for signal in recording.signals)
     return Proposal(layout, {}, lacks_units=True) if is_known else None
 
 
@@ -300,7 +302,7 @@ def _condition(name: str) -> str:
         channel = re.match(r"[^\W\d_]+(?: [^\W\d_]+)*", before)
         if channel and channel[0].strip():
             return f"{{channel}}{before[channel.end() :]}{{{behind}"
-        return ""
+        return "" if before.strip() else stated
     match = _NUMBERED.fullmatch(name)
     return f"{{channel}}{match[2]}{{run}}" if match else ""
 
