@@ -63,7 +63,7 @@ def rows_of_means(log: TorqueLog) -> InsufficientDataError | None:
 def _own_speeds(speed: FloatArray) -> FloatArray:
     """The speeds, but standstill, that differ from those of both neighbours."""
     far = np.abs(np.diff(speed)) > _STEP * np.maximum(speed[1:], speed[:-1])
-    return speed[np.append(True, far) & np.append(far, True) & (speed > 0)]
+    return np.asarray(speed[np.append(True, far) & np.append(far, True) & (speed > 0)])
 
 
 def changes_in_steps(run: Run) -> bool:

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from hersey.arrays import FloatArray
 from hersey.damping.dwells.points import SteadyPoints
 from hersey.errors import MOVING, InsufficientDataError, Setting, way_in
 from hersey.log.mean_blocks import BLOCKS, IN_BLOCKS
@@ -17,6 +18,8 @@ from hersey.log.torque_log import TorqueLog
 
 #: Dwells of each direction at the least, of which it is said that torque has one sign.
 _DIRECTION = 3
+#: Distance of curves, in scatters of their points, beyond which they are apart; speeds that are compared.
+_BEYOND, _GRID = 2.0, 50
 
 
 def refuse_several_loads(points: SteadyPoints) -> None:
@@ -50,22 +53,35 @@ def refuse_curves_of_loads(points: SteadyPoints) -> None:
     InsufficientDataError
         It says how far they lie apart, and how one of them is fitted.
     """
-    from hersey.damping.candidates.collapse import hersey_collapse  # which is made of observations
-
     loads, of = points.varying_load, points.domain
     seen = [each.values for file in points.log.files for each in file.warnings if each.kind == IN_BLOCKS]
     if not loads or not seen or of.quantity != "friction coefficient":
         return
     speed, friction, load = (np.abs(points.column(name)) for name in ("speed", "torque", "load"))
     heavy = np.round(np.log(load / load.min()) / np.log(SAME_LOAD))
-    found = hersey_collapse(np.log(speed), np.log(friction), heavy)
-    if found.collapses is not False:
+    apart, scatter = _apart(np.log(speed), np.log(friction), heavy)
+    if not apart > max(CHANGED - 1.0, _BEYOND * scatter):
         return
     raise InsufficientDataError(
-        f"friction coefficients at {loads[0]:.4g} to {loads[1]:.4g} N lie {100.0 * found.deviation:.2g} % "
+        f"friction coefficients at {loads[0]:.4g} to {loads[1]:.4g} N lie {100.0 * apart:.2g} % "
         "apart at the same speed, so they are no one curve of speed",
         remedy=f"fit each load separately, e.g. with {BLOCKS.to(str(seen[0]['first']))}",
     )
+
+
+def _apart(x: FloatArray, y: FloatArray, group: FloatArray) -> tuple[float, float]:
+    """How far curves lie apart where all are known, and how far points lie off their neighbours, both RMS."""
+    curves = [
+        (x[mine][order := np.argsort(x[mine], kind="stable")], y[mine][order])
+        for mine in (group == each for each in np.unique(group))
+    ]
+    low, high = max(of[0] for of, _ in curves), min(of[-1] for of, _ in curves)
+    if low >= high or min(of.size for of, _ in curves) < _DIRECTION:
+        return 0.0, 0.0
+    grid = np.linspace(low, high, _GRID)
+    levels = np.array([np.interp(grid, *curve) for curve in curves])
+    off = np.concatenate([f[1:-1] - 0.5 * (f[:-2] + f[2:]) for _, f in curves])
+    return float(np.sqrt(np.mean(np.var(levels, axis=0)))), float(np.sqrt(np.mean(off**2) / 1.5))
 
 
 def refuse_constant_load(points: SteadyPoints) -> None:
