@@ -144,6 +144,49 @@ def test_torque_against_time_with_the_speed_in_the_name_reduces_to_dwells(tmp_pa
     np.testing.assert_allclose(points.column("torque"), 0.01 * np.array([20, 60, 180]) ** 0.4, rtol=1e-3)
 
 
+@pytest.mark.parametrize(
+    ("names", "proposed"),
+    [
+        (("b_20rpm_60C.csv", "b_60rpm_60C.csv"), ("b_{speed}rpm_60C.csv", ".")),
+        (("b_20rpm_60C.csv", "b_20rpm_80C.csv"), ("b_{speed}rpm_{temperature:degC}C.csv", ".")),
+        (("v_10 mm_s.csv", "v_20 mm_s.csv"), ("v_{speed:mm/s} mm_s.csv", ".")),
+        (("b_20rpm.csv", "b.csv"), None),
+    ],
+)
+def test_a_pattern_fits_the_names_of_all_files(
+    names: tuple[str, ...], proposed: tuple[str, str] | None
+) -> None:
+    assert proposed_pattern(names[0], names) == proposed
+
+
+@pytest.mark.parametrize(
+    ("names", "warned"),
+    [
+        (("F5N.csv", "F10N.csv", "F20N.csv"), ("load", "5 N, 10 N, 20 N", "F{load}N.csv")),
+        (("r8mm.csv", "r16mm.csv", "r32mm.csv"), ("radius", "8 mm, 16 mm, 32 mm", "r{radius}mm.csv")),
+        (("5N 1rpm.csv", "6N 2rpm.csv", "7N 3rpm.csv"), ("load", "5 N, 6 N, 7 N", "{load}N *rpm.csv")),
+        (("5N a.csv", "5N b.csv", "5N c.csv"), None),
+        (("a1.csv", "a2.csv", "a3.csv"), None),
+    ],
+)
+def test_loads_and_radii_in_names_are_proposed(
+    names: tuple[str, ...], warned: tuple[str, ...] | None, tmp_path: Path
+) -> None:
+    parts = [slice(1000 * i, 1000 * i + 1000) for i in range(3)]
+    logs = [
+        written(tmp_path / name, time=TIME[:1000], torque=TORQUE[part], speed=SPEEDS[part])
+        for name, part in zip(names, parts, strict=True)
+    ]
+    log = hersey.read(logs, isothermal=True)
+    found = [w for file in log.files for w in file.warnings if w.kind == "numbers in file names"]
+    assert [(w.values["role"], w.values["numbers"]) for w in found] == ([warned[:2]] if warned else [])
+    if warned:
+        assert f"name_pattern='{warned[2]}'" in found[0].text
+        values = {warned[0]: [1.0, 2.0, 3.0]}
+        known = hersey.read(logs, isothermal=True, **values)
+        assert not any(w.kind == "numbers in file names" for file in known.files for w in file.warnings)
+
+
 def test_what_stands_in_names_is_never_guessed_but_proposed(tmp_path: Path) -> None:
     log = named(tmp_path)[0]
     with pytest.raises(ChannelError, match="no speed column") as refused:

@@ -95,12 +95,12 @@ def _fit_one(
         curves = None
         if points is not None and surface is not None and printing.in_full:
             curves = _curves(points, surface, machine)
-    if moving is not None and not printing.as_json:
-        printing.text(*fitted_lines(moving))
-        printing.warnings(*moving.warnings)
     if points is None or surface is None:
         if printing.as_json:
             raise ParameterError(_NO_SURFACE)
+        if moving is not None:
+            printing.text(*fitted_lines(moving))
+            printing.warnings(*moving.warnings)
         return
     if printing.as_json:
         from hersey.document.assembly import fit_document
@@ -109,12 +109,15 @@ def _fit_one(
         return
     seen = regime(points, surface)
     friction = leading_friction(points, surface, seen)
-    printing.text(*([""] if moving is not None else []))
-    if friction is not None:
+    if moving is not None:
+        printing.text(*fitted_lines(moving, "" if friction is None else friction.finding))
+    elif friction is not None:
         printing.text(*_friction(friction, points.dropped()))
     if friction is None or printing.in_full or not excludes_power_law(friction, surface):
-        printing.text(*["", "Damping as one power law:"] * bool(friction), seen.verdict)
-        printing.text("", *_law(surface, curves))
+        of = "of the windows of speed " if moving is not None else ""
+        said = moving is not None or friction is not None
+        printing.text(*["", f"Damping {of}as one power law:"] * said, seen.verdict)
+        printing.text("", *_law(surface, curves, "dwells" if moving is None else "windows"))
     printing.warnings(*warnings_of(points, surface, friction))
 
 
@@ -128,10 +131,10 @@ def _against(
     return Fitted(points, fit(points), None)
 
 
-def _law(surface: DampingSurface, curves: CurveMixture | None) -> list[str]:
-    """The power law: its estimates, or all of its statistics with the drag curves."""
+def _law(surface: DampingSurface, curves: CurveMixture | None, points: str) -> list[str]:
+    """The power law of ``points``: its estimates, or all of its statistics with the drag curves."""
     if curves is None:
-        return _estimates(surface)
+        return _estimates(surface, points)
     from hersey.damping.curves.words import drag_curves
 
     return [surface.summary(), drag_curves(curves.table)]
@@ -157,7 +160,7 @@ def _curves(points: SteadyPoints, surface: DampingSurface, machine: Machine | No
     return fit_curves(points, surface, None if machine is None else machine.mixed)
 
 
-def _estimates(surface: DampingSurface) -> list[str]:
+def _estimates(surface: DampingSurface, points: str) -> list[str]:
     """The law with its estimates, 95 % intervals and units, and what it is fitted to."""
     from hersey.cli.figures import labelled, three
     from hersey.units import celsius
@@ -175,7 +178,7 @@ def _estimates(surface: DampingSurface) -> list[str]:
         rows.append(("w_t", f"{_within(surface.transition.speed)} {of.speed_unit}{at} (least {of.quantity})"))
     statistics = surface.statistics
     rows += [
-        ("dwells", str(statistics.points)),
+        (points, str(statistics.points)),
         ("scatter", f"{three(100 * statistics.scatter)} % of {of.quantity}"),
     ]
     return [f"{law}, {of.speed_symbol} in {of.speed_unit} (value, 95 % interval)", *labelled(rows)]

@@ -12,12 +12,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 from hersey.cli.groups import argument, option
 from hersey.cli.loading import loading
 from hersey.cli.no_load import refuse_no_load_log
+from hersey.cli.no_torque import other_use
 from hersey.cli.progress import bar, working
 from hersey.cli.quantities import amount_of, amounts_in, ratio_of
 from hersey.cli.recipe_file import ROLES, read_recipe
 from hersey.cli.several import for_this_log_only
 from hersey.cli.terminal import note
-from hersey.cli.traces import lacking_columns, of_a_force, of_a_trace
+from hersey.cli.traces import lacking_columns, of_a_force
 from hersey.errors import ChannelError, HerseyError, ParameterError, followed_by
 
 if TYPE_CHECKING:
@@ -247,8 +248,8 @@ class Reading:
             with bar("reading") as progress, memory_limit(self.max_memory):
                 log: TorqueLog | MeansTable = recipe.log(machine, progress=progress)
         except ChannelError as error:
-            if not (recipe.channels or recipe.chosen.channels) and error.absent:
-                error.remedy = followed_by(error.remedy, of_a_trace(paths))
+            if error.absent:
+                error.remedy = followed_by(error.remedy, other_use(paths, self))
             raise
         for file in log.files:
             if file.missing_rows:
@@ -285,16 +286,26 @@ class Reading:
         paths: list[Path],
         log: TorqueLog | MeansTable,
         machine: Machine | None = None,
-        fit: MovingFit | None = None,
+        found: SteadyPoints | MovingFit | None = None,
     ) -> SteadyPoints:
-        """Reduce the log of these files to dwells; print what the no-load log shows."""
+        """Reduce the log of these files to dwells; print that it moves, and what the no-load log shows."""
         if machine is not None and machine.rest is not None:
             refuse_no_load_log(paths, machine.rest)
-        points = self.recipe(paths).dwells(log, machine, fit)
+        reduced = self.found(paths, log) if found is None else found
+        points = self.recipe(paths).dwells(log, machine, reduced)
         if self.no_load and points.rest is not None:
             note(f"No-load torque subtracted: {points.rest}.")
             note(*(f"- {warning.sentence}" for warning in points.rest.warnings))
         return points
+
+    def found(self, paths: list[Path], log: TorqueLog | MeansTable) -> SteadyPoints | MovingFit:
+        """Return the dwells of the log, or the fit to every sample of one that moves; print that it moves."""
+        from hersey.damping.dwells import SteadyPoints
+
+        found = self.recipe(paths).found(log)
+        if not (self.moving or isinstance(found, SteadyPoints)):
+            note("The speed hardly ever holds, so friction is fitted to every sample, as with --moving.")
+        return found
 
     def points_of(
         self, paths: list[Path], machine: Machine | None = None, others: Sequence[Path] = ()

@@ -10,8 +10,10 @@ formats               one reader per format, and which one opens a file
 signals               currents, voltages and percentages, and how much one of them stands for
 roles                 roles of columns: their names, and the kinds of units that they may have
 role_units            the unit of a column with a role
+elsewhere             a speed or a temperature in the names of files, or in a position
 channels              which column plays which role
 without_units         columns without units: named at once
+lacking_roles         several roles that a file leaves open: asked for at once
 friction              which of them a file holds, and what it becomes with a load and a radius
 rolling               contacts that roll and slide, whose speed is that of entrainment
 pooling               runs that are fitted together: one domain for all
@@ -41,6 +43,7 @@ many                  many files, each a log of its own: in turn, in threads, or
 corrections           what lies between sensor and film, subtracted with a record
 cell_table            a table as it stands: cells of text or numbers
 mean_roles            which column of a table of means plays which role
+mean_refusals         what cannot be applied to a table of means: refused
 means                 a table of means: a row per dwell, no clock
 doubtful              numbers that would be ordinary in another unit
 quantities            quantities that no log holds

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, Protocol
@@ -107,7 +108,8 @@ class SteadyPoints(Result):
         What is left of it in the torque of each dwell at the most, N m, shape (points, 0 or 1).
     window_errors
         What one standard error of each number that all windows of a moving log share (inertia, offset, the
-        moment of inertia of a coast-down) does to the torque of each point, N m, shape (points, errors).
+        moment of inertia of a coast-down), or all rows of a table of means, does to the torque of each point,
+        N m, shape (points, errors).
     of_every_sample
         Whether the points are windows of a fit to every sample of a log, not dwells.
     temperature_rates
@@ -168,8 +170,9 @@ class SteadyPoints(Result):
         ----------
         table
             A file, columns by name or a polars or pandas frame, with speed and torque; temperature, load, the
-            standard error of the torque (or its deviation and a count), run and approach may stand beside
-            them. Units stand in the names of the columns. Also several, or a `MeansTable`.
+            standard error of the torque (or its deviation and a count), the error that all rows share, run
+            and approach may stand beside them. Units stand in the names of the columns. Also several, or a
+            `MeansTable`.
         channels, units
             Column and unit by role (``torque``, ``speed``, ``temperature``), where the names do not say.
         isothermal
@@ -202,7 +205,10 @@ class SteadyPoints(Result):
             raise InsufficientDataError(f"{table.files[0].name}: no row can be used: {rejected[0].reason}")
         kinds = dict.fromkeys(("temperature", "temperature_error", "load"), pl.Float64)
         frame = pl.DataFrame(dwells, schema_overrides=kinds)
-        return cls(frame, tuple(rejected), 0.0, None, table, warnings=(_of_means(table),))
+        shared = _shared(table, rotation)
+        return cls(
+            frame, tuple(rejected), 0.0, None, table, warnings=(_of_means(table),), window_errors=shared
+        )
 
     @takes_si()
     def without(self, rest: NoLoadTorque) -> SteadyPoints:
@@ -472,6 +478,16 @@ def _stated(table: MeansTable, rotation: str) -> tuple[list[dict[str, object]], 
             }
         )
     return dwells, rejected
+
+
+def _shared(table: MeansTable, rotation: str) -> FloatArray:
+    """What one standard error that all rows of a table share does to each of them, N m."""
+    used = [row for row in table.means if _no_mean(row, rotation) is None]
+    columns = [
+        [math.copysign(row.shared_error, row.torque) * (row.table == each) for row in used]
+        for each in dict.fromkeys(row.table for row in used if row.shared_error)
+    ]
+    return np.array(columns).T if columns else np.empty((0, 0))
 
 
 def _no_mean(row: MeanRow, rotation: str) -> Reason | None:

@@ -7,16 +7,25 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from hersey.damping.distributions import student_quantile
+from hersey.damping.distributions import square_above, student_quantile
 from hersey.damping.dwells.reasons import opposite_signs
 from hersey.damping.estimate import CONFIDENCE, Estimate, estimate
-from hersey.damping.friction_curve.law import COULOMB, STATIC, STRIBECK_SPEED, FrictionLaw
+from hersey.damping.friction_curve.fitted import DirectionTest
+from hersey.damping.friction_curve.law import (
+    COULOMB,
+    FORWARD,
+    REVERSE,
+    STATIC,
+    STRIBECK_SPEED,
+    FrictionLaw,
+)
 from hersey.damping.moving.correlated import Autoregression
 from hersey.damping.moving.filtering import Filtered, LowPass
 from hersey.damping.moving.fitting import LEAST_SEEN, Fitting, MovingLawFit
-from hersey.damping.moving.model import INERTIA, Equations, MovingLaw
-from hersey.damping.moving.moving_warnings import moving_warnings
-from hersey.damping.moving.result import LawTried, MovingFit, MovingParameter
+from hersey.damping.moving.friction import LawTried, Moments, MovingParameter
+from hersey.damping.moving.model import INERTIA, OFFSET, Equations, MovingLaw
+from hersey.damping.moving.moving_warnings import CLEAR_OFFSET, moving_warnings
+from hersey.damping.moving.result import MovingFit
 from hersey.damping.moving.speed_noise import SpeedNoise, low_pass_for, speed_noise
 from hersey.damping.moving.stretches import Stretch, stretches_of
 from hersey.errors import MOVING, InsufficientDataError, ParameterError, Setting
@@ -41,6 +50,8 @@ _ROUNDS = 3
 _FIRST = 1e-4
 #: Least share of the mean square of the torque, without inertia, that friction and offset must explain.
 LEAST_EXPLAINED = 0.8
+#: Moments that are kept to be shown, at the most.
+_SHOWN = 800
 
 
 @takes_si(inertia="moment of inertia")
@@ -178,13 +189,13 @@ def _chosen(fits: Sequence[MovingLawFit], equations: Equations) -> MovingLawFit:
 def _determined(fitted: MovingLawFit, equations: Equations) -> bool:
     """Whether Stribeck's rise is one: higher near standstill, at a speed that the equations reach."""
     slowest = float(np.min(np.abs(equations.speed)))
+    law = fitted.law.friction
     for index in fitted.law.positive:
-        name = fitted.law.names[index]
-        way = name.removeprefix(STRIBECK_SPEED)
-        speed = float(fitted.values[index])
-        if speed <= 1.01 * LEAST_SEEN * slowest or fitted.error(name) > _KNOWN * speed:
+        number = law.numbers[index]
+        own = law.of_way(fitted.values[: len(law.numbers)], number.way)
+        if own[STRIBECK_SPEED] <= 1.01 * LEAST_SEEN * slowest:
             return False
-        if fitted.value(STATIC + way) <= fitted.value(COULOMB + way):
+        if fitted.error(number.name) > _KNOWN * own[STRIBECK_SPEED] or own[STATIC] <= own[COULOMB]:
             return False
     return True
 
@@ -201,6 +212,7 @@ def _result(log: TorqueLog, made: _Made, chosen: MovingLawFit, fits: Sequence[Mo
     used = sum(int(np.count_nonzero(each)) for each in equations.used)
     moving = [np.abs(each.speed) >= made.least for each in equations.filtered]
     rows = sum(each.size for each in moving)
+    friction = chosen.law.friction
     return MovingFit(
         law=chosen.law.title,
         parameters=tuple(_parameters(chosen, freedom)),
@@ -209,6 +221,7 @@ def _result(log: TorqueLog, made: _Made, chosen: MovingLawFit, fits: Sequence[Mo
             LawTried(each.law.title, each.values.size, each.criterion() - least, _determined(each, equations))
             for each in fits
         ),
+        directions=_directions(chosen, fits),
         bandwidth=made.low_pass.bandwidth,
         used=used / sum(each.size for each in equations.used),
         near_standstill=1.0 - sum(int(np.count_nonzero(each)) for each in moving) / rows,
@@ -218,11 +231,44 @@ def _result(log: TorqueLog, made: _Made, chosen: MovingLawFit, fits: Sequence[Mo
         scatter=float(np.sqrt(np.mean(chosen.residuals**2))),
         explained=explained,
         effective_rows=chosen.residuals.size / noise.together,
+        friction_law=friction,
+        values=chosen.values[: len(friction.names)],
+        covariance=chosen.covariance[: len(friction.names), : len(friction.names)],
+        moments=_moments(chosen, equations),
         warnings=(),
         log=log,
         fitted=chosen,
         fitting=made.fitting,
     )
+
+
+def _directions(chosen: MovingLawFit, fits: Sequence[MovingLawFit]) -> DirectionTest | None:
+    """Whether one law holds for both directions beside an offset, by the fall of chi-square."""
+    of = chosen.law.friction
+    same = {
+        each.law.friction.apart: each for each in fits if replace(each.law.friction, apart=of.apart) == of
+    }
+    if len(same) < 2:
+        return None
+    gain = max(same[False].chi_square - same[True].chi_square, 0.0)
+    more = same[True].values.size - same[False].values.size
+    offset = None
+    if of.apart:
+        offset = abs(chosen.value(COULOMB + FORWARD) - chosen.value(COULOMB + REVERSE)) / 2.0
+    elif abs(chosen.value(OFFSET)) > CLEAR_OFFSET * chosen.error(OFFSET):
+        offset = abs(chosen.value(OFFSET))
+    return DirectionTest(float(square_above(gain, more)), of.apart, offset)
+
+
+def _moments(fitted: MovingLawFit, equations: Equations) -> Moments:
+    """Friction of single moments, evenly over the log."""
+    some = slice(None, None, -(-len(equations) // _SHOWN))
+    law = fitted.law.friction
+    own, kelvin = fitted.values[: len(law.names)], None
+    if law.reference_kelvin is not None and equations.temperature is not None:
+        kelvin = equations.temperature[some]
+    speed = equations.speed[some]
+    return Moments(speed, law.torque(own, speed, kelvin) + fitted.residuals[some])
 
 
 def _parameters(fitted: MovingLawFit, freedom: float) -> list[MovingParameter]:
@@ -246,7 +292,8 @@ def _refuse_no_friction(name: str, result: MovingFit, equations: Equations) -> N
             "than friction and inertia loads the drive, such as gravity or a spring",
             remedy="record the drive without that load",
         )
-    apart = [name for name in ("T_C+", "T_C-") if name in result and result[name].low <= 0.0]
+    ways = [each.name for each in result.fitted.law.friction.numbers if each.kind == COULOMB and each.way]
+    apart = [name for name in ways if result[name].low <= 0.0]
     if apart:
         raise InsufficientDataError(
             f"{name}: Coulomb friction would vanish in one direction alone, {apart[0]} = "
@@ -254,8 +301,8 @@ def _refuse_no_friction(name: str, result: MovingFit, equations: Equations) -> N
             remedy="record the drive without that load",
         )
     fast = np.array([result.speed_range[1], -result.speed_range[1]])
-    ways = fast[[np.any(equations.speed > 0), np.any(equations.speed < 0)]]
-    friction = np.sign(ways) * result.friction(ways)
+    fast = fast[[np.any(equations.speed > 0), np.any(equations.speed < 0)]]
+    friction = np.sign(fast) * result.friction(fast)
     if np.all(friction < 0.0) and result.explained >= LEAST_EXPLAINED:
         raise opposite_signs(name)
     if np.any(friction <= 0.0) or result.explained < LEAST_EXPLAINED:

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 _MUCH, _LEFT = 0.5, 0.1
 #: Relative error of the inertia beyond which it is not known.
 _UNKNOWN = 0.5
+#: Standard errors from which an offset is one.
+CLEAR_OFFSET = 3.0
 
 
 def moving_warnings(fit: MovingFit, equations: Equations) -> tuple[Warning, ...]:
@@ -48,12 +50,8 @@ def _one_way(equations: Equations) -> Warning | None:
 def _alike(fit: MovingFit) -> list[Warning]:
     """That friction at the speeds of this log is known better than its parts."""
     slow, fast = fit.speed_range
-    unsure = [
-        each.name
-        for each in fit.parameters
-        if each.name.startswith((COULOMB, VISCOUS))
-        and each.estimate.error > _UNKNOWN * abs(each.estimate.value)
-    ]
+    of_friction = [fit.parameters[i] for i in fit.fitted.law.friction.places(COULOMB, VISCOUS)]
+    unsure = [each.name for each in of_friction if each.estimate.error > _UNKNOWN * abs(each.estimate.value)]
     if not unsure:
         return []
     return [
@@ -71,7 +69,7 @@ def _alike(fit: MovingFit) -> list[Warning]:
 
 
 def _zero(fit: MovingFit) -> Warning | None:
-    if OFFSET not in fit or abs(fit[OFFSET].value) < 3.0 * fit[OFFSET].error:
+    if OFFSET not in fit or abs(fit[OFFSET].value) < CLEAR_OFFSET * fit[OFFSET].error:
         return None
     return Warning(
         "offset or direction",

@@ -11,13 +11,28 @@ import numpy as np
 
 from hersey.errors import ParameterError, Setting
 from hersey.log.channels import ChannelChoice, Stated
-from hersey.log.derived.file_names import NamePattern
+from hersey.log.derived.file_names import NamePattern, differing, proposed_pattern
 from hersey.log.derived.given import Derived, Given
 from hersey.log.derived.position import WINDOW
 from hersey.log.derived.run_table import RunTable, read_run_table
 from hersey.log.derived.schedule_file import read_schedule
 from hersey.log.derived.set_points import SetPoints
+from hersey.schema.warning import Warning
 from hersey.units import parse
+
+
+def _in_names(role: str, numbers: Sequence[str], template: str) -> Warning:
+    """That names of files differ in a number that may be a load or a radius."""
+    return Warning(
+        "numbers in file names",
+        "the file names differ in a number that may be the {meaning} ({numbers}); it is not used",
+        remedy="if it is, use {how}",
+        severity="watch",
+        role=role,
+        meaning={"load": "normal load", "radius": "radius"}[role],
+        numbers=", ".join(dict.fromkeys(numbers)),
+        how=Setting("name_pattern").to(template),
+    )
 
 
 @dataclass(frozen=True)
@@ -118,6 +133,20 @@ class Sources:
                     value: Any = found[0] if len(set(found)) == 1 else found
                     stated = replace(stated, **{role: value})
         return stated
+
+    def unused(
+        self, names: Sequence[str], choices: Mapping[str, ChannelChoice], stated: Stated
+    ) -> list[Warning]:
+        """Return that the names of files differ in a load or a radius that nobody stated."""
+        known = [
+            role for role in ("load", "radius") if choices[role].name or getattr(stated, role) is not None
+        ]
+        known += ["speed", "temperature"]
+        if self.pattern or len(names) < 2:
+            return []
+        found = proposed_pattern(names[0], names, needed=("load", "radius"), known=known)
+        differ = {} if found is None else differing(found, names)
+        return [_in_names(role, numbers, found[0]) for role, numbers in differ.items() if found]
 
     def of_file(self, file: Any) -> Derived:
         """Return what is said of one file."""
