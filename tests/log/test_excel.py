@@ -178,8 +178,8 @@ def test_film_thickness_of_others_in_an_npz() -> None:
     assert format_of(path) == "numpy_arrays"
     assert dict(list_channels(path))["rolling_speed"] == "mm/s"
     with pytest.raises(
-        ChannelError, match=r"could be 'ball_speed_1' or 'disc_speed_1'.* no unit for 'ball_speed_1'"
-    ):  # the coefficient, which needs none, goes before the forces
+        ChannelError, match=r"could be 'ball_speed_1' or 'disc_speed_1'.* no unit for 'traction_force_1_n'"
+    ):
         hersey.read(path)
 
 
