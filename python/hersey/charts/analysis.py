@@ -61,6 +61,8 @@ from hersey.units import celsius
 _OVERLAP = 1.004
 #: Ratio of both ends of a curve to its least torque from which that is marked.
 _RISES = 1.01
+#: Tooltips of a dwell that a window of a moving log has not.
+_WHEN = (alt.Tooltip("approach:N", title="approached"), alt.Tooltip("from_to:N", title="dwell"))
 
 
 def charts(document: Analysis, *, but: tuple[str, ...] = ()) -> dict[str, Chart]:
@@ -434,8 +436,7 @@ def _point_tips(document: Analysis) -> list[alt.Tooltip]:
         tip("torque_shown", _axis(document)[0].lower() + _axis(document)[1:]),
         tip("damping_shown", f"damping ({_damping_unit(document)})"),
         tip("residual", "measured / fitted - 1 (%)"),
-        alt.Tooltip("approach:N", title="approached"),
-        alt.Tooltip("from_to:N", title="dwell"),
+        *([] if document.moving is not None else _WHEN),
     ]
 
 
