@@ -15,6 +15,7 @@ from hersey.damping.moving.beside_dwells import motion_beside
 from hersey.damping.surface import DampingSurface
 from hersey.errors import ROTATION
 from hersey.log.doubtful import doubtful_units
+from hersey.log.layouts.recognized import LAYOUT_RECOGNIZED
 from hersey.log.means import MeansTable
 from hersey.log.torque_log import TorqueLog
 from hersey.schema.warning import Warning
@@ -73,7 +74,10 @@ def _of_file(log: TorqueLog | MeansTable, i: int) -> Iterator[Warning]:
         yield Warning("synthetic", words, severity="watch", where=file.name)
     if file.cut_off:
         yield Warning("cut off", "the file ends too early", severity="watch", where=file.name)
-    yield from (warning.within(file.name) for warning in file.warnings)
+    whole = file.name.partition(", run ")[0]
+    yield from (
+        warning.within(whole if warning.kind == LAYOUT_RECOGNIZED else file.name) for warning in file.warnings
+    )
     lifted = any(warning.kind == "rows without contact" for warning in file.warnings)
     if run is not None and run.clock.gaps and not lifted:
         yield Warning(

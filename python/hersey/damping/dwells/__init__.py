@@ -24,7 +24,8 @@ constant        whether the torque varies at all
 resolution      the step of a sensor, and the error that rounding leaves in a dwell
 relaxation      torque that still relaxes after each change of speed
 misleading      errors that the order of a log hides or that its sensors leave
-several_loads   torques of runs at different loads: refused
+several_loads   what another column changes beside the speed: refused
+hersey_number   dwells against viscosity times speed over load
 reduction       `steady_points`: from a log to its dwells
 reduced         what to write where steady points are needed and something else is given
 ==============  =======================================================================

@@ -38,6 +38,8 @@ from hersey.units import takes_si
 
 #: Distinct speeds that a direction needs for Coulomb plus viscous friction, and for a Stribeck curve.
 SPEEDS_OF_LINE, SPEEDS_OF_CURVE = 3, 5
+#: Steepest fall of exp(-x^2).
+_STEEPEST = float(np.sqrt(2.0 / np.e))
 #: Directions by the ends of the names of parameters.
 _WAYS = {laws.FORWARD: FORWARD, laws.REVERSE: REVERSE}
 
@@ -59,16 +61,23 @@ class _Fitted:
     def covariance(self) -> FloatArray:
         """Covariance of the parameters of the law, SI."""
         slopes = np.ones(self.values.size)
-        speeds = [i for i, name in enumerate(self.law.names) if name.startswith(laws.STRIBECK_SPEED)]
+        speeds = self.law.places(laws.STRIBECK_SPEED)
         slopes[speeds] = self.values[speeds]
         return np.asarray(self.fit.covariance * np.outer(slopes, slopes))
 
     @property
     def falls_from_rest(self) -> bool:
-        """Whether each Stribeck torque at rest exceeds that of Coulomb friction."""
-        own = dict(zip(self.law.names, self.values.tolist(), strict=True))
-        rests = [name for name in own if name.startswith(laws.STATIC)]
-        return all(own[name] > own[name.replace(laws.STATIC, laws.COULOMB)] for name in rests)
+        """Whether each Stribeck torque at rest exceeds that of Coulomb friction.
+
+        A Coulomb friction below 0 only bends the curve where torque falls nowhere.
+        """
+        for way in self.law.ways if self.law.stribeck else ():
+            own = self.law.of_way(self.values, way)
+            rise = own[laws.STATIC] - own[laws.COULOMB]
+            falls = _STEEPEST * rise > own[laws.VISCOUS] * own[laws.STRIBECK_SPEED]
+            if not (rise > 0.0 and (own[laws.COULOMB] > 0.0 or falls)):
+                return False
+        return True
 
 
 @takes_si()
@@ -213,50 +222,47 @@ def _directions(chosen: _Fitted, fitted: list[_Fitted], points: SteadyPoints) ->
         return None
     offset = None
     if chosen.law.apart and not points.tare_errors.shape[1]:
-        own = dict(zip(chosen.law.names, chosen.values.tolist(), strict=True))
-        offset = abs(own[laws.COULOMB + laws.FORWARD] - own[laws.COULOMB + laws.REVERSE]) / 2.0
+        forward, reverse = (chosen.law.of_way(chosen.values, way)[laws.COULOMB] for way in chosen.law.ways)
+        offset = abs(forward - reverse) / 2.0
     return DirectionTest(likelihood_ratio(same[False].fit, same[True].fit), chosen.law.apart, offset)
 
 
 def _parameters(chosen: _Fitted, data: Observations) -> tuple[FrictionParameter, ...]:
     out = []
-    for i, label in enumerate(chosen.law.names):
-        name = label.rstrip("+-")
-        direction = _WAYS.get(label[len(name) :], _together(data))
+    for i, each in enumerate(chosen.law.numbers):
+        direction = _WAYS.get(each.way, _together(data))
         known = _estimate(chosen, data, i)
-        out.append(FrictionParameter(name, direction, known, laws.UNITS[name], known.estimable))
+        out.append(FrictionParameter(each.kind, direction, known, laws.UNITS[each.kind], known.estimable))
     return tuple(out)
 
 
 def _estimate(chosen: _Fitted, data: Observations, i: int) -> Estimate:
     """One parameter in SI: by curvature, and by the profile of the likelihood for a Stribeck curve."""
-    fit, label = chosen.fit, chosen.law.names[i]
-    known = fit.estimate(label)
-    if fit.not_estimable(label):
+    fit, number = chosen.fit, chosen.law.numbers[i]
+    known = fit.estimate(number.name)
+    if fit.not_estimable(number.name):
         return known
     if chosen.law.stribeck and known.error > 0:
         low, high = profile_interval(fit, data, i)
         known = replace(known, low=low, high=high)
-    if label.startswith(laws.STRIBECK_SPEED):
+    if number.kind == laws.STRIBECK_SPEED:
         value = float(np.exp(known.value))
         with np.errstate(over="ignore"):
             low, high = (float(np.exp(end)) for end in (known.low, known.high))
         known = replace(known, value=value, error=value * known.error, low=low, high=high)
         if low < value / UNBOUNDED:
             known = replace(known, low=0.0, high=high)
-    if label.startswith((laws.STRIBECK_SPEED, laws.STATIC)) and not known.high < UNBOUNDED * known.value:
+    if number.kind in (laws.STRIBECK_SPEED, laws.STATIC) and not known.high < UNBOUNDED * known.value:
         known = replace(known, high=np.inf)
-    if label.startswith(laws.STATIC) and _is_extrapolated(chosen, data, label):
+    if number.kind == laws.STATIC and _is_extrapolated(chosen, data, number.way):
         known = replace(known, high=np.inf)
     return known
 
 
-def _is_extrapolated(chosen: _Fitted, data: Observations, label: str) -> bool:
+def _is_extrapolated(chosen: _Fitted, data: Observations, way: str) -> bool:
     """Whether the slowest dwell is above the Stribeck speed: then it shows little of the rise to T_S."""
-    own = dict(zip(chosen.law.names, chosen.values.tolist(), strict=True))
-    direction = _WAYS.get(label[-1])
-    speed = data.speed if direction is None else data.speed[_ways(data)[direction]]
-    return bool(speed.min() > own[label.replace(laws.STATIC, laws.STRIBECK_SPEED)])
+    speed = data.speed[_ways(data)[_WAYS[way]]] if way else data.speed
+    return bool(speed.min() > chosen.law.of_way(chosen.values, way)[laws.STRIBECK_SPEED])
 
 
 def _least(chosen: _Fitted, data: Observations) -> tuple[LeastTorque, ...]:

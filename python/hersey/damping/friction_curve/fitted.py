@@ -139,6 +139,11 @@ class FittedFriction(Record):
         """Whether torque provably rises with speed over all the measured speeds."""
         return not (self.law.stribeck or self.falls) and all(each.low > 0.0 for each in self.slopes)
 
+    @property
+    def rises_beyond_rest(self) -> bool:
+        """Whether the fitted torque rises with speed over all the measured speeds."""
+        return all(bool(np.all(np.diff(np.abs(line.torque)) > 0.0)) for line in self.lines)
+
     @cached_property
     def lines(self) -> tuple[FrictionLine, ...]:
         """The fitted curve in each direction, at each temperature of the dwells."""

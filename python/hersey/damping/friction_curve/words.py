@@ -129,6 +129,9 @@ def slowing_of(curve: FittedFriction) -> str:
 
 
 def _of_stribeck(curve: FittedFriction) -> str:
+    if not curve.least and curve.rises_beyond_rest:
+        slowest = _speed(curve.speed_range[0])
+        return f"Torque rises with speed above {slowest}, the slowest dwell: stick-slip is possible below it"
     if not curve.least:
         return "Torque falls as speed rises over the measured speeds, so stick-slip is possible"
     where = " and ".join(

@@ -189,13 +189,13 @@ def _chosen(fits: Sequence[MovingLawFit], equations: Equations) -> MovingLawFit:
 def _determined(fitted: MovingLawFit, equations: Equations) -> bool:
     """Whether Stribeck's rise is one: higher near standstill, at a speed that the equations reach."""
     slowest = float(np.min(np.abs(equations.speed)))
+    law = fitted.law.friction
     for index in fitted.law.positive:
-        name = fitted.law.names[index]
-        way = name.removeprefix(STRIBECK_SPEED)
-        speed = float(fitted.values[index])
-        if speed <= 1.01 * LEAST_SEEN * slowest or fitted.error(name) > _KNOWN * speed:
+        number = law.numbers[index]
+        own = law.of_way(fitted.values[: len(law.numbers)], number.way)
+        if own[STRIBECK_SPEED] <= 1.01 * LEAST_SEEN * slowest:
             return False
-        if fitted.value(STATIC + way) <= fitted.value(COULOMB + way):
+        if fitted.error(number.name) > _KNOWN * own[STRIBECK_SPEED] or own[STATIC] <= own[COULOMB]:
             return False
     return True
 
@@ -292,7 +292,8 @@ def _refuse_no_friction(name: str, result: MovingFit, equations: Equations) -> N
             "than friction and inertia loads the drive, such as gravity or a spring",
             remedy="record the drive without that load",
         )
-    apart = [name for name in ("T_C+", "T_C-") if name in result and result[name].low <= 0.0]
+    ways = [each.name for each in result.fitted.law.friction.numbers if each.kind == COULOMB and each.way]
+    apart = [name for name in ways if result[name].low <= 0.0]
     if apart:
         raise InsufficientDataError(
             f"{name}: Coulomb friction would vanish in one direction alone, {apart[0]} = "
@@ -300,8 +301,8 @@ def _refuse_no_friction(name: str, result: MovingFit, equations: Equations) -> N
             remedy="record the drive without that load",
         )
     fast = np.array([result.speed_range[1], -result.speed_range[1]])
-    ways = fast[[np.any(equations.speed > 0), np.any(equations.speed < 0)]]
-    friction = np.sign(ways) * result.friction(ways)
+    fast = fast[[np.any(equations.speed > 0), np.any(equations.speed < 0)]]
+    friction = np.sign(fast) * result.friction(fast)
     if np.all(friction < 0.0) and result.explained >= LEAST_EXPLAINED:
         raise opposite_signs(name)
     if np.any(friction <= 0.0) or result.explained < LEAST_EXPLAINED:

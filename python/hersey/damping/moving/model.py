@@ -13,13 +13,12 @@ import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.damping.friction_curve.law import (
-    FORWARD,
-    REVERSE,
     STRIBECK_SPEED,
     THINNING,
     UNITS,
     VISCOUS,
     FrictionLaw,
+    Number,
 )
 from hersey.damping.moving.filtering import Filtered
 
@@ -83,15 +82,20 @@ class MovingLaw:
     inertia: float | None = None  #: kg m^2 if it is given
 
     @cached_property
-    def names(self) -> tuple[str, ...]:
-        """Names of all numbers that are fitted, friction first."""
+    def numbers(self) -> tuple[Number, ...]:
+        """All numbers that are fitted, friction first."""
         others = (*((INERTIA,) if self.inertia is None else ()), *((OFFSET,) if self.offset else ()), DELAY)
-        return (*self.friction.names, *others)
+        return (*self.friction.numbers, *map(Number, others))
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """Their names."""
+        return tuple(each.name for each in self.numbers)
 
     @cached_property
     def positive(self) -> tuple[int, ...]:
         """Indices of numbers whose logarithm is fitted."""
-        return tuple(i for i, name in enumerate(self.friction.names) if name.startswith(STRIBECK_SPEED))
+        return tuple(self.friction.places(STRIBECK_SPEED))
 
     @property
     def title(self) -> str:
@@ -105,8 +109,7 @@ class MovingLaw:
     @property
     def units(self) -> dict[str, str]:
         """Unit of each number, by name."""
-        kinds = UNITS | OTHER_UNITS
-        return {name: kinds[name.rstrip(FORWARD + REVERSE)] for name in self.names}
+        return OTHER_UNITS | {each.name: UNITS[each.kind] for each in self.friction.numbers}
 
     def value(self, values: FloatArray, name: str) -> float:
         """Return a number by its name; the inertia if given, and 0 for an offset that is not fitted."""
@@ -150,6 +153,6 @@ class MovingLaw:
         """Derivatives of the friction of each equation; those linear in speed at the speed as read."""
         columns = self.friction.jacobian(own, of.speed, of.temperature)
         ratio = np.divide(of.raw, of.speed, out=np.ones(of.raw.size), where=of.speed != 0.0)
-        linear = [i for i, name in enumerate(self.friction.names) if name.startswith((VISCOUS, THINNING))]
+        linear = self.friction.places(VISCOUS, THINNING)
         columns[:, linear] *= ratio[:, None]
         return of.weighted(columns)

@@ -50,12 +50,8 @@ def _one_way(equations: Equations) -> Warning | None:
 def _alike(fit: MovingFit) -> list[Warning]:
     """That friction at the speeds of this log is known better than its parts."""
     slow, fast = fit.speed_range
-    unsure = [
-        each.name
-        for each in fit.parameters
-        if each.name.startswith((COULOMB, VISCOUS))
-        and each.estimate.error > _UNKNOWN * abs(each.estimate.value)
-    ]
+    of_friction = [fit.parameters[i] for i in fit.fitted.law.friction.places(COULOMB, VISCOUS)]
+    unsure = [each.name for each in of_friction if each.estimate.error > _UNKNOWN * abs(each.estimate.value)]
     if not unsure:
         return []
     return [
