@@ -11,6 +11,7 @@ import pytest
 from scipy import optimize
 
 import hersey
+from hersey.damping.dwells.doubtful import doubtful_order
 from hersey.damping.moving.correlated import autoregression
 from hersey.damping.moving.curve import moving_curve
 from hersey.damping.moving.result import MovingFit
@@ -217,6 +218,18 @@ def test_a_film_that_moves_all_the_time_is_no_friction_curve() -> None:
     points = made(speed, rate, 0.3 * np.sign(speed) * np.abs(speed) ** 0.4).moving().points()
     surface = hersey.fit(points)
     assert leading_friction(points, surface, hersey.regime(points, surface)) is None
+
+
+def test_windows_that_last_as_long_as_the_log_are_in_no_order() -> None:
+    """They come by speed, not by time; of one ramp up they come by both."""
+    speed, rate = waves(times())
+    up = np.abs(speed) + 0.3
+    both = made(up, np.sign(speed) * rate, COULOMB + VISCOUS * up).moving().points()
+    assert doubtful_order(both) == []
+    ramp = 1.0 + times() / 8.0
+    log = made(ramp, np.full(ramp.size, 1.0 / 8.0), COULOMB + VISCOUS * ramp)
+    once = log.moving(inertia=INERTIA).points()
+    assert [each.values["quantity"] for each in doubtful_order(once)] == ["speed"]
 
 
 def test_what_windows_share_moves_them_together(encoder: MovingFit) -> None:

@@ -183,7 +183,7 @@ def residuals(document: Analysis) -> Chart:
         subtitle, shape = "windows of speed; a bend: wrong model", {}
     dots = dots.encode(
         x=_speed(document, "speed:Q", span([row["speed"] for row in rows])),
-        y=alt.Y("residual:Q", title="Measured / fitted \u2212 1 (%)"),
+        y=alt.Y("residual:Q", title="Measured / fitted \u2212 1 (%)", scale=alt.Scale(padding=8)),
         color=_temperature_channels(document)[0],
         tooltip=_point_tips(document),
         **shape,

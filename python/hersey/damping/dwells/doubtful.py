@@ -50,6 +50,8 @@ def doubtful_order(points: SteadyPoints) -> list[Warning]:
         named["temperature"] = ("b", points.column("temperature"))
     named = {what: each for what, each in named.items() if np.ptp(each[1]) > 0}
     order = np.arange(len(points))
+    if points.of_every_sample:  # windows may last as long as the log, and come by speed
+        order = _ranks(points.column("start") + points.column("end"))
     return [
         Warning(
             "in order",
