@@ -58,7 +58,7 @@ def warnings_of(
     found += motion_beside(points)
     if surface is not None:
         found += _of_directions(points, surface, apart=friction is not None and friction.apart)
-    found += [*doubtful_order(points), *misleading(points)]
+    found += [*doubtful_order(points), *misleading(points, exponents=friction is None)]
     if friction is not None:
         found += _of_scatter(friction.scatter)
     elif surface is not None:

@@ -64,7 +64,7 @@ def flags(known: Findings) -> list[Warning]:
         out.append(Warning("no band", "{why}", severity="act", title="No band", where="band", why=known.why))
     if found is not None and map_ is not None:
         unit = known.units["torque"]
-        out += [*_whole(points, found, unit), *_of_machine(found, map_, unit)]
+        out += [*([] if known.friction else _whole(points, found, unit)), *_of_machine(found, map_, unit)]
     if found is not None:
         out += [*_not_computed(found), *_plans(found)]
     of_fit = surface.statistics.scatter if known.friction is None else known.friction.scatter
