@@ -287,6 +287,15 @@ def test_a_coefficient_asks_for_radius_and_load() -> None:
     )
 
 
+def test_exact_data_end_in_no_fault() -> None:
+    """No noise at all: the numbers are those that made it; a torque that never changes measures nothing."""
+    speed, rate = waves(times())
+    exact = made(speed, rate, COULOMB * np.sign(speed) + VISCOUS * speed, noise=0.0).moving()
+    assert exact["J"].value == pytest.approx(INERTIA, rel=1e-3)
+    with pytest.raises(InsufficientDataError, match=r"torque reads 300 mN m in every row"):
+        read(speed, 0.3 * np.sign(speed)).moving()
+
+
 def test_too_short_a_log_is_refused() -> None:
     speed, rate = waves(times(1.0))
     with pytest.raises(InsufficientDataError, match="a moving log needs 30"):
