@@ -79,6 +79,7 @@ def test_which_law_the_safe_speed_uses_is_said(browser: Browser, tmp_path: Path)
     text = seen.page.text_content("#torque") or ""
     assert "V*, the map and start-up profiles use drag curves by weight (" in text
     assert "what torque does below the slowest window." in text
+    assert "film" not in (seen.page.text_content("#flags") or "")
     assert seen.page.locator("#chart-damping, #chart-surface").count() == 0
     seen.assert_quiet()
     seen.page.close()

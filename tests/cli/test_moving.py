@@ -115,7 +115,7 @@ def test_start_and_stop_of_a_screw_drive(tmp_path: Path) -> None:
     done = run("fit", folder / "50.csv", folder / "200.csv", *typed, cwd=tmp_path)
     assert done.returncode == 0, done
     assert "Coulomb and viscous friction" in done.stdout
-    assert "all dwells are at 50 rpm and 200 rpm" in " ".join(done.stderr.split())
+    assert "all windows of speed are at 50 rpm and 200 rpm" in " ".join(done.stderr.split())
 
 
 def test_a_staircase_with_too_few_speeds_is_none(tmp_path: Path) -> None:

@@ -11,6 +11,7 @@ import pytest
 from scipy import optimize
 
 import hersey
+from hersey.damping.dwells.doubtful import doubtful_order
 from hersey.damping.moving.correlated import autoregression
 from hersey.damping.moving.curve import moving_curve
 from hersey.damping.moving.result import MovingFit
@@ -219,6 +220,18 @@ def test_a_film_that_moves_all_the_time_is_no_friction_curve() -> None:
     assert leading_friction(points, surface, hersey.regime(points, surface)) is None
 
 
+def test_windows_that_last_as_long_as_the_log_are_in_no_order() -> None:
+    """They come by speed, not by time; of one ramp up they come by both."""
+    speed, rate = waves(times())
+    up = np.abs(speed) + 0.3
+    both = made(up, np.sign(speed) * rate, COULOMB + VISCOUS * up).moving().points()
+    assert doubtful_order(both) == []
+    ramp = 1.0 + times() / 8.0
+    log = made(ramp, np.full(ramp.size, 1.0 / 8.0), COULOMB + VISCOUS * ramp)
+    once = log.moving(inertia=INERTIA).points()
+    assert [each.values["quantity"] for each in doubtful_order(once)] == ["speed"]
+
+
 def test_what_windows_share_moves_them_together(encoder: MovingFit) -> None:
     """One standard error of the offset is in all of them."""
     shared = encoder.points().window_errors
@@ -272,6 +285,15 @@ def test_a_coefficient_asks_for_radius_and_load() -> None:
         "a fit to every sample needs a torque, but the log is of a friction coefficient against sliding "
         "speed. Give radius='25 mm' and load='50 N', with your values"
     )
+
+
+def test_exact_data_end_in_no_fault() -> None:
+    """No noise at all: the numbers are those that made it; a torque that never changes measures nothing."""
+    speed, rate = waves(times())
+    exact = made(speed, rate, COULOMB * np.sign(speed) + VISCOUS * speed, noise=0.0).moving()
+    assert exact["J"].value == pytest.approx(INERTIA, rel=1e-3)
+    with pytest.raises(InsufficientDataError, match=r"torque reads 300 mN m in every row"):
+        read(speed, 0.3 * np.sign(speed)).moving()
 
 
 def test_too_short_a_log_is_refused() -> None:

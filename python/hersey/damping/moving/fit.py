@@ -29,7 +29,9 @@ from hersey.damping.moving.result import MovingFit
 from hersey.damping.moving.speed_noise import SpeedNoise, low_pass_for, speed_noise
 from hersey.damping.moving.stretches import Stretch, stretches_of
 from hersey.errors import MOVING, InsufficientDataError, ParameterError, Setting
+from hersey.log.channels import is_dead
 from hersey.log.torque_log import TorqueLog
+from hersey.schema.domain import TORQUE
 from hersey.units import rpm, takes_si
 
 #: A drive slower than so many standard deviations of the noise of its speed, or than this share of its
@@ -126,6 +128,13 @@ def _refuse_constant(name: str, stretches: Sequence[Stretch]) -> None:
             f"{name}: the speed hardly changes, so inertia and friction cannot be separated",
             remedy=f"omit {MOVING.to()}",
             setting=MOVING,
+        )
+    torque = np.abs(np.concatenate([each.torque for each in stretches]))
+    if is_dead(torque):
+        raise InsufficientDataError(
+            f"{name}: torque reads {TORQUE.small(float(torque[0]), '.4g')} in every row, so it does not "
+            "measure friction",
+            remedy=f"check the sensor, or name another column with {Setting('torque', 'channel').to()}",
         )
 
 

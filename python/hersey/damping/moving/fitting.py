@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -20,6 +20,8 @@ _STARTS = (0.015, 0.03, 0.06, 0.12, 0.25)
 _MOST = 0.7
 #: Share of the least speed of the equations below which a Stribeck speed cannot show.
 LEAST_SEEN = 0.5
+#: Least variance of the noise, as a share of the mean square of the torque: exact data leave none.
+_EXACT = 1e-18
 #: Damping of the rounds: first, greatest.
 _DAMPED, _MOST_DAMPED = 1e-3, 1e6
 
@@ -83,6 +85,8 @@ class Fitting:
         columns = np.column_stack([fitted.residuals, taken])
         ends = np.cumsum([places.size for places in self.equations.places])[:-1]
         noise = autoregression(list(zip(self.equations.places, np.split(columns, ends), strict=True)))
+        least = _EXACT * float(np.mean(self.equations.torque**2))
+        noise = replace(noise, variance=max(noise.variance, least))
         return Fitting.of(self.equations, noise, self.prior, self.covariances)
 
     def fit(self, law: MovingLaw, near: MovingLawFit | None = None) -> MovingLawFit:
