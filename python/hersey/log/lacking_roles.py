@@ -61,8 +61,8 @@ def asking_all(
     )
     if isinstance(error, UnitError) and (not is_open.roles or setting not in dict(is_open.examples)):
         return naming_all(error, roles, columns, choices, file, dead=dead, of_a_frame=of_a_frame)
-    few = "torque" not in found and len(columns) <= _NO_TORQUE  # which may be of a coast-down
-    if len(is_open.roles) + len(is_open.without_unit) < 2 or not {"torque", "speed"} & found or few:
+    bare = "torque" not in found and len(columns) <= _NO_TORQUE  # which may be of a coast-down
+    if len(is_open.roles) + len(is_open.without_unit) < 2 or not {"torque", "speed"} & found or bare:
         return error
     said = list(is_open.roles)
     if is_open.without_unit:
