@@ -283,7 +283,8 @@ def test_a_coefficient_asks_for_radius_and_load() -> None:
         log.moving()
     assert str(error.value) == (
         "a fit to every sample needs a torque, but the log is of a friction coefficient against sliding "
-        "speed. Give radius='25 mm' and load='50 N', with your values"
+        "speed. Give radius='25 mm' and load='50 N', with your values. If nothing turns, give radius='1 m' "
+        "and load='1 N', and read N·m as the coefficient and rad/s as m/s"
     )
 
 
