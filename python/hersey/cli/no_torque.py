@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import fields
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
 from hersey.cli.mistyped import retyped
 from hersey.cli.traces import of_a_trace
 from hersey.errors import HerseyError, UnitError
 
 if TYPE_CHECKING:
-    from hersey.cli.options import Reading
     from hersey.damping.recipe import Recipe
 
 #: Settings of a torque, of dwells and of a recipe, whose values are among the others.
@@ -25,6 +24,23 @@ _NOT_OF_SPEED = (
 _INERTIA = "0.012 kg*m^2 ± 2 %"
 #: Columns of a log without units that holds time, speed and perhaps a temperature.
 _FEW = 3
+
+
+class Reading(Protocol):
+    """The options that say how a log is read: `hersey.cli.options.Reading`."""
+
+    __dataclass_fields__: ClassVar[dict[str, Any]]
+
+    @property
+    def inertia(self) -> str:
+        """Moment of inertia as typed."""
+
+    @property
+    def max_memory(self) -> str:
+        """Memory for reading a file."""
+
+    def recipe(self, logs: Sequence[Path] = ()) -> Recipe:
+        """Return how these logs are read."""
 
 
 def other_use(paths: list[Path], reading: Reading) -> str:
