@@ -49,13 +49,17 @@ def _options(recipe: Recipe, file: str) -> dict[str, Any]:
     stated = recipe.stated()
     stated.pop("logs", None)
     _refuse_unclear(stated, file)
+    error = stated.pop("inertia_error", None)
     out: dict[str, Any] = {}
     for table, (ending, roles) in _TABLES.items():
         for role, value in stated.pop(table, {}).items():
             if role not in roles:
                 raise ParameterError(f"{file}: {table}.{role}: use one of {', '.join(roles)}")
             out[role + ending] = value
-    return out | {name: _typed(name, value) for name, value in stated.items()}
+    out |= {name: _typed(name, value) for name, value in stated.items()}
+    if error and "inertia" in out:
+        out["inertia"] += f" ± {_typed('inertia', error)}"
+    return out
 
 
 def _refuse_unclear(stated: dict[str, Any], file: str) -> None:
