@@ -198,7 +198,7 @@ class Recipe:
         for name in _FILES:
             path = getattr(self, name)
             given[name] = None if path is None else Path(path)
-        for name, kind in _KINDS.items():
+        for name, kind in AMOUNTS.items():
             amount = getattr(self, name)
             if isinstance(amount, tuple | list):
                 given[name] = tuple(argument(name, kind, each) for each in amount)
@@ -373,7 +373,7 @@ class Recipe:
                 rows = [f"{key} = {_written(each)}" for key, each in value.items()]
                 tables.append("\n".join([f"\n[{name}]", *rows]))
             else:
-                plain.append(f"{name} = {_written(value, _KINDS.get(name, ''), folder)}")
+                plain.append(f"{name} = {_written(value, AMOUNTS.get(name, ''), folder)}")
         return "\n".join([*plain, *tables, ""])
 
     def stated(self) -> dict[str, Any]:
@@ -498,7 +498,7 @@ class _RecipeFile(Table, Recipe):
 #: Fields that name one file each.
 _FILES = ("mapping", "schedule", "no_load")
 #: Kind of unit of each amount.
-_KINDS = {
+AMOUNTS = {
     "every": "time",
     "radius": "length",
     "load": "force",
