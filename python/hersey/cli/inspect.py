@@ -57,7 +57,12 @@ def inspect(
     recipe = reading.recipe(logs)
     if kept is not None:
         with working("looking at the channels"), memory_limit(reading.max_memory):
-            written.write(propose_mapping(logs[0], channels=recipe.channels, units=recipe.units))
+            names = [log.name for log in logs]
+            said = recipe.stated()
+            text = propose_mapping(
+                logs[0], channels=recipe.channels, units=recipe.units, names=names, said=said
+            )
+            written.write(text)
     with working("looking at the channels"), memory_limit(reading.max_memory):
         given = {name: value for name, value in vars(recipe).items() if name not in _OF_A_FIT}
         inspection = inspected(logs, **(given | {"means": recipe.are_means}))

@@ -26,31 +26,28 @@ _INERTIA = "0.012 kg*m^2 ± 2 %"
 _FEW = 3
 
 
-class Reading(Protocol):
-    """The options that say how a log is read: `hersey.cli.options.Reading`."""
+class _Reading(Protocol):
+    """The settings of a command that reads logs."""
 
     __dataclass_fields__: ClassVar[dict[str, Any]]
 
     @property
-    def inertia(self) -> str:
-        """Moment of inertia as typed."""
+    def inertia(self) -> str | None: ...
 
     @property
-    def max_memory(self) -> str:
-        """Memory for reading a file."""
+    def max_memory(self) -> str: ...
 
-    def recipe(self, logs: Sequence[Path] = ()) -> Recipe:
-        """Return how these logs are read."""
+    def recipe(self, paths: list[Path], /) -> Recipe: ...
 
 
-def other_use(paths: list[Path], reading: Reading) -> str:
+def other_use(paths: list[Path], reading: _Reading) -> str:
     """Return what to type for files without the channels of a log: a coast-down, or a stick-slip trace."""
     recipe = reading.recipe(paths)
     named = recipe.channels or recipe.chosen.channels
     return of_a_coast_down(paths, reading, recipe) or ("" if named else of_a_trace(paths))
 
 
-def of_a_coast_down(paths: Sequence[Path], reading: Reading, recipe: Recipe) -> str:
+def of_a_coast_down(paths: Sequence[Path], reading: _Reading, recipe: Recipe) -> str:
     """Return what to type where speed falls freely in logs that have no torque; else nothing.
 
     Where units are missing, so that no speed can be looked at, logs of few columns count.
@@ -81,7 +78,7 @@ def _may_hold_more(columns: Sequence[tuple[str, str]]) -> bool:
     return len(columns) > _FEW or any(signal_kind(unit) for _, unit in columns)
 
 
-def _typed(reading: Reading) -> list[str]:
+def _typed(reading: _Reading) -> list[str]:
     """The options that say how a speed is read, with their values."""
     words = []
     for each in fields(reading):

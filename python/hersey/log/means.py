@@ -36,6 +36,7 @@ from hersey.log.not_a_log import is_one, refuse_not_a_log
 from hersey.log.pooling import refuse_mixed
 from hersey.log.replaced import replaced_units
 from hersey.log.roles import CHANNELS, SIGNS, UNITS
+from hersey.log.rolling import of_rolling
 from hersey.log.sensors import Sensors
 from hersey.log.text.column import Column
 from hersey.log.torque_log import LARGEST, Channel, LogFile, TorqueLog, title_of
@@ -278,7 +279,8 @@ def _read(
     roles = mean_roles(cells, choices, isothermal)
     used = roles | beside(cells.columns, choices, said, roles, cells.name)
     held = {role: in_si(cells, *role_of) for role, role_of in used.items()}
-    domain = domain_of(used, of_all)
+    seen = unused(cells.columns, used, said, cells.numbers)
+    domain = of_rolling(domain_of(used, of_all), seen)
     lever = in_domain(held | {"torque": np.ones_like(held["torque"])}, used, said, domain)["torque"]
     error = torque_errors(cells, roles["torque"])
     values = in_domain(held, used, said, domain)
@@ -305,7 +307,7 @@ def _read(
     warnings = (
         *computed(used, said, domain),
         *replaced_units(used),
-        *unused(cells.columns, used, said),
+        *seen,
         *_rows_left_out(left_out),
     )
     file = LogFile(
@@ -373,26 +375,3 @@ def _rows_left_out(named: list[str]) -> list[Warning]:
             others=max(0, len(named) - _NAMED),
         )
     ]
-
-
-def refuse_corrections(stated: bool, name: str, by_hand: Sequence[str]) -> None:
-    """Refuse corrections of a mapping, or of options given by hand: they are made on a trace."""
-    if stated and by_hand:
-        given = " and ".join(by_hand)
-        raise ParameterError(
-            f"{given} cannot be applied to a table of means. Correct the values in it, and omit {given}"
-        )
-    if stated:
-        raise ParameterError(
-            f"{name} contains corrections (signs, tare, gears, lag), which cannot be applied to a table "
-            "of means. Correct the values in the table, and name only its columns in the mapping"
-        )
-
-
-def refuse_sources(named: Sequence[str]) -> None:
-    """Refuse what stands in the place of a column of a log."""
-    if named:
-        raise ParameterError(
-            "a table of means holds its speed, sign and load as columns. Write them there, and omit "
-            f"{' and '.join(named)}"
-        )

@@ -10,10 +10,12 @@ from hersey.arrays import FloatArray
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.dwells.doubtful import doubtful_order, doubtful_tare
 from hersey.damping.dwells.misleading import misleading
+from hersey.damping.dwells.motion_between import motion_between
 from hersey.damping.friction_curve.result import FrictionCurve
 from hersey.damping.surface import DampingSurface
 from hersey.errors import ROTATION
 from hersey.log.doubtful import doubtful_units
+from hersey.log.layouts.recognized import LAYOUT_RECOGNIZED
 from hersey.log.means import MeansTable
 from hersey.log.torque_log import TorqueLog
 from hersey.schema.warning import Warning
@@ -53,6 +55,7 @@ def warnings_of(
             "which the fit excludes"
         )
         found.append(Warning("stick-slip", words, count=swinging))
+    found += motion_between(points)
     if surface is not None:
         found += _of_directions(points, surface, apart=friction is not None and friction.apart)
     found += [*doubtful_order(points), *misleading(points)]
@@ -71,7 +74,10 @@ def _of_file(log: TorqueLog | MeansTable, i: int) -> Iterator[Warning]:
         yield Warning("synthetic", words, severity="watch", where=file.name)
     if file.cut_off:
         yield Warning("cut off", "the file ends too early", severity="watch", where=file.name)
-    yield from (warning.within(file.name) for warning in file.warnings)
+    whole = file.name.partition(", run ")[0]
+    yield from (
+        warning.within(whole if warning.kind == LAYOUT_RECOGNIZED else file.name) for warning in file.warnings
+    )
     lifted = any(warning.kind == "rows without contact" for warning in file.warnings)
     if run is not None and run.clock.gaps and not lifted:
         yield Warning(

@@ -12,6 +12,7 @@ import polars as pl
 
 from hersey.arrays import FloatArray
 from hersey.damping.dwells.columns import column_of
+from hersey.damping.dwells.hersey_number import Viscous, against_hersey_number
 from hersey.damping.dwells.reasons import NO_DWELL, Reason, joined, opposite_signs
 from hersey.damping.dwells.relaxation import Relaxation
 from hersey.damping.dwells.resolution import Resolution
@@ -24,7 +25,7 @@ from hersey.log.torque_log import TorqueLog
 from hersey.result import Result, json_record
 from hersey.schema.domain import TORQUE, Domain
 from hersey.schema.warning import Warning
-from hersey.units import rpm, takes_si
+from hersey.units import argument, rpm, takes_si
 
 #: Standard errors by which a torque must exceed the no-load torque, so that a film is left.
 _BEYOND = 2.0
@@ -340,6 +341,33 @@ class SteadyPoints(Result):
             resolutions=tuple(_scaled(each, scaled) for each in self.resolutions),
             **{name: by * getattr(self, name) for name in _SHARED_ERRORS},
         )
+
+    @takes_si()
+    def against_hersey_number(self, viscosity: Viscous | float) -> SteadyPoints:
+        """Return the points against the Hersey number: viscosity times speed over normal load, 1/m.
+
+        Dwells at several temperatures and loads then share one Stribeck curve, if there is one.
+
+        Parameters
+        ----------
+        viscosity
+            A `hersey.Lubricant`, at the temperature of each dwell, or one viscosity, Pa s.
+
+        Raises
+        ------
+        ParameterError
+            If they are no friction coefficients against a speed in m/s, or lack loads or temperatures.
+
+        Examples
+        --------
+        >>> table = {"speed [m/s]": [0.1, 0.2, 0.4], "COF": [0.12, 0.12, 0.12]}
+        >>> points = SteadyPoints.from_table(table, load="10 N").against_hersey_number("20 mPa*s")
+        >>> points.column("speed").tolist()
+        [0.0002, 0.0004, 0.0008]
+        """
+        if not hasattr(viscosity, "temperature_exponent"):
+            viscosity = float(argument("viscosity", "viscosity", viscosity, one=True))
+        return against_hersey_number(self, viscosity)
 
     @property
     def varying_load(self) -> tuple[float, float] | None:

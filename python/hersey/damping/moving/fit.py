@@ -8,17 +8,19 @@ from typing import Any
 
 import numpy as np
 
-from hersey.damping.distributions import student_quantile
+from hersey.damping.distributions import square_above, student_quantile
 from hersey.damping.dwells.reasons import opposite_signs
 from hersey.damping.estimate import CONFIDENCE, Estimate, estimate
+from hersey.damping.friction_curve.fitted import DirectionTest
 from hersey.damping.friction_curve.law import COULOMB, STATIC, STRIBECK_SPEED, FrictionLaw
 from hersey.damping.inertia import inertia_of
 from hersey.damping.moving.correlated import Autoregression
 from hersey.damping.moving.filtering import Filtered, LowPass
 from hersey.damping.moving.fitting import LEAST_SEEN, Fitting, MovingLawFit
-from hersey.damping.moving.model import INERTIA, Equations, MovingLaw
-from hersey.damping.moving.moving_warnings import moving_warnings
-from hersey.damping.moving.result import LawTried, MovingFit, MovingParameter
+from hersey.damping.moving.friction import LawTried, Moments, MovingParameter
+from hersey.damping.moving.model import INERTIA, OFFSET, Equations, MovingLaw
+from hersey.damping.moving.moving_warnings import CLEAR_OFFSET, moving_warnings
+from hersey.damping.moving.result import MovingFit
 from hersey.damping.moving.speed_noise import SpeedNoise, low_pass_for, speed_noise
 from hersey.damping.moving.stretches import Stretch, stretches_of
 from hersey.errors import MOVING, InsufficientDataError, ParameterError, Setting
@@ -43,6 +45,8 @@ _ROUNDS = 3
 _FIRST = 1e-4
 #: Least share of the mean square of the torque, without inertia, that friction and offset must explain.
 LEAST_EXPLAINED = 0.8
+#: Moments that are kept to be shown, at the most.
+_SHOWN = 800
 
 
 @takes_si()
@@ -205,6 +209,7 @@ def _result(log: TorqueLog, made: _Made, chosen: MovingLawFit, fits: Sequence[Mo
     used = sum(int(np.count_nonzero(each)) for each in equations.used)
     moving = [np.abs(each.speed) >= made.least for each in equations.filtered]
     rows = sum(each.size for each in moving)
+    friction = chosen.law.friction
     return MovingFit(
         law=chosen.law.title,
         parameters=tuple(_parameters(chosen, freedom)),
@@ -213,6 +218,7 @@ def _result(log: TorqueLog, made: _Made, chosen: MovingLawFit, fits: Sequence[Mo
             LawTried(each.law.title, each.values.size, each.criterion() - least, _determined(each, equations))
             for each in fits
         ),
+        directions=_directions(chosen, fits),
         bandwidth=made.low_pass.bandwidth,
         used=used / sum(each.size for each in equations.used),
         near_standstill=1.0 - sum(int(np.count_nonzero(each)) for each in moving) / rows,
@@ -222,11 +228,46 @@ def _result(log: TorqueLog, made: _Made, chosen: MovingLawFit, fits: Sequence[Mo
         scatter=float(np.sqrt(np.mean(chosen.residuals**2))),
         explained=explained,
         effective_rows=chosen.residuals.size / noise.together,
+        friction_law=friction,
+        values=chosen.values[: len(friction.names)],
+        covariance=chosen.covariance[: len(friction.names), : len(friction.names)],
+        moments=_moments(chosen, equations),
         warnings=(),
         log=log,
         fitted=chosen,
         fitting=made.fitting,
     )
+
+
+def _directions(chosen: MovingLawFit, fits: Sequence[MovingLawFit]) -> DirectionTest | None:
+    """Whether one law holds for both directions beside an offset, by the fall of chi-square."""
+    of = chosen.law.friction
+    same = {
+        each.law.friction.apart: each for each in fits if replace(each.law.friction, apart=of.apart) == of
+    }
+    if len(same) < 2:
+        return None
+    gain = max(same[False].chi_square - same[True].chi_square, 0.0)
+    more = same[True].values.size - same[False].values.size
+    offset = None
+    if of.apart:
+        own = chosen.values[: len(of.numbers)]
+        forward, reverse = (of.of_way(own, way)[COULOMB] for way in of.ways)
+        offset = abs(forward - reverse) / 2.0
+    elif abs(chosen.value(OFFSET)) > CLEAR_OFFSET * chosen.error(OFFSET):
+        offset = abs(chosen.value(OFFSET))
+    return DirectionTest(float(square_above(gain, more)), of.apart, offset)
+
+
+def _moments(fitted: MovingLawFit, equations: Equations) -> Moments:
+    """Friction of single moments, evenly over the log."""
+    some = slice(None, None, -(-len(equations) // _SHOWN))
+    law = fitted.law.friction
+    own, kelvin = fitted.values[: len(law.names)], None
+    if law.reference_kelvin is not None and equations.temperature is not None:
+        kelvin = equations.temperature[some]
+    speed = equations.speed[some]
+    return Moments(speed, law.torque(own, speed, kelvin) + fitted.residuals[some])
 
 
 def _parameters(fitted: MovingLawFit, freedom: float) -> list[MovingParameter]:

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 _MUCH, _LEFT = 0.5, 0.1
 #: Relative error of the inertia beyond which it is not known.
 _UNKNOWN = 0.5
+#: Standard errors from which an offset is one.
+CLEAR_OFFSET = 3.0
 
 
 def moving_warnings(fit: MovingFit, equations: Equations) -> tuple[Warning, ...]:
@@ -67,7 +69,7 @@ def _alike(fit: MovingFit) -> list[Warning]:
 
 
 def _zero(fit: MovingFit) -> Warning | None:
-    if OFFSET not in fit or abs(fit[OFFSET].value) < 3.0 * fit[OFFSET].error:
+    if OFFSET not in fit or abs(fit[OFFSET].value) < CLEAR_OFFSET * fit[OFFSET].error:
         return None
     return Warning(
         "offset or direction",

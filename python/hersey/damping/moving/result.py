@@ -2,70 +2,41 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.damping.estimate import Estimate, estimate
 from hersey.damping.moving.fitting import Fitting, MovingLawFit
+from hersey.damping.moving.friction import MovingFriction, MovingPoints
 from hersey.damping.moving.windows import windows
 from hersey.log.torque_log import ROTATIONS, TorqueLog
-from hersey.result import Means, Record, Result
+from hersey.result import Result
 from hersey.schema.warning import Warning
 from hersey.units import rpm, takes_si
 
 if TYPE_CHECKING:
     import polars as pl
 
-    from hersey.damping.dwells import SteadyPoints
-
-
-@dataclass(frozen=True)
-class MovingParameter(Record):
-    """A number of the law; the names of one direction end in + (forward) or - (reverse)."""
-
-    name: Annotated[str, Means("T_C, T_S, w_S, k_v, s, J, offset or delay")]
-    unit: Annotated[str, Means("SI")]
-    estimate: Annotated[Estimate, Means("with its interval at 95 %")]
-
-
-@dataclass(frozen=True)
-class LawTried(Record):
-    """A law that was fitted."""
-
-    name: str
-    numbers: Annotated[int, Means("how many are fitted")]
-    delta_aicc: Annotated[float, Means("AICc above the least")]
-    determined: Annotated[bool, Means("whether all of its numbers can be determined")]
-
 
 @dataclass(frozen=True, repr=False)
-class MovingFit(Result):
+class MovingFit(MovingFriction, Result):
     """Friction, inertia and offset of a log that moves all the time, as returned by `hersey.fit_moving`."""
 
-    not_stated = ("log", "fitted", "fitting")
+    not_stated: ClassVar[tuple[str, ...]] = (*MovingFriction.not_stated, "log", "fitted", "fitting")
+    also_stated: ClassVar[tuple[str, ...]] = ()
 
-    law: Annotated[str, Means("law of friction that was chosen")]
-    parameters: Annotated[tuple[MovingParameter, ...], Means("friction first, then inertia, offset, delay")]
-    inertia_given: Annotated[float | None, Means("moment of inertia if it was given", "kg m^2")]
-    laws: Annotated[tuple[LawTried, ...], Means("all laws, the simplest first")]
-    bandwidth: Annotated[float, Means("frequency above which the low-pass halves power", "Hz")]
-    used: Annotated[float, Means("share of the log that is used")]
-    near_standstill: Annotated[float, Means("share of the log that is slower than least_speed")]
-    least_speed: Annotated[float, Means("slower rows are not used: presliding, or sign unsure", "rad/s")]
-    speed_range: Annotated[tuple[float, float], Means("least and greatest speed used", "rad/s")]
-    temperature_range: Annotated[tuple[float, float] | None, Means("least and greatest", "K")]
-    scatter: Annotated[float, Means("standard deviation of what the law leaves, within bandwidth", "N m")]
-    explained: Annotated[
-        float, Means("share of the mean square of the torque, without inertia, that the law explains")
-    ]
-    effective_rows: Annotated[float, Means("independent moments")]
     warnings: tuple[Warning, ...]
     log: TorqueLog
     fitted: MovingLawFit
     fitting: Fitting
+
+    @property
+    def numbers(self) -> MovingFriction:
+        """The same without the log and what was made of it."""
+        return MovingFriction(**{each.name: getattr(self, each.name) for each in fields(MovingFriction)})
 
     def __getitem__(self, name: str) -> Estimate:
         """Return a number by its name, e.g. ``fit["T_C"]``; `KeyError` if the law has none."""
@@ -77,11 +48,10 @@ class MovingFit(Result):
 
     def friction(self, speed: FloatArray, kelvin: FloatArray | None = None) -> FloatArray:
         """Return the torque of friction alone (N m) at speeds (rad/s), shape (points,)."""
-        law = self.fitted.law.friction
-        own = self.fitted.values[: len(law.names)]
+        law = self.friction_law
         if law.reference_kelvin is not None and kelvin is None:
             kelvin = np.full(np.shape(speed), law.reference_kelvin)
-        return law.torque(own, speed, kelvin)
+        return law.torque(self.values, speed, kelvin)
 
     @property
     def middle_speed(self) -> float:
@@ -93,15 +63,14 @@ class MovingFit(Result):
 
         It may be known where the numbers of the law are not, because speeds are alike.
         """
-        law, size = self.fitted.law.friction, len(self.fitted.law.friction.names)
-        own, at = self.fitted.values[:size], np.array([speed])
+        law, at = self.friction_law, np.array([speed])
         kelvin = None if law.reference_kelvin is None else np.array([law.reference_kelvin])
-        gradient = law.jacobian(own, at, kelvin)[0]
-        error = float(np.sqrt(gradient @ self.fitted.covariance[:size, :size] @ gradient))
-        return estimate(float(law.torque(own, at, kelvin)[0]), error, self.parameters[0].estimate.freedom)
+        gradient = law.jacobian(self.values, at, kelvin)[0]
+        error = float(np.sqrt(gradient @ self.covariance @ gradient))
+        return estimate(float(law.torque(self.values, at, kelvin)[0]), error, self.freedom)
 
     @takes_si(rotation=ROTATIONS)
-    def points(self, *, rotation: str = "both") -> SteadyPoints:
+    def points(self, *, rotation: str = "both") -> MovingPoints:
         """Return windows of speed and temperature as steady points, for `hersey.fit` and all after it.
 
         Errors that windows share, by inertia, offset and delay, are in ``window_errors``.
@@ -131,14 +100,6 @@ class MovingFit(Result):
             lines.append(f"  J = {self.inertia_given:.4g} kg m^2, given")
         lines.append(self.cost())
         return "\n".join([*lines, *(warning.sentence for warning in self.warnings)])
-
-    def cost(self) -> str:
-        """Return a sentence on what the filter and standstill cost."""
-        return (
-            f"{100 * self.used:.0f} % of the log used, below {self.bandwidth:.2g} Hz; "
-            f"{100 * self.near_standstill:.0f} % is slower than {rpm(self.least_speed):.2g} rpm, where "
-            "friction before sliding and the sign of speed are unsure."
-        )
 
     def to_frame(self) -> pl.DataFrame:
         """Return one row per number: name, unit, value, standard error and the ends of its interval."""
