@@ -117,6 +117,20 @@ def test_the_low_pass_biases_no_linear_term() -> None:
     assert fit["k_v"].value == pytest.approx(VISCOUS, rel=3e-3)
 
 
+def test_the_error_of_a_given_inertia_is_in_what_depends_on_it() -> None:
+    """Each number errs by as much more as it moves with an inertia that is off by its standard error."""
+    exact, off = (hersey.fit_moving(sine(), inertia=factor * INERTIA) for factor in (1.0, 1.02))
+    unsure = hersey.fit_moving(sine(), inertia=f"{INERTIA} kg*m^2 ± {2 * 1.96} %")
+    for one, moved, wider in zip(exact.parameters, off.parameters, unsure.parameters, strict=True):
+        shift = moved.estimate.value - one.estimate.value
+        expected = np.hypot(one.estimate.error, shift)
+        assert wider.estimate.error == pytest.approx(expected, rel=0.05), one.name
+    assert unsure["delay"].error > 2.0 * exact["delay"].error
+    shared = [np.linalg.norm(each.points().window_errors, axis=1) for each in (exact, unsure)]
+    assert (shared[1] > 0.99 * shared[0]).all()
+    assert shared[1].max() > 3.0 * shared[0].max()
+
+
 def test_noise_of_a_tachometer_does_not_lessen_the_inertia() -> None:
     """White noise of 0.3 rad/s: without a correction the inertia would be 0.5 % low."""
     speed, rate = waves(times())

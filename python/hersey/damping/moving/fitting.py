@@ -37,6 +37,7 @@ class MovingLawFit:
     chi_square: float  #: of the independent combinations, in units of the variance given
     columns: FloatArray  #: derivatives of the torque of each equation by the numbers as they are fitted
     own: FloatArray  #: covariance of these, if the noise is the one assumed
+    by_inertia: FloatArray  #: derivatives of the values by an inertia that is given, 1/(kg m^2)
 
     def error(self, name: str) -> float:
         """Return the standard error of a number."""
@@ -184,9 +185,15 @@ class Fitting:
         own = np.diag(robust)
         wider = np.sqrt(np.maximum(inflation * np.diag(inverse) / np.where(own > 0.0, own, 1.0), 1.0))
         covariance = robust * np.outer(scale * wider, scale * wider)
+        by_inertia = np.zeros(values.size)
+        if law.inertia_error:
+            column = self.whitened(law.by_inertia(values, self.equations)[:, None])[:, 0] / self._deviation
+            by_inertia = -scale * (inverse @ (design.T @ column))
+            covariance = covariance + law.inertia_error**2 * np.outer(by_inertia, by_inertia)
         columns = law.jacobian(values, self.equations)
         columns[:, logs] *= values[logs]
-        return MovingLawFit(law, values, covariance, residuals, chi, columns, inflation * inverse)
+        own_covariance = inflation * inverse
+        return MovingLawFit(law, values, covariance, residuals, chi, columns, own_covariance, by_inertia)
 
     def _unbiased(self, law: MovingLaw, values: FloatArray, inverse: FloatArray) -> FloatArray:
         """The step that undoes what noise of the acceleration takes from the inertia."""
