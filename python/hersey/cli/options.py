@@ -12,14 +12,14 @@ from typing import TYPE_CHECKING, Annotated, Any
 from hersey.cli.groups import argument, option
 from hersey.cli.loading import loading
 from hersey.cli.no_load import refuse_no_load_log
-from hersey.cli.no_torque import other_use
+from hersey.cli.no_torque import as_other_use
 from hersey.cli.progress import bar, working
 from hersey.cli.quantities import amount_of, amounts_in, inertia_in, ratio_of
 from hersey.cli.recipe_file import ROLES, read_recipe
 from hersey.cli.several import for_this_log_only
 from hersey.cli.terminal import note
 from hersey.cli.traces import lacking_columns, of_a_force
-from hersey.errors import ChannelError, HerseyError, ParameterError, followed_by
+from hersey.errors import ChannelError, HerseyError, ParameterError
 
 if TYPE_CHECKING:
     from hersey.damping.dwells import SteadyPoints
@@ -247,9 +247,7 @@ class Reading:
             with bar("reading") as progress, memory_limit(self.max_memory):
                 log: TorqueLog | MeansTable = recipe.log(machine, progress=progress)
         except ChannelError as error:
-            if error.absent:
-                error.remedy = followed_by(error.remedy, other_use(paths, self))
-            raise
+            raise as_other_use(error, paths, self) from None
         for file in log.files:
             if file.missing_rows:
                 note(*(str(each.within(file.name)) for each in file.warnings))
