@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Annotated, Any
 from hersey.cli.groups import argument, option
 from hersey.cli.loading import loading
 from hersey.cli.no_load import refuse_no_load_log
-from hersey.cli.no_torque import as_other_use
 from hersey.cli.progress import bar, working
 from hersey.cli.quantities import amount_of, amounts_in, inertia_in, ratio_of
 from hersey.cli.recipe_file import ROLES, read_recipe
@@ -247,6 +246,8 @@ class Reading:
             with bar("reading") as progress, memory_limit(self.max_memory):
                 log: TorqueLog | MeansTable = recipe.log(machine, progress=progress)
         except ChannelError as error:
+            from hersey.cli.no_torque import as_other_use
+
             raise as_other_use(error, paths, self) from None
         for file in log.files:
             if file.missing_rows:
