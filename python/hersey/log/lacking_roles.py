@@ -6,7 +6,13 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from hersey.errors import ISOTHERMAL, ChannelError, HerseyError, Setting, UnitError, way_in
-from hersey.log.channels import ChannelChoice, columns_listed, find_column, taken_columns
+from hersey.log.channels import (
+    ChannelChoice,
+    columns_listed,
+    find_column,
+    of_a_coast_down,
+    taken_columns,
+)
 from hersey.log.elsewhere import elsewhere, stated_in_names
 from hersey.log.role_units import example_unit, known_unit
 from hersey.log.roles import EVERY, only_left
@@ -19,6 +25,8 @@ from hersey.units import Conversion
 _COLUMN = "COLUMN"
 #: Columns of which it is asked whether they say nothing, at the most.
 _LOOKED_AT = 40
+#: Columns of a log that holds a time, a speed and perhaps a temperature.
+_NO_TORQUE = 2
 #: A setting and its value, as an example.
 Example = tuple[Setting, str]
 
@@ -59,17 +67,19 @@ def asking_all(
     )
     if isinstance(error, UnitError) and (not is_open.roles or setting not in dict(is_open.examples)):
         return naming_all(error, roles, columns, choices, file, dead=dead, of_a_frame=of_a_frame)
-    if len(is_open.roles) + len(is_open.without_unit) < 2 or not {"torque", "speed"} & found:
+    bare = "torque" not in found and len(columns) <= _NO_TORQUE  # which may be of a coast-down
+    if len(is_open.roles) + len(is_open.without_unit) < 2 or not {"torque", "speed"} & found or bare:
         return error
     said = list(is_open.roles)
     if is_open.without_unit:
         names = ", ".join(f"'{column.path}'" for column in is_open.without_unit)
         said.append(f"no unit for {names}")
+    coasts = "" if "torque" in found else of_a_coast_down(columns, file)
     return ChannelError(
         f"{file}: {'; '.join(said)}. Columns: {columns_listed(columns)}",
         columns=error.columns if isinstance(error, ChannelError | UnitError) else (),
         examples=tuple(is_open.examples),
-        remedy=f"use {stated(is_open.examples)}{_own(is_open.examples)}{_instead(is_open.examples)}",
+        remedy=f"use {stated(is_open.examples)}{_own(is_open.examples)}{_instead(is_open.examples)}{coasts}",
         setting=setting,
     )
 

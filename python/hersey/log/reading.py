@@ -173,9 +173,10 @@ def _speeds(file: Any, wanted: Wanted, frame: str, progress: Progress | None) ->
     try:
         return _runs(file, wanted, frame, progress)
     except (ChannelError, UnitError) as error:
-        if not is_of_temperature(error) or wanted.choices["temperature"] != ChannelChoice():
+        if wanted.choices["temperature"] != ChannelChoice():
             raise
-        why = () if isinstance(error, ChannelError) and error.absent else (temperature_not_read(error),)
+        absent = isinstance(error, ChannelError) and error.absent
+        why = (temperature_not_read(error),) if is_of_temperature(error) and not absent else ()
     found = _runs(file, replace(wanted, isothermal=True), frame, progress)
     return [(run, replace(log, warnings=(*log.warnings, *why))) for run, log in found]
 
