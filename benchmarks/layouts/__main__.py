@@ -30,8 +30,8 @@ typed until the numbers were right.
 
 ## Developed on these
 
-What proposes a layout was developed on these {count} exports. Before hersey knew `[layout]`, 18 were right
-from `hersey fit`, 5 were wrong and 23 were refused.
+What proposes a layout was developed on these {count} exports. Of the first 46, before hersey knew `[layout]`,
+18 were right from `hersey fit`, 5 were wrong and 23 were refused.
 
 {known}
 

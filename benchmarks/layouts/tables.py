@@ -208,6 +208,27 @@ def twincat(path: Path) -> Made:
     return Made(truth(steps))
 
 
+def twincat_semicolons(path: Path) -> Made:
+    """TwinCAT Scope: semicolons and decimal commas, more keys, units only in words; after a real file."""
+    steps = staircase(41)
+    lines = ["Name;Bench", "File;C:\\b.svdx", "Starttime of export;1335;Freitag;10:04:42.138", ""]
+    for key, values in (
+        ("Name", ("Main.Torque", "Main.Speed", "Main.Temperature")),
+        ("SymbolComment", ("", "", "Lager vorn 1")),
+        ("Data-Type", ("INT16", "REAL64", "REAL64")),
+        ("SampleTime[ms]", ("500",) * 3),
+        ("Port", ("851",) * 3),
+        ("ScaleFactor", ("1",) * 3),
+    ):
+        lines += [";".join(f"{key};{value}" for value in values)]
+    lines += [""]
+    for t, m, n, c in (row for s in steps for row in s.cells(*_ALL)):
+        tick = f"{1000 * float(t):.0f}"
+        lines += [f"{tick};{m};{tick};{n};{tick};{c}".replace(".", ",")]
+    _write(path, lines)
+    return Made(truth(steps), {"--torque-unit": "mN*m", "--speed-unit": "rpm", "--temperature-unit": "degC"})
+
+
 def yokogawa(path: Path) -> Made:
     """Yokogawa: keys and a value for each trace, no clock, an empty first cell."""
     steps = staircase(39)

@@ -84,3 +84,19 @@ def side_by_side(path: Path) -> Made:
     ]
     path.write_bytes(xlsx({"Sheet1": [titles, head, *rows]}))
     return Made(truth(steps))
+
+
+def timed_speeds(path: Path) -> Made:
+    """A clock and a column called like its speed for each run, of unequal length, in two sheets."""
+    steps = staircase(47, speeds=(10, 20, 40, 80), rows=(30, 45, 26, 38), restart=True)
+    tables = {}
+    for title, parts in (("up", steps[:2]), ("down", steps[2:])):
+        head = [cell for s in parts for cell in ("t [s]", f"{s.speed:g} 1/min")]
+        runs = [_numbers(s, "time", "torque") for s in parts]
+        rows = [
+            [cell for run in runs for cell in (run[i] if i < len(run) else [None] * 2)]
+            for i in range(max(map(len, runs)))
+        ]
+        tables[title] = [["Screw 16x5, torque in Nmm"], [], head, *rows]
+    path.write_bytes(xlsx(tables))
+    return Made(truth(steps, set_point=True, temperature=False), {"--torque-unit": "N*mm"})
