@@ -209,7 +209,7 @@ def twincat(path: Path) -> Made:
 
 
 def twincat_semicolons(path: Path) -> Made:
-    """TwinCAT Scope: semicolons and decimal commas, more keys, units only in words; after a real file."""
+    """TwinCAT Scope: semicolons and decimal commas, more keys, units only in words."""
     steps = staircase(41)
     lines = ["Name;Bench", "File;C:\\b.svdx", "Starttime of export;1335;Freitag;10:04:42.138", ""]
     for key, values in (
