@@ -275,7 +275,8 @@ def _recorded(
         warnings = (*warnings, start)
     record = replace(file, name=name, rows=run["time"].size, warnings=warnings)
     torque = run["torque"] if "torque" in run else np.full(run["time"].size, np.nan)
-    return Run(name, run["time"], torque, run["speed"], run.get("temperature"), run.get("load")), record
+    others = {role: run.get(role) for role in ("temperature", "load", "position")}
+    return Run(name, run["time"], torque, run["speed"], **others), record
 
 
 def _slow(

@@ -18,7 +18,7 @@ from hersey.damping.moving.model import INERTIA, Equations, MovingLaw
 from hersey.damping.moving.moving_warnings import moving_warnings
 from hersey.damping.moving.result import LawTried, MovingFit, MovingParameter
 from hersey.damping.moving.speed_noise import SpeedNoise, low_pass_for, speed_noise
-from hersey.damping.moving.stretches import Stretch, stretches_of
+from hersey.damping.moving.stretches import Stretch, counting_step, stretches_of
 from hersey.errors import MOVING, InsufficientDataError, ParameterError, Setting
 from hersey.log.torque_log import TorqueLog
 from hersey.units import rpm, takes_si
@@ -81,7 +81,7 @@ def fit_moving(log: TorqueLog, *, inertia: float | None = None) -> MovingFit:
     name = log.files[0].name
     stretches = stretches_of(log)
     _refuse_constant(name, stretches)
-    noise = speed_noise(stretches)
+    noise = speed_noise(stretches, counting_step(log))
     low_pass = low_pass_for(stretches, noise)
     if low_pass is None:
         raise InsufficientDataError(f"{name}: too few rows without a gap to fit a moving log")
@@ -131,7 +131,7 @@ def _equations(stretches: Sequence[Stretch], noise: SpeedNoise, low_pass: LowPas
     filtered = tuple(each for s in stretches if (each := Filtered.of(s, low_pass)) is not None)
     fastest = max(float(np.max(np.abs(each.speed))) for each in filtered)
     unsure = _CLEAR * float(np.sqrt(noise.behind(low_pass.smoother)))
-    least = max(unsure, _SLOW * fastest)
+    least = max(unsure, _SLOW * fastest, noise.least_counted(low_pass))
     return Equations(filtered, tuple(each.turning(least) for each in filtered)), least
 
 

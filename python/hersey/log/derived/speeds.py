@@ -28,8 +28,8 @@ def speed_column(column: Column, unit: Conversion) -> tuple[Column, Conversion]:
 
 def speed_of_position(
     column: Column, unit: Conversion, time: FloatArray, written: FloatArray, window: float
-) -> tuple[FloatArray, Warning]:
-    """Return the speed, SI, from a position as written, and what that costs."""
+) -> tuple[FloatArray | None, FloatArray, Warning]:
+    """Return the angle that goes on, rad, if it is one; its speed, SI; and what that costs."""
     position, turns = in_si(written, unit), 0
     kind = role_conversion("position", unit.unit)[0]
     if kind == "angle":
@@ -43,9 +43,8 @@ def speed_of_position(
         words += "; it counts in steps of {step:.3g mm/s}"
     if turns:
         words += "; {turns} times the angle started anew with a turn"
-    return speed, Warning(
-        "speed from position", words, channel=column.path, window=over, step=step, turns=turns
-    )
+    said = Warning("speed from position", words, channel=column.path, window=over, step=step, turns=turns)
+    return position if kind == "angle" else None, speed, said
 
 
 def with_direction(recording: Recording, name: str, speed: FloatArray) -> tuple[FloatArray, Warning]:
