@@ -8,7 +8,6 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from hersey.arrays import FloatArray
-from hersey.log.derived.position import WINDOW
 from hersey.log.derived.set_points import SetPoints
 from hersey.log.roles import role_conversion
 from hersey.log.text.column import Column
@@ -61,7 +60,7 @@ class Given:
 
 @dataclass(frozen=True)
 class Derived:
-    """What is said of one file: channels by role, and the time over which a slope is taken, s."""
+    """What is said of one file: channels by role, and the time over which a slope is taken, s, if it is stated."""
 
     channels: Mapping[str, Given] = field(default_factory=dict)
-    window: float = WINDOW
+    window: float | None = None

@@ -13,7 +13,6 @@ from hersey.errors import ParameterError, Setting
 from hersey.log.channels import ChannelChoice, Stated
 from hersey.log.derived.file_names import NamePattern
 from hersey.log.derived.given import Derived, Given
-from hersey.log.derived.position import WINDOW
 from hersey.log.derived.schedule_file import read_schedule
 from hersey.log.derived.set_points import SetPoints
 from hersey.units import parse
@@ -25,7 +24,7 @@ class Sources:
 
     pattern: NamePattern | None = None
     schedule: SetPoints | None = None
-    window: float = WINDOW
+    window: float | None = None
 
     @classmethod
     def of(
@@ -52,7 +51,7 @@ class Sources:
         known = steps if isinstance(steps, SetPoints) or steps is None else SetPoints.of(steps)
         if both := sorted(set(known.values if known else ()) & set(pattern.units if pattern else ())):
             raise ParameterError(f"the schedule and the file names both give the {both[0]}: omit one of them")
-        return cls(pattern, known, WINDOW if position_window is None else position_window)
+        return cls(pattern, known, position_window)
 
     @property
     def roles(self) -> frozenset[str]:

@@ -9,7 +9,7 @@ from hersey.errors import ChannelError, Setting, UnreadableLogError
 from hersey.log.believed import in_si
 from hersey.log.channels import called
 from hersey.log.derived.direction import signs_of_numbers, signs_of_words
-from hersey.log.derived.position import slope, smallest_step, unwrapped
+from hersey.log.derived.position import slope, smallest_step, unwrapped, window_for
 from hersey.log.recording import Recording
 from hersey.log.roles import role_conversion
 from hersey.log.text.column import Column
@@ -27,14 +27,14 @@ def speed_column(column: Column, unit: Conversion) -> tuple[Column, Conversion]:
 
 
 def speed_of_position(
-    column: Column, unit: Conversion, time: FloatArray, written: FloatArray, window: float
+    column: Column, unit: Conversion, time: FloatArray, written: FloatArray, window: float | None
 ) -> tuple[FloatArray | None, FloatArray, Warning]:
     """Return the angle that goes on, rad, if it is one; its speed, SI; and what that costs."""
     position, turns = in_si(written, unit), 0
     kind = role_conversion("position", unit.unit)[0]
     if kind == "angle":
         position, turns = unwrapped(position)
-    speed, over = slope(time, position, window)
+    speed, over = slope(time, position, window_for(time, position) if window is None else window)
     step = smallest_step(position) / over if over > 0 else 0.0
     words = "speed is the slope of '{channel}' over {window:.3g} s, so faster changes are smoothed"
     if step and kind == "angle":
