@@ -88,21 +88,25 @@ def smallest_step(position: FloatArray) -> float:
     """Return the step in which a position counts, 0 if it has none: most rows change by whole steps."""
     changes = np.abs(np.diff(position[np.isfinite(position)][:_MOST_ROWS]))
     largest = float(np.max(changes, initial=0.0))
-    moved = changes[changes > 1e-6 * largest]
     gaps = np.diff(np.unique(np.append(0.0, changes)))
     gaps = gaps[gaps > 1e-6 * largest]
     if changes.size < _FEWEST or not gaps.size:
         return 0.0
-    if step := _counted(moved[moved < _SMALL * moved.min()], moved.min()):
-        return step  # whatever the decimals in which it was written
-    return _counted(changes, float(np.mean(gaps[gaps < 1.5 * gaps.min()])))
+    moved = changes > 1e-6 * largest
+    alone = changes[1:-1][moved[1:-1] & ~moved[:-2] & ~moved[2:]]
+    if alone.size >= _FEWEST:  # single counts show the step, whatever the decimals in which they were written
+        few = changes[moved & (changes < _SMALL * alone.min())]
+        if step := _counted(few, _mean_of_least(alone)):
+            return step
+    return _counted(changes, _mean_of_least(gaps))
 
 
-def _counted(changes: FloatArray, least: float) -> float:
-    """The step of changes, the least of which may be one; 0 if they count in none."""
-    if changes.size < _FEWEST:
-        return 0.0
-    step = float(np.mean(changes[changes < 1.5 * least])) if np.any(changes == least) else least
+def _mean_of_least(values: FloatArray) -> float:
+    return float(np.mean(values[values < 1.5 * values.min()]))
+
+
+def _counted(changes: FloatArray, step: float) -> float:
+    """The step if changes are multiples of it, else 0."""
     ratio = changes / step
     counts = np.mean(np.abs(ratio - np.round(ratio)) < _NEAR) > _SHARE
     return step if counts and np.median(ratio) < _MOST_STEPS else 0.0
