@@ -29,7 +29,7 @@ _POINTS = 120
 
 
 def moving_chart(fit: MovingFit) -> Chart:
-    """Return friction (without inertia and offset) against speed in both directions, with the law."""
+    """Return friction (without inertia, gravity, offset) against speed in both directions, with the law."""
     slow, fast = fit.speed_range
     one_way = np.geomspace(slow, fast, _POINTS)
     used = fit.fitting.equations.speed

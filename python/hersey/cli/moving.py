@@ -93,6 +93,7 @@ def _as_it_moves(
 def fitted_lines(fit: MovingFit) -> list[str]:
     """Return law and numbers with their intervals, and what was not used."""
     from hersey.cli.figures import labelled, three
+    from hersey.damping.moving.gravity import AMPLITUDE
     from hersey.units import rpm
 
     rows = [(each.name, _shown(each.estimate, each.unit)) for each in fit.parameters]
@@ -100,13 +101,20 @@ def fitted_lines(fit: MovingFit) -> list[str]:
         rows.append(("J", f"{three(fit.inertia_given)} kg·m² (given)"))
     speed = fit.middle_speed
     rows.append(("friction", f"{_shown(fit.friction_at(speed), 'N m')} at {three(rpm(speed))} rpm"))
-    head = "torque = J dw/dt + offset + friction(w), w in rad/s (value, 95 % interval)"
-    return [fit.law, "", head, *labelled(rows), fit.cost()]
+    gravity, angle = "", []
+    if AMPLITUDE in fit:
+        gravity, angle = " + G sin(q - q_0)", [fit.gravity_in_words]
+    head = f"torque = J dw/dt + offset{gravity} + friction(w), w in rad/s (value, 95 % interval)"
+    return [fit.named, "", head, *labelled(rows), *angle, fit.cost()]
 
 
 def _shown(known: Estimate, unit: str) -> str:
+    import numpy as np
+
     from hersey.damping.estimate import rounded
 
+    if unit == "rad":
+        return f"{rounded(*np.degrees([known.value, known.low, known.high]).tolist())}°"
     large, small = _SMALL[unit]
     is_small = max(abs(known.value), abs(known.low), abs(known.high)) < _BELOW
     factor = 1e3 if is_small else 1.0

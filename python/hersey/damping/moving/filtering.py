@@ -135,6 +135,13 @@ class Filtered:
         return None if self.stretch.temperature is None else self._inner(self.stretch.temperature)
 
     @cached_property
+    def gravity(self) -> FloatArray:
+        """Cosine and sine of the angle of each row, shape (rows, 2)."""
+        assert self.stretch.angle is not None
+        angle = self._inner(self.stretch.angle)
+        return np.column_stack([np.cos(angle), np.sin(angle)])
+
+    @cached_property
     def time(self) -> FloatArray:
         """Time of the middle of each equation, s."""
         return self._inner(self.stretch.time)[self.low_pass.half : -self.low_pass.half][:: self.low_pass.step]

@@ -35,6 +35,7 @@ class MovingLawFit:
     chi_square: float  #: of the independent combinations, in units of the variance given
     columns: FloatArray  #: derivatives of the torque of each equation by the numbers as they are fitted
     own: FloatArray  #: covariance of these, if the noise is the one assumed
+    attenuated: float  #: chi-square of what noise of the acceleration took from the inertia
 
     def error(self, name: str) -> float:
         """Return the standard error of a number."""
@@ -165,8 +166,11 @@ class Fitting:
         size[size == 0.0] = 1.0
         inverse = np.linalg.pinv(normal / np.outer(size, size), rcond=1e-14, hermitian=True)
         inverse /= np.outer(size, size)
+        attenuated = 0.0
         if law.inertia is None:
-            values = self._moved(law, values, self._unbiased(law, values, inverse))
+            step, index = self._unbiased(law, values, inverse), law.names.index(INERTIA)
+            values = self._moved(law, values, step)
+            attenuated = float(step[index] ** 2 / inverse[index, index])
         leverage = np.einsum("ij,jk,ik->i", design, inverse, design)
         pulled = design * (white / (1.0 - np.minimum(leverage, 0.99)))[:, None]
         held = np.zeros((1, values.size))
@@ -182,7 +186,7 @@ class Fitting:
         covariance = robust * np.outer(scale * wider, scale * wider)
         columns = law.jacobian(values, self.equations)
         columns[:, logs] *= values[logs]
-        return MovingLawFit(law, values, covariance, residuals, chi, columns, inflation * inverse)
+        return MovingLawFit(law, values, covariance, residuals, chi, columns, inflation * inverse, attenuated)
 
     def _unbiased(self, law: MovingLaw, values: FloatArray, inverse: FloatArray) -> FloatArray:
         """The step that undoes what noise of the acceleration takes from the inertia."""

@@ -10,6 +10,8 @@ import numpy as np
 from hersey.arrays import FloatArray
 from hersey.damping.estimate import Estimate, estimate
 from hersey.damping.moving.fitting import Fitting, MovingLawFit
+from hersey.damping.moving.gravity import AMPLITUDE
+from hersey.damping.moving.misfit import Misfit
 from hersey.damping.moving.windows import windows
 from hersey.log.torque_log import ROTATIONS, TorqueLog
 from hersey.result import Means, Record, Result
@@ -26,7 +28,7 @@ if TYPE_CHECKING:
 class MovingParameter(Record):
     """A number of the law; the names of one direction end in + (forward) or - (reverse)."""
 
-    name: Annotated[str, Means("T_C, T_S, w_S, k_v, s, J, offset or delay")]
+    name: Annotated[str, Means("T_C, T_S, w_S, k_v, s, J, offset, G, q_0 or delay")]
     unit: Annotated[str, Means("SI")]
     estimate: Annotated[Estimate, Means("with its interval at 95 %")]
 
@@ -43,12 +45,14 @@ class LawTried(Record):
 
 @dataclass(frozen=True, repr=False)
 class MovingFit(Result):
-    """Friction, inertia and offset of a log that moves all the time, as returned by `hersey.fit_moving`."""
+    """Friction, inertia, gravity and offset of a log that moves all the time: see `hersey.fit_moving`."""
 
     not_stated = ("log", "fitted", "fitting")
 
     law: Annotated[str, Means("law of friction that was chosen")]
-    parameters: Annotated[tuple[MovingParameter, ...], Means("friction first, then inertia, offset, delay")]
+    parameters: Annotated[
+        tuple[MovingParameter, ...], Means("friction first, then inertia, offset, gravity, delay")
+    ]
     inertia_given: Annotated[float | None, Means("moment of inertia if it was given", "kg m^2")]
     laws: Annotated[tuple[LawTried, ...], Means("all laws, the simplest first")]
     bandwidth: Annotated[float, Means("frequency above which the low-pass halves power", "Hz")]
@@ -61,6 +65,7 @@ class MovingFit(Result):
     explained: Annotated[
         float, Means("share of the mean square of the torque, without inertia, that the law explains")
     ]
+    misfit: Annotated[Misfit | None, Means("how friction departs from the law; null if it does not")]
     effective_rows: Annotated[float, Means("independent moments")]
     warnings: tuple[Warning, ...]
     log: TorqueLog
@@ -82,6 +87,21 @@ class MovingFit(Result):
         if law.reference_kelvin is not None and kelvin is None:
             kelvin = np.full(np.shape(speed), law.reference_kelvin)
         return law.torque(own, speed, kelvin)
+
+    @property
+    def named(self) -> str:
+        """The law in words, or that none fits."""
+        if self.misfit is None:
+            return self.law
+        share, at = 100.0 * abs(self.misfit.share), rpm(abs(self.misfit.speed))
+        return f"No law of friction fits. The nearest is off by {share:.2g} % near {at:.2g} rpm: {self.law}"
+
+    @property
+    def gravity_in_words(self) -> str:
+        """What G and q_0 are."""
+        recorded = self.log.runs[0].position is not None
+        angle = "the position in the log" if recorded else "counted from the start of the log"
+        return f"Gravity takes G sin(q - q_0): the load hangs at rest at q_0; the angle q is {angle}."
 
     @property
     def middle_speed(self) -> float:
@@ -121,7 +141,7 @@ class MovingFit(Result):
     def headline(self) -> str:
         """Return law and range of speed."""
         slow, fast = (rpm(each) for each in self.speed_range)
-        return f"{self.law}, {slow:.3g} to {fast:.3g} rpm"
+        return f"{self.named}, {slow:.3g} to {fast:.3g} rpm"
 
     def summary(self) -> str:
         """Return law, numbers and what was not used, as text."""
@@ -129,6 +149,8 @@ class MovingFit(Result):
         lines += [f"  {each.name} = {each.estimate} {each.unit}" for each in self.parameters]
         if self.inertia_given is not None:
             lines.append(f"  J = {self.inertia_given:.4g} kg m^2, given")
+        if AMPLITUDE in self:
+            lines.append(self.gravity_in_words)
         lines.append(self.cost())
         return "\n".join([*lines, *(warning.sentence for warning in self.warnings)])
 

@@ -16,10 +16,10 @@ from hersey.damping.moving.filtering import Filtered, LowPass
 from hersey.damping.moving.stretches import FIRST, Stretch
 
 #: Widths that are tried, in intervals, and the greatest as a share of the time in which speed changes.
-WIDTHS = (1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 24.0, 32.0, 48.0, 64.0, 96.0)
+WIDTHS = (1.5, *(share * 2.0**n for n in range(1, 10) for share in (1.0, 1.5)))
 MOST_OF_MOTION = 0.15
-#: Share of the variance of the acceleration that its noise may be.
-TOLERATED = 1e-4
+#: Share of the variance of the acceleration that its noise may be, and below which that is a motion.
+TOLERATED, _BELIEVED = 1e-4, 0.1
 
 
 #: How white noise makes that of a speed: it is the same; that of a position, differenced by a drive, or by
@@ -90,10 +90,10 @@ def low_pass_for(stretches: Sequence[Stretch], noise: SpeedNoise) -> LowPass | N
         rate = np.concatenate([each.rate for each in parts])
         speed = np.concatenate([each.speed for each in parts])
         quick = float(np.std(speed) / max(float(np.std(rate)), 1e-300))
-        if best is not None and low_pass.width > MOST_OF_MOTION * quick:
-            break
         power = float(np.mean(np.concatenate([each.acceleration for each in parts]) ** 2))
         share = noise.behind(low_pass.slope) / max(power, 1e-300)
+        if best is not None and low_pass.width > MOST_OF_MOTION * quick and share < _BELIEVED:
+            break
         slow = noise.least_counted(low_pass) / max(_SLOWEST * float(np.std(speed)), 1e-300)
         lacking = max(share / TOLERATED, slow)
         if best is None or lacking < best[0]:

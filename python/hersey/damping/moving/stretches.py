@@ -35,7 +35,7 @@ class Stretch:
     speed: FloatArray
     temperature: FloatArray | None
     rows: int  #: of the log, before neighbours were averaged
-    angle: FloatArray | None = None  #: rad, if it was recorded
+    angle: FloatArray | None = None  #: rad, if it is known
 
     @property
     def time(self) -> FloatArray:

@@ -60,7 +60,7 @@ class Given:
 
 @dataclass(frozen=True)
 class Derived:
-    """What is said of one file: channels by role, and the time over which a slope is taken, s, if it is stated."""
+    """What is said of one file: channels by role, and the time over which a slope is taken, s."""
 
     channels: Mapping[str, Given] = field(default_factory=dict)
     window: float | None = None

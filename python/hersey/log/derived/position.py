@@ -6,7 +6,7 @@ import numpy as np
 
 from hersey.arrays import FloatArray
 
-#: Longest time over which the slope is taken, s, unless another is asked for: ramps are slower, noise is faster.
+#: Longest time over which the slope is taken, s, unless another is asked for: noise is faster.
 WINDOW = 0.2
 #: Share of the speed that a window may smooth away, by the typical row, and how often the noise of half of it
 #: may be in what it smooths.
@@ -17,7 +17,7 @@ _TURN = 2.0 * np.pi
 #: Fewest changes that show a step, how near to a multiple of it they are, as many of them as that, and steps
 #: in a change at the most: any number is near a multiple of a small one.
 _FEWEST, _NEAR, _SHARE, _MOST_STEPS = 10, 0.05, 0.98, 1e4
-#: Median of the size of normal noise, in standard deviations, and rows that a window is chosen by, at the most.
+#: Median of the size of normal noise, in standard deviations; most rows that a window is chosen by.
 _OF_NORMAL, _MOST_ROWS = 0.6745, 100_000
 #: Changes of fewer than so many steps are looked at first: in larger ones roundings add up.
 _SMALL = 5.5

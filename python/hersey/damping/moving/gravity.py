@@ -1,0 +1,45 @@
+"""Gravity: a load that varies with the angle of the drive, where the angle is known.
+
+torque = G sin(q - q_0), fitted as two linear terms, cos q and sin q; it hangs at rest at q_0.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from hersey.arrays import FloatArray
+from hersey.damping.moving.stretches import Stretch
+
+#: The two terms, N m; the amplitude (N m) and the angle (rad) that they make.
+COSINE, SINE = "cos q", "sin q"
+AMPLITUDE, HANGING = "G", "q_0"
+#: Least arc, rad, over which gravity can show.
+LEAST_ARC = 0.05
+
+
+def with_angles(stretches: Sequence[Stretch]) -> list[Stretch]:
+    """Return stretches with their angles: recorded, or what the speed adds up to if there is no gap."""
+    if len(stretches) > 1 or stretches[0].angle is not None:
+        return list(stretches)
+    (only,) = stretches
+    steps = 0.5 * (only.speed[1:] + only.speed[:-1]) * only.interval
+    return [replace(only, angle=np.concatenate([[0.0], np.cumsum(steps)]))]
+
+
+def arc_of(stretches: Sequence[Stretch]) -> float:
+    """Return the arc that the angles span, rad; 0 where one is not known."""
+    angles = [each.angle for each in stretches if each.angle is not None]
+    if len(angles) < len(stretches):
+        return 0.0
+    return max(float(each.max()) for each in angles) - min(float(each.min()) for each in angles)
+
+
+def gravity_of(terms: FloatArray, covariance: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return amplitude and angle at rest, from both terms, and their covariance."""
+    cosine, sine = terms
+    amplitude = float(np.hypot(cosine, sine))
+    turn = np.array([[cosine, sine], [-sine / amplitude, cosine / amplitude]]) / amplitude
+    return np.array([amplitude, np.arctan2(-cosine, sine)]), turn @ covariance @ turn.T
