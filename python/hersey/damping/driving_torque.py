@@ -19,9 +19,10 @@ from hersey.units import rpm
 _SPEEDS, _RATIO = 4, 1.5
 #: Two speeds are one if they differ by less than this share.
 _SAME = 0.02
-#: Torque would be zero below so many times the fastest speed, and does not level off: its slope at the end is
-#: that share of its mean slope at least.
-_ZERO, _LEVELS = 1.5, 0.8
+#: Torque falls at each speed beyond its greatest, to less than that share of it; it would be zero below so
+#: many times the fastest speed; and its slope at the end is that share of its mean slope, so it does not level
+#: off.
+_FALLEN, _ZERO, _LEVELS = 0.35, 1.35, 0.9
 #: Least ratio of speeds over which a power may be called constant, and the share by which it may vary.
 _OF_POWER, _VARIES = 2.0, 0.03
 
@@ -36,14 +37,13 @@ class DrivingTorque(Record):
     def __str__(self) -> str:
         """Return it in words."""
         if self.power is not None:
-            unit, factor = ("W", 1.0) if self.power >= 1.0 else ("mW", 1e3)
             return (
-                f"Torque falls as 1/speed: the power is {factor * self.power:.3g} {unit} at all speeds. That "
+                f"Torque falls as 1/speed: the power is {self.power:.4g} W at all speeds. That "
                 "is the torque of a motor or a brake at constant power, not friction"
             )
         assert self.zero_speed is not None
         return (
-            f"Torque falls with speed and would be zero at {rpm(self.zero_speed):.3g} rpm. That is the "
+            f"Torque falls with speed and would be zero near {rpm(self.zero_speed):.4g} rpm. That is the "
             "torque of a motor or a brake, not friction"
         )
 
@@ -67,7 +67,7 @@ def driving_torque(speed: FloatArray, torque: FloatArray, error: FloatArray) -> 
     if w[-1] > _OF_POWER * w[0] and np.ptp(power) < _VARIES * power.mean():
         return DrivingTorque(power=float(power.mean()))
     top = int(np.argmax(mean))
-    if w.size - top < 3:
+    if w.size - top < 3 or mean[-1] > _FALLEN * mean[top] or np.any(np.diff(mean[top:]) > 0.0):
         return None
     slope, last = _slope(w[-3:], mean[-3:], unsure[-3:])
     overall = (mean[top] - mean[-1]) / (w[-1] - w[top])

@@ -28,6 +28,8 @@ def leading_friction(points: SteadyPoints, surface: DampingSurface, seen: Regime
     """
     if seen.named not in (None, COULOMB, FALLING) or points.rest is not None or points.varying_load:
         return None
+    if seen.driving is not None:
+        return None
     loaded = any(each.why.kind == "opposite signs" for each in points.rejected)
     if points.of_every_sample or not points.domain.is_torque or loaded:
         return None

@@ -382,7 +382,9 @@ def _left_open(known: Findings, scatter: float) -> Iterator[Warning]:
     yield from (each.titled(each.heading, section="data") for each in doubtful_order(points)[:1])
     if seen.named is None and known.friction is None:
         remedy = ""
-        if points.rest is None and c.value > -1.0 and points.domain.is_torque:
+        if seen.driving is not None:
+            remedy = "record the drive without it"
+        elif points.rest is None and c.value > -1.0 and points.domain.is_torque:
             remedy = (
                 "a no-load torque brings the exponent closer to -1. Record the drive without the contact, "
                 "and subtract its torque with {how}"
