@@ -152,15 +152,21 @@ class TimeOrderError(UnreadableLogError):
 class ChannelError(HerseyError, LookupError):
     """A channel that cannot be found, or could be several.
 
-    ``columns`` are the indices of the possible columns, if known; ``absent`` is whether no column comes near.
+    ``columns`` are the indices of the possible columns, if known; ``absent`` is whether no column comes near;
+    ``examples`` are settings and values that state all that is open, where several roles are.
     """
 
     def __init__(
-        self, *message: object, columns: tuple[int, ...] = (), absent: bool = False, **remedy: Any
+        self,
+        *message: object,
+        columns: tuple[int, ...] = (),
+        absent: bool = False,
+        examples: tuple[tuple[Setting, str], ...] = (),
+        **remedy: Any,
     ) -> None:
-        """Take the message, the columns, whether there is none, and ``remedy`` and ``setting``."""
+        """Take the message, the columns, whether there is none, examples, ``remedy`` and ``setting``."""
         super().__init__(*message, **remedy)
-        self.columns, self.absent = columns, absent
+        self.columns, self.absent, self.examples = columns, absent, examples
 
 
 class UnitError(HerseyError, ValueError):

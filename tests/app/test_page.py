@@ -18,6 +18,8 @@ from tests.app.conftest import Started, end, start
 from tests.app.test_mistakes import MISTAKES, log
 from tests.browser.accessibility import WIDTHS, violations_by_width
 from tests.browser.hostile import MARKUP
+from tests.browser.test_noun import JOINT, TEXTS, foreign
+from tests.damping.moving_logs import sine
 
 #: As long as anything may take on a machine that is busy, ms.
 LONG = 180_000
@@ -129,6 +131,22 @@ def test_from_drop_to_report(watched: Watched, started: Started) -> None:
     own = page.url
     assert all(url.startswith((own, "blob:" + own)) for url in watched.requests)
     assert not any(started.address.split("#")[1] in url for url in watched.requests)
+    assert watched.errors == []
+
+
+def test_a_dropped_joint_is_spoken_of_without_words_of_belts(watched: Watched) -> None:
+    """All that the page shows of a joint and its log, as TOML and as a form, and what the pointer shows."""
+    page = watched.page
+    watched.drop("joint.toml", JOINT.encode())
+    watched.drop("joint.csv", sine(hot=True).to_frame().drop("run").head(1500).write_csv().encode())
+    page.wait_for_selector("#why:has-text('Ready')")
+    assert 'part = "joint"' in page.locator("#toml").input_value()
+    texts = set(page.evaluate(TEXTS))
+    page.click('[data-control="mode:form"]')
+    page.wait_for_selector('[data-control="field:drivetrain.mass"]')
+    texts |= set(page.evaluate(TEXTS))
+    assert {"stiffness", "length", "300 to 307.5"} <= texts
+    assert foreign(texts) == []
     assert watched.errors == []
 
 

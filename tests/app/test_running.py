@@ -13,6 +13,7 @@ from hersey.app import running
 from hersey.damping.dwells import SteadyPoints
 from tests.app.test_mistakes import log
 from tests.cli.command import run as command
+from tests.damping.moving_logs import sine
 
 
 def test_an_earlier_log_is_read_as_the_other_and_handed_on(tmp_path: Path, monkeypatch: Any) -> None:
@@ -73,3 +74,16 @@ def test_a_run_leaves_its_recipe_beside_the_report(tmp_path: Path) -> None:
     of_app = running._points(request, None, lambda _name, _share: None)
     assert [point["torque"] for point in found] == of_app.column("torque").tolist()
     assert str(private) not in (private / "r4nd0m.html").read_text()
+
+
+def test_a_log_that_moves_is_found_without_a_control_for_it(tmp_path: Path) -> None:
+    """The app has none: its report is of every sample by itself."""
+    sine().to_frame().drop("run").write_csv(tmp_path / "joint.csv")
+    request = {
+        "logs": [str(tmp_path / "joint.csv")], "mapping": None, "isothermal": True, "drop_missing": False,
+        "tare": "none",
+    }  # fmt: skip
+    points = running._points(request, None, lambda _name, _share: None)
+    assert points.of_every_sample
+    assert points.recipe is not None
+    assert points.recipe.to_dict() == {"logs": ["joint.csv"], "isothermal": True}

@@ -35,7 +35,7 @@ speed = "30 rpm"
 temperature = "180 degC"
 """
 #: All text of a page, in folds too, and what shows where the pointer rests or a reader for the blind reads.
-_TEXTS = """() => {
+TEXTS = """() => {
   document.querySelectorAll("details").forEach((fold) => { fold.open = true; });
   const texts = [], walk = document.createTreeWalker(document.documentElement, NodeFilter.SHOW_TEXT);
   while (walk.nextNode()) {
@@ -56,7 +56,7 @@ def words(opened: Opened) -> set[str]:
         re.DOTALL,
     )
     assert data
-    return {*opened.page.evaluate(_TEXTS), *(text for each in data for text in _strings(json.loads(each)))}
+    return {*opened.page.evaluate(TEXTS), *(text for each in data for text in _strings(json.loads(each)))}
 
 
 def _strings(value: Any) -> Iterator[str]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import shlex
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +17,8 @@ from hersey.damping.coast_down import CoastDown
 from hersey.damping.coast_down.closed_form import speeds
 from hersey.damping.coast_down.coasts import noise_of_rows
 from hersey.damping.coast_down.inertia import inertia_of
-from hersey.errors import InsufficientDataError, ParameterError, UnitError
+from hersey.damping.recipe import Recipe
+from hersey.errors import ChannelError, InsufficientDataError, ParameterError, UnitError
 from tests.cli.command import run
 from tests.conftest import ROOT
 
@@ -77,7 +80,7 @@ def test_the_terms_of_the_example_are_found() -> None:
     assert [each.stops for each in found.coasts] == [True, False]
     assert found.coasts[1].slowest == pytest.approx(60.0, rel=0.05)
     assert {"standing", "rising", "ends"} <= {each.why for each in found.left_out}
-    assert found.warnings == ()
+    assert kinds(found) == {"temperature not known"}
     value, low, high = found.torque_at("1000 rpm")
     speed = 1000.0 * np.pi / 30.0
     truth = TERMS[0] + TERMS[1] * speed + TERMS[2] * speed**2
@@ -87,7 +90,7 @@ def test_the_terms_of_the_example_are_found() -> None:
 
 def test_an_inertia_without_an_error_is_told() -> None:
     found = hersey.coast_down(LOG, inertia="0.012 kg*m^2")
-    (exact,) = found.warnings
+    (exact,) = [each for each in found.warnings if each.kind == "inertia taken as exact"]
     assert exact.values == {"inertia": 0.012}
     assert "0.012 kg*m^2 ± 2 %" in exact.sentence
     assert (found.coulomb.high - found.coulomb.low) / found.coulomb.value < 0.02
@@ -101,6 +104,26 @@ def test_points_carry_their_own_errors_and_the_shared_one() -> None:
     assert points.window_errors[:, 0] == pytest.approx(0.02 / 1.96 * torque)
     assert np.isfinite(points.log.runs[0].torque).all()
     assert set(points.column("approach")) == {"from above"}
+
+
+def test_points_and_what_is_excluded_are_all_rows() -> None:
+    for log in (LOG, frame(falling((1.0, 0.05, 0.0), 100.0, 40.0, 0.001), 0.001)):
+        points = hersey.coast_down(log, inertia=0.012).points()
+        excluded = sum(each.rows for each in points.rejected)
+        assert points.column("rows").sum() + excluded == points.log.rows
+    kinds_of = {each.why.kind for each in hersey.coast_down(LOG, inertia=0.012).points().rejected}
+    assert kinds_of == {"standing", "rising", "ends", "no window"}
+
+
+def test_the_table_of_points_holds_the_shared_error_and_what_is_excluded(tmp_path: Path) -> None:
+    found = hersey.coast_down(LOG, inertia="0.012 kg*m^2 ± 2 %")
+    (tmp_path / "points.csv").write_text(found.table())
+    again, points = hersey.SteadyPoints.from_table(tmp_path / "points.csv"), found.points()
+    assert again.window_errors == pytest.approx(points.window_errors, rel=1e-5)
+    assert again.column("torque_error") == pytest.approx(points.column("torque_error"), rel=1e-5)
+    assert hersey.fit(again).c.error == pytest.approx(hersey.fit(points).c.error, rel=1e-3)
+    assert "# excluded: 41 rows at 0 to 4 s, drive at standstill" in found.table()
+    assert "shared" not in hersey.coast_down(LOG, inertia=0.012).table()
 
 
 def test_points_are_fitted_like_dwells() -> None:
@@ -150,8 +173,9 @@ def test_brake_and_drive_are_left_out() -> None:
 
 def test_a_wheel_driven_through_standstill_does_not_coast() -> None:
     down = np.concatenate([np.full(200, 100.0), np.linspace(100.0, -100.0, 400), np.full(200, -100.0)])
-    with pytest.raises(InsufficientDataError, match="speed falls freely nowhere"):
+    with pytest.raises(InsufficientDataError, match="speed falls freely nowhere") as error:
         hersey.coast_down(frame(down), inertia=0.01)
+    assert "without drive and brake" in error.value.remedy
 
 
 def test_coasts_that_differ_are_told_and_widen_the_intervals() -> None:
@@ -195,11 +219,86 @@ def test_a_temperature_that_changes_is_told() -> None:
     assert found.points().log.has_temperature
 
 
+@pytest.mark.parametrize(
+    ("column", "mapped", "units", "why"),
+    [
+        ("", "", {}, None),
+        ("", "", {"temperature": "degC"}, "no temperature column found"),
+        ("", "oil", {}, "there is no column 'oil' (temperature)"),
+        ("oil temp", "", {}, "column 'oil temp' has no unit, so no temperature is used"),
+        ("oil temp", "", {"temperature": "degC"}, ""),
+    ],
+)
+def test_a_temperature_is_used_if_it_is_there(
+    column: str, mapped: str, units: dict[str, str], why: str | None, tmp_path: Path
+) -> None:
+    """A mapping that named one stopped the command, where none at all was no matter."""
+    log = tmp_path / "coast.csv"
+    head, *rows = [line for line in LOG.read_text().splitlines() if not line.startswith("#")]
+    more = (f",{column}", ",20") if column else ("", "")
+    log.write_text("\n".join([head + more[0], *(row + more[1] for row in rows)]))
+    if mapped:
+        (tmp_path / "hersey.toml").write_text(f"[temperature]\nchannel = '{mapped}'\n")
+    found = hersey.coast_down(Recipe(logs=(log,), units=units).speeds(), inertia="0.012 kg*m^2 ± 2 %")
+    of_temperature = {each.kind: each.sentence for each in found.warnings if "temperature" in each.kind}
+    assert set(of_temperature) == (
+        set() if why == "" else {"temperature not known"} | ({"temperature not read"} if why else set())
+    )
+    assert (why or "") in of_temperature.get("temperature not read", "")
+
+
+def test_a_temperature_that_is_asked_for_must_be_there(tmp_path: Path) -> None:
+    typed = ["coastdown", str(LOG), "--inertia", "0.012 kg*m^2", "--temperature", "oil"]
+    done = run(*typed, cwd=tmp_path)
+    assert done.returncode == 2
+    assert "there is no column 'oil' (temperature)" in done.stderr
+
+
 def test_a_log_of_dwells_does_not_coast() -> None:
     stairs = np.repeat([100.0, 80.0, 60.0, 40.0, 20.0, 10.0, 5.0], 200)
     with pytest.raises(InsufficientDataError, match="speed falls freely nowhere") as error:
         hersey.coast_down(frame(stairs, noise=0.2), inertia=0.01)
-    assert "without drive and brake" in error.value.remedy
+    assert "let the wheel coast to rest" in error.value.remedy
+
+
+def stairs(levels: list[float], rows: int = 150, settling: float = 5.0) -> FloatArray:
+    """A staircase of held speeds, each approached exponentially in so many rows."""
+    parts = [np.full(rows, levels[0])]
+    for before, level in pairwise(levels):
+        parts.append(level + (before - level) * np.exp(-np.arange(1, rows) / settling))
+    return np.concatenate(parts)
+
+
+def test_a_staircase_that_settles_shortly_is_no_coast() -> None:
+    """Its eight falls were taken for coasts, each with the speed that is held after it."""
+    with pytest.raises(InsufficientDataError, match="steps between held speeds 3 %") as error:
+        hersey.coast_down(ROOT / "examples" / "no-load.csv", inertia=0.01)
+    assert "let the wheel coast to rest, or end the log where the drive takes hold" in error.value.remedy
+    for noise in (0.02, 0.2):
+        with pytest.raises(InsufficientDataError, match="steps between held speeds"):
+            hersey.coast_down(frame(stairs([100.0, 60.0, 35.0, 20.0, 12.0]), 0.1, noise), inertia=0.01)
+
+
+def test_a_coast_beside_a_staircase_is_found() -> None:
+    coasting = falling((1.0, 0.05, 0.0), 100.0, 40.0, 0.1)
+    up = np.concatenate([np.linspace(10.0, 100.0, 40), np.full(50, 100.0)])
+    whole = np.concatenate([stairs([100.0, 60.0, 30.0, 10.0]), up, np.maximum(coasting, 0.0)])
+    found = hersey.coast_down(frame(whole, 0.1), inertia="0.01 kg*m^2 ± 1 %")
+    (coast,) = found.coasts
+    assert coast.stops
+    assert coast.start > 0.1 * (4 * 149)
+    assert found.coulomb.low < 0.01 < found.coulomb.high
+    (told,) = [each for each in found.warnings if each.kind == "parts left out"]
+    assert (told.values["what"], told.values["count"]) == ("steps between held speeds", 3)
+
+
+def test_a_coast_that_a_drive_ends_is_found_once_the_log_ends_there() -> None:
+    coasting = falling((1.0, 0.05, 0.0), 100.0, 18.0, 0.1)
+    whole = np.concatenate([np.full(50, 100.0), coasting, np.full(300, coasting[-1])])
+    with pytest.raises(InsufficientDataError, match="steps between held speeds"):
+        hersey.coast_down(frame(whole, 0.1), inertia=0.01)
+    found = hersey.coast_down(frame(whole[:230], 0.1), inertia="0.01 kg*m^2 ± 1 %")
+    assert found.viscous.low < 5e-4 < found.viscous.high
 
 
 @pytest.mark.parametrize(
@@ -238,6 +337,45 @@ def test_the_command_prints_torque_and_terms(tmp_path: Path) -> None:
     assert "2 coast-downs found." in done.stdout
     assert "Coulomb: 7.9" in done.stdout
     assert "[7.77, 8.10] mN m" in done.stdout
+
+
+def followed(said: str, tmp_path: Path) -> str:
+    """What the line that is proposed prints."""
+    line = said.partition("its moment of inertia: ")[2].split("\n")[0]
+    done = run(*shlex.split(line)[1:], cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def test_a_log_without_torque_that_coasts_is_sent_to_coastdown(tmp_path: Path) -> None:
+    (tmp_path / "a coast.csv").write_text(LOG.read_text())
+    done = run("fit", "a coast.csv", cwd=tmp_path)
+    assert done.returncode == 2
+    assert "hersey cycles" not in done.stderr
+    assert "2 coast-downs found." in followed(done.stderr, tmp_path)
+    shown = run("inspect", "a coast.csv", cwd=tmp_path).words
+    assert "hersey coastdown 'a coast.csv' --inertia" in shown
+
+
+def test_options_of_the_speed_are_kept_in_the_line_that_is_proposed(tmp_path: Path) -> None:
+    text = LOG.read_text().replace("time [s],speed [rpm]", "t,n")
+    (tmp_path / "coast.csv").write_text(text)
+    units = ("--time-unit", "s", "--speed-unit", "rpm", "--speed-sign", "-1")
+    done = run("fit", "coast.csv", *units, "--moving", "--inertia", "0.012 kg*m^2", cwd=tmp_path)
+    assert "Coulomb: 7.9" in followed(done.stderr, tmp_path)
+    bare = run("models", "coast.csv", cwd=tmp_path)
+    assert "type, with its moment of inertia: hersey coastdown coast.csv --inertia" in bare.stderr
+
+
+def test_a_staircase_without_torque_is_not_sent_to_coastdown(tmp_path: Path) -> None:
+    frame(stairs([100.0, 60.0, 35.0, 20.0])).write_csv(tmp_path / "stairs.csv")
+    assert "coastdown" not in run("fit", "stairs.csv", cwd=tmp_path).stderr
+
+
+def test_python_is_sent_to_coast_down_too() -> None:
+    with pytest.raises(ChannelError, match="no torque column") as error:
+        hersey.read(LOG)
+    assert "use hersey.coast_down('coast-down.csv', inertia='0.012 kg" in error.value.remedy
 
 
 def test_a_missing_inertia_is_asked_for(tmp_path: Path) -> None:

@@ -448,3 +448,12 @@ def test_a_clock_in_minutes_is_asked_about(tare: str) -> None:
     with pytest.raises(InsufficientDataError) as refused:
         log_of(speed, torque, dt=0.02 / 60e3).steady(tare=tare)
     assert "4 dwells" not in str(refused.value)
+
+
+def test_a_clock_in_minutes_is_not_proposed_for_a_swing() -> None:
+    """Slowed down sixtyfold, the crests of a reciprocating motion last long enough for dwells."""
+    speed = 30 * RPM * np.sin(2 * np.pi * 2 * 0.002 * np.arange(30_000))
+    assert len(log_of(speed, 0.1 * np.sign(speed), dt=0.12).steady()) > 50
+    with pytest.raises(InsufficientDataError, match="no dwell found") as refused:
+        log_of(speed, 0.1 * np.sign(speed), dt=0.002).steady()
+    assert "minutes" not in str(refused.value)

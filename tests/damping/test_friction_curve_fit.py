@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -118,6 +119,24 @@ def test_a_rise_that_starts_below_the_slowest_dwell_is_not_bounded() -> None:
     assert not rest.bounded
     assert curve.to_dict()["parameters"][1]["estimate"]["high"] is None
     assert "T_S cannot be determined (the slowest dwell" in curve.headline()
+
+
+def test_windage_is_no_stribeck_friction() -> None:
+    """Torque rises at every speed: a Coulomb friction below 0 bent the curve, and it was called falling."""
+    speed = np.geomspace(4.0, 140.0, 28)
+    curve = hersey.fit_friction(dwells(speed, 0.008 + 2e-4 * speed + 4e-6 * speed**2))
+    assert curve.kind == "coulomb_viscous"
+    assert curve.rises
+
+
+def test_a_curve_that_rises_over_all_dwells_is_not_called_falling() -> None:
+    curve = hersey.fit_friction(dwells(SPEEDS, torque_of(SPEEDS, static=STATIC)))
+    law = replace(curve, least=(), forward_speeds=(6.0, 30.0))
+    assert law.rises_beyond_rest
+    assert law.finding == (
+        "Torque rises with speed above 57.3 rpm, the slowest dwell: stick-slip is possible below it."
+    )
+    assert "Torque falls as speed rises" in replace(law, forward_speeds=(0.3, 1.5)).finding
 
 
 def test_a_film_leads_over_friction() -> None:

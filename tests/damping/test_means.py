@@ -37,6 +37,18 @@ def written(folder: Path, text: str, name: str = "means.csv") -> Path:
     return path
 
 
+def test_an_error_that_all_rows_of_a_table_share() -> None:
+    """Rows of one table share it; two tables have one each; it follows the sign of the torque."""
+    of = {"speed [rpm]": [10, -20], "torque [N*m]": [5.0, -6.0], "torque error [N*m]": [0.1, 0.2]}
+    shared = of | {"shared torque error [mN*m]": [50, 60]}
+    points = hersey.SteadyPoints.from_table(shared)
+    assert points.column("torque_error").tolist() == [0.1, 0.2]
+    assert points.window_errors.tolist() == [[0.05], [-0.06]]
+    two = hersey.SteadyPoints.from_table([shared, of | {"shared torque error [%]": [1, 2]}])
+    assert two.window_errors == pytest.approx(np.array([[0.05, 0], [-0.06, 0], [0, 0.05], [0, -0.12]]))
+    assert not hersey.SteadyPoints.from_table(of).window_errors.size
+
+
 def test_columns_by_name() -> None:
     points = hersey.SteadyPoints.from_table(
         {

@@ -8,12 +8,15 @@ from typing import Any
 import numpy as np
 import polars as pl
 import pytest
+from scipy import optimize
 
 import hersey
 from hersey.damping.moving.correlated import autoregression
+from hersey.damping.moving.curve import moving_curve
 from hersey.damping.moving.result import MovingFit
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.log import corrections
+from hersey.verdict.friction import leading_friction
 from tests.damping.moving_logs import (
     COULOMB,
     INERTIA,
@@ -168,6 +171,52 @@ def test_windows_are_steady_points(encoder: MovingFit) -> None:
     surface = hersey.fit(points)
     assert surface.c.value == pytest.approx(-0.86, abs=0.05)
     assert set(np.sign(encoder.points(rotation="reverse").column("speed"))) == {-1.0}
+
+
+def test_the_friction_curve_of_a_moving_log_has_its_numbers(encoder: MovingFit) -> None:
+    """Its windows judge it; numbers, ends and limits are those of every sample, and the offset is named."""
+    points = encoder.points()
+    surface = hersey.fit(points)
+    curve = leading_friction(points, surface, hersey.regime(points, surface))
+    assert curve is not None
+    assert curve.of_every_sample
+    assert [each.estimate for each in curve.parameters] == [encoder["T_C"], encoder["k_v"]]
+    assert curve.aicc < surface.statistics.aicc - 10.0
+    assert curve.directions is not None
+    assert curve.directions.offset == pytest.approx(OFFSET, abs=0.002)
+    assert "One law describes both directions beside an offset of 1" in curve.finding
+    slow, fast = encoder.speed_range
+    ends = [*(curve.forward_speeds or ()), *(curve.reverse_speeds or ())]
+    assert (min(ends), max(ends)) == pytest.approx((slow, fast), rel=0.3)
+    for line in curve.lines:
+        at = float(line.speed[30])
+        known = encoder.friction_at(at)
+        assert (line.low is None, line.high is None) == (False, False)
+        assert [line.low[30], line.torque[30], line.high[30]] == pytest.approx(  # type: ignore[index]
+            [known.low, known.value, known.high], rel=1e-9
+        )
+
+
+def test_the_least_torque_of_a_moving_log() -> None:
+    """Stribeck friction of 0.3 + 0.2 exp(-(w/0.6)^2) + 0.02 w is least at 1.45 rad/s."""
+    speed, rate = waves(times())
+    slow = speed / 3.0
+    rise = 0.2 * np.exp(-((slow / 0.6) ** 2))
+    fit = made(slow, rate / 3.0, np.sign(slow) * (COULOMB + rise) + VISCOUS * slow).moving()
+    curve = moving_curve(fit.points())
+    assert curve is not None
+    (least,) = curve.least
+    true = float(optimize.brentq(lambda w: VISCOUS - 0.4 * w / 0.36 * np.exp(-((w / 0.6) ** 2)), 0.8, 2.5))
+    assert least.direction == "both"
+    assert least.speed.low < true < least.speed.high
+    assert least.speed.high < 1.3 * least.speed.low
+
+
+def test_a_film_that_moves_all_the_time_is_no_friction_curve() -> None:
+    speed, rate = waves(times())
+    points = made(speed, rate, 0.3 * np.sign(speed) * np.abs(speed) ** 0.4).moving().points()
+    surface = hersey.fit(points)
+    assert leading_friction(points, surface, hersey.regime(points, surface)) is None
 
 
 def test_what_windows_share_moves_them_together(encoder: MovingFit) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import polars as pl
@@ -336,7 +337,9 @@ def test_other_formats_are_shown_channel_by_channel() -> None:
 def test_wear_tests_and_a_dynamometer() -> None:
     for path in sorted(shared("data/friction/te67_pin_on_disc").glob("*.tsv")):
         found = inspect(path)
-        assert "Refer to them as 'Friction Force#1' or 'Friction Force#2'" in found.summary()
+        assert "the time column could be 'Time [s]' or 'Test Time'" in found.summary()
+        (made,) = [c.role for c in found.files[0].channels if c.name == "Friction Coefficient"]
+        assert made == "torque"  # of two columns 'Friction Force' it is not said which
         assert found.files[0].clocks[0].interval == 1.0
         flagged = {c.name for c in found.files[0].channels for f in c.traits.faults if f.kind == "stuck"}
         assert flagged == set()
@@ -447,6 +450,21 @@ def test_a_doubtful_unit_is_told_of_logs_and_of_tables_of_means(tmp_path: Path) 
     }
     log.write_text("speed [rpm],torque [N*m],temp [degC]\n10,1,420\n20,1.1,421\n30,1.3,422\n")
     assert inspect(log, means=True).warnings[0].sentence.startswith("Temperature reaches 422 degC")
+
+
+@pytest.mark.parametrize(
+    ("given", "named"),
+    [({"gear_ratio": 10.0}, "gear_ratio"), ({"name_pattern": "{speed} rpm.csv"}, "name_pattern")],
+)
+def test_what_a_table_of_means_cannot_take_is_a_problem_as_in_a_fit(
+    given: dict[str, Any], named: str, tmp_path: Path
+) -> None:
+    table = tmp_path / "means.csv"
+    table.write_text("speed [rpm],torque [N*m]\n10,1\n20,1.1\n30,1.3\n")
+    assert inspect(table, means=True).problem == ""
+    refused = inspect(table, means=True, **given)
+    assert refused.support is None
+    assert refused.problem.endswith(f"omit {named}")
 
 
 @pytest.mark.parametrize(("rows", "found"), [(2, ["drop-outs"]), (5, ["drop-outs"]), (6, []), (12, [])])

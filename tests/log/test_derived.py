@@ -16,6 +16,7 @@ from hersey.log.derived.file_names import NamePattern, proposed_pattern
 from hersey.log.derived.position import slope, unwrapped
 from hersey.log.derived.set_points import SetPoints
 from hersey.log.mapping import read_with_mapping
+from hersey.schema.domain import Domain
 
 RPM = np.pi / 30
 TIME = np.arange(3000) * 0.02
@@ -143,6 +144,49 @@ def test_torque_against_time_with_the_speed_in_the_name_reduces_to_dwells(tmp_pa
     np.testing.assert_allclose(points.column("torque"), 0.01 * np.array([20, 60, 180]) ** 0.4, rtol=1e-3)
 
 
+@pytest.mark.parametrize(
+    ("names", "proposed"),
+    [
+        (("b_20rpm_60C.csv", "b_60rpm_60C.csv"), ("b_{speed}rpm_60C.csv", ".")),
+        (("b_20rpm_60C.csv", "b_20rpm_80C.csv"), ("b_{speed}rpm_{temperature:degC}C.csv", ".")),
+        (("v_10 mm_s.csv", "v_20 mm_s.csv"), ("v_{speed:mm/s} mm_s.csv", ".")),
+        (("b_20rpm.csv", "b.csv"), None),
+    ],
+)
+def test_a_pattern_fits_the_names_of_all_files(
+    names: tuple[str, ...], proposed: tuple[str, str] | None
+) -> None:
+    assert proposed_pattern(names[0], names) == proposed
+
+
+@pytest.mark.parametrize(
+    ("names", "warned"),
+    [
+        (("F5N.csv", "F10N.csv", "F20N.csv"), ("load", "5 N, 10 N, 20 N", "F{load}N.csv")),
+        (("r8mm.csv", "r16mm.csv", "r32mm.csv"), ("radius", "8 mm, 16 mm, 32 mm", "r{radius}mm.csv")),
+        (("5N 1rpm.csv", "6N 2rpm.csv", "7N 3rpm.csv"), ("load", "5 N, 6 N, 7 N", "{load}N *rpm.csv")),
+        (("5N a.csv", "5N b.csv", "5N c.csv"), None),
+        (("a1.csv", "a2.csv", "a3.csv"), None),
+    ],
+)
+def test_loads_and_radii_in_names_are_proposed(
+    names: tuple[str, ...], warned: tuple[str, ...] | None, tmp_path: Path
+) -> None:
+    parts = [slice(1000 * i, 1000 * i + 1000) for i in range(3)]
+    logs = [
+        written(tmp_path / name, time=TIME[:1000], torque=TORQUE[part], speed=SPEEDS[part])
+        for name, part in zip(names, parts, strict=True)
+    ]
+    log = hersey.read(logs, isothermal=True)
+    found = [w for file in log.files for w in file.warnings if w.kind == "numbers in file names"]
+    assert [(w.values["role"], w.values["numbers"]) for w in found] == ([warned[:2]] if warned else [])
+    if warned:
+        assert f"name_pattern='{warned[2]}'" in found[0].text
+        values = {warned[0]: [1.0, 2.0, 3.0]}
+        known = hersey.read(logs, isothermal=True, **values)
+        assert not any(w.kind == "numbers in file names" for file in known.files for w in file.warnings)
+
+
 def test_what_stands_in_names_is_never_guessed_but_proposed(tmp_path: Path) -> None:
     log = named(tmp_path)[0]
     with pytest.raises(ChannelError, match="no speed column") as refused:
@@ -182,6 +226,38 @@ def test_schedules_in_python_in_a_table_and_in_a_mapping_agree(tmp_path: Path) -
     assert (said.kind, said.values) == ("set point", {"role": "speed"})
 
 
+BY_TIME = {"from": "0 s", "to": "60 s", "speed": "1 m/s"}
+SLIDING = (0.01, 0.03, 0.1)
+SLID = "from [m],to [mm],speed [mm/s]\n0,200,10\n0.2,800,30\n0.8,2800,100\n"  #: 20 s each
+
+
+@pytest.mark.parametrize("plan", [SLID, "from [s],to [s],speed [m/s]\n0,20,0.01\n20,40,0.03\n40,60,0.1\n"])
+def test_a_schedule_of_sliding_speeds_by_time_or_distance(plan: str, tmp_path: Path) -> None:
+    speeds = np.repeat(SLIDING, 1000)
+    (tmp_path / "plan.csv").write_text(plan)
+    log = written(tmp_path / "log.csv", time=TIME, torque=0.3 * speeds**-0.1).read_text()
+    (tmp_path / "cof.csv").write_text(log.replace("Torque [N*m]", "COF"))
+    read = hersey.read(tmp_path / "cof.csv", schedule=tmp_path / "plan.csv", isothermal=True)
+    assert read.domain == Domain("friction coefficient", "sliding speed")
+    np.testing.assert_allclose(read.runs[0].speed, speeds, rtol=1e-12)
+    np.testing.assert_allclose(read.steady().column("torque"), 0.3 * np.array(SLIDING) ** -0.1, rtol=1e-4)
+
+
+def test_a_distance_is_the_clock_beside_a_schedule_of_distances(tmp_path: Path) -> None:
+    speeds = np.repeat(SLIDING, 1000)
+    slid = np.concatenate([[0.0], np.cumsum(0.02 * speeds)[:-1]])
+    table = {"Sliding distance [m]": slid + 5.0, "COF": 0.3 * speeds**-0.1}  # not from 0: an earlier test
+    (tmp_path / "plan.csv").write_text(SLID)
+    pl.DataFrame(table).write_csv(tmp_path / "cof.csv")
+    read = hersey.read(tmp_path / "cof.csv", schedule=tmp_path / "plan.csv", isothermal=True)
+    np.testing.assert_allclose(read.runs[0].time, TIME, atol=1e-6)
+    assert "time from distance" in [each.kind for each in read.files[0].warnings]
+    named = {"channels": {"time": "Sliding distance"}, "schedule": tmp_path / "plan.csv", "isothermal": True}
+    np.testing.assert_array_equal(hersey.read(tmp_path / "cof.csv", **named).runs[0].time, read.runs[0].time)
+    with pytest.raises(ChannelError, match="no time"):
+        hersey.read(tmp_path / "cof.csv", schedule=[BY_TIME], isothermal=True)
+
+
 def test_rows_outside_a_schedule_are_dropped_and_counted(tmp_path: Path) -> None:
     log = written(tmp_path / "log.csv", time=TIME, torque=TORQUE)
     (file,) = hersey.read(log, schedule=[STEPS[0], STEPS[2]], isothermal=True).files
@@ -201,6 +277,12 @@ def test_rows_outside_a_schedule_are_dropped_and_counted(tmp_path: Path) -> None
         ([{"from": "0 s", "speed": "1 rpm"}], "lacks 'to'"),
         ([{"from": "0 s", "to": "1 s", "torque": "1 N*m"}], "unknown key 'torque'"),
         ([{"from": "0 s", "to": "1 s", "speed": "1 mm"}], "mm"),
+        ([STEPS[0], {"from": "20 s", "to": "30 s", "speed": "1 m/s"}], "step 2 of the schedule has speed as"),
+        (
+            [{"from": "0 m", "to": "1 m", "speed": "1 rpm"}],
+            'e.g. from = "0 m", to = "20 m", speed = "0.1 m/s"',
+        ),
+        ([{"from": "1 m", "to": "2 m", "speed": "1 m/s"}], "must begin where the one before ends (0 m)"),
     ],
 )
 def test_schedules_that_cannot_be(steps: list[dict[str, object]], said: str) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shlex
 from pathlib import Path
 
 import numpy as np
@@ -181,3 +182,67 @@ def test_loads_of_an_oil_film_are_no_stribeck_curve() -> None:
     verdict = hersey.regime(points, surface).verdict
     assert "no film regime is judged" in verdict
     assert "is lowest" not in verdict
+
+
+def risen(quantity: str, load: np.ndarray, name: str) -> pl.DataFrame:
+    """A constant coefficient whose load rose from dwell to dwell, as recorded beside it."""
+    table = log(0.02, 10.0, quantity)
+    measured = {"torque": "Torque [N*m]", "force": "Friction force [N]"}[quantity]
+    return table.with_columns(
+        pl.Series(measured, table[measured].to_numpy() * np.abs(load) / 10.0), pl.Series(name, load)
+    )
+
+
+@pytest.mark.parametrize(
+    ("name", "sign", "flags"),
+    [
+        ("Normal force [N]", 1, ["--load 'Normal force'"]),
+        ("Fz [N]", -1, ["--load 'Fz'", "--load-unit '-1 N'"]),
+    ],
+)
+def test_a_force_beside_a_load_that_changes_waits_for_it(
+    name: str, sign: int, flags: list[str], tmp_path: Path
+) -> None:
+    risen("force", sign * np.repeat([5.0, 8, 10, 14, 17, 20], 100), name).write_csv(tmp_path / "a.csv")
+    refused = run("fit", "a.csv", "--isothermal", cwd=tmp_path)
+    assert refused.returncode == 2
+    assert f"column '{name}' may be the normal load, and it changes from 5 to 20 N" in refused.stderr
+    assert f"use {' '.join(flags)}. If the normal load is another" in refused.stderr
+    fitted = run("fit", "a.csv", "--isothermal", *shlex.split(" ".join(flags)), cwd=tmp_path)
+    assert fitted.words.startswith("Friction coefficient is constant: 0.12")
+    other = run("fit", "a.csv", "--isothermal", "--load", "50 N", cwd=tmp_path)
+    assert other.words.startswith("Friction coefficient rises")  # as it would at one load
+
+
+def test_the_load_of_each_file_counts_and_one_that_is_the_same_does_not() -> None:
+    tables = [risen("force", np.full(SPEEDS.size, load), "Fn [N]") for load in LOADS]
+    with pytest.raises(InsufficientDataError, match=r"changes from 5 to 20 N.*channels=\{'load': 'Fn'\}"):
+        hersey.fit(hersey.read(tables, isothermal=True).steady())
+    same = hersey.read(tables[0], isothermal=True).steady()
+    assert hersey.fit(same).domain.quantity == "friction force"
+
+
+def test_a_torque_beside_a_load_or_track_that_changes_is_fitted_and_that_is_said() -> None:
+    load = np.repeat([5.0, 8, 10, 14, 17, 20], 100)
+    table = risen("torque", load, "Load [N]").with_columns(pl.Series("Track [mm]", load))
+    points = hersey.read(table, isothermal=True).steady()
+    said = [each for each in warnings_of(points, hersey.fit(points)) if each.kind == "column may play a role"]
+    assert [(e.severity, e.values["role"], e.values["low"], e.values["high"]) for e in said] == [
+        ("watch", "load", 5.0, 20.0),
+        ("watch", "radius", 5.0, 20.0),
+    ]
+    quiet = hersey.read(risen("torque", np.full(SPEEDS.size, 10.0), "Load [N]"), isothermal=True)
+    assert [w.severity for w in quiet.files[0].warnings if w.kind == "column may play a role"] == ["note"]
+
+
+def test_a_coefficient_goes_before_the_force_that_it_was_made_of() -> None:
+    table = log(0.02, 10.0, "coefficient").with_columns(pl.Series("Friction force [N]", SPEEDS))
+    assert hersey.read(table, isothermal=True).domain == COEFFICIENT
+
+
+def test_a_trend_beside_a_load_that_changes_says_so() -> None:
+    table = risen("force", np.linspace(5.0, 20.0, SPEEDS.size), "Fn [N]")
+    steady = table.with_columns(pl.lit(0.1).alias("Sliding speed [m/s]"))
+    found = hersey.trend(hersey.read(steady, isothermal=True))
+    (said,) = [each for each in found.warnings if each.kind == "column may play a role"]
+    assert (said.severity, said.values["how"]) == ("watch", "channels={'load': 'Fn'}")

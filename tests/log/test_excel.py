@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import hersey
-from hersey.errors import ChannelError, UnitError, UnreadableLogError
+from hersey.errors import ChannelError, UnreadableLogError
 from hersey.log import list_channels
 from hersey.log.formats import format_of, opened
 from hersey.log.means import is_means_table, read_means
@@ -178,7 +178,7 @@ def test_film_thickness_of_others_in_an_npz() -> None:
     assert format_of(path) == "numpy_arrays"
     assert dict(list_channels(path))["rolling_speed"] == "mm/s"
     with pytest.raises(
-        UnitError, match=r"'traction_force_1_n' has no unit. Write 'traction_force_1_n \[N\]'"
+        ChannelError, match=r"could be 'ball_speed_1' or 'disc_speed_1'.* no unit for 'traction_force_1_n'"
     ):
         hersey.read(path)
 

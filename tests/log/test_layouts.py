@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from benchmarks.layouts import unseen_again
 from benchmarks.layouts.cases import CASES
 from benchmarks.layouts.truth import Made, Step, staircase, truth
 from benchmarks.layouts.trying import tried, wrong_with
@@ -18,9 +19,11 @@ from hersey.log.layouts import pattern as patterns
 from hersey.log.layouts.pattern import Value, pattern
 from hersey.log.layouts.presets import PRESETS
 from hersey.log.layouts.proposing import proposed_layout
+from hersey.log.layouts.recognized import LAYOUT_RECOGNIZED
 from hersey.log.layouts.table import LogLayout
 from hersey.log.mapping import FILE_NAME, LogMapping, read_mapping, read_with_mapping
 from hersey.log.proposal import propose_mapping
+from hersey.log.torque_log import TorqueLog
 
 #: Cases whose files belong to a preset.
 OF_PRESETS = {
@@ -31,6 +34,7 @@ OF_PRESETS = {
     "names_apart": "graphtec",
     "three_rows": "campbell",
     "wincc": "wincc",
+    "influx": "influx",
 }
 #: Cases that need no layout, and others that go the way of one of them.
 AS_THEY_STAND = frozenset(
@@ -62,7 +66,7 @@ HEAD = "Time [s];Torque [mN*m];Temp [degC]"
 
 
 def written(folder: Path, name: str) -> tuple[Path, Made]:
-    write, ending = CASES[name]
+    write, ending = CASES.get(name) or unseen_again.CASES[name]
     path = folder / f"log{ending}"
     return path, write(path)
 
@@ -121,14 +125,64 @@ def test_every_preset_is_tried() -> None:
     assert set(OF_PRESETS.values()) == set(PRESETS)
 
 
-def test_the_advice_of_a_refusal_works(tmp_path: Path) -> None:
+def test_a_layout_that_the_file_shows_is_used_at_once_and_said(tmp_path: Path) -> None:
     path, made = written(tmp_path, "umt")
     outcome = tried(path, made)
     assert outcome.right
-    assert outcome.commands[1] == f"hersey inspect {path} --save-mapping"
-    proposal = (tmp_path / FILE_NAME).read_text()
+    assert len(outcome.commands) == 1
+    assert used(read_with_mapping(path).log) == [
+        'Read by the layout that the file shows: header = "T(s) *"; '
+        'values = ["Step *: Velocity {speed} rpm"].'
+    ]
+    inspected = hersey.inspect(path)
+    assert not inspected.problem
+    assert {channel.role for channel in inspected.files[0].channels} >= {"speed", "torque", "temperature"}
+    proposal = propose_mapping(path)
     assert '[layout]\nheader = "T(s) *"\nvalues = ["Step *: Velocity {speed} rpm"]\n' in proposal
     assert '[speed]\nchannel = "set speed"\nunit = "rpm"' in proposal
+    (tmp_path / FILE_NAME).write_text(proposal)
+    assert used(read_with_mapping(path).log) == []
+
+
+def used(log: TorqueLog) -> list[str]:
+    return [w.text for run in log.files for w in run.warnings if w.kind == LAYOUT_RECOGNIZED]
+
+
+@pytest.mark.parametrize("name", ["rheocompass", "wide_with_row", "unequal"])
+def test_it_is_said_once_for_all_runs_of_a_file(name: str, tmp_path: Path) -> None:
+    path, made = written(tmp_path, name)
+    log = read_with_mapping(path).log
+    assert wrong_with(log, made) == ""
+    assert len(used(log)) == 1
+
+
+def test_units_that_a_layout_lacks_are_asked_for_at_once(tmp_path: Path) -> None:
+    path, made = written(tmp_path, "wincc")
+    with pytest.raises(HerseyError, match=r"have no units \(layout found: preset = \"wincc\"\)"):
+        read_with_mapping(path)
+    assert wrong_with(read_with_mapping(path, units=units_of(made)).log, made) == ""
+
+
+def with_doubt(path: Path) -> Made:
+    """Two torques and speeds beside one clock: two runs, or two sensors."""
+    steps = staircase(5, rows=30)
+    lines = ["Time [s];Torque1 [mN*m];Speed1 [rpm];Torque2 [mN*m];Speed2 [rpm];Temp [degC]"]
+    for step in steps:
+        cells = step.cells("time", "torque", "turning", "temperature")
+        lines += [f"{t};{m};{n};{m}1;{n}1;{c}" for t, m, n, c in cells]
+    path.write_text("\n".join(lines) + "\n")
+    return Made(truth(steps))
+
+
+def test_a_layout_that_is_a_guess_is_advised_not_used(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    made = with_doubt(path)
+    with pytest.raises(HerseyError, match=r"Torque1.*propose_mapping"):
+        read_with_mapping(path)
+    outcome = tried(path, made)
+    assert outcome.commands[1] == f"hersey inspect {path} --save-mapping"
+    assert outcome.read
+    assert 'wide = "{channel}{run}"' in (tmp_path / FILE_NAME).read_text()
 
 
 def test_a_log_that_only_lacks_a_channel_gets_no_advice_on_its_layout(tmp_path: Path) -> None:
@@ -201,7 +255,7 @@ def test_a_plain_log_is_read_without_a_look_at_its_layout(
     def never(*_: object) -> None:
         raise AssertionError
 
-    monkeypatch.setattr(log_mapping, "with_layout", never)
+    monkeypatch.setattr(log_mapping, "recognized", never)
     assert read_with_mapping(bench_csv).log.rows == hersey.read(bench_csv).rows
 
 
@@ -297,12 +351,13 @@ def test_units_of_another_part_are_converted(tmp_path: Path) -> None:
 
 
 def test_advice_suits_who_asks(tmp_path: Path) -> None:
-    path, _ = written(tmp_path, "umt")
+    path = tmp_path / "log.csv"
+    with_doubt(path)
     with pytest.raises(HerseyError, match="propose_mapping"):
         read_with_mapping(path)
     try:
         speak("terminal")
-        with pytest.raises(HerseyError, match=r"run 'hersey inspect .*log\.txt --save-mapping'"):
+        with pytest.raises(HerseyError, match=r"run 'hersey inspect .*log\.csv --save-mapping'"):
             read_with_mapping(path)
     finally:
         speak("python")

@@ -282,6 +282,53 @@ def test_a_proposal_for_a_friction_force_asks_for_the_radius(tmp_path: Path) -> 
     np.testing.assert_allclose(run.torque, (5.0 + TIME) * 0.025)
 
 
+def test_a_proposal_writes_a_position_and_what_is_said_beside_columns(tmp_path: Path) -> None:
+    header = "t [s],Current [A],phi [deg],dir"
+    path = write(tmp_path / "joint.csv", header, 0.5 + 1e-3 * TIME, 6.0 * TIME, np.sign(TIME - 10.0))
+    said = {"torque_constant": 0.1, "gear_ratio": 30.0, "position_window": 0.5, "load": (5.0, 7.0)}
+    text = propose_mapping(path, said=said)
+    assert '[position]\nchannel = "phi"\nunit = "deg"\nwindow = "0.5 s"\n' in text
+    current = 'channel = "Current"\nunit = "A"\nmotor_constant = "0.1 N*m/A"\ngear_ratio = 30\n'
+    assert f"[torque]\n{current}" in text
+    assert '[load]\nvalues = ["5 N", "7 N"]\n' in text
+    assert '# channel = "dir"' in text
+    assert text.count("motor_constant") == 1
+    (tmp_path / FILE_NAME).write_text(text.partition("[load]")[0])
+    (run,) = read_with_mapping(path, isothermal=True).log.runs
+    np.testing.assert_allclose(run.torque, 30 * 0.1 * (0.5 + 1e-3 * TIME))
+    np.testing.assert_allclose(run.speed[5:-5], np.pi / 30)
+    bare = propose_mapping(path)
+    assert '# [torque]\n# channel = "Current"\n# unit = "A"\n# motor_constant = "35 mN*m/A"\n' in bare
+    named = {"position": "phi", "direction": "dir", "torque": "Current"}
+    assert '[direction]\nchannel = "dir"\n' in propose_mapping(path, channels=named)
+
+
+@pytest.mark.parametrize("unit", ["", "counts", "ticks"])
+def test_a_position_in_counts_is_not_taken_for_an_angle(unit: str, tmp_path: Path) -> None:
+    header = f"t [s],Torque [N*m],Encoder{f' [{unit}]' * bool(unit)}"
+    path = write(tmp_path / "joint.csv", header, 0.5 + 1e-3 * TIME, np.round(400 * TIME))
+    with pytest.raises(ChannelError, match=r"channels=\{'position': 'Encoder'\}.*'position': 'rev/4096'"):
+        hersey.read(path, isothermal=True)
+    assert '# channel = "Encoder"\n# unit = "rev/4096"' in propose_mapping(path)
+    position = {"channels": {"position": "Encoder"}, "isothermal": True}
+    with pytest.raises(UnitError, match="rev/4096"):
+        hersey.read(path, **position)
+    (run,) = hersey.read(path, units={"position": "rev/400"}, **position).runs
+    np.testing.assert_allclose(run.speed[5:-5], 2 * np.pi, rtol=0.02)
+
+
+def test_a_proposal_writes_the_pattern_of_the_file_names(tmp_path: Path) -> None:
+    names = ["b_20rpm_60C.csv", "b_20rpm_80C.csv", "b_40rpm_80C.csv"]
+    files = [write(tmp_path / name, "t [s],Torque [N*m]", 0.5 + 0.1 * i) for i, name in enumerate(names)]
+    text = propose_mapping(files[0], names=names)
+    assert '[names]\npattern = "b_{speed}rpm_{temperature:degC}C.csv"\n' in text
+    (tmp_path / FILE_NAME).write_text(text)
+    runs = read_with_mapping(files).log.runs
+    assert [run.temperature[0] - 273.15 for run in runs] == pytest.approx([60, 80, 80])
+    text = propose_mapping(files[0], said={"name_pattern": "b_{speed}rpm*"})
+    assert 'pattern = "b_{speed}rpm*"' in text
+
+
 def test_a_dead_channel_is_not_proposed(tmp_path: Path) -> None:
     header = "t [s],Torque 1 [N*m],Torque 2 [N*m],Speed [rpm],Temp [degC]"
     text = propose_mapping(write(tmp_path / "a.csv", header, 1.5, 1.0 + TIME, 60.0 + TIME, 0.0))

@@ -103,8 +103,10 @@ def torque(document: Analysis) -> Chart:
     return _against_speed(document, "torque", _axis(document), turns=True).properties(title=title)
 
 
-def damping(document: Analysis) -> Chart:
-    """Damping against speed per temperature (Figs. 3 and 7)."""
+def damping(document: Analysis) -> Chart | None:
+    """Damping against speed per temperature (Figs. 3 and 7); None where a friction curve leads."""
+    if document.friction is not None:
+        return None
     scale, _ = _torque_unit(document)
     quantity = _of(document).quantity
     title = alt.Title("Damping against speed", subtitle=f"dashed: slope -1, constant {quantity}")
@@ -113,8 +115,10 @@ def damping(document: Analysis) -> Chart:
     return _against_speed(document, "damping", name, under=under).properties(title=title)
 
 
-def surface(document: Analysis) -> Chart:
-    """The fitted surface over temperature and speed, with the dwells on it (Fig. 4)."""
+def surface(document: Analysis) -> Chart | None:
+    """The fitted surface over temperature and speed, with the dwells on it (Fig. 4); None as for damping."""
+    if document.friction is not None:
+        return None
     unit, factor = _damping_unit(document), _per_speed(document)
     hot = document.fit.temperature_range is not None
     low, high = (factor * v for v in document.fit.speed_range)
@@ -171,20 +175,28 @@ def residuals(document: Analysis) -> Chart:
     zero = plot([{"y": 0}]).mark_rule(color=INK).encode(y="y:Q")
     shapes = {"from below": "triangle-up", "from above": "triangle-down", "start": "circle"}
     dots = plot(rows).mark_point(filled=True, size=55, opacity=0.85)
+    subtitle = "a gap between the two kinds of triangles: hysteresis; a bend: wrong model"
+    shape: Row = {"shape": categories(alt.Shape, "approach", shapes, alt.Legend(title="approached"))}
+    if document.moving is not None:
+        subtitle, shape = "windows of speed; a bend: wrong model", {}
     dots = dots.encode(
         x=_speed(document, "speed:Q", span([row["speed"] for row in rows])),
         y=alt.Y("residual:Q", title="Measured / fitted \u2212 1 (%)"),
         color=_temperature_channels(document)[0],
-        shape=categories(alt.Shape, "approach", shapes, alt.Legend(title="approached")),
         tooltip=_point_tips(document),
+        **shape,
     ).add_params(zoom())
-    subtitle = "a gap between the two kinds of triangles: hysteresis; a bend: wrong model"
     title = alt.Title("Residuals", subtitle=subtitle)
     return alt.layer(zero, dots, title=title, width=WIDTH, height=220)
 
 
-def regime(document: Analysis) -> Chart:
-    """Exponent of damping per temperature and branch with its interval, against the named hypotheses."""
+def regime(document: Analysis) -> Chart | None:
+    """Exponent of damping per temperature and branch with its interval, against the named hypotheses.
+
+    None where a friction curve leads: no film has its exponent.
+    """
+    if document.friction is not None:
+        return None
     c = document.fit.coefficients["c"]
     what = "torque" if _of(document).is_torque else "friction"
     surface: Row = {
@@ -337,7 +349,7 @@ def _friction_curve(document: Analysis, curve: FrictionCurve) -> Chart:
             "high": value + error,
         }
         row["level"] = row["level"] if thermal else temperature_name(None)
-    chart = signed_chart(rows, curve, (scale, unit), _point_tips(document))
+    chart = signed_chart(rows, curve, (scale, unit), _point_tips(document), document.moments)
     shown: Chart = chart.properties(usermeta={"series": _series(rows)})
     return shown
 

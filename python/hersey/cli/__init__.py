@@ -19,6 +19,7 @@ recipe_file   a recipe file as options
 quantities    shares, ranges, temperatures and speeds of options
 named_logs    the logs that words name, without tables that hersey wrote
 traces        what a recording for a trace lacks, and how to read it for itself
+no_torque     what to type for a log without a torque
 no_load       the no-load log of a machine, given among the logs of its film
 warming       a machine that heats up: its heat balance and its drag
 workers       worker processes on this machine, or those of a scheduler

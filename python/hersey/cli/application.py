@@ -30,7 +30,7 @@ from hersey.cli.mistyped import (
 )
 from hersey.cli.one_speed import with_trend
 from hersey.cli.terminal import hush, say, say_wrapped, warnings_said
-from hersey.errors import HerseyError, UnitError, speak
+from hersey.errors import ChannelError, HerseyError, UnitError, speak
 
 #: The commands in the order of the help, in groups, each with the first sentence of its help. The sentences
 #: are here too, so that the help lists them without loading the commands. Each command is a module of this
@@ -196,11 +196,13 @@ def main() -> None:
 
 
 def _in_full(error: HerseyError) -> str:
-    """The command with the units that several columns lack, to be typed as it is once they are right."""
+    """The command with all that several roles lack, to be typed as it is once that is right."""
     units = error.units if isinstance(error, UnitError) else {}
-    if len(units) < 2:
-        return ""
     options = [word for role, unit in units.items() for word in (f"--{role}-unit", unit)]
+    if isinstance(error, ChannelError):
+        options = [word for of, value in error.examples for word in shlex.split(of.to(value))]
+    if len(options) < 3:
+        return ""
     return f". In full: {shlex.join(['hersey', *sys.argv[1:], *options])}"
 
 

@@ -6,7 +6,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 from hersey.cli.groups import grouped, option
-from hersey.cli.moving import fitted, fitted_lines
+from hersey.cli.hersey_number import viscosity_of
+from hersey.cli.moving import Fitted, fitted, fitted_lines
 from hersey.cli.options import Force, KeepGoing, Logs, Reading, SensorsFile
 from hersey.cli.outputs import may_write, print_json
 from hersey.cli.printing import Printing
@@ -21,9 +22,13 @@ if TYPE_CHECKING:
     from hersey.damping.estimate import Estimate
     from hersey.damping.friction_curve.result import FrictionCurve
     from hersey.damping.surface import DampingSurface
+    from hersey.log.means import MeansTable
+    from hersey.log.torque_log import TorqueLog
+    from hersey.lubrication.lubricant import Lubricant
     from hersey.machine.machine import Machine
 
 _NO_SURFACE = "--json prints a surface, for which the windows of this log are too few: omit --json"
+_HERSEY = "Fit against the Hersey number, with this viscosity, '20 mPa*s', or a file with [lubricant]."
 _EACH = "Fit each log separately and write one row per log (.csv or .parquet)."
 
 
@@ -34,6 +39,7 @@ def fit(
     each: Annotated[Path | None, option(_EACH, metavar="TABLE")] = None,
     machine_file: SensorsFile = None,
     keep_going: KeepGoing = False,
+    hersey: Annotated[str, option(_HERSEY, metavar="VISCOSITY")] = "",
     crew: Crew,
     reading: Reading,
     printing: Printing,
@@ -52,13 +58,15 @@ def fit(
         raise ParameterError("--each writes a table and --json prints one fit: give one of them")
     if each is None and (keep_going or force or crew.scheduler or crew.count):
         raise ParameterError("--keep-going, --scheduler, --workers and --force need --each TABLE")
+    if hersey and (each is not None or machine_file is not None or reading.moving):
+        raise ParameterError("--hersey fits friction to all dwells: omit --each, --machine and --moving")
     machine = None
     if machine_file is not None:
         from hersey.machine.machine import read_machine
 
         machine = read_machine(machine_file)
     if each is None:
-        _fit_one(logs, reading, machine, printing)
+        _fit_one(logs, reading, machine, printing, hersey)
         return
     from hersey.cli.fitting_each import fit_each
 
@@ -66,8 +74,11 @@ def fit(
     fit_each(logs, reading, machine, table, keep_going, crew, printing)
 
 
-def _fit_one(logs: list[Path], reading: Reading, machine: Machine | None, printing: Printing) -> None:
+def _fit_one(
+    logs: list[Path], reading: Reading, machine: Machine | None, printing: Printing, hersey: str
+) -> None:
     """Fit all logs together."""
+    viscosity = viscosity_of(hersey) if hersey else None
     log = reading.log(logs, machine)
 
     from hersey.verdict.friction import excludes_power_law, leading_friction
@@ -75,17 +86,21 @@ def _fit_one(logs: list[Path], reading: Reading, machine: Machine | None, printi
     from hersey.verdict.warnings import warnings_of
 
     with working("fitting the surface"):
-        found = fitted(logs, log, reading, machine)
+        found = (
+            fitted(logs, log, reading, machine)
+            if viscosity is None
+            else _against(logs, log, reading, viscosity)
+        )
         points, surface, moving = found.points, found.surface, found.moving
         curves = None
         if points is not None and surface is not None and printing.in_full:
             curves = _curves(points, surface, machine)
-    if moving is not None and not printing.as_json:
-        printing.text(*fitted_lines(moving))
-        printing.warnings(*moving.warnings)
     if points is None or surface is None:
         if printing.as_json:
             raise ParameterError(_NO_SURFACE)
+        if moving is not None:
+            printing.text(*fitted_lines(moving))
+            printing.warnings(*moving.warnings)
         return
     if printing.as_json:
         from hersey.document.assembly import fit_document
@@ -94,19 +109,32 @@ def _fit_one(logs: list[Path], reading: Reading, machine: Machine | None, printi
         return
     seen = regime(points, surface)
     friction = leading_friction(points, surface, seen)
-    printing.text(*([""] if moving is not None else []))
-    if friction is not None:
+    if moving is not None:
+        printing.text(*fitted_lines(moving, "" if friction is None else friction.finding))
+    elif friction is not None:
         printing.text(*_friction(friction, points.dropped()))
     if friction is None or printing.in_full or not excludes_power_law(friction, surface):
-        printing.text(*["", "Damping as one power law:"] * bool(friction), seen.verdict)
-        printing.text("", *_law(surface, curves))
+        of = "of the windows of speed " if moving is not None else ""
+        said = moving is not None or friction is not None
+        printing.text(*["", f"Damping {of}as one power law:"] * said, seen.verdict)
+        printing.text("", *_law(surface, curves, "dwells" if moving is None else "windows"))
     printing.warnings(*warnings_of(points, surface, friction))
 
 
-def _law(surface: DampingSurface, curves: CurveMixture | None) -> list[str]:
-    """The power law: its estimates, or all of its statistics with the drag curves."""
+def _against(
+    logs: list[Path], log: TorqueLog | MeansTable, reading: Reading, viscosity: Lubricant | float
+) -> Fitted:
+    """The fit of friction to the Hersey number."""
+    from hersey.damping.fit import fit
+
+    points = reading.points(logs, log).against_hersey_number(viscosity)
+    return Fitted(points, fit(points), None)
+
+
+def _law(surface: DampingSurface, curves: CurveMixture | None, points: str) -> list[str]:
+    """The power law of ``points``: its estimates, or all of its statistics with the drag curves."""
     if curves is None:
-        return _estimates(surface)
+        return _estimates(surface, points)
     from hersey.damping.curves.words import drag_curves
 
     return [surface.summary(), drag_curves(curves.table)]
@@ -132,7 +160,7 @@ def _curves(points: SteadyPoints, surface: DampingSurface, machine: Machine | No
     return fit_curves(points, surface, None if machine is None else machine.mixed)
 
 
-def _estimates(surface: DampingSurface) -> list[str]:
+def _estimates(surface: DampingSurface, points: str) -> list[str]:
     """The law with its estimates, 95 % intervals and units, and what it is fitted to."""
     from hersey.cli.figures import labelled, three
     from hersey.units import celsius
@@ -150,7 +178,7 @@ def _estimates(surface: DampingSurface) -> list[str]:
         rows.append(("w_t", f"{_within(surface.transition.speed)} {of.speed_unit}{at} (least {of.quantity})"))
     statistics = surface.statistics
     rows += [
-        ("dwells", str(statistics.points)),
+        (points, str(statistics.points)),
         ("scatter", f"{three(100 * statistics.scatter)} % of {of.quantity}"),
     ]
     return [f"{law}, {of.speed_symbol} in {of.speed_unit} (value, 95 % interval)", *labelled(rows)]

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 from hersey.cli.groups import grouped, option
+from hersey.cli.no_torque import other_use
 from hersey.cli.options import Force, Logs, Reading, SaveRecipe, drawn
 from hersey.cli.outputs import may_draw, may_save_recipe, may_write
 from hersey.cli.printing import Printing
@@ -56,7 +57,12 @@ def inspect(
     recipe = reading.recipe(logs)
     if kept is not None:
         with working("looking at the channels"), memory_limit(reading.max_memory):
-            written.write(propose_mapping(logs[0], channels=recipe.channels, units=recipe.units))
+            names = [log.name for log in logs]
+            said = recipe.stated()
+            text = propose_mapping(
+                logs[0], channels=recipe.channels, units=recipe.units, names=names, said=said
+            )
+            written.write(text)
     with working("looking at the channels"), memory_limit(reading.max_memory):
         given = {name: value for name, value in vars(recipe).items() if name not in _OF_A_FIT}
         inspection = inspected(logs, **(given | {"means": recipe.are_means}))
@@ -70,15 +76,18 @@ def inspect(
         printing.text(inspection.summary())
     else:
         printing.text(*_lines(inspection))
-    printing.text(*filter(None, [of_a_trace(logs)] if _may_be_a_trace(inspection) else []))
+    if _lacks_channels(inspection):
+        printing.text(*filter(None, [other_use(logs, reading)]))
+    elif inspection.support is not None and inspection.support.dwells == 0:
+        printing.text(*filter(None, [of_a_trace(logs)]))
     printing.files(kept, save_recipe, figure)
 
 
-def _may_be_a_trace(inspection: Inspection) -> bool:
-    """Whether no fit is possible because the file has no dwell, or not the channels of a log."""
-    if inspection.support is not None:
-        return inspection.support.dwells == 0
-    return any(why.absent for file in inspection.files for why in file.lacking.values())
+def _lacks_channels(inspection: Inspection) -> bool:
+    """Whether no fit is possible because the files have not the channels of a log."""
+    return inspection.support is None and any(
+        why.absent for file in inspection.files for why in file.lacking.values()
+    )
 
 
 def _lines(inspection: Inspection) -> list[str]:

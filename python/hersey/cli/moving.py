@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from hersey.cli.options import Reading
 from hersey.cli.terminal import note
-from hersey.errors import MOVING, HerseyError, InsufficientDataError
+from hersey.errors import InsufficientDataError
 
 if TYPE_CHECKING:
     from hersey.damping.dwells import SteadyPoints
@@ -28,8 +28,6 @@ _SMALL = {
     "s": ("s", "ms"),
     "1/K": ("1/K", "1/kK"),
 }
-#: Share of the rows in dwells below which a log moves all the time.
-_HELD = 0.3
 #: A number below this is shown in the smaller unit.
 _BELOW = 0.1
 
@@ -46,54 +44,29 @@ class Fitted:
 def fitted(
     logs: list[Path], log: TorqueLog | MeansTable, reading: Reading, machine: Machine | None
 ) -> Fitted:
-    """Fit the dwells of a log, or every sample if that is asked for or the log has no dwells but moves."""
+    """Fit the dwells of a log, or every sample if that is asked for or the log moves all the time."""
     from hersey.damping.fit import fit
-    from hersey.log.torque_log import TorqueLog
+    from hersey.damping.moving.result import MovingFit
 
-    if reading.moving and isinstance(log, TorqueLog):
-        return _as_it_moves(logs, log, reading, machine, reading.recipe(logs).moving_fit(log))
+    found = reading.found(logs, log)
+    moving = found if isinstance(found, MovingFit) else None
     points = None
     try:
-        points = reading.points(logs, log, machine)
-        return Fitted(points, fit(points, temperature_scale=reading.temperature_scale), None)
-    except InsufficientDataError as error:
-        asked = (reading.tare, reading.rotation) != ("none", "both")
-        if asked or not isinstance(log, TorqueLog) or not _moves(log, points, error):
-            raise
-        try:
-            moving = reading.recipe(logs).moving_fit(log)
-        except HerseyError:
-            raise error from None
-    note("The speed hardly ever holds, so friction is fitted to every sample, as with --moving.")
-    return _as_it_moves(logs, log, reading, machine, moving)
-
-
-def _moves(log: TorqueLog, points: SteadyPoints | None, error: InsufficientDataError) -> bool:
-    """Whether a log has no dwell because its speed changes all the time, or a few by chance."""
-    if points is None:
-        return error.setting == MOVING
-    return float(points.column("rows").sum()) < _HELD * log.rows
-
-
-def _as_it_moves(
-    logs: list[Path], log: TorqueLog, reading: Reading, machine: Machine | None, moving: MovingFit
-) -> Fitted:
-    """The fit with the surface of its windows; a note says why there is none."""
-    from hersey.damping.fit import fit
-
-    points = None
-    try:
-        points = reading.points(logs, log, machine, moving)
+        points = reading.points(logs, log, machine, found)
         return Fitted(points, fit(points, temperature_scale=reading.temperature_scale), moving)
     except InsufficientDataError as error:
+        if moving is None:
+            raise
         note(f"No surface B = a w^c can be fitted to the windows of this log: {error}")
         return Fitted(points, None, moving)
 
 
-def fitted_lines(fit: MovingFit) -> list[str]:
-    """Return law and numbers with their intervals, and what was not used."""
+def fitted_lines(fit: MovingFit, finding: str = "") -> list[str]:
+    """Return law and numbers with their intervals, and what was not used.
+
+    ``finding`` is what torque does as the drive slows.
+    """
     from hersey.cli.figures import labelled, three
-    from hersey.damping.moving.gravity import AMPLITUDE
     from hersey.units import rpm
 
     rows = [(each.name, _shown(each.estimate, each.unit)) for each in fit.parameters]
@@ -102,10 +75,11 @@ def fitted_lines(fit: MovingFit) -> list[str]:
     speed = fit.middle_speed
     rows.append(("friction", f"{_shown(fit.friction_at(speed), 'N m')} at {three(rpm(speed))} rpm"))
     gravity, angle = "", []
-    if AMPLITUDE in fit:
-        gravity, angle = " + G sin(q - q_0)", [fit.gravity_in_words]
+    if said := fit.gravity_in_words():
+        gravity, angle = " + G sin(q - q_0)", [said]
     head = f"torque = J dw/dt + offset{gravity} + friction(w), w in rad/s (value, 95 % interval)"
-    return [fit.named, "", head, *labelled(rows), *angle, fit.cost()]
+    law = f"{fit.named}. {finding}" if finding else fit.named
+    return [law, "", head, *labelled(rows), *angle, fit.cost()]
 
 
 def _shown(known: Estimate, unit: str) -> str:

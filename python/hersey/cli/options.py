@@ -12,12 +12,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 from hersey.cli.groups import argument, option
 from hersey.cli.loading import loading
 from hersey.cli.no_load import refuse_no_load_log
+from hersey.cli.no_torque import other_use
 from hersey.cli.progress import bar, working
 from hersey.cli.quantities import amount_of, amounts_in, ratio_of
 from hersey.cli.recipe_file import ROLES, read_recipe
 from hersey.cli.several import for_this_log_only
 from hersey.cli.terminal import note
-from hersey.cli.traces import lacking_columns, of_a_force, of_a_trace
+from hersey.cli.traces import lacking_columns, of_a_force
 from hersey.errors import ChannelError, HerseyError, ParameterError, followed_by
 
 if TYPE_CHECKING:
@@ -89,7 +90,8 @@ _POSITION_WINDOW = "Time over which the slope of a position is taken.  [default:
 _DIRECTION = "Column of the direction of a speed without a sign: 1 and -1, 1 and 0, CW and CCW."
 _NAME_PATTERN = "Pattern of file names that state values, e.g. '{speed} rpm {load} N.txt'."
 _NAME_DECIMAL = "Decimal mark of the numbers in the file names, e.g. '-' for 0-1rps.txt."
-_SCHEDULE = "Table of set points by time: columns from, to, and e.g. speed, with units."
+_RUN_TABLE = "Table with a row for each file: columns file, and e.g. load [N] or radius [mm]."
+_SCHEDULE = "Table of set points by time or distance: columns from, to, e.g. speed, with units."
 _MAPPING = "File with roles, units and corrections.  [default: hersey.toml beside the log]"
 _DROP_MISSING = "Drop rows with a missing or impossible number, however many."
 _MEANS = "Read a table of means: one row per dwell, no time column."
@@ -130,6 +132,7 @@ class Reading:
     direction: Annotated[str, read(_DIRECTION)] = ""
     name_pattern: Annotated[str, read(_NAME_PATTERN)] = ""
     name_decimal: Annotated[str, read(_NAME_DECIMAL)] = ""
+    run_table: Annotated[str, read(_RUN_TABLE, metavar="TABLE")] = ""
     schedule: Annotated[str, read(_SCHEDULE, metavar="TABLE")] = ""
     run: Annotated[str, read("Column that numbers the runs in a file.")] = ""
     mapping: Annotated[str, read(_MAPPING, metavar="TOML")] = ""
@@ -167,7 +170,7 @@ class Reading:
 
     def anywhere(self) -> Reading:
         """Return the same with absolute paths: workers may have been started in another folder."""
-        given = {name: getattr(self, name) for name in ("mapping", "schedule", "no_load")}
+        given = {name: getattr(self, name) for name in _FILES}
         whole: dict[str, Any] = {name: str(Path(path).absolute()) for name, path in given.items() if path}
         return replace(self, **whole)
 
@@ -186,7 +189,7 @@ class Reading:
         signs = {role: sign for role in ("torque", "speed") if (sign := getattr(self, f"{role}_sign")) != 1}
         given = {
             name: getattr(self, name) or None
-            for name in ("mapping", "every", "schedule", "position_window", "no_load")
+            for name in ("mapping", "every", "run_table", "schedule", "position_window", "no_load")
         }
         same: dict[str, Any] = {name: getattr(self, name) for name in _AS_GIVEN}
         dwell = amount_of("time", self.min_dwell, "--min-dwell")
@@ -229,7 +232,8 @@ class Reading:
 
     def inputs(self, *given: Path | list[Path] | None) -> list[Path]:
         """Return the files that a command reads, of which none may be an output."""
-        named = [Path(path) for path in (self.recipe_file, self.mapping, self.schedule, self.no_load) if path]
+        beside = [self.recipe_file, *(getattr(self, name) for name in _FILES)]
+        named = [Path(path) for path in beside if path]
         for paths in given:
             named += [paths] if isinstance(paths, Path) else paths or []
         return named
@@ -244,8 +248,8 @@ class Reading:
             with bar("reading") as progress, memory_limit(self.max_memory):
                 log: TorqueLog | MeansTable = recipe.log(machine, progress=progress)
         except ChannelError as error:
-            if not (recipe.channels or recipe.chosen.channels) and error.absent:
-                error.remedy = followed_by(error.remedy, of_a_trace(paths))
+            if error.absent:
+                error.remedy = followed_by(error.remedy, other_use(paths, self))
             raise
         for file in log.files:
             if file.missing_rows:
@@ -282,16 +286,26 @@ class Reading:
         paths: list[Path],
         log: TorqueLog | MeansTable,
         machine: Machine | None = None,
-        fit: MovingFit | None = None,
+        found: SteadyPoints | MovingFit | None = None,
     ) -> SteadyPoints:
-        """Reduce the log of these files to dwells; print what the no-load log shows."""
+        """Reduce the log of these files to dwells; print that it moves, and what the no-load log shows."""
         if machine is not None and machine.rest is not None:
             refuse_no_load_log(paths, machine.rest)
-        points = self.recipe(paths).dwells(log, machine, fit)
+        reduced = self.found(paths, log) if found is None else found
+        points = self.recipe(paths).dwells(log, machine, reduced)
         if self.no_load and points.rest is not None:
             note(f"No-load torque subtracted: {points.rest}.")
             note(*(f"- {warning.sentence}" for warning in points.rest.warnings))
         return points
+
+    def found(self, paths: list[Path], log: TorqueLog | MeansTable) -> SteadyPoints | MovingFit:
+        """Return the dwells of the log, or the fit to every sample of one that moves; print that it moves."""
+        from hersey.damping.dwells import SteadyPoints
+
+        found = self.recipe(paths).found(log)
+        if not (self.moving or isinstance(found, SteadyPoints)):
+            note("The speed hardly ever holds, so friction is fitted to every sample, as with --moving.")
+        return found
 
     def points_of(
         self, paths: list[Path], machine: Machine | None = None, others: Sequence[Path] = ()
@@ -368,6 +382,8 @@ _AS_GIVEN = (
     *("isothermal", "drop_missing", "means", "tare", "rotation", "temperature_scale", "moving"),
     *("name_pattern", "name_decimal"),
 )
+#: Options that name a file.
+_FILES = ("mapping", "run_table", "schedule", "no_load")
 #: Options that make dwells of a log.
 _OF_DWELLS = ("min_dwell", "tare", "rotation", "temperature_scale", "no_load")
 _NOT_OF_FILE = "not from the machine file"

@@ -22,6 +22,7 @@ fit             fitting it: the paper's candidate among all
 candidates      every law fitted to the same dwells, one chosen
 friction_curve  friction of joints and gear motors: Coulomb, viscous, Stribeck
 moving          logs that move all the time: friction, inertia and offset from every sample
+held_or_moving  whether a log is reduced to dwells or moves all the time
 curves          drag curves that the dwells allow: laws by weight, and how they go on beyond
 no_load         the no-load torque from a log without the film
 rising          the rising branch by itself: whether one exponent holds

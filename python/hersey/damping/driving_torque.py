@@ -20,8 +20,7 @@ _SPEEDS, _RATIO = 4, 1.5
 #: Two speeds are one if they differ by less than this share.
 _SAME = 0.02
 #: Torque falls at each speed beyond its greatest, to less than that share of it; it would be zero below so
-#: many times the fastest speed; and its slope at the end is that share of its mean slope, so it does not level
-#: off.
+#: many times the fastest speed; and it does not level off: its slope at the end is that share of the mean.
 _FALLEN, _ZERO, _LEVELS = 0.35, 1.35, 0.9
 #: Least ratio of speeds over which a power may be called constant, and the share by which it may vary.
 _OF_POWER, _VARIES = 2.0, 0.03
@@ -42,8 +41,9 @@ class DrivingTorque(Record):
                 "is the torque of a motor or a brake at constant power, not friction"
             )
         assert self.zero_speed is not None
+        zero = float(f"{rpm(self.zero_speed):.3g}")
         return (
-            f"Torque falls with speed and would be zero near {rpm(self.zero_speed):.4g} rpm. That is the "
+            f"Torque falls with speed and would be zero near {zero:g} rpm. That is the "
             "torque of a motor or a brake, not friction"
         )
 

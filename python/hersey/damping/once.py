@@ -35,6 +35,10 @@ class HowRead(Protocol):
         """Their files."""
 
     @property
+    def run_table(self) -> Path | None:
+        """File of what each of them is of."""
+
+    @property
     def schedule(self) -> Path | None:
         """File of what was asked for by time."""
 
@@ -52,8 +56,8 @@ def read_once(how: HowRead, progress: Progress | None) -> TorqueLog | MeansTable
         return how.read_files(progress)
     try:
         mapping = how.chosen
-        scheduled = () if how.schedule is None else (how.schedule,)
-        hashed = [_hash(path) for path in (*scheduled, *_files(how.logs, mapping))]
+        stated = (how.schedule, how.run_table, mapping.names.table)
+        hashed = [_hash(path) for path in (*filter(None, stated), *_files(how.logs, mapping))]
     except (HerseyError, OSError):  # which reading says, too
         return how.read_files(progress)
     hashes = tuple(digest for digest, _ in hashed)

@@ -18,6 +18,7 @@ from pydantic import ValidationInfo
 
 from hersey.arguments.frozen import explained
 from hersey.damping.dwells import SteadyPoints
+from hersey.damping.held_or_moving import held_or_moving
 from hersey.damping.moving.result import MovingFit
 from hersey.damping.no_load import no_load_torque
 from hersey.damping.no_load_torque import NoLoadTorque
@@ -26,23 +27,25 @@ from hersey.errors import (
     MOVING,
     SIGN,
     TARE,
+    ChannelError,
     HerseyError,
     InsufficientDataError,
     ParameterError,
     Setting,
+    UnitError,
     turned,
 )
 from hersey.files.toml import Quantity, Table, quoted, read_tables
 from hersey.log import TorqueLog
 from hersey.log.as_torque import log_as_torque
 from hersey.log.mapping import LogMapping, Motor, mapping_of, read_with_mapping
+from hersey.log.mean_refusals import refuse_corrections, refuse_sources
 from hersey.log.means import (
     MeansTable,
     is_means_table,
     read_means,
-    refuse_corrections,
-    refuse_sources,
 )
+from hersey.log.reading import is_of_temperature, temperature_not_read
 from hersey.log.sensors import Sensors
 from hersey.log.text.delimited import Progress
 from hersey.result import json_record
@@ -126,6 +129,8 @@ class Recipe:
         temperature.
     name_decimal
         Decimal mark of the numbers in the names.
+    run_table
+        Table with a row for each file: its speed, load, radius or temperature.
     schedule
         Table of speed, temperature or load by time, if the log has no channel of it.
     position_window
@@ -168,6 +173,7 @@ class Recipe:
     load: Annotated[Amount, _OneOrMore("force", 1e-9, 1e9, "50 N")] = None
     name_pattern: str = ""
     name_decimal: str = ""
+    run_table: Annotated[Path | None, _Path(None)] = None
     schedule: Annotated[Path | None, _Path(None)] = None
     position_window: Annotated[float | None, _OneOrMore("time", 1e-6, 1e4, "0.2 s")] = None
     torque_constant: Annotated[float | None, _OneOrMore("motor constant", 1e-6, 1e3, "0.11 N*m/A")] = None
@@ -222,12 +228,15 @@ class Recipe:
         return log if log.domain.is_torque else log_as_torque(log, radius=drive.roll_radius)
 
     def dwells(
-        self, log: TorqueLog | MeansTable, drive: KnownDrive | None = None, fit: MovingFit | None = None
+        self,
+        log: TorqueLog | MeansTable,
+        drive: KnownDrive | None = None,
+        found: SteadyPoints | MovingFit | None = None,
     ) -> SteadyPoints:
         """Reduce a log, or a table of means, to dwells with the torque of the film.
 
-        The no-load torque is that of ``no_load``, or else of the drive. The dwells keep the recipe. ``fit``
-        is that of a moving log, whose windows become the dwells; without it, one is made where it is needed.
+        The no-load torque is that of ``no_load``, or else of the drive. The dwells keep the recipe. ``found``
+        is what `found` returned, if it was called before; windows of a moving log become the dwells.
 
         Raises
         ------
@@ -235,15 +244,32 @@ class Recipe:
             If there is no dwell, or a setting is wrong or given twice.
         """
         rest = self.rest(None if drive is None else drive.rest, drive)
+        reduced = self.found(log) if found is None else found
+        if isinstance(reduced, MovingFit):
+            reduced = reduced.points(rotation=self.rotation)
+        points = replace(reduced, recipe=self)
+        return points if rest is None else points.without(rest)
+
+    def found(self, log: TorqueLog | MeansTable) -> SteadyPoints | MovingFit:
+        """Return the dwells of a log, or the fit to every sample: if asked for, or if it moves all the time.
+
+        Raises
+        ------
+        InsufficientDataError, ParameterError
+            As `dwells` does.
+        """
         try:
-            found = self._dwells(log) if fit is None else fit.points(rotation=self.rotation)
-            points = replace(found, recipe=self)
+            if isinstance(log, TorqueLog) and self.moving:
+                return self.moving_fit(log)
+            asked = (self.tare, self.rotation) != ("none", "both")
+            if asked or not isinstance(log, TorqueLog):
+                return self._dwells(log)
+            return held_or_moving(log.rows, lambda: self._dwells(log), lambda: self.moving_fit(log))
         except InsufficientDataError as error:
             flipped = [turned(role) for role, sign in self.signs.items() if sign == -1]
             if error.setting == SIGN and len(flipped) == 1:
                 error.remedy = f"omit {flipped[0]}"
             raise
-        return points if rest is None else points.without(rest)
 
     def moving_fit(self, log: TorqueLog) -> MovingFit:
         """Fit friction, inertia and offset to every sample of a log.
@@ -380,12 +406,24 @@ class Recipe:
     def speeds(self, *, progress: Progress | None = None) -> TorqueLog:
         """Read the logs without a torque, for `hersey.coast_down`.
 
+        A temperature that the mapping names need not be there; one named by ``channels`` must be.
+
         Raises
         ------
         HerseyError
             As `hersey.read` does.
         """
-        return self._trace(progress, without_torque=True)
+        try:
+            return self._trace(progress, without_torque=True)
+        except (ChannelError, UnitError) as error:
+            asked = self.channels if isinstance(error, ChannelError) else self.channels | self.units
+            if not is_of_temperature(error) or "temperature" in asked:
+                raise
+            why = temperature_not_read(error)
+        alone = replace(self, isothermal=True, units=_without("temperature", self.units))
+        log = alone._trace(progress, without_torque=True)
+        first, *others = log.files
+        return replace(log, files=(replace(first, warnings=(*first.warnings, why)), *others))
 
     def read_files(self, progress: Progress | None = None) -> TorqueLog | MeansTable:
         """Read the logs as they are now."""
@@ -411,7 +449,7 @@ class Recipe:
         mapping = self.chosen
         by_hand = [Setting(name).to() for name, value in vars(self._motor).items() if value is not None]
         refuse_corrections(mapping.corrects, str(mapping.source and mapping.source.name), by_hand)
-        refuse_sources(self._sources(mapping))
+        refuse_sources(mapping, vars(self), self.channels)
         stated = {
             role: getattr(self, role) or (None if role in self.channels else getattr(mapping.stated, role))
             for role in ("radius", "load")
@@ -427,22 +465,6 @@ class Recipe:
         if mapping.torque.zero_error is not None:
             table.domain.require_torque("[torque] zero_error")
         return replace(table, sensors=mapping.sensors)
-
-    def _sources(self, mapping: LogMapping) -> list[str]:
-        """What says of channels what no column holds."""
-        options = ("name_pattern", "schedule", "position_window")
-        roles = ("direction", "position")
-        stated = {
-            "[names] pattern": mapping.names.pattern,
-            "[[schedule]]": mapping.schedule,
-            "[direction] channel": mapping.direction.channel,
-            "[position] channel": mapping.position.channel,
-        }
-        return [
-            *(Setting(name).to() for name in options if getattr(self, name)),
-            *(Setting(role, "channel").to() for role in roles if role in self.channels),
-            *(f"{key} in {mapping.source and mapping.source.name}" for key, value in stated.items() if value),
-        ]
 
     def _dwells(self, log: TorqueLog | MeansTable) -> SteadyPoints:
         if isinstance(log, MeansTable):
@@ -476,7 +498,7 @@ class _RecipeFile(Table, Recipe):
 
 
 #: Fields that name one file each.
-_FILES = ("mapping", "schedule", "no_load")
+_FILES = ("mapping", "run_table", "schedule", "no_load")
 #: Kind of unit of each amount.
 _KINDS = {
     "every": "time",
@@ -488,7 +510,10 @@ _KINDS = {
     "inertia": "moment of inertia",
 }
 #: What is said of a log and a file need not hold.
-_STATED = ("every", "radius", "load", "name_pattern", "name_decimal", "schedule", "position_window")
+_STATED = (
+    *("every", "radius", "load", "name_pattern", "name_decimal"),
+    *("run_table", "schedule", "position_window"),
+)
 
 
 def _distinct(paths: Sequence[Path]) -> tuple[Path, ...]:

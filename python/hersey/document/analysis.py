@@ -11,6 +11,7 @@ from pydantic import Field
 
 from hersey.damping.compare import LogComparison
 from hersey.damping.friction_curve.result import FrictionCurve
+from hersey.damping.moving.friction import Moments, MovingFriction
 from hersey.decision.behaviour import StickSpeeds
 from hersey.document.parts.fit import FRICTION, FitPart
 from hersey.document.parts.log import InputFile, MachineFilePart, Point, Quality, RecipePart, Timeline
@@ -57,6 +58,8 @@ class Analysis(Part):
     fit: FitPart
     regime: Regime
     friction: FrictionCurve | None = Field(default=None, description=FRICTION)
+    moving: MovingFriction | None = Field(default=None, description="of a log that moves all the time")
+    moments: Moments | None = Field(default=None, description="some moments of such a log, to be drawn")
     film: FilmPart | None = None
     torque_budget: TorqueBudgetPart | None = None
     simulation: SimulationPart | None = Field(

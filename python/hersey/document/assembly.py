@@ -14,6 +14,7 @@ from hersey.arrays import FloatArray
 from hersey.damping.candidates.observations import Observations
 from hersey.damping.curves import CurveMixture, fit_curves
 from hersey.damping.dwells import SteadyPoints, groups_of_temperature
+from hersey.damping.moving.friction import MovingPoints
 from hersey.damping.moving.result import MovingFit
 from hersey.damping.surface import DampingSurface
 from hersey.damping.trend import trend_of
@@ -79,6 +80,8 @@ def document_of(study: Study, *, command: str = "", made: str | None = None) -> 
         fit=_fit_part(points, study.surface, study.curves),
         regime=study.regime,
         friction=study.friction,
+        moving=points.friction if isinstance(points, MovingPoints) else None,
+        moments=points.friction.moments if isinstance(points, MovingPoints) else None,
         film=study.nip,
         torque_budget=study.torque_budget,
         simulation=study.simulation,

@@ -32,7 +32,8 @@ from hersey.log.corrections import Corrected
 from hersey.log.derived.sources import Sources
 from hersey.log.doubtful import doubtful_units
 from hersey.log.layouts.current import reading_by
-from hersey.log.layouts.proposing import with_layout
+from hersey.log.layouts.proposing import Proposal, proposed_layout
+from hersey.log.layouts.recognized import recognized
 from hersey.log.mapping import (
     LogMapping,
     Motor,
@@ -41,6 +42,7 @@ from hersey.log.mapping import (
     read_with_mapping,
     without_what_is_said,
 )
+from hersey.log.mean_refusals import refuse_corrections, refuse_sources
 from hersey.log.means import MeansTable, read_means
 from hersey.log.roles import CHANNELS, OTHER_ROLES, ROLES, SIGNS, UNITS
 from hersey.log.torque_log import ROTATIONS, TARES, Correction, LogFile, TorqueLog
@@ -71,6 +73,7 @@ class Reading(TypedDict, total=False):
     load: float | Sequence[float] | None
     name_pattern: str | None
     name_decimal: str | None
+    run_table: str | Path | None
     schedule: Any
     position_window: float | None
     torque_constant: float | None
@@ -257,23 +260,38 @@ def inspect(
     chosen, channels, units = motor.added(chosen, reading.get("channels") or {}, reading.get("units") or {})
     rest = {name: value for name, value in reading.items() if name not in vars(motor)}
     reading = cast("Reading", rest | {"channels": channels, "units": units})
-    chosen = chosen.turned(reading.get("signs") or {})
+    corrects, chosen = chosen.corrects, chosen.turned(reading.get("signs") or {})
     choices, known = _said(chosen, reading)
     made = _made(chosen, reading)
+
+    def reported(by: LogMapping, more: Mapping[str, str]) -> tuple[FileReport, ...]:
+        named = {**choices, **{role: ChannelChoice(name) for role, name in more.items()}}
+        with reading_by(by.layout):
+            found = (file_report(raw_channels(file), named, known) for file in files)
+            return tuple(_without_lacking(each, made) for each in found)
+
+    proposal: Proposal | None = None
     try:
-        with reading_by(chosen.layout):
-            reports = tuple(
-                _without_lacking(file_report(raw_channels(file), choices, known), made) for file in files
-            )
+        reports = reported(chosen, {})
     except HerseyError as error:
-        if chosen.layout is not None or len(files) > 1:
+        if chosen.layout is not None:
             raise
-        raise with_layout(error, Path(files[0]), reading.get("channels"), reading.get("units")) from None
+        proposal = recognized(error, files, channels, units)
+    else:
+        if chosen.layout is None and not means:
+            proposal = _shown_layout(files, reports, reading)
+    if proposal is not None:
+        chosen = replace(chosen, layout=proposal.layout)
+        reading = reading | {"channels": {**proposal.channels, **channels}}
+        reports = reported(chosen, proposal.channels)
     needed: tuple[str, ...] = ()
     log: TorqueLog | MeansTable
     try:
         if means:
             reports = tuple(replace(each, format=f"{each.format}, {MEANS}", lacking={}) for each in reports)
+            by_hand = [Setting(name).to() for name in vars(motor) if said.get(name) is not None]
+            refuse_corrections(corrects, str(chosen.source and chosen.source.name), by_hand)
+            refuse_sources(chosen, said, channels)
             log = replace(_table(files, choices, known, reading), sensors=chosen.sensors)
             done = log.corrections
         else:
@@ -294,6 +312,17 @@ def inspect(
     return Inspection(reports, "", needed, dropped, done, support, (*doubtful_units(log), *doubts))
 
 
+def _shown_layout(
+    files: Sequence[str | Path], reports: Sequence[FileReport], reading: Reading
+) -> Proposal | None:
+    """The layout by which logs that lack a role are read without being asked."""
+    without = {"temperature"} if reading.get("isothermal") else set()
+    if not any(set(report.lacking) - without for report in reports) or not Path(files[0]).is_file():
+        return None
+    proposal = proposed_layout(Path(files[0]), reading.get("channels"), reading.get("units"))
+    return None if proposal is None or proposal.is_doubtful else proposal
+
+
 def _said(mapping: LogMapping, reading: Reading) -> tuple[dict[str, ChannelChoice], Stated]:
     """The choice for each role, and what is said beside the channels: by the user, or else the mapping."""
     channels, units = reading.get("channels") or {}, reading.get("units") or {}
@@ -311,8 +340,7 @@ def _said(mapping: LogMapping, reading: Reading) -> tuple[dict[str, ChannelChoic
 def _made(mapping: LogMapping, reading: Mapping[str, Any]) -> frozenset[str]:
     """The roles that no column needs to play: a schedule, file names or a position do."""
     said = mapping.sources | {name: value for name in mapping.sources if (value := reading.get(name))}
-    names = {name: said[name] for name in ("name_pattern", "name_decimal", "schedule", "position_window")}
-    sources = Sources.of(**names)
+    sources = Sources.of(**said)
     position = (reading.get("channels") or {}).get("position") or mapping.position.channel
     return sources.roles | ({"speed"} if position else set())
 

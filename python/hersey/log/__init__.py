@@ -10,9 +10,12 @@ formats               one reader per format, and which one opens a file
 signals               currents, voltages and percentages, and how much one of them stands for
 roles                 roles of columns: their names, and the kinds of units that they may have
 role_units            the unit of a column with a role
+elsewhere             a speed or a temperature in the names of files, or in a position
 channels              which column plays which role
 without_units         columns without units: named at once
+lacking_roles         several roles that a file leaves open: asked for at once
 friction              which of them a file holds, and what it becomes with a load and a radius
+rolling               contacts that roll and slide, whose speed is that of entrainment
 pooling               runs that are fitted together: one domain for all
 as_torque             friction as a torque, where somebody has a radius and asks for it
 stating               a radius or a load: proposed, used once a person states it
@@ -29,17 +32,18 @@ stray_times           rows whose time lies off the clock around them
 wanted                what the user wants of a log, checked
 columns               columns as they stand, for readers with roles of their own
 assembly              from a recording to a run on the clock of the torque
-constant_temperature  a temperature that is excluded and never changes: its sensor may be dead
+constant_temperature  a temperature that is excluded: which column, and whether its sensor may be dead
 given_twice           a measurement that a log holds twice: refused
 not_a_log             what is neither a file nor a table: refused
 own_tables            tables that hersey wrote: refused as logs
-derived               channels that no column holds: file names, schedules, positions, directions
+derived               channels that no column holds: file names, run tables, schedules, positions, directions
 exchanged             columns under each other's names: refused
 reading               `read`: from files to a log
 many                  many files, each a log of its own: in turn, in threads, or by workers
 corrections           what lies between sensor and film, subtracted with a record
 cell_table            a table as it stands: cells of text or numbers
 mean_roles            which column of a table of means plays which role
+mean_refusals         what cannot be applied to a table of means: refused
 means                 a table of means: a row per dwell, no clock
 doubtful              numbers that would be ordinary in another unit
 quantities            quantities that no log holds

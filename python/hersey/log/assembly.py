@@ -29,16 +29,20 @@ from hersey.log.channels import (
     taken_columns,
 )
 from hersey.log.constant_temperature import constant_temperature
+from hersey.log.derived.direction import without_sign
 from hersey.log.derived.speeds import (
+    clock_of_distance,
     outside_schedule,
     speed_column,
     speed_of_position,
+    times_of_distance,
     unscheduled,
     with_direction,
 )
 from hersey.log.formats.frame import FRAME
 from hersey.log.friction import Chosen, beside, computed, in_domain, slow_roles, unused
 from hersey.log.impossible import Impossible, Reading, impossible_rows, marked_rows
+from hersey.log.lacking_roles import asking_all
 from hersey.log.long_arrays import HELD, each_block, ends, rows_before, rows_where, without
 from hersey.log.recording import INVALID, INVALID_TIME, Recording, Signal, columns, nothing_to_read
 from hersey.log.replaced import replaced_units
@@ -48,7 +52,6 @@ from hersey.log.text.column import Column
 from hersey.log.text.stamps import clock_without_unit, counted_unit, is_clock_name
 from hersey.log.torque_log import NO_CLOCK, Channel, LogFile, Run
 from hersey.log.wanted import Wanted
-from hersey.log.without_units import naming_all
 from hersey.schema.warning import Warning
 from hersey.units import Conversion
 
@@ -107,11 +110,11 @@ class Assembly:
         self.chosen: Chosen = {}
         self._timed: Chosen = {}
         self.parts: dict[str, _Part] = {}
-        self.derived, self._said = wanted.derived, list[Warning]()
+        self.derived, self._said, self._names = wanted.derived, list[Warning](), wanted.names
         try:
             self._choose(wanted.roles, isothermal=wanted.isothermal)
-        except UnitError as error:
-            raise self._naming_all(error, wanted.roles) from None
+        except (ChannelError, UnitError) as error:
+            raise self._asking_all(error, wanted.roles) from None
 
     def _choose(self, roles: tuple[str, ...], *, isothermal: bool) -> None:
         """Find the channel of each role, and load it."""
@@ -123,19 +126,26 @@ class Assembly:
         self.chosen |= others
         near = tuple(c for c in self.columns if c.group == first.group)
         self.chosen |= beside(near, self.choices, self.stated, self.chosen, self.source.name)
-        self._unused = [*clocks_passed_over(near, self.stated), *unused(near, self.chosen, self.stated)]
+        self._unused = [
+            *clocks_passed_over(near, self.stated),
+            *unused(near, self.chosen, self.stated, self._numbers),
+        ]
         if isothermal:
             self._unused += constant_temperature(near, self.chosen, self.source.name, self._numbers)
         for role in self.chosen:
             self.parts[role] = self._part(role)
 
-    def _naming_all(self, error: UnitError, roles: tuple[str, ...]) -> UnitError:
-        """The error of a channel without a unit, with all others that lack one."""
+    def _asking_all(self, error: HerseyError, roles: tuple[str, ...]) -> HerseyError:
+        """The error of a role that is open, with all others that are; of parts apart only those of units."""
+        if isinstance(error, ChannelError) and len({column.group for column in self.columns}) > 1:
+            return error
+        elsewhere = set(self.derived.channels) | ({"speed"} if self.choices["position"].name else set())
+        roles = tuple(role for role in roles if role not in elsewhere)
         if not self.choices["time"].name and any(each.clock is not None for each in self.recording.signals):
             roles = tuple(role for role in roles if role != "time")
         columns = tuple(map(self._with_epoch, self.columns)) if "time" in roles else self.columns
         of_a_frame = self.recording.format == FRAME
-        return naming_all(
+        return asking_all(
             error,
             roles,
             columns,
@@ -143,6 +153,7 @@ class Assembly:
             self.source.name,
             dead=self._says_nothing,
             of_a_frame=of_a_frame,
+            names=self._names,
         )
 
     def runs(self) -> list[tuple[Run, LogFile]]:
@@ -169,6 +180,10 @@ class Assembly:
         arrays = {role: without(values, bad) for role, values in arrays.items()}
         warnings += computed(self.chosen, self.stated)
         warnings += replaced_units(self._timed | self.chosen)
+        if not self.choices["direction"].name:
+            names = [*(each.name for each in self.recording.cells)]
+            names += [each.name for each in self.recording.signals]
+            warnings += without_sign(names, arrays["speed"])
         warnings += [*filter(None, self._dead.values()), *self._unused, *self._said]
         log = self._record(tuple(warnings))
         log = replace(log, missing_rows=rows_marked + rows_impossible, impossible=impossible)
@@ -251,7 +266,7 @@ class Assembly:
             among = self._beside_a_speed(role)
             channel = find_channel(role, among, choice, file, self._says_nothing, taken)
         if channel is None:
-            raise no_channel(role, self.columns, file, self.recording.others)
+            raise no_channel(role, self.columns, file, self.recording.others, self._names)
         refuse_two_roles(role, channel[0], self.chosen, file)
         return channel
 
@@ -355,6 +370,8 @@ class Assembly:
             for c in self.columns
             if c != column and self._may_time(c, signal, column, bool(choice.name))
         )
+        if (of_distance := self._clock_of_distance(near)) is not None:
+            return of_distance
         taken = taken_columns("time", near, self.choices, self.chosen)
         clock = (
             find_channel("time", near, choice, file, self._says_nothing, taken)
@@ -377,6 +394,20 @@ class Assembly:
         if tick not in self._clocks:
             values = _in_si(self.recording.signals[chosen.index].load(), unit)
             self._clocks[tick] = (values, tick, Channel("time", chosen.path, unit.unit))
+        return self._clocks[tick]
+
+    def _clock_of_distance(self, near: tuple[Column, ...]) -> tuple[FloatArray, str, Channel] | None:
+        """The time from a distance slid, beside a schedule of distances."""
+        steps = next((of.schedule for of in self.derived.channels.values() if of.schedule), None)
+        found = clock_of_distance(near, self.choices["time"].name, steps) if steps else None
+        if steps is None or found is None:
+            return None
+        column, unit = found
+        if (tick := f"distance {column.index}") not in self._clocks:
+            written = self.recording.signals[column.index].load()
+            values, warning = times_of_distance(column, unit, written, steps)
+            self._said.append(warning)
+            self._clocks[tick] = (values, tick, Channel("time", f"by {column.path}", "s"))
         return self._clocks[tick]
 
     def _may_time(self, candidate: Column, signal: Signal, column: Column, named: bool) -> bool:

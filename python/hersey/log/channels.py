@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
@@ -19,7 +19,7 @@ from hersey.errors import (
     printable,
     way_in,
 )
-from hersey.log.derived.file_names import proposed_pattern
+from hersey.log.elsewhere import speed_elsewhere, stated_in_names, typed
 from hersey.log.long_arrays import ends
 from hersey.log.own_tables import not_a_log, own_table
 from hersey.log.role_units import with_unit
@@ -42,6 +42,8 @@ from hersey.units import Conversion
 _OSCILLATION = re.compile(r"frequen[cz]|oscillat|oszillat", re.IGNORECASE)
 #: As many numbers, all the same, make a dead channel.
 _TELLING = 20
+#: Names of the temperature of the lubricant, beside which that of a heater, a room or a motor is another.
+_OF_LUBRICANT = re.compile(r"\b(lub\w*|oil|grease|pot|bath|[oö]l|schmier\w*)", re.IGNORECASE)
 #: A clock of a part of a run, beside which that of the whole run counts.
 _PART_OF_A_RUN = re.compile(r"step|segment|interval|cycle|lap", re.IGNORECASE)
 #: Kind of the warning of a clock that is not used.
@@ -154,16 +156,14 @@ def _candidates(role: str, columns: tuple[Column, ...]) -> list[Column]:
         others = [c for c in columns if c not in named and c.unit and could_be(role, c, surely=True)]
         measured = named + (others if named and role != "time" else [])
     # a column of another kind of unit is out; one without a unit could still be it
-    return (
-        _telling(role, [c for c in measured if could_be(role, c)])
-        or _in_friction(role, columns, measured)
-        or [
-            c
-            for c in columns
-            if c.unit and could_be(role, c, surely=True) and not _OSCILLATION.search(c.name)
-        ]
-        or measured
-    )
+    if called := _telling(role, [c for c in measured if could_be(role, c)]):
+        return called
+    by_unit = [
+        c for c in columns if c.unit and could_be(role, c, surely=True) and not _OSCILLATION.search(c.name)
+    ]
+    friction = _in_friction(role, columns, measured)
+    beside = by_unit if role == "torque" else []  # a torque beside its friction: which is meant is not known
+    return [*friction, *beside] if friction else by_unit or measured
 
 
 def _choose(role: str, path: str) -> dict[str, Any]:
@@ -190,9 +190,16 @@ def constant_channel(column: Column) -> Warning:
 
 
 def no_channel(
-    role: str, columns: tuple[Column, ...], file: str, others: tuple[str, ...] = ()
+    role: str,
+    columns: tuple[Column, ...],
+    file: str,
+    others: tuple[str, ...] = (),
+    names: Sequence[str] = (),
 ) -> ChannelError:
-    """Return the error for a role that no column plays; ``others`` hold no numbers."""
+    """Return the error for a role that no column plays; ``others`` hold no numbers.
+
+    ``names`` are those of all files that are read together.
+    """
     if what := own_table(column.name for column in columns):
         return not_a_log(what, file)
     channel = Setting(role, "channel")
@@ -211,27 +218,26 @@ def no_channel(
             f". If '{of.path}' is the frequency of an inverter, divide by the pole pairs of the motor, e.g. "
             f"for 2 use {named}"
         )
+    if role == "torque" and way_in() == "python" and _may_coast(columns):
+        way_out += (
+            f". If the wheel coasts down without a drive, use hersey.coast_down({file!r}, "
+            "inertia='0.012 kg*m^2 ± 2 %'), with its moment of inertia"
+        )
     if role == "speed":
-        way_out += _speed_elsewhere(columns, file)
+        way_out += speed_elsewhere(columns, file, names)
     if role == "temperature":
+        if found := stated_in_names(file, names, role):
+            way_out += f". If the names of the files state it, use {typed(found)}"
         way_out += f", or use {ISOTHERMAL.to()} to exclude temperature"
-    said = f"{file}: no {role} column found. Columns: {_listed(columns)}"
+    said = f"{file}: no {role} column found. Columns: {columns_listed(columns)}"
     said += not_numbers(others)
     return ChannelError(said, absent=True, remedy=way_out, setting=channel)
 
 
-def _speed_elsewhere(columns: tuple[Column, ...], file: str) -> str:
-    """The name of the file, or a position, where a log without a speed may have it."""
-    if found := proposed_pattern(file):
-        template, decimal = found
-        mark = "" if decimal == "." else f" {Setting('name_decimal').to(decimal)}"
-        return f". If the name of the file states it, use {Setting('name_pattern').to(template)}{mark}"
-    angle = next(
-        (c for c in columns if c.unit and is_called("position", c) and could_be("position", c)), None
-    )
-    if angle is not None:
-        return f". If '{angle.path}' is the position, use {Setting('position', 'channel').to(angle.path)}"
-    return f", or give set points by time with {Setting('schedule').to('schedule.csv')}"
+def _may_coast(columns: tuple[Column, ...]) -> bool:
+    """Whether columns are those of time and speed, perhaps with a temperature, and no others."""
+    roles = [next((r for r in ("time", "speed", "temperature") if is_called(r, c)), "") for c in columns]
+    return {"time", "speed"} <= set(roles) and "" not in roles
 
 
 def not_numbers(others: tuple[str, ...]) -> str:
@@ -320,7 +326,7 @@ def named_channel(
         near = meant(name, [*(c.path for c in free), *(str(c) for c in free)])
         channel = Setting(role, "channel")
         raise ChannelError(
-            f"{file}: there is no column '{name}' ({role}). Columns: {_listed(columns)}",
+            f"{file}: there is no column '{name}' ({role}). Columns: {columns_listed(columns)}",
             remedy=f"did you mean {channel.to(near)}?" if near else "",
             setting=channel,
         )
@@ -348,26 +354,29 @@ def _either(names: list[str]) -> str:
     return listed + (f" or {len(names) - _SHOWN} more" if len(names) > _SHOWN else "")
 
 
-def _listed(columns: tuple[Column, ...]) -> str:
-    """Columns with their units, the first of them where there are very many."""
-    listed = ", ".join(f"'{c}'" for c in columns[:_SHOWN])
-    return listed + (f" and {len(columns) - _SHOWN} more" if len(columns) > _SHOWN else "")
+def columns_listed(columns: tuple[Column, ...]) -> str:
+    """Return columns with their units, the first of them where there are very many."""
+    names = ", ".join(f"'{c}'" for c in columns[:_SHOWN])
+    return names + (f" and {len(columns) - _SHOWN} more" if len(columns) > _SHOWN else "")
 
 
 def _telling(role: str, candidates: list[Column]) -> list[Column]:
     """The candidates without those that others put in the shade.
 
-    A letter without a unit beside a name with one, and the clock of a step beside that of the run.
+    A letter without a unit beside a name with one, the clock of a step beside that of the run, and the
+    temperature of another part beside that of the lubricant.
     """
     if any(c.unit and could_be(role, c, surely=True) for c in candidates):
         candidates = [c for c in candidates if c.unit or len(c.name) > 1]
     if role == "time":
         candidates = [c for c in candidates if not _PART_OF_A_RUN.search(c.name)] or candidates
+    if role == "temperature":
+        candidates = [c for c in candidates if _OF_LUBRICANT.search(c.name)] or candidates
     return candidates
 
 
 def _in_friction(role: str, columns: tuple[Column, ...], measured: list[Column]) -> list[Column]:
-    """Columns of a friction force, or else a coefficient, or of a sliding speed."""
+    """Columns of a friction coefficient, or else a force, or of a sliding speed."""
     if role == "speed":
         sliding = [c for c in columns if is_named(FRICTION_NAMES["belt speed"], c)]
         return [c for c in measured or sliding if is_of_kind("belt speed", c.unit)]
@@ -377,7 +386,7 @@ def _in_friction(role: str, columns: tuple[Column, ...], measured: list[Column])
     forces = [c for c in columns if is_named(FRICTION_NAMES["force"], c) and c not in coefficients]
     forces = [c for c in forces if not c.unit or is_of_kind("force", c.unit)]
     return (
-        forces
+        [c for c in coefficients if not c.unit or c.unit in ("1", "-", "\u2013")]
+        or forces
         or [c for c in measured if is_of_kind("force", c.unit)]
-        or [c for c in coefficients if not c.unit or c.unit in ("1", "-", "\u2013")]
     )

@@ -1,4 +1,4 @@
-"""A temperature that is excluded and that never changes: its sensor may be dead."""
+"""A temperature that is excluded: of a log of friction its column, and one that never changes."""
 
 from __future__ import annotations
 
@@ -10,18 +10,21 @@ from hersey.arrays import FloatArray
 from hersey.errors import HerseyError
 from hersey.log.believed import in_si
 from hersey.log.channels import ChannelChoice, find_channel, is_dead
-from hersey.log.friction import Chosen
+from hersey.log.friction import Chosen, measured
 from hersey.log.text.column import Column
 from hersey.schema.warning import Warning
+from hersey.units import Conversion
 
-#: Kind of the warning.
-CONSTANT_TEMPERATURE = "constant temperature"
+#: Kinds of the warnings: of one that never changes, and of one beside friction.
+CONSTANT_TEMPERATURE, EXCLUDED = "constant temperature", "temperature excluded"
 
 
 def constant_temperature(
     columns: tuple[Column, ...], chosen: Chosen, file: str, numbers: Callable[[Column], FloatArray]
 ) -> list[Warning]:
     """Return a warning if the temperature of a log that is read without it is the same in every row.
+
+    Or a note which column it is, if the log is of friction: its report proposes the column.
 
     ``chosen`` are the columns of the other roles, and ``numbers`` returns those of a column as written.
     """
@@ -36,7 +39,7 @@ def constant_temperature(
     values = in_si(numbers(column), unit)
     known = values[np.isfinite(values)]
     if not known.size or not is_dead(known):
-        return []
+        return _excluded(column, unit, chosen) if known.size else []
     return [
         Warning(
             CONSTANT_TEMPERATURE,
@@ -46,3 +49,9 @@ def constant_temperature(
             temperature=float(known[0]),
         )
     ]
+
+
+def _excluded(column: Column, unit: Conversion, chosen: Chosen) -> list[Warning]:
+    if measured(chosen).quantity == "torque":
+        return []
+    return [Warning(EXCLUDED, "temperature '{column}' is excluded", column=column.path, unit=unit.unit)]

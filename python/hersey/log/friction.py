@@ -8,7 +8,7 @@ Several radii or loads give a force or a coefficient against sliding speed, whic
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -17,6 +17,7 @@ from hersey.arrays import FloatArray
 from hersey.log.channels import ChannelChoice, Stated, find_channel
 from hersey.log.long_arrays import HELD, Filling, blocks
 from hersey.log.roles import role_conversion
+from hersey.log.rolling import entrainment
 from hersey.log.stating import proposals, unstated
 from hersey.log.text.column import Column
 from hersey.schema.domain import QUANTITY_OF, SPEED_OF, Domain
@@ -63,11 +64,25 @@ def beside(
     return others
 
 
-def unused(columns: tuple[Column, ...], chosen: Chosen, stated: Stated) -> list[Warning]:
-    """Return which columns may be the load or the radius that nobody stated, and how to state it."""
-    roles = ("load",) if _kinds(chosen).get("torque", "torque") == "torque" else ("load", "radius")
-    left = _without(columns, chosen)
-    return [each for role in roles if not _known(role, chosen, stated) for each in proposals(role, left)]
+def unused(
+    columns: tuple[Column, ...], chosen: Chosen, stated: Stated, numbers: Callable[[Column], FloatArray]
+) -> list[Warning]:
+    """Return which columns may be a load or radius that nobody stated, and what a slide-roll ratio says.
+
+    ``numbers`` returns those of a column as written.
+    """
+    kind = _kinds(chosen).get("torque", "torque") if "torque" in chosen else ""
+    left, found = _without(columns, chosen), list[Warning]()
+    for role in ("load", "radius"):
+        counts = kind == "torque" or (kind == "force" and role == "load")
+        if not _known(role, chosen, stated):
+            found += proposals(role, left, numbers, counts=counts)
+    # a torque needs no radius, unless it was recorded at several
+    idle = "" if kind in ("force", "friction coefficient") else "radius"
+    found = [each for each in found if each.values["role"] != idle or each.severity == "watch"]
+    if kind in ("force", "friction coefficient") and measured(chosen).speed == "sliding speed":
+        found += entrainment(left, chosen["speed"][0], numbers)
+    return found
 
 
 def _without(columns: tuple[Column, ...], chosen: Chosen) -> tuple[Column, ...]:
@@ -183,7 +198,7 @@ def computed(chosen: Chosen, stated: Stated, domain: Domain | None = None) -> li
         words += " {radius_sign} radius ({radius_from})" if powers["radius"][0] else ""
         values = known | {f"{role}_sign": sign for role, sign in signs.items()}
         out.append(Warning("torque computed", words, channel=paths["torque"], quantity=to.quantity, **values))
-    if of.speed != to.speed:
+    if powers["radius"][1]:
         out.append(
             Warning(
                 "speed computed",

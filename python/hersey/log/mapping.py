@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass as plain_dataclass
 from dataclasses import field, fields, replace
 from pathlib import Path
@@ -34,7 +34,12 @@ from hersey.log.channels import Stated
 from hersey.log.corrections import Corrected
 from hersey.log.layouts.current import reading_by
 from hersey.log.layouts.presets import with_preset
-from hersey.log.layouts.proposing import with_layout
+from hersey.log.layouts.recognized import (
+    first_of_each_file_with,
+    in_words,
+    layout_recognized,
+    recognized,
+)
 from hersey.log.layouts.table import LogLayout
 from hersey.log.reading import read
 from hersey.log.role_tables import (
@@ -79,7 +84,7 @@ class _Roles(Table):
     position: PositionMapping = field(default_factory=PositionMapping)
     direction: RoleMapping = field(default_factory=RoleMapping)
     names: NamesMapping = field(default_factory=NamesMapping)
-    #: Set points by time: one ``[[schedule]]`` per step, with from, to, and speed, temperature or load.
+    #: Set points by time or distance: one ``[[schedule]]`` per step, with from, to, and e.g. speed or load.
     schedule: Annotated[Any, Steps(None)] = None
     layout: LogLayout | None = None
 
@@ -147,6 +152,7 @@ class LogMapping(_Roles):
         return {
             "name_pattern": self.names.pattern or None,
             "name_decimal": self.names.decimal if self.names.pattern else None,
+            "run_table": self.names.table,
             "schedule": self.schedule,
             "position_window": self.position.window,
         }
@@ -287,6 +293,7 @@ def read_with_mapping(
     inertia: float | None = None,
     name_pattern: str | None = None,
     name_decimal: str | None = None,
+    run_table: str | Path | None = None,
     schedule: Any = None,
     position_window: float | None = None,
     progress: Progress | None = None,
@@ -302,8 +309,8 @@ def read_with_mapping(
         the motor constant of the mapping.
     signs
         -1 by role, ``torque`` or ``speed``, flips the sign in addition to the mapping.
-    isothermal, drop_missing, every, radius, load, name_pattern, name_decimal, schedule, position_window,
-    without_torque, progress
+    isothermal, drop_missing, every, radius, load, name_pattern, name_decimal, run_table, schedule,
+    position_window, without_torque, progress
         As for `hersey.read`; they override the mapping.
     torque_constant
         Torque of the motor per ampere, N m/A, if the torque column is its current.
@@ -333,38 +340,59 @@ def read_with_mapping(
     said = {
         "name_pattern": name_pattern,
         "name_decimal": name_decimal,
+        "run_table": run_table,
         "schedule": schedule,
         "position_window": position_window,
     }
     sources = chosen.sources | {name: value for name, value in said.items() if value is not None}
     chosen = without_what_is_said(chosen, channels, stated)
+    how = {
+        "isothermal": isothermal,
+        "drop_missing": drop_missing,
+        "without_torque": without_torque,
+        **{name: value for name, value in vars(chosen.stated).items() if value is not None},
+        **{name: value for name, value in vars(stated).items() if value is not None},
+        **sources,
+        "progress": progress,
+    }
+
+    def corrected(by: LogMapping, more: Mapping[str, str]) -> Corrected:
+        named = {**needed(by.channels), **more, **channels}
+        with reading_by(by.layout):
+            return by.correct(read(files, channels=named, units={**needed(by.units), **units}, **how))
+
     try:
-        with reading_by(chosen.layout):
-            log = read(
-                files,
-                channels={**needed(chosen.channels), **channels},
-                units={**needed(chosen.units), **units},
-                isothermal=isothermal,
-                drop_missing=drop_missing,
-                without_torque=without_torque,
-                **{name: value for name, value in vars(chosen.stated).items() if value is not None}
-                | {name: value for name, value in vars(stated).items() if value is not None},
-                **sources,
-                progress=progress,
-            )
-            done = chosen.correct(log)
+        done = _corrected(files, chosen, corrected, channels, units)
     except HerseyError as error:
-        if chosen.layout is None and len(files) == 1:
-            with_advice = with_layout(error, Path(files[0]), channels, units)
-            if with_advice is not error:
-                raise with_advice from None
         if chosen.source is None or not isinstance(error, ChannelError | UnitError):
             raise
         raise error.saying(f"{error.reason} (channels and units come from {chosen.source.name})") from None
     if chosen.torque.zero_error is not None:
         done.log.domain.require_torque("[torque] zero_error")
-    logged = tuple(_as_written(file, chosen) for file in log.files)
+    logged = tuple(_as_written(file, chosen) for file in done.log.files)
     return Corrected(replace(done.log, files=logged, sensors=chosen.sensors), done.corrections)
+
+
+def _corrected(
+    files: Sequence[Any],
+    mapping: LogMapping,
+    corrected: Callable[[LogMapping, Mapping[str, str]], Corrected],
+    channels: Mapping[str, str],
+    units: Mapping[str, str],
+) -> Corrected:
+    """Files read as they stand or by the layout of the mapping, or else by one that they show."""
+    try:
+        return corrected(mapping, {})
+    except HerseyError as error:
+        if mapping.layout is not None:
+            raise
+        proposal = recognized(error, files, channels, units)
+    try:
+        done = corrected(replace(mapping, layout=proposal.layout), proposal.channels)
+    except HerseyError as error:
+        raise error.saying(f"{error.reason} (layout found: {in_words(proposal.layout)})") from None
+    logged = first_of_each_file_with(layout_recognized(proposal.layout), done.log.files)
+    return replace(done, log=replace(done.log, files=logged))
 
 
 def mapping_of(files: Sequence[str | Path], stated: str | Path | None = None) -> LogMapping:

@@ -16,6 +16,7 @@ from hersey.log.text.column import Column
 from hersey.log.without_units import naming_all
 from hersey.units import Conversion
 
+_SHARED = re.compile(r"\bshared\b", re.IGNORECASE)
 _ERROR = re.compile(r"error|uncert|\bsem\b|\bse\b|±", re.IGNORECASE)
 _DEVIATION = re.compile(r"\bsd\b|\bstd|st\.? ?dev|deviation|scatter", re.IGNORECASE)
 _PLAIN = {
@@ -108,7 +109,9 @@ def in_si(cells: CellTable, column: Column, unit: Conversion) -> FloatArray:
 
 def torque_errors(cells: CellTable, torque: Role) -> FloatArray | None:
     """Return standard errors of the column of torque, in SI, from errors, or deviations and counts."""
-    about_torque = [c for c in cells.columns if c != torque[0] and _is_of_torque(c)]
+    about_torque = [
+        c for c in cells.columns if c != torque[0] and _is_of_torque(c) and not _SHARED.search(c.name)
+    ]
     count = plain_column(cells, "count")
     if error := next((c for c in about_torque if _ERROR.search(c.name)), None):
         return _scaled(cells, error, torque)
@@ -116,6 +119,12 @@ def torque_errors(cells: CellTable, torque: Role) -> FloatArray | None:
         if _DEVIATION.search(column.name) and count is not None:
             return _scaled(cells, column, torque) / np.sqrt(np.maximum(cells.numbers(count), 1.0))
     return None
+
+
+def shared_errors(cells: CellTable, torque: Role) -> FloatArray | None:
+    """Return the standard errors of torque that all rows share, in SI."""
+    column = next((c for c in cells.columns if _SHARED.search(c.name) and _ERROR.search(c.name)), None)
+    return None if column is None or not _is_of_torque(column) else _scaled(cells, column, torque)
 
 
 def _is_of_torque(column: Column) -> bool:

@@ -1,8 +1,8 @@
 """A table of means: one row per dwell, as test reports and papers print it, without a clock.
 
 Columns of speed and torque are needed; temperature, load, the standard error of the torque or its deviation
-with a count, a run and the approach may stand beside them. A row with a cell that is no number
-costs that row alone.
+with a count, the error of torque that all rows share, a run and the approach may stand beside them. A row
+with a cell that is no number costs that row alone.
 """
 
 from __future__ import annotations
@@ -29,12 +29,14 @@ from hersey.log.mean_roles import (
     mean_roles,
     measured,
     plain_column,
+    shared_errors,
     torque_errors,
 )
 from hersey.log.not_a_log import is_one, refuse_not_a_log
 from hersey.log.pooling import refuse_mixed
 from hersey.log.replaced import replaced_units
 from hersey.log.roles import CHANNELS, SIGNS, UNITS
+from hersey.log.rolling import of_rolling
 from hersey.log.sensors import Sensors
 from hersey.log.text.column import Column
 from hersey.log.torque_log import LARGEST, Channel, LogFile, TorqueLog, title_of
@@ -71,6 +73,8 @@ class MeanRow:
     load: float | None
     count: float
     approach: str
+    shared_error: float = 0.0  #: standard error of torque that all rows of its table share
+    table: int = 0  #: of several, from 0
 
 
 @dataclass(frozen=True, repr=False)
@@ -173,7 +177,7 @@ def read_means(
         cells = cells_of(table, f"table {number + 1}" if len(listed) > 1 else "table")
         said = Stated(None, radii[number], loads[number])
         rows, file, errors, domain = _read(cells, choices, (said, whole), isothermal, means)
-        means += rows
+        means += [replace(row, table=number) for row in rows]
         files.append(file)
         stated.append(errors)
         domains.append((file.name, domain))
@@ -275,13 +279,16 @@ def _read(
     roles = mean_roles(cells, choices, isothermal)
     used = roles | beside(cells.columns, choices, said, roles, cells.name)
     held = {role: in_si(cells, *role_of) for role, role_of in used.items()}
-    domain = domain_of(used, of_all)
+    seen = unused(cells.columns, used, said, cells.numbers)
+    domain = of_rolling(domain_of(used, of_all), seen)
     lever = in_domain(held | {"torque": np.ones_like(held["torque"])}, used, said, domain)["torque"]
     error = torque_errors(cells, roles["torque"])
     values = in_domain(held, used, said, domain)
     needed = {role: values[role] for role in roles}
     if error is not None:
         needed["torque error"] = values["error"] = error * lever
+    if (shared := shared_errors(cells, roles["torque"])) is not None:
+        needed["shared torque error"] = values["shared"] = shared * lever
     bad = {name: ~np.isfinite(column) for name, column in needed.items()}
     gone = np.logical_or.reduce(list(bad.values()))
     known = _with_labels(cells, values, max((row.run for row in before), default=-1) + 1)
@@ -300,7 +307,7 @@ def _read(
     warnings = (
         *computed(used, said, domain),
         *replaced_units(used),
-        *unused(cells.columns, used, said),
+        *seen,
         *_rows_left_out(left_out),
     )
     file = LogFile(
@@ -339,6 +346,7 @@ def _row(of: Mapping[str, Any]) -> MeanRow:
         load=float(load) if np.isfinite(load) else None,
         count=float(of["count"]) if np.isfinite(of["count"]) else 1.0,
         approach=of["approach"],
+        shared_error=abs(float(of.get("shared", 0.0))),
     )
 
 
@@ -367,26 +375,3 @@ def _rows_left_out(named: list[str]) -> list[Warning]:
             others=max(0, len(named) - _NAMED),
         )
     ]
-
-
-def refuse_corrections(stated: bool, name: str, by_hand: Sequence[str]) -> None:
-    """Refuse corrections of a mapping, or of options given by hand: they are made on a trace."""
-    if stated and by_hand:
-        given = " and ".join(by_hand)
-        raise ParameterError(
-            f"{given} cannot be applied to a table of means. Correct the values in it, and omit {given}"
-        )
-    if stated:
-        raise ParameterError(
-            f"{name} contains corrections (signs, tare, gears, lag), which cannot be applied to a table "
-            "of means. Correct the values in the table, and name only its columns in the mapping"
-        )
-
-
-def refuse_sources(named: Sequence[str]) -> None:
-    """Refuse what stands in the place of a column of a log."""
-    if named:
-        raise ParameterError(
-            "a table of means holds its speed, sign and load as columns. Write them there, and omit "
-            f"{' and '.join(named)}"
-        )

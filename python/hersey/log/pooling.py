@@ -9,17 +9,17 @@ import numpy as np
 from hersey.errors import ParameterError, Setting
 from hersey.log.channels import Stated
 from hersey.log.friction import Chosen, computed, domain_of, measured
+from hersey.log.rolling import of_rolling
+from hersey.log.stating import LIFTED
 from hersey.log.text.column import Column
 from hersey.log.torque_log import LogFile, Run
 from hersey.schema.domain import TORQUE, Domain
 from hersey.schema.warning import Warning
 from hersey.units import Conversion
 
-#: Share of the usual (95th percentile) load below which surfaces are not in contact.
-_LIFTED = 0.1
 #: Ratio of loads up to which they count as the same.
 SAME_LOAD = 1.03
-_SPEED_WORDS = {"speed": "speed of rotation", "sliding speed": "sliding speed"}
+_SPEED_WORDS = {"speed": "speed of rotation"}
 
 
 def of_each_run(runs: list[tuple[Run, LogFile]], stated: Stated) -> list[tuple[Run, LogFile]]:
@@ -75,7 +75,7 @@ def _in_contact(run: Run, log: LogFile, of: Domain) -> tuple[Run, LogFile]:
     """A run without the rows whose load is no contact, where its column makes the coefficient."""
     if run.load is None or of.powers(run.domain)["load"][0] >= 0:
         return run, log
-    pressed = run.load > _LIFTED * float(np.quantile(run.load, 0.95))
+    pressed = run.load > LIFTED * float(np.quantile(run.load, 0.95))
     lost = int(pressed.size - np.count_nonzero(pressed))
     if not lost:
         return run, log
@@ -91,7 +91,7 @@ def _in_contact(run: Run, log: LogFile, of: Domain) -> tuple[Run, LogFile]:
         "{rows} {rows:row was|rows were} excluded because the normal load is below {share:.0f %} of its "
         "usual value",
         rows=lost,
-        share=_LIFTED,
+        share=LIFTED,
     )
     file = replace(log, rows=int(kept["time"].size), warnings=(*log.warnings, lifted))
     return replace(run, **kept), file
@@ -100,7 +100,7 @@ def _in_contact(run: Run, log: LogFile, of: Domain) -> tuple[Run, LogFile]:
 def _recorded(log: LogFile, stated: Stated) -> tuple[Domain, Domain]:
     """What a file was measured in, and the domain that it has, from the record of its channels."""
     chosen = _chosen(log)
-    return measured(chosen), domain_of(chosen, stated)
+    return measured(chosen), of_rolling(domain_of(chosen, stated), log.warnings)
 
 
 def _chosen(log: LogFile) -> Chosen:
@@ -131,6 +131,9 @@ def refuse_mixed(domains: list[tuple[str, Domain]]) -> None:
             )
         if other.speed != of.speed:
             raise ParameterError(
-                f"{first} holds a {_SPEED_WORDS[of.speed]} and {name} a {_SPEED_WORDS[other.speed]}",
-                remedy=f"state the radius, e.g. {Setting('radius').to('25 mm')}",
+                f"{first} holds a {_SPEED_WORDS.get(of.speed, of.speed)} and {name} a "
+                f"{_SPEED_WORDS.get(other.speed, other.speed)}",
+                remedy=f"state the radius, e.g. {Setting('radius').to('25 mm')}"
+                if "speed" in (of.speed, other.speed)
+                else "fit them separately",
             )

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from hersey.errors import ChannelError, ParameterError, UnitError
+from hersey.errors import ChannelError, HerseyError, ParameterError, UnitError
 from hersey.log.assembly import Assembly
 from hersey.log.channels import ChannelChoice, Stated
 from hersey.log.derived.sources import Sources
@@ -26,7 +26,11 @@ from hersey.log.text.column import distinct_names
 from hersey.log.text.delimited import Progress, delimited_columns, read_delimited
 from hersey.log.torque_log import LARGEST, LogFile, Run, TorqueLog
 from hersey.log.wanted import Wanted
+from hersey.schema.warning import Warning
 from hersey.units import takes_si
+
+#: Kind of the warning of a temperature that cannot be read.
+NOT_READ = "temperature not read"
 
 
 @takes_si(every="time", radius="length", load="force", position_window="time", channels=CHANNELS, units=UNITS)
@@ -43,6 +47,7 @@ def read(
     without_torque: bool = False,
     name_pattern: str | None = None,
     name_decimal: str | None = None,
+    run_table: str | Path | None = None,
     schedule: Any = None,
     position_window: float | None = None,
     progress: Progress | None = None,
@@ -82,10 +87,13 @@ def read(
         temperature. ``*`` stands for any text.
     name_decimal
         Decimal mark of the numbers in the names, e.g. ``"-"`` for ``0-1rps.txt``.
+    run_table
+        File with a row for each log: a column ``file``, and speed, load, radius or temperature with their
+        units (``load [N]``).
     schedule
         Speed, temperature or load by time, if the log has no channel of it: a file (``from [s]``,
         ``to [s]``, ``speed [rpm]``), or a list of ``{"from": "0 s", "to": "60 s", "speed": "10 rpm"}``.
-        Times are counted from the first row.
+        Times are counted from the first row. With sliding speeds, distances may stand in their place.
     position_window
         Time over which speed is the slope of a ``position`` column, s (0.2 s, or less if motion is faster).
     progress
@@ -120,10 +128,11 @@ def read(
             )
     choices = {r: ChannelChoice((channels or {}).get(r, ""), (units or {}).get(r, "")) for r in known}
     stated = _stated(every=every, radius=radius, load=load)
-    sources = Sources.of(name_pattern, name_decimal, schedule, position_window)
+    sources = Sources.of(name_pattern, name_decimal, run_table, schedule, position_window)
     sources.refuse_twice(choices, stated)
     stated = sources.stated(stated, files)
-    wanted = Wanted(choices, stated, isothermal, drop_missing, without_torque)
+    names = tuple(Path(file).name for file in files if isinstance(file, str | Path))
+    wanted = Wanted(choices, stated, isothermal, drop_missing, without_torque, names=names)
     done: list[tuple[Run, LogFile]] = []
     for number, file in enumerate(files, start=1):
         of_file = replace(wanted, derived=sources.of_file(file))
@@ -134,6 +143,9 @@ def read(
             raise ParameterError(f"{name} has the same content as an earlier file. Give each file once")
         done += read_here
     done = of_each_run(done, stated)
+    if told := sources.unused(names, choices, stated):
+        run, first = done[0]
+        done[0] = run, replace(first, warnings=(*first.warnings, *told))
     log = TorqueLog(tuple(run for run, _ in done), tuple(log for _, log in done))
     refuse_given_twice(log.runs)
     refuse_rows_shared(log.runs)
@@ -161,10 +173,21 @@ def _speeds(file: Any, wanted: Wanted, frame: str, progress: Progress | None) ->
     try:
         return _runs(file, wanted, frame, progress)
     except (ChannelError, UnitError) as error:
-        of_temperature = error.setting is not None and error.setting.name == "temperature"
-        if not of_temperature or wanted.choices["temperature"] != ChannelChoice():
+        if not is_of_temperature(error) or wanted.choices["temperature"] != ChannelChoice():
             raise
-    return _runs(file, replace(wanted, isothermal=True), frame, progress)
+        why = () if isinstance(error, ChannelError) and error.absent else (temperature_not_read(error),)
+    found = _runs(file, replace(wanted, isothermal=True), frame, progress)
+    return [(run, replace(log, warnings=(*log.warnings, *why))) for run, log in found]
+
+
+def is_of_temperature(error: HerseyError) -> bool:
+    """Return whether an error is one of the channel of temperature."""
+    return error.setting is not None and error.setting.name == "temperature"
+
+
+def temperature_not_read(error: HerseyError) -> Warning:
+    """Return the warning of a log without torque that is read without a temperature, for this error."""
+    return Warning(NOT_READ, "{why}, so no temperature is used", severity="watch", why=error.reason)
 
 
 def _stated(*, every: Any, radius: Any, load: Any) -> Stated:

@@ -32,6 +32,18 @@ class _NoLoad(Quantity):
         return named
 
 
+class Beside(Quantity):
+    """A file beside the mapping, unless its path is absolute."""
+
+    def checked(self, given: Any, info: ValidationInfo[Any]) -> Any:
+        """Return the path."""
+        if given is None or info.context is None:
+            return given
+        if not isinstance(given, str) or not given.strip():
+            raise ParameterError(f"is {given!r}: write the name of a file")
+        return info.context.path.parent / given
+
+
 def _sign(given: object) -> object:
     if isinstance(given, bool) or given not in (1, -1):
         raise ParameterError(f"is {given!r}: it must be 1 or -1")
@@ -95,6 +107,8 @@ class NamesMapping(Table):
     pattern: Text = ""
     #: Decimal mark of their numbers, e.g. "-".
     decimal: Text = "."
+    #: Table beside the mapping with a row for each file, instead: file, load [N], radius [mm] and so on.
+    table: Annotated[Path | None, Beside(None)] = None
 
 
 class Steps(Quantity):

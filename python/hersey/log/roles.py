@@ -39,8 +39,8 @@ _NAMES = {
     "torque": r".*torque.*|tq.*|.*\btq|.*moment.*|m",
     "speed": r".*speed.*|.*velocity.*|.*rpm.*|.*omega.*|.*drehzahl.*|n|w|ω",
     "temperature": r".*temp.*|.*thermistor.*|.*heater.*|.*thermocouple.*|.*film t.*",
-    "load": r".*\bload(?! ?cell).*|.*normal ?(force|kraft).*|.*normalkraft.*|f_?n|.*axial ?force",
-    "radius": r".*radius.*",
+    "load": r".*\bload(?! ?cell).*|.*normal ?(force|kraft).*|.*normalkraft.*|f_?[nz]|.*axial ?force",
+    "radius": r".*radius.*|.*\btrack",
     "position": r".*(angle|position|encoder|winkel|lage).*|phi|theta|pos",
 }
 #: Names of what stands for a torque, or a speed of rotation, where the radius is known.
@@ -109,6 +109,8 @@ def role_conversion(role: str, unit: str) -> tuple[str, Conversion]:
         If the unit is unknown, or of no kind that the role can have.
     """
     text = "1" if unit in ("-", "\u2013") else apart(unit)[0]
+    if role == "position" and (text in ("1", "%") or of_encoder(f"{text}/s")):
+        raise UnitError(f"unit '{unit}' does not say how large an angle is")
     counted = role == "speed" and of_encoder(text)  # no other kind of speed knows these
     for kind in ROLE_KINDS[role][:1] if counted else ROLE_KINDS[role]:
         if kind == "friction coefficient" and text != "1":  # % of a torque is none

@@ -26,6 +26,15 @@ _EXAMPLES = {
     "radius": {"A": "10 mm/A", "V": "10 mm/V", "%": "25 mm / 100"},
 }
 
+#: Names of a current of a motor, and what one ampere of it may stand for.
+_CURRENT = re.compile(r"(.*[^a-z])?(current|amps?|strom|i_?q)([^a-z].*)?", re.IGNORECASE)
+CURRENT_EXAMPLE = _EXAMPLES["torque"]["A"]
+
+
+def may_be_current(name: str, unit: str) -> bool:
+    """Return whether a column is in amperes, or is called a current and has no unit."""
+    return signal_kind(unit) == "A" or (not unit and _CURRENT.fullmatch(name) is not None)
+
 
 def apart(unit: str) -> tuple[str, str]:
     """Return a unit such as ``0.2 N*m/A`` as the unit of one ampere, and A; any other as it is, and nothing.

@@ -14,7 +14,8 @@ from hersey.log.roles import EVERY, ROLES
 class Wanted:
     """What the user says of a log: a choice for each role, what a file need not hold, what is left out.
 
-    A log of a wheel that coasts down is read ``without_torque``.
+    A log of a wheel that coasts down is read ``without_torque``. ``names`` are those of all files that are
+    read together.
 
     Raises
     ------
@@ -30,6 +31,7 @@ class Wanted:
     drop_missing: bool = False
     without_torque: bool = False
     derived: Derived = Derived()  # noqa: RUF009 # frozen
+    names: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         """Refuse what contradicts itself."""

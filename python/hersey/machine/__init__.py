@@ -15,6 +15,7 @@ rotational           rotational quantities in the place of those at the surface
 doubts               values that are possible, but unusual
 uncertainty          how far a parameter is known
 temperature_profile  temperature against time, from a file
+lubricant_file       a file of a lubricant alone
 questions            what is asked about a machine and the channels of its log
 writing              a machine file and hersey.toml from answers
 ===================  ==============================================================

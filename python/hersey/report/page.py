@@ -46,14 +46,14 @@ _LIVE = (
     "verdict.js",
     "panel.js",
 )
-_SECTIONS = ("section.js", "torque.js", "regime.js", "quality.js", "band.js", "plans.js")
+_SECTIONS = ("section.js", "joint.js", "torque.js", "regime.js", "quality.js", "band.js", "plans.js")
 _REPORT = ("panel.css", "timeline.js", *_LIVE, "first.js", *_SECTIONS, "page.js")
 #: Charts that the page draws itself: the log on one axis, and motion.
 _OTHERWISE = ("timeline_", "simulation_")
 #: Terms whose meaning a label shows where the pointer rests on it.
 _TERMS = ("V*", "transition", "stick speed", "closure", "dwell")
 #: Samples that only charts need.
-_DRAWN: Any = {"fit": {"cells"}, "simulation": True}
+_DRAWN: Any = {"fit": {"cells"}, "simulation": True, "moments": True}
 
 
 @takes_si()

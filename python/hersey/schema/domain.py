@@ -24,6 +24,8 @@ _QUANTITIES: Final = {
 _SPEEDS: Final = {
     "speed": ("rad/s", "w", ("rpm", float(rpm(1.0))), 0, 0.002),
     "sliding speed": ("m/s", "v", ("m/s", 1.0), 1, 2e-5),
+    "entrainment speed": ("m/s", "U", ("m/s", 1.0), 1, 2e-5),
+    "Hersey number": ("1/m", "H", ("1/m", 1.0), 0, 0.0),
 }
 
 
@@ -37,7 +39,7 @@ class Domain(Record):
     also_stated = ("unit", "speed_unit")
 
     quantity: str = "torque"  #: ``torque``, ``friction force`` or ``friction coefficient``
-    speed: str = "speed"  #: ``speed`` of rotation, or ``sliding speed``
+    speed: str = "speed"  #: ``speed`` of rotation, ``sliding`` or ``entrainment speed``, or ``Hersey number``
 
     @classmethod
     def read(cls, part: Any) -> Domain:
@@ -72,7 +74,7 @@ class Domain(Record):
     @property
     def damping_unit(self) -> str:
         """SI unit of quantity over speed."""
-        over = {"rad/s": "s/rad", "m/s": "s/m"}[self.speed_unit]
+        over = {"rad/s": "s/rad", "m/s": "s/m", "1/m": "m"}[self.speed_unit]
         return f"{self.unit} {over}".strip()
 
     @property
@@ -161,6 +163,8 @@ def _titled(name: str, unit: str) -> str:
     return f"{name[:1].upper()}{name[1:]}" + (f" ({unit})" if unit else "")
 
 
+#: What viscosity, speed and load make together: see `hersey.damping.dwells.hersey_number`.
+HERSEY_NUMBER: Final = "Hersey number"
 #: The torque of a rotation.
 TORQUE: Final = Domain()
 #: Domains by kinds of units of a column of torque, and of one of speed.

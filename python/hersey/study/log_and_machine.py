@@ -30,7 +30,7 @@ from hersey.study.nip import film_part
 from hersey.study.simulation import simulation
 from hersey.study.torque_budget import torque_budget
 from hersey.units import takes_si
-from hersey.verdict.friction import leading_friction
+from hersey.verdict.friction import excludes_power_law, leading_friction
 from hersey.verdict.regime import regime
 from hersey.verdict.warnings import warnings_of
 
@@ -62,10 +62,15 @@ class Study(Findings, Result):
 
     @property
     def verdict(self) -> list[str]:
-        """What log and nip say of the regime, in paragraphs; a contradiction first."""
+        """What log and nip say of the regime, in paragraphs; a contradiction first.
+
+        Where a friction curve excludes the power law, that is the verdict.
+        """
         own = [self.nip.verdict] if self.nip is not None and self.nip.verdict else []
-        friction = [] if self.friction is None else [verdict_of(self.friction)]
-        return [*own, *friction, self.regime.verdict]
+        if self.friction is None:
+            return [*own, self.regime.verdict]
+        excluded = excludes_power_law(self.friction, self.surface)
+        return [*own, verdict_of(self.friction), *([] if excluded else [self.regime.verdict])]
 
     def summary(self) -> str:
         """Return decision, comparison, verdict, warnings and fit, as text."""

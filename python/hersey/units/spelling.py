@@ -12,8 +12,8 @@ from hersey.units.kinds import KINDS, meant
 COUNTS = 2000
 # Spellings of the field that pint does not know, or reads as something else.
 _SPELLINGS = (
-    (r"(?i:(°|º|deg(\.|rees?)?)\s*C|℃|celsius)|C", "degC"),
-    (r"(?i:(°|º|deg(\.|rees?)?)\s*F|℉|fahrenheit)|F", "degF"),
+    (r"(?i:(°|º|deg(\.|rees?)?)[\s_]*C|℃|celsius)|C", "degC"),
+    (r"(?i:(°|º|deg(\.|rees?)?)[\s_]*F|℉|fahrenheit)|F", "degF"),
     (r"°\s*K|deg\s*K|(?i:kelvin)", "K"),
     (r"(?i:ozf?s?[\s.*·-]?in|in[\s.*·-]?ozf?s?)", "ozf*in"),
     (r"(?i:lbf?s?[\s.*·-]?in|in[\s.*·-]?lbf?s?)", "lbf*in"),

@@ -12,11 +12,14 @@ import numpy as np
 
 from hersey.damping.candidates.collapse import hersey_collapse
 from hersey.damping.dwells import SteadyPoints
+from hersey.damping.dwells.groups import groups_of_temperature
+from hersey.damping.dwells.hersey_number import CURVE
 from hersey.damping.estimate import Estimate, rounded
 from hersey.damping.surface import DampingSurface
 from hersey.damping.trend import Trend
 from hersey.errors import InsufficientDataError, capital
 from hersey.log.pooling import SAME_LOAD
+from hersey.schema.domain import HERSEY_NUMBER, Domain
 from hersey.verdict.regimes import COULOMB, FALLING, Hypothesis
 
 #: What a regime means where friction was measured, for those whose meaning is about torque.
@@ -49,6 +52,8 @@ def friction_verdict(points: SteadyPoints, surface: DampingSurface, trend: Trend
         Sentence on regimes, said where all dwells have one load.
     """
     seen = friction_finding(surface, trend)
+    if CURVE in points.table.columns:
+        return _of_curves(points, seen, because)
     if loads := points.varying_load:
         because = _of_loads(points, loads)
     return " ".join(filter(None, (seen, because)))
@@ -82,12 +87,18 @@ def _lowest(surface: DampingSurface) -> str:
     known = (
         rounded(value, low, high, unit) if t.speed.estimable else f"{value:.3g} {unit} (interval not known)"
     )
-    mixed = _with_sensors(_raised(t.mixed_exponent))
+    mixed, name = _with_sensors(_raised(t.mixed_exponent)), capital(of.quantity)
     return (
-        f"{capital(of.quantity)} is lowest at {known}. Above it, it rises as {of.speed_symbol}^"
+        f"{name} is lowest at {_named_speed(of)}{known}. Above it, it rises as {of.speed_symbol}^"
         f"{_with_sensors(power_of(surface))}; below it, it falls as {of.speed_symbol}^{mixed}, as in mixed "
         "lubrication."
     )
+
+
+def _named_speed(of: Domain) -> str:
+    """What comes before a speed that is not the one that everybody expects."""
+    named = {"entrainment speed": "an entrainment speed of ", HERSEY_NUMBER: "a Hersey number of "}
+    return named.get(of.speed, "")
 
 
 def _of_range(surface: DampingSurface, trend: Trend) -> str:
@@ -148,11 +159,45 @@ def _per_cent(share: float) -> str:
     return f"{100.0 * share:.2g} %"
 
 
+def _of_curves(points: SteadyPoints, seen: str, because: str) -> str:
+    """What friction does with the Hersey number, and whether temperatures and loads share one curve."""
+    speed, friction = (np.abs(points.column(name)) for name in ("speed", "torque"))
+    if loads := points.varying_load:
+        because = f"Loads differ ({loads[0]:.3g} to {loads[1]:.3g} N), so no film regime is judged."
+    curve = points.column(CURVE)
+    number = np.unique(curve).size
+    if number < 2:
+        return " ".join(filter(None, (seen, because)))
+    try:
+        found = hersey_collapse(np.log(speed), np.log(friction), curve)
+    except InsufficientDataError:
+        found = None
+    if found is not None and found.collapses is False:
+        apart = _per_cent(found.deviation)
+        return (
+            f"Curves at {number} temperatures and loads do not collapse on the Hersey number: they lie "
+            f"{apart} apart, so this is no single Stribeck curve. {seen}"
+        )
+    if found is not None and found.collapses:
+        within = f"{number} curves at different temperatures or loads collapse on the Hersey number within "
+        within += f"{_per_cent(max(found.deviation, found.scatter))}."
+    else:
+        within = "Whether curves at different temperatures or loads collapse cannot be determined."
+    return " ".join(filter(None, (seen, within, because)))
+
+
+def _temperatures(points: SteadyPoints) -> int:
+    """How many temperatures there are, as far as the log has any."""
+    if not points.log.has_temperature:
+        return 0
+    return sum(1 for _ in groups_of_temperature(points.column("temperature")))
+
+
 def _of_loads(points: SteadyPoints, loads: tuple[float, float]) -> str:
     """Whether different loads share one curve."""
     apart = f"Loads differ ({loads[0]:.3g} to {loads[1]:.3g} N), so no film regime is judged."
-    if points.domain.quantity != "friction coefficient":
-        return apart
+    if points.domain.quantity != "friction coefficient" or _temperatures(points) > 1:
+        return apart  # speed over load is the Hersey number at one viscosity
     speed, friction, load = (np.abs(points.column(name)) for name in ("speed", "torque", "load"))
     group = np.round(np.log(load / load.min()) / math.log(SAME_LOAD)).astype(int)
     try:

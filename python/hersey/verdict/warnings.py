@@ -8,12 +8,14 @@ import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.damping.dwells import SteadyPoints
-from hersey.damping.dwells.doubtful import doubtful_order, doubtful_tare
+from hersey.damping.dwells.doubtful import constant_load, doubtful_order, doubtful_tare
 from hersey.damping.dwells.misleading import misleading
+from hersey.damping.dwells.motion_between import motion_between
 from hersey.damping.friction_curve.result import FrictionCurve
 from hersey.damping.surface import DampingSurface
 from hersey.errors import ROTATION
 from hersey.log.doubtful import doubtful_units
+from hersey.log.layouts.recognized import LAYOUT_RECOGNIZED
 from hersey.log.means import MeansTable
 from hersey.log.torque_log import TorqueLog
 from hersey.schema.warning import Warning
@@ -42,7 +44,8 @@ def warnings_of(
     log = points.log
     found = [Warning("corrected", "corrected: {how}", how=str(correction)) for correction in log.corrections]
     found += [each for i in range(len(log.files)) for each in _of_file(log, i)]
-    found += [*doubtful_units(log), *held_values(points), *doubtful_tare(points), *points.warnings]
+    found += [*doubtful_units(log), *held_values(points), *constant_load(points)]
+    found += [*doubtful_tare(points), *points.warnings]
     found += _of_rest(points)
     if (loads := points.varying_load) and points.domain.quantity != "friction coefficient":
         words = "one law is fitted to loads from {low:.3g} to {high:.3g} N. Fit each load separately"
@@ -53,6 +56,7 @@ def warnings_of(
             "which the fit excludes"
         )
         found.append(Warning("stick-slip", words, count=swinging))
+    found += motion_between(points)
     if surface is not None:
         found += _of_directions(points, surface, apart=friction is not None and friction.apart)
     found += [*doubtful_order(points), *misleading(points)]
@@ -71,7 +75,10 @@ def _of_file(log: TorqueLog | MeansTable, i: int) -> Iterator[Warning]:
         yield Warning("synthetic", words, severity="watch", where=file.name)
     if file.cut_off:
         yield Warning("cut off", "the file ends too early", severity="watch", where=file.name)
-    yield from (warning.within(file.name) for warning in file.warnings)
+    whole = file.name.partition(", run ")[0]
+    yield from (
+        warning.within(whole if warning.kind == LAYOUT_RECOGNIZED else file.name) for warning in file.warnings
+    )
     lifted = any(warning.kind == "rows without contact" for warning in file.warnings)
     if run is not None and run.clock.gaps and not lifted:
         yield Warning(

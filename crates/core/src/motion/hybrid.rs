@@ -267,6 +267,8 @@ impl<'a> Motion<'a> {
             let time = self.now.time;
             let Some(heat) = &mut self.now.heat else { return Ok(()) };
             let (warming, until) = heat.heating_part(&power, piece.duration);
+            // power that ends with the motion must not end the piece just before the belt turns, again and again
+            let until = until.max(NO_TIME * (time + self.unit));
             let assumed = heat.courses; // those to come take their slope already
             // steps follow a cubic
             let terms = if matches!(piece.path, Path::Steps { .. }) { 4 } else { ORDER };

@@ -278,17 +278,23 @@ impl Motion<'_> {
         Mode::Microslip
     }
 
-    /// Leave the stuck phase with the spring force exactly at the holding force.
+    /// Leave the stuck phase with the spring force exactly at the holding force, unless it was beyond it at once.
     fn released(&mut self) -> Mode {
         let drag = &self.now.system.drag;
         self.phase.strength = self.strength_now();
-        self.phase.pull = self.holding_force().copysign(self.phase.pull);
+        let holding = self.holding_force();
+        // the heat of a belt that stopped dead has weakened what holds it: to lower the pull would lose the spring's energy
+        let is_pulled_harder =
+            self.phase.speed == 0.0 && self.phase.pull.abs() > holding * (1.0 + self.tolerance);
+        if !is_pulled_harder {
+            self.phase.pull = holding.copysign(self.phase.pull);
+        }
         let forward = self.phase.pull > 0.0;
         if self.phase.speed == 0.0 && !forward {
             self.mirror();
         }
         self.phase.creeping = self.phase.speed > 0.0 && !forward;
-        self.phase.released = !self.phase.creeping;
+        self.phase.released = !self.phase.creeping && !is_pulled_harder;
         if forward && self.phase.speed >= self.now.speed(drag.stick_speed()) {
             self.phase.branch = self.now.sliding_branch(self.phase.speed);
             drag.branch_mode(self.phase.branch)

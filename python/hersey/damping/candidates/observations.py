@@ -20,7 +20,11 @@ from hersey.damping.dwells.constant import refuse_constant_torque
 from hersey.damping.dwells.least_duration import speeds_lost
 from hersey.damping.dwells.misleading import lagging, one_direction, unlinked_runs
 from hersey.damping.dwells.one_speed import is_one_speed, of_one_speed
-from hersey.damping.dwells.several_loads import refuse_several_loads
+from hersey.damping.dwells.several_loads import (
+    refuse_several_loads,
+    refuse_traction_curve,
+    refuse_unused_load,
+)
 from hersey.errors import InsufficientDataError
 from hersey.log.means import MeansTable
 from hersey.log.torque_log import TorqueLog
@@ -96,6 +100,7 @@ class Observations:
             unit, factor = points.domain.shown_speed
             levels = sorted({f"{factor * w:.3g}" for w in speed}, key=float)[:2]
             held = " and ".join(f"{level} {unit}" for level in levels)
+            refuse_traction_curve(points, held)
             if lost := speeds_lost(points):
                 raise InsufficientDataError(f"all dwells are at {held}: {lost}")
             more = f"all dwells are at {held}. Record dwells at three or more speeds"
@@ -108,6 +113,7 @@ class Observations:
         if fewest_speeds > 1:
             refuse_constant_torque(points)
             refuse_several_loads(points)
+            refuse_unused_load(points)
         kelvin = points.column("temperature") if points.log.has_temperature else None
         group, means = _groups(kelvin, speed.size)
         run = points.column("run").astype(np.intp)

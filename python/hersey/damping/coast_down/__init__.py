@@ -9,6 +9,7 @@ inertia      the moment of inertia, and how far it is known
 closed_form  speed against time in closed form, with its derivatives
 noise        noise of the speeds, and what correlation does to a fit
 fitting      one law fitted to all coasts
+steps        falls between held speeds, which a drive sets
 coasts       the coasts of a log, and what else it holds
 ends         rows at the ends of a coast in which something still acts
 departures   another shape of the law, coasts that differ

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import compress
 from typing import Any
 
 import numpy as np
@@ -101,8 +102,19 @@ def coast_down(log: Any, *, inertia: Any) -> CoastDown:
     )
 
 
+def falls_freely(log: TorqueLog) -> bool:
+    """Return whether a wheel may coast in a log of its speed: its longest fall is looked at."""
+    if log.domain.speed != "speed":
+        return False
+    falls = [coast for index, run in enumerate(log.runs) for coast in coasts_in(run, index)[0]]
+    return bool(falls) and is_free(max(falls, key=lambda each: each.rows))
+
+
 def _found(log: TorqueLog) -> tuple[list[Coast], list[LeftOut]]:
-    """The coasts of a log, and what else it holds; none if most falls of speed are set by a drive."""
+    """The coasts of a log, and what else it holds.
+
+    If a drive sets most falls of speed, only those count that end at rest.
+    """
     falls: list[Coast] = []
     left_out: list[LeftOut] = []
     for index, run in enumerate(log.runs):
@@ -110,10 +122,10 @@ def _found(log: TorqueLog) -> tuple[list[Coast], list[LeftOut]]:
         falls += here
         left_out += others
     free = [is_free(each) for each in falls]
+    if 2 * sum(compress((each.rows for each in falls), free)) < sum(each.rows for each in falls):
+        free = [kept and each.stops for each, kept in zip(falls, free, strict=True)]
+    coasts = list(compress(falls, free))
     driven = [each for each, kept in zip(falls, free, strict=True) if not kept]
-    coasts = [each for each, kept in zip(falls, free, strict=True) if kept]
-    if sum(each.rows for each in driven) > sum(each.rows for each in coasts):
-        driven, coasts = falls, []
     return coasts, [*left_out, *(LeftOut(c.run, c.start, c.end, c.rows, "driven") for c in driven)]
 
 

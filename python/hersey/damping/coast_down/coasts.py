@@ -16,11 +16,12 @@ import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.damping.coast_down.fitting import BEND_OF_NOISE, step_of
+from hersey.damping.coast_down.steps import steps_in
 from hersey.log.torque_log import STANDING, Run
 from hersey.result import Means, Record
 
 #: Why a stretch of a log is no coast.
-Why = Literal["standing", "rising", "held", "braking", "driven", "reversed", "ends", "short"]
+Why = Literal["standing", "rising", "held", "stepped", "braking", "driven", "reversed", "ends", "short"]
 #: Rows to which a run is averaged before coasts are looked for.
 _LOOKED_AT = 20_000
 #: Standard deviations of the noise that a fall must exceed, and share of the highest speed.
@@ -29,6 +30,8 @@ _FALL, _SHARE = 10.0, 0.05
 _EDGE, _EDGE_NOISE = 0.02, 4.0
 #: Rows of a coast at the least.
 FEWEST_ROWS = 20
+#: As many steps of a fall are a staircase, whose last step may be cut short.
+_STAIRCASE = 2
 #: Parts of a coast whose decelerations are compared, and rows of each at the least.
 _PARTS, _FEWEST_PER_PART = 40, 12
 #: A deceleration that is so many times that of a faster part, beyond so many of its errors, is no friction.
@@ -83,27 +86,34 @@ class LeftOut(Record):
 
 def coasts_in(run: Run, index: int) -> tuple[list[Coast], list[LeftOut]]:
     """Return the coasts of a run, and the stretches between them, which together are all its rows."""
-    size = max(1, -(-run.time.size // _LOOKED_AT))
+    size = rows_averaged(run)
     time, signed = (_means(values, size) for values in (run.time, run.speed))
     speed = np.abs(signed)
     noise = noise_of_rows(signed)
     found: list[tuple[int, int, bool]] = []
     why = np.full(speed.size, "held", dtype="<U8")
     why[speed <= max(STANDING, _EDGE_NOISE * noise)] = "standing"
-    for top, bottom in _falls(speed, max(_FALL * noise, _SHARE * float(speed.max()))):
+    least = max(_FALL * noise, _SHARE * float(speed.max()))
+    for top, bottom in _falls(speed, least):
         why[top:bottom] = "ends"
         if _turns(signed, top, bottom, noise):
             why[top:bottom] = "reversed"
+            continue
+        top = _below_steps(time, speed, top, bottom, noise, why)
+        if top >= bottom:
             continue
         first, last, stops = _trimmed(speed, top, bottom, noise)
         for start, end in _free(time, speed, first, last, noise, why):
             if end - start < FEWEST_ROWS:
                 why[start:end] = "short"
                 continue
+            if speed[start] - speed[end - 1] < least:
+                why[start:end] = "held"
+                continue
             found.append((start, end, stops and end == last))
             why[start:end] = ""
     rising = np.zeros(speed.size, dtype=bool)
-    for low, high in _rises(speed, max(_FALL * noise, _SHARE * float(speed.max()))):
+    for low, high in _rises(speed, least):
         rising[low:high] = True
     why[rising & (why == "held")] = "rising"
     coasts = [
@@ -119,6 +129,11 @@ def coasts_in(run: Run, index: int) -> tuple[list[Coast], list[LeftOut]]:
         for start, end, stops in found
     ]
     return coasts, list(_stretches(index, time, why, size))
+
+
+def rows_averaged(run: Run) -> int:
+    """Return how many rows of a run make one row of its coasts."""
+    return max(1, -(-run.time.size // _LOOKED_AT))
 
 
 def _means(values: FloatArray, size: int) -> FloatArray:
@@ -164,6 +179,24 @@ def _turns(signed: FloatArray, top: int, bottom: int, noise: float) -> bool:
     """Whether a wheel goes on in the other direction without a rest, as only a drive can make it."""
     after = signed[bottom : bottom + FEWEST_ROWS] * np.sign(signed[top])
     return bool(after.size and after[-1] < -_FALL * noise)
+
+
+def _below_steps(
+    time: FloatArray, speed: FloatArray, top: int, bottom: int, noise: float, why: np.ndarray
+) -> int:
+    """First row after the steps of a fall, which are marked in ``why``; ``bottom`` if it is all steps."""
+    steps = steps_in(time, speed, top, bottom, noise)
+    if steps:
+        why[top : steps[0].top] = "held"
+    for step in steps:
+        why[step.top : step.start] = "stepped"
+        why[step.start : step.end] = "held"
+    after = steps[-1].end - 1 if steps else top
+    rests = speed[bottom - 1] <= max(STANDING, _EDGE_NOISE * noise)
+    if after >= bottom or (len(steps) >= _STAIRCASE and not rests):
+        why[after:bottom] = "stepped"
+        return bottom
+    return after
 
 
 def _trimmed(speed: FloatArray, top: int, bottom: int, noise: float) -> tuple[int, int, bool]:

@@ -8,11 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from hersey.arrays import FloatArray
-from hersey.damping.coast_down.coasts import Coast, LeftOut
+from hersey.damping.coast_down.coasts import Coast, LeftOut, Why
 from hersey.damping.coast_down.departures import Departure
 from hersey.damping.coast_down.fitting import CoastFit
+from hersey.damping.dwells.reasons import label_of
 from hersey.damping.estimate import Estimate
 from hersey.errors import InsufficientDataError
+from hersey.log.reading import NOT_READ
 from hersey.log.torque_log import TorqueLog
 from hersey.schema.warning import Warning
 
@@ -23,6 +25,7 @@ NOT_SEPARATED = "friction terms not separated"
 CUT = "parts left out"
 EXACT = "inertia taken as exact"
 WARMED = "temperature changed"
+UNKNOWN = "temperature not known"
 TORQUE_UNUSED = "torque not used"
 #: Share of the torque that a term may take without being reported.
 _MATTERS = 0.1
@@ -31,7 +34,11 @@ _UNLIKE = 0.5
 #: Change of temperature, K, that is worth a word.
 _WARMER = 2.0
 #: Stretches that are worth a word.
-_WORDS = {"braking": "braked", "driven": "driven", "reversed": "driven through standstill"}
+_TOLD: tuple[Why, ...] = ("stepped", "braking", "driven", "reversed")
+_OF_STEPS = (
+    "a drive that holds the speed after a fall may have set the fall, too: let the wheel coast to rest, or "
+    "end the log where the drive takes hold"
+)
 _TERMS = ("Coulomb friction", "viscous friction", "windage")
 
 
@@ -41,18 +48,14 @@ def no_coast(log: TorqueLog, left_out: Sequence[LeftOut]) -> InsufficientDataErr
     rows = {
         why: sum(e.rows for e in left_out if e.why == why) for why in dict.fromkeys(e.why for e in left_out)
     }
-    named = {
-        "standing": "standstill",
-        "rising": "rising speed",
-        "held": "constant speed",
-        "ends": "beginning or end of a fall",
-        "short": "falls of too few rows",
-    } | _WORDS
     most = sorted(rows, key=lambda why: -rows[why])
-    held = ", ".join(f"{named[why]} {100 * rows[why] / whole:.0f} %" for why in most[:3])
+    shares = [(label_of(why), 100 * rows[why] / whole) for why in most[:3]]
+    held = ", ".join(f"{name} {share:.0f} %" for name, share in shares if share >= 0.5)
     return InsufficientDataError(
         f"{log.files[0].name}: speed falls freely nowhere in this log ({held})",
-        remedy="record the speed while the wheel coasts down without drive and brake, at 20 rows or more",
+        remedy=_OF_STEPS
+        if rows.get("stepped")
+        else "record the speed while the wheel coasts down without drive and brake, at 20 rows or more",
     )
 
 
@@ -151,18 +154,19 @@ class Doubts:
 
     def _parts(self) -> list[Warning]:
         found = []
-        for why, words in _WORDS.items():
+        for why in _TOLD:
             parts = [each for each in self.left_out if each.why == why]
             if parts:
                 found.append(
                     Warning(
                         CUT,
-                        "{count} {count:stretch was|stretches were} {what} and excluded, the first at "
+                        "{count} {count:stretch was|stretches were} excluded ({what}), the first at "
                         "{start:.4g} to {end:.4g} s",
                         severity="watch",
                         where=self.log.runs[parts[0].run].name,
+                        remedy=_OF_STEPS if why == "stepped" else "",
                         count=len(parts),
-                        what=words,
+                        what=label_of(why),
                         start=parts[0].start,
                         end=parts[0].end,
                     )
@@ -183,6 +187,16 @@ class Doubts:
         ]
 
     def _temperature(self) -> list[Warning]:
+        if not self.log.has_temperature:
+            unread = [each for file in self.log.files for each in file.warnings if each.kind == NOT_READ]
+            return [
+                *unread,
+                Warning(
+                    UNKNOWN,
+                    "without a temperature, warm-up of bearings cannot be distinguished from a dependence "
+                    "of friction on speed, and the points have no temperature",
+                ),
+            ]
         readings = [self._readings(coast) for coast in self.coasts]
         known = np.concatenate([each for each in readings if each is not None] or [np.empty(0)])
         if not known.size or np.ptp(known) < _WARMER:

@@ -9,7 +9,7 @@ import numpy as np
 
 from hersey.damping.coast_down.closed_form import speeds
 from hersey.damping.coast_down.coasts import FEWEST_ROWS, Coast, noise_of_rows
-from hersey.damping.coast_down.fitting import Trace, fit_coasts
+from hersey.damping.coast_down.fitting import CoastFit, Trace, fit_coasts
 from hersey.damping.distributions import MEDIAN_MAGNITUDE
 
 #: Shares of a coast at its beginning and its end that are looked at.
@@ -18,6 +18,8 @@ _BEGINNING, _END = 0.02, 0.06
 _ROWS, _BEYOND = 3, 4.0
 #: Rows next to them that are left out, too: a drive does not let go at once.
 _MARGIN = 3
+#: Least share of a fall that is not at its ends.
+_INNER = 0.5
 #: Scatter about the law, as a share of the fall, that is no noise of a sensor, over so many rows.
 _UNEVEN, _SMOOTHED = 0.04, 5
 
@@ -49,13 +51,24 @@ def is_free(coast: Coast) -> bool:
 
     Noise of single rows is averaged; the last turns, in which gears make the speed swing, do not count.
     """
+    whole = coast.speed[0] - coast.speed[-1]
     (coast,) = without_ends([coast])
-    fit = fit_coasts([Trace(coast.time, coast.speed)])
+    if coast.speed[0] - coast.speed[-1] < _INNER * whole:
+        return False
+    fit = _physical([Trace(coast.time, coast.speed)])
     rest = coast.speed - fit.predicted(0, coast.time)
     smooth = np.convolve(rest, np.ones(_SMOOTHED) / _SMOOTHED, mode="valid")
     noise = 2.0 * noise_of_rows(coast.speed) / np.sqrt(_SMOOTHED)
     allowed = np.hypot(_UNEVEN * float(coast.speed[0] - coast.speed[-1]), noise)
     return bool(np.median(np.abs(smooth)) < MEDIAN_MAGNITUDE * allowed)
+
+
+def _physical(traces: Sequence[Trace]) -> CoastFit:
+    """A law without a negative term, as friction is."""
+    fit = fit_coasts(traces)
+    while (fit.law < 0).any():
+        fit = fit_coasts(traces, (fit.law > 0).tolist())
+    return fit
 
 
 def _part(coast: Coast, first: int, last: int) -> Coast:

@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING, Annotated
 import numpy as np
 
 from hersey.arrays import FloatArray
-from hersey.damping.coast_down.coasts import Coast, LeftOut
+from hersey.damping.coast_down.coasts import Coast, LeftOut, rows_averaged
 from hersey.damping.coast_down.departures import deceleration
 from hersey.damping.coast_down.fitting import TERMS, CoastFit
 from hersey.damping.coast_down.inertia import NORMAL
 from hersey.damping.coast_down.windows import Window
 from hersey.damping.distributions import student_quantile
-from hersey.damping.dwells.points import SteadyPoints
+from hersey.damping.dwells.points import Rejection, SteadyPoints
+from hersey.damping.dwells.reasons import Reason
 from hersey.damping.estimate import CONFIDENCE, Estimate
 from hersey.errors import InsufficientDataError
 from hersey.log.torque_log import Correction, TorqueLog
@@ -119,7 +120,8 @@ class CoastDown(Result):
         """Return the friction in windows of speed as steady points, for `hersey.fit` and the rest.
 
         Windows share no row, so the errors in the table are independent. What all of them share, the error
-        of the inertia, is in ``window_errors``.
+        of the inertia and the difference between coasts, is in ``window_errors``; all other rows of the log
+        are in ``rejected``, with the reason.
 
         Raises
         ------
@@ -152,24 +154,42 @@ class CoastDown(Result):
         signs = np.sign(table["speed"].to_numpy())
         shared = (self.friction.shared * torque * signs)[:, None]
         return SteadyPoints(
-            table, (), 0.0, None, log, warnings=self.warnings, window_errors=shared if shared.any() else
-            np.empty((0, 0)), temperature_rates=np.zeros(torque.size), of_every_sample=True
-        )  # fmt: skip
+            table,
+            self._rejected(table),
+            0.0,
+            None,
+            log,
+            warnings=self.warnings,
+            window_errors=shared if shared.any() else np.empty((0, 0)),
+            temperature_rates=np.zeros(torque.size),
+            of_every_sample=True,
+        )
 
     def table(self) -> str:
-        """Return the points as a table of means, CSV, which ``hersey fit --means`` reads."""
-        points = self.points().table
-        hot = points["temperature"].null_count() == 0
-        head = ["speed [rpm]", *(["temperature [degC]"] if hot else []), "torque [N*m]", "torque error [N*m]"]
+        """Return the points as a table of means, CSV, which ``hersey fit --means`` reads.
+
+        A column holds the standard error that all torques share; a comment says what is excluded.
+        """
+        points = self.points()
+        columns = {"speed [rpm]": rpm(points.column("speed"))}
+        if points.table["temperature"].null_count() == 0:
+            columns["temperature [degC]"] = celsius(points.column("temperature"))
+        columns |= {
+            "torque [N*m]": points.column("torque"),
+            "torque error [N*m]": points.column("torque_error"),
+        }
+        if points.window_errors.size:
+            columns["shared torque error [N*m]"] = np.abs(points.window_errors[:, 0])
         lines = [
             f"# coast-down: windows of speed; moment of inertia {self.inertia.value:g} kg m^2",
-            f"# not in the table: {100.0 * self.friction.shared:.2g} % standard error that all torques share",
-            ",".join(head),
+            *(
+                f"# excluded: {each.rows} rows at {each.start:.7g} to {each.end:.7g} s, {each.reason}"
+                for each in points.rejected
+            ),
+            ",".join(columns),
         ]
-        for row in points.iter_rows(named=True):
-            cells = [rpm(row["speed"]), *([celsius(row["temperature"])] if hot else [])]
-            lines.append(",".join(f"{each:.7g}" for each in (*cells, row["torque"], row["torque_error"])))
-        return "\n".join([*lines, ""])
+        rows = zip(*columns.values(), strict=True)
+        return "\n".join([*lines, *(",".join(f"{each:.7g}" for each in row) for row in rows), ""])
 
     def friction_torque(self, speed: FloatArray) -> FloatArray:
         """Return the friction torque, N m, of the fitted law at speeds, rad/s."""
@@ -180,6 +200,7 @@ class CoastDown(Result):
         coast, inertia = self.coasts[window.coast], self.inertia.value
         sign = 1.0 if coast.forward else -1.0
         rows = window.end - window.start
+        raw = rows * rows_averaged(self.log.runs[coast.run])
         of_noise = max(1.0, self.fit.noise.rows / self.fit.noise.effective_rows)
         first, last = coast.start + coast.time[window.start], coast.start + coast.time[window.end - 1]
         hot = self._temperature(coast.run, float(first), float(last))
@@ -193,13 +214,26 @@ class CoastDown(Result):
             "torque_error": inertia * window.rate_error,
             "temperature": hot,
             "temperature_error": None if hot is None else 0.0,
-            "rows": rows,
+            "rows": raw,
             "effective_rows": rows / of_noise,
             "settling_rows": 0,
             "approach": "from above",
             "load": None,
             "tare": 0.0,
         }
+
+    def _rejected(self, table: pl.DataFrame) -> tuple[Rejection, ...]:
+        """Stretches that are no coast, and rows of coasts in no window."""
+        found = [Rejection(e.run, e.start, e.end, e.rows, Reason(e.why)) for e in self.left_out]
+        for index, run in enumerate(self.log.runs):
+            used = int(table.filter(table["run"] == index)["rows"].sum())
+            left = run.time.size - used - sum(each.rows for each in found if each.run == index)
+            coasts = [each for each in self.coasts if each.run == index]
+            if left > 0:
+                start = coasts[0].start if coasts else float(run.time[0])
+                end = coasts[-1].end if coasts else float(run.time[-1])
+                found.append(Rejection(index, start, end, left, Reason("no window")))
+        return tuple(sorted(found, key=lambda each: (each.run, each.start)))
 
     def _temperature(self, run: int, start: float, end: float) -> float | None:
         """Mean temperature between two times, K."""

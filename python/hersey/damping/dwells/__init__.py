@@ -16,6 +16,7 @@ settling        where a dwell has settled, by itself and by what all show togeth
 judging         which rows of a stretch are a dwell, or why none are
 few_rows        speeds that are held for too few rows to be dwells
 one_speed       the speeds that a log holds, however long each lasts
+motion_between  motion between the dwells, which no dwell uses
 nothing_steady  why a log has no dwell at all, and what to do
 zero            the zero of the torque over the log, from every standing stretch
 least_duration  speeds and temperatures that only the least duration asked for excludes
@@ -24,7 +25,8 @@ constant        whether the torque varies at all
 resolution      the step of a sensor, and the error that rounding leaves in a dwell
 relaxation      torque that still relaxes after each change of speed
 misleading      errors that the order of a log hides or that its sensors leave
-several_loads   torques of runs at different loads: refused
+several_loads   what another column changes beside the speed: refused
+hersey_number   dwells against viscosity times speed over load
 reduction       `steady_points`: from a log to its dwells
 reduced         what to write where steady points are needed and something else is given
 ==============  =======================================================================

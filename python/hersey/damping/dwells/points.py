@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, Protocol
@@ -11,6 +12,7 @@ import polars as pl
 
 from hersey.arrays import FloatArray
 from hersey.damping.dwells.columns import column_of
+from hersey.damping.dwells.hersey_number import Viscous, against_hersey_number
 from hersey.damping.dwells.reasons import NO_DWELL, Reason, joined, opposite_signs
 from hersey.damping.dwells.relaxation import Relaxation
 from hersey.damping.dwells.resolution import Resolution
@@ -23,7 +25,7 @@ from hersey.log.torque_log import TorqueLog
 from hersey.result import Result, json_record
 from hersey.schema.domain import TORQUE, Domain
 from hersey.schema.warning import Warning
-from hersey.units import rpm, takes_si
+from hersey.units import argument, rpm, takes_si
 
 #: Standard errors by which a torque must exceed the no-load torque, so that a film is left.
 _BEYOND = 2.0
@@ -106,7 +108,8 @@ class SteadyPoints(Result):
         What is left of it in the torque of each dwell at the most, N m, shape (points, 0 or 1).
     window_errors
         What one standard error of each number that all windows of a moving log share (inertia, offset, the
-        moment of inertia of a coast-down) does to the torque of each point, N m, shape (points, errors).
+        moment of inertia of a coast-down), or all rows of a table of means, does to the torque of each point,
+        N m, shape (points, errors).
     of_every_sample
         Whether the points are windows of a fit to every sample of a log, not dwells.
     temperature_rates
@@ -167,8 +170,9 @@ class SteadyPoints(Result):
         ----------
         table
             A file, columns by name or a polars or pandas frame, with speed and torque; temperature, load, the
-            standard error of the torque (or its deviation and a count), run and approach may stand beside
-            them. Units stand in the names of the columns. Also several, or a `MeansTable`.
+            standard error of the torque (or its deviation and a count), the error that all rows share, run
+            and approach may stand beside them. Units stand in the names of the columns. Also several, or a
+            `MeansTable`.
         channels, units
             Column and unit by role (``torque``, ``speed``, ``temperature``), where the names do not say.
         isothermal
@@ -201,7 +205,10 @@ class SteadyPoints(Result):
             raise InsufficientDataError(f"{table.files[0].name}: no row can be used: {rejected[0].reason}")
         kinds = dict.fromkeys(("temperature", "temperature_error", "load"), pl.Float64)
         frame = pl.DataFrame(dwells, schema_overrides=kinds)
-        return cls(frame, tuple(rejected), 0.0, None, table, warnings=(_of_means(table),))
+        shared = _shared(table, rotation)
+        return cls(
+            frame, tuple(rejected), 0.0, None, table, warnings=(_of_means(table),), window_errors=shared
+        )
 
     @takes_si()
     def without(self, rest: NoLoadTorque) -> SteadyPoints:
@@ -335,6 +342,33 @@ class SteadyPoints(Result):
             **{name: by * getattr(self, name) for name in _SHARED_ERRORS},
         )
 
+    @takes_si()
+    def against_hersey_number(self, viscosity: Viscous | float) -> SteadyPoints:
+        """Return the points against the Hersey number: viscosity times speed over normal load, 1/m.
+
+        Dwells at several temperatures and loads then share one Stribeck curve, if there is one.
+
+        Parameters
+        ----------
+        viscosity
+            A `hersey.Lubricant`, at the temperature of each dwell, or one viscosity, Pa s.
+
+        Raises
+        ------
+        ParameterError
+            If they are no friction coefficients against a speed in m/s, or lack loads or temperatures.
+
+        Examples
+        --------
+        >>> table = {"speed [m/s]": [0.1, 0.2, 0.4], "COF": [0.12, 0.12, 0.12]}
+        >>> points = SteadyPoints.from_table(table, load="10 N").against_hersey_number("20 mPa*s")
+        >>> points.column("speed").tolist()
+        [0.0002, 0.0004, 0.0008]
+        """
+        if not hasattr(viscosity, "temperature_exponent"):
+            viscosity = float(argument("viscosity", "viscosity", viscosity, one=True))
+        return against_hersey_number(self, viscosity)
+
     @property
     def varying_load(self) -> tuple[float, float] | None:
         """Least and greatest load of the dwells, N, if their ratio is beyond `SAME_LOAD`."""
@@ -436,6 +470,16 @@ def _stated(table: MeansTable, rotation: str) -> tuple[list[dict[str, object]], 
             }
         )
     return dwells, rejected
+
+
+def _shared(table: MeansTable, rotation: str) -> FloatArray:
+    """What one standard error that all rows of a table share does to each of them, N m."""
+    used = [row for row in table.means if _no_mean(row, rotation) is None]
+    columns = [
+        [math.copysign(row.shared_error, row.torque) * (row.table == each) for row in used]
+        for each in dict.fromkeys(row.table for row in used if row.shared_error)
+    ]
+    return np.array(columns).T if columns else np.empty((0, 0))
 
 
 def _no_mean(row: MeanRow, rotation: str) -> Reason | None:

@@ -13,7 +13,7 @@ from hersey.schema.domain import TORQUE, Domain
 Kind = Literal[
     "changing", "standing", "too slow", "other rotation", "too short", "zero torque", "speed not held",
     "stick-slip", "swing", "speed drift", "temperature drift", "torque drift", "opposite signs", "spikes",
-    "ripple",
+    "ripple", "rising", "held", "stepped", "braking", "driven", "reversed", "ends", "short", "no window",
 ]  # fmt: skip
 #: Stretches that nobody meant as a dwell.
 NO_DWELL: tuple[Kind, ...] = ("changing", "standing", "too slow", "other rotation")
@@ -45,6 +45,15 @@ _LABELS: dict[Kind, str] = {
     "opposite signs": "{quantity} and {speed} have opposite signs",
     "spikes": "{quantity} spikes",
     "ripple": "{quantity} ripple",
+    "rising": "rising speed",
+    "held": "constant speed",
+    "stepped": "steps between held speeds",
+    "braking": "braked",
+    "driven": "driven",
+    "reversed": "driven through standstill",
+    "ends": "beginning or end of a fall of speed",
+    "short": "fall of speed with too few rows",
+    "no window": "in no window of speed",
 }
 
 

@@ -37,6 +37,8 @@ ROUNDS = 3
 #: Clocks that a log may have instead of one in seconds: seconds, unit and name of one count.
 Clocks = tuple[tuple[float, str, str], ...]
 LONGER_CLOCKS: Clocks = ((60.0, "min", "minutes"), (3600.0, "h", "hours"))
+#: Share of the rows that dwells hold if the clock is such a one; the crests of a swing hold less.
+NO_SWING = 0.3
 #: A drive that turned slower than this share of the speed that follows counts as standing.
 STANDS = 1e-3
 #: Speed that swings by more than this share (standard deviation) is not judged as noise of the encoder alone.
@@ -138,7 +140,8 @@ class _Reduction:
                 found = _Reduction(replace(self.log, runs=runs), self.subtracted, self.asked, ()).points()
             except InsufficientDataError:
                 continue
-            if len(found) >= WORTH_IT:
+            held = float(np.sum(found.column("rows") + found.column("settling_rows")))
+            if len(found) >= WORTH_IT and held > NO_SWING * self.log.rows:
                 how = Setting("time", "unit").to(unit)
                 return f"If the clock counts {name}, use {how}: {len(found)} dwells are found then."
         return ""

@@ -113,7 +113,7 @@ class DwellFriction(Named):
 
     def _at(self, name: str) -> IntArray:
         """Where the parameter of that name stands in each direction."""
-        return np.array([i for i, own in enumerate(self.names) if own.startswith(name)], dtype=np.intp)
+        return np.array(self.friction.places(name), dtype=np.intp)
 
     @cached_property
     def _speeds(self) -> IntArray:

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy import optimize
 
 from hersey.arrays import BoolArray, FloatArray
 from hersey.cache.kept import kept
@@ -17,7 +15,7 @@ from hersey.damping.candidates.likelihood import EVIDENCE
 from hersey.damping.candidates.observations import Observations
 from hersey.damping.dwells import SteadyPoints, distinct_speeds, groups_of_temperature
 from hersey.damping.dwells.reduced import require_points
-from hersey.damping.estimate import Estimate, quantile
+from hersey.damping.estimate import Estimate
 from hersey.damping.friction_curve import law as laws
 from hersey.damping.friction_curve.dwell_law import DwellFriction
 from hersey.damping.friction_curve.fitted import (
@@ -32,6 +30,7 @@ from hersey.damping.friction_curve.fitted import (
     TriedFriction,
 )
 from hersey.damping.friction_curve.law import FrictionLaw
+from hersey.damping.friction_curve.least import UNBOUNDED, Searched, least_torques
 from hersey.damping.friction_curve.result import FrictionCurve
 from hersey.damping.trend import trend_of
 from hersey.errors import InsufficientDataError
@@ -39,10 +38,8 @@ from hersey.units import takes_si
 
 #: Distinct speeds that a direction needs for Coulomb plus viscous friction, and for a Stribeck curve.
 SPEEDS_OF_LINE, SPEEDS_OF_CURVE = 3, 5
-#: Ratio of an end of an interval to the value from which on the parameter counts as not determined.
-_UNBOUNDED = 10.0
-#: Step of a derivative, in standard errors, and points at which the least torque is looked for.
-_STEP, _GRID = 0.05, 400
+#: Steepest fall of exp(-x^2).
+_STEEPEST = float(np.sqrt(2.0 / np.e))
 #: Directions by the ends of the names of parameters.
 _WAYS = {laws.FORWARD: FORWARD, laws.REVERSE: REVERSE}
 
@@ -61,11 +58,26 @@ class _Fitted:
         return self.fit.law.of(self.fit.values)
 
     @property
+    def covariance(self) -> FloatArray:
+        """Covariance of the parameters of the law, SI."""
+        slopes = np.ones(self.values.size)
+        speeds = self.law.places(laws.STRIBECK_SPEED)
+        slopes[speeds] = self.values[speeds]
+        return np.asarray(self.fit.covariance * np.outer(slopes, slopes))
+
+    @property
     def falls_from_rest(self) -> bool:
-        """Whether each Stribeck torque at rest exceeds that of Coulomb friction."""
-        own = dict(zip(self.law.names, self.values.tolist(), strict=True))
-        rests = [name for name in own if name.startswith(laws.STATIC)]
-        return all(own[name] > own[name.replace(laws.STATIC, laws.COULOMB)] for name in rests)
+        """Whether each Stribeck torque at rest exceeds that of Coulomb friction.
+
+        A Coulomb friction below 0 only bends the curve where torque falls nowhere.
+        """
+        for way in self.law.ways if self.law.stribeck else ():
+            own = self.law.of_way(self.values, way)
+            rise = own[laws.STATIC] - own[laws.COULOMB]
+            falls = _STEEPEST * rise > own[laws.VISCOUS] * own[laws.STRIBECK_SPEED]
+            if not (rise > 0.0 and (own[laws.COULOMB] > 0.0 or falls)):
+                return False
+        return True
 
 
 @takes_si()
@@ -129,6 +141,8 @@ def fit_friction(points: SteadyPoints) -> FrictionCurve:
         reference_temperature=chosen.law.reference_kelvin,
         law=chosen.law,
         values=chosen.values,
+        covariance=chosen.covariance,
+        freedom=float(chosen.fit.freedom),
         data=data,
     )
 
@@ -208,105 +222,59 @@ def _directions(chosen: _Fitted, fitted: list[_Fitted], points: SteadyPoints) ->
         return None
     offset = None
     if chosen.law.apart and not points.tare_errors.shape[1]:
-        own = dict(zip(chosen.law.names, chosen.values.tolist(), strict=True))
-        offset = abs(own[laws.COULOMB + laws.FORWARD] - own[laws.COULOMB + laws.REVERSE]) / 2.0
+        forward, reverse = (chosen.law.of_way(chosen.values, way)[laws.COULOMB] for way in chosen.law.ways)
+        offset = abs(forward - reverse) / 2.0
     return DirectionTest(likelihood_ratio(same[False].fit, same[True].fit), chosen.law.apart, offset)
 
 
 def _parameters(chosen: _Fitted, data: Observations) -> tuple[FrictionParameter, ...]:
     out = []
-    for i, label in enumerate(chosen.law.names):
-        name = label.rstrip("+-")
-        direction = _WAYS.get(label[len(name) :], _together(data))
+    for i, each in enumerate(chosen.law.numbers):
+        direction = _WAYS.get(each.way, _together(data))
         known = _estimate(chosen, data, i)
-        out.append(FrictionParameter(name, direction, known, laws.UNITS[name], known.estimable))
+        out.append(FrictionParameter(each.kind, direction, known, laws.UNITS[each.kind], known.estimable))
     return tuple(out)
 
 
 def _estimate(chosen: _Fitted, data: Observations, i: int) -> Estimate:
     """One parameter in SI: by curvature, and by the profile of the likelihood for a Stribeck curve."""
-    fit, label = chosen.fit, chosen.law.names[i]
-    known = fit.estimate(label)
-    if fit.not_estimable(label):
+    fit, number = chosen.fit, chosen.law.numbers[i]
+    known = fit.estimate(number.name)
+    if fit.not_estimable(number.name):
         return known
     if chosen.law.stribeck and known.error > 0:
         low, high = profile_interval(fit, data, i)
         known = replace(known, low=low, high=high)
-    if label.startswith(laws.STRIBECK_SPEED):
+    if number.kind == laws.STRIBECK_SPEED:
         value = float(np.exp(known.value))
         with np.errstate(over="ignore"):
             low, high = (float(np.exp(end)) for end in (known.low, known.high))
         known = replace(known, value=value, error=value * known.error, low=low, high=high)
-        if low < value / _UNBOUNDED:
+        if low < value / UNBOUNDED:
             known = replace(known, low=0.0, high=high)
-    if label.startswith((laws.STRIBECK_SPEED, laws.STATIC)) and not known.high < _UNBOUNDED * known.value:
+    if number.kind in (laws.STRIBECK_SPEED, laws.STATIC) and not known.high < UNBOUNDED * known.value:
         known = replace(known, high=np.inf)
-    if label.startswith(laws.STATIC) and _is_extrapolated(chosen, data, label):
+    if number.kind == laws.STATIC and _is_extrapolated(chosen, data, number.way):
         known = replace(known, high=np.inf)
     return known
 
 
-def _is_extrapolated(chosen: _Fitted, data: Observations, label: str) -> bool:
+def _is_extrapolated(chosen: _Fitted, data: Observations, way: str) -> bool:
     """Whether the slowest dwell is above the Stribeck speed: then it shows little of the rise to T_S."""
-    own = dict(zip(chosen.law.names, chosen.values.tolist(), strict=True))
-    direction = _WAYS.get(label[-1])
-    speed = data.speed if direction is None else data.speed[_ways(data)[direction]]
-    return bool(speed.min() > own[label.replace(laws.STATIC, laws.STRIBECK_SPEED)])
+    speed = data.speed[_ways(data)[_WAYS[way]]] if way else data.speed
+    return bool(speed.min() > chosen.law.of_way(chosen.values, way)[laws.STRIBECK_SPEED])
 
 
 def _least(chosen: _Fitted, data: Observations) -> tuple[LeastTorque, ...]:
     """Where torque is least in each direction, where that lies between the measured speeds."""
-    if not chosen.law.stribeck:
-        return ()
-    out = []
-    ways = _ways(data) if chosen.law.apart else {_together(data): np.ones(len(data), dtype=bool)}
-    for name, way in ways.items():
-        side = -1.0 if name == REVERSE else 1.0
-        ends = float(data.speed[way].min()), float(data.speed[way].max())
-        at = _least_speed(chosen.law, chosen.values, side, ends)
-        if at is None:
-            continue
-        kelvin = None if chosen.law.reference_kelvin is None else np.array([chosen.law.reference_kelvin])
-        torque = abs(float(chosen.law.torque(chosen.values, np.array([side * at]), kelvin)[0]))
-        out.append(LeastTorque(name, _least_estimate(chosen, side, ends, at), torque))
-    return tuple(out)
-
-
-def _least_speed(
-    law: FrictionLaw, values: FloatArray, side: float, ends: tuple[float, float]
-) -> float | None:
-    """The speed of least torque at the reference temperature, rad/s; None where it is an end."""
-    kelvin = None if law.reference_kelvin is None else np.array([law.reference_kelvin])
-
-    def rise(speed: float) -> float:
-        return float(law.slope(values, np.array([side * speed]), kelvin)[0])
-
-    grid = np.geomspace(*ends, _GRID)
-    hot = None if kelvin is None else np.full(grid.shape, law.reference_kelvin)
-    slope = law.slope(values, side * grid, hot)
-    turns = np.nonzero((slope[:-1] < 0.0) & (slope[1:] >= 0.0))[0]
-    if not turns.size:
-        return None
-    return float(optimize.brentq(rise, grid[turns[-1]], grid[turns[-1] + 1]))
-
-
-def _least_estimate(chosen: _Fitted, side: float, ends: tuple[float, float], at: float) -> Estimate:
-    """The speed of least torque with its interval: by the covariance of the fit, in the logarithm."""
     fit, law = chosen.fit, chosen.fit.law
     assert isinstance(law, DwellFriction)
-    wide = ends[0] / _UNBOUNDED, ends[1] * _UNBOUNDED
-    slopes = np.zeros(fit.values.size)
-    for i in range(fit.values.size):
-        step = _STEP * fit.error(law.names[i])
-        if not step > 0.0:
-            continue
-        moved = step * np.eye(fit.values.size)[i]
-        above = _least_speed(chosen.law, law.of(fit.values + moved), side, wide)
-        below = _least_speed(chosen.law, law.of(fit.values - moved), side, wide)
-        if above is None or below is None:
-            return Estimate(at, np.inf, -np.inf, np.inf)
-        slopes[i] = math.log(above / below) / (2.0 * step)
-    error = math.sqrt(max(float(slopes @ fit.covariance @ slopes), 0.0))
-    freedom = fit.freedoms.of(slopes) if np.any(slopes) else float(fit.freedom)
-    reach = quantile(freedom) * error
-    return Estimate(at, at * error, at * math.exp(-reach), at * math.exp(reach), freedom)
+    ways = _ways(data) if chosen.law.apart else {_together(data): np.ones(len(data), dtype=bool)}
+    searched = Searched(
+        fit.values,
+        fit.covariance,
+        law.of,
+        lambda slopes: fit.freedoms.of(slopes) if np.any(slopes) else float(fit.freedom),
+    )
+    ends = {name: (float(data.speed[way].min()), float(data.speed[way].max())) for name, way in ways.items()}
+    return least_torques(chosen.law, searched, ends)

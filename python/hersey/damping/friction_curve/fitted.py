@@ -10,7 +10,7 @@ import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.damping.candidates.observations import Observations
-from hersey.damping.estimate import Estimate
+from hersey.damping.estimate import Estimate, quantile
 from hersey.damping.friction_curve.law import VISCOUS, FrictionLaw
 from hersey.errors import ParameterError
 from hersey.result import Means, Record
@@ -64,7 +64,7 @@ class DirectionTest(Record):
     differ: Annotated[bool, Means("whether each direction has its own parameters")]
     #: null where a standstill measured the zero
     offset: Annotated[
-        float | None, Means("error of the torque zero that would look like the difference in T_C", "N m")
+        float | None, Means("error of the torque zero that may look like a difference in T_C", "N m")
     ] = None
 
 
@@ -75,6 +75,9 @@ class FrictionLine(Record):
     temperature: Annotated[float | None, Means("K; null if it does not matter")]
     speed: Annotated[FloatArray, Means("negative in reverse", "rad/s")]
     torque: Annotated[FloatArray, Means("with the sign of the speed", "N m")]
+    #: null in a document of an older version
+    low: Annotated[FloatArray | None, Means("95 % limits of the law", "N m")] = None
+    high: Annotated[FloatArray | None, Means("", "N m")] = None
 
 
 @dataclass(frozen=True, repr=False)
@@ -83,7 +86,7 @@ class FittedFriction(Record):
 
     ``directions`` is None where one direction was measured, or too few dwells of one; ``least`` is empty
     where torque has no minimum between the slowest and the fastest dwell. ``reference_temperature`` is that
-    of k_v.
+    of k_v. Where it was fitted to every sample of a moving log, ``points`` are windows of speed.
     """
 
     parameters: Annotated[tuple[FrictionParameter, ...], Means("those of the forward direction first")]
@@ -100,7 +103,10 @@ class FittedFriction(Record):
     reference_temperature: Annotated[float | None, Means("of k_v; null without dependence", "K")]
     law: FrictionLaw
     values: FloatArray
+    covariance: FloatArray
+    freedom: float
     data: Observations
+    of_every_sample: Annotated[bool, Means("whether a moving log was fitted: points are windows")] = False
 
     @property
     def kind(self) -> str:
@@ -119,6 +125,11 @@ class FittedFriction(Record):
         return min(low for low, _ in ends), max(high for _, high in ends)
 
     @property
+    def what(self) -> str:
+        """What the points are."""
+        return "windows of speed" if self.of_every_sample else "dwells"
+
+    @property
     def slopes(self) -> list[Estimate]:
         """The viscous coefficients, N m s/rad."""
         return [each.estimate for each in self.parameters if each.name == VISCOUS]
@@ -127,6 +138,11 @@ class FittedFriction(Record):
     def rises(self) -> bool:
         """Whether torque provably rises with speed over all the measured speeds."""
         return not (self.law.stribeck or self.falls) and all(each.low > 0.0 for each in self.slopes)
+
+    @property
+    def rises_beyond_rest(self) -> bool:
+        """Whether the fitted torque rises with speed over all the measured speeds."""
+        return all(bool(np.all(np.diff(np.abs(line.torque)) > 0.0)) for line in self.lines)
 
     @cached_property
     def lines(self) -> tuple[FrictionLine, ...]:
@@ -138,8 +154,17 @@ class FittedFriction(Record):
         for sign, ends in ((1.0, self.forward_speeds), (-1.0, self.reverse_speeds)):
             if ends is not None:
                 speed = sign * np.geomspace(*ends, _POINTS)
-                out += [FrictionLine(t, speed, self.torque(speed, temperature=t)) for t in hot]
+                out += [self._line(speed, kelvin) for kelvin in hot]
         return tuple(out)
+
+    def _line(self, speed: FloatArray, kelvin: float | None) -> FrictionLine:
+        """The curve at one temperature (K) with its limits."""
+        torque = self.torque(speed, temperature=kelvin)
+        hot = None if kelvin is None else np.full(speed.shape, kelvin)
+        slopes = self.law.jacobian(self.values, speed, hot)
+        variance = np.einsum("ij,jk,ik->i", slopes, self.covariance, slopes)
+        reach = quantile(self.freedom) * np.sqrt(np.maximum(variance, 0.0))
+        return FrictionLine(kelvin, speed, torque, torque - reach, torque + reach)
 
     @cached_property
     def residuals(self) -> Annotated[FloatArray, Means("ln(measured/fitted) of each dwell")]:

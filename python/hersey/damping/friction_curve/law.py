@@ -27,6 +27,19 @@ UNITS = {COULOMB: "N m", STATIC: "N m", STRIBECK_SPEED: "rad/s", VISCOUS: "N m s
 
 
 @dataclass(frozen=True)
+class Number:
+    """A number of a law: which parameter, and of which direction (``+`` or ``-``; empty if of both)."""
+
+    kind: str
+    way: str = ""
+
+    @property
+    def name(self) -> str:
+        """Its name among all numbers of the law."""
+        return self.kind + self.way
+
+
+@dataclass(frozen=True)
 class FrictionLaw:
     """One law of friction, before it is fitted.
 
@@ -38,12 +51,35 @@ class FrictionLaw:
     apart: bool = False
     reference_kelvin: float | None = None
 
+    @property
+    def kinds(self) -> tuple[str, ...]:
+        """The parameters of one direction, in order."""
+        return (COULOMB, STATIC, STRIBECK_SPEED, VISCOUS) if self.stribeck else (COULOMB, VISCOUS)
+
+    @property
+    def ways(self) -> tuple[str, ...]:
+        """The directions that have numbers of their own; an empty one stands for both."""
+        return (FORWARD, REVERSE) if self.apart else ("",)
+
+    @cached_property
+    def numbers(self) -> tuple[Number, ...]:
+        """The parameters, in order; those of the forward direction come first."""
+        each = [Number(kind, way) for way in self.ways for kind in self.kinds]
+        return (*each, *((Number(THINNING),) if self.reference_kelvin is not None else ()))
+
     @cached_property
     def names(self) -> tuple[str, ...]:
-        """Names of the parameters, in order; those of the forward direction come first."""
-        one = (COULOMB, STATIC, STRIBECK_SPEED, VISCOUS) if self.stribeck else (COULOMB, VISCOUS)
-        each = [name + way for way in (FORWARD, REVERSE) for name in one] if self.apart else list(one)
-        return (*each, *((THINNING,) if self.reference_kelvin is not None else ()))
+        """Names of the parameters, in order."""
+        return tuple(each.name for each in self.numbers)
+
+    def places(self, *kinds: str) -> list[int]:
+        """Return the indices of the parameters of some kinds."""
+        return [i for i, each in enumerate(self.numbers) if each.kind in kinds]
+
+    def of_way(self, values: FloatArray, way: str) -> dict[str, float]:
+        """Return the parameters of one direction by their kind."""
+        own = zip(self.numbers, values.tolist(), strict=True)
+        return {each.kind: value for each, value in own if each.way == way}
 
     def torque(self, values: FloatArray, speed: FloatArray, kelvin: FloatArray | None = None) -> FloatArray:
         """Return the torque (N m) at speeds (rad/s) and temperatures (K), shape (points,)."""

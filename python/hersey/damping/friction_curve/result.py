@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from hersey.damping.friction_curve.fitted import FittedFriction
-from hersey.damping.friction_curve.words import finding_of, named, summary_of
+from hersey.damping.friction_curve.words import finding_of, formula_of, named, summary_of
 from hersey.result import Result
 
 if TYPE_CHECKING:
@@ -19,15 +19,20 @@ class FrictionCurve(FittedFriction, Result):
 
     ``directions`` is None where one direction was measured, or too few dwells of one; ``least`` is empty
     where torque has no minimum between the slowest and the fastest dwell. ``reference_temperature`` is that
-    of k_v.
+    of k_v. Where it was fitted to every sample of a moving log, ``points`` are windows of speed.
     """
 
-    not_stated = ("law", "values", "data")
-    also_stated = ("kind", "apart", "headline", "finding", "lines", "residuals")
+    not_stated = ("law", "values", "covariance", "freedom", "data")
+    also_stated = ("kind", "apart", "headline", "formula", "finding", "summary", "lines", "residuals")
 
     def headline(self) -> str:
         """Return the law and its parameters."""
         return named(self)
+
+    @property
+    def formula(self) -> str:
+        """The law as a formula."""
+        return formula_of(self)
 
     @property
     def finding(self) -> str:

@@ -51,6 +51,8 @@ def rows_of(curve: FittedFriction) -> list[tuple[str, str]]:
 def formula_of(curve: FittedFriction) -> str:
     """Return the law as a formula."""
     formula = _FORMULAS[curve.kind]
+    if curve.of_every_sample:
+        formula = formula.replace("torque", "friction", 1)
     kelvin = curve.reference_temperature
     return formula if kelvin is None else f"{formula} exp(-s (T - {celsius(kelvin):.0f} °C))"
 
@@ -60,10 +62,10 @@ def summary_of(curve: FittedFriction) -> str:
     lines = [verdict_of(curve), f"{formula_of(curve)} (value, 95 % interval)"]
     width = max(len(name) for name, _ in rows_of(curve))
     lines += [f"  {name:{width}}  {text}" for name, text in rows_of(curve)]
-    lines.append(f"{curve.points} dwells, scatter {100 * curve.scatter:.2g} % of torque; laws tried:")
+    lines.append(f"{curve.points} {curve.what}, scatter {100 * curve.scatter:.2g} % of torque; laws tried:")
     best = curve.tried[0].aicc
     for each in curve.tried:
-        way = "each direction separately" if each.apart else "one law for all dwells"
+        way = "each direction separately" if each.apart else f"one law for all {curve.what}"
         worse = f"AICc +{each.aicc - best:.1f}, weight {each.weight:.2g}"
         lines.append(f"  {_LAWS[each.kind]}, {way}: {worse}")
     return "\n".join(lines)
@@ -119,13 +121,17 @@ def slowing_of(curve: FittedFriction) -> str:
     if curve.rises:
         return f"Torque rises with speed {over}, so the friction curve causes no stick-slip there"
     if curve.falls:
-        return "Torque falls with speed in some of the dwells, so stick-slip is possible"
+        return f"Torque falls with speed in some of the {curve.what}, so stick-slip is possible"
     if any(each.high < 0.0 for each in slopes):
         return f"Torque falls as speed rises {over}, so stick-slip is possible"
-    return f"The dwells do not prove that torque changes with speed {over}"
+    what = "The motion does" if curve.of_every_sample else "The dwells do"
+    return f"{what} not prove that torque changes with speed {over}"
 
 
 def _of_stribeck(curve: FittedFriction) -> str:
+    if not curve.least and curve.rises_beyond_rest:
+        slowest = _speed(curve.speed_range[0])
+        return f"Torque rises with speed above {slowest}, the slowest dwell: stick-slip is possible below it"
     if not curve.least:
         return "Torque falls as speed rises over the measured speeds, so stick-slip is possible"
     where = " and ".join(
@@ -140,12 +146,17 @@ def directions_of(curve: FittedFriction) -> str:
     if test is None:
         return ""
     p = f"p < {_SMALL_P:g}" if test.p_value < _SMALL_P else f"p = {test.p_value:.2g}"
+    factor, unit = _torque_unit(curve)
+    if not test.differ and test.offset is not None:
+        return (
+            f"One law describes both directions beside an offset of {factor * test.offset:.3g} {unit}, which "
+            "is an error of the torque zero or half the difference in T_C: record a standstill to tell"
+        )
     if not test.differ:
         return f"One law describes both directions ({p})"
     said = f"The directions differ ({p})"
     if test.offset is None:
         return said
-    factor, unit = _torque_unit(curve)
     off = f"A torque zero off by {factor * test.offset:.2g} {unit}"
     return f"{said}. {off} would explain the difference in T_C: record a standstill to exclude it"
 

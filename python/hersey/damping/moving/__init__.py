@@ -9,8 +9,10 @@ model            the torque of a law of friction with inertia, gravity, offset a
 correlated       noise whose neighbours are correlated
 fitting          least squares with such noise
 fit              `fit_moving`: the law is chosen, and what is not friction refused
+friction         the numbers: friction, inertia, offset, and what was used
 result           `MovingFit`
 moving_warnings  what is to be known of it
 windows          windows of speed and temperature as steady points
+curve            the law as a friction curve, judged by the windows
 ===============  ===================================================================
 """

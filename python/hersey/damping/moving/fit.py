@@ -7,12 +7,21 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from hersey.damping.distributions import student_quantile
+from hersey.damping.distributions import square_above, student_quantile
 from hersey.damping.estimate import CONFIDENCE, Estimate, estimate
-from hersey.damping.friction_curve.law import COULOMB, STATIC, STRIBECK_SPEED, FrictionLaw
+from hersey.damping.friction_curve.fitted import DirectionTest
+from hersey.damping.friction_curve.law import (
+    COULOMB,
+    FORWARD,
+    REVERSE,
+    STATIC,
+    STRIBECK_SPEED,
+    FrictionLaw,
+)
 from hersey.damping.moving.correlated import Autoregression
 from hersey.damping.moving.filtering import Filtered, LowPass
 from hersey.damping.moving.fitting import LEAST_SEEN, Fitting, MovingLawFit
+from hersey.damping.moving.friction import LawTried, Moments, MovingParameter
 from hersey.damping.moving.gravity import (
     AMPLITUDE,
     COSINE,
@@ -24,8 +33,8 @@ from hersey.damping.moving.gravity import (
     with_angles,
 )
 from hersey.damping.moving.misfit import misfit_of
-from hersey.damping.moving.model import INERTIA, Equations, MovingLaw
-from hersey.damping.moving.moving_warnings import moving_warnings
+from hersey.damping.moving.model import INERTIA, OFFSET, Equations, MovingLaw
+from hersey.damping.moving.moving_warnings import CLEAR_OFFSET, moving_warnings
 from hersey.damping.moving.refusals import (
     LEAST_EQUATIONS,
     refuse_coarse,
@@ -33,7 +42,7 @@ from hersey.damping.moving.refusals import (
     refuse_no_friction,
     too_few,
 )
-from hersey.damping.moving.result import LawTried, MovingFit, MovingParameter
+from hersey.damping.moving.result import MovingFit
 from hersey.damping.moving.speed_noise import SpeedNoise, low_pass_for, speed_noise
 from hersey.damping.moving.stretches import Stretch, counting_step, stretches_of
 from hersey.errors import InsufficientDataError, ParameterError, Setting
@@ -57,6 +66,8 @@ _REMAINS, _LEAST_GRAVITY = 4.0, 0.02
 _ROUNDS = 3
 #: Share of the variance of the noise of the first round, which is not known yet.
 _FIRST = 1e-4
+#: Moments that are kept to be shown, at the most.
+_SHOWN = 800
 
 
 @takes_si(inertia="moment of inertia")
@@ -193,13 +204,13 @@ def _chosen(fits: Sequence[MovingLawFit], equations: Equations) -> MovingLawFit:
 def _determined(fitted: MovingLawFit, equations: Equations) -> bool:
     """Whether Stribeck's rise is one: higher near standstill, at a speed that the equations reach."""
     slowest = float(np.min(np.abs(equations.speed)))
+    law = fitted.law.friction
     for index in fitted.law.positive:
-        name = fitted.law.names[index]
-        way = name.removeprefix(STRIBECK_SPEED)
-        speed = float(fitted.values[index])
-        if speed <= 1.01 * LEAST_SEEN * slowest or fitted.error(name) > _KNOWN * speed:
+        number = law.numbers[index]
+        own = law.of_way(fitted.values[: len(law.numbers)], number.way)
+        if own[STRIBECK_SPEED] <= 1.01 * LEAST_SEEN * slowest:
             return False
-        if fitted.value(STATIC + way) <= fitted.value(COULOMB + way):
+        if fitted.error(number.name) > _KNOWN * own[STRIBECK_SPEED] or own[STATIC] <= own[COULOMB]:
             return False
     return True
 
@@ -216,6 +227,7 @@ def _result(log: TorqueLog, made: _Made, chosen: MovingLawFit, fits: Sequence[Mo
     used = sum(int(np.count_nonzero(each)) for each in equations.used)
     moving = [np.abs(each.speed) >= made.least for each in equations.filtered]
     rows = sum(each.size for each in moving)
+    friction = chosen.law.friction
     return MovingFit(
         law=chosen.law.title,
         parameters=tuple(_parameters(chosen, freedom)),
@@ -224,6 +236,7 @@ def _result(log: TorqueLog, made: _Made, chosen: MovingLawFit, fits: Sequence[Mo
             LawTried(each.law.title, each.values.size, each.criterion() - least, _determined(each, equations))
             for each in fits
         ),
+        directions=_directions(chosen, fits),
         bandwidth=made.low_pass.bandwidth,
         used=used / sum(each.size for each in equations.used),
         near_standstill=1.0 - sum(int(np.count_nonzero(each)) for each in moving) / rows,
@@ -234,11 +247,45 @@ def _result(log: TorqueLog, made: _Made, chosen: MovingLawFit, fits: Sequence[Mo
         explained=explained,
         effective_rows=chosen.residuals.size / noise.together,
         misfit=misfit_of(made.fitting, chosen),
+        angle_recorded=all(run.position is not None for run in log.runs),
+        friction_law=friction,
+        values=chosen.values[: len(friction.names)],
+        covariance=chosen.covariance[: len(friction.names), : len(friction.names)],
+        moments=_moments(chosen, equations),
         warnings=(),
         log=log,
         fitted=chosen,
         fitting=made.fitting,
     )
+
+
+def _directions(chosen: MovingLawFit, fits: Sequence[MovingLawFit]) -> DirectionTest | None:
+    """Whether one law holds for both directions beside an offset, by the fall of chi-square."""
+    of = chosen.law.friction
+    same = {
+        each.law.friction.apart: each for each in fits if replace(each.law.friction, apart=of.apart) == of
+    }
+    if len(same) < 2:
+        return None
+    gain = max(same[False].chi_square - same[True].chi_square, 0.0)
+    more = same[True].values.size - same[False].values.size
+    offset = None
+    if of.apart:
+        offset = abs(chosen.value(COULOMB + FORWARD) - chosen.value(COULOMB + REVERSE)) / 2.0
+    elif abs(chosen.value(OFFSET)) > CLEAR_OFFSET * chosen.error(OFFSET):
+        offset = abs(chosen.value(OFFSET))
+    return DirectionTest(float(square_above(gain, more)), of.apart, offset)
+
+
+def _moments(fitted: MovingLawFit, equations: Equations) -> Moments:
+    """Friction of single moments, evenly over the log."""
+    some = slice(None, None, -(-len(equations) // _SHOWN))
+    law = fitted.law.friction
+    own, kelvin = fitted.values[: len(law.names)], None
+    if law.reference_kelvin is not None and equations.temperature is not None:
+        kelvin = equations.temperature[some]
+    speed = equations.speed[some]
+    return Moments(speed, law.torque(own, speed, kelvin) + fitted.residuals[some])
 
 
 def _parameters(fitted: MovingLawFit, freedom: float) -> list[MovingParameter]:

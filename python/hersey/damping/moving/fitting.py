@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from hersey.arrays import FloatArray
-from hersey.damping.friction_curve.law import COULOMB, FORWARD, REVERSE, STATIC, STRIBECK_SPEED
+from hersey.damping.friction_curve.law import COULOMB, STATIC, STRIBECK_SPEED
 from hersey.damping.moving.correlated import Autoregression, Whitening, autoregression
 from hersey.damping.moving.model import DELAY, INERTIA, Equations, MovingLaw
 
@@ -100,7 +100,7 @@ class Fitting:
         out = []
         for share in _STARTS if law.friction.stribeck else (1.0,):
             given = {COULOMB: level, STATIC: 1.3 * level, STRIBECK_SPEED: share * fastest}
-            out.append(np.array([given.get(_bare(name), 0.0) for name in law.names]))
+            out.append(np.array([given.get(each.kind, 0.0) for each in law.numbers]))
         return out
 
     def _once(self, law: MovingLaw, start: FloatArray) -> float:
@@ -212,13 +212,9 @@ class Fitting:
         return np.asarray(np.linalg.lstsq(rows, right, rcond=1e-10)[0] / size)
 
 
-def _bare(name: str) -> str:
-    return name.rstrip(FORWARD + REVERSE)
-
-
 def _like(law: MovingLaw, near: MovingLawFit) -> FloatArray:
     """Values of a law from those of another: of the same name, or of both directions."""
-    known = dict(zip(near.law.names, near.values, strict=True))
-    by_kind = {_bare(name): value for name, value in known.items()}
+    known = dict(zip(near.law.numbers, near.values, strict=True))
+    by_kind = {each.kind: value for each, value in known.items()}
     by_kind.setdefault(STATIC, by_kind[COULOMB])
-    return np.array([known.get(name, by_kind.get(_bare(name), 0.0)) for name in law.names])
+    return np.array([known.get(each, by_kind.get(each.kind, 0.0)) for each in law.numbers])

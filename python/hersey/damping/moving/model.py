@@ -14,13 +14,12 @@ import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.damping.friction_curve.law import (
-    FORWARD,
-    REVERSE,
     STRIBECK_SPEED,
     THINNING,
     UNITS,
     VISCOUS,
     FrictionLaw,
+    Number,
 )
 from hersey.damping.moving.filtering import Filtered
 from hersey.damping.moving.gravity import COSINE, SINE
@@ -97,16 +96,21 @@ class MovingLaw:
     gravity: bool = False
 
     @cached_property
-    def names(self) -> tuple[str, ...]:
-        """Names of all numbers that are fitted, friction first."""
+    def numbers(self) -> tuple[Number, ...]:
+        """All numbers that are fitted, friction first."""
         inertia = () if self.inertia is not None else (INERTIA,)
         offset, gravity = (OFFSET,) if self.offset else (), (COSINE, SINE) if self.gravity else ()
-        return (*self.friction.names, *inertia, *offset, *gravity, DELAY)
+        return (*self.friction.numbers, *map(Number, (*inertia, *offset, *gravity, DELAY)))
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """Their names."""
+        return tuple(each.name for each in self.numbers)
 
     @cached_property
     def positive(self) -> tuple[int, ...]:
         """Indices of numbers whose logarithm is fitted."""
-        return tuple(i for i, name in enumerate(self.friction.names) if name.startswith(STRIBECK_SPEED))
+        return tuple(self.friction.places(STRIBECK_SPEED))
 
     @property
     def title(self) -> str:
@@ -120,8 +124,7 @@ class MovingLaw:
     @property
     def units(self) -> dict[str, str]:
         """Unit of each number, by name."""
-        kinds = UNITS | OTHER_UNITS
-        return {name: kinds[name.rstrip(FORWARD + REVERSE)] for name in self.names}
+        return OTHER_UNITS | {each.name: UNITS[each.kind] for each in self.friction.numbers}
 
     def value(self, values: FloatArray, name: str) -> float:
         """Return a number by its name; the inertia if given, and 0 for an offset that is not fitted."""
@@ -176,6 +179,6 @@ class MovingLaw:
         """Derivatives of the friction of each equation; those linear in speed at the speed as read."""
         columns = self.friction.jacobian(own, of.speed, of.temperature)
         ratio = np.divide(of.raw, of.speed, out=np.ones(of.raw.size), where=of.speed != 0.0)
-        linear = [i for i, name in enumerate(self.friction.names) if name.startswith((VISCOUS, THINNING))]
+        linear = self.friction.places(VISCOUS, THINNING)
         columns[:, linear] *= ratio[:, None]
         return of.weighted(columns)

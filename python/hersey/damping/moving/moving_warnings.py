@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hersey.damping.friction_curve.law import COULOMB, VISCOUS
-from hersey.damping.moving.gravity import AMPLITUDE, arc_of
+from hersey.damping.moving.gravity import AMPLITUDE, HANGING, arc_of
 from hersey.damping.moving.model import DELAY, INERTIA, OFFSET, Equations
 from hersey.damping.moving.stretches import counting_step
 from hersey.schema.warning import Warning
@@ -17,11 +17,13 @@ if TYPE_CHECKING:
 
 #: Share of the rows near standstill that is worth a word, and of the torque left unexplained.
 _MUCH, _LEFT = 0.5, 0.1
-#: Relative error of the inertia beyond which it is not known.
+#: Relative error of the inertia, or of gravity across its arc, beyond which it is not known.
 _UNKNOWN = 0.5
 #: Share of the variance of the acceleration that counts of a position may make, and of a derivative that rows
 #: may lose.
 _COARSE, _LOST = 5e-3, 0.01
+#: Standard errors from which an offset is one.
+CLEAR_OFFSET = 3.0
 
 
 def moving_warnings(fit: MovingFit, equations: Equations) -> tuple[Warning, ...]:
@@ -57,12 +59,8 @@ def _one_way(equations: Equations) -> Warning | None:
 def _alike(fit: MovingFit) -> list[Warning]:
     """That friction at the speeds of this log is known better than its parts."""
     slow, fast = fit.speed_range
-    unsure = [
-        each.name
-        for each in fit.parameters
-        if each.name.startswith((COULOMB, VISCOUS))
-        and each.estimate.error > _UNKNOWN * abs(each.estimate.value)
-    ]
+    of_friction = [fit.parameters[i] for i in fit.fitted.law.friction.places(COULOMB, VISCOUS)]
+    unsure = [each.name for each in of_friction if each.estimate.error > _UNKNOWN * abs(each.estimate.value)]
     if not unsure:
         return []
     return [
@@ -80,7 +78,7 @@ def _alike(fit: MovingFit) -> list[Warning]:
 
 
 def _zero(fit: MovingFit) -> Warning | None:
-    if OFFSET not in fit or abs(fit[OFFSET].value) < 3.0 * fit[OFFSET].error:
+    if OFFSET not in fit or abs(fit[OFFSET].value) < CLEAR_OFFSET * fit[OFFSET].error:
         return None
     return Warning(
         "offset or direction",
@@ -144,7 +142,7 @@ def _misfit(fit: MovingFit) -> Warning | None:
 
 
 def _gravity(fit: MovingFit, equations: Equations) -> Warning | None:
-    if AMPLITUDE not in fit or fit[AMPLITUDE].error < _UNKNOWN * fit[AMPLITUDE].value:
+    if AMPLITUDE not in fit or fit[HANGING].error < _UNKNOWN:  # rad
         return None
     return Warning(
         "gravity or offset",

@@ -8,6 +8,7 @@ import numpy as np
 
 from hersey.damping.driving_torque import driving_torque
 from hersey.damping.dwells.reasons import opposite_signs
+from hersey.damping.friction_curve.law import COULOMB
 from hersey.damping.moving.gravity import arc_of
 from hersey.damping.moving.model import INERTIA, Equations
 from hersey.damping.moving.result import MovingFit
@@ -90,7 +91,8 @@ def refuse_no_friction(name: str, result: MovingFit, equations: Equations) -> No
             "than friction and inertia loads the drive, such as gravity or a spring",
             remedy=_without_load(equations),
         )
-    apart = [name for name in ("T_C+", "T_C-") if name in result and result[name].low <= 0.0]
+    ways = [each.name for each in result.friction_law.numbers if each.kind == COULOMB and each.way]
+    apart = [name for name in ways if result[name].low <= 0.0]
     if apart:
         raise InsufficientDataError(
             f"{name}: Coulomb friction would vanish in one direction alone, {apart[0]} = "
@@ -99,8 +101,8 @@ def refuse_no_friction(name: str, result: MovingFit, equations: Equations) -> No
         )
     _refuse_driving(name, result)
     fast = np.array([result.speed_range[1], -result.speed_range[1]])
-    ways = fast[[np.any(equations.speed > 0), np.any(equations.speed < 0)]]
-    friction = np.sign(ways) * result.friction(ways)
+    fast = fast[[np.any(equations.speed > 0), np.any(equations.speed < 0)]]
+    friction = np.sign(fast) * result.friction(fast)
     if np.all(friction < 0.0) and result.explained >= LEAST_EXPLAINED:
         raise opposite_signs(name)
     if np.any(friction <= 0.0) or result.explained < LEAST_EXPLAINED:

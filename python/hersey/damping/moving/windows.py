@@ -14,9 +14,10 @@ import numpy as np
 import polars as pl
 
 from hersey.arrays import FloatArray
-from hersey.damping.dwells.points import Rejection, SteadyPoints
+from hersey.damping.dwells.points import Rejection
 from hersey.damping.dwells.reasons import Reason
 from hersey.damping.moving.fitting import Fitting, MovingLawFit
+from hersey.damping.moving.friction import MovingFriction, MovingPoints
 from hersey.damping.moving.gravity import COSINE, SINE
 from hersey.damping.moving.model import DELAY, INERTIA, OFFSET
 from hersey.errors import InsufficientDataError
@@ -48,6 +49,10 @@ class FittedLog(Protocol):
     def warnings(self) -> tuple[Warning, ...]:
         """What is to be known of it."""
 
+    @property
+    def numbers(self) -> MovingFriction:
+        """Its numbers."""
+
     def friction(self, speed: FloatArray, kelvin: FloatArray | None = None) -> FloatArray:
         """Return friction alone, N m."""
 
@@ -64,7 +69,7 @@ class _Moments:
     kelvin: FloatArray | None
 
 
-def windows(fit: FittedLog, rotation: str) -> SteadyPoints:
+def windows(fit: FittedLog, rotation: str) -> MovingPoints:
     """Return the windows of a fit; see `MovingFit.points`."""
     moments = _moments(fit)
     of = [each for each in _members(moments) if each.size >= _LEAST]
@@ -78,7 +83,7 @@ def windows(fit: FittedLog, rotation: str) -> SteadyPoints:
             remedy="record a longer motion",
         )
     table = pl.DataFrame([rows[i] for i in kept], schema_overrides=_OPTIONAL)
-    return SteadyPoints(
+    return MovingPoints(
         table=table,
         rejected=_rejected(fit, table),
         tare=0.0,
@@ -88,6 +93,7 @@ def windows(fit: FittedLog, rotation: str) -> SteadyPoints:
         window_errors=_shared(fit, [of[i] for i in kept]),
         temperature_rates=np.zeros(len(kept)),
         of_every_sample=True,
+        friction=fit.numbers,
     )
 
 

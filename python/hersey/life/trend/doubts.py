@@ -34,6 +34,7 @@ def doubts_of(
 ) -> tuple[Warning, ...]:
     """Return the warnings of a trend, the gravest causes first."""
     found = [_of_jump(each, by) for each in jumps]
+    found += record.not_used
     found += _of_temperature(data, fitting, weights, changing)
     found += _of_noise(fitting[0], data)
     found += _of_length(record, numbers, changing, by)

@@ -12,8 +12,10 @@ import numpy as np
 from hersey.arrays import BoolArray, FloatArray
 from hersey.damping.dwells.one_speed import SAME, only_speed, speeds_held
 from hersey.errors import InsufficientDataError, ParameterError, Setting
+from hersey.log.stating import MAY_PLAY
 from hersey.log.torque_log import Run, TorqueLog
 from hersey.schema.domain import TORQUE, Domain
+from hersey.schema.warning import Warning
 
 #: Share of the rows in motion from which a speed is named.
 _NAMED = 0.05
@@ -42,6 +44,7 @@ class Record:
     turns: FloatArray = field(default_factory=lambda: np.empty(0))  #: ages at which the direction changed
     other_speed: int = 0  #: rows left out: in motion at another speed
     apart: int = 0  #: rows left out at an end without friction
+    not_used: tuple[Warning, ...] = ()  #: columns that may be a load that changes
 
 
 def record_of(log: TorqueLog, by: str, at: float | None, radius: float | None) -> Record:
@@ -92,6 +95,9 @@ def record_of(log: TorqueLog, by: str, at: float | None, radius: float | None) -
         turns=age[kept[1:][speed[kept[1:]] * speed[kept[:-1]] < 0.0]] - age[kept[0]],
         other_speed=int(np.sum(moving) - kept.size - np.sum(apart)),
         apart=int(np.sum(apart)),
+        not_used=tuple(
+            w for f in log.files for w in f.warnings if (w.kind, w.severity) == (MAY_PLAY, "watch")
+        ),
     )
 
 

@@ -1,7 +1,8 @@
-"""Channels that no column holds: from the name of the file, a schedule, a position, or a direction.
+"""Channels that no column holds: from file names, a table of runs, a schedule, a position, a direction.
 
 =============  ============================================================================
 file_names     speed, load, radius or temperature in the names of the files, by a pattern
+run_table      the same in a table with a row for each file
 set_points     speed, temperature or load of a log by a schedule: what was asked for
 schedule_file  a schedule in a table of its own
 position       speed from a position, an angle or counts

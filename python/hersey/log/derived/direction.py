@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterable
+
 import numpy as np
 
 from hersey.arrays import FloatArray
-from hersey.errors import UnreadableLogError, printable
+from hersey.errors import Setting, UnreadableLogError, printable
+from hersey.log.long_arrays import ends
+from hersey.schema.warning import Warning
 
 #: Words for the direction that counts as positive, and for the other.
 FORWARD = (
@@ -42,6 +47,33 @@ REVERSE = (
     "negative",
 )
 _REVERSE_OR_NONE = ("0", "false", "off")
+#: Names of a column of the direction.
+_CALLED = re.compile(r"dir|(rot|turn)[ _]?dir|.*(direction|richtung|drehsinn)", re.IGNORECASE)
+_LONGEST_NAME = 200
+
+
+def called_direction(names: Iterable[str]) -> str:
+    """Return the first name that a column of the direction has, or nothing."""
+    return next((n for n in names if len(n) <= _LONGEST_NAME and _CALLED.fullmatch(n)), "")
+
+
+def without_sign(names: Iterable[str], speed: FloatArray) -> list[Warning]:
+    """Return which column may hold the direction of a speed that is never below 0."""
+    name = called_direction(names)
+    if not name or not speed.size or ends(speed)[0] < 0:
+        return []
+    words = "column '{column}' may be the direction of turning; speed is never negative"
+    how = Setting("direction", "channel").to(name)
+    return [
+        Warning(
+            "column may be the direction",
+            words,
+            severity="watch",
+            remedy="if it is, use {how}",
+            column=name,
+            how=how,
+        )
+    ]
 
 
 def signs_of_words(words: list[str], column: str) -> FloatArray:

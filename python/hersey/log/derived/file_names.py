@@ -7,6 +7,7 @@ Blanks, and upper and lower case, make no difference.
 from __future__ import annotations
 
 import re
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 from hersey.errors import ParameterError, Setting, UnitError
@@ -135,25 +136,77 @@ class NamePattern:
         )
 
 
-def proposed_pattern(name: str) -> tuple[str, str] | None:
-    """Return a pattern and a decimal mark for a file name with a number and a unit of speed, or None."""
-    found = list(_STATED.finditer(name[:_LONGEST]))
-    roles = [_ROLE_OF[match[2].lower()] for match in found]
-    if roles.count("speed") != 1 or len(set(roles)) != len(roles):
-        return None
-    parts, last = [], 0
-    for match, role in zip(found, roles, strict=True):
-        parts += [name[last : match.start()], f"{{{role}}}"]
-        last = match.end(1)
+def proposed_pattern(
+    name: str,
+    names: Sequence[str] = (),
+    *,
+    needed: Collection[str] = ("speed",),
+    known: Collection[str] = (),
+) -> tuple[str, str] | None:
+    """Return a pattern and a decimal mark for a file name with numbers and units, or None.
+
+    It states at least one of the ``needed`` roles, and none that are ``known``. All ``names`` match it, if
+    there are several files. What may be something else (a size in mm, a C) counts only where they differ.
+    """
+    found = [match for match in _STATED.finditer(name[:_LONGEST]) if _role_of(match)]
     marks = {mark for match in found for mark in match[1] if mark in DECIMALS}
-    if len(marks) > 1:
+    roles = [_role_of(match) for match in found]
+    if len(marks) > 1 or len(set(roles)) != len(roles):
         return None
-    return "".join([*parts, name[last:]]), next(iter(marks), ".")
+    decimal, others = next(iter(marks), "."), tuple(names) or (name,)
+    differ = _differing(_template(name, found, known), decimal, others) or ()
+    kept = [match for match in found if _role_of(match) in differ or match[2].lower() in _CERTAIN]
+    template = _template(name, kept, known)
+    stated = {_role_of(match) for match in kept} & set(needed) - set(known)
+    if not stated or _differing(template, decimal, others) is None:
+        return None
+    return template, decimal
 
 
-#: Units in file names, and the role that each shows.
-_ROLE_OF = {"rpm": "speed", "rps": "speed", "n": "load", "degc": "temperature"}
-_STATED = re.compile(r"(?<![0-9.])([0-9]+(?:[.,-][0-9]+)?)[ _]?(rpm|rps|N|degC)(?![A-Za-z])", re.IGNORECASE)
+def differing(pattern: tuple[str, str], names: Sequence[str]) -> dict[str, list[str]]:
+    """Return number and unit in each name, by role, of what a pattern states and the names differ in."""
+    values = [NamePattern(*pattern).values(name) for name in names]
+    by_role = {role: [each[role] for each in values] for role in values[0]}
+    return {role: found for role, found in by_role.items() if len(set(found)) > 1}
+
+
+def _differing(template: str, decimal: str, names: Sequence[str]) -> Collection[str] | None:
+    """The roles in which names differ, or None if one does not match."""
+    try:
+        return differing((template, decimal), names)
+    except ParameterError:
+        return None
+
+
+def _template(name: str, found: Sequence[re.Match[str]], known: Collection[str]) -> str:
+    """The name with a placeholder for each number; one of a known role may be any."""
+    parts, last = [], 0
+    for match in found:
+        written = _WRITTEN.get(match[2].lower(), "")
+        role = _role_of(match)
+        parts += [name[last : match.start()], "*" if role in known else f"{{{role}{written}}}"]
+        last = match.end(1)
+    return "".join([*parts, name[last:]])
+
+
+def _role_of(match: re.Match[str]) -> str:
+    """The role that a unit shows; none for a small c."""
+    return "" if match[2] == "c" else _ROLES_OF_UNITS[match[2].lower()]
+
+
+#: Units in file names, and the role that each shows; those that are nothing else; units to be written out.
+_ROLES_OF_UNITS = {
+    **dict.fromkeys(("rpm", "rps", "mm_s", "mm s", "m_s", "m s"), "speed"),
+    "n": "load",
+    "mm": "radius",
+    "degc": "temperature",
+    "c": "temperature",
+}
+_CERTAIN = _ROLES_OF_UNITS.keys() - {"mm", "c"}
+_WRITTEN = {"mm_s": ":mm/s", "mm s": ":mm/s", "m_s": ":m/s", "m s": ":m/s", "c": ":degC"}
+_STATED = re.compile(
+    r"(?<![0-9.])([0-9]+(?:[.,-][0-9]+)?)[ _]?(rpm|rps|mm[_ ]s|m[_ ]s|mm|N|degC|C)(?![A-Za-z])", re.IGNORECASE
+)
 
 
 def _known() -> str:

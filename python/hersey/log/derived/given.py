@@ -12,7 +12,7 @@ from hersey.log.derived.set_points import SetPoints
 from hersey.log.roles import role_conversion
 from hersey.log.text.column import Column
 from hersey.schema.warning import Warning
-from hersey.units import KINDS, Conversion, parse
+from hersey.units import Conversion, parse
 
 
 @dataclass(frozen=True)
@@ -22,15 +22,18 @@ class Given:
     role: str
     text: str = ""
     schedule: SetPoints | None = None
+    table: str = ""  #: name of the table of runs, if not the name of the file states it
 
     @property
     def unit(self) -> str:
         """The unit in which it is stated."""
-        return self.text.partition(" ")[2] or {"load": "N"}.get(self.role, KINDS[self.role][0])
+        if self.schedule is not None:
+            return self.schedule.unit(self.role)
+        return self.text.partition(" ")[2]
 
     def column(self, group: str) -> tuple[Column, Conversion]:
         """Return what stands for its column, beside those of a group, and its unit."""
-        name = "schedule" if self.schedule else "file name"
+        name = "schedule" if self.schedule else self.table or "file name"
         return Column(-1, name, self.unit, group), role_conversion(self.role, self.unit)[1]
 
     def at(self, time: FloatArray) -> FloatArray:
@@ -48,6 +51,15 @@ class Given:
                 "{role} is the set point of the schedule; it was not measured",
                 severity="watch",
                 role=self.role,
+            )
+        if self.table:
+            return Warning(
+                "value of a run table",
+                "{role} is {value}, from {table}; it was not measured",
+                severity="watch",
+                role=self.role,
+                value=self.text,
+                table=self.table,
             )
         return Warning(
             "value of a file name",

@@ -10,12 +10,15 @@ from hersey.log.believed import in_si
 from hersey.log.channels import called
 from hersey.log.derived.direction import signs_of_numbers, signs_of_words
 from hersey.log.derived.position import slope, smallest_step, unwrapped, window_for
+from hersey.log.derived.set_points import SetPoints
 from hersey.log.recording import Recording
-from hersey.log.roles import role_conversion
+from hersey.log.roles import is_called, is_named, is_of_kind, role_conversion
 from hersey.log.text.column import Column
 from hersey.schema.warning import Warning
-from hersey.units import Conversion
+from hersey.units import Conversion, conversion
 
+#: Names of a distance slid.
+_DISTANCE = r".*distance.*|.*\bpath\b.*|.*weg\b.*"
 #: Unit of the speed that a position of a kind makes.
 _UNITS = {"angle": "rad/s", "length": "m/s"}
 
@@ -83,6 +86,30 @@ def with_direction(recording: Recording, name: str, speed: FloatArray) -> tuple[
         channel=same[0].path,
         forward=int(np.sum(signs > 0)),
         reverse=int(np.sum(signs < 0)),
+    )
+
+
+def clock_of_distance(
+    columns: tuple[Column, ...], name: str, steps: SetPoints
+) -> tuple[Column, Conversion] | None:
+    """Return the column of the distance slid that stands for a clock beside steps by distance, if any."""
+    lengths = [c for c in called(name, columns) or columns if is_of_kind("length", c.unit)]
+    if not steps.slid or (not name and any(is_called("time", c) for c in columns)):
+        return None
+    found = [c for c in lengths if name or is_named(_DISTANCE, c)]
+    return (found[0], conversion("length", found[0].unit)) if len(found) == 1 else None
+
+
+def times_of_distance(
+    column: Column, unit: Conversion, written: FloatArray, steps: SetPoints
+) -> tuple[FloatArray, Warning]:
+    """Return the times, s, at which distances were reached by the speeds of a schedule."""
+    distance = in_si(written, unit)
+    known = distance[np.isfinite(distance)]
+    return steps.reached(distance - (known[0] if known.size else 0.0)), Warning(
+        "time from distance",
+        "time is computed from the distance in '{channel}' and the speeds of the schedule",
+        channel=column.path,
     )
 
 

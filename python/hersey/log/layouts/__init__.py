@@ -13,5 +13,6 @@ current        the layout by which files are read at the moment
 laid_out       a file read by a layout
 seen           what of a file may be its layout
 proposing      the layout proposed for a file
+recognized     what becomes of a file that is no log as it stands
 =============  ====================================================================
 """

@@ -66,6 +66,11 @@ PRESETS: dict[str, Preset] = {
         "Campbell Scientific TOA5",
         ('"TOA5"',),
     ),
+    "influx": Preset(
+        LogLayout(header=",result,table,*", comment="#", channel_column="_field", value_column="_value"),
+        "InfluxDB, annotated CSV",
+        ("#datatype,", ",result,table,", "_time,_value,_field"),
+    ),
     "wincc": Preset(
         LogLayout(header_line=1, channel_column="VarName", value_column="VarValue"),
         "Siemens WinCC, archive as CSV",

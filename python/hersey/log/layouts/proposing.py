@@ -3,21 +3,12 @@
 from __future__ import annotations
 
 import re
-import shlex
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from hersey.errors import (
-    HerseyError,
-    MissingFileError,
-    ParameterError,
-    Setting,
-    TimeOrderError,
-    UnitError,
-    way_in,
-)
+from hersey.errors import HerseyError, TimeOrderError, UnitError
 from hersey.log.assembly import Assembly
 from hersey.log.channels import ChannelChoice, Stated
 from hersey.log.layouts.laid_out import recording_of
@@ -40,58 +31,36 @@ from hersey.log.wanted import Wanted
 _FIRST = 60
 _NUMBERED = re.compile(r"(.*?[A-Za-z°\u0370-\u9fff])([ _.:#-]{0,3})([0-9]{1,4})")
 _TITLED = re.compile(r"([^0-9{}*]{0,40}?)([0-9]{1,6}(?:[.,][0-9]{1,3})?)([^0-9{}*]{0,20})")
-#: What writes the proposal.
-_SAVE_MAPPING = Setting("save_mapping", "switch")
 #: Layouts that are tried at the most.
 _MOST = 60
 
 
 @dataclass(frozen=True)
 class Proposal:
-    """A layout, roles whose channels must be named, and whether temperature is to be left out."""
+    """A layout, roles whose channels must be named, and whether temperature is to be left out.
+
+    ``is_doubtful`` is whether it is a guess: its columns may be sensors instead of runs, or which column
+    holds the values is not known.
+    """
 
     layout: LogLayout
     channels: Mapping[str, str]
     isothermal: bool = False
     lacks_units: bool = False
-
-
-def with_layout(
-    error: HerseyError,
-    path: Path,
-    channels: Mapping[str, str] | None = None,
-    units: Mapping[str, str] | None = None,
-) -> HerseyError:
-    """Return the error of a log with the advice to read it by a layout, if one is known; else as it is."""
-    if isinstance(error, MissingFileError | ParameterError) or not path.is_file():
-        return error
-    found = proposed_layout(path, channels, units)
-    if found is None or isinstance(error, UnitError):
-        return error
-    again = error.saying(error.reason)
-    again.setting, again.likely = None, ""
-    again.remedy = _advice(path)
-    return again
-
-
-def _advice(path: Path) -> str:
-    if way_in() == "python":
-        return (
-            "its layout can be described: write the text of hersey.log.proposal.propose_mapping(path) to "
-            "hersey.toml beside it, and use hersey.read_with_mapping"
-        )
-    if way_in() == "page":
-        return "type hersey inspect in a terminal to describe its layout in a hersey.toml, and add that"
-    typed = f"hersey inspect {shlex.quote(str(path))} {_SAVE_MAPPING.to()}"
-    return f"to describe its layout in hersey.toml, run '{typed}' and try again"
+    is_doubtful: bool = False
 
 
 def proposed_layout(
-    path: Path, channels: Mapping[str, str] | None = None, units: Mapping[str, str] | None = None
+    path: Path,
+    channels: Mapping[str, str] | None = None,
+    units: Mapping[str, str] | None = None,
+    *,
+    is_refused: bool = False,
 ) -> Proposal | None:
     """Return the layout by which a file becomes a log, or None if none is known.
 
-    ``channels`` and ``units`` are those that a user states, by role.
+    ``channels`` and ``units`` are those that a user states, by role. ``is_refused`` is whether the file
+    cannot be read as it stands, not even without a few rows.
     """
     try:
         pages = pages_of(path)
@@ -102,11 +71,39 @@ def proposed_layout(
     plain = _plain_rank(path, channels or {}, units or {})
     for number, layout in enumerate(_candidates(pages)):
         found = _tried(pages, layout, channels or {}, units or {})
-        if found is not None and _rank(found) < (plain if best is None else _rank(best)):
+        least = plain if best is None else _rank(best)
+        if best is None and is_refused and (layout.preset or layout.header):  # its headers are no rows
+            least = (True, True)
+        if found is not None and _rank(found) < least:
             best = found
         if number >= _MOST or (best is not None and _rank(best) == (False, False)):
             break
-    return best
+    return None if best is None else replace(best, is_doubtful=_is_doubtful(best, pages))
+
+
+def _is_doubtful(proposal: Proposal, pages: Pages) -> bool:
+    """Whether a layout is a guess, whatever numbers it gives."""
+    layout = proposal.layout
+    if layout.sheets == "*" or (layout.channel_column and not layout.preset and proposal.lacks_units):
+        return True
+    if proposal.isothermal and _is_of_lines(layout):  # the file as it stands, without its temperature
+        return True
+    if not (layout.side_by_side or "{run}" in (layout.wide or "")):
+        return False
+    return not any(_clocks_repeat(Seen(page.lines, pages.is_workbook)) for page in pages.pages)
+
+
+def _clocks_repeat(seen: Seen) -> bool:
+    """Whether each of several runs side by side has a clock of its own, as two sensors have not."""
+    lines = [[Column(0, *split_unit(cell)) for cell in seen.cells(at) if cell] for at in seen.words_above()]
+    return any(
+        sum(is_called("time", c) and is_of_kind("time", c.unit) for c in map(_unnumbered, line)) > 1
+        for line in lines
+    )
+
+
+def _unnumbered(column: Column) -> Column:
+    return replace(column, name=column.name.rstrip("0123456789 _.:#-"))
 
 
 def _plain_rank(path: Path, channels: Mapping[str, str], units: Mapping[str, str]) -> tuple[bool, bool]:
@@ -152,8 +149,12 @@ def _tried(
                 continue
             if _varies(runs):
                 return Proposal(layout, more, isothermal)
-    shows_itself = replace(layout, header_line=0, units_line=0, first_row=0) == LogLayout()
-    return Proposal(layout, {}, lacks_units=True) if lacks_units and not shows_itself else None
+    return Proposal(layout, {}, lacks_units=True) if lacks_units and not _is_of_lines(layout) else None
+
+
+def _is_of_lines(layout: LogLayout) -> bool:
+    """Whether a layout says no more than which lines hold names, units and the first row."""
+    return replace(layout, header_line=0, units_line=0, first_row=0) == LogLayout()
 
 
 def _varies(runs: list[tuple[Run, LogFile]]) -> bool:
@@ -279,12 +280,11 @@ def _of_wide(seen: Seen) -> Iterator[LogLayout]:
 def _hold_runs(headers: list[str]) -> bool:
     """Whether columns are those of runs, and no second sensor: a clock or a speed is among them."""
     columns = [Column(0, *split_unit(header)) for header in headers]
-    names = (replace(column, name=column.name.rstrip("0123456789 _.:#-")) for column in columns)
     return any(
         is_of_kind("speed", c.unit)
         or is_called("speed", c)
         or (is_called("time", c) and is_of_kind("time", c.unit))
-        for c in names
+        for c in map(_unnumbered, columns)
     )
 
 

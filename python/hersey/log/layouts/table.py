@@ -141,12 +141,12 @@ class LogLayout(Table):
 
     def toml(self) -> str:
         """Return the table as it stands in a file, without what is as usual."""
-        lines = ["[layout]"]
-        for each in fields(self):
-            value = getattr(self, each.name)
-            if value != each.default:
-                lines.append(f"{each.name} = {_written(value)}")
-        return "\n".join(lines)
+        return "\n".join(["[layout]", *self.keys()])
+
+    def keys(self) -> list[str]:
+        """Return the lines of the table, without what is as usual."""
+        values = {each: getattr(self, each.name) for each in fields(self)}
+        return [f"{of.name} = {_written(value)}" for of, value in values.items() if value != of.default]
 
 
 def _written(value: object) -> str:

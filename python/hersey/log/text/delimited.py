@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import hashlib
 from bisect import bisect_right
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
 
 from hersey.arrays import BoolArray, FloatArray, IntArray
-from hersey.errors import Setting, UnitError, UnreadableLogError, printable
+from hersey.errors import ChannelError, Setting, UnitError, UnreadableLogError, printable
 from hersey.files.reading import OpenFile, appended
 from hersey.log.believed import in_si
 from hersey.log.channels import (
+    ChannelChoice,
     Stated,
     clocks_passed_over,
     constant_channel,
@@ -25,6 +26,7 @@ from hersey.log.channels import (
     taken_columns,
 )
 from hersey.log.constant_temperature import constant_temperature
+from hersey.log.derived.direction import without_sign
 from hersey.log.friction import (
     Chosen,
     beside,
@@ -36,8 +38,10 @@ from hersey.log.friction import (
     unused,
 )
 from hersey.log.impossible import Impossible, Reading, impossible_rows
+from hersey.log.lacking_roles import asking_all, stated
 from hersey.log.long_arrays import Filling, rows_before, without
 from hersey.log.replaced import replaced_units
+from hersey.log.role_units import example_unit
 from hersey.log.rows import LeftOut, runs_with_records
 from hersey.log.text.blocks import Block, blocks
 from hersey.log.text.cells import CellReader
@@ -50,7 +54,6 @@ from hersey.log.text.stamps import refuse_whole_minutes
 from hersey.log.text.units_in_cells import numbers_only
 from hersey.log.torque_log import NO_CLOCK, Channel, LogFile, Run
 from hersey.log.wanted import Wanted
-from hersey.log.without_units import naming_all
 from hersey.schema.warning import Warning
 from hersey.units import Conversion
 
@@ -71,6 +74,7 @@ def read_delimited(path: Path, wanted: Wanted, progress: Progress | None = None)
         dead = _Dead(file)
         channels = _channels(layout, wanted, name, dead)
         excluded = _excluded(file, channels) if wanted.isothermal else []
+        not_used = unused(layout.named, channels, stated, file.as_far_as_known)
         table = _Table(name, layout, channels, wanted.drop_missing, stated)
         table.slow = slow_roles(channels, wanted.stated)
         table.read(file.opened, end.byte, progress)
@@ -99,7 +103,8 @@ def read_delimited(path: Path, wanted: Wanted, progress: Progress | None = None)
             *replaced_units(table.channels),
             *dead.warnings,
             *excluded,
-            *unused(layout.named, channels, stated),
+            *not_used,
+            *without_sign((column.name for column in layout.named), arrays["speed"]),
             *end.warnings,
             *growth,
             *(each.warning() for each in impossible),
@@ -164,6 +169,11 @@ class DelimitedFile:
         self.opened.growth(table.digest.hexdigest())
         return numbers
 
+    def as_far_as_known(self, column: Column) -> FloatArray:
+        """Return a column as written, NaN where no number stands, whatever else does."""
+        (values,) = self.numbers([column], complete=False, odd_as_missing=True)
+        return values
+
 
 @contextmanager
 def open_delimited(path: Path) -> Iterator[DelimitedFile]:
@@ -180,12 +190,7 @@ def open_delimited(path: Path) -> Iterator[DelimitedFile]:
 
 def _excluded(file: DelimitedFile, channels: Chosen) -> list[Warning]:
     """What is to be known of a temperature that is excluded."""
-
-    def numbers(column: Column) -> FloatArray:
-        (values,) = file.numbers([column], complete=False, odd_as_missing=True)
-        return values
-
-    return constant_temperature(file.layout.named, channels, file.opened.path.name, numbers)
+    return constant_temperature(file.layout.named, channels, file.opened.path.name, file.as_far_as_known)
 
 
 class _Dead:
@@ -196,22 +201,26 @@ class _Dead:
 
     def __call__(self, column: Column) -> bool:
         if column.index not in self._known:
-            (values,) = self.file.numbers([column], complete=False, odd_as_missing=True)
-            self._known[column.index] = is_dead(values)
+            self._known[column.index] = is_dead(self.file.as_far_as_known(column))
             if self._known[column.index]:
                 self.warnings.append(constant_channel(column))
         return self._known[column.index]
 
 
-def _by_number(layout: Layout, lacking: list[str], used: Sequence[str]) -> str:
+def _by_number(
+    layout: Layout, lacking: list[str], used: Sequence[str], choices: Mapping[str, ChannelChoice]
+) -> str:
     """Why columns must be named, and the options that name those that are not, as an example."""
     if len(layout.columns) < len(used):
         needed = f"{', '.join(used[:-1])} and {used[-1]}"
         return f"{layout.headless}, and there are only {len(layout.columns)} columns. A log needs {needed}"
-    named = " ".join(Setting(role, "channel").to(f"#{used.index(role) + 1}") for role in lacking)
+    columns = [(Setting(role, "channel"), f"#{used.index(role) + 1}") for role in lacking]
+    without_unit = [role for role in lacking if not choices[role].unit]
+    units = [(Setting(role, "unit"), example_unit(role, layout.columns[0])) for role in without_unit]
     return (
         f"{layout.headless}. Add a line there with the name and unit of each column, e.g. 'Torque "
-        f"[N*m]' (without '{layout.comment}' before it), or name the columns by number, e.g. {named}"
+        f"[N*m]' (without '{layout.comment}' before it), or name the columns by number, e.g. "
+        f"{stated(columns + units)}, with your units"
     )
 
 
@@ -219,17 +228,19 @@ def _channels(
     layout: Layout, wanted: Wanted, name: str, dead: Callable[[Column], bool]
 ) -> dict[str, tuple[Column, Conversion]]:
     choices, used = wanted.choices, wanted.roles
-    if layout.headless and not all(choices[role].name for role in used):
-        raise UnreadableLogError(_by_number(layout, [role for role in used if not choices[role].name], used))
+    if layout.headless and (lacking := [role for role in used if not choices[role].name]):
+        raise UnreadableLogError(_by_number(layout, lacking, used, choices))
     chosen: dict[str, tuple[Column, Conversion]] = {}
     for role in sorted(used, key=lambda r: r != "torque"):  # without it the rest is of no use
         taken = taken_columns(role, layout.named, choices, chosen)
         try:
             channel = find_channel(role, layout.named, choices[role], name, dead, taken)
-        except UnitError as error:
-            raise naming_all(error, used, layout.named, choices, name, dead=dead) from None
-        if channel is None:
-            raise no_channel(role, layout.named, name)
+            if channel is None:
+                raise no_channel(role, layout.named, name, names=wanted.names)
+        except (ChannelError, UnitError) as error:
+            raise asking_all(
+                error, used, layout.named, choices, name, dead=dead, names=wanted.names
+            ) from None
         refuse_two_roles(role, channel[0], chosen, name)
         chosen[role] = channel
     others = beside(layout.named, choices, wanted.stated, chosen, name)

@@ -53,7 +53,7 @@ def columns_of(table: NumberRows, numbered: list[Numbered], file: str) -> tuple[
         name = header[index] if index < len(header) and header[index] else f"#{index + 1}"
         refuse_long_name(f"{file}, line {line}", index + 1, name)
         unit = units[index].strip("[]() ") if index < len(units) else ""
-        plain, own = name_and_unit(name) or (name, "")
+        plain, own = _own_unit(name)
         if own and unit and of_one_kind(own, unit) and not same_unit(own, unit):
             raise UnreadableLogError(
                 f"{file}, line {line}, column {index + 1}: the header says '{name}', but the row of "
@@ -85,6 +85,14 @@ def _with_endings(columns: tuple[Column, ...]) -> tuple[Column, ...]:
         replace(c, name=name if counts[name] == 1 else c.name, unit=unit)
         for c, (name, unit) in zip(columns, split, strict=True)
     )
+
+
+def _own_unit(name: str) -> tuple[str, str]:
+    """Name and unit of a column; a remark in brackets, such as a serial number, is neither."""
+    plain, own = name_and_unit(name) or (name, "")
+    if own and not _is_unit(own) and (before := _behind_sign(plain))[1]:
+        return before
+    return plain, own
 
 
 def _behind_sign(name: str) -> tuple[str, str]:

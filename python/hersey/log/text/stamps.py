@@ -72,6 +72,7 @@ class StampStyle:
 
 _ISO = r"[0-9]{4}[-/][0-9]{1,2}[-/][0-9]{1,2}[T ]"
 _AMERICAN = r"[0-9]{1,2}/[0-9]{1,2}/[0-9]{4},? "
+_SHORT = r"[0-9]{1,2}/[0-9]{1,2}/[0-9]{2},? "
 _MONTH = (
     "(?i:jan(uary)?|feb(ruary)?|mar(ch)?|apr(il)?|may|june?|july?|aug(ust)?|sep(tember)?|oct(ober)?"
     "|nov(ember)?|dec(ember)?)"
@@ -98,6 +99,10 @@ _STYLES = (
     StampStyle("a date, day first", _AMERICAN + _CLOCK, "%d-%m-%Y %H:%M:%S%.f"),
     StampStyle("a date, month first, AM and PM", _AMERICAN + _CLOCK + _HALF, "%m-%d-%Y %I:%M:%S%.f %p"),
     StampStyle("a date, day first, AM and PM", _AMERICAN + _CLOCK + _HALF, "%d-%m-%Y %I:%M:%S%.f %p"),
+    StampStyle("a date, month first", _SHORT + _CLOCK, "%m-%d-%y %H:%M:%S%.f"),
+    StampStyle("a date, day first", _SHORT + _CLOCK, "%d-%m-%y %H:%M:%S%.f"),
+    StampStyle("a date, month first, AM and PM", _SHORT + _CLOCK + _HALF, "%m-%d-%y %I:%M:%S%.f %p"),
+    StampStyle("a date, day first, AM and PM", _SHORT + _CLOCK + _HALF, "%d-%m-%y %I:%M:%S%.f %p"),
 )
 _DAY_FIRST = re.compile(r"(1[3-9]|2[0-9]|3[01])/")
 

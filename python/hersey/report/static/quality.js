@@ -7,7 +7,8 @@ function dataSection(parent) {
   const flagged = data.decision?.flags ?? [];
   const shown = (each) => (each.kind === "synthetic" && data.synthetic) || flagged.some((flag) => flag.kind === each.kind);
   if (data.warnings.length) warnings(part, data.warnings, { heading: "Warnings", folded: "Notes on the data", elsewhere: shown, id: "warnings" });
-  if (q.rejected.length) {
+  if (moving && !data.friction) add(part, "p", pretty(moving.cost), "text");
+  if (q.rejected.length && !moving) {
     const all = fold(part, `Excluded stretches (${q.rejected.length})`);
     add(all, "p", `${share(q.rows_settling, q.rows)} of the rows are at the edges of dwells, where ${measured} settles; ${share(q.rows_rejected, q.rows)} are excluded.`
       + (q.standing_torque === null ? "" : ` ${capital(measured)} at standstill: ${friction ? digits(q.standing_torque) : `${digits(q.standing_torque * 1e3)} mN·m`}, ${q.tare ? "subtracted from all dwells" : "not subtracted"}.`), "note");
@@ -31,6 +32,7 @@ function dataSection(parent) {
 // How much of the log is used.
 function dataFinding() {
   const q = data.quality;
+  if (moving) return `The speed changes all the time: friction is fitted to every sample, and ${share(moving.used, 1)} of the log is used.`;
   const sticks = q.rejected.filter((r) => r.kind === "stick-slip").length, others = q.rejected.length - sticks;
   const excluded = [sticks ? plural(sticks, "stick-slip stretch", "stick-slip stretches") : "", others ? plural(others, sticks ? "other" : "stretch", sticks ? "others" : "stretches") : ""].filter(Boolean).join(" and ");
   const used = `${capital(plural(data.points.length, "dwell"))} ${data.points.length === 1 ? "uses" : "use"} ${share(q.rows_used, q.rows)} of the log.`;

@@ -6,7 +6,6 @@ function regimeFinding() {
   const nip = data.film?.points[0]?.regime ?? data.film?.dwells[0]?.regime ?? null;
   const fits = data.film?.exponents?.predictions.find((each) => each.film === nip)?.consistent;
   const law = `damping ~ speed^${c}`;
-  if (data.friction) return `Friction of a joint describes the dwells at least as well as one power law (${law}), so no film is determined.`;
   if (nip && named && fits === false) return `The log shows ${named} (${law}), but the contact data predict ${nip}. Use the exponent to predict torque, not film thickness.`;
   if (nip && named) return `The log shows ${named} (${law}). The contact data predict the same: ${nip}.`;
   if (nip) return `The contact data predict ${nip}. The log alone determines no regime (${law}).`;
@@ -14,6 +13,7 @@ function regimeFinding() {
   return `The exponent ${c} determines no regime: ${why}.`;
 }
 async function regimeSection(parent) {
+  if (data.friction) return;
   const finding = regimeFinding();
   const part = section(parent, "regime", "Lubrication regime", finding);
   const columns = add(part, "div", "", "columns");
@@ -78,8 +78,9 @@ function tried(parent) {
 }
 function candidates(parent) {
   const { models } = data;
+  if (data.friction) frictionLaws(parent);
   if (!models) {
-    tried(parent);
+    if (!data.friction) tried(parent);
     return;
   }
   const order = [...models.candidates].sort((a, b) => (a.delta_aicc ?? 1e9) - (b.delta_aicc ?? 1e9));

@@ -17,19 +17,19 @@ function timeline(parent, says) {
   figure.id = "timeline";
   add(figure, "h3", "The log");
   const place = add(figure, "div", "", "chart");
-  add(figure, "p", `Green: used; red: stick-slip.${starts.length > 1 ? " Files follow one another." : ""} Arrow keys read values.`, "note");
+  add(figure, "p", `${moving ? "" : "Green: used; red: stick-slip."}${starts.length > 1 ? " Files follow one another." : ""} Arrow keys read values.`, "note");
   const read = add(figure, "p", "", "sr-only");
   read.setAttribute("aria-live", "polite");
 
   let at = null;
   const left = 38;
-  const top = 36;
+  const top = moving ? 8 : 36;
   const draw = (width) => {
     const rowHeight = onPaper ? ROW_ON_PAPER : ROW;
     const right = width - 6;
     const x = (time) => left + ((time - first) / (last - first || 1)) * (right - left);
     const root = svg("svg", { width, role: "img", "aria-label": `The log: speed, ${measured} and temperature against time. ${says}` });
-    strip(root, x, left, right);
+    if (!moving) strip(root, x, left, right);
     const scales = rows.map((row, i) => {
       const floor = top + i * (rowHeight + BETWEEN) + rowHeight;
       let [low, high] = [Math.min(...row.value), Math.max(...row.value)];

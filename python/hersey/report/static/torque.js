@@ -1,7 +1,9 @@
 // Torque and damping: the charts, what they say, exponents and dwells.
 
 function torqueNote() {
-  if (data.friction) return "Lines: the fitted friction curve; bars: two standard errors.";
+  if (moving && !data.friction) return "Dots: windows of speed of a log that moves all the time; bars: two standard errors.";
+  if (moving) return "Line: the friction curve fitted to every sample, shaded: 95 % limits; pale: single moments, without inertia and offset; dots: windows of speed.";
+  if (data.friction) return "Line: the fitted friction curve, shaded: 95 % limits; bars: two standard errors.";
   const level = radius === null ? "" : ` 10 rpm = ${perSecond((10 / TO_RPM) * radius)} mm/s.`;
   return `Filled: from a lower speed; open: from a higher; bars: two standard errors.${level}`;
 }
@@ -24,7 +26,6 @@ function transitions() {
 }
 // How torque varies with speed; whether it rises and falls is decided by the tests on the dwells.
 function torqueFinding() {
-  if (data.friction) return data.friction.finding;
   const { transition, trend, reference_temperature: level } = data.fit, [slow, fast] = data.fit.speed_range;
   const rises = trend?.rises ?? true, falls = trend?.falls ?? transition !== null, curve = transitions();
   if (rises && falls && trend && !(trend.least > 1.01 * slow && trend.least < 0.99 * fast)) {
@@ -45,6 +46,7 @@ function torqueFinding() {
   return `${capital(measured)} ${flat ? "is constant within" : "stays about its mean within"} ${digits(100 * trend.spread, 2)} % ${over}.`;
 }
 async function torqueSection(parent) {
+  if (data.friction) return frictionSection(parent);
   const finding = torqueFinding();
   const part = section(parent, "torque", `${capital(measured)} and damping`, finding);
   const columns = add(part, "div", "", "columns");
@@ -52,8 +54,7 @@ async function torqueSection(parent) {
   await chart(columns, "damping", { heading: `Damping = ${measured} / speed`, note: data.map ? "" : `Dashed: constant ${measured} (slope −1).`, says: finding });
   if (!data.map) await chart(columns, "residuals");
   if (data.map) add(part, "p", pretty(`${torqueNote()} Dashed: constant torque.`), "note");
-  if (data.friction) frictionParameters(part, data.friction);
-  const all = fold(part, `Models, statistics and ${data.points.length === 1 ? "the dwell" : `all ${data.points.length} dwells`}`, async (inside) => {
+  const all = fold(part, `Models, statistics and ${data.points.length === 1 ? `the ${held}` : `all ${data.points.length} ${held}s`}`, async (inside) => {
     add(inside, "p", `${friction ? "Curves" : "Drag curves"}: ${curveNames()}.`, "text");
     exponents(inside);
     add(inside, "pre", data.fit.summary).id = "summary";
@@ -64,15 +65,6 @@ async function torqueSection(parent) {
   });
   all.id = "statistics";
   explained(all.firstChild, "dwell");
-}
-// The parameters of the friction curve of a joint.
-function frictionParameters(parent, { parameters, apart }) {
-  const [factor, unit] = torqueUnit();
-  table(parent, ["Parameter", ...(apart ? ["Direction"] : []), "Value", "95 % interval", "Unit"], parameters.map((p) => {
-    const scale = p.unit.startsWith("N m") ? factor : 1;
-    const shown = p.unit.replace("N m", unit).replace(" s/rad", "·s/rad");
-    return [p.name, ...(apart ? [p.direction] : []), p.bounded ? digits(p.estimate.value * scale) : "not determined", bounds(p.estimate, scale), shown];
-  }), apart ? [2, 3] : [1, 2], { name: "friction", label: "Parameters of the friction curve" });
 }
 function exponents(parent) {
   const { coefficients: c, transition } = data.fit;

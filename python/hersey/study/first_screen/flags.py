@@ -8,7 +8,8 @@ import numpy as np
 
 from hersey.damping.compare import LogComparison
 from hersey.damping.dwells import SteadyPoints
-from hersey.damping.dwells.doubtful import doubtful_order, doubtful_tare
+from hersey.damping.dwells.doubtful import constant_load, doubtful_order, doubtful_tare
+from hersey.damping.dwells.motion_between import motion_between
 from hersey.damping.surface import DampingSurface
 from hersey.decision.behaviour import Behaviour
 from hersey.decision.edges import edges_of
@@ -336,6 +337,10 @@ def _of_log(points: SteadyPoints, surface: DampingSurface, *, asked: bool) -> It
         yield each.titled("{channel:capital} is {fault}", section="data")
     for each in (each.about(points.domain) for each in doubtful_tare(points)[:1]):
         yield each.titled("The zero is doubtful", section="data")
+    yield from (
+        each.titled("Motion between the dwells is not used", section="data")
+        for each in motion_between(points)
+    )
     if few_slow_dwells(points, surface):
         yield Warning(
             "few slow dwells",
@@ -379,6 +384,7 @@ def _below(points: SteadyPoints, surface: DampingSurface) -> int:
 
 def _left_open(known: Findings, scatter: float) -> Iterator[Warning]:
     points, seen, c = known.points, known.regime, known.surface.c
+    yield from (each.titled("A constant load acts", section="data") for each in constant_load(points))
     yield from (each.titled(each.heading, section="data") for each in doubtful_order(points)[:1])
     if seen.named is None and known.friction is None:
         remedy = ""

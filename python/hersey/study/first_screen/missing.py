@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 
 from hersey.damping.surface import DampingSurface
+from hersey.files.toml import quoted
+from hersey.log.constant_temperature import EXCLUDED
 from hersey.machine.machine import Machine
 from hersey.schema.noun import BELT, DRIVE, Noun
 from hersey.study.findings import Findings
@@ -20,13 +22,13 @@ def missing(known: Findings) -> list[MissingPart]:
     points, surface, machine = known.points, known.surface, known.machine
     part = DRIVE if machine is None else machine.part
     if not points.domain.is_torque:  # friction alone is about no machine
-        return [] if points.log.has_temperature else [_temperature()]
+        return [] if points.log.has_temperature else _of_lubricant(known)
     file = _MACHINE if known.machine_file is None else known.machine_file.name
     out = []
     if machine is None:
         out.append(_drivetrain(file))
     if not points.log.has_temperature:
-        out.append(_temperature())
+        out.append(_temperature(known))
     if machine is None or not machine.points:
         out.append(_points(file, surface, machine))
     if machine is None or (machine.limits.motor_torque is None and machine.limits.grip is None):
@@ -67,16 +69,25 @@ def _drivetrain(file: str) -> MissingPart:
     )
 
 
-def _temperature() -> MissingPart:
+def _temperature(
+    known: Findings,
+    channel: str = '"Heater"   # enter yours: the temperature column of the log',
+    unit: str = "degC",
+) -> MissingPart:
+    changes = "the transition moves" if known.friction is None else "friction changes"
     return MissingPart(
-        purpose="how the transition moves with temperature",
+        purpose=f"how {changes} with temperature",
         file=_MAPPING,
-        lines=(
-            "[temperature]\n"
-            'channel = "Heater"   # enter yours: the temperature column of the log\n'
-            'unit = "degC"\n'
-        ),
+        lines=f"[temperature]\nchannel = {channel}\nunit = {quoted(unit)}\n",
     )
+
+
+def _of_lubricant(known: Findings) -> list[MissingPart]:
+    """The temperature of a log of friction that was read without one: none is proposed if it has none."""
+    found = [w.values for file in known.points.log.files for w in file.warnings if w.kind == EXCLUDED]
+    if not found:
+        return []
+    return [_temperature(known, quoted(str(found[0]["column"])), str(found[0]["unit"]))]
 
 
 def _points(file: str, surface: DampingSurface, machine: Machine | None) -> MissingPart:
