@@ -61,7 +61,7 @@ _KNOWN = 0.5
 _WARMER = 3.0
 #: Times what noise took from the inertia by which gravity must explain more, as both go with the angle where
 #: the drive swings; least share of the torque (standard deviations) that gravity must be.
-_REMAINS, _LEAST_GRAVITY = 4.0, 0.02
+_REMAINS, _LEAST_GRAVITY = 4.0, 0.005
 #: Rounds in which the noise is judged by what a law leaves.
 _ROUNDS = 3
 #: Share of the variance of the noise of the first round, which is not known yet.

@@ -18,15 +18,26 @@ COSINE, SINE = "cos q", "sin q"
 AMPLITUDE, HANGING = "G", "q_0"
 #: Least arc, rad, over which gravity can show.
 LEAST_ARC = 0.05
+#: Longest gap over which the angle is followed, in intervals.
+_BRIDGED = 10.0
 
 
 def with_angles(stretches: Sequence[Stretch]) -> list[Stretch]:
-    """Return stretches with their angles: recorded, or what the speed adds up to if there is no gap."""
-    if len(stretches) > 1 or stretches[0].angle is not None:
+    """Return stretches with their angles: recorded, or what the speed adds up to if gaps are short."""
+    if stretches[0].angle is not None:
         return list(stretches)
-    (only,) = stretches
-    steps = 0.5 * (only.speed[1:] + only.speed[:-1]) * only.interval
-    return [replace(only, angle=np.concatenate([[0.0], np.cumsum(steps)]))]
+    out: list[Stretch] = []
+    for each in stretches:
+        begins = 0.0
+        if out:
+            before = out[-1]
+            gap = each.start - float(before.time[-1])
+            if each.run != before.run or gap > _BRIDGED * each.interval or before.angle is None:
+                return list(stretches)
+            begins = float(before.angle[-1]) + 0.5 * (each.speed[0] + before.speed[-1]) * gap
+        steps = 0.5 * (each.speed[1:] + each.speed[:-1]) * each.interval
+        out.append(replace(each, angle=begins + np.concatenate([[0.0], np.cumsum(steps)])))
+    return out
 
 
 def arc_of(stretches: Sequence[Stretch]) -> float:
