@@ -5,6 +5,8 @@ stretches        parts of a log with an even clock
 filtering        one low-pass for torque, speed and acceleration alike
 speed_noise      noise of the speed, and how wide the low-pass must be
 gravity          a load that varies with the angle of the drive
+misfit           whether friction departs from the law
+refusals         logs that cannot be fitted, and what to do about each
 model            the torque of a law of friction with inertia, gravity, offset and delay
 correlated       noise whose neighbours are correlated
 fitting          least squares with such noise
