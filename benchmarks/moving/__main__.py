@@ -155,7 +155,7 @@ def _split(
     for name in ("T_S", "w_S", "k_v"):
         error = np.std(signed[name], ddof=1) / np.sqrt(len(signed[name]))
         said.append(
-            f"`{name}`: moving {_near(off[name])}, staircase {_near(other[name])}, mean deviation of the moving "
+            f"`{name}`: moving {_near(off[name])}, staircase {_near(other[name])}, mean of the moving "
             f"{100 * np.mean(signed[name]):+.2f} ± {100 * error:.2f} %"
         )
     return [f"Within 3 % of the truth: {'; '.join(said)}.", ""]

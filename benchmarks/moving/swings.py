@@ -71,7 +71,7 @@ def lines(count: int) -> list[str]:
         "half as a speed, whose sum is the angle. Gravity is 0.2 to 5 times the Coulomb friction. The share "
         "of the torque that gravity must make (0.5 %) was chosen while looking at the first 40.",
         "",
-        f"| logs | fitted | gravity found | no law fits | {' | '.join(f'`{name}`' for name in names)} | all |",
+        f"| logs | fitted | gravity | no law fits | {' | '.join(f'`{name}`' for name in names)} | all |",
         "|---|---|---|---|" + "---|" * (len(names) + 1),
     ]
     for gravity in (True, False):
@@ -87,7 +87,7 @@ def lines(count: int) -> list[str]:
                 if name in fit:
                     inside.setdefault(name, []).append(fit[name].low <= true <= fit[name].high)
         shares = [f"{100 * np.mean(inside[name]):.0f} %" if name in inside else "" for name in names]
-        every = 100 * np.mean(sum(inside.values(), []))
+        every = 100 * np.mean([hit for hits in inside.values() for hit in hits])
         what = "with gravity" if gravity else "without"
         cells = [what, f"{fitted} of {count}", str(found), str(misfit), *shares, f"{every:.1f} %"]
         out.append(f"| {' | '.join(cells)} |")

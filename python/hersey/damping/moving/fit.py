@@ -172,7 +172,9 @@ def _fitted(
     if turns:
         without = fitting.fit(law(True, both, largest, False), near)
         turns = _gravity_shows(near, without, equations)
-        near = near if turns else without
+        if not turns:
+            fitting = fitting.again(without)
+            near = fitting.fit(without.law, without)
     fits = []
     for stribeck in (False, True):
         for apart in (False, True) if both else (False,):
