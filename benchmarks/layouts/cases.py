@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from benchmarks.layouts import sections, tables, workbooks
+from benchmarks.layouts import sections, tables, unseen, unseen_again, workbooks
 from benchmarks.layouts.truth import Made
 
 _SECTIONS = (
@@ -25,3 +25,5 @@ CASES: dict[str, tuple[Callable[[Path], Made], str]] = {
     **{name: (getattr(tables, name), ".csv") for name in _TABLES},
     **{name: (getattr(workbooks, name), ".xlsx") for name in _WORKBOOKS},
 }
+#: Exports on which nothing was developed before they were first tried.
+UNSEEN = {**unseen.CASES, **unseen_again.CASES}

@@ -58,6 +58,13 @@ def test_columns_and_units_that_are_open_are_asked_for_at_once(tmp_path: Path) -
     assert log.runs[0].speed[-1] == pytest.approx(160, rel=1e-2)
 
 
+def test_a_repeated_name_is_proposed_with_its_place(tmp_path: Path) -> None:
+    path = written(tmp_path / "log.csv", "time [s],torque,torque,speed", ",")
+    with pytest.raises(ChannelError) as refused:
+        hersey.read(path)
+    assert (Setting("torque", "channel"), "torque#1") in refused.value.examples
+
+
 def test_the_whole_command_is_proposed_in_the_terminal(tmp_path: Path) -> None:
     path = written(tmp_path / "log.csv", "time,n_1 [rad/s],n_2 [rad/s],current_mot", ",")
     done = command.run("fit", path.name, cwd=tmp_path)

@@ -7,8 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from benchmarks.layouts import unseen_again
-from benchmarks.layouts.cases import CASES
+from benchmarks.layouts.cases import CASES, UNSEEN
 from benchmarks.layouts.truth import Made, Step, staircase, truth
 from benchmarks.layouts.trying import tried, wrong_with
 
@@ -66,7 +65,7 @@ HEAD = "Time [s];Torque [mN*m];Temp [degC]"
 
 
 def written(folder: Path, name: str) -> tuple[Path, Made]:
-    write, ending = CASES.get(name) or unseen_again.CASES[name]
+    write, ending = (CASES | UNSEEN)[name]
     path = folder / f"log{ending}"
     return path, write(path)
 
@@ -348,6 +347,19 @@ def test_units_of_another_part_are_converted(tmp_path: Path) -> None:
     mapping = LogMapping(layout=LogLayout(header="Time *"))
     log = read_with_mapping(path, mapping=mapping).log
     np.testing.assert_allclose(log.runs[0].torque, made.truth.torque, rtol=1e-12)
+
+
+def test_speeds_in_names_beside_a_speed_are_a_guess(tmp_path: Path) -> None:
+    """Two sensors, each named with the speed that it bears."""
+    path = tmp_path / "log.csv"
+    lines = ["Time [s];Torque 3000 rpm [mN*m];Torque 9000 rpm [mN*m];Speed [rpm];Temp [degC]"]
+    for step in staircase(5, rows=30):
+        lines += [
+            f"{t};{m};{m}1;{n};{c}" for t, m, n, c in step.cells("time", "torque", "turning", "temperature")
+        ]
+    path.write_text("\n".join(lines) + "\n")
+    with pytest.raises(HerseyError, match="the torque column could be"):
+        read_with_mapping(path)
 
 
 def test_advice_suits_who_asks(tmp_path: Path) -> None:

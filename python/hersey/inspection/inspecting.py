@@ -179,6 +179,7 @@ class Inspection(Result):
             if file.channels
             and "torque" in file.without
             and file.lacking["torque"].absent
+            and not _has_a_speed(file)  # else the problem says all that is open
             and not all(_NUMBERED.fullmatch(channel.name) for channel in file.channels)
         ]
         if not bare:
@@ -199,6 +200,11 @@ class Inspection(Result):
                 if channel.role
             ]
         return tuple(found)
+
+
+def _has_a_speed(file: FileReport) -> bool:
+    """Whether a file that lacks other roles has a column of the speed."""
+    return len(file.lacking) > 1 and not ("speed" in file.lacking and file.lacking["speed"].absent)
 
 
 @takes_si(

@@ -33,7 +33,7 @@ from hersey.log.roles import (
     is_named,
     is_of_kind,
 )
-from hersey.log.signals import signal_kind, way_out_unnamed
+from hersey.log.signals import may_be_current, signal_kind, way_out_unnamed
 from hersey.log.text.column import Column, with_ending
 from hersey.schema.warning import Warning
 from hersey.units import Conversion
@@ -118,6 +118,9 @@ def find_column(
     if choice.name:
         return named_channel(role, columns, choice.name, file, taken)
     candidates = _candidates(role, columns)
+    if role == "torque" and all(is_named(FRICTION_NAMES["friction coefficient"], c) for c in candidates):
+        forces = _candidates(role, tuple(c for c in columns if c not in candidates))
+        candidates = forces if forces and all(dead(c) for c in candidates) else candidates
     candidates = [c for c in candidates if c not in taken.values()] or candidates
     if len(candidates) > 1:
         candidates = [c for c in candidates if not dead(c)] or candidates
@@ -204,10 +207,13 @@ def no_channel(
         return not_a_log(what, file)
     channel = Setting(role, "channel")
     way_out = f"name it with {channel.to()}"
+    if role in ("torque", "speed") and any(not c.unit for c in columns):
+        example = {"torque": "N*m", "speed": "rpm"}[role]
+        way_out += f", and state its unit with {Setting(role, 'unit').to(example)}"
     if role == "torque" and any(is_of_kind("force", c.unit) for c in columns):
         way_out += f" (or a friction force, with {Setting('radius').to()} for the radius at which it acts)"
     elif signals := _signals(role, columns):
-        way_out = way_out_unnamed(role, [each.path for each in signals], signals[0].unit)
+        way_out = way_out_unnamed(role, [each.path for each in signals], signals[0].unit or "A")
     elif role == "time":
         way_out += f", or give the time between rows with {EVERY.to('2 ms', python='0.002')}"
         way_out += f". If each row is the mean of one dwell, use {MEANS.to()}"
@@ -246,11 +252,11 @@ def not_numbers(others: tuple[str, ...]) -> str:
 
 
 def _signals(role: str, columns: tuple[Column, ...]) -> list[Column]:
-    """Columns of one unit, A or V, that may hold a role: a current only the torque."""
+    """Columns of one unit, A or V, or called a current, that may hold a role: a current only the torque."""
     for kind in "AV" if role == "torque" else "V" if role in ("speed", "temperature") else "":
         if found := [c for c in columns if signal_kind(c.unit) == kind]:
             return found
-    return []
+    return [c for c in columns if role == "torque" and may_be_current(c.name, c.unit)]
 
 
 def _may_be_of_an_inverter(column: Column) -> bool:

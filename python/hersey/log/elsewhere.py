@@ -7,8 +7,11 @@ from collections.abc import Sequence
 
 from hersey.errors import Setting, UnitError
 from hersey.log.derived.file_names import differing, proposed_pattern
-from hersey.log.roles import could_be, is_called, is_of_kind, role_conversion
+from hersey.log.roles import could_be, is_called, is_named, is_of_kind, role_conversion
 from hersey.log.text.column import Column
+
+#: Names of a position along a line, in a unit of length.
+_MOVED = r".*(stroke|displacement|travel|hub|weg)"
 
 
 def stated_in_names(file: str, names: Sequence[str], role: str) -> list[tuple[Setting, str]]:
@@ -35,8 +38,9 @@ def elsewhere(columns: tuple[Column, ...], file: str, names: Sequence[str] = ())
 def position_in(columns: tuple[Column, ...]) -> Column | None:
     """Return the column that may be a position in the place of a speed: by its name, or an angle's unit."""
     named = [c for c in columns if is_called("position", c) and _may_be_position(c)]
+    moved = [c for c in columns if is_of_kind("length", c.unit) and is_named(_MOVED, c)]
     turned = [c for c in columns if re.search("deg|rad|rev|turn|°", c.unit) and _unit_of_position(c)]
-    return next(iter(named + turned), None)
+    return next(iter(named + moved + turned), None)
 
 
 def _may_be_position(column: Column) -> bool:

@@ -17,6 +17,10 @@ from hersey.units import Conversion
 
 #: What stands for the name of a column of which nothing is known.
 _COLUMN = "COLUMN"
+#: Columns of which it is asked whether they say nothing, at the most.
+_LOOKED_AT = 40
+#: Columns of a log that holds a time, a speed and perhaps a temperature.
+_NO_TORQUE = 2
 #: A setting and its value, as an example.
 Example = tuple[Setting, str]
 
@@ -51,10 +55,14 @@ def asking_all(
         return error
     if setting.kind == "channel" and choices[setting.name].name:  # of which the name is wrong
         return error
-    is_open, found = _all_open(roles, columns, choices, file, dead, names)
+    few = {column.index for column in columns[:_LOOKED_AT]}  # each is read from the file
+    is_open, found = _all_open(
+        roles, columns, choices, file, lambda column: column.index in few and dead(column), names
+    )
     if isinstance(error, UnitError) and (not is_open.roles or setting not in dict(is_open.examples)):
         return naming_all(error, roles, columns, choices, file, dead=dead, of_a_frame=of_a_frame)
-    if len(is_open.roles) + len(is_open.without_unit) < 2 or not {"torque", "speed"} & found:
+    bare = "torque" not in found and len(columns) <= _NO_TORQUE  # which may be of a coast-down
+    if len(is_open.roles) + len(is_open.without_unit) < 2 or not {"torque", "speed"} & found or bare:
         return error
     said = list(is_open.roles)
     if is_open.without_unit:
@@ -89,7 +97,9 @@ def _all_open(
             if column is None:  # a name that a person gave, which is another mistake
                 continue
             is_open.roles.append(several.reason.removeprefix(f"{file}: "))
-            is_open.examples.append((Setting(role, "channel"), column.path))
+            alike = sum(c.path == column.path for c in columns)
+            name = f"{column.path}#1" if alike > 1 else column.path
+            is_open.examples.append((Setting(role, "channel"), name))
         if column is None:
             is_open.roles.append(f"no {role} column found")
             free = tuple(c for c in columns if c not in taken.values())

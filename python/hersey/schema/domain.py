@@ -123,12 +123,20 @@ class Domain(Record):
     def require_torque(self, what: str) -> None:
         """Raise `ParameterError` if this is friction, and ``what`` is about the torque of a rotation."""
         if not self.is_torque:
-            radius, load = Setting("radius").to("25 mm"), Setting("load").to("50 N")
-            needed = f"{radius} and {load}" if self.quantity == "friction coefficient" else radius
+            remedy = f"give {self._to_torque('25 mm', '50 N')}, with your values"
+            if self.speed == "sliding speed":  # N m stands for N or for the coefficient, rad/s for m/s
+                one = self._to_torque("1 m", "1 N")
+                unit = self.unit or "the coefficient"
+                remedy += f". If nothing turns, give {one}, and read N·m as {unit} and rad/s as m/s"
             raise ParameterError(
                 f"{what} needs a torque, but the log is of a {self.quantity} against {self.speed}",
-                remedy=f"give {needed}, with your values",
+                remedy=remedy,
             )
+
+    def _to_torque(self, radius: str, load: str) -> str:
+        """What to write so that this becomes a torque."""
+        of, pressing = Setting("radius").to(radius), Setting("load").to(load)
+        return f"{of} and {pressing}" if self.quantity == "friction coefficient" else of
 
     def require_rotation(self, what: str) -> None:
         """Raise `ParameterError` if this is about sliding, and ``what`` about a speed of rotation."""

@@ -93,6 +93,7 @@ class MovingLaw:
     friction: FrictionLaw
     offset: bool
     inertia: float | None = None  #: kg m^2 if it is given
+    inertia_error: float = 0.0  #: its standard error, kg m^2
     gravity: bool = False
 
     @cached_property
@@ -158,6 +159,11 @@ class MovingLaw:
     def _terms(self, values: FloatArray) -> FloatArray:
         """Both terms of gravity, N m."""
         return np.array([self.value(values, COSINE), self.value(values, SINE)])
+
+    def by_inertia(self, values: FloatArray, equations: Equations) -> FloatArray:
+        """Return the derivative of the torque of each equation by the inertia, shape (equations,)."""
+        jerk = equations.joined([each.jerk for each in equations.filtered])
+        return equations.acceleration + self.value(values, DELAY) * jerk
 
     def _joined(self, own: FloatArray, inertia: float, equations: Equations) -> tuple[FloatArray, FloatArray]:
         """Friction of each equation, and how torque changes with the delay."""

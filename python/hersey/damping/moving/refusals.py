@@ -15,6 +15,8 @@ from hersey.damping.moving.result import MovingFit
 from hersey.damping.moving.speed_noise import SpeedNoise
 from hersey.damping.moving.stretches import Stretch
 from hersey.errors import MOVING, InsufficientDataError, Setting
+from hersey.log.channels import is_dead
+from hersey.schema.domain import TORQUE
 from hersey.units import rpm
 
 #: Least equations, and least share of the speed (standard deviation over the greatest) that is a motion.
@@ -27,13 +29,20 @@ _COUNTED, _COUNTS = 0.3, 0.04
 
 
 def refuse_constant(name: str, stretches: Sequence[Stretch]) -> None:
-    """Refuse a log whose speed hardly changes."""
+    """Refuse a log whose speed hardly changes, or whose torque is the same in every row."""
     speed = np.concatenate([each.speed for each in stretches]) if stretches else np.zeros(1)
     if np.std(speed) <= _MOVES * np.max(np.abs(speed)):
         raise InsufficientDataError(
             f"{name}: the speed hardly changes, so inertia and friction cannot be separated",
             remedy=f"omit {MOVING.to()}",
             setting=MOVING,
+        )
+    torque = np.abs(np.concatenate([each.torque for each in stretches]))
+    if is_dead(torque):
+        raise InsufficientDataError(
+            f"{name}: torque reads {TORQUE.small(float(torque[0]), '.4g')} in every row, so it does not "
+            "measure friction",
+            remedy=f"check the sensor, or name another column with {Setting('torque', 'channel').to()}",
         )
 
 

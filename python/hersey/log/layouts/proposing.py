@@ -88,18 +88,21 @@ def _is_doubtful(proposal: Proposal, pages: Pages) -> bool:
         return True
     if proposal.isothermal and _is_of_lines(layout):  # the file as it stands, without its temperature
         return True
-    if not (layout.side_by_side or "{run}" in (layout.wide or "")):
-        return False
-    return not any(_clocks_repeat(Seen(page.lines, pages.is_workbook)) for page in pages.pages)
+    headers = [line for page in pages.pages for line in _headers(Seen(page.lines, pages.is_workbook))]
+    if layout.side_by_side or "{run}" in (layout.wide or ""):  # two sensors have one clock
+        return max((_count("time", line) for line in headers), default=0) < 2
+    return "{speed" in (layout.wide or "") and any(_count("speed", line) for line in headers)
 
 
-def _clocks_repeat(seen: Seen) -> bool:
-    """Whether each of several runs side by side has a clock of its own, as two sensors have not."""
-    lines = [[Column(0, *split_unit(cell)) for cell in seen.cells(at) if cell] for at in seen.words_above()]
-    return any(
-        sum(is_called("time", c) and is_of_kind("time", c.unit) for c in map(_unnumbered, line)) > 1
-        for line in lines
-    )
+def _headers(seen: Seen) -> Iterator[list[Column]]:
+    """The columns of each line that may be a header."""
+    for at in seen.words_above():
+        yield [_unnumbered(Column(0, *split_unit(cell))) for cell in seen.cells(at) if cell]
+
+
+def _count(role: str, header: list[Column]) -> int:
+    """How many columns are called like a role, and have a unit of it."""
+    return sum(is_called(role, c) and is_of_kind(role, c.unit) for c in header)
 
 
 def _unnumbered(column: Column) -> Column:
