@@ -153,9 +153,10 @@ def _fitted(
     largest = references[-1]
 
     def law(stribeck: bool, apart: bool, warm: float | None, gravity: bool) -> MovingLaw:
-        own = (None, 0.0) if inertia is None else (inertia.value, inertia.error)
-        friction = FrictionLaw(stribeck, apart, warm)
-        return MovingLaw(friction, both and not apart, *own, gravity=gravity)
+        friction, offset = FrictionLaw(stribeck, apart, warm), both and not apart
+        if inertia is None:
+            return MovingLaw(friction, offset, gravity=gravity)
+        return MovingLaw(friction, offset, inertia.value, inertia.error, gravity)
 
     unknown = Autoregression(np.empty(0), _FIRST * float(np.mean(equations.torque**2)))
     prior = low_pass.interval

@@ -171,6 +171,8 @@ class Fitting:
         size[size == 0.0] = 1.0
         inverse = np.linalg.pinv(normal / np.outer(size, size), rcond=1e-14, hermitian=True)
         inverse /= np.outer(size, size)
+        columns = law.jacobian(values, self.equations)  # where the covariance holds
+        columns[:, logs] *= values[logs]
         attenuated = 0.0
         if law.inertia is None:
             step, index = self._unbiased(law, values, inverse), law.names.index(INERTIA)
@@ -194,8 +196,6 @@ class Fitting:
             column = self.whitened(law.by_inertia(values, self.equations)[:, None])[:, 0] / self._deviation
             by_inertia = -scale * (inverse @ (design.T @ column))
             covariance = covariance + law.inertia_error**2 * np.outer(by_inertia, by_inertia)
-        columns = law.jacobian(values, self.equations)
-        columns[:, logs] *= values[logs]
         own_covariance = inflation * inverse
         return MovingLawFit(
             law, values, covariance, residuals, chi, columns, own_covariance, attenuated, by_inertia
