@@ -95,7 +95,7 @@ def read(
         ``to [s]``, ``speed [rpm]``), or a list of ``{"from": "0 s", "to": "60 s", "speed": "10 rpm"}``.
         Times are counted from the first row. With sliding speeds, distances may stand in their place.
     position_window
-        Time over which speed is the slope of a ``position`` column, s (0.2 s).
+        Time over which speed is the slope of a ``position`` column, s (0.2 s, or less if motion is faster).
     progress
         Called with bytes done and total bytes.
 
