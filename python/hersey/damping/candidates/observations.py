@@ -22,7 +22,6 @@ from hersey.damping.dwells.least_duration import speeds_lost
 from hersey.damping.dwells.misleading import lagging, one_direction, unlinked_runs
 from hersey.damping.dwells.one_speed import is_one_speed, of_one_speed
 from hersey.damping.dwells.several_loads import (
-    refuse_constant_load,
     refuse_curves_of_loads,
     refuse_several_loads,
     refuse_traction_curve,
@@ -121,7 +120,6 @@ class Observations:
             raise InsufficientDataError(more)
         if fewest_speeds > 1:
             refuse_constant_torque(points)
-            refuse_constant_load(points)
             refuse_several_loads(points)
             refuse_curves_of_loads(points)
             refuse_unused_load(points)

@@ -9,15 +9,14 @@ import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.damping.dwells.points import SteadyPoints
-from hersey.errors import MOVING, InsufficientDataError, Setting, way_in
+from hersey.errors import InsufficientDataError, Setting, way_in
 from hersey.log.mean_blocks import BLOCKS, IN_BLOCKS
 from hersey.log.pooling import SAME_LOAD
 from hersey.log.rolling import ENTRAINMENT
 from hersey.log.stating import CHANGED, MAY_PLAY, by_amount
-from hersey.log.torque_log import TorqueLog
 
-#: Dwells of each direction at the least, of which it is said that torque has one sign.
-_DIRECTION = 3
+#: Points of each curve at the least that are compared with others.
+_FEWEST = 3
 #: Distance of curves, in scatters of their points, beyond which they are apart; speeds that are compared.
 _BEYOND, _GRID = 2.0, 50
 
@@ -76,35 +75,12 @@ def _apart(x: FloatArray, y: FloatArray, group: FloatArray) -> tuple[float, floa
         for mine in (group == each for each in np.unique(group))
     ]
     low, high = max(of[0] for of, _ in curves), min(of[-1] for of, _ in curves)
-    if low >= high or min(of.size for of, _ in curves) < _DIRECTION:
+    if low >= high or min(of.size for of, _ in curves) < _FEWEST:
         return 0.0, 0.0
     grid = np.linspace(low, high, _GRID)
     levels = np.array([np.interp(grid, *curve) for curve in curves])
     off = np.concatenate([f[1:-1] - 0.5 * (f[:-2] + f[2:]) for _, f in curves])
     return float(np.sqrt(np.mean(np.var(levels, axis=0)))), float(np.sqrt(np.mean(off**2) / 1.5))
-
-
-def refuse_constant_load(points: SteadyPoints) -> None:
-    """Raise if torque has one sign in both directions of a log: it holds a load greater than friction.
-
-    Raises
-    ------
-    InsufficientDataError
-        It says how the load is told from friction.
-    """
-    against = [r.speed for r in points.rejected if r.is_dwell and r.why.kind == "opposite signs"]
-    speed = points.column("speed")
-    if not isinstance(points.log, TorqueLog) or min(len(against), speed.size) < _DIRECTION:
-        return
-    signs, other = np.unique(np.sign(speed)), np.unique(np.sign(against))
-    if signs.size > 1 or other.size > 1 or signs[0] == other[0]:
-        return
-    raise InsufficientDataError(
-        f"{points.domain.quantity} has the same sign in both directions ({speed.size} and {len(against)} "
-        "dwells), so it contains a constant load, such as gravity",
-        remedy=f"use {MOVING.to()}, which fits that load as an offset",
-        setting=MOVING,
-    )
 
 
 def refuse_unused_load(points: SteadyPoints) -> None:
