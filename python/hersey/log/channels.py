@@ -233,8 +233,7 @@ def no_channel(
         if found := stated_in_names(file, names, role):
             way_out += f". If the names of the files state it, use {typed(found)}"
         way_out += f", or use {ISOTHERMAL.to()} to exclude temperature"
-    said = f"{file}: no {role} column found. Columns: {columns_listed(columns)}"
-    said += not_numbers(others)
+    said = f"{file}: no {role} column found. Columns: {columns_listed(columns)}{not_numbers(others)}"
     return ChannelError(said, absent=True, remedy=way_out, setting=channel)
 
 
