@@ -8,6 +8,7 @@ layouts               exports that need a layout to be read
 recording             what a file of any other format holds: channels with clocks of their own
 formats               one reader per format, and which one opens a file
 signals               currents, voltages and percentages, and how much one of them stands for
+words                 words of other languages that columns are called by
 roles                 roles of columns: their names, and the kinds of units that they may have
 role_units            the unit of a column with a role
 elsewhere             a speed or a temperature in the names of files, or in a position

@@ -10,7 +10,7 @@ from hersey.log.channels import ChannelChoice, columns_listed, find_column, take
 from hersey.log.elsewhere import elsewhere, stated_in_names
 from hersey.log.role_units import example_unit, known_unit
 from hersey.log.roles import EVERY
-from hersey.log.signals import CURRENT_EXAMPLE, may_be_current
+from hersey.log.signals import CURRENT_EXAMPLE, answered, is_signal, may_be_current, question
 from hersey.log.text.column import Column
 from hersey.log.without_units import naming_all
 from hersey.units import Conversion
@@ -104,6 +104,10 @@ def _all_open(
             continue
         found.add(role)
         chosen[role] = column, None
+        if role != "time" and is_signal(column.unit) and not choices[role].unit:
+            of, example = question(role, column.unit)
+            is_open.roles.append(f"'{column.path}' is in {column.unit}, which needs the {of}")
+            is_open.examples.append((Setting(role, "unit"), answered(example, column.unit)))
         if not (choices[role].unit or column.unit or known_unit(role, column)):
             is_open.without_unit.append(column)
             is_open.examples.append((Setting(role, "unit"), example_unit(role, column)))

@@ -16,7 +16,16 @@ from hersey.log.roles import (
     is_named,
     role_conversion,
 )
-from hersey.log.signals import apart, is_signal, of_an_input, per, says_how_much, way_out
+from hersey.log.signals import (
+    apart,
+    at_which,
+    is_signal,
+    of_an_input,
+    per,
+    says_how_much,
+    signal_kind,
+    way_out,
+)
 from hersey.log.text.column import Column
 from hersey.units import COUNTS, KINDS, Conversion, nearest_unit, of_encoder
 
@@ -96,6 +105,16 @@ def _called_a_torque(column: Column, unit: str, file: str) -> UnitError:
 
 def _signal_in(role: str, column: Column, unit: str, file: str) -> float:
     """How many of the signal that the unit is for, if it is for any, one in the column is."""
+    full, one = at_which(unit, column.unit)
+    if full and says_how_much(unit):
+        of = Setting(role, "unit")
+        raise UnitError(
+            f"{file}: column '{column.path}' is in {column.unit}, and '{unit}' may be the {role} at 1 "
+            f"{signal_kind(column.unit)} or at the full value",
+            columns=(column.index,),
+            remedy=f"use {of.to(full)} for the full value, or {of.to(one)}",
+            setting=of,
+        )
     try:
         if is_signal(column.unit) and not says_how_much(unit):
             raise ValueError(unit)

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from hersey.errors import UnreadableLogError, printable
+from hersey.log.words import NAMES
 
 #: Columns of a table, and characters of a name at the most: no log has as many.
 MOST_COLUMNS = 5000
@@ -40,11 +41,11 @@ _ENDINGS = {
     "K": "K",
 }
 _LONGEST_FIRST = sorted(_ENDINGS, key=len, reverse=True)
-_CLOCK = re.compile(r"t|.*time.*|.*zeit.*|.*(elapsed|clock|stamp).*", re.IGNORECASE)
+_CLOCK = re.compile(rf"t|.*time.*|.*zeit.*|.*(elapsed|clock|stamp).*|{NAMES['time']}", re.IGNORECASE)
 #: Names beside which a short ending is a unit: a phase C, a type K, a static or sliding quantity is none.
 _MEANT = {
     **dict.fromkeys(("s", "ms", "us"), _CLOCK),
-    **dict.fromkeys(("C", "K"), re.compile(r"T|.*temp.*", re.IGNORECASE)),
+    **dict.fromkeys(("C", "K"), re.compile(rf"T|.*temp.*|{NAMES['temperature']}", re.IGNORECASE)),
     "N": re.compile(r".{2,}"),
 }
 
