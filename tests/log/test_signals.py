@@ -171,7 +171,7 @@ def test_an_amount_alone_may_be_that_of_one_or_of_the_full_value(
     unit: str, full: str, tmp_path: Path
 ) -> None:
     file = log(tmp_path, f"torque [{unit}]")
-    with pytest.raises(UnitError, match="may be the torque at 1 . or at the full value") as refused:
+    with pytest.raises(UnitError, match=r"may be the torque at 1 . or at the full value") as refused:
         hersey.read(file, units={"torque": "3 N*m"})
     assert refused.value.remedy == (
         f"use units={{'torque': '{full}'}} for the full value, or units={{'torque': '3 N*m/{unit}'}}"

@@ -43,7 +43,7 @@ _NAMES = {
     "temperature": r"(?!tempo([^a-z]|$)).*temp.*|.*thermistor.*|.*heater.*|.*thermocouple.*|.*film t.*",
     "load": r".*\bload(?! ?cell).*|.*normal ?(force|kraft).*|.*normalkraft.*|f_?[nz]|.*axial ?force",
     "radius": r".*radius.*|.*\btrack",
-    "position": r".*(angle|position|encoder|winkel|lage).*|phi|theta|pos",
+    "position": r".*(angle|position|encoder|winkel|lage).*|(.*[^a-z])?enc([^a-z].*)?|phi|theta|pos",
 }
 #: Names of what stands for a torque, or a speed of rotation, where the radius is known.
 _FRICTION_NAMES = {

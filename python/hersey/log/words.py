@@ -31,7 +31,9 @@ NAMES = {
         "|(?!.*(トルク|矩)).*(荷重|载荷|荷载|載荷|法向力|正压力).*"
     ),
     "radius": "rayon.*|radio|raggio.*|半[径徑].*",
-    "position": r".*([aá]ngulo|angolo|posici[oó]n|posizione|codeur|位置|角度|回転角|转角|编码器|エンコーダ).*",
+    "position": (
+        r".*([aá]ngulo|angolo|posici[oó]n|posizione|codeur|位置|角度|回転角|转角|编码器|エンコーダ).*"
+    ),
     "friction coefficient": (
         rf".*coef.*({_FRICTION}).*|.*reibwert.*|.*(摩擦|トラクション|牵引)(係数|系数|因数|因子).*"
     ),
