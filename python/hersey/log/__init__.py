@@ -27,6 +27,7 @@ clock                 rate, gaps and unevenness of a clock
 rows                  which rows can be used, and where one run ends and the next begins
 replaced              units of a file that a person replaced
 believed              what a channel of a drive can read at all, and codes for no reading
+wrapped               negative counts that were logged without a sign
 impossible            readings that cannot be right: found, named, left out
 neighbours            rows that their neighbours rule out
 stray_times           rows whose time lies off the clock around them

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
@@ -17,6 +18,10 @@ from hersey.units import Conversion
 
 #: What stands for the name of a column of which nothing is known.
 _COLUMN = "COLUMN"
+#: Names of columns of registers, which hold counts.
+_REGISTER = re.compile(
+    r"present_.*|(.*[^a-z])?(raw|counts?|cnt|ticks?|lsb|reg(ister)?)([^a-z].*)?", re.IGNORECASE
+)
 #: Columns of which it is asked whether they say nothing, at the most.
 _LOOKED_AT = 40
 #: A setting and its value, as an example.
@@ -69,7 +74,10 @@ def asking_all(
         f"{file}: {'; '.join(said)}. Columns: {columns_listed(columns)}",
         columns=error.columns if isinstance(error, ChannelError | UnitError) else (),
         examples=tuple(is_open.examples),
-        remedy=f"use {stated(is_open.examples)}{_own(is_open.examples)}{_instead(is_open.examples)}",
+        remedy=(
+            f"use {stated(is_open.examples)}{_own(is_open.examples)}{_instead(is_open.examples)}"
+            f"{_of_registers(is_open)}"
+        ),
         setting=setting,
     )
 
@@ -100,7 +108,11 @@ def _all_open(
         if column is None:
             is_open.roles.append(f"no {role} column found")
             free = tuple(c for c in columns if c not in taken.values())
-            is_open.examples += _of_absent(role, free, file, names, choices[role].unit)
+            examples = _of_absent(role, free, file, names, choices[role].unit)
+            if role == "torque" and (current := dict(examples)[Setting(role, "channel")]) != _COLUMN:
+                found.add(role)  # in its place
+                is_open.roles[-1] += f" ('{current}' may be the motor current)"
+            is_open.examples += examples
             continue
         found.add(role)
         chosen[role] = column, None
@@ -136,7 +148,10 @@ def _of_absent(
 
 
 def _own(examples: Sequence[Example]) -> str:
-    """What is to be put in the place of examples."""
+    """What is to be put in the place of examples; an encoder of a line counts lengths."""
+    if any(of == Setting("position", "unit") and value.startswith("rev/") for of, value in examples):
+        line = Setting("position", "unit").to("0.5 um")
+        return f", with your units: the counts of one turn of your encoder, or {line} for one of a line"
     columns = f"columns for {_COLUMN}" if any(value == _COLUMN for _, value in examples) else ""
     units = "units" if any(of.kind == "unit" for of, _ in examples) else ""
     return f", with your {' and '.join(filter(None, [columns, units]))}" if columns or units else ""
@@ -152,6 +167,18 @@ def _instead(examples: Sequence[Example]) -> str:
         for role, column in columns.items()
         if (column, _COLUMN) in examples
     )
+
+
+def _of_registers(is_open: _Open) -> str:
+    """What to state instead for columns of torque and speed that may hold counts of a register."""
+    named = {value for of, value in is_open.examples if of.kind == "channel"}
+    named |= {column.name for column in is_open.without_unit}
+    if not any(_REGISTER.fullmatch(name) for name in named):
+        return ""
+    counts = {"torque": "4.79 mN*m", "speed": "0.229 rpm"}
+    units = [Setting(role, "unit") for role in counts]
+    asked = [(unit, counts[unit.name]) for unit in units if unit in dict(is_open.examples)]
+    return f". For counts of a register give what one count is, e.g. {stated(asked)}" if asked else ""
 
 
 def stated(examples: Sequence[Example]) -> str:

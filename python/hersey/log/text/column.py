@@ -48,7 +48,7 @@ _ENDINGS = {
 }
 _LONGEST_FIRST = sorted(_ENDINGS, key=len, reverse=True)
 _CLOCK = re.compile(rf"t|.*time.*|.*zeit.*|.*(elapsed|clock|stamp).*|{NAMES['time']}", re.IGNORECASE)
-#: Names beside which a short ending is a unit: a phase A or C, a type K, a static or sliding quantity is none.
+#: Names beside which a short ending is a unit: a phase A, a type K, a static or sliding quantity is none.
 _MEANT = {
     **dict.fromkeys(("s", "ms", "us"), _CLOCK),
     **dict.fromkeys(("C", "K"), re.compile(rf"T|.*temp.*|{NAMES['temperature']}", re.IGNORECASE)),

@@ -1,0 +1,72 @@
+"""Negative counts that were logged without a sign: in two's complement of 16 or 32 bits."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from hersey.arrays import FloatArray
+from hersey.log.long_arrays import blocks, each_block
+from hersey.schema.warning import Warning
+
+#: Kind of the warning.
+READ_AS_NEGATIVE = "counts read as negative"
+#: Roles of columns that may hold such counts.
+COUNTED = ("torque", "speed", "position")
+#: No count lies between these shares of the range: numbers that run through it are none below zero.
+_FROM, _TO = 0.25, 0.75
+#: Fewest distinct counts above; one alone may be a code of the logger.
+_FEWEST = 3
+#: How near to a whole number a count is, after a unit has multiplied it.
+_WHOLE = 1e-3
+
+
+def with_signs(values: FloatArray, scale: float, channel: str) -> tuple[FloatArray, tuple[Warning, ...]]:
+    """Return numbers, ``scale`` times those as written, with the signs that they have lost, and a warning.
+
+    Numbers of which it is not beyond doubt that they are such counts stay as they are.
+    """
+    if not (bits := _bits(values, scale)):
+        return values, ()
+    full, count = scale * 2.0**bits, 0
+
+    def signed(part: FloatArray) -> FloatArray:
+        nonlocal count
+        lost = part / scale >= 2.0 ** (bits - 1)
+        count += int(lost.sum())
+        return np.where(lost, part - full, part)
+
+    values = each_block(signed, values)
+    return values, (
+        Warning(
+            READ_AS_NEGATIVE,
+            "{count} numbers of '{channel}' were logged without their sign, as counts of {bits} bits, and "
+            "are read as negative ({before:.0f} is -1)",
+            severity="watch",
+            channel=channel,
+            count=count,
+            bits=bits,
+            before=2.0**bits - 1.0,
+        ),
+    )
+
+
+def _bits(values: FloatArray, scale: float) -> int:
+    """How many bits counts have that lost their sign; 0 if not all numbers surely are such counts."""
+    most = max((_largest(values[block], scale) for block in blocks(values.size, values)), default=0.0)
+    bits = next((bits for bits in (16, 32) if _TO * 2.0**bits <= most < 2.0**bits), 0)
+    above: set[float] = set()
+    for block in blocks(values.size, values) if bits else ():
+        part = values[block] / scale
+        part = part[np.isfinite(part)]
+        share = part / 2.0**bits
+        between = (share >= _FROM) & (share < _TO)
+        if np.any(between | (share < 0.0)) or np.any(np.abs(part - np.rint(part)) > _WHOLE):
+            return 0
+        if len(above) < _FEWEST:
+            above |= set(np.unique(np.rint(part[share >= _TO]))[:_FEWEST].tolist())
+    return bits if len(above) >= _FEWEST else 0
+
+
+def _largest(part: FloatArray, scale: float) -> float:
+    known = part[np.isfinite(part)]
+    return float(np.max(known / scale, initial=0.0))
