@@ -154,6 +154,7 @@ _OTHERS = {
     ("contact", "supply"): '"20 um"',
     ("contact", "sensor_side"): '"heater"',
     ("lubricant", "example"): '"cylinder oil"',
+    ("names", "table"): '"runs.csv"',
     ("lubricant", "source"): '"data sheet"',
     ("lubricant", "relaxation_time"): '"1 us"',
     ("lubricant", "carreau_exponent"): "0.6",
@@ -202,6 +203,7 @@ _IN_RECIPE = {
     "no_load": '"no-load.csv"',
     "name_pattern": '"{speed} rpm {load} N.csv"',
     "name_decimal": '"-"',
+    "run_table": '"runs.csv"',
     "schedule": '"plan.csv"',
 }
 

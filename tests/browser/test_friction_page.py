@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser
 
+from hersey.damping.dwells import SteadyPoints
 from hersey.damping.estimate import rounded
 from hersey.document.analysis import Analysis
 from hersey.document.assembly import document_of
@@ -15,9 +16,10 @@ from hersey.machine.machine import read_machine
 from hersey.report.page import render
 from hersey.study import study
 from tests.browser.opening import Opened
-from tests.browser.test_noun import foreign, words
+from tests.browser.test_noun import TEXTS, foreign, words
 from tests.browser.test_page import COVERED
 from tests.damping.moving_logs import sine
+from tests.log.test_rolling import stribeck
 
 pytestmark = pytest.mark.usefixtures("roughly")
 #: A joint without operating points.
@@ -77,6 +79,18 @@ def test_which_law_the_safe_speed_uses_is_said(browser: Browser, tmp_path: Path)
     text = seen.page.text_content("#torque") or ""
     assert "V*, the map and start-up profiles use drag curves by weight (" in text
     assert "what torque does below the slowest window." in text
+    assert "film" not in (seen.page.text_content("#flags") or "")
     assert seen.page.locator("#chart-damping, #chart-surface").count() == 0
+    seen.assert_quiet()
+    seen.page.close()
+
+
+def test_the_page_of_a_traction_machine_shows_its_entrainment_speed(browser: Browser, tmp_path: Path) -> None:
+    points = SteadyPoints.from_table(stribeck())
+    (tmp_path / "page.html").write_text(render(document_of(study(points))), encoding="utf-8")
+    seen = Opened(browser, tmp_path / "page.html")
+    texts = seen.page.evaluate(TEXTS)
+    assert any("0.005 m/s and faster than 3 m/s" in each for each in texts)
+    assert [each for each in texts if "rpm" in each] == []
     seen.assert_quiet()
     seen.page.close()

@@ -9,6 +9,7 @@ import numpy as np
 import polars as pl
 import pytest
 
+from hersey.cli.recipe_file import read_recipe
 from tests.cli.command import run
 from tests.conftest import ROOT, shared
 from tests.damping.moving_logs import RATE, made, sine, times, waves
@@ -69,6 +70,16 @@ def test_dwells_and_motion_in_one_log(tmp_path: Path) -> None:
         assert found[name]["value"] == pytest.approx(truth, rel=0.03), name
 
 
+def test_the_error_of_a_given_inertia_is_read_and_kept(joint: Path) -> None:
+    """As by coastdown; the recipe of a report keeps both numbers."""
+    typed = ("fit", "joint.csv", "--isothermal", "--moving", "--inertia", "100 kg*cm^2 ± 20 %")
+    assert "0.01 ± 0.002 kg·m² (given)" in run(*typed, cwd=joint).stdout
+    run("inspect", *typed[1:], "--save-recipe", "recipe.toml", cwd=joint)
+    assert read_recipe(joint / "recipe.toml")[1]["inertia"] == "0.01 kg*m^2 ± 0.002 kg*m^2"
+    again = run("fit", "--recipe", "recipe.toml", cwd=joint)
+    assert "0.01 ± 0.002 kg·m² (given)" in again.stdout, again.stderr
+
+
 def test_a_given_inertia_and_json(joint: Path) -> None:
     typed = ("fit", "joint.csv", "--isothermal", "--moving", "--inertia", "100 kg*cm^2")
     done = run(*typed, "--json", cwd=joint)
@@ -115,7 +126,7 @@ def test_start_and_stop_of_a_screw_drive(tmp_path: Path) -> None:
     done = run("fit", folder / "50.csv", folder / "200.csv", *typed, cwd=tmp_path)
     assert done.returncode == 0, done
     assert "Coulomb and viscous friction" in done.stdout
-    assert "all dwells are at 50 rpm and 200 rpm" in " ".join(done.stderr.split())
+    assert "all windows of speed are at 50 rpm and 200 rpm" in " ".join(done.stderr.split())
 
 
 def test_a_staircase_with_too_few_speeds_is_none(tmp_path: Path) -> None:

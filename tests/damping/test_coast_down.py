@@ -16,7 +16,7 @@ from hersey.arrays import FloatArray
 from hersey.damping.coast_down import CoastDown
 from hersey.damping.coast_down.closed_form import speeds
 from hersey.damping.coast_down.coasts import noise_of_rows
-from hersey.damping.coast_down.inertia import inertia_of
+from hersey.damping.inertia import inertia_of
 from hersey.damping.recipe import Recipe
 from hersey.errors import ChannelError, InsufficientDataError, ParameterError, UnitError
 from tests.cli.command import run

@@ -101,6 +101,10 @@ def test_speeds_in_both_directions_check_for_hysteresis() -> None:
     assert falling is not None
     assert falling.number("direction") == -1.0
     assert found(BENCH.points(1), "one direction") is None
+    (of_friction,) = (
+        each for each in misleading(RISING.points(1), exponents=False) if each.kind == "one direction"
+    )
+    assert "The intervals do not include it. Also record the speeds on the way down" in of_friction.text
 
 
 def test_hysteresis_counts_as_a_zero_that_depends_on_direction() -> None:

@@ -11,6 +11,7 @@ import pytest
 from scipy import optimize
 
 import hersey
+from hersey.damping.dwells.doubtful import doubtful_order
 from hersey.damping.moving.correlated import autoregression
 from hersey.damping.moving.curve import moving_curve
 from hersey.damping.moving.result import MovingFit
@@ -116,6 +117,20 @@ def test_the_low_pass_biases_no_linear_term() -> None:
     assert fit["k_v"].value == pytest.approx(VISCOUS, rel=3e-3)
 
 
+def test_the_error_of_a_given_inertia_is_in_what_depends_on_it() -> None:
+    """Each number errs by as much more as it moves with an inertia that is off by its standard error."""
+    exact, off = (hersey.fit_moving(sine(), inertia=factor * INERTIA) for factor in (1.0, 1.02))
+    unsure = hersey.fit_moving(sine(), inertia=f"{INERTIA} kg*m^2 ± {2 * 1.96} %")
+    for one, moved, wider in zip(exact.parameters, off.parameters, unsure.parameters, strict=True):
+        shift = moved.estimate.value - one.estimate.value
+        expected = np.hypot(one.estimate.error, shift)
+        assert wider.estimate.error == pytest.approx(expected, rel=0.05), one.name
+    assert unsure["delay"].error > 2.0 * exact["delay"].error
+    shared = [np.linalg.norm(each.points().window_errors, axis=1) for each in (exact, unsure)]
+    assert (shared[1] > 0.99 * shared[0]).all()
+    assert shared[1].max() > 3.0 * shared[0].max()
+
+
 def test_noise_of_a_tachometer_does_not_lessen_the_inertia() -> None:
     """White noise of 0.3 rad/s: without a correction the inertia would be 0.5 % low."""
     speed, rate = waves(times())
@@ -219,6 +234,18 @@ def test_a_film_that_moves_all_the_time_is_no_friction_curve() -> None:
     assert leading_friction(points, surface, hersey.regime(points, surface)) is None
 
 
+def test_windows_that_last_as_long_as_the_log_are_in_no_order() -> None:
+    """They come by speed, not by time; of one ramp up they come by both."""
+    speed, rate = waves(times())
+    up = np.abs(speed) + 0.3
+    both = made(up, np.sign(speed) * rate, COULOMB + VISCOUS * up).moving().points()
+    assert doubtful_order(both) == []
+    ramp = 1.0 + times() / 8.0
+    log = made(ramp, np.full(ramp.size, 1.0 / 8.0), COULOMB + VISCOUS * ramp)
+    once = log.moving(inertia=INERTIA).points()
+    assert [each.values["quantity"] for each in doubtful_order(once)] == ["speed"]
+
+
 def test_what_windows_share_moves_them_together(encoder: MovingFit) -> None:
     """One standard error of the offset is in all of them."""
     shared = encoder.points().window_errors
@@ -273,6 +300,15 @@ def test_a_coefficient_asks_for_radius_and_load() -> None:
         "speed. Give radius='25 mm' and load='50 N', with your values. If nothing turns, give radius='1 m' "
         "and load='1 N', and read N·m as the coefficient and rad/s as m/s"
     )
+
+
+def test_exact_data_end_in_no_fault() -> None:
+    """No noise at all: the numbers are those that made it; a torque that never changes measures nothing."""
+    speed, rate = waves(times())
+    exact = made(speed, rate, COULOMB * np.sign(speed) + VISCOUS * speed, noise=0.0).moving()
+    assert exact["J"].value == pytest.approx(INERTIA, rel=1e-3)
+    with pytest.raises(InsufficientDataError, match=r"torque reads 300 mN m in every row"):
+        read(speed, 0.3 * np.sign(speed)).moving()
 
 
 def test_too_short_a_log_is_refused() -> None:

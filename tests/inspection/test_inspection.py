@@ -15,8 +15,9 @@ import hersey
 from hersey import testbench
 from hersey.errors import ChannelError, HerseyError, ParameterError, UnitError
 from hersey.inspection import inspect
-from hersey.inspection.faults import noise_of, quantisation_step, traits
+from hersey.inspection.faults import noise_of, traits
 from hersey.log.clock import clock_of
+from hersey.log.counters import quantisation_step
 from hersey.log.mapping import FILE_NAME, read_mapping
 from tests.cli.command import run
 from tests.conftest import shared

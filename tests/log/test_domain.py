@@ -238,6 +238,8 @@ def test_a_torque_beside_a_load_or_track_that_changes_is_fitted_and_that_is_said
 def test_a_coefficient_goes_before_the_force_that_it_was_made_of() -> None:
     table = log(0.02, 10.0, "coefficient").with_columns(pl.Series("Friction force [N]", SPEEDS))
     assert hersey.read(table, isothermal=True).domain == COEFFICIENT
+    empty = table.with_columns(pl.lit(None, pl.Float64).alias("COF"))
+    assert hersey.read(empty, isothermal=True).domain.quantity == "friction force"
 
 
 def test_a_trend_beside_a_load_that_changes_says_so() -> None:

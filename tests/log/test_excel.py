@@ -177,9 +177,7 @@ def test_film_thickness_of_others_in_an_npz() -> None:
     path = shared("data/ehd-film/demo_ehd_data.npz")
     assert format_of(path) == "numpy_arrays"
     assert dict(list_channels(path))["rolling_speed"] == "mm/s"
-    with pytest.raises(
-        ChannelError, match=r"could be 'ball_speed_1' or 'disc_speed_1'.* no unit for 'traction_force_1_n'"
-    ):
+    with pytest.raises(ChannelError, match=r"could be 'ball_speed_1' or 'disc_speed_1'.* no unit for"):
         hersey.read(path)
 
 

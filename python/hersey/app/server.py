@@ -246,5 +246,8 @@ class _Routes:
 
 
 def _question(question: Question) -> dict[str, Any]:
-    names = ("key", "section", "field", "name", "words", "example", "unit", "letter", "needed", "first")
+    names = (
+        *("key", "section", "field", "called", "words", "example", "bare_example"),
+        *("unit", "letter", "first"),
+    )
     return {name: getattr(question, name) for name in names}

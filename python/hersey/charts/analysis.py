@@ -61,6 +61,8 @@ from hersey.units import celsius
 _OVERLAP = 1.004
 #: Ratio of both ends of a curve to its least torque from which that is marked.
 _RISES = 1.01
+#: Tooltips of a dwell that a window of a moving log has not.
+_WHEN = (alt.Tooltip("approach:N", title="approached"), alt.Tooltip("from_to:N", title="dwell"))
 
 
 def charts(document: Analysis, *, but: tuple[str, ...] = ()) -> dict[str, Chart]:
@@ -181,7 +183,7 @@ def residuals(document: Analysis) -> Chart:
         subtitle, shape = "windows of speed; a bend: wrong model", {}
     dots = dots.encode(
         x=_speed(document, "speed:Q", span([row["speed"] for row in rows])),
-        y=alt.Y("residual:Q", title="Measured / fitted \u2212 1 (%)"),
+        y=alt.Y("residual:Q", title="Measured / fitted \u2212 1 (%)", scale=alt.Scale(padding=8)),
         color=_temperature_channels(document)[0],
         tooltip=_point_tips(document),
         **shape,
@@ -434,8 +436,7 @@ def _point_tips(document: Analysis) -> list[alt.Tooltip]:
         tip("torque_shown", _axis(document)[0].lower() + _axis(document)[1:]),
         tip("damping_shown", f"damping ({_damping_unit(document)})"),
         tip("residual", "measured / fitted - 1 (%)"),
-        alt.Tooltip("approach:N", title="approached"),
-        alt.Tooltip("from_to:N", title="dwell"),
+        *([] if document.moving is not None else _WHEN),
     ]
 
 

@@ -33,8 +33,8 @@ _LINE = 110
 _HIDDEN = "hidden"
 
 
-def friction_curve_chart(curve: FrictionCurve) -> Chart:
-    """Return the dwells and the fitted friction curve, its parameters in the subtitle."""
+def friction_curve_chart(curve: FrictionCurve, moments: Moments | None = None) -> Chart:
+    """Return the dwells and the curve, its parameters in the subtitle, over ``moments`` of a moving log."""
     data = curve.data
     torque = np.exp(data.log_torque)
     sign = np.ones_like(torque) if data.inputs.sign is None else data.inputs.sign
@@ -54,7 +54,7 @@ def friction_curve_chart(curve: FrictionCurve) -> Chart:
         temperature=[None] * len(data) if kelvin is None else celsius(kelvin),
     )
     tips = [tip("speed", "speed (rpm)"), tip("y", f"torque ({unit})")]
-    return signed_chart(dwells, curve, (factor, unit), tips)
+    return signed_chart(dwells, curve, (factor, unit), tips, moments)
 
 
 def signed_chart(

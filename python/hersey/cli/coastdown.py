@@ -43,7 +43,7 @@ def coastdown(
     drawing = may_draw(figure, force, reading.inputs(logs))
 
     from hersey.damping.coast_down import coast_down
-    from hersey.damping.coast_down.inertia import inertia_of
+    from hersey.damping.inertia import inertia_of
     from hersey.log import memory_limit
 
     known = inertia_of(reading.inertia, "--inertia")

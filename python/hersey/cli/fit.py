@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 from hersey.cli.groups import grouped, option
-from hersey.cli.hersey_number import viscosity_of
 from hersey.cli.moving import Fitted, fitted, fitted_lines
 from hersey.cli.options import Force, KeepGoing, Logs, Reading, SensorsFile
 from hersey.cli.outputs import may_write, print_json
@@ -28,7 +27,7 @@ if TYPE_CHECKING:
     from hersey.machine.machine import Machine
 
 _NO_SURFACE = "--json prints a surface, for which the windows of this log are too few: omit --json"
-_HERSEY = "Fit against the Hersey number, with this viscosity, '20 mPa*s', or a file with [lubricant]."
+_HERSEY = "Fit to the Hersey number, with this viscosity, '20 mPa*s', or the lubricant of a TOML file."
 _EACH = "Fit each log separately and write one row per log (.csv or .parquet)."
 
 
@@ -78,6 +77,8 @@ def _fit_one(
     logs: list[Path], reading: Reading, machine: Machine | None, printing: Printing, hersey: str
 ) -> None:
     """Fit all logs together."""
+    from hersey.cli.hersey_number import viscosity_of
+
     viscosity = viscosity_of(hersey) if hersey else None
     log = reading.log(logs, machine)
 

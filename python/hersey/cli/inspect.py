@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 _SAVE_MAPPING = "Write the proposed layout, channels and units as hersey.toml beside the log."
 #: Settings of a recipe that only a fit takes.
-_OF_A_FIT = ("logs", "no_load", "moving", "inertia")
+_OF_A_FIT = ("logs", "no_load", "moving", "inertia", "inertia_error")
 #: Longest name of a channel in the table, and most channels without a role that it shows.
 _LONGEST, _OTHERS = 28, 8
 

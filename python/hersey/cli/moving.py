@@ -67,11 +67,14 @@ def fitted_lines(fit: MovingFit, finding: str = "") -> list[str]:
     ``finding`` is what torque does as the drive slows.
     """
     from hersey.cli.figures import labelled, three
+    from hersey.damping.inertia import NORMAL
     from hersey.units import rpm
 
     rows = [(each.name, _shown(each.estimate, each.unit)) for each in fit.parameters]
     if fit.inertia_given is not None:
-        rows.append(("J", f"{three(fit.inertia_given)} kg·m² (given)"))
+        half = NORMAL * fit.fitted.law.inertia_error
+        error = f" ± {three(half)}" if half else ""
+        rows.append(("J", f"{three(fit.inertia_given)}{error} kg·m² (given)"))
     speed = fit.middle_speed
     rows.append(("friction", f"{_shown(fit.friction_at(speed), 'N m')} at {three(rpm(speed))} rpm"))
     head = "torque = J dw/dt + offset + friction(w), w in rad/s (value, 95 % interval)"

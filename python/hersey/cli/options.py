@@ -14,7 +14,7 @@ from hersey.cli.loading import loading
 from hersey.cli.no_load import refuse_no_load_log
 from hersey.cli.no_torque import other_use
 from hersey.cli.progress import bar, working
-from hersey.cli.quantities import amount_of, amounts_in, ratio_of
+from hersey.cli.quantities import amount_of, amounts_in, inertia_in, ratio_of
 from hersey.cli.recipe_file import ROLES, read_recipe
 from hersey.cli.several import for_this_log_only
 from hersey.cli.terminal import note
@@ -90,14 +90,14 @@ _POSITION_WINDOW = "Time over which the slope of the position is taken.  [defaul
 _DIRECTION = "Column of the direction of a speed without a sign: 1 and -1, 1 and 0, CW and CCW."
 _NAME_PATTERN = "Pattern of file names that state values, e.g. '{speed} rpm {load} N.txt'."
 _NAME_DECIMAL = "Decimal mark of the numbers in the file names, e.g. '-' for 0-1rps.txt."
-_RUN_TABLE = "Table with a row for each file: columns file, and e.g. load [N] or radius [mm]."
+_RUN_TABLE = "Table with a row for each file: its name, and e.g. load or radius, with units."
 _SCHEDULE = "Table of set points by time or distance: columns from, to, e.g. speed, with units."
 _MAPPING = "File with roles, units and corrections.  [default: hersey.toml beside the log]"
 _DROP_MISSING = "Drop rows with a missing or impossible number, however many."
 _MEANS = "Read a table of means: one row per dwell, no time column."
 _NO_LOAD = "Log of the drive without the lubricated contact; its torque is subtracted."
 _MOVING = "Fit every sample of a log whose speed changes all the time."
-_INERTIA = "Moment of inertia at the output shaft, e.g. '2e-4 kg*m^2'; used where speed changes."
+_INERTIA = "Moment of inertia at the output shaft, e.g. '2e-4 kg*m^2 ± 5 %'; used where speed changes."
 _NO_CACHE = "Read and compute everything again, without the cache."
 _RECIPE = "Use the logs and settings of a recipe; options typed here override it."
 
@@ -208,12 +208,11 @@ class Reading:
 
     def _motor(self) -> dict[str, float]:
         """What is said of the motor and its gears, SI."""
-        kinds = {"torque_constant": "motor constant", "inertia": "moment of inertia"}
-        said = {
-            name: amount_of(kind, text, f"--{name.replace('_', '-')}")
-            for name, kind in kinds.items()
-            if (text := getattr(self, name))
-        }
+        said = {}
+        if self.torque_constant:
+            said["torque_constant"] = amount_of("motor constant", self.torque_constant, "--torque-constant")
+        if self.inertia:
+            said |= inertia_in(self.inertia)
         ratios = ("gear_ratio", "speed_gear_ratio")
         return said | {
             name: ratio_of(f"--{name.replace('_', '-')}", text)

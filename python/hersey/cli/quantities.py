@@ -78,6 +78,15 @@ def amount_of(kind: str, text: str, flag: str) -> float:
         return parse(kind, text)
 
 
+def inertia_in(text: str) -> dict[str, float]:
+    """Return the moment of inertia of ``--inertia``, and half its 95 % interval if it has one, kg m^2."""
+    from hersey.damping.inertia import inertia_of
+
+    known = inertia_of(text, "--inertia")
+    error = {"inertia_error": known.high - known.value} if known.error else {}
+    return {"inertia": known.value} | error
+
+
 def ratio_of(flag: str, text: str) -> float:
     """Return a plain number that an option names, or a ratio such as ``50:1``."""
     match = re.fullmatch(

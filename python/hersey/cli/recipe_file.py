@@ -16,16 +16,6 @@ ROLES = ("time", "torque", "speed", "temperature", "load", "radius", "position",
 _WITH_UNIT, _WITH_SIGN = ROLES[:-2], ("torque", "speed")
 #: Tables of a recipe by role: the ending of the option, and the roles that have it.
 _TABLES = {"channels": ("", ROLES), "units": ("_unit", _WITH_UNIT), "signs": ("_sign", _WITH_SIGN)}
-#: Options that are an amount, and the units in which a recipe holds it.
-_UNITS = {
-    "load": "N",
-    "radius": "m",
-    "every": "s",
-    "min_dwell": "s",
-    "position_window": "s",
-    "torque_constant": "N*m/A",
-    "inertia": "kg*m^2",
-}
 #: Options that are a plain number.
 _PLAIN = ("gear_ratio", "speed_gear_ratio")
 
@@ -49,13 +39,17 @@ def _options(recipe: Recipe, file: str) -> dict[str, Any]:
     stated = recipe.stated()
     stated.pop("logs", None)
     _refuse_unclear(stated, file)
+    error = stated.pop("inertia_error", None)
     out: dict[str, Any] = {}
     for table, (ending, roles) in _TABLES.items():
         for role, value in stated.pop(table, {}).items():
             if role not in roles:
                 raise ParameterError(f"{file}: {table}.{role}: use one of {', '.join(roles)}")
             out[role + ending] = value
-    return out | {name: _typed(name, value) for name, value in stated.items()}
+    out |= {name: _typed(name, value) for name, value in stated.items()}
+    if error and "inertia" in out:
+        out["inertia"] += f" ± {_typed('inertia', error)}"
+    return out
 
 
 def _refuse_unclear(stated: dict[str, Any], file: str) -> None:
@@ -72,7 +66,10 @@ def _refuse_unclear(stated: dict[str, Any], file: str) -> None:
 
 def _typed(name: str, value: Any) -> Any:
     """A setting as the value of its option."""
-    if name in _UNITS:
+    from hersey.damping.recipe import AMOUNTS
+    from hersey.units import KINDS
+
+    if name in AMOUNTS:
         values = value if isinstance(value, tuple) else (value,)
-        return ", ".join(f"{each!r} {_UNITS[name]}" for each in values)
+        return ", ".join(f"{each!r} {KINDS[AMOUNTS[name]][0]}" for each in values)
     return str(value) if isinstance(value, Path) or name in _PLAIN else value

@@ -6,6 +6,7 @@ recipe          how logs become dwells: files, channels, corrections, the search
 dwells          dwells, reduced to steady points with honest errors
 distributions   Student's t and the like, from scipy.special
 estimate        a number with its uncertainty
+inertia         a moment of inertia as it is stated, with its error
 no_load_torque  what the drive takes besides the film
 soundness       whether numbers read from a file can be what they are called
 smoothing       a smooth curve through dwells, and where it is least

@@ -13,8 +13,6 @@ from scipy import special
 
 #: A number or an array; several are broadcast together.
 Value = Any
-#: Median of the magnitude of noise whose standard deviation is 1.
-MEDIAN_MAGNITUDE = 0.6745
 
 
 def normal_density(x: Value) -> Value:

@@ -22,7 +22,16 @@ from hersey.log.means import MeansTable
 from hersey.log.text.delimited import Progress
 
 #: Settings of a recipe on which what is read does not depend.
-_OF_DWELLS = ("min_dwell", "tare", "rotation", "temperature_scale", "no_load", "moving", "inertia")
+_OF_DWELLS = (
+    "min_dwell",
+    "tare",
+    "rotation",
+    "temperature_scale",
+    "no_load",
+    "moving",
+    "inertia",
+    "inertia_error",
+)
 #: Bytes of logs from which reading takes longer than finding what was read.
 _WORTH_KEEPING = 1 << 16
 

@@ -19,6 +19,7 @@ from pydantic import ValidationInfo
 from hersey.arguments.frozen import explained
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.held_or_moving import held_or_moving
+from hersey.damping.inertia import stated_inertia
 from hersey.damping.moving.result import MovingFit
 from hersey.damping.no_load import no_load_torque
 from hersey.damping.no_load_torque import NoLoadTorque
@@ -161,6 +162,8 @@ class Recipe:
         Whether friction is fitted to every sample of a log that moves all the time, instead of to dwells.
     inertia
         Moment of inertia of all that the torque of such a log accelerates, kg m^2; None if it is fitted.
+    inertia_error
+        Half its 95 % interval, kg m^2; None if it is exact.
     """
 
     logs: Annotated[tuple[Path, ...], _Paths(None)] = ()
@@ -189,6 +192,7 @@ class Recipe:
     no_load: Annotated[Path | None, _Path(None)] = None
     moving: bool = False
     inertia: Annotated[float | None, Quantity("moment of inertia", 0.0, 1e9, "2e-4 kg*m^2")] = None
+    inertia_error: Annotated[float | None, Quantity("moment of inertia", 0.0, 1e9, "1e-5 kg*m^2")] = None
 
     def __post_init__(self) -> None:
         """Bring amounts to SI and names of files to paths."""
@@ -197,7 +201,7 @@ class Recipe:
         for name in _FILES:
             path = getattr(self, name)
             given[name] = None if path is None else Path(path)
-        for name, kind in _KINDS.items():
+        for name, kind in AMOUNTS.items():
             amount = getattr(self, name)
             if isinstance(amount, tuple | list):
                 given[name] = tuple(argument(name, kind, each) for each in amount)
@@ -281,7 +285,8 @@ class Recipe:
         """
         if self.tare != "none":
             raise ParameterError(f"the torque zero of a moving log is fitted. Omit {TARE.to()}")
-        return log.moving(inertia=self.inertia)
+        half = self.inertia_error or 0.0
+        return log.moving(inertia=None if self.inertia is None else stated_inertia(self.inertia, half))
 
     def points(self, drive: KnownDrive | None = None, *, progress: Progress | None = None) -> SteadyPoints:
         """Read the logs and reduce them to dwells; errors begin with the name of the log.
@@ -391,7 +396,7 @@ class Recipe:
                 rows = [f"{key} = {_written(each)}" for key, each in value.items()]
                 tables.append("\n".join([f"\n[{name}]", *rows]))
             else:
-                plain.append(f"{name} = {_written(value, _KINDS.get(name, ''), folder)}")
+                plain.append(f"{name} = {_written(value, AMOUNTS.get(name, ''), folder)}")
         return "\n".join([*plain, *tables, ""])
 
     def stated(self) -> dict[str, Any]:
@@ -500,7 +505,7 @@ class _RecipeFile(Table, Recipe):
 #: Fields that name one file each.
 _FILES = ("mapping", "run_table", "schedule", "no_load")
 #: Kind of unit of each amount.
-_KINDS = {
+AMOUNTS = {
     "every": "time",
     "radius": "length",
     "load": "force",
@@ -508,6 +513,7 @@ _KINDS = {
     "position_window": "time",
     "torque_constant": "motor constant",
     "inertia": "moment of inertia",
+    "inertia_error": "moment of inertia",
 }
 #: What is said of a log and a file need not hold.
 _STATED = (

@@ -15,10 +15,11 @@ from scipy import optimize
 
 from hersey.arrays import FloatArray, IntArray
 from hersey.damping.candidates.observations import Observations
-from hersey.damping.distributions import MEDIAN_MAGNITUDE, student_quantile
+from hersey.damping.distributions import student_quantile
 from hersey.damping.dwells import SAME_SPEED
 from hersey.damping.dwells.groups import levels_of_speed
 from hersey.damping.order import MOST, chances, off_parabolas
+from hersey.log.white_noise import MEDIAN_MAGNITUDE
 
 #: Probability with which a constant torque seems to rise or to fall somewhere.
 BY_CHANCE = 0.002

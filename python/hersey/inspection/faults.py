@@ -13,8 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hersey.arrays import FloatArray
-from hersey.damping.dwells.resolution import quantisation_step
+from hersey.log.counters import quantisation_step
 from hersey.log.neighbours import runs_of_true
+from hersey.log.white_noise import MEDIAN_MAGNITUDE
 from hersey.result import OPEN, Means, Record
 
 IndexArray = NDArray[np.intp]
@@ -46,8 +47,6 @@ FLAT_SHARE = 0.005
 DROPOUT_SHARE, BESIDE, DROPOUT_VOID, DROPOUT_JUMP = 0.2, 5, 0.5, 5.0
 #: A sensor is refreshed more slowly than logged if its values are held for at least so many rows.
 REFRESH_ROWS = 3
-#: Second differences of white noise have six times its variance; half of them are below 0.6745 deviations.
-_MEDIAN = 0.6745
 
 
 @dataclass(frozen=True)
@@ -125,7 +124,7 @@ def noise_of(values: FloatArray) -> float | None:
         return None
     second = values[2:] - 2.0 * values[1:-1] + values[:-2]
     middle = float(np.median(np.abs(second - np.median(second))))
-    return middle / _MEDIAN / float(np.sqrt(6.0))
+    return middle / MEDIAN_MAGNITUDE / float(np.sqrt(6.0))
 
 
 def spikes(values: FloatArray) -> list[Fault]:

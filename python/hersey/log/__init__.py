@@ -29,6 +29,8 @@ replaced              units of a file that a person replaced
 believed              what a channel of a drive can read at all, and codes for no reading
 wrapped               negative counts that were logged without a sign
 impossible            readings that cannot be right: found, named, left out
+counters              the step in which a sensor counts
+white_noise           the median of noise over its standard deviation
 neighbours            rows that their neighbours rule out
 stray_times           rows whose time lies off the clock around them
 wanted                what the user wants of a log, checked

@@ -115,6 +115,9 @@ def find_column(
     if choice.name:
         return named_channel(role, columns, choice.name, file, taken)
     candidates = _candidates(role, columns)
+    if role == "torque" and all(is_named(FRICTION_NAMES["friction coefficient"], c) for c in candidates):
+        forces = _candidates(role, tuple(c for c in columns if c not in candidates))
+        candidates = forces if forces and all(dead(c) for c in candidates) else candidates
     candidates = [c for c in candidates if c not in taken.values()] or candidates
     if len(candidates) > 1:
         candidates = [c for c in candidates if not dead(c)] or candidates

@@ -18,6 +18,7 @@ import numpy as np
 from hersey.arrays import BoolArray, FloatArray, IntArray
 from hersey.errors import DROP_MISSING, ISOTHERMAL, Setting, TimeOrderError, UnreadableLogError
 from hersey.log.believed import BELIEVED, TENTHS, Believed, as_written, in_si, is_code, is_wrapped
+from hersey.log.counters import step_of_counts
 from hersey.log.long_arrays import each_block, ends, every, joined, rows_where
 from hersey.log.neighbours import (
     LEAST_JUMP,
@@ -27,7 +28,6 @@ from hersey.log.neighbours import (
     flips,
     on_its_way,
     pulses,
-    step_of_counts,
 )
 from hersey.log.roles import role_conversion
 from hersey.log.stray_times import stray_times

@@ -24,6 +24,8 @@ _REGISTER = re.compile(
 )
 #: Columns of which it is asked whether they say nothing, at the most.
 _LOOKED_AT = 40
+#: Columns of a log that holds a time, a speed and perhaps a temperature.
+_NO_TORQUE = 2
 #: A setting and its value, as an example.
 Example = tuple[Setting, str]
 
@@ -64,7 +66,8 @@ def asking_all(
     )
     if isinstance(error, UnitError) and (not is_open.roles or setting not in dict(is_open.examples)):
         return naming_all(error, roles, columns, choices, file, dead=dead, of_a_frame=of_a_frame)
-    if len(is_open.roles) + len(is_open.without_unit) < 2 or not {"torque", "speed"} & found:
+    bare = "torque" not in found and len(columns) <= _NO_TORQUE  # which may be of a coast-down
+    if len(is_open.roles) + len(is_open.without_unit) < 2 or not {"torque", "speed"} & found or bare:
         return error
     said = list(is_open.roles)
     if is_open.without_unit:

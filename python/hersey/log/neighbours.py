@@ -21,9 +21,6 @@ _SHORT, _AROUND = 2, 5
 _STEADY_FLIP, _STEADY_DROP = 0.5, 0.3
 #: No temperature jumps by so many kelvin from row to row, and back again, with rows at most so many s apart.
 LEAST_JUMP, _ROWS_APART = 100.0, 10.0
-#: Rows that show whether readings are counts, by how much two of them may differ, in steps, and the share of
-#: rows in which they then change by one count.
-_COUNTED, _SAME_COUNT, _FLICKERING = 1 << 20, 0.05, 0.01
 #: Short runs are looked at one by one unless they start in more than this share of the rows.
 _MOST_STARTS = 0.3
 
@@ -142,18 +139,6 @@ def drop_outs(values: FloatArray, zero: float, least: float) -> IntArray:
         return np.asarray(inside == 0.0)
 
     return _between_steady(values, starts, from_zero, _STEADY_DROP, least, none)
-
-
-def step_of_counts(values: FloatArray) -> float:
-    """Return the step in which readings of an encoder count, 0 if they do not go up and down by it."""
-    size = np.abs(values[:_COUNTED])
-    moving = size > 0.0
-    if not moving.any():
-        return 0.0
-    step = float(size[moving].min())
-    by_one = np.abs(np.abs(np.diff(size)) - step) <= _SAME_COUNT * step
-    flickers = np.count_nonzero(by_one & moving[1:] & moving[:-1])
-    return step if flickers >= _FLICKERING * size.size else 0.0
 
 
 def _between_steady(

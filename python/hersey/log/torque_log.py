@@ -200,8 +200,8 @@ class TorqueLog(Result):
 
         return steady_points(self, min_dwell=min_dwell, tare=tare, rotation=rotation)
 
-    @takes_si(inertia="moment of inertia")
-    def moving(self, *, inertia: float | None = None) -> MovingFit:
+    @takes_si()
+    def moving(self, *, inertia: Any = None) -> MovingFit:
         """Fit friction, inertia and offset to every sample: see `hersey.fit_moving`."""
         from hersey.damping.moving.fit import fit_moving
 

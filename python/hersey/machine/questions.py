@@ -69,10 +69,19 @@ class Question:
         return f"{self.section}.{self.field}"
 
     @property
+    def called(self) -> str:
+        """Return what a person calls it."""
+        return _CALLED.get(self.field, self.field).replace("_", " ")
+
+    @property
     def name(self) -> str:
         """Return what a person calls it, with its letter in the sketch."""
-        words = _CALLED.get(self.field, self.field).replace("_", " ")
-        return f"{self.letter} {words}" if self.letter else words
+        return f"{self.letter} {self.called}" if self.letter else self.called
+
+    @property
+    def bare_example(self) -> str:
+        """Return an answer as it stands beside the unit of the app's form."""
+        return self.example.replace(f" {self.unit}", "") if self.unit else self.example
 
     @property
     def is_number(self) -> bool:

@@ -7,8 +7,8 @@ import numpy as np
 from hersey.arrays import FloatArray
 from hersey.cache.kept import kept
 from hersey.damping.dwells import SteadyPoints
-from hersey.damping.dwells.resolution import quantisation_step
 from hersey.inspection.faults import Fault, clipping, stuck
+from hersey.log.counters import quantisation_step
 from hersey.log.torque_log import Run
 from hersey.schema.warning import Warning
 

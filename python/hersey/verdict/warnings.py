@@ -10,8 +10,8 @@ from hersey.arrays import FloatArray
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.dwells.doubtful import doubtful_order, doubtful_tare
 from hersey.damping.dwells.misleading import misleading
-from hersey.damping.dwells.motion_between import motion_between
 from hersey.damping.friction_curve.result import FrictionCurve
+from hersey.damping.moving.beside_dwells import motion_beside
 from hersey.damping.surface import DampingSurface
 from hersey.errors import ROTATION
 from hersey.log.doubtful import doubtful_units
@@ -55,10 +55,10 @@ def warnings_of(
             "which the fit excludes"
         )
         found.append(Warning("stick-slip", words, count=swinging))
-    found += motion_between(points)
+    found += motion_beside(points)
     if surface is not None:
         found += _of_directions(points, surface, apart=friction is not None and friction.apart)
-    found += [*doubtful_order(points), *misleading(points)]
+    found += [*doubtful_order(points), *misleading(points, exponents=friction is None)]
     if friction is not None:
         found += _of_scatter(friction.scatter)
     elif surface is not None:

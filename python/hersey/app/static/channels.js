@@ -138,7 +138,7 @@ function corrections(view, questions, act) {
   const line = (q) => {
     const wrong = of(view, `field:${q.key}`);
     const id = `c-${q.key}`;
-    return make("div", { class: "line" }, make("label", { for: id, text: `${q.section} ${q.field.replace(/_/g, " ")}`, title: q.words }),
+    return make("div", { class: "line" }, make("label", { for: id, text: `${q.section} ${q.called}`, title: q.words }),
       make("input", { class: `field${wrong.length ? " wrong" : ""}`, id, value: view.corrections[q.key] ?? "", "data-control": `field:${q.key}`, placeholder: q.example,
         "aria-invalid": wrong.length ? "true" : null, "aria-describedby": `${id}-hint`,
         ...typed((field) => act.choose({ corrections: { [q.key]: field.value } })) }),

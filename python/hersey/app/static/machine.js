@@ -36,7 +36,7 @@ function form(view, questions, act) {
     const hint = told(faults) || (q.key === "drivetrain.stick_speed" ? "If not measured, type a range, e.g. 1 to 4." : "");
     const id = `m-${q.key}`;
     return make("div", { class: "line" },
-      make("label", { for: id, title: q.words }, ...(q.letter ? [make("i", { text: q.letter }), " "] : []), q.name.replace(`${q.letter} `, "")),
+      make("label", { for: id, title: q.words }, ...(q.letter ? [make("i", { text: q.letter }), " "] : []), q.called),
       make("input", { class: `field${faults.length ? " wrong" : ""}`, id, "data-control": `field:${q.key}`, value: machine.answers[q.key] ?? "", autocomplete: "off",
         "aria-invalid": faults.length ? "true" : null, "aria-describedby": `${id}-hint`, ...typed((field) => act.machine({ answers: { [q.key]: field.value } })), onfocus: () => meant(q.letter), onblur: () => meant("") }),
       make("span", { class: "unit", text: sign(q.unit) }),
@@ -58,7 +58,7 @@ function form(view, questions, act) {
       const at = `field:points.${number}.${q.field}`;
       const faults = of(view, at);
       return make("input", { class: `field${faults.length ? " wrong" : ""}`, "data-control": at, value: point[q.field] ?? "", "aria-label": `${q.field} of point ${number + 1}${q.unit ? `, ${sign(q.unit)}` : ""}`,
-        "aria-invalid": faults.length ? "true" : null, placeholder: q.example.replace(` ${q.unit}`, ""), ...typed((own) => act.machine({ point: number, answers: { [q.key]: own.value } })) });
+        "aria-invalid": faults.length ? "true" : null, placeholder: q.bare_example, ...typed((own) => act.machine({ point: number, answers: { [q.key]: own.value } })) });
     };
     const rows = machine.points.map((point, number) => make("div", { class: "point" }, ...questions.point.map((q) => field(point, number, q)),
       button("×", () => act.machine({ remove: number }), { "aria-label": `Remove point ${number + 1}` })));

@@ -100,6 +100,10 @@ class Observations:
             unit, factor = points.domain.shown_speed
             levels = sorted({f"{factor * w:.3g}" for w in speed}, key=float)[:2]
             held = " and ".join(f"{level} {unit}" for level in levels)
+            if points.of_every_sample:
+                raise InsufficientDataError(
+                    f"all windows of speed are at {held}", remedy="record a wider range of speeds"
+                )
             refuse_traction_curve(points, held)
             if lost := speeds_lost(points):
                 raise InsufficientDataError(f"all dwells are at {held}: {lost}")

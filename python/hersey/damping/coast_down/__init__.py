@@ -5,7 +5,6 @@
 The speeds themselves are fitted, by the solution of this equation; nothing is differentiated.
 
 ===========  ==========================================================================
-inertia      the moment of inertia, and how far it is known
 closed_form  speed against time in closed form, with its derivatives
 noise        noise of the speeds, and what correlation does to a fit
 fitting      one law fitted to all coasts

@@ -12,10 +12,10 @@ from hersey.damping.coast_down.departures import of_bound, of_coasts, of_shape
 from hersey.damping.coast_down.doubts import Doubts, no_coast
 from hersey.damping.coast_down.ends import is_free, without_ends
 from hersey.damping.coast_down.fitting import CoastFit, Trace, fit_coasts, within_physics
-from hersey.damping.coast_down.inertia import NORMAL, inertia_of
 from hersey.damping.coast_down.result import CoastDown, Friction, estimates_of, speeds_of
 from hersey.damping.coast_down.windows import windows_of
 from hersey.damping.distributions import student_quantile
+from hersey.damping.inertia import NORMAL, inertia_of
 from hersey.log.reading import read
 from hersey.log.torque_log import TorqueLog
 from hersey.units import takes_si

@@ -15,9 +15,10 @@ from typing import Annotated, Literal
 import numpy as np
 
 from hersey.arrays import FloatArray
-from hersey.damping.coast_down.fitting import BEND_OF_NOISE, step_of
 from hersey.damping.coast_down.steps import steps_in
+from hersey.log.counters import step_of_levels
 from hersey.log.torque_log import STANDING, Run
+from hersey.log.white_noise import BEND_OF_NOISE
 from hersey.result import Means, Record
 
 #: Why a stretch of a log is no coast.
@@ -147,7 +148,7 @@ def noise_of_rows(speed: FloatArray) -> float:
     """Return the standard deviation of the noise of one row, that of rounding included."""
     bends = np.abs(np.diff(speed, 2))
     white = float(np.median(bends)) / BEND_OF_NOISE if bends.size else 0.0
-    return max(white, float(step_of(speed) / np.sqrt(12.0)))
+    return max(white, float(step_of_levels(speed) / np.sqrt(12.0)))
 
 
 def _falls(speed: FloatArray, least: float) -> Iterator[tuple[int, int]]:

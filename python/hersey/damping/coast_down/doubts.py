@@ -164,7 +164,9 @@ class Doubts:
                         "{start:.4g} to {end:.4g} s",
                         severity="watch",
                         where=self.log.runs[parts[0].run].name,
-                        remedy=_OF_STEPS if why == "stepped" else "",
+                        remedy="let the wheel coast to rest, or end the log where the drive takes hold"
+                        if why == "stepped"
+                        else "",
                         count=len(parts),
                         what=label_of(why),
                         start=parts[0].start,

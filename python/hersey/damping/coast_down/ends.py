@@ -10,7 +10,7 @@ import numpy as np
 from hersey.damping.coast_down.closed_form import speeds
 from hersey.damping.coast_down.coasts import FEWEST_ROWS, Coast, noise_of_rows
 from hersey.damping.coast_down.fitting import CoastFit, Trace, fit_coasts
-from hersey.damping.distributions import MEDIAN_MAGNITUDE
+from hersey.log.white_noise import MEDIAN_MAGNITUDE
 
 #: Shares of a coast at its beginning and its end that are looked at.
 _BEGINNING, _END = 0.02, 0.06

@@ -11,16 +11,14 @@ import numpy as np
 from hersey.arrays import BoolArray, FloatArray, IntArray
 from hersey.damping.coast_down.closed_form import speeds
 from hersey.damping.coast_down.noise import Noise, covariance_of_fit, noise_of
-from hersey.damping.distributions import MEDIAN_MAGNITUDE, ratio_above
+from hersey.damping.distributions import ratio_above
+from hersey.log.counters import step_of_levels
+from hersey.log.white_noise import BEND_OF_NOISE
 
 #: Coefficients of the deceleration: constant, linear and quadratic in speed.
 TERMS = 3
 #: A step this many times the scatter of the rows is not hidden by noise.
 _COARSE = 1.0
-#: Of white noise, the median of the absolute second differences over the standard deviation.
-BEND_OF_NOISE = MEDIAN_MAGNITUDE * np.sqrt(6.0)
-#: A reading counts in steps if its values are fewer than this share of the rows.
-_FEW_LEVELS = 0.5
 #: Steps of a coarse reading in a block at the most, and blocks of a coast that are wanted.
 _STEPS, _BLOCKS = 4, 40
 #: Relative change at which the search ends.
@@ -169,7 +167,7 @@ def in_steps(traces: Sequence[Trace]) -> tuple[Trace, ...] | None:
     The error of a coarse reading repeats with each step. It averages out over whole steps, and is no noise
     within one.
     """
-    step = step_of(np.concatenate([trace.speed for trace in traces]))
+    step = step_of_levels(np.concatenate([trace.speed for trace in traces]))
     bends = [np.diff(trace.speed, 2) for trace in traces]
     scatter = float(np.median(np.abs(np.concatenate(bends)))) / BEND_OF_NOISE
     if not step or step < _COARSE * scatter or any(trace.blocks.size for trace in traces):
@@ -177,16 +175,6 @@ def in_steps(traces: Sequence[Trace]) -> tuple[Trace, ...] | None:
     drop = min(float(trace.speed[0] - trace.speed[-1]) for trace in traces)
     whole = float(np.clip(drop / step // _BLOCKS, 1, _STEPS)) * step
     return tuple(replace(trace, blocks=_blocks(trace.speed, whole)) for trace in traces)
-
-
-def step_of(values: FloatArray) -> float:
-    """Return the step in which a reading counts, or 0 if it does not show."""
-    levels = np.unique(values)
-    if levels.size < 2 or levels.size > _FEW_LEVELS * values.size:
-        return 0.0
-    steps = np.diff(levels)
-    steps = steps[steps > 1e-9 * np.abs(levels).max()]
-    return float(np.median(steps)) if steps.size else 0.0
 
 
 def _blocks(speed: FloatArray, size: float) -> IntArray:

@@ -11,12 +11,12 @@ from hersey.arrays import FloatArray
 from hersey.damping.coast_down.coasts import Coast, LeftOut, rows_averaged
 from hersey.damping.coast_down.departures import deceleration
 from hersey.damping.coast_down.fitting import TERMS, CoastFit
-from hersey.damping.coast_down.inertia import NORMAL
 from hersey.damping.coast_down.windows import Window
 from hersey.damping.distributions import student_quantile
 from hersey.damping.dwells.points import Rejection, SteadyPoints
 from hersey.damping.dwells.reasons import Reason
 from hersey.damping.estimate import CONFIDENCE, Estimate
+from hersey.damping.inertia import NORMAL
 from hersey.errors import InsufficientDataError
 from hersey.log.torque_log import Correction, TorqueLog
 from hersey.result import Means, Result

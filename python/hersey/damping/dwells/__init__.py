@@ -16,7 +16,6 @@ settling        where a dwell has settled, by itself and by what all show togeth
 judging         which rows of a stretch are a dwell, or why none are
 few_rows        speeds that are held for too few rows to be dwells
 one_speed       the speeds that a log holds, however long each lasts
-motion_between  motion between the dwells, which no dwell uses
 nothing_steady  why a log has no dwell at all, and what to do
 zero            the zero of the torque over the log, from every standing stretch
 least_duration  speeds and temperatures that only the least duration asked for excludes

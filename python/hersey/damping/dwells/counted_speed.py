@@ -12,13 +12,10 @@ from dataclasses import replace
 import numpy as np
 
 from hersey.arrays import BoolArray, FloatArray, IntArray
+from hersey.log.counters import FEW_COUNTS, STEP_TOLERANCE, step_of_few_counts
 from hersey.log.long_arrays import HELD
 from hersey.log.torque_log import Run
 
-#: Readings are multiples of the step within this share of it, as many of the small ones as that.
-_NEAR, _SHARE = 0.05, 0.98
-#: Counts in one row at the most, in a stretch where some rows have none.
-_FEW = 2
 #: Share of rows without a count that makes a stretch one to be spread, and fewest counts in it.
 _EMPTY, _COUNTS = 0.05, 3
 #: Counts are gathered over at least this time, s, and so many rows: a count is known to a row.
@@ -34,26 +31,16 @@ def with_counts_spread(run: Run) -> tuple[Run, float]:
     if run.speed.size > HELD:  # which stays on disk
         return run, 0.0
     size = np.abs(run.speed)
-    step = _step(size)
+    step = step_of_few_counts(size)
     if not step:
         return run, 0.0
     speed = run.speed.copy()
-    few = _directions(run.speed, size <= (_FEW + _NEAR) * step)
+    few = _directions(run.speed, size <= (FEW_COUNTS + STEP_TOLERANCE) * step)
     edges = np.flatnonzero(np.diff(few)) + 1
     for first, last in zip([0, *edges], [*edges, speed.size], strict=True):
         if few[first]:
             _spread(run.time[first:last], speed[first:last], max(_WINDOW, _ROWS * run.sampling_interval))
     return (run, 0.0) if np.array_equal(speed, run.speed) else (replace(run, speed=speed), step)
-
-
-def _step(size: FloatArray) -> float:
-    """The step of readings without sign, some of which are 0; 0 if they count in none."""
-    counted = size[size > 0]
-    if not counted.size or counted.size == size.size:
-        return 0.0
-    step = float(counted.min())
-    ratio = counted[counted <= (_FEW + 0.5) * step] / step
-    return step if np.mean(np.abs(ratio - np.round(ratio)) <= _NEAR) >= _SHARE else 0.0
 
 
 def _directions(speed: FloatArray, few: BoolArray) -> IntArray:

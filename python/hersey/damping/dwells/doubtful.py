@@ -49,7 +49,9 @@ def doubtful_order(points: SteadyPoints) -> list[Warning]:
     if points.log.has_temperature and len(list(groups_of_temperature(points.column("temperature")))) > 1:
         named["temperature"] = ("b", points.column("temperature"))
     named = {what: each for what, each in named.items() if np.ptp(each[1]) > 0}
-    order = np.arange(len(points))
+    order = np.arange(len(points), dtype=np.float64)
+    if points.of_every_sample:  # windows may last as long as the log, and come by speed
+        order = _ranks(points.column("start") + points.column("end"))
     return [
         Warning(
             "in order",

@@ -8,7 +8,7 @@ area of contact, which tribometers do not state.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 import numpy as np
 import polars as pl
@@ -20,9 +20,6 @@ from hersey.log.means import MeansTable
 from hersey.log.pooling import SAME_LOAD
 from hersey.log.torque_log import TorqueLog
 from hersey.schema.domain import HERSEY_NUMBER, Domain
-
-if TYPE_CHECKING:
-    from hersey.damping.dwells.points import SteadyPoints
 
 #: Column of the table of dwells: which temperature and load they were measured at, counted from 0.
 CURVE = "curve"
@@ -38,8 +35,10 @@ class Viscous(Protocol):
         """Return d ln viscosity/d ln temperature."""
 
 
-def against_hersey_number(points: SteadyPoints, viscosity: Viscous | float) -> SteadyPoints:
-    """Return the dwells with the Hersey number (1/m) in the place of the speed, whatever their temperature.
+def against_hersey_number(
+    table: pl.DataFrame, log: TorqueLog | MeansTable, viscosity: Viscous | float
+) -> tuple[pl.DataFrame, TorqueLog | MeansTable]:
+    """Return the table of dwells with the Hersey number (1/m) in the place of the speed, and their log.
 
     Parameters
     ----------
@@ -49,36 +48,27 @@ def against_hersey_number(points: SteadyPoints, viscosity: Viscous | float) -> S
     Raises
     ------
     ParameterError
-        If the points are no friction coefficients against a speed in m/s, or lack loads or temperatures.
+        If they are no friction coefficients against a speed in m/s, or lack loads or temperatures.
     """
-    _refuse_others(points, viscosity)
-    speed, load = points.column("speed"), points.column("load")
-    kelvin = points.column("temperature") if points.log.has_temperature else None
+    _refuse_others(table, log, viscosity)
+    names = ("speed", "speed_error", "load", "temperature", "temperature_error")
+    speed, speed_error, load, kelvin, off = (table[name].to_numpy() for name in names)
     if isinstance(viscosity, float | int):
-        factor, spread = np.full(len(points), float(viscosity)) / load, np.zeros(len(points))
+        factor, spread = np.full(load.size, float(viscosity)) / load, np.zeros(load.size)
     else:
-        assert kelvin is not None  # see `_refuse_others`
         factor = viscosity.viscosity(kelvin) / load
-        off = points.column("temperature_error") / kelvin
-        spread = np.nan_to_num(np.abs(viscosity.temperature_exponent(kelvin)) * off)
-    error = factor * np.hypot(points.column("speed_error"), speed * spread)
-    table = points.table.with_columns(
+        spread = np.nan_to_num(np.abs(viscosity.temperature_exponent(kelvin)) * off / kelvin)
+    error = factor * np.hypot(speed_error, speed * spread)
+    dwells = table.with_columns(
         pl.Series("speed", speed * factor),
         pl.Series("speed_error", error),
-        pl.Series(CURVE, _curves(kelvin, load)),
+        pl.Series(CURVE, _curves(kelvin if log.has_temperature else None, load)),
     )
-    return replace(
-        points,
-        table=table,
-        log=_without_temperature(points, Domain(points.domain.quantity, HERSEY_NUMBER)),
-        rejected=tuple(replace(each, speed=float("nan")) for each in points.rejected),
-        resolutions=tuple(each for each in points.resolutions if each.quantity == "torque"),
-        temperature_rates=np.empty(0),
-    )
+    return dwells, _without_temperature(log, Domain(log.domain.quantity, HERSEY_NUMBER))
 
 
-def _refuse_others(points: SteadyPoints, viscosity: Viscous | float) -> None:
-    name, of = points.log.files[0].name, points.domain
+def _refuse_others(table: pl.DataFrame, log: TorqueLog | MeansTable, viscosity: Viscous | float) -> None:
+    name, of = log.files[0].name, log.domain
     if of.quantity != "friction coefficient" or of.speed_unit != "m/s":
         raise ParameterError(
             f"{name}: the Hersey number needs a friction coefficient against a speed in m/s, but the log is "
@@ -86,12 +76,12 @@ def _refuse_others(points: SteadyPoints, viscosity: Viscous | float) -> None:
             remedy=f"give {Setting('load').to('10 N')}, and for a rotation the radius of each run, e.g. "
             f"{Setting('radius').to('25 mm, 25 mm')}",
         )
-    if "load" not in points.table.columns or points.table["load"].null_count():
+    if "load" not in table.columns or table["load"].null_count():
         raise ParameterError(
             f"{name}: the Hersey number needs the normal load",
             remedy=f"give it, e.g. {Setting('load').to('10 N')}, or name its column",
         )
-    if not points.log.has_temperature and not isinstance(viscosity, float | int):
+    if not log.has_temperature and not isinstance(viscosity, float | int):
         raise ParameterError(
             f"{name}: the log has no temperatures, at which the lubricant has its viscosity",
             remedy=f"give the viscosity itself, e.g. {Setting('hersey').to('20 mPa*s', python='0.02')}",
@@ -108,9 +98,8 @@ def _curves(kelvin: FloatArray | None, load: FloatArray) -> FloatArray:
     return np.asarray(np.unique(np.column_stack([hot, heavy]), axis=0, return_inverse=True)[1].ravel())
 
 
-def _without_temperature(points: SteadyPoints, domain: Domain) -> TorqueLog | MeansTable:
+def _without_temperature(log: TorqueLog | MeansTable, domain: Domain) -> TorqueLog | MeansTable:
     """The log of the dwells: the Hersey number has its temperatures in it."""
-    log = points.log
     if isinstance(log, MeansTable):
         means = tuple(replace(row, temperature=None) for row in log.means)
         return replace(log, means=means, domain=domain)

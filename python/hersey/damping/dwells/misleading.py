@@ -34,15 +34,15 @@ TOO_COARSE = 0.1
 LAG_CORRECTION = "thermal lag"
 
 
-def misleading(points: SteadyPoints) -> list[Warning]:
-    """Return the error structures of a log, often none.
+def misleading(points: SteadyPoints, *, exponents: bool = True) -> list[Warning]:
+    """Return the error structures of a log, often none; ``exponents`` says whether the fit has exponents.
 
     Each holds the ``quantity`` it concerns, the largest error that it leaves in a dwell (``off``: relative
     for torque and speed, K for temperature), how many ``dwells`` it concerns, and what belongs to its kind:
     time constant (s) of a relaxation or a lag, step (SI) of a resolution, direction (1 from below, -1 from
     above), number of sets of runs without a temperature in common.
     """
-    found = [_one_way(points), _relaxing(points), _late(points), _apart(points)]
+    found = [_one_way(points, exponents=exponents), _relaxing(points), _late(points), _apart(points)]
     return [each for each in (*found, *_coarse(points)) if each is not None]
 
 
@@ -107,7 +107,7 @@ def _kelvin(points: SteadyPoints) -> FloatArray | None:
     return points.column("temperature") if points.log.has_temperature else None
 
 
-def _one_way(points: SteadyPoints) -> Warning | None:
+def _one_way(points: SteadyPoints, *, exponents: bool) -> Warning | None:
     sign = one_direction(points)
     if not sign.size:
         return None
@@ -116,9 +116,14 @@ def _one_way(points: SteadyPoints) -> Warning | None:
     way = 1.0 if float(np.sum(sign)) >= 0.0 else -1.0
     return Warning(
         "one direction",
-        "speeds were approached only from {side}, so sensor hysteresis cannot be checked. The sensor "
-        "part of c allows for {allowed:.2g %} of the largest {measured}. Also record the speeds on the "
-        "way {other}",
+        (
+            "speeds were approached only from {side}, so sensor hysteresis cannot be checked. The sensor "
+            "part of c allows for {allowed:.2g %} of the largest {measured}"
+            if exponents
+            else "speeds were approached only from {side}, so sensor hysteresis cannot be checked. The "
+            "intervals do not include it"
+        )
+        + ". Also record the speeds on the way {other}",
         severity="watch",
         side="below" if way > 0 else "above",
         other="down" if way > 0 else "up",

@@ -10,7 +10,6 @@ import numpy as np
 from hersey.damping.dwells.few_rows import LASTS, changes_in_steps, held_for_few_rows, rows_held
 from hersey.damping.dwells.groups import MIN_DWELL, MIN_SAMPLES, distinct_speeds
 from hersey.damping.dwells.judging import Asked
-from hersey.damping.dwells.motion_between import ROWS_TO_FIT
 from hersey.damping.dwells.one_speed import is_one_speed, of_one_speed
 from hersey.damping.dwells.points import Rejection
 from hersey.damping.dwells.reasons import CAUSES, Reason, opposite_signs, remedies, sizes
@@ -33,6 +32,8 @@ _CRESTS = 0.3
 #: Parts of a least dwell over which speed is averaged, change between two of them, as a share of the greatest
 #: speed, that is motion, and share of such changes of a log that moves.
 _PARTS, _CHANGE, _MOST_CHANGE = 8, 0.02, 0.5
+#: Rows from which a log may be fitted as it moves.
+ROWS_TO_FIT = 300
 #: A log of so many dwells of the usual duration is long enough: the duration asked for is the mistake.
 _ENOUGH = 20.0
 

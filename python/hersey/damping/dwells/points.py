@@ -367,7 +367,15 @@ class SteadyPoints(Result):
         """
         if not hasattr(viscosity, "temperature_exponent"):
             viscosity = float(argument("viscosity", "viscosity", viscosity, one=True))
-        return against_hersey_number(self, viscosity)
+        table, log = against_hersey_number(self.table, self.log, viscosity)
+        return replace(
+            self,
+            table=table,
+            log=log,
+            rejected=tuple(replace(each, speed=float("nan")) for each in self.rejected),
+            resolutions=tuple(each for each in self.resolutions if each.quantity == "torque"),
+            temperature_rates=np.empty(0),
+        )
 
     @property
     def varying_load(self) -> tuple[float, float] | None:

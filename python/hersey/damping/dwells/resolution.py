@@ -1,4 +1,4 @@
-"""The step in which a sensor counts, and the error that rounding to it leaves in the mean of a dwell.
+"""The error that rounding to the step of a sensor leaves in the mean of a dwell.
 
 Noise of half a step or more makes readings flip between steps, and their mean is then nearly free of
 rounding. A quiet reading stays on one step however long it is averaged: its error is uniform over that step.
@@ -15,14 +15,9 @@ import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.damping.dwells.groups import SAME_SPEED
+from hersey.log.counters import quantisation_step
 from hersey.log.long_arrays import let_go, variance
 
-#: Share of the differences between values that must be multiples of a step.
-STEP_SHARE = 0.98
-#: How near to a multiple, in steps: random numbers would be that near in a tenth of the cases.
-STEP_TOLERANCE = 0.05
-#: So few levels are all steps.
-FEW_LEVELS = 4
 #: Temperatures closer than this are the same, K.
 SAME_TEMPERATURE = 1.0
 #: Rows of each dwell in which steps are looked for.
@@ -44,37 +39,6 @@ class Resolution:
     quantity: str  #: ``torque``, ``speed`` or ``temperature``
     step: float  #: the coarsest of all runs
     errors: FloatArray
-
-
-def quantisation_step(values: FloatArray) -> float | None:
-    """Return the step of which all differences between values are multiples, or None if there is none.
-
-    Values that were rounded to decimals after the converter may stray from its steps by those.
-    """
-    levels = np.unique(values)
-    gaps = np.diff(levels)
-    gaps = gaps[gaps > 1e-9 * float(np.max(np.abs(levels)))]
-    if not gaps.size or levels.size > 0.9 * values.size:
-        return None
-    if levels.size <= FEW_LEVELS:
-        return float(f"{gaps.min():.6g}") if values.size > 20 * levels.size else None
-    decimals = _decimals(levels)
-    for candidate in np.quantile(gaps, [0.0, 0.02, 0.1], method="lower"):
-        step = float(np.mean(gaps[gaps < 1.5 * candidate]))
-        tolerance = max(STEP_TOLERANCE, min(0.35, decimals / step)) if gaps.size > 20 else STEP_TOLERANCE
-        ratio = gaps / step
-        near = np.abs(ratio - np.round(ratio)) <= tolerance
-        if np.mean(near) >= STEP_SHARE and float(np.median(ratio)) < 1e4:
-            return float(f"{step:.4g}")
-    return None
-
-
-def _decimals(levels: FloatArray) -> float:
-    """The least decimal place to which all values are rounded, as a number; 0 if there is none above 1e-9."""
-    for places in range(7):
-        if np.allclose(levels, np.round(levels, places), rtol=0.0, atol=1e-9):
-            return float(10.0**-places)
-    return 0.0
 
 
 def step_of(dwells: Sequence[FloatArray]) -> float:

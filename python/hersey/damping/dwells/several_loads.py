@@ -76,6 +76,8 @@ def refuse_traction_curve(points: SteadyPoints, held: str) -> None:
     InsufficientDataError
         It says how friction is fitted to the sliding speed.
     """
+    if points.domain.speed != ENTRAINMENT:
+        return
     warnings = [each for file in points.log.files for each in file.warnings]
     seen = next((w.values for w in warnings if w.kind == ENTRAINMENT and w.severity == "watch"), None)
     if seen is None:

@@ -157,7 +157,7 @@ def directions_of(curve: FittedFriction) -> str:
     said = f"The directions differ ({p})"
     if test.offset is None:
         return said
-    off = f"A torque zero off by {factor * test.offset:.2g} {unit}"
+    off = f"A torque zero off by {factor * test.offset:.3g} {unit}"
     return f"{said}. {off} would explain the difference in T_C: record a standstill to exclude it"
 
 

@@ -12,6 +12,7 @@ friction         the numbers: friction, inertia, offset, and what was used
 result           `MovingFit`
 moving_warnings  what is to be known of it
 windows          windows of speed and temperature as steady points
+beside_dwells    motion that the dwells of a log leave out
 curve            the law as a friction curve, judged by the windows
 ===============  ===================================================================
 """

@@ -76,12 +76,12 @@ def _parameters(own: MovingFriction, curve: FrictionCurve) -> tuple[FrictionPara
     ways = {laws.FORWARD: FORWARD, laws.REVERSE: REVERSE}
     return tuple(
         FrictionParameter(
-            label.rstrip(laws.FORWARD + laws.REVERSE),
-            ways.get(label[-1], _together(curve)),
-            named[label].estimate,
-            named[label].unit,
+            number.kind,
+            ways.get(number.way, _together(curve)),
+            named[number.name].estimate,
+            named[number.name].unit,
         )
-        for label in own.friction_law.names
+        for number in own.friction_law.numbers
     )
 
 

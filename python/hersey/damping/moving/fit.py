@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -11,14 +12,8 @@ from hersey.damping.distributions import square_above, student_quantile
 from hersey.damping.dwells.reasons import opposite_signs
 from hersey.damping.estimate import CONFIDENCE, Estimate, estimate
 from hersey.damping.friction_curve.fitted import DirectionTest
-from hersey.damping.friction_curve.law import (
-    COULOMB,
-    FORWARD,
-    REVERSE,
-    STATIC,
-    STRIBECK_SPEED,
-    FrictionLaw,
-)
+from hersey.damping.friction_curve.law import COULOMB, STATIC, STRIBECK_SPEED, FrictionLaw
+from hersey.damping.inertia import inertia_of
 from hersey.damping.moving.correlated import Autoregression
 from hersey.damping.moving.filtering import Filtered, LowPass
 from hersey.damping.moving.fitting import LEAST_SEEN, Fitting, MovingLawFit
@@ -29,7 +24,9 @@ from hersey.damping.moving.result import MovingFit
 from hersey.damping.moving.speed_noise import SpeedNoise, low_pass_for, speed_noise
 from hersey.damping.moving.stretches import Stretch, stretches_of
 from hersey.errors import MOVING, InsufficientDataError, ParameterError, Setting
+from hersey.log.channels import is_dead
 from hersey.log.torque_log import TorqueLog
+from hersey.schema.domain import TORQUE
 from hersey.units import rpm, takes_si
 
 #: A drive slower than so many standard deviations of the noise of its speed, or than this share of its
@@ -54,8 +51,8 @@ LEAST_EXPLAINED = 0.8
 _SHOWN = 800
 
 
-@takes_si(inertia="moment of inertia")
-def fit_moving(log: TorqueLog, *, inertia: float | None = None) -> MovingFit:
+@takes_si()
+def fit_moving(log: TorqueLog, *, inertia: Any = None) -> MovingFit:
     """Fit friction, inertia and offset to every sample of a log that moves all the time.
 
     Parameters
@@ -63,7 +60,8 @@ def fit_moving(log: TorqueLog, *, inertia: float | None = None) -> MovingFit:
     log
         With torque and speed; temperature may be beside them.
     inertia
-        Moment of inertia of all that the torque accelerates, kg m^2, if it is known; otherwise it is fitted.
+        Moment of inertia of all that the torque accelerates, kg m^2, if it is known, or text with its 95 %
+        error: ``"0.012 kg*m^2 ± 2 %"``. Without an error it is taken as exact; if None, it is fitted.
 
     Raises
     ------
@@ -82,11 +80,10 @@ def fit_moving(log: TorqueLog, *, inertia: float | None = None) -> MovingFit:
     >>> fit_moving(hersey.read(polars.DataFrame(columns), isothermal=True))["T_C"]
     Estimate(0.300 [0.299, 0.301] at 95 %)
     """
-    if inertia is not None and not inertia >= 0.0:
-        raise ParameterError(f"the moment of inertia is {inertia:g} kg m^2: it must not be negative")
+    known = None if inertia is None else inertia_of(inertia, may_be_none=True)
     log.domain.require_torque("a fit to every sample")
     subtracted = any(each.name == "inertia" for each in log.corrections)
-    if subtracted and inertia is not None:
+    if subtracted and known is not None:
         given = Setting("inertia").to("0.01 kg*m^2")
         raise ParameterError(f"the mapping already subtracts the torque of the inertia. Omit {given}")
     name = log.files[0].name
@@ -99,7 +96,8 @@ def fit_moving(log: TorqueLog, *, inertia: float | None = None) -> MovingFit:
     equations, least = _equations(stretches, noise, low_pass)
     if len(equations) < LEAST_EQUATIONS:
         raise _too_few(name, equations, least)
-    fitting, fits = _fitted(log, equations, noise, low_pass, 0.0 if subtracted else inertia)
+    known = Estimate(0.0, 0.0, 0.0, 0.0) if subtracted else known
+    fitting, fits = _fitted(log, equations, noise, low_pass, known)
     chosen = _chosen(fits, equations)
     result = _result(log, _Made(fitting, equations, least, low_pass, noise), chosen, fits)
     _refuse_no_friction(name, result, equations)
@@ -127,6 +125,13 @@ def _refuse_constant(name: str, stretches: Sequence[Stretch]) -> None:
             remedy=f"omit {MOVING.to()}",
             setting=MOVING,
         )
+    torque = np.abs(np.concatenate([each.torque for each in stretches]))
+    if is_dead(torque):
+        raise InsufficientDataError(
+            f"{name}: torque reads {TORQUE.small(float(torque[0]), '.4g')} in every row, so it does not "
+            "measure friction",
+            remedy=f"check the sensor, or name another column with {Setting('torque', 'channel').to()}",
+        )
 
 
 def _too_few(name: str, equations: Equations, least: float) -> InsufficientDataError:
@@ -147,7 +152,7 @@ def _equations(stretches: Sequence[Stretch], noise: SpeedNoise, low_pass: LowPas
 
 
 def _fitted(
-    log: TorqueLog, equations: Equations, noise: SpeedNoise, low_pass: LowPass, inertia: float | None
+    log: TorqueLog, equations: Equations, noise: SpeedNoise, low_pass: LowPass, inertia: Estimate | None
 ) -> tuple[Fitting, list[MovingLawFit]]:
     """Return all laws, fitted with the noise that the largest leaves; the simplest come first."""
     both = bool(np.any(equations.speed > 0) and np.any(equations.speed < 0))
@@ -157,7 +162,8 @@ def _fitted(
     largest = references[-1]
 
     def law(stribeck: bool, apart: bool, warm: float | None) -> MovingLaw:
-        return MovingLaw(FrictionLaw(stribeck, apart, warm), both and not apart, inertia)
+        own = (None, 0.0) if inertia is None else (inertia.value, inertia.error)
+        return MovingLaw(FrictionLaw(stribeck, apart, warm), both and not apart, *own)
 
     unknown = Autoregression(np.empty(0), _FIRST * float(np.mean(equations.torque**2)))
     prior = low_pass.interval
@@ -254,7 +260,9 @@ def _directions(chosen: MovingLawFit, fits: Sequence[MovingLawFit]) -> Direction
     more = same[True].values.size - same[False].values.size
     offset = None
     if of.apart:
-        offset = abs(chosen.value(COULOMB + FORWARD) - chosen.value(COULOMB + REVERSE)) / 2.0
+        own = chosen.values[: len(of.numbers)]
+        forward, reverse = (of.of_way(own, way)[COULOMB] for way in of.ways)
+        offset = abs(forward - reverse) / 2.0
     elif abs(chosen.value(OFFSET)) > CLEAR_OFFSET * chosen.error(OFFSET):
         offset = abs(chosen.value(OFFSET))
     return DirectionTest(float(square_above(gain, more)), of.apart, offset)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -20,6 +20,8 @@ _STARTS = (0.015, 0.03, 0.06, 0.12, 0.25)
 _MOST = 0.7
 #: Share of the least speed of the equations below which a Stribeck speed cannot show.
 LEAST_SEEN = 0.5
+#: Least variance of the noise, as a share of the mean square of the torque: exact data leave none.
+_EXACT = 1e-18
 #: Damping of the rounds: first, greatest.
 _DAMPED, _MOST_DAMPED = 1e-3, 1e6
 
@@ -35,6 +37,7 @@ class MovingLawFit:
     chi_square: float  #: of the independent combinations, in units of the variance given
     columns: FloatArray  #: derivatives of the torque of each equation by the numbers as they are fitted
     own: FloatArray  #: covariance of these, if the noise is the one assumed
+    by_inertia: FloatArray  #: derivatives of the values by an inertia that is given, 1/(kg m^2)
 
     def error(self, name: str) -> float:
         """Return the standard error of a number."""
@@ -83,6 +86,8 @@ class Fitting:
         columns = np.column_stack([fitted.residuals, taken])
         ends = np.cumsum([places.size for places in self.equations.places])[:-1]
         noise = autoregression(list(zip(self.equations.places, np.split(columns, ends), strict=True)))
+        least = _EXACT * float(np.mean(self.equations.torque**2))
+        noise = replace(noise, variance=max(noise.variance, least))
         return Fitting.of(self.equations, noise, self.prior, self.covariances)
 
     def fit(self, law: MovingLaw, near: MovingLawFit | None = None) -> MovingLawFit:
@@ -180,9 +185,15 @@ class Fitting:
         own = np.diag(robust)
         wider = np.sqrt(np.maximum(inflation * np.diag(inverse) / np.where(own > 0.0, own, 1.0), 1.0))
         covariance = robust * np.outer(scale * wider, scale * wider)
+        by_inertia = np.zeros(values.size)
+        if law.inertia_error:
+            column = self.whitened(law.by_inertia(values, self.equations)[:, None])[:, 0] / self._deviation
+            by_inertia = -scale * (inverse @ (design.T @ column))
+            covariance = covariance + law.inertia_error**2 * np.outer(by_inertia, by_inertia)
         columns = law.jacobian(values, self.equations)
         columns[:, logs] *= values[logs]
-        return MovingLawFit(law, values, covariance, residuals, chi, columns, inflation * inverse)
+        own_covariance = inflation * inverse
+        return MovingLawFit(law, values, covariance, residuals, chi, columns, own_covariance, by_inertia)
 
     def _unbiased(self, law: MovingLaw, values: FloatArray, inverse: FloatArray) -> FloatArray:
         """The step that undoes what noise of the acceleration takes from the inertia."""

@@ -80,6 +80,7 @@ class MovingLaw:
     friction: FrictionLaw
     offset: bool
     inertia: float | None = None  #: kg m^2 if it is given
+    inertia_error: float = 0.0  #: its standard error, kg m^2
 
     @cached_property
     def numbers(self) -> tuple[Number, ...]:
@@ -132,6 +133,11 @@ class MovingLaw:
         if self.offset:
             others.append(np.ones(len(equations)))
         return np.column_stack([columns, *others, self._joined(own, inertia, equations)[1]])
+
+    def by_inertia(self, values: FloatArray, equations: Equations) -> FloatArray:
+        """Return the derivative of the torque of each equation by the inertia, shape (equations,)."""
+        jerk = equations.joined([each.jerk for each in equations.filtered])
+        return equations.acceleration + self.value(values, DELAY) * jerk
 
     def _joined(self, own: FloatArray, inertia: float, equations: Equations) -> tuple[FloatArray, FloatArray]:
         """Friction of each equation, and how torque changes with the delay."""

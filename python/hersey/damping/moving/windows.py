@@ -174,8 +174,12 @@ def _shared(fit: FittedLog, of: list[np.ndarray]) -> FloatArray:
     law, equations = fit.fitted.law, fit.fitting.equations
     indices = [i for i, name in enumerate(law.names) if name in (INERTIA, OFFSET, DELAY)]
     columns = law.jacobian(fit.fitted.values, equations)[:, indices]
-    means = np.array([np.mean(columns[each], axis=0) for each in of])
     covariance = fit.fitted.covariance[np.ix_(indices, indices)]
+    if law.inertia_error:
+        columns = np.column_stack([columns, law.by_inertia(fit.fitted.values, equations)])
+        along = law.inertia_error**2 * np.append(fit.fitted.by_inertia[indices], 1.0)
+        covariance = np.block([[covariance, along[:-1, None]], [along[None, :]]])
+    means = np.array([np.mean(columns[each], axis=0) for each in of])
     values, vectors = np.linalg.eigh(covariance)
     return np.asarray(-means @ (vectors * np.sqrt(np.maximum(values, 0.0))))
 

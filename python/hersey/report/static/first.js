@@ -5,7 +5,7 @@ const celsius = (kelvin) => kelvin - 273.15;
 // What was measured against which speed: a torque of a rotation, or friction.
 const measured = data.fit.domain?.quantity ?? "torque";
 const friction = measured !== "torque";
-const [PER_SPEED, SPEED_UNIT] = data.fit.domain?.speed === "sliding speed" ? [1, "m/s"] : [TO_RPM, "rpm"];
+const [PER_SPEED, SPEED_UNIT] = (data.fit.domain?.speed_unit ?? "rad/s") === "rad/s" ? [TO_RPM, "rpm"] : [1, data.fit.domain.speed_unit];
 const inUnit = (name, unit) => unit ? `${name}, ${unit}` : name;
 const degrees = (kelvin) => data.fit.temperature_scale === "K" ? `${digits(kelvin, 4)} K` : `${digits(celsius(kelvin), 3)} °C`;
 const perSecond = (speed) => speed === null || speed === undefined ? "–" : digits(speed * 1e3, 3);

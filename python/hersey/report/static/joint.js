@@ -63,9 +63,10 @@ function frictionLaws(parent) {
   const of = (kind, each) => `${LAWS[kind]} (${each ? "each direction separately" : "one law for both directions"})`;
   const both = curve.forward_speeds !== null && curve.reverse_speeds !== null;
   const named = (kind, each) => both ? of(kind, each) : LAWS[kind];
-  const worse = apart >= 0.05 ? `a single power of speed, as of a lubricant film, is worse by ${digits(apart, 2)} in AICc` : "a single power of speed describes them equally well";
+  const power = fit.transition ? "two powers of speed that meet at the lowest torque" : "a single power of speed";
+  const worse = `${power}, as of a lubricant film, ${fit.transition ? "are" : "is"} ${apart >= 0.05 ? `worse by ${digits(apart, 2)} in AICc` : "as good"}`;
   const part = section(parent, "candidates", "Model comparison", `${named(curve.kind, curve.apart)} describes the ${moving ? "windows of speed" : "dwells"}; ${worse}. No lubrication regime is determined.`);
-  const rows = [...curve.tried.map((each) => [named(each.kind, each.apart), each]), ["one power of speed", fit]];
+  const rows = [...curve.tried.map((each) => [named(each.kind, each.apart), each]), [power, fit]];
   table(fold(part, `All ${rows.length} models`), ["Model", "ΔAICc", "Scatter, %"], rows.sort((a, b) => a[1].aicc - b[1].aicc).map(([name, each]) => [
     name, digits(each.aicc - Math.min(best, fit.aicc)), digits(100 * each.scatter, 2)]), [1, 2], { name: "candidates", label: "Model comparison" });
   if (moving) add(part, "p", "Compared on the windows of speed; the law itself was chosen and fitted on every sample.", "note");

@@ -83,11 +83,11 @@ function exponents(parent) {
 }
 function dwells(parent) {
   const hot = data.points.some((p) => p.temperature !== null);
-  const [factor, unit] = torqueUnit();
-  table(parent, [`Speed, ${SPEED_UNIT}`, ...(hot ? ["°C"] : []), inUnit(capital(measured), unit), "± (1 s.e.)", `Damping, ${dampingUnit()}`, "Measured / fitted − 1, %", "Approached", "From, s", "To, s"],
-    data.points.map((p, i) => [
-      digits(p.speed * PER_SPEED, 4), ...(hot ? [celsius(p.temperature).toFixed(1)] : []), digits(p.torque * factor, 4),
-      digits(p.torque_error * factor, 2), digits(p.damping * factor, 4), (100 * Math.expm1(data.friction?.residuals[i] ?? p.residual)).toFixed(1).replace("-", "−"),
-      p.approach, p.start.toFixed(1), p.end.toFixed(1)]),
-    [0, 1, 2, 3, 4, ...(hot ? [5, 7, 8] : [6, 7])], { name: "dwells", label: "All dwells" });
+  const [factor, unit] = torqueUnit(), when = moving ? [] : ["Approached", "From, s", "To, s"];
+  const heads = [`Speed, ${SPEED_UNIT}`, ...(hot ? ["°C"] : []), inUnit(capital(measured), unit), "± (1 s.e.)", `Damping, ${dampingUnit()}`, "Measured / fitted − 1, %", ...when];
+  table(parent, heads, data.points.map((p, i) => [
+    digits(p.speed * PER_SPEED, 4), ...(hot ? [celsius(p.temperature).toFixed(1)] : []), digits(p.torque * factor, 4),
+    digits(p.torque_error * factor, 2), digits(p.damping * factor, 4), (100 * Math.expm1(data.friction?.residuals[i] ?? p.residual)).toFixed(1).replace("-", "−"),
+    ...(moving ? [] : [p.approach, p.start.toFixed(1), p.end.toFixed(1)])]),
+  heads.flatMap((head, i) => head === "Approached" ? [] : [i]), { name: `${held}s`, label: moving ? "All windows" : "All dwells" });
 }

@@ -9,7 +9,7 @@ import numpy as np
 from hersey.damping.compare import LogComparison
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.dwells.doubtful import doubtful_order, doubtful_tare
-from hersey.damping.dwells.motion_between import motion_between
+from hersey.damping.moving.beside_dwells import motion_beside
 from hersey.damping.surface import DampingSurface
 from hersey.decision.behaviour import Behaviour
 from hersey.decision.edges import edges_of
@@ -65,7 +65,7 @@ def flags(known: Findings) -> list[Warning]:
         out.append(Warning("no band", "{why}", severity="act", title="No band", where="band", why=known.why))
     if found is not None and map_ is not None:
         unit = known.units["torque"]
-        out += [*_whole(points, found, unit), *_of_machine(found, map_, unit)]
+        out += [*([] if known.friction else _whole(points, found, unit)), *_of_machine(found, map_, unit)]
     if found is not None:
         out += [*_not_computed(found), *_plans(found)]
     of_fit = surface.statistics.scatter if known.friction is None else known.friction.scatter
@@ -342,8 +342,7 @@ def _of_log(points: SteadyPoints, surface: DampingSurface, *, asked: bool) -> It
     for each in (each.about(points.domain) for each in doubtful_tare(points)[:1]):
         yield each.titled("The zero is doubtful", section="data")
     yield from (
-        each.titled("Motion between the dwells is not used", section="data")
-        for each in motion_between(points)
+        each.titled("Motion between the dwells is not used", section="data") for each in motion_beside(points)
     )
     if few_slow_dwells(points, surface):
         yield Warning(

@@ -1,4 +1,4 @@
-"""The moment of inertia of a wheel that coasts down, and how far it is known."""
+"""A moment of inertia as it is stated, and how far it is known: of a coast-down, or of a log that moves."""
 
 from __future__ import annotations
 
@@ -17,8 +17,10 @@ _KIND = "moment of inertia"
 _EXAMPLE = "0.012 kg*m^2 ± 2 %"
 
 
-def inertia_of(given: Any, name: str = "inertia") -> Estimate:
+def inertia_of(given: Any, name: str = "inertia", *, may_be_none: bool = False) -> Estimate:
     """Return a moment of inertia, kg m^2, with its 95 % interval, which is no wider than it if none is given.
+
+    Where it is the only thing that resists, it must be greater than 0; else there ``may_be_none``.
 
     Raises
     ------
@@ -41,10 +43,17 @@ def inertia_of(given: Any, name: str = "inertia") -> Estimate:
         half = _half(name, given, parts[1], value) if len(parts) == 2 else 0.0
     else:
         value = float(argument(name, _KIND, text, one=True))
-    if not (value > 0 and math.isfinite(value)):
+    if may_be_none and value < 0:
+        raise ParameterError(f"the moment of inertia is {value:g} kg m^2: it must not be negative")
+    if not ((value > 0 or may_be_none) and math.isfinite(value)):
         raise ParameterError(f"{name} is {given}: it must be greater than 0")
-    if not 0 <= half < value:
+    if not 0 <= half < value and half > 0:
         raise ParameterError(f"{name} is {given}: its error must be smaller than the value")
+    return stated_inertia(value, half)
+
+
+def stated_inertia(value: float, half: float) -> Estimate:
+    """Return a moment of inertia with half its 95 % interval, both kg m^2."""
     return Estimate(value, half / NORMAL, value - half, value + half)
 
 
