@@ -12,7 +12,9 @@ words                 words of other languages that columns are called by
 roles                 roles of columns: their names, and the kinds of units that they may have
 role_units            the unit of a column with a role
 elsewhere             a speed or a temperature in the names of files, or in a position
+pressures             pressures of a cylinder, from which a friction force can be computed
 channels              which column plays which role
+pulses                times of pulses instead of a speed
 without_units         columns without units: named at once
 lacking_roles         several roles that a file leaves open: asked for at once
 friction              which of them a file holds, and what it becomes with a load and a radius

@@ -15,6 +15,7 @@ from hersey.errors import ISOTHERMAL, ChannelError, Setting, meant, printable, w
 from hersey.log.elsewhere import speed_elsewhere, stated_in_names, typed
 from hersey.log.long_arrays import ends
 from hersey.log.own_tables import not_a_log, own_table
+from hersey.log.pressures import force_of_pressures
 from hersey.log.role_units import with_unit
 from hersey.log.roles import (
     EVERY,
@@ -232,6 +233,8 @@ def no_channel(
         if found := stated_in_names(file, names, role):
             way_out += f". If the names of the files state it, use {typed(found)}"
         way_out += f", or use {ISOTHERMAL.to()} to exclude temperature"
+    if role == "torque":
+        way_out += force_of_pressures(columns)
     said = f"{file}: no {role} column found. Columns: {columns_listed(columns)}"
     said += not_numbers(others)
     return ChannelError(said, absent=True, remedy=way_out, setting=channel)

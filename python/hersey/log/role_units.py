@@ -29,11 +29,15 @@ from hersey.log.signals import (
 from hersey.log.text.column import Column
 from hersey.units import COUNTS, KINDS, Conversion, nearest_unit, of_encoder
 
+#: Clocks of microcontroller boards, and the units in which they count.
+_CLOCKS_OF_BOARDS = {"micros": "us", "millis": "ms"}
 _INVERTER = "If it is the frequency of an inverter, divide by the pole pairs of the motor, e.g. for 2 use"
 
 
 def known_unit(role: str, column: Column) -> str:
     """Return the unit of a column that states none, where its name leaves no choice; else nothing."""
+    if role == "time":
+        return _CLOCKS_OF_BOARDS.get(column.name.lower(), "")
     return "1" if role == "torque" and is_named(FRICTION_NAMES["friction coefficient"], column) else ""
 
 

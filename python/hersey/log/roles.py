@@ -37,13 +37,16 @@ ROLE_KINDS: dict[str, tuple[str, ...]] = {
     "position": ("angle", "length"),
 }
 _NAMES = {
-    "time": r"t|time.*|.*\btime|.*datetime|.*zeit|timestamp|elapsed.*|.*seconds|epoch.*|unix.*",
+    "time": r"t|time.*|.*\btime|.*datetime|.*zeit|timestamp|micros|millis|elapsed.*|.*seconds|epoch.*|unix.*",
     "torque": r".*torque.*|tq.*|.*\btq|.*moment.*|m",
     "speed": r".*speed.*|.*velocity.*|.*rpm.*|.*omega.*|.*drehzahl.*|n|w|ω",
     "temperature": r"(?!tempo([^a-z]|$)).*temp.*|.*thermistor.*|.*heater.*|.*thermocouple.*|.*film t.*",
     "load": r".*\bload(?! ?cell).*|.*normal ?(force|kraft).*|.*normalkraft.*|f_?[nz]|.*axial ?force",
     "radius": r".*radius.*|.*\btrack",
-    "position": r".*(angle|position|encoder|winkel|lage).*|(.*[^a-z])?enc([^a-z].*)?|phi|theta|pos",
+    "position": (
+        r".*(angle|position|encoder|winkel|lage).*|phi|theta|pos"
+        "|(.*[^a-z])?(enc|pulses?|impulse?)([^a-z].*)?"
+    ),
 }
 #: Names of what stands for a torque, or a speed of rotation, where the radius is known.
 _FRICTION_NAMES = {
