@@ -63,6 +63,8 @@ def test_a_position_below_zero_makes_one_speed_with_that_above() -> None:
         np.tile([10, -12, 65_530, 65_531, 65_532], 40),  # others have a sign
         np.tile([10, 12, 70_000, 80_000, 90_000], 40),  # beyond 16 bits, far below 32
         np.tile([10, 12, 200], 40),
+        np.tile([0, 60_000, 61_500, 63_000], 40),  # a fast spindle
+        np.tile([65_530, 65_531, 65_532], 40),  # a level that does not pass zero
     ],
 )
 def test_what_may_be_anything_else_stays_as_it_is(written: np.ndarray) -> None:

@@ -113,7 +113,7 @@ def _all_open(
             free = tuple(c for c in columns if c not in taken.values())
             examples = _of_absent(role, free, file, names, choices[role].unit)
             if role == "torque" and (current := dict(examples)[Setting(role, "channel")]) != _COLUMN:
-                found.add(role)  # in its place
+                found.add("current")
                 is_open.roles[-1] += f" ('{current}' may be the motor current)"
             is_open.examples += examples
             continue

@@ -14,6 +14,8 @@ READ_AS_NEGATIVE = "counts read as negative"
 COUNTED = ("torque", "speed", "position")
 #: No count lies between these shares of the range: numbers that run through it are none below zero.
 _FROM, _TO = 0.25, 0.75
+#: Signals that pass zero come this near to both ends, as a share of the range: 65,000 rpm are a speed.
+_NEAR = 0.005
 #: Fewest distinct counts above; one alone may be a code of the logger.
 _FEWEST = 3
 #: How near to a whole number a count is, after a unit has multiplied it.
@@ -52,8 +54,11 @@ def with_signs(values: FloatArray, scale: float, channel: str) -> tuple[FloatArr
 
 def _bits(values: FloatArray, scale: float) -> int:
     """How many bits counts have that lost their sign; 0 if not all numbers surely are such counts."""
-    most = max((_largest(values[block], scale) for block in blocks(values.size, values)), default=0.0)
-    bits = next((bits for bits in (16, 32) if _TO * 2.0**bits <= most < 2.0**bits), 0)
+    ends = [_ends(values[block] / scale) for block in blocks(values.size, values)]
+    least, most = min((low for low, _ in ends), default=0.0), max((high for _, high in ends), default=0.0)
+    bits = next((bits for bits in (16, 32) if (1.0 - _NEAR) * 2.0**bits <= most < 2.0**bits), 0)
+    if bits == 16 and least > _NEAR * 2.0**bits:
+        return 0
     above: set[float] = set()
     for block in blocks(values.size, values) if bits else ():
         part = values[block] / scale
@@ -67,6 +72,7 @@ def _bits(values: FloatArray, scale: float) -> int:
     return bits if len(above) >= _FEWEST else 0
 
 
-def _largest(part: FloatArray, scale: float) -> float:
+def _ends(part: FloatArray) -> tuple[float, float]:
+    """The least and the greatest number of a part that are not missing."""
     known = part[np.isfinite(part)]
-    return float(np.max(known / scale, initial=0.0))
+    return float(np.min(known, initial=np.inf)), float(np.max(known, initial=-np.inf))
