@@ -27,7 +27,8 @@ NAMES = {
     "belt may not start",
     "time [s],drive speed [m/s],temperature [degC],roll [degC]",
 }
-#: Modules with words for belts alone: what is asked of a machine file that names a belt, and the shipped one.
+#: Modules with words for belts alone: what is asked of a machine file that names a belt, and the shipped
+#: one; and the names of the slide-roll ratio.
 OF_BELTS = {
     "study/first_screen/flags.py": {
         "the grip of the roll is not stated and therefore not in the model",
@@ -40,6 +41,7 @@ OF_BELTS = {
         "belt and heater",
     },
     "testbench/drive.py": {"thick paper"},
+    "log/rolling.py": {r".*\bsrr\b.*|.*(slide|slip)[- ]?(to[- ]?)?roll.*|.*\bslip ratio.*"},
 }
 
 

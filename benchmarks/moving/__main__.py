@@ -19,7 +19,7 @@ import polars as pl
 from scipy.optimize import least_squares
 
 import hersey
-from benchmarks.moving import joints
+from benchmarks.moving import joints, swings
 from hersey.errors import HerseyError
 
 ROOT = Path(__file__).parents[2]
@@ -97,6 +97,7 @@ def virtual(seeds: range) -> list[str]:
     off: dict[str, list[float]] = {}
     other: dict[str, list[float]] = {}
     apart: dict[str, list[float]] = {}
+    signed: dict[str, list[float]] = {}
     for each in done:
         for name, known in each.moving.items():
             bare = name.rstrip("+-")
@@ -107,6 +108,7 @@ def virtual(seeds: range) -> list[str]:
             inside.setdefault(bare, []).append(known.low <= true <= known.high)
             scale = each.truth["T_C"] if bare == "offset" else true
             off.setdefault(bare, []).append(abs(known.value - true) / scale)
+            signed.setdefault(bare, []).append((known.value - true) / scale)
             if name in each.staircase and name in each.truth:
                 scale = each.truth["T_C"] if bare == "offset" else each.staircase[name]
                 apart.setdefault(bare, []).append(abs(known.value - each.staircase[name]) / abs(scale))
@@ -134,6 +136,7 @@ def virtual(seeds: range) -> list[str]:
         f"{100 * LEAST:.0f} to {100 * MOST:.0f} %); {100 * np.mean(near):.0f} % of {len(near)} values "
         "(without the offset) lie within 3 % of the staircase's. The offset is compared as a share of `T_C`.",
         "",
+        *_split(off, other, signed),
     ]
     return lines
 
@@ -142,6 +145,20 @@ def _spread(shares: list[float] | None) -> str:
     if not shares:
         return ""
     return f"{100 * np.median(shares):.2f} % ({100 * max(shares):.1f} %)"
+
+
+def _split(
+    off: dict[str, list[float]], other: dict[str, list[float]], signed: dict[str, list[float]]
+) -> list[str]:
+    """How much of what lies apart is the moving log, the staircase, and bias."""
+    said = []
+    for name in ("T_S", "w_S", "k_v"):
+        error = np.std(signed[name], ddof=1) / np.sqrt(len(signed[name]))
+        said.append(
+            f"`{name}`: moving {_near(off[name])}, staircase {_near(other[name])}, mean of the moving "
+            f"{100 * np.mean(signed[name]):+.2f} ± {100 * error:.2f} %"
+        )
+    return [f"Within 3 % of the truth: {'; '.join(said)}.", ""]
 
 
 def _near(gaps: list[float] | None) -> str:
@@ -210,6 +227,7 @@ def main() -> None:
     lines = ["# Moving logs", "", *WORDS.strip().splitlines(), "", "## Virtual joints", ""]
     for start in (0, 1000):
         lines += virtual(range(start, start + asked.joints))
+    lines += swings.lines(asked.joints // 2)
     if asked.folder.is_dir():
         lines += screw_drives(asked.folder) + refusals(asked.folder)
     PAGE.write_text("\n".join(lines).rstrip() + "\n")

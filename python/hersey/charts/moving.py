@@ -17,7 +17,7 @@ _POINTS = 120
 
 
 def moving_chart(fit: MovingFit) -> Chart:
-    """Return friction (without inertia and offset) against speed in both directions, with the law."""
+    """Return friction (without inertia, gravity, offset) against speed in both directions, with the law."""
     try:
         curve = moving_curve(fit.points())
     except InsufficientDataError:

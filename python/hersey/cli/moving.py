@@ -77,14 +77,21 @@ def fitted_lines(fit: MovingFit, finding: str = "") -> list[str]:
         rows.append(("J", f"{three(fit.inertia_given)}{error} kg·m² (given)"))
     speed = fit.middle_speed
     rows.append(("friction", f"{_shown(fit.friction_at(speed), 'N m')} at {three(rpm(speed))} rpm"))
-    head = "torque = J dw/dt + offset + friction(w), w in rad/s (value, 95 % interval)"
-    law = f"{fit.law}. {finding}" if finding else fit.law
-    return [law, "", head, *labelled(rows), fit.cost()]
+    gravity, angle = "", []
+    if said := fit.gravity_in_words():
+        gravity, angle = " + G sin(q - q_0)", [said]
+    head = f"torque = J dw/dt + offset{gravity} + friction(w), w in rad/s (value, 95 % interval)"
+    law = f"{fit.named}. {finding}" if finding else fit.named
+    return [law, "", head, *labelled(rows), *angle, fit.cost()]
 
 
 def _shown(known: Estimate, unit: str) -> str:
+    import numpy as np
+
     from hersey.damping.estimate import rounded
 
+    if unit == "rad":
+        return f"{rounded(*np.degrees([known.value, known.low, known.high]).tolist())}°"
     large, small = _SMALL[unit]
     is_small = max(abs(known.value), abs(known.low), abs(known.high)) < _BELOW
     factor = 1e3 if is_small else 1.0

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
 from hersey.cli.mistyped import retyped
 from hersey.cli.traces import of_a_trace
-from hersey.errors import HerseyError, UnitError
+from hersey.errors import ChannelError, HerseyError, Setting, UnitError, followed_by
 
 if TYPE_CHECKING:
     from hersey.damping.recipe import Recipe
@@ -41,6 +41,20 @@ class _Reading(Protocol):
     def max_memory(self) -> str: ...
 
     def recipe(self, paths: list[Path], /) -> Recipe: ...
+
+
+def as_other_use(error: ChannelError, paths: list[Path], reading: _Reading) -> ChannelError:
+    """Return an error of a channel that no column holds, with what to type if the file is no log of torque.
+
+    The line of a coast-down takes the place of the one that names all that a fit lacks.
+    """
+    torque = Setting("torque", "channel")
+    if not (error.absent or torque in dict(error.examples)):
+        return error
+    if use := other_use(paths, reading):
+        error.remedy = followed_by(error.remedy, use)
+        error.examples = ()
+    return error
 
 
 def other_use(paths: list[Path], reading: _Reading) -> str:
@@ -80,8 +94,9 @@ def of_a_coast_down(paths: Sequence[Path], reading: _Reading, recipe: Recipe) ->
         with memory_limit(reading.max_memory):
             if not falls_freely(recipe.speeds()):
                 return ""
-    except UnitError:
-        if any(_may_hold_more(list_channels(path)) for path in paths):
+    except (ChannelError, UnitError) as error:
+        lacks_units = isinstance(error, UnitError) or any(of.kind == "unit" for of, _ in error.examples)
+        if not lacks_units or any(_may_hold_more(list_channels(path)) for path in paths):
             return ""
     except HerseyError:
         return ""

@@ -12,14 +12,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 from hersey.cli.groups import argument, option
 from hersey.cli.loading import loading
 from hersey.cli.no_load import refuse_no_load_log
-from hersey.cli.no_torque import other_use
 from hersey.cli.progress import bar, working
 from hersey.cli.quantities import amount_of, amounts_in, inertia_in, ratio_of
 from hersey.cli.recipe_file import ROLES, read_recipe
 from hersey.cli.several import for_this_log_only
 from hersey.cli.terminal import note
 from hersey.cli.traces import lacking_columns, of_a_force
-from hersey.errors import ChannelError, HerseyError, ParameterError, followed_by
+from hersey.errors import ChannelError, HerseyError, ParameterError
 
 if TYPE_CHECKING:
     from hersey.damping.dwells import SteadyPoints
@@ -86,7 +85,7 @@ _RADIUS = "Radius of a friction force or track: '25 mm', one for each run, or it
 _LOAD = "Normal load: '50 N', '10 N, 20 N' for two runs, or its column."
 _POSITION = "Column of a position, instead of a speed; speed is its slope."
 _POSITION_UNIT = "Unit of the position, e.g. 'deg', 'mm', or 'rev/4096' for counts."
-_POSITION_WINDOW = "Time over which the slope of the position is taken.  [default: 0.2 s]"
+_POSITION_WINDOW = "Time over which the slope of a position is taken.  [default: 0.2 s, less in fast motion]"
 _DIRECTION = "Column of the direction of a speed without a sign: 1 and -1, 1 and 0, CW and CCW."
 _NAME_PATTERN = "Pattern of file names that state values, e.g. '{speed} rpm {load} N.txt'."
 _NAME_DECIMAL = "Decimal mark of the numbers in the file names, e.g. '-' for 0-1rps.txt."
@@ -247,9 +246,9 @@ class Reading:
             with bar("reading") as progress, memory_limit(self.max_memory):
                 log: TorqueLog | MeansTable = recipe.log(machine, progress=progress)
         except ChannelError as error:
-            if error.absent:
-                error.remedy = followed_by(error.remedy, other_use(paths, self))
-            raise
+            from hersey.cli.no_torque import as_other_use
+
+            raise as_other_use(error, paths, self) from None
         for file in log.files:
             if file.missing_rows:
                 note(*(str(each.within(file.name)) for each in file.warnings))

@@ -14,6 +14,7 @@ scaled          dwells of all temperatures on one curve
 gradual         a gradual bend: its minimum, and what motion is given of it
 branches        two branches of the law: whether, and where torque is least
 trend           whether torque rises or falls with speed, by the dwells themselves
+driving_torque  torque that falls as that of a motor or a brake, and is no friction
 order           the same of a few dwells, all of them together
 shown           whether the dwells show a transition, in each direction
 fitted_law      a fitted law: its numbers, the torque it gives, its limits
@@ -22,7 +23,7 @@ surface_words   what a surface says of itself: summary, record, table
 fit             fitting it: the paper's candidate among all
 candidates      every law fitted to the same dwells, one chosen
 friction_curve  friction of joints and gear motors: Coulomb, viscous, Stribeck
-moving          logs that move all the time: friction, inertia and offset from every sample
+moving          logs that move all the time: friction, inertia, gravity and offset
 held_or_moving  whether a log is reduced to dwells or moves all the time
 curves          drag curves that the dwells allow: laws by weight, and how they go on beyond
 no_load         the no-load torque from a log without the film

@@ -214,7 +214,7 @@ class Assembly:
         for role, part in self.parts.items():
             same = part.tick == torque.tick
             arrays[role] = part.values[kept] if same else np.interp(arrays["time"], part.time, part.values)
-        warnings += [_aligned(part, torque) for part in others]
+        warnings += [_aligned(part, torque) for part in others if part.role != "position"]
         if dropped:
             warnings.append(
                 Warning(
@@ -230,7 +230,9 @@ class Assembly:
 
     def _record(self, warnings: tuple[Warning, ...]) -> LogFile:
         used = {"time": self._clocks[self.parts[self._first].tick][2]} | {
-            p.role: Channel(p.role, p.column.path, p.unit.unit) for p in self.parts.values()
+            p.role: Channel(p.role, p.column.path, p.unit.unit)
+            for p in self.parts.values()
+            if p.role != "position"  # the speed is its slope
         }
         return LogFile(
             self.source.name,
@@ -289,7 +291,7 @@ class Assembly:
             values, read = with_signs(values, 1.0, self.columns[column.index].path)
             self._said += read
         if role == "speed":
-            values = self._speed(time, values)
+            values = self._speed(time, values, tick)
         return _Part(role, column, unit, _in_si(values, unit), time, tick, marked)
 
     def _position(self) -> tuple[Column, Conversion]:
@@ -299,12 +301,14 @@ class Assembly:
         assert channel is not None  # it is named
         return channel
 
-    def _speed(self, time: FloatArray, values: FloatArray) -> FloatArray:
+    def _speed(self, time: FloatArray, values: FloatArray, tick: str) -> FloatArray:
         """The speed from the numbers of its column, or of a position; with the sign of a direction."""
         if self.choices["position"].name:
             column, unit = self._position()
-            values, warning = speed_of_position(column, unit, time, values, self.derived.window)
+            position, values, warning = speed_of_position(column, unit, time, values, self.derived.window)
             self._said.append(warning)
+            if position is not None and not self.choices["direction"].name:
+                self.parts["position"] = _Part("position", column, unit, position, time, tick, None)
         if name := self.choices["direction"].name:
             values, warning = with_direction(self.recording, name, values)
             self._said.append(warning)
@@ -482,7 +486,7 @@ class Assembly:
 
     def _impossible(self, parts: list[_Part]) -> tuple[IntArray, tuple[Impossible, ...]]:
         """Samples that cannot be right."""
-        readings = [Reading(part.role, part.column, part.unit, part.values) for part in parts]
+        readings = [Reading(p.role, p.column, p.unit, p.values) for p in parts if p.role != "position"]
         if (clock := self._clocks[parts[0].tick][2]).name != NO_CLOCK:
             unit = role_conversion("time", clock.unit)[1]
             readings.insert(0, Reading("time", Column(-1, clock.name, clock.unit), unit, parts[0].time))

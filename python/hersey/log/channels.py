@@ -222,11 +222,8 @@ def no_channel(
             f". If '{of.path}' is the frequency of an inverter, divide by the pole pairs of the motor, e.g. "
             f"for 2 use {named}"
         )
-    if role == "torque" and way_in() == "python" and _may_coast(columns):
-        way_out += (
-            f". If the wheel coasts down without a drive, use hersey.coast_down({file!r}, "
-            "inertia='0.012 kg*m^2 ± 2 %'), with its moment of inertia"
-        )
+    if role == "torque":
+        way_out += of_a_coast_down(columns, file)
     if role == "speed":
         way_out += speed_elsewhere(columns, file, names)
     if role == "temperature":
@@ -240,10 +237,15 @@ def no_channel(
     return ChannelError(said, absent=True, remedy=way_out, setting=channel)
 
 
-def _may_coast(columns: tuple[Column, ...]) -> bool:
-    """Whether columns are those of time and speed, perhaps with a temperature, and no others."""
+def of_a_coast_down(columns: tuple[Column, ...], file: str) -> str:
+    """Return what to call in Python if columns are those of time and speed, perhaps with a temperature."""
     roles = [next((r for r in ("time", "speed", "temperature") if is_called(r, c)), "") for c in columns]
-    return {"time", "speed"} <= set(roles) and "" not in roles
+    if way_in() != "python" or "" in roles or not {"time", "speed"} <= set(roles):
+        return ""
+    return (
+        f". If the wheel coasts down without a drive, use hersey.coast_down({file!r}, "
+        "inertia='0.012 kg*m^2 ± 2 %'), with its moment of inertia"
+    )
 
 
 def not_numbers(others: tuple[str, ...]) -> str:

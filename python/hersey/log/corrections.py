@@ -78,7 +78,8 @@ def sign(log: TorqueLog | Corrected, *, torque: int = 1, speed: int = 1) -> Corr
             raise ParameterError(f"sign of {name} is {value}: it must be 1 or -1")
 
     def turned(run: Run) -> Run:
-        return replace(run, torque=run.torque * torque, speed=run.speed * speed)
+        at = None if run.position is None else run.position * speed
+        return replace(run, torque=run.torque * torque, speed=run.speed * speed, position=at)
 
     return _corrected(log, "sign", turned, ("torque", f"{torque:+d}"), ("speed", f"{speed:+d}"))
 
@@ -183,7 +184,9 @@ def at_roll(
         driven = run.torque * run.speed < 0
         back += int(np.count_nonzero(driven))
         passed = np.where(driven, 1.0 / efficiency, efficiency)
-        return replace(run, torque=run.torque * torque_ratio * passed, speed=run.speed / speed_ratio)
+        at = None if run.position is None else run.position / speed_ratio
+        torque, speed = run.torque * torque_ratio * passed, run.speed / speed_ratio
+        return replace(run, torque=torque, speed=speed, position=at)
 
     ratios = (("torque_ratio", f"{torque_ratio:g}"), ("speed_ratio", f"{speed_ratio:g}"))
     done = _corrected(log, "gears", geared, *ratios, ("efficiency", f"{efficiency:.4g}"))

@@ -7,7 +7,13 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from hersey.errors import ISOTHERMAL, ChannelError, HerseyError, Setting, UnitError, way_in
-from hersey.log.channels import ChannelChoice, columns_listed, find_column, taken_columns
+from hersey.log.channels import (
+    ChannelChoice,
+    columns_listed,
+    find_column,
+    of_a_coast_down,
+    taken_columns,
+)
 from hersey.log.elsewhere import elsewhere, stated_in_names
 from hersey.log.role_units import example_unit, known_unit
 from hersey.log.roles import EVERY
@@ -66,6 +72,8 @@ def asking_all(
     )
     if isinstance(error, UnitError) and (not is_open.roles or setting not in dict(is_open.examples)):
         return naming_all(error, roles, columns, choices, file, dead=dead, of_a_frame=of_a_frame)
+    if "current" in found and (Setting("speed", "channel"), _COLUMN) not in is_open.examples:
+        found.add("torque")  # in its place
     bare = "torque" not in found and len(columns) <= _NO_TORQUE  # which may be of a coast-down
     if len(is_open.roles) + len(is_open.without_unit) < 2 or not {"torque", "speed"} & found or bare:
         return error
@@ -73,13 +81,14 @@ def asking_all(
     if is_open.without_unit:
         names = ", ".join(f"'{column.path}'" for column in is_open.without_unit)
         said.append(f"no unit for {names}")
+    coasts = "" if "torque" in found else of_a_coast_down(columns, file)
     return ChannelError(
         f"{file}: {'; '.join(said)}. Columns: {columns_listed(columns)}",
         columns=error.columns if isinstance(error, ChannelError | UnitError) else (),
         examples=tuple(is_open.examples),
         remedy=(
             f"use {stated(is_open.examples)}{_own(is_open.examples)}{_instead(is_open.examples)}"
-            f"{_of_registers(is_open)}"
+            f"{_of_registers(is_open)}{coasts}"
         ),
         setting=setting,
     )

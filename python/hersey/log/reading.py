@@ -95,7 +95,7 @@ def read(
         ``to [s]``, ``speed [rpm]``), or a list of ``{"from": "0 s", "to": "60 s", "speed": "10 rpm"}``.
         Times are counted from the first row. With sliding speeds, distances may stand in their place.
     position_window
-        Time over which speed is the slope of a ``position`` column, s (0.2 s).
+        Time over which speed is the slope of a ``position`` column, s (0.2 s, or less if motion is faster).
     progress
         Called with bytes done and total bytes.
 
@@ -173,9 +173,10 @@ def _speeds(file: Any, wanted: Wanted, frame: str, progress: Progress | None) ->
     try:
         return _runs(file, wanted, frame, progress)
     except (ChannelError, UnitError) as error:
-        if not is_of_temperature(error) or wanted.choices["temperature"] != ChannelChoice():
+        if wanted.choices["temperature"] != ChannelChoice():
             raise
-        why = () if isinstance(error, ChannelError) and error.absent else (temperature_not_read(error),)
+        absent = isinstance(error, ChannelError) and error.absent
+        why = (temperature_not_read(error),) if is_of_temperature(error) and not absent else ()
     found = _runs(file, replace(wanted, isothermal=True), frame, progress)
     return [(run, replace(log, warnings=(*log.warnings, *why))) for run, log in found]
 

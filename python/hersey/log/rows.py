@@ -275,7 +275,8 @@ def _recorded(
         warnings = (*warnings, start)
     record = replace(file, name=name, rows=run["time"].size, warnings=warnings)
     torque = run["torque"] if "torque" in run else np.full(run["time"].size, np.nan)
-    return Run(name, run["time"], torque, run["speed"], run.get("temperature"), run.get("load")), record
+    others = run.get("temperature"), run.get("load")
+    return Run(name, run["time"], torque, run["speed"], *others, position=run.get("position")), record
 
 
 def _slow(

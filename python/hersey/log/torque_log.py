@@ -81,6 +81,7 @@ class Run(Record):
     temperature: FloatArray | None
     load: FloatArray | None = None  #: normal load, N, where it is known
     domain: Domain = TORQUE  #: what ``torque`` and ``speed`` hold: friction and sliding speed, if it says so
+    position: FloatArray | None = None  #: angle, rad, whose slope the speed is, if one was recorded
 
     def to_dict(self) -> dict[str, Any]:
         """Return the size of the run and the range of each channel, in SI."""

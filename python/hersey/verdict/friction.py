@@ -21,14 +21,16 @@ if TYPE_CHECKING:
 def leading_friction(points: SteadyPoints, surface: DampingSurface, seen: Regime) -> FrictionCurve | None:
     """Return the friction curve if it describes the dwells at least as well as the power law; else None.
 
-    Of a moving log it is that of every sample, judged by the windows. A coast-down, and a friction force or
-    coefficient, have a verdict of their own. It never leads where film theory is at stake: a
-    film is named, no-load torque was subtracted, or loads differ. Where temperature varies the power law must
-    be excluded, since a film moves with temperature too. Coulomb plus viscous friction cannot lead where the
-    dwells alone show that torque falls with speed, where the drive stuck and slipped, or where no viscous
-    part is proven.
+    Of a moving log it is that of every sample, judged by the windows, unless friction departs from it. A
+    coast-down, and a friction force or coefficient, have a verdict of their own. It never leads where the
+    torque is that of a motor or a brake, or where film theory is at stake: a film is named, no-load torque
+    was subtracted, or loads differ. Where temperature varies the power law must be excluded, since a film
+    moves with temperature too. Coulomb plus viscous friction cannot lead where the dwells alone show that
+    torque falls with speed, where the drive stuck and slipped, or where no viscous part is proven.
     """
     if seen.named not in (None, COULOMB, FALLING) or points.rest is not None or points.varying_load:
+        return None
+    if seen.driving is not None:
         return None
     loaded = any(each.why.kind == "opposite signs" for each in points.rejected)
     if not points.domain.is_torque or loaded:
@@ -49,7 +51,7 @@ def leading_friction(points: SteadyPoints, surface: DampingSurface, seen: Regime
 
 def _curve(points: SteadyPoints) -> FrictionCurve | None:
     if isinstance(points, MovingPoints):
-        return moving_curve(points)
+        return None if points.friction.misfit is not None else moving_curve(points)
     return None if points.of_every_sample else fit_friction(points)
 
 

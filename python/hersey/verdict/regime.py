@@ -12,6 +12,7 @@ from hersey.arrays import FloatArray
 from hersey.cache.kept import kept
 from hersey.damping.candidates.lack_of_fit import LackOfFit
 from hersey.damping.candidates.observations import Observations
+from hersey.damping.driving_torque import DrivingTorque, driving_torque
 from hersey.damping.dwells import SteadyPoints, distinct_speeds, groups_of_temperature
 from hersey.damping.dwells.reduced import require_points
 from hersey.damping.estimate import Estimate, estimate, rounded
@@ -63,6 +64,10 @@ class Regime(Result):
     verdict: str
     tried: Annotated[tuple[Tried, ...], Means("the likeliest first")] = ()
     domain: Domain = TORQUE  #: what ``verdict`` is about; exponents are of damping: quantity over speed
+    driving: Annotated[
+        DrivingTorque | None,
+        Means("why torque is that of a motor or a brake; null if it may be friction"),
+    ] = None
 
     def summary(self) -> str:
         """Return the verdict, the hypotheses and the exponents as text."""
@@ -128,6 +133,9 @@ def regime(
     hypotheses = judged(surface.c, table=table)
     by = explained(points, surface, hypotheses, law)
     trend = trend_of(Observations.of(points))
+    driving = _driving(points) if surface.domain.is_torque else None
+    if driving is not None:
+        return _of_no_friction(driving, points, surface, hypotheses, by)
     if surface.domain.is_torque:
         verdict = _verdict(surface, by, table, trend)
     else:
@@ -143,6 +151,35 @@ def regime(
         " ".join(filter(None, (verdict, _of_film_alone(points), points.dropped()))),
         by.tried,
         surface.domain,
+    )
+
+
+def _driving(points: SteadyPoints) -> DrivingTorque | None:
+    """Whether torque in the dwells is that of a motor or a brake."""
+    speed, torque = (np.abs(points.column(name)) for name in ("speed", "torque"))
+    return driving_torque(speed, torque, points.column("torque_error"))
+
+
+def _of_no_friction(
+    driving: DrivingTorque,
+    points: SteadyPoints,
+    surface: DampingSurface,
+    hypotheses: tuple[Hypothesis, ...],
+    by: Explained,
+) -> Regime:
+    """The verdict where torque is none of friction: no regime, and nothing explains the dwells."""
+    verdict = f"{driving}, so no lubrication regime is judged. To see friction, record the drive without it."
+    return Regime(
+        branch_exponents(points, surface),
+        hypotheses,
+        (),
+        None,
+        "the torque is that of a motor or a brake",
+        by.lack_of_fit,
+        " ".join(filter(None, (verdict, points.dropped()))),
+        by.tried,
+        surface.domain,
+        driving,
     )
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.damping.dwells import SteadyPoints
-from hersey.damping.dwells.doubtful import doubtful_order, doubtful_tare
+from hersey.damping.dwells.doubtful import constant_load, doubtful_order, doubtful_tare
 from hersey.damping.dwells.misleading import misleading
 from hersey.damping.friction_curve.result import FrictionCurve
 from hersey.damping.moving.beside_dwells import motion_beside
@@ -44,7 +44,8 @@ def warnings_of(
     log = points.log
     found = [Warning("corrected", "corrected: {how}", how=str(correction)) for correction in log.corrections]
     found += [each for i in range(len(log.files)) for each in _of_file(log, i)]
-    found += [*doubtful_units(log), *held_values(points), *doubtful_tare(points), *points.warnings]
+    found += [*doubtful_units(log), *held_values(points), *constant_load(points)]
+    found += [*doubtful_tare(points), *points.warnings]
     found += _of_rest(points)
     if (loads := points.varying_load) and points.domain.quantity != "friction coefficient":
         words = "one law is fitted to loads from {low:.3g} to {high:.3g} N. Fit each load separately"

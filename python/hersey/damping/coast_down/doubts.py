@@ -35,10 +35,6 @@ _UNLIKE = 0.5
 _WARMER = 2.0
 #: Stretches that are worth a word.
 _TOLD: tuple[Why, ...] = ("stepped", "braking", "driven", "reversed")
-_OF_STEPS = (
-    "a drive that holds the speed after a fall may have set the fall, too: let the wheel coast to rest, or "
-    "end the log where the drive takes hold"
-)
 _TERMS = ("Coulomb friction", "viscous friction", "windage")
 
 
@@ -53,7 +49,8 @@ def no_coast(log: TorqueLog, left_out: Sequence[LeftOut]) -> InsufficientDataErr
     held = ", ".join(f"{name} {share:.0f} %" for name, share in shares if share >= 0.5)
     return InsufficientDataError(
         f"{log.files[0].name}: speed falls freely nowhere in this log ({held})",
-        remedy=_OF_STEPS
+        remedy="a drive that holds the speed after a fall may have set the fall, too: let the wheel coast to "
+        "rest, or end the log where the drive takes hold"
         if rows.get("stepped")
         else "record the speed while the wheel coasts down without drive and brake, at 20 rows or more",
     )

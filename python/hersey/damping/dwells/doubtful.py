@@ -7,7 +7,7 @@ import numpy as np
 from hersey.arrays import FloatArray
 from hersey.damping.dwells.groups import groups_of_temperature
 from hersey.damping.dwells.points import SteadyPoints
-from hersey.errors import TARE
+from hersey.errors import MOVING, TARE
 from hersey.schema.warning import Warning
 
 #: A tare beyond this share of the least torque is asked about.
@@ -39,6 +39,22 @@ def doubtful_tare(points: SteadyPoints) -> list[Warning]:
     )
     found = Warning("zero not subtracted", words, severity="watch", standing=standing, share=share, how=TARE)
     return [found] if share >= MATTERS else []
+
+
+def constant_load(points: SteadyPoints) -> list[Warning]:
+    """Return that torque keeps its sign when the drive turns the other way, as a hoist's does; or nothing."""
+    against = [np.sign(each.speed) for each in points.rejected if each.why.kind == "opposite signs"]
+    ways = {float(way) for way in against}
+    kept = {float(way) for way in np.sign(points.column("speed"))}
+    if len(ways) != 1 or len(kept) != 1 or ways == kept:
+        return []
+    words = (
+        "torque has one sign in both directions: a constant load acts, as in a hoist, or the zero of torque "
+        "is off. The fit takes {count} {count:dwell|dwells} of one direction and counts it as friction"
+    )
+    remedy = "to fit it as an offset, use {how}"
+    found = Warning("constant load", words, severity="act", remedy=remedy, count=len(points), how=MOVING)
+    return [found]
 
 
 def doubtful_order(points: SteadyPoints) -> list[Warning]:

@@ -13,7 +13,7 @@ from functools import cached_property
 import numpy as np
 
 from hersey.arrays import FloatArray
-from hersey.damping.moving.stretches import Stretch
+from hersey.damping.moving.stretches import FIRST, Stretch
 
 #: Half the length of a Hann window in its standard deviations.
 REACH = float(1.0 / np.sqrt(1.0 / 3.0 - 2.0 / np.pi**2))
@@ -21,8 +21,7 @@ REACH = float(1.0 / np.sqrt(1.0 / 3.0 - 2.0 / np.pi**2))
 APART = 2.0
 #: Width in s times the frequency in Hz at which the power of the window is halved.
 HALF_POWER = 0.1303
-#: First and second difference over five rows, exact up to the fourth power.
-_FIRST = np.array([1.0, -8.0, 0.0, 8.0, -1.0]) / 12.0
+#: Second difference over five rows, exact up to the fourth power.
 _SECOND = np.array([-1.0, 16.0, -30.0, 16.0, -1.0]) / 12.0
 
 
@@ -54,7 +53,7 @@ class LowPass:
     @cached_property
     def slope(self) -> FloatArray:
         """Weights of the mean derivative."""
-        return np.convolve(self.weights, _FIRST, "same") / self.interval
+        return np.convolve(self.weights, FIRST, "same") / self.interval
 
     @cached_property
     def bend(self) -> FloatArray:
@@ -68,6 +67,11 @@ class LowPass:
         half = self.half
         twice[half:-half] += 2.0 * self.weights
         return twice
+
+    @property
+    def length(self) -> float:
+        """Time that the window spans, s."""
+        return 2.0 * REACH * self.width
 
     @property
     def half(self) -> int:
@@ -129,6 +133,13 @@ class Filtered:
     def temperature(self) -> FloatArray | None:
         """Temperature of each row, K."""
         return None if self.stretch.temperature is None else self._inner(self.stretch.temperature)
+
+    @cached_property
+    def gravity(self) -> FloatArray:
+        """Cosine and sine of the angle of each row, shape (rows, 2)."""
+        assert self.stretch.angle is not None
+        angle = self._inner(self.stretch.angle)
+        return np.column_stack([np.cos(angle), np.sin(angle)])
 
     @cached_property
     def time(self) -> FloatArray:

@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 
 from hersey.damping.distributions import square_above, student_quantile
-from hersey.damping.dwells.reasons import opposite_signs
 from hersey.damping.estimate import CONFIDENCE, Estimate, estimate
 from hersey.damping.friction_curve.fitted import DirectionTest
 from hersey.damping.friction_curve.law import COULOMB, STATIC, STRIBECK_SPEED, FrictionLaw
@@ -18,16 +17,32 @@ from hersey.damping.moving.correlated import Autoregression
 from hersey.damping.moving.filtering import Filtered, LowPass
 from hersey.damping.moving.fitting import LEAST_SEEN, Fitting, MovingLawFit
 from hersey.damping.moving.friction import LawTried, Moments, MovingParameter
+from hersey.damping.moving.gravity import (
+    AMPLITUDE,
+    COSINE,
+    HANGING,
+    LEAST_ARC,
+    SINE,
+    arc_of,
+    gravity_of,
+    with_angles,
+)
+from hersey.damping.moving.misfit import misfit_of
 from hersey.damping.moving.model import INERTIA, OFFSET, Equations, MovingLaw
 from hersey.damping.moving.moving_warnings import CLEAR_OFFSET, moving_warnings
+from hersey.damping.moving.refusals import (
+    LEAST_EQUATIONS,
+    refuse_coarse,
+    refuse_constant,
+    refuse_no_friction,
+    too_few,
+)
 from hersey.damping.moving.result import MovingFit
 from hersey.damping.moving.speed_noise import SpeedNoise, low_pass_for, speed_noise
-from hersey.damping.moving.stretches import Stretch, stretches_of
-from hersey.errors import MOVING, InsufficientDataError, ParameterError, Setting
-from hersey.log.channels import is_dead
+from hersey.damping.moving.stretches import Stretch, counting_step, stretches_of
+from hersey.errors import InsufficientDataError, ParameterError, Setting
 from hersey.log.torque_log import TorqueLog
-from hersey.schema.domain import TORQUE
-from hersey.units import rpm, takes_si
+from hersey.units import takes_si
 
 #: A drive slower than so many standard deviations of the noise of its speed, or than this share of its
 #: greatest speed, may stand or turn either way: such rows are not used.
@@ -37,16 +52,15 @@ _CLEAR, _SLOW = 5.0, 0.01
 MOVING_EVIDENCE = 10.0
 #: Greatest error of the logarithm of a Stribeck speed that counts as known.
 _KNOWN = 0.5
-#: Least equations, and least share of the speed (standard deviation over the greatest) that is a motion.
-LEAST_EQUATIONS, _MOVES = 30, 0.05
 #: Kelvin that temperature must span so that friction may depend on it.
 _WARMER = 3.0
+#: Times what noise took from the inertia by which gravity must explain more, as both go with the angle where
+#: the drive swings; least share of the torque (standard deviations) that gravity must be.
+_REMAINS, _LEAST_GRAVITY = 4.0, 0.005
 #: Rounds in which the noise is judged by what a law leaves.
 _ROUNDS = 3
 #: Share of the variance of the noise of the first round, which is not known yet.
 _FIRST = 1e-4
-#: Least share of the mean square of the torque, without inertia, that friction and offset must explain.
-LEAST_EXPLAINED = 0.8
 #: Moments that are kept to be shown, at the most.
 _SHOWN = 800
 
@@ -88,19 +102,21 @@ def fit_moving(log: TorqueLog, *, inertia: Any = None) -> MovingFit:
         raise ParameterError(f"the mapping already subtracts the torque of the inertia. Omit {given}")
     name = log.files[0].name
     stretches = stretches_of(log)
-    _refuse_constant(name, stretches)
-    noise = speed_noise(stretches)
+    refuse_constant(name, stretches)
+    noise = speed_noise(stretches, counting_step(log))
+    stretches = with_angles(stretches)
     low_pass = low_pass_for(stretches, noise)
     if low_pass is None:
         raise InsufficientDataError(f"{name}: too few rows without a gap to fit a moving log")
     equations, least = _equations(stretches, noise, low_pass)
+    refuse_coarse(name, noise, equations)
     if len(equations) < LEAST_EQUATIONS:
-        raise _too_few(name, equations, least)
+        raise too_few(name, equations, least)
     known = Estimate(0.0, 0.0, 0.0, 0.0) if subtracted else known
     fitting, fits = _fitted(log, equations, noise, low_pass, known)
     chosen = _chosen(fits, equations)
     result = _result(log, _Made(fitting, equations, least, low_pass, noise), chosen, fits)
-    _refuse_no_friction(name, result, equations)
+    refuse_no_friction(name, result, equations)
     if subtracted:
         result = replace(result, inertia_given=None)
     return replace(result, warnings=moving_warnings(result, equations))
@@ -117,37 +133,12 @@ class _Made:
     noise: SpeedNoise
 
 
-def _refuse_constant(name: str, stretches: Sequence[Stretch]) -> None:
-    speed = np.concatenate([each.speed for each in stretches]) if stretches else np.zeros(1)
-    if np.std(speed) <= _MOVES * np.max(np.abs(speed)):
-        raise InsufficientDataError(
-            f"{name}: the speed hardly changes, so inertia and friction cannot be separated",
-            remedy=f"omit {MOVING.to()}",
-            setting=MOVING,
-        )
-    torque = np.abs(np.concatenate([each.torque for each in stretches]))
-    if is_dead(torque):
-        raise InsufficientDataError(
-            f"{name}: torque reads {TORQUE.small(float(torque[0]), '.4g')} in every row, so it does not "
-            "measure friction",
-            remedy=f"check the sensor, or name another column with {Setting('torque', 'channel').to()}",
-        )
-
-
-def _too_few(name: str, equations: Equations, least: float) -> InsufficientDataError:
-    return InsufficientDataError(
-        f"{name}: only {len(equations)} moments lie clear of standstill (faster than {rpm(least):.3g} rpm), "
-        f"but a moving log needs {LEAST_EQUATIONS}",
-        remedy="record a longer motion, or one that reverses less often",
-    )
-
-
 def _equations(stretches: Sequence[Stretch], noise: SpeedNoise, low_pass: LowPass) -> tuple[Equations, float]:
     """Equations clear of standstill, and the least speed of them."""
     filtered = tuple(each for s in stretches if (each := Filtered.of(s, low_pass)) is not None)
     fastest = max(float(np.max(np.abs(each.speed))) for each in filtered)
     unsure = _CLEAR * float(np.sqrt(noise.behind(low_pass.smoother)))
-    least = max(unsure, _SLOW * fastest)
+    least = max(unsure, _SLOW * fastest, noise.least_counted(low_pass))
     return Equations(filtered, tuple(each.turning(least) for each in filtered)), least
 
 
@@ -161,26 +152,45 @@ def _fitted(
     references = (None,) if reference is None else (None, reference)
     largest = references[-1]
 
-    def law(stribeck: bool, apart: bool, warm: float | None) -> MovingLaw:
-        own = (None, 0.0) if inertia is None else (inertia.value, inertia.error)
-        return MovingLaw(FrictionLaw(stribeck, apart, warm), both and not apart, *own)
+    def law(stribeck: bool, apart: bool, warm: float | None, gravity: bool) -> MovingLaw:
+        friction, offset = FrictionLaw(stribeck, apart, warm), both and not apart
+        if inertia is None:
+            return MovingLaw(friction, offset, gravity=gravity)
+        return MovingLaw(friction, offset, inertia.value, inertia.error, gravity)
 
     unknown = Autoregression(np.empty(0), _FIRST * float(np.mean(equations.torque**2)))
     prior = low_pass.interval
     fitting = Fitting.of(equations, unknown, prior, noise.covariances(low_pass))
-    near = fitting.fit(law(True, False, largest))
-    full = law(True, both, largest)
+    turns = arc_of([each.stretch for each in equations.filtered]) > LEAST_ARC
+    near = fitting.fit(law(True, False, largest, turns))
+    full = law(True, both, largest, turns)
     for _ in range(_ROUNDS):
         near = fitting.fit(full, near)
         fitting = fitting.again(near)
     near = fitting.fit(full, near)
+    if turns:
+        without = fitting.fit(law(True, both, largest, False), near)
+        turns = _gravity_shows(near, without, equations)
+        if not turns:
+            fitting = fitting.again(without)
+            near = fitting.fit(without.law, without)
     fits = []
     for stribeck in (False, True):
         for apart in (False, True) if both else (False,):
             fits += [
-                fitting.fit(law(stribeck, apart, warm), near if stribeck else None) for warm in references
+                fitting.fit(law(stribeck, apart, warm, turns), near if stribeck else None)
+                for warm in references
             ]
     return fitting, sorted(fits, key=lambda each: each.values.size)
+
+
+def _gravity_shows(fitted: MovingLawFit, without: MovingLawFit, equations: Equations) -> bool:
+    """Whether gravity is beyond doubt, no remainder of the inertia, and enough to matter."""
+    doubt = MOVING_EVIDENCE + _REMAINS * without.attenuated
+    if not fitted.criterion() < without.criterion() - doubt:
+        return False
+    terms = [fitted.value(name) for name in (COSINE, SINE)]
+    return float(np.std(equations.gravity @ terms)) > _LEAST_GRAVITY * float(np.std(equations.torque))
 
 
 def _chosen(fits: Sequence[MovingLawFit], equations: Equations) -> MovingLawFit:
@@ -237,6 +247,8 @@ def _result(log: TorqueLog, made: _Made, chosen: MovingLawFit, fits: Sequence[Mo
         scatter=float(np.sqrt(np.mean(chosen.residuals**2))),
         explained=explained,
         effective_rows=chosen.residuals.size / noise.together,
+        misfit=misfit_of(made.fitting, chosen),
+        angle_recorded=all(run.position is not None for run in log.runs),
         friction_law=friction,
         values=chosen.values[: len(friction.names)],
         covariance=chosen.covariance[: len(friction.names), : len(friction.names)],
@@ -283,6 +295,10 @@ def _parameters(fitted: MovingLawFit, freedom: float) -> list[MovingParameter]:
     units = fitted.law.units
     out = []
     for index, name in enumerate(fitted.law.names):
+        if name == COSINE:
+            out += _gravity(fitted, freedom)
+        if name in (COSINE, SINE):
+            continue
         value, error = float(fitted.values[index]), fitted.error(name)
         known = estimate(value, error, freedom)
         if index in fitted.law.positive:
@@ -292,31 +308,12 @@ def _parameters(fitted: MovingLawFit, freedom: float) -> list[MovingParameter]:
     return out
 
 
-def _refuse_no_friction(name: str, result: MovingFit, equations: Equations) -> None:
-    """Refuse what is not friction: torque that drives, or a load that the log does not hold."""
-    if INERTIA in result and result[INERTIA].high < 0.0:
-        raise InsufficientDataError(
-            f"{name}: the moment of inertia would be negative, {result[INERTIA]} kg m^2. Something other "
-            "than friction and inertia loads the drive, such as gravity or a spring",
-            remedy="record the drive without that load",
-        )
-    ways = [each.name for each in result.fitted.law.friction.numbers if each.kind == COULOMB and each.way]
-    apart = [name for name in ways if result[name].low <= 0.0]
-    if apart:
-        raise InsufficientDataError(
-            f"{name}: Coulomb friction would vanish in one direction alone, {apart[0]} = "
-            f"{result[apart[0]]} N m. Something other than friction loads the drive, such as gravity",
-            remedy="record the drive without that load",
-        )
-    fast = np.array([result.speed_range[1], -result.speed_range[1]])
-    fast = fast[[np.any(equations.speed > 0), np.any(equations.speed < 0)]]
-    friction = np.sign(fast) * result.friction(fast)
-    if np.all(friction < 0.0) and result.explained >= LEAST_EXPLAINED:
-        raise opposite_signs(name)
-    if np.any(friction <= 0.0) or result.explained < LEAST_EXPLAINED:
-        raise InsufficientDataError(
-            f"{name}: torque does not follow speed: friction and a constant explain "
-            f"{max(100 * result.explained, 0.0):.0f} % of its square. Something other than friction "
-            "loads the drive, such as a brake, gravity or the torque of a motor under test",
-            remedy="record the drive without that load",
-        )
+def _gravity(fitted: MovingLawFit, freedom: float) -> list[MovingParameter]:
+    """Amplitude and angle at rest of gravity."""
+    at = [fitted.law.names.index(name) for name in (COSINE, SINE)]
+    values, covariance = gravity_of(fitted.values[at], fitted.covariance[np.ix_(at, at)])
+    errors = np.sqrt(np.diag(covariance))
+    return [
+        MovingParameter(name, unit, estimate(float(value), float(error), freedom))
+        for name, unit, value, error in zip((AMPLITUDE, HANGING), ("N m", "rad"), values, errors, strict=True)
+    ]

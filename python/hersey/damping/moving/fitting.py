@@ -37,6 +37,7 @@ class MovingLawFit:
     chi_square: float  #: of the independent combinations, in units of the variance given
     columns: FloatArray  #: derivatives of the torque of each equation by the numbers as they are fitted
     own: FloatArray  #: covariance of these, if the noise is the one assumed
+    attenuated: float  #: chi-square of what noise of the acceleration took from the inertia
     by_inertia: FloatArray  #: derivatives of the values by an inertia that is given, 1/(kg m^2)
 
     def error(self, name: str) -> float:
@@ -170,8 +171,13 @@ class Fitting:
         size[size == 0.0] = 1.0
         inverse = np.linalg.pinv(normal / np.outer(size, size), rcond=1e-14, hermitian=True)
         inverse /= np.outer(size, size)
+        columns = law.jacobian(values, self.equations)  # where the covariance holds
+        columns[:, logs] *= values[logs]
+        attenuated = 0.0
         if law.inertia is None:
-            values = self._moved(law, values, self._unbiased(law, values, inverse))
+            step, index = self._unbiased(law, values, inverse), law.names.index(INERTIA)
+            values = self._moved(law, values, step)
+            attenuated = float(step[index] ** 2 / inverse[index, index])
         leverage = np.einsum("ij,jk,ik->i", design, inverse, design)
         pulled = design * (white / (1.0 - np.minimum(leverage, 0.99)))[:, None]
         held = np.zeros((1, values.size))
@@ -190,10 +196,10 @@ class Fitting:
             column = self.whitened(law.by_inertia(values, self.equations)[:, None])[:, 0] / self._deviation
             by_inertia = -scale * (inverse @ (design.T @ column))
             covariance = covariance + law.inertia_error**2 * np.outer(by_inertia, by_inertia)
-        columns = law.jacobian(values, self.equations)
-        columns[:, logs] *= values[logs]
         own_covariance = inflation * inverse
-        return MovingLawFit(law, values, covariance, residuals, chi, columns, own_covariance, by_inertia)
+        return MovingLawFit(
+            law, values, covariance, residuals, chi, columns, own_covariance, attenuated, by_inertia
+        )
 
     def _unbiased(self, law: MovingLaw, values: FloatArray, inverse: FloatArray) -> FloatArray:
         """The step that undoes what noise of the acceleration takes from the inertia."""

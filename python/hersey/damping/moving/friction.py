@@ -10,6 +10,8 @@ from hersey.damping.dwells.points import SteadyPoints
 from hersey.damping.estimate import Estimate
 from hersey.damping.friction_curve.fitted import DirectionTest
 from hersey.damping.friction_curve.law import FrictionLaw
+from hersey.damping.moving.gravity import AMPLITUDE
+from hersey.damping.moving.misfit import Misfit
 from hersey.result import Means, Record
 from hersey.units import rpm
 
@@ -18,7 +20,7 @@ from hersey.units import rpm
 class MovingParameter(Record):
     """A number of the law; the names of one direction end in + (forward) or - (reverse)."""
 
-    name: Annotated[str, Means("T_C, T_S, w_S, k_v, s, J, offset or delay")]
+    name: Annotated[str, Means("T_C, T_S, w_S, k_v, s, J, offset, G, q_0 or delay")]
     unit: Annotated[str, Means("SI")]
     estimate: Annotated[Estimate, Means("with its interval at 95 %")]
 
@@ -43,13 +45,15 @@ class Moments(Record):
 
 @dataclass(frozen=True, repr=False)
 class MovingFriction(Record):
-    """Friction, inertia and offset of a log that moves all the time, with what was used of it."""
+    """Friction, inertia, gravity and offset of a log that moves all the time, with what was used of it."""
 
     not_stated: ClassVar[tuple[str, ...]] = ("friction_law", "values", "covariance", "moments")
     also_stated: ClassVar[tuple[str, ...]] = ("cost",)
 
     law: Annotated[str, Means("law of friction that was chosen")]
-    parameters: Annotated[tuple[MovingParameter, ...], Means("friction first, then inertia, offset, delay")]
+    parameters: Annotated[
+        tuple[MovingParameter, ...], Means("friction first, then inertia, offset, gravity, delay")
+    ]
     inertia_given: Annotated[float | None, Means("moment of inertia if it was given", "kg m^2")]
     laws: Annotated[tuple[LawTried, ...], Means("all laws, the simplest first")]
     directions: Annotated[DirectionTest | None, Means("null where one direction was measured")]
@@ -64,6 +68,8 @@ class MovingFriction(Record):
         float, Means("share of the mean square of the torque, without inertia, that the law explains")
     ]
     effective_rows: Annotated[float, Means("independent moments")]
+    misfit: Annotated[Misfit | None, Means("how friction departs from the law; null if it does not")]
+    angle_recorded: Annotated[bool, Means("whether q is a position in the log, or counted from its start")]
     friction_law: FrictionLaw
     values: FloatArray  #: of that law, SI
     covariance: FloatArray  #: of these
@@ -73,6 +79,21 @@ class MovingFriction(Record):
     def freedom(self) -> float:
         """Degrees of freedom of the intervals."""
         return self.parameters[0].estimate.freedom
+
+    @property
+    def named(self) -> str:
+        """The law in words, or that none fits."""
+        if self.misfit is None:
+            return self.law
+        share, at = 100.0 * abs(self.misfit.share), rpm(abs(self.misfit.speed))
+        return f"No law of friction fits. The nearest is off by {share:.2g} % near {at:.2g} rpm: {self.law}"
+
+    def gravity_in_words(self) -> str:
+        """Return what G and q_0 are; empty without gravity."""
+        if all(each.name != AMPLITUDE for each in self.parameters):
+            return ""
+        angle = "the position in the log" if self.angle_recorded else "counted from the start of the log"
+        return f"Gravity takes G sin(q - q_0): the load hangs at rest at q_0; the angle q is {angle}."
 
     def cost(self) -> str:
         """Return a sentence on what the filter and standstill cost."""

@@ -1,6 +1,7 @@
 """The torque of a moving log, for a law of friction: its numbers, and how the equations follow from them.
 
-torque(t) = J dw/dt + offset + friction(w), with w the speed a delay later than it was read
+torque(t) = J dw/dt + offset + friction(w) + G sin(q - q_0), with w the speed and q the angle a delay later
+than they were read
 """
 
 from __future__ import annotations
@@ -21,10 +22,11 @@ from hersey.damping.friction_curve.law import (
     Number,
 )
 from hersey.damping.moving.filtering import Filtered
+from hersey.damping.moving.gravity import COSINE, SINE
 
 INERTIA, OFFSET, DELAY = "J", "offset", "delay"
 #: Units by name, of what is not friction.
-OTHER_UNITS = {INERTIA: "kg m^2", OFFSET: "N m", DELAY: "s"}
+OTHER_UNITS = {INERTIA: "kg m^2", OFFSET: "N m", COSINE: "N m", SINE: "N m", DELAY: "s"}
 
 
 @dataclass(frozen=True)
@@ -59,6 +61,17 @@ class Equations:
         return self.joined([each.acceleration for each in self.filtered])
 
     @cached_property
+    def gravity(self) -> FloatArray:
+        """Cosine and sine of the angle, shape (equations, 2)."""
+        return self.joined([each.weighted(each.gravity) for each in self.filtered])
+
+    @cached_property
+    def gravity_rate(self) -> FloatArray:
+        """Its derivative with time, 1/s, shape (equations, 2)."""
+        turned = [each.gravity[:, ::-1] * [-1.0, 1.0] * each.speed[:, None] for each in self.filtered]
+        return self.joined([of.weighted(each) for of, each in zip(self.filtered, turned, strict=True)])
+
+    @cached_property
     def temperature(self) -> FloatArray | None:
         """Temperature, K, shape (equations,)."""
         kelvin = [each.temperature for each in self.filtered]
@@ -81,12 +94,14 @@ class MovingLaw:
     offset: bool
     inertia: float | None = None  #: kg m^2 if it is given
     inertia_error: float = 0.0  #: its standard error, kg m^2
+    gravity: bool = False
 
     @cached_property
     def numbers(self) -> tuple[Number, ...]:
         """All numbers that are fitted, friction first."""
-        others = (*((INERTIA,) if self.inertia is None else ()), *((OFFSET,) if self.offset else ()), DELAY)
-        return (*self.friction.numbers, *map(Number, others))
+        inertia = () if self.inertia is not None else (INERTIA,)
+        offset, gravity = (OFFSET,) if self.offset else (), (COSINE, SINE) if self.gravity else ()
+        return (*self.friction.numbers, *map(Number, (*inertia, *offset, *gravity, DELAY)))
 
     @cached_property
     def names(self) -> tuple[str, ...]:
@@ -105,7 +120,7 @@ class MovingLaw:
         name = "Stribeck, Coulomb and viscous friction" if of.stribeck else "Coulomb and viscous friction"
         apart = ", each direction separately" if of.apart else ""
         warm = ", viscosity falls with temperature" if of.reference_kelvin is not None else ""
-        return name + apart + warm
+        return name + apart + warm + ("; gravity" if self.gravity else "")
 
     @property
     def units(self) -> dict[str, str]:
@@ -123,6 +138,9 @@ class MovingLaw:
         own, inertia = values[: len(self.friction.names)], self.value(values, INERTIA)
         friction, late = self._joined(own, inertia, equations)
         rest = inertia * equations.acceleration + self.value(values, OFFSET)
+        if self.gravity:
+            terms = self._terms(values)
+            rest, late = rest + equations.gravity @ terms, late + equations.gravity_rate @ terms
         return friction + rest + self.value(values, DELAY) * late
 
     def jacobian(self, values: FloatArray, equations: Equations) -> FloatArray:
@@ -132,7 +150,15 @@ class MovingLaw:
         others = [] if self.inertia is not None else [equations.acceleration]
         if self.offset:
             others.append(np.ones(len(equations)))
-        return np.column_stack([columns, *others, self._joined(own, inertia, equations)[1]])
+        late = self._joined(own, inertia, equations)[1]
+        if self.gravity:
+            others.append(equations.gravity)
+            late = late + equations.gravity_rate @ self._terms(values)
+        return np.column_stack([columns, *others, late])
+
+    def _terms(self, values: FloatArray) -> FloatArray:
+        """Both terms of gravity, N m."""
+        return np.array([self.value(values, COSINE), self.value(values, SINE)])
 
     def by_inertia(self, values: FloatArray, equations: Equations) -> FloatArray:
         """Return the derivative of the torque of each equation by the inertia, shape (equations,)."""

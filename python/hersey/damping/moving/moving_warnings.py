@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hersey.damping.friction_curve.law import COULOMB, VISCOUS
+from hersey.damping.moving.gravity import AMPLITUDE, HANGING, arc_of
 from hersey.damping.moving.model import DELAY, INERTIA, OFFSET, Equations
+from hersey.damping.moving.stretches import counting_step
 from hersey.schema.warning import Warning
 
 if TYPE_CHECKING:
@@ -15,8 +17,11 @@ if TYPE_CHECKING:
 
 #: Share of the rows near standstill that is worth a word, and of the torque left unexplained.
 _MUCH, _LEFT = 0.5, 0.1
-#: Relative error of the inertia beyond which it is not known.
+#: Relative error of the inertia, or of gravity across its arc, beyond which it is not known.
 _UNKNOWN = 0.5
+#: Share of the variance of the acceleration that counts of a position may make, and of a derivative that rows
+#: may lose.
+_COARSE, _LOST = 5e-3, 0.01
 #: Standard errors from which an offset is one.
 CLEAR_OFFSET = 3.0
 
@@ -24,12 +29,16 @@ CLEAR_OFFSET = 3.0
 def moving_warnings(fit: MovingFit, equations: Equations) -> tuple[Warning, ...]:
     """Return the warnings of a fit."""
     found = (
+        _misfit(fit),
         _one_way(equations),
         *_alike(fit),
         _zero(fit),
         _standing(fit),
         _left(fit),
         _inertia(fit),
+        _gravity(fit, equations),
+        _counts(fit, equations),
+        _far_apart(equations),
         _delay(fit),
     )
     return tuple(each for each in found if each is not None)
@@ -114,6 +123,72 @@ def _inertia(fit: MovingFit) -> Warning | None:
         "this motion hardly shows the moment of inertia",
         severity="note",
         remedy="accelerate faster, or give it",
+    )
+
+
+def _misfit(fit: MovingFit) -> Warning | None:
+    if fit.misfit is None:
+        return None
+    return Warning(
+        "law does not fit",
+        "friction is {share:.2g %} {sign:less|more} than this law near {speed:.2g rpm}, beyond noise "
+        "({p_value:p}); do not use its numbers at other speeds",
+        severity="watch",
+        share=abs(fit.misfit.share),
+        sign=1 if fit.misfit.share < 0.0 else 2,
+        speed=abs(fit.misfit.speed),
+        p_value=fit.misfit.p_value,
+    )
+
+
+def _gravity(fit: MovingFit, equations: Equations) -> Warning | None:
+    if AMPLITUDE not in fit or fit[HANGING].error < _UNKNOWN:  # rad
+        return None
+    return Warning(
+        "gravity or offset",
+        "a load varies with the angle, but over an arc of {arc:.2g}° gravity cannot be separated from the "
+        "offset; friction is not affected",
+        severity="note",
+        remedy="record a larger arc",
+        arc=float(np.degrees(arc_of([each.stretch for each in equations.filtered]))),
+    )
+
+
+def _counts(fit: MovingFit, equations: Equations) -> Warning | None:
+    """That a position counts in coarse steps."""
+    step = counting_step(fit.log)
+    if not step:
+        return None
+    acceleration = np.concatenate([each.acceleration for each in equations.filtered])
+    share = float(fit.fitting.covariances[0] / max(float(np.mean(acceleration**2)), 1e-300))
+    if share < _COARSE:
+        return None
+    return Warning(
+        "position counts coarsely",
+        "the position counts in steps of {step:.2g}°, which makes {share:.1g %} of the variance of the "
+        "acceleration; J may be off by more than its interval",
+        severity="watch",
+        remedy="record a larger motion, or give the inertia",
+        step=float(np.degrees(step)),
+        share=share,
+    )
+
+
+def _far_apart(equations: Equations) -> Warning | None:
+    """That the motion is too fast for the rows."""
+    interval = equations.filtered[0].low_pass.interval
+    turned = interval * float(np.std(equations.acceleration)) / float(np.std(equations.speed))
+    lost = turned**4 / 30.0  # of a derivative over five rows
+    if lost < _LOST:
+        return None
+    return Warning(
+        "rows too far apart",
+        "the speed changes so fast that rows {interval:.2g} s apart lose about {share:.1g %} of its "
+        "derivative, and J is wrong by as much",
+        severity="watch",
+        remedy="record more rows per second",
+        interval=interval,
+        share=lost,
     )
 
 

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, repr=False)
 class MovingFit(MovingFriction, Result):
-    """Friction, inertia and offset of a log that moves all the time, as returned by `hersey.fit_moving`."""
+    """Friction, inertia, gravity and offset of a log that moves all the time: see `hersey.fit_moving`."""
 
     not_stated: ClassVar[tuple[str, ...]] = (*MovingFriction.not_stated, "log", "fitted", "fitting")
     also_stated: ClassVar[tuple[str, ...]] = ()
@@ -90,7 +90,7 @@ class MovingFit(MovingFriction, Result):
     def headline(self) -> str:
         """Return law and range of speed."""
         slow, fast = (rpm(each) for each in self.speed_range)
-        return f"{self.law}, {slow:.3g} to {fast:.3g} rpm"
+        return f"{self.named}, {slow:.3g} to {fast:.3g} rpm"
 
     def summary(self) -> str:
         """Return law, numbers and what was not used, as text."""
@@ -98,6 +98,8 @@ class MovingFit(MovingFriction, Result):
         lines += [f"  {each.name} = {each.estimate} {each.unit}" for each in self.parameters]
         if self.inertia_given is not None:
             lines.append(f"  J = {self.inertia_given:.4g} kg m^2, given")
+        if self.gravity_in_words():
+            lines.append(self.gravity_in_words())
         lines.append(self.cost())
         return "\n".join([*lines, *(warning.sentence for warning in self.warnings)])
 

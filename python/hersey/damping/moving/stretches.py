@@ -1,18 +1,25 @@
-"""Stretches of a log with an even clock, as filters need them."""
+"""Stretches of a log with an even clock, as filters need them.
+
+Where the angle was recorded, the speed is its difference over five rows here, whatever window made the speed
+of the log: the low-pass that follows is the same for torque and speed, a window of the speed alone is not.
+"""
 
 from __future__ import annotations
 
 import itertools
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.log.clock import GAP, GAP_OF_UNEVEN
+from hersey.log.derived.position import smallest_step
 from hersey.log.torque_log import Run, TorqueLog
 
 #: Rows that are filtered as they are; of a longer log, means of neighbours.
 MOST_ROWS = 60_000
+#: First difference over five rows, exact up to the fourth power.
+FIRST = np.array([1.0, -8.0, 0.0, 8.0, -1.0]) / 12.0
 #: A clock that differs from an even one by less than this share of its interval is taken as it is.
 _EVEN = 0.01
 
@@ -28,6 +35,7 @@ class Stretch:
     speed: FloatArray
     temperature: FloatArray | None
     rows: int  #: of the log, before neighbours were averaged
+    angle: FloatArray | None = None  #: rad, if it is known
 
     @property
     def time(self) -> FloatArray:
@@ -44,8 +52,14 @@ def stretches_of(log: TorqueLog) -> list[Stretch]:
         for first, last in _without_gaps(run):
             stretch = _even(index, run, slice(first, last), interval)
             if stretch.torque.size >= 2 * together:
-                found.append(_averaged(stretch, together))
-    return found
+                found.append(_of_its_angle(_averaged(stretch, together)))
+    return [each for each in found if each.torque.size > 1]
+
+
+def counting_step(log: TorqueLog) -> float:
+    """Return the step in which the angle counts, rad; 0 if none was recorded or it has none."""
+    steps = [smallest_step(run.position) for run in log.runs if run.position is not None]
+    return max(steps, default=0.0)
 
 
 def _without_gaps(run: Run) -> list[tuple[int, int]]:
@@ -60,15 +74,16 @@ def _without_gaps(run: Run) -> list[tuple[int, int]]:
 def _even(index: int, run: Run, rows: slice, interval: float) -> Stretch:
     """Rows at even times: as they are if they come so, else between neighbours."""
     time = run.time[rows]
-    channels = [run.torque[rows], run.speed[rows], None if run.temperature is None else run.temperature[rows]]
+    recorded = (run.torque, run.speed, run.temperature, run.position)
+    channels = [None if each is None else each[rows] for each in recorded]
     even = time[0] + interval * np.arange(time.size)
     if np.max(np.abs(time - even)) > _EVEN * interval:
         even = np.arange(time[0], time[-1] + 1e-6 * interval, interval)
         channels = [None if each is None else np.interp(even, time, each) for each in channels]
-    torque, speed, kelvin = channels
+    torque, speed, kelvin, angle = channels
     assert torque is not None
     assert speed is not None
-    return Stretch(index, float(time[0]), interval, torque, speed, kelvin, time.size)
+    return Stretch(index, float(time[0]), interval, torque, speed, kelvin, time.size, angle)
 
 
 def _averaged(stretch: Stretch, together: int) -> Stretch:
@@ -79,7 +94,7 @@ def _averaged(stretch: Stretch, together: int) -> Stretch:
     def means(values: FloatArray) -> FloatArray:
         return np.asarray(values[: values.size // together * together].reshape(-1, together).mean(axis=1))
 
-    kelvin = stretch.temperature
+    kelvin, angle = stretch.temperature, stretch.angle
     return Stretch(
         stretch.run,
         stretch.start + 0.5 * (together - 1) * stretch.interval,
@@ -88,4 +103,21 @@ def _averaged(stretch: Stretch, together: int) -> Stretch:
         means(stretch.speed),
         None if kelvin is None else means(kelvin),
         stretch.rows,
+        None if angle is None else means(angle),
+    )
+
+
+def _of_its_angle(stretch: Stretch) -> Stretch:
+    """The same with the speed from the angle, without two rows at each end."""
+    if stretch.angle is None:
+        return stretch
+    edge = FIRST.size // 2
+    inner = slice(edge, -edge)
+    return replace(
+        stretch,
+        start=stretch.start + edge * stretch.interval,
+        torque=stretch.torque[inner],
+        speed=np.correlate(stretch.angle, FIRST, "valid") / stretch.interval,
+        temperature=None if stretch.temperature is None else stretch.temperature[inner],
+        angle=stretch.angle[inner],
     )

@@ -1,8 +1,8 @@
 """Windows of a moving log as steady points: bins of direction, speed and temperature.
 
 The torque of a window is the fitted law at its mean speed plus the mean of what the law leaves there, so that
-the width of a window costs nothing. Noise is its own; what one standard error of inertia, offset and delay
-does is shared by all.
+the width of a window costs nothing. Noise is its own; what one standard error of inertia, gravity,
+offset and delay does is shared by all.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from hersey.damping.dwells.points import Rejection
 from hersey.damping.dwells.reasons import Reason
 from hersey.damping.moving.fitting import Fitting, MovingLawFit
 from hersey.damping.moving.friction import MovingFriction, MovingPoints
+from hersey.damping.moving.gravity import COSINE, SINE
 from hersey.damping.moving.model import DELAY, INERTIA, OFFSET
 from hersey.errors import InsufficientDataError
 from hersey.log.torque_log import TorqueLog
@@ -172,7 +173,7 @@ def _together(fit: FittedLog, moments: _Moments, of: np.ndarray) -> float:
 def _shared(fit: FittedLog, of: list[np.ndarray]) -> FloatArray:
     """What one standard error of each number that windows share does to each of them, N m."""
     law, equations = fit.fitted.law, fit.fitting.equations
-    indices = [i for i, name in enumerate(law.names) if name in (INERTIA, OFFSET, DELAY)]
+    indices = [i for i, name in enumerate(law.names) if name in (INERTIA, OFFSET, COSINE, SINE, DELAY)]
     columns = law.jacobian(fit.fitted.values, equations)[:, indices]
     covariance = fit.fitted.covariance[np.ix_(indices, indices)]
     if law.inertia_error:

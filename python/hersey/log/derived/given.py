@@ -8,7 +8,6 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from hersey.arrays import FloatArray
-from hersey.log.derived.position import WINDOW
 from hersey.log.derived.set_points import SetPoints
 from hersey.log.roles import role_conversion
 from hersey.log.text.column import Column
@@ -76,4 +75,4 @@ class Derived:
     """What is said of one file: channels by role, and the time over which a slope is taken, s."""
 
     channels: Mapping[str, Given] = field(default_factory=dict)
-    window: float = WINDOW
+    window: float | None = None

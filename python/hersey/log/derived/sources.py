@@ -13,7 +13,6 @@ from hersey.errors import ParameterError, Setting
 from hersey.log.channels import ChannelChoice, Stated
 from hersey.log.derived.file_names import NamePattern, differing, proposed_pattern
 from hersey.log.derived.given import Derived, Given
-from hersey.log.derived.position import WINDOW
 from hersey.log.derived.run_table import RunTable, read_run_table
 from hersey.log.derived.schedule_file import read_schedule
 from hersey.log.derived.set_points import SetPoints
@@ -42,7 +41,7 @@ class Sources:
     pattern: NamePattern | None = None
     table: RunTable | None = None
     schedule: SetPoints | None = None
-    window: float = WINDOW
+    window: float | None = None
 
     @classmethod
     def of(
@@ -69,8 +68,7 @@ class Sources:
         steps = read_schedule(schedule) if isinstance(schedule, str | Path) else schedule
         known = steps if isinstance(steps, SetPoints) or steps is None else SetPoints.of(steps)
         table = read_run_table(run_table) if run_table else None
-        window = WINDOW if position_window is None else position_window
-        return cls(pattern, table, known, window)._told_apart()
+        return cls(pattern, table, known, position_window)._told_apart()
 
     def _told_apart(self) -> Sources:
         """The same, if no two of them give one role."""

@@ -9,7 +9,7 @@ from hersey.errors import ChannelError, Setting, UnreadableLogError
 from hersey.log.believed import in_si
 from hersey.log.channels import called
 from hersey.log.derived.direction import signs_of_numbers, signs_of_words
-from hersey.log.derived.position import slope, smallest_step, unwrapped
+from hersey.log.derived.position import slope, smallest_step, unwrapped, window_for
 from hersey.log.derived.set_points import SetPoints
 from hersey.log.recording import Recording
 from hersey.log.roles import is_called, is_named, is_of_kind, role_conversion
@@ -30,14 +30,14 @@ def speed_column(column: Column, unit: Conversion) -> tuple[Column, Conversion]:
 
 
 def speed_of_position(
-    column: Column, unit: Conversion, time: FloatArray, written: FloatArray, window: float
-) -> tuple[FloatArray, Warning]:
-    """Return the speed, SI, from a position as written, and what that costs."""
+    column: Column, unit: Conversion, time: FloatArray, written: FloatArray, window: float | None
+) -> tuple[FloatArray | None, FloatArray, Warning]:
+    """Return the angle that goes on, rad, if it is one; its speed, SI; and what that costs."""
     position, turns = in_si(written, unit), 0
     kind = role_conversion("position", unit.unit)[0]
     if kind == "angle":
         position, turns = unwrapped(position)
-    speed, over = slope(time, position, window)
+    speed, over = slope(time, position, window_for(time, position) if window is None else window)
     step = smallest_step(position) / over if over > 0 else 0.0
     words = "speed is the slope of '{channel}' over {window:.3g} s, so faster changes are smoothed"
     if step and kind == "angle":
@@ -46,9 +46,8 @@ def speed_of_position(
         words += "; it counts in steps of {step:.3g mm/s}"
     if turns:
         words += "; {turns} times the angle started anew with a turn"
-    return speed, Warning(
-        "speed from position", words, channel=column.path, window=over, step=step, turns=turns
-    )
+    said = Warning("speed from position", words, channel=column.path, window=over, step=step, turns=turns)
+    return position if kind == "angle" else None, speed, said
 
 
 def with_direction(recording: Recording, name: str, speed: FloatArray) -> tuple[FloatArray, Warning]:

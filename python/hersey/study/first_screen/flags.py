@@ -8,7 +8,7 @@ import numpy as np
 
 from hersey.damping.compare import LogComparison
 from hersey.damping.dwells import SteadyPoints
-from hersey.damping.dwells.doubtful import doubtful_order, doubtful_tare
+from hersey.damping.dwells.doubtful import constant_load, doubtful_order, doubtful_tare
 from hersey.damping.moving.beside_dwells import motion_beside
 from hersey.damping.surface import DampingSurface
 from hersey.decision.behaviour import Behaviour
@@ -387,10 +387,13 @@ def _below(points: SteadyPoints, surface: DampingSurface) -> int:
 
 def _left_open(known: Findings, scatter: float) -> Iterator[Warning]:
     points, seen, c = known.points, known.regime, known.surface.c
+    yield from (each.titled("A constant load acts", section="data") for each in constant_load(points))
     yield from (each.titled(each.heading, section="data") for each in doubtful_order(points)[:1])
     if seen.named is None and known.friction is None:
         remedy = ""
-        if points.rest is None and c.value > -1.0 and points.domain.is_torque:
+        if seen.driving is not None:
+            remedy = "record the drive without it"
+        elif points.rest is None and c.value > -1.0 and points.domain.is_torque:
             remedy = (
                 "a no-load torque brings the exponent closer to -1. Record the drive without the contact, "
                 "and subtract its torque with {how}"

@@ -183,6 +183,10 @@ def of_log(known: Findings, trend: Trend) -> Instruction:
     surface = known.surface
     if known.friction is not None:
         return _of_friction(known.friction)
+    if known.regime.driving is not None:
+        return Instruction(
+            "watch", str(known.regime.driving), "", "To see friction, record the drive without it."
+        )
     if surface.transition is None:
         return _one_branch(known, trend)
     ends = [None] if surface.b is None or surface.temperature_range is None else [*surface.temperature_range]
