@@ -223,15 +223,13 @@ def no_channel(
             f"for 2 use {named}"
         )
     if role == "torque":
-        way_out += of_a_coast_down(columns, file)
+        way_out += f"{of_a_coast_down(columns, file)}{force_of_pressures(columns)}"
     if role == "speed":
         way_out += speed_elsewhere(columns, file, names)
     if role == "temperature":
         if found := stated_in_names(file, names, role):
             way_out += f". If the names of the files state it, use {typed(found)}"
         way_out += f", or use {ISOTHERMAL.to()} to exclude temperature"
-    if role == "torque":
-        way_out += force_of_pressures(columns)
     said = f"{file}: no {role} column found. Columns: {columns_listed(columns)}"
     said += not_numbers(others)
     return ChannelError(said, absent=True, remedy=way_out, setting=channel)

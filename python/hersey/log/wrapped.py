@@ -54,15 +54,15 @@ def with_signs(values: FloatArray, scale: float, channel: str) -> tuple[FloatArr
 
 def _bits(values: FloatArray, scale: float) -> int:
     """How many bits counts have that lost their sign; 0 if not all numbers surely are such counts."""
-    ends = [_ends(values[block] / scale) for block in blocks(values.size, values)]
+    ends = [_ends(values[block], scale) for block in blocks(values.size, values)]
     least, most = min((low for low, _ in ends), default=0.0), max((high for _, high in ends), default=0.0)
     bits = next((bits for bits in (16, 32) if (1.0 - _NEAR) * 2.0**bits <= most < 2.0**bits), 0)
     if bits == 16 and least > _NEAR * 2.0**bits:
         return 0
     above: set[float] = set()
     for block in blocks(values.size, values) if bits else ():
-        part = values[block] / scale
-        part = part[np.isfinite(part)]
+        part = values[block]
+        part = part[np.isfinite(part)] / scale
         share = part / 2.0**bits
         between = (share >= _FROM) & (share < _TO)
         if np.any(between | (share < 0.0)) or np.any(np.abs(part - np.rint(part)) > _WHOLE):
@@ -72,7 +72,8 @@ def _bits(values: FloatArray, scale: float) -> int:
     return bits if len(above) >= _FEWEST else 0
 
 
-def _ends(part: FloatArray) -> tuple[float, float]:
-    """The least and the greatest number of a part that are not missing."""
-    known = part[np.isfinite(part)]
+def _ends(part: FloatArray, scale: float) -> tuple[float, float]:
+    """The least and the greatest number of a part, as written, that are not missing."""
+    with np.errstate(over="ignore"):
+        known = part[np.isfinite(part)] / scale
     return float(np.min(known, initial=np.inf)), float(np.max(known, initial=-np.inf))
