@@ -50,6 +50,7 @@ def points(
         ),
         temperature_rates=np.empty(0),
         rejected=(),
+        of_every_sample=False,
         column=lambda name: table[name].to_numpy(),
     )
 
