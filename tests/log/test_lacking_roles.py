@@ -5,10 +5,12 @@ from __future__ import annotations
 import shlex
 from pathlib import Path
 
+import numpy as np
 import pytest
+from scipy.io import savemat
 
 import hersey
-from hersey.errors import ChannelError, HerseyError, Setting, UnitError, speak
+from hersey.errors import ISOTHERMAL, ChannelError, HerseyError, Setting, UnitError, speak
 from tests.cli import command
 
 JOINTS = "timestamp qd_0 qd_1 moment_0 moment_1 temp_0 temp_1"
@@ -123,3 +125,45 @@ def test_a_friction_coefficient_beside_a_torque_is_asked_about(tmp_path: Path) -
     torque = hersey.read(path, isothermal=True, channels={"torque": "Tz"})
     assert torque.domain.is_torque
     assert not hersey.read(path, isothermal=True, channels={"torque": "COF"}).domain.is_torque
+
+
+def axis(path: Path) -> Path:
+    """A log of a linear motor at one speed, as text or as a MATLAB file."""
+    row = np.arange(400.0)
+    columns = {
+        "time_s": 0.01 * row,
+        "enc_cnt": np.floor(row * (1 + row // 100)),
+        "iq_A": 0.5 + 0.01 * (row % 3),
+    }
+    if path.suffix == ".mat":
+        savemat(path, {name: np.asarray(values) for name, values in columns.items()})
+    else:
+        rows = [",".join(f"{cell:.10g}" for cell in each) for each in zip(*columns.values(), strict=True)]
+        path.write_text("\n".join([",".join(columns), *rows]) + "\n")
+    return path
+
+
+@pytest.mark.parametrize("name", ["axis.csv", "axis.mat"])
+def test_a_current_and_a_position_are_asked_for_at_once_in_any_format(name: str, tmp_path: Path) -> None:
+    path = axis(tmp_path / name)
+    with pytest.raises(ChannelError) as refused:
+        hersey.read(path)
+    assert refused.value.reason == (
+        f"{name}: no torque column found ('iq' may be the motor current); no speed column found; no "
+        "temperature column found. Columns: 'time [s]', 'enc_cnt', 'iq [A]'"
+    )
+    assert refused.value.examples == (
+        (Setting("torque", "channel"), "iq"),
+        (Setting("torque", "unit"), "35 mN*m/A"),
+        (Setting("position", "channel"), "enc_cnt"),
+        (Setting("position", "unit"), "rev/4096"),
+        (ISOTHERMAL, ""),
+    )
+    assert "the counts of one turn of your encoder, or units={'position': '0.5 um'} for one of a line" in (
+        refused.value.remedy
+    )
+    channels = {"torque": "iq", "position": "enc_cnt"}
+    for unit, speed in (("rev/4096", 2 * np.pi * 100 / 4096), ("0.5 um", 5e-5)):
+        force = "38.6 N/A" if unit == "0.5 um" else "35 mN*m/A"
+        log = hersey.read(path, channels=channels, units={"torque": force, "position": unit}, isothermal=True)
+        assert log.runs[0].speed[20] == pytest.approx(speed, rel=1e-6)

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import hersey
-from hersey.errors import UnitError
+from hersey.errors import ChannelError, UnitError
 from hersey.log.mapping import read_with_mapping
 
 
@@ -35,6 +35,13 @@ def mean_torque(log: hersey.TorqueLog) -> float:
         ("torque [V]", "5 N*m/volt", 10.0),
         ("torque [Amps]", "200 mN*m/mA", 400.0),
         ("torque [%]", "5 N*m/%", 10.0),
+        ("torque [%]", "9 N*m / 100", 0.18),
+        ("torque [‰]", "9 N*m / 1000", 0.018),
+        ("torque [‰]", "1.27 mN*m/‰", 2.54e-3),
+        ("torque [permille]", "1.27 mN*m/‰", 2.54e-3),
+        ("torque [0.1 %]", "1.27 mN*m/permille", 2.54e-3),
+        ("torque [‰]", "12.7 mN*m/%", 2.54e-3),
+        ("torque [%]", "1.27 mN*m / 0.1 %", 25.4e-3),
         ("torque", "5 N*m/V", 10.0),
     ],
 )
@@ -93,6 +100,9 @@ def test_a_speed_in_counts_gives_way_to_one_in_rpm(tmp_path: Path) -> None:
         ("torque [V]", "0.2 N*m/A", "2 N*m/V"),
         ("torque [V]", "", "2 N*m/V"),
         ("torque [%]", "N*m", "9.84 mN*m / 100"),
+        ("torque [‰]", "", "0.48 N*m / 1000"),
+        ("torque [‰]", "mN*m", "0.48 N*m / 1000"),
+        ("torque [0.1 %]", "", "0.48 N*m / 1000"),
         ("torque [A]", "0.2 nonsense/A", "35 mN*m/A"),
         ("torque [N*m]", "0.2 N*m/A", ""),
     ],
@@ -154,3 +164,40 @@ def test_an_oscilloscope_states_its_units_in_rows_of_their_own(tmp_path: Path) -
     assert mean_torque(log) == pytest.approx(10.0, rel=1e-3)
     assert [c.unit for c in log.files[0].channels] == ["s", "5 N*m/V", "10 rpm/V"]
     assert float(log.runs[0].time[-1]) == pytest.approx(9.9)
+
+
+@pytest.mark.parametrize(("unit", "full"), [("‰", "3 N*m / 1000"), ("%", "3 N*m / 100")])
+def test_an_amount_alone_may_be_that_of_one_or_of_the_full_value(
+    unit: str, full: str, tmp_path: Path
+) -> None:
+    file = log(tmp_path, f"torque [{unit}]")
+    with pytest.raises(UnitError, match=r"may be the torque at 1 . or at the full value") as refused:
+        hersey.read(file, units={"torque": "3 N*m"})
+    assert refused.value.remedy == (
+        f"use units={{'torque': '{full}'}} for the full value, or units={{'torque': '3 N*m/{unit}'}}"
+    )
+    assert mean_torque(hersey.read(file, units={"torque": full})) == pytest.approx(
+        6.0 / float(full.split("/")[1]), rel=1e-3
+    )
+
+
+def test_a_torque_in_per_mille_and_all_else_that_is_open_are_asked_for_at_once(tmp_path: Path) -> None:
+    rows = [f"{20 * i},{3 * i},{300 + i % 2},{150 + i % 3}" for i in range(100)]
+    header = [";Position actual value;Velocity actual value;Torque actual value", "ms;inc;rpm;‰"]
+    file = tmp_path / "drive.csv"
+    file.write_text("\n".join([*header, *rows]).replace(",", ";"))
+    with pytest.raises(ChannelError) as refused:
+        hersey.read(file)
+    assert "'Torque actual value' is in ‰, which needs the torque at 1000 ‰; no temperature" in str(
+        refused.value
+    )
+    stated = {setting.name: value for setting, value in refused.value.examples}
+    assert stated == {"torque": "0.48 N*m / 1000", "isothermal": ""}
+    read = hersey.read(file, units={"torque": stated["torque"]}, isothermal=True)
+    assert mean_torque(read) == pytest.approx(0.0725, rel=1e-2)
+
+
+def test_a_torque_of_a_drive_profile_without_unit_may_be_in_per_mille(tmp_path: Path) -> None:
+    with pytest.raises(UnitError) as refused:
+        hersey.read(log(tmp_path, "Torque actual value"))
+    assert "in ‰ of the rated torque (CiA 402), use units={'torque': '0.48 N*m / 1000'}" in str(refused.value)

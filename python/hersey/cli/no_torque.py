@@ -35,6 +35,9 @@ class _Reading(Protocol):
     def inertia(self) -> str | None: ...
 
     @property
+    def position(self) -> str | None: ...
+
+    @property
     def max_memory(self) -> str: ...
 
     def recipe(self, paths: list[Path], /) -> Recipe: ...
@@ -58,7 +61,22 @@ def other_use(paths: list[Path], reading: _Reading) -> str:
     """Return what to type for files without the channels of a log: a coast-down, or a stick-slip trace."""
     recipe = reading.recipe(paths)
     named = recipe.channels or recipe.chosen.channels
-    return of_a_coast_down(paths, reading, recipe) or ("" if named else of_a_trace(paths))
+    coasts = of_a_coast_down(paths, reading, recipe) or _of_pulses(paths, reading)
+    return coasts or ("" if named else of_a_trace(paths))
+
+
+def _of_pulses(paths: Sequence[Path], reading: _Reading) -> str:
+    """What to type where files hold the times of pulses; else nothing."""
+    from hersey.log.pulses import pulses_in
+
+    if reading.position or len(pulses := {pulses_in(path) for path in paths}) != 1 or "" in pulses:
+        return ""
+    position = ("--position", pulses.pop(), "--position-unit", "rev/6")
+    typed = [*_typed(reading), *position, "--inertia", reading.inertia or _INERTIA]
+    return (
+        "The rows are the times of pulses. If the wheel coasts down without a drive, type, with your pulses "
+        f"per turn instead of 6 and its moment of inertia: {retyped('coastdown', *map(str, paths), *typed)}"
+    )
 
 
 def of_a_coast_down(paths: Sequence[Path], reading: _Reading, recipe: Recipe) -> str:

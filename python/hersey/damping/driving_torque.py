@@ -1,7 +1,7 @@
 """Torque that falls with speed as that of a motor or a brake does, and friction does not.
 
 Friction that falls with speed levels off. A torque that falls on through zero, or whose power is the same at
-all speeds, is none.
+all speeds, is none; nor is one that is anything at each speed, whatever the temperature.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from typing import Annotated
 
 import numpy as np
 
-from hersey.arrays import FloatArray
+from hersey.arrays import FloatArray, IntArray
 from hersey.result import Means, Record
 from hersey.units import rpm
 
@@ -24,17 +24,26 @@ _SAME = 0.02
 _FALLEN, _ZERO, _LEVELS = 0.35, 1.35, 0.9
 #: Least ratio of speeds over which a power may be called constant, and the share by which it may vary.
 _OF_POWER, _VARIES = 2.0, 0.03
+#: Scatter about any law, as a share of torque, and ratio of greatest to least torque at one speed, that show
+#: another cause; dwells that a speed needs for that, and share of such speeds.
+_SCATTERS, _APART, _DWELLS, _MOST = 0.5, 3.0, 3, 0.5
 
 
 @dataclass(frozen=True)
 class DrivingTorque(Record):
-    """Why a torque that falls with speed is no friction: one of both is stated."""
+    """Why a torque is no friction: one of these is stated."""
 
     zero_speed: Annotated[float | None, Means("at which it would be zero", "rad/s")] = None
     power: Annotated[float | None, Means("the same at all speeds", "W")] = None
+    ratio: Annotated[float | None, Means("typical ratio of greatest to least torque at one speed")] = None
 
     def __str__(self) -> str:
         """Return it in words."""
+        if self.ratio is not None:
+            return (
+                f"Torque differs {self.ratio:.2g}-fold at one speed: something other than speed and "
+                "temperature sets it, such as a load"
+            )
         if self.power is not None:
             return (
                 f"Torque falls as 1/speed: the power is {self.power:.4g} W at all speeds. That "
@@ -48,6 +57,26 @@ class DrivingTorque(Record):
         )
 
 
+def load_at_one_speed(speed: FloatArray, torque: FloatArray, scatter: float) -> DrivingTorque | None:
+    """Return what shows that a load sets the torque: at most speeds it differs widely; None if it does not.
+
+    ``scatter`` is that about a law of speed and temperature, as a share of torque.
+    """
+    if scatter < _SCATTERS:
+        return None
+    groups = [group for group in _groups(speed) if group.size >= _DWELLS]
+    ratios = np.array([torque[group].max() / max(torque[group].min(), 1e-300) for group in groups])
+    if ratios.size < _SPEEDS or np.mean(ratios > _APART) < _MOST:
+        return None
+    return DrivingTorque(ratio=float(np.median(ratios)))
+
+
+def _groups(speed: FloatArray) -> list[IntArray]:
+    """The points at each distinct speed, the slowest first."""
+    order = np.argsort(speed)
+    return np.split(order, np.flatnonzero(np.diff(np.log(speed[order])) > _SAME) + 1)
+
+
 def driving_torque(speed: FloatArray, torque: FloatArray, error: FloatArray) -> DrivingTorque | None:
     """Return what shows that a torque is that of a motor or a brake; None if it may be friction.
 
@@ -56,8 +85,7 @@ def driving_torque(speed: FloatArray, torque: FloatArray, error: FloatArray) -> 
     speed, torque, error
         Without sign, rad/s and N m, shape (points,); ``error`` is the standard error of the torque.
     """
-    order = np.argsort(speed)
-    groups = np.split(order, np.flatnonzero(np.diff(np.log(speed[order])) > _SAME) + 1)
+    groups = _groups(speed)
     w = np.array([speed[group].mean() for group in groups])
     mean = np.array([torque[group].mean() for group in groups])
     unsure = np.array([np.sqrt(np.mean(error[group] ** 2) / group.size) for group in groups])

@@ -26,7 +26,7 @@ COARSE = 0.05
 #: Share of the steps of a time that do not go back, even of one that was put together from parts.
 _RUNS_ON = 0.9
 _TIME_UNIT = re.compile(r"[munµμ]?s|sec(onds?)?|min(utes?)?|h(ours?)?|d(ays?)?")
-_SPEED_NAME = re.compile(r"spe?e?d|velocity|rpm|drehzahl", re.IGNORECASE)
+_SPEED_NAME = re.compile(r"spe?e?d|velocity|rpm|drehzahl|geschw|vitesse|velocid|速|回転数", re.IGNORECASE)
 #: How a table of means is called.
 MEANS = "a table of means"
 

@@ -8,10 +8,13 @@ layouts               exports that need a layout to be read
 recording             what a file of any other format holds: channels with clocks of their own
 formats               one reader per format, and which one opens a file
 signals               currents, voltages and percentages, and how much one of them stands for
+words                 words of other languages that columns are called by
 roles                 roles of columns: their names, and the kinds of units that they may have
 role_units            the unit of a column with a role
 elsewhere             a speed or a temperature in the names of files, or in a position
+pressures             pressures of a cylinder, from which a friction force can be computed
 channels              which column plays which role
+pulses                times of pulses instead of a speed
 without_units         columns without units: named at once
 lacking_roles         several roles that a file leaves open: asked for at once
 friction              which of them a file holds, and what it becomes with a load and a radius
@@ -26,6 +29,7 @@ clock                 rate, gaps and unevenness of a clock
 rows                  which rows can be used, and where one run ends and the next begins
 replaced              units of a file that a person replaced
 believed              what a channel of a drive can read at all, and codes for no reading
+wrapped               negative counts that were logged without a sign
 impossible            readings that cannot be right: found, named, left out
 counters              the step in which a sensor counts
 white_noise           the median of noise over its standard deviation

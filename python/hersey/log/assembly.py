@@ -52,6 +52,7 @@ from hersey.log.text.column import Column
 from hersey.log.text.stamps import clock_without_unit, counted_unit, is_clock_name
 from hersey.log.torque_log import NO_CLOCK, Channel, LogFile, Run
 from hersey.log.wanted import Wanted
+from hersey.log.wrapped import COUNTED, with_signs
 from hersey.schema.warning import Warning
 from hersey.units import Conversion
 
@@ -286,6 +287,9 @@ class Assembly:
                 f"has {time.size}. The file is damaged or cut off"
             )
         marked = None if signal.marked is None else signal.marked()
+        if role in COUNTED:
+            values, read = with_signs(values, 1.0, self.columns[column.index].path)
+            self._said += read
         if role == "speed":
             values = self._speed(time, values, tick)
         return _Part(role, column, unit, _in_si(values, unit), time, tick, marked)

@@ -11,31 +11,28 @@ from typing import Any
 import numpy as np
 
 from hersey.arrays import FloatArray
-from hersey.errors import (
-    ISOTHERMAL,
-    ChannelError,
-    Setting,
-    meant,
-    printable,
-    way_in,
-)
+from hersey.errors import ISOTHERMAL, ChannelError, Setting, meant, printable, way_in
 from hersey.log.elsewhere import speed_elsewhere, stated_in_names, typed
 from hersey.log.long_arrays import ends
 from hersey.log.own_tables import not_a_log, own_table
+from hersey.log.pressures import force_of_pressures
 from hersey.log.role_units import with_unit
 from hersey.log.roles import (
     EVERY,
     FRICTION_NAMES,
     MEANS,
+    called_so,
     could_be,
     is_called,
     is_frequency,
     is_named,
     is_of_kind,
     only_left,
+    without_clock_of_day,
 )
 from hersey.log.signals import may_be_current, signal_kind, way_out_unnamed
 from hersey.log.text.column import Column, with_ending
+from hersey.log.words import LUBRICANT, SET_POINT
 from hersey.schema.warning import Warning
 from hersey.units import Conversion
 
@@ -44,15 +41,16 @@ _OSCILLATION = re.compile(r"frequen[cz]|oscillat|oszillat", re.IGNORECASE)
 #: As many numbers, all the same, make a dead channel.
 _TELLING = 20
 #: Names of the temperature of the lubricant, beside which that of a heater, a room or a motor is another.
-_OF_LUBRICANT = re.compile(r"\b(lub\w*|oil|grease|pot|bath|[oö]l|schmier\w*)", re.IGNORECASE)
+_OF_LUBRICANT = re.compile(rf"\b(lub\w*|oil|grease|pot|bath|[oö]l|schmier\w*)|{LUBRICANT}", re.IGNORECASE)
 #: A clock of a part of a run, beside which that of the whole run counts.
-_PART_OF_A_RUN = re.compile(r"step|segment|interval|cycle|lap", re.IGNORECASE)
+_PART_OF_A_RUN = re.compile(r"step|segment|interval|cycle|\blap", re.IGNORECASE)
 #: Kind of the warning of a clock that is not used.
 CLOCK_PASSED_OVER = "clock passed over"
 #: Columns named in a message at the most.
 _SHOWN = 40
 _SETPOINT = re.compile(
-    r"\b(set|sp\b|cmd|command|commanded|target|demand|reference|soll|nominal)", re.IGNORECASE
+    rf"(\b|_)(set|sp\b|cmd|command|commanded|target|goal|demand|reference|soll|nominal)|{SET_POINT}",
+    re.IGNORECASE,
 )
 
 
@@ -154,7 +152,7 @@ def taken_columns(
 
 def _candidates(role: str, columns: tuple[Column, ...]) -> list[Column]:
     """The columns that could play a role, by name and unit."""
-    named = [c for c in columns if is_called(role, c)]
+    named = called_so(role, columns)
     measured = [c for c in named if not _SETPOINT.search(c.name)]
     if not measured:  # what was asked for is not what came, if another column may hold that
         others = [c for c in columns if c not in named and c.unit and could_be(role, c, surely=True)]
@@ -226,7 +224,7 @@ def no_channel(
             f"for 2 use {named}"
         )
     if role == "torque":
-        way_out += of_a_coast_down(columns, file)
+        way_out += f"{of_a_coast_down(columns, file)}{force_of_pressures(columns)}"
     if role == "speed":
         way_out += speed_elsewhere(columns, file, names)
     if role == "temperature":
@@ -371,13 +369,14 @@ def columns_listed(columns: tuple[Column, ...]) -> str:
 def _telling(role: str, candidates: list[Column]) -> list[Column]:
     """The candidates without those that others put in the shade.
 
-    A letter without a unit beside a name with one, the clock of a step beside that of the run, and the
-    temperature of another part beside that of the lubricant.
+    A letter without a unit beside a name with one, the clock of a step or of the day beside that of the
+    run, and the temperature of another part beside that of the lubricant.
     """
     if any(c.unit and could_be(role, c, surely=True) for c in candidates):
         candidates = [c for c in candidates if c.unit or len(c.name) > 1]
     if role == "time":
         candidates = [c for c in candidates if not _PART_OF_A_RUN.search(c.name)] or candidates
+        candidates = without_clock_of_day(candidates)
     if role == "temperature":
         candidates = [c for c in candidates if _OF_LUBRICANT.search(c.name)] or candidates
     return candidates

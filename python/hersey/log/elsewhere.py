@@ -9,9 +9,10 @@ from hersey.errors import Setting, UnitError
 from hersey.log.derived.file_names import differing, proposed_pattern
 from hersey.log.roles import could_be, is_called, is_named, is_of_kind, role_conversion
 from hersey.log.text.column import Column
+from hersey.log.words import MOVED
 
 #: Names of a position along a line, in a unit of length.
-_MOVED = r".*(stroke|displacement|travel|hub|weg)"
+_MOVED = rf".*(stroke|displacement|travel|hub|weg|{MOVED})"
 
 
 def stated_in_names(file: str, names: Sequence[str], role: str) -> list[tuple[Setting, str]]:

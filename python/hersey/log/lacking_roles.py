@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
@@ -16,13 +17,17 @@ from hersey.log.channels import (
 from hersey.log.elsewhere import elsewhere, stated_in_names
 from hersey.log.role_units import example_unit, known_unit
 from hersey.log.roles import EVERY, only_left
-from hersey.log.signals import CURRENT_EXAMPLE, may_be_current
+from hersey.log.signals import CURRENT_EXAMPLE, answered, is_signal, may_be_current, question
 from hersey.log.text.column import Column
 from hersey.log.without_units import naming_all
 from hersey.units import Conversion
 
 #: What stands for the name of a column of which nothing is known.
 _COLUMN = "COLUMN"
+#: Names of columns of registers, which hold counts.
+_REGISTER = re.compile(
+    r"present_.*|(.*[^a-z])?(raw|counts?|cnt|ticks?|lsb|reg(ister)?)([^a-z].*)?", re.IGNORECASE
+)
 #: Columns of which it is asked whether they say nothing, at the most.
 _LOOKED_AT = 40
 #: Columns of a log that holds a time, a speed and perhaps a temperature.
@@ -67,6 +72,8 @@ def asking_all(
     )
     if isinstance(error, UnitError) and (not is_open.roles or setting not in dict(is_open.examples)):
         return naming_all(error, roles, columns, choices, file, dead=dead, of_a_frame=of_a_frame)
+    if "current" in found and (Setting("speed", "channel"), _COLUMN) not in is_open.examples:
+        found.add("torque")  # in its place
     bare = "torque" not in found and len(columns) <= _NO_TORQUE  # which may be of a coast-down
     if len(is_open.roles) + len(is_open.without_unit) < 2 or not {"torque", "speed"} & found or bare:
         return error
@@ -79,7 +86,10 @@ def asking_all(
         f"{file}: {'; '.join(said)}. Columns: {columns_listed(columns)}",
         columns=error.columns if isinstance(error, ChannelError | UnitError) else (),
         examples=tuple(is_open.examples),
-        remedy=f"use {stated(is_open.examples)}{_own(is_open.examples)}{_instead(is_open.examples)}{coasts}",
+        remedy=(
+            f"use {stated(is_open.examples)}{_own(is_open.examples)}{_instead(is_open.examples)}"
+            f"{_of_registers(is_open)}{coasts}"
+        ),
         setting=setting,
     )
 
@@ -110,10 +120,18 @@ def _all_open(
         if column is None:
             is_open.roles.append(f"no {role} column found")
             free = tuple(c for c in columns if c not in taken.values())
-            is_open.examples += _of_absent(role, free, file, names, choices[role].unit)
+            examples = _of_absent(role, free, file, names, choices[role].unit)
+            if role == "torque" and (current := dict(examples)[Setting(role, "channel")]) != _COLUMN:
+                found.add("current")
+                is_open.roles[-1] += f" ('{current}' may be the motor current)"
+            is_open.examples += examples
             continue
         found.add(role)
         chosen[role] = column, None
+        if role != "time" and is_signal(column.unit) and not choices[role].unit:
+            of, example = question(role, column.unit)
+            is_open.roles.append(f"'{column.path}' is in {column.unit}, which needs the {of}")
+            is_open.examples.append((Setting(role, "unit"), answered(example, column.unit)))
         if not (choices[role].unit or column.unit or known_unit(role, column)):
             is_open.without_unit.append(column)
             is_open.examples.append((Setting(role, "unit"), example_unit(role, column)))
@@ -143,7 +161,10 @@ def _of_absent(
 
 
 def _own(examples: Sequence[Example]) -> str:
-    """What is to be put in the place of examples."""
+    """What is to be put in the place of examples; an encoder of a line counts lengths."""
+    if any(of == Setting("position", "unit") and value.startswith("rev/") for of, value in examples):
+        line = Setting("position", "unit").to("0.5 um")
+        return f", with your units: the counts of one turn of your encoder, or {line} for one of a line"
     columns = f"columns for {_COLUMN}" if any(value == _COLUMN for _, value in examples) else ""
     units = "units" if any(of.kind == "unit" for of, _ in examples) else ""
     return f", with your {' and '.join(filter(None, [columns, units]))}" if columns or units else ""
@@ -159,6 +180,18 @@ def _instead(examples: Sequence[Example]) -> str:
         for role, column in columns.items()
         if (column, _COLUMN) in examples
     )
+
+
+def _of_registers(is_open: _Open) -> str:
+    """What to state instead for columns of torque and speed that may hold counts of a register."""
+    named = {value for of, value in is_open.examples if of.kind == "channel"}
+    named |= {column.name for column in is_open.without_unit}
+    if not any(_REGISTER.fullmatch(name) for name in named):
+        return ""
+    counts = {"torque": "4.79 mN*m", "speed": "0.229 rpm"}
+    units = [Setting(role, "unit") for role in counts]
+    asked = [(unit, counts[unit.name]) for unit in units if unit in dict(is_open.examples)]
+    return f". For counts of a register give what one count is, e.g. {stated(asked)}" if asked else ""
 
 
 def stated(examples: Sequence[Example]) -> str:

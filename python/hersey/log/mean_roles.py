@@ -19,6 +19,7 @@ from hersey.units import Conversion
 _SHARED = re.compile(r"\bshared\b", re.IGNORECASE)
 _ERROR = re.compile(r"error|uncert|\bsem\b|\bse\b|±", re.IGNORECASE)
 _DEVIATION = re.compile(r"\bsd\b|\bstd|st\.? ?dev|deviation|scatter", re.IGNORECASE)
+_SPEED = re.compile("speed|rpm|drehzahl|geschw|vitesse|velocid|velocit|giri|速|回転数", re.IGNORECASE)
 _PLAIN = {
     "load": re.compile(r".*\bload\b.*|normal force|n force|f_?n|weight", re.IGNORECASE),
     "count": re.compile(r"counts?|samples|rows|repeats?|n samples|number.*", re.IGNORECASE),
@@ -42,7 +43,7 @@ def measured(columns: tuple[Column, ...]) -> tuple[Column, ...]:
 def _plays(column: Column, name: str, columns: tuple[Column, ...]) -> bool:
     """Whether a column plays a role without a conversion; n is a count beside a speed, or the speed."""
     if name == "count" and column.name.lower() == "n" and not column.unit:
-        return any(c != column and re.search("speed|rpm|drehzahl", str(c), re.IGNORECASE) for c in columns)
+        return any(c != column and _SPEED.search(str(c)) for c in columns)
     if name == "load" and re.search("torque|moment", column.name, re.IGNORECASE):  # a load torque is a torque
         return False
     return bool(_PLAIN[name].fullmatch(column.name))

@@ -16,15 +16,28 @@ from hersey.log.roles import (
     is_named,
     role_conversion,
 )
-from hersey.log.signals import apart, is_signal, of_an_input, per, says_how_much, way_out
+from hersey.log.signals import (
+    apart,
+    at_which,
+    is_signal,
+    of_an_input,
+    per,
+    says_how_much,
+    signal_kind,
+    way_out,
+)
 from hersey.log.text.column import Column
 from hersey.units import COUNTS, KINDS, Conversion, nearest_unit, of_encoder
 
+#: Clocks of microcontroller boards, and the units in which they count.
+_CLOCKS_OF_BOARDS = {"micros": "us", "millis": "ms"}
 _INVERTER = "If it is the frequency of an inverter, divide by the pole pairs of the motor, e.g. for 2 use"
 
 
 def known_unit(role: str, column: Column) -> str:
     """Return the unit of a column that states none, where its name leaves no choice; else nothing."""
+    if role == "time":
+        return _CLOCKS_OF_BOARDS.get(column.name.lower(), "")
     return "1" if role == "torque" and is_named(FRICTION_NAMES["friction coefficient"], column) else ""
 
 
@@ -96,6 +109,16 @@ def _called_a_torque(column: Column, unit: str, file: str) -> UnitError:
 
 def _signal_in(role: str, column: Column, unit: str, file: str) -> float:
     """How many of the signal that the unit is for, if it is for any, one in the column is."""
+    full, one = at_which(unit, column.unit)
+    if full and says_how_much(unit):
+        of = Setting(role, "unit")
+        raise UnitError(
+            f"{file}: column '{column.path}' is in {column.unit}, and '{unit}' may be the {role} at 1 "
+            f"{signal_kind(column.unit)} or at the full value",
+            columns=(column.index,),
+            remedy=f"use {of.to(full)} for the full value, or {of.to(one)}",
+            setting=of,
+        )
     try:
         if is_signal(column.unit) and not says_how_much(unit):
             raise ValueError(unit)

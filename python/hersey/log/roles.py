@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
 from hersey.arguments.door import Keys
 from hersey.errors import Setting, UnitError, WrongKindError, way_in
 from hersey.log.signals import apart
 from hersey.log.text.column import Column
+from hersey.log.words import ELAPSED, OF_THE_DAY, STAMPED, TIME_ALONE
+from hersey.log.words import NAMES as IN_OTHER_LANGUAGES
 from hersey.units import Conversion, conversion, of_encoder
 
 #: Roles of a log's columns, in the order in which they are asked for.
@@ -35,24 +37,30 @@ ROLE_KINDS: dict[str, tuple[str, ...]] = {
     "position": ("angle", "length"),
 }
 _NAMES = {
-    "time": r"t|time.*|.*\btime|.*datetime|.*zeit|timestamp|elapsed.*|.*seconds|epoch.*|unix.*",
+    "time": r"t|time.*|.*\btime|.*datetime|.*zeit|timestamp|micros|millis|elapsed.*|.*seconds|epoch.*|unix.*",
     "torque": r".*torque.*|tq.*|.*\btq|.*moment.*|m",
     "speed": r".*speed.*|.*velocity.*|.*velo|.*rpm.*|.*omega.*|.*drehzahl.*|n|w|ω",
-    "temperature": r".*temp.*|.*thermistor.*|.*heater.*|.*thermocouple.*|.*film t.*",
+    "temperature": r"(?!tempo([^a-z]|$)).*temp.*|.*thermistor.*|.*heater.*|.*thermocouple.*|.*film t.*",
     "load": r".*\bload(?! ?cell).*|.*normal ?(force|kraft).*|.*normalkraft.*|f_?[nz]|.*axial ?force",
     "radius": r".*radius.*|.*\btrack",
-    "position": r".*(angle|position|encoder|winkel|lage).*|phi|theta|pos",
+    "position": (
+        r".*(angle|position|encoder|winkel|lage).*|phi|theta|pos"
+        "|(.*[^a-z])?(enc|pulses?|impulse?)([^a-z].*)?"
+    ),
 }
 #: Names of what stands for a torque, or a speed of rotation, where the radius is known.
-FRICTION_NAMES = {
+_FRICTION_NAMES = {
     "friction coefficient": r"(.*\b)?cof\b.*|[µμ]|mu|.*(friction|traction|reib).*(coef|koef|beiwert|zahl).*",
     "force": r".*(friction|traction|reib).*|.*tangential.*(force|kraft).*|f_?[tf]",
     "belt speed": r"v|v_?(s|rel|slid).*|.*(slid|slip|gleit|surface|peripheral).*",
 }
+FRICTION_NAMES = {kind: f"{names}|{IN_OTHER_LANGUAGES[kind]}" for kind, names in _FRICTION_NAMES.items()}
 #: Words of a name of a frequency, and what to do with that of an inverter.
 _FREQUENCY = re.compile(r"fr[eé]q", re.IGNORECASE)
 #: Names of columns that number rows or runs.
 _NUMBER = re.compile(r"section|run|point|nr\.?|no\.?|index|step|#", re.IGNORECASE)
+#: A torque or a speed in French.
+_FRENCH = r"(.*[^a-z])?(couple|vitesse|r[eé]gime|frottement)([^a-z].*)?"
 #: Characters of a name at the most.
 _LONGEST_NAME = 200
 
@@ -67,7 +75,27 @@ def channels_to(columns: Mapping[str, str]) -> str:
 
 def is_called(role: str, column: Column) -> bool:
     """Return whether a column has a name that columns of a role have."""
-    return is_named(_NAMES[role], column)
+    return is_named(_NAMES[role], column) or is_named(IN_OTHER_LANGUAGES[role], column)
+
+
+def called_so(role: str, columns: Sequence[Column]) -> list[Column]:
+    """Return the columns that have a name of a role; in another language only where none has in English.
+
+    ``temps`` are times in French and temperatures in English: no temperature beside French names.
+    """
+    named = [c for c in columns if is_called(role, c)]
+    if role == "temperature" and any(is_named(_FRENCH, c) for c in columns):
+        named = [c for c in named if c.name.lower() != "temps" or c.unit]
+    plain = [c for c in named if len(c.name) > 1 and is_named(_NAMES[role], c)]
+    return plain or named
+
+
+def without_clock_of_day(candidates: list[Column]) -> list[Column]:
+    """Return times without a clock of the day that stands beside the time since the start."""
+    elapsed = [c for c in candidates if re.search(ELAPSED, c.name, re.IGNORECASE)]
+    clocks = OF_THE_DAY if not elapsed else f"{OF_THE_DAY}|{STAMPED}"
+    elapsed = elapsed or [c for c in candidates if is_named(TIME_ALONE, c)]
+    return [c for c in candidates if c in elapsed or not is_named(clocks, c)] if elapsed else candidates
 
 
 def is_named(pattern: str, column: Column) -> bool:

@@ -1,4 +1,4 @@
-"""Columns that hold a signal, in A, V or percent, and units that say how much one of it stands for."""
+"""Columns that hold a signal, in A, V, % or ‰, and units that say how much one of it stands for."""
 
 from __future__ import annotations
 
@@ -6,8 +6,12 @@ import re
 from collections.abc import Sequence
 
 from hersey.errors import Setting
+from hersey.log.words import CURRENT, CURRENT_WITHIN
 
-_SIGNAL = r"([mµμu]?)(A|V|[Aa]mp(?:ere)?s?|[Vv]olts?)|()(%)"
+_SIGNAL = (
+    r"([mµμu]?)(A|V|[Aa]mp(?:ere)?s?|[Vv]olts?)"
+    r"|()(%|‰|0?[.,]1\s?%|[Pp]er\s?cent|[Pp]er\s?mill?e?|[Pp]romille)"
+)
 _ALONE = re.compile(_SIGNAL)
 _PER = re.compile(rf"(.*\S)\s*/\s*(?:{_SIGNAL})")
 #: Names of inputs of oscilloscopes and of data loggers.
@@ -17,17 +21,23 @@ _INPUT = re.compile(
 #: An amount that a number divides, as that at 100 %.
 _DIVIDED = re.compile(r"/\s*[0-9.]+\s*$")
 _PREFIXES = {"": 1.0, "m": 1e-3, "µ": 1e-6, "μ": 1e-6, "u": 1e-6}
-#: What one of a signal, or 100 %, may stand for, as an example.
+#: What one of a signal, or 100 % or 1000 ‰, may stand for, as an example.
 _EXAMPLES = {
-    "torque": {"A": "35 mN*m/A", "V": "2 N*m/V", "%": "9.84 mN*m / 100"},
-    "speed": {"A": "100 rpm/A", "V": "100 rpm/V", "%": "3000 rpm / 100"},
-    "temperature": {"A": "10 degC/A", "V": "20 degC/V", "%": "200 degC / 100"},
-    "load": {"A": "50 N/A", "V": "50 N/V", "%": "100 N / 100"},
-    "radius": {"A": "10 mm/A", "V": "10 mm/V", "%": "25 mm / 100"},
+    "torque": {"A": "35 mN*m/A", "V": "2 N*m/V", "%": "9.84 mN*m / 100", "‰": "0.48 N*m / 1000"},
+    "speed": {"A": "100 rpm/A", "V": "100 rpm/V", "%": "3000 rpm / 100", "‰": "3000 rpm / 1000"},
+    "temperature": {"A": "10 degC/A", "V": "20 degC/V", "%": "200 degC / 100", "‰": "200 degC / 1000"},
+    "load": {"A": "50 N/A", "V": "50 N/V", "%": "100 N / 100", "‰": "100 N / 1000"},
+    "radius": {"A": "10 mm/A", "V": "10 mm/V", "%": "25 mm / 100", "‰": "25 mm / 1000"},
 }
+#: What the numbers of a signal without dimension come to at the full value, and how many they are there.
+_FULL = {"%": ("100 %", 100), "‰": ("1000 ‰", 1000)}
+#: Names of a torque in per mille of the rated torque: object 6077h of CiA 402, which has no unit in exports.
+_PER_MILLE = re.compile(r"torque[ _]actual[ _]value|(0x)?6077h?([^0-9].*)?", re.IGNORECASE)
 
 #: Names of a current of a motor, and what one ampere of it may stand for.
-_CURRENT = re.compile(r"(.*[^a-z])?(current|amps?|strom|i_?q)([^a-z].*)?", re.IGNORECASE)
+_CURRENT = re.compile(
+    rf"(.*[^a-z])?(current|amps?|strom|i_?q|{CURRENT})([^a-z].*)?|.*({CURRENT_WITHIN}).*", re.IGNORECASE
+)
 CURRENT_EXAMPLE = _EXAMPLES["torque"]["A"]
 
 
@@ -65,7 +75,12 @@ def per(given: str, header: str) -> float:
     if not wanted or not header:
         return 1.0
     one, other = (_ALONE.fullmatch(each.strip()) for each in (wanted, header))
-    if one is None or other is None or signal_kind(one.group()) != signal_kind(other.group()):
+    if one is None or other is None or bool(one[4]) != bool(other[4]):
+        raise ValueError(header)
+    kinds = [signal_kind(each.group()) for each in (one, other)]
+    if one[4]:
+        return _FULL[kinds[0]][1] / _FULL[kinds[1]][1]
+    if kinds[0] != kinds[1]:
         raise ValueError(header)
     return _PREFIXES[other[1] or ""] / _PREFIXES[one[1] or ""]
 
@@ -75,12 +90,27 @@ def says_how_much(given: str) -> bool:
     return bool(re.search(r"\d", given) or apart(given)[1])
 
 
+def at_which(given: str, header: str) -> tuple[str, str]:
+    """Return the two units that an amount without a divisor may mean for a column in % or ‰, or nothing.
+
+    Examples
+    --------
+    >>> at_which("0.48 N*m", "‰"), at_which("0.48 N*m / 1000", "‰")
+    (('0.48 N*m / 1000', '0.48 N*m/‰'), ('', ''))
+    """
+    kind = signal_kind(header)
+    if kind not in _FULL or apart(given)[1] or _DIVIDED.search(given):
+        return "", ""
+    return f"{given.strip()} / {_FULL[kind][1]}", f"{given.strip()}/{kind}"
+
+
 def way_out(role: str, header: str) -> str:
     """Return what to type for a column of a signal."""
     kind = signal_kind(header)
     typed = Setting(role, "unit").to(_EXAMPLES[role][kind])
-    if kind == "%":
-        return f"use {typed}, with your value of the {role} at 100 %"
+    if kind in _FULL:
+        rated = " (the rated torque of most drives)" if role == "torque" and kind == "‰" else ""
+        return f"use {typed}, with your value of the {role} at {_FULL[kind][0]}{rated}"
     condition = "if it is the motor current, " if kind == "A" and role == "torque" else ""
     return f"{condition}give the {role} per {kind}, e.g. {typed}"
 
@@ -95,7 +125,8 @@ def question(role: str, header: str) -> tuple[str, str]:
     """
     kind = signal_kind(header)
     example = _EXAMPLES[role][kind]
-    return f"{role} {'at 100 %' if kind == '%' else f'per {kind}'}", example.rpartition("/")[0].rstrip()
+    asked = f"at {_FULL[kind][0]}" if kind in _FULL else f"per {kind}"
+    return f"{role} {asked}", example.rpartition("/")[0].rstrip()
 
 
 def answered(answer: str, header: str) -> str:
@@ -109,7 +140,7 @@ def answered(answer: str, header: str) -> str:
     kind = signal_kind(header)
     if apart(answer)[1] or _DIVIDED.search(answer):
         return answer
-    return f"{answer.strip()} / 100" if kind == "%" else f"{answer.strip()}/{kind}"
+    return f"{answer.strip()} / {_FULL[kind][1]}" if kind in _FULL else f"{answer.strip()}/{kind}"
 
 
 def way_out_unnamed(role: str, names: Sequence[str], header: str) -> str:
@@ -125,12 +156,17 @@ def way_out_unnamed(role: str, names: Sequence[str], header: str) -> str:
 
 def of_an_input(role: str, name: str) -> str:
     """Return what more to say of a column without unit if it is called like an input of an instrument."""
+    if role == "torque" and _PER_MILLE.fullmatch(name):
+        typed = Setting(role, "unit").to(_EXAMPLES[role]["‰"])
+        return f". If it is in ‰ of the rated torque (CiA 402), use {typed}, with your rated torque"
     if role not in _EXAMPLES or not _INPUT.fullmatch(name):
         return ""
     return f". If it is a voltage, give the {role} per V: {Setting(role, 'unit').to(_EXAMPLES[role]['V'])}"
 
 
 def signal_kind(unit: str) -> str:
-    """Return A, V or %, or nothing for a unit that is not that of a signal."""
+    """Return A, V, % or ‰, or nothing for a unit that is not that of a signal."""
     match = _ALONE.fullmatch(unit.strip())
-    return (match[2] or match[4])[0].upper() if match else ""
+    if match is None or match[2]:
+        return match[2][0].upper() if match else ""
+    return "%" if re.fullmatch(r"%|per\s?cent", match[4], re.IGNORECASE) else "‰"

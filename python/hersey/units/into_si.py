@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 Number = TypeVar("Number", float, "NDArray[np.float64]")
 _ENERGY_KINDS = frozenset(("power", "energy", "heat capacity", "thermal conductance", "thermal conductivity"))
 _ANGLES = re.compile(r"radian|degree|rev|turn|cycle|arc")
+#: The full value of a torque without dimension, and how to state it.
+_AT_FULL = {"percent": ("100 %", "9.84 mN*m / 100"), "permille": ("1000 ‰", "0.48 N*m / 1000")}
 _ENERGIES = re.compile(r"joule|watt|volt|calorie|erg|british")
 
 
@@ -82,10 +84,11 @@ def _from_registry(kind: str, text: str, unit: str) -> tuple[float, float]:
     if parsed.dimensionality != registry.parse_units(si).dimensionality or (
         kind == "torque" and _ENERGIES.search(names)
     ):
-        if unit.strip() in ("%", "percent") and kind == "torque":
+        if kind == "torque" and names in _AT_FULL:
+            full, example = _AT_FULL[names]
             raise WrongKindError(
-                "unit '%' of a torque needs the torque at 100 %",
-                remedy="write it as '9.84 mN*m / 100', with your value",
+                f"unit '{unit}' of a torque needs the torque at {full}",
+                remedy=f"write it as '{example}', with your value",
             )
         raise wrong_kind(kind, unit, text)
     if "delta_" in names:

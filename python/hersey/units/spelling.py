@@ -18,21 +18,22 @@ _SPELLINGS = (
     (r"(?i:ozf?s?[\s.*·-]?in|in[\s.*·-]?ozf?s?)", "ozf*in"),
     (r"(?i:lbf?s?[\s.*·-]?in|in[\s.*·-]?lbf?s?)", "lbf*in"),
     (r"(?i:lbf?s?[\s.*·-]?ft|ft[\s.*·-]?lbf?s?)", "lbf*ft"),
-    (r"(?i:rpm|(U|r|rev|tr|1)?\s*/\s*min|min(\^|\*\*)?\(?-1\)?|min⁻¹)", "rpm"),
+    (r"(?i:rpm|(U|r|rev|tr|giri|1)?\s*/\s*min|min(\^|\*\*)?\(?-1\)?|min⁻¹)", "rpm"),
     (r"U/s|r/s", "rev/s"),
     (r"rad\s+s(\^|\*\*)?-1|rad\s+s⁻¹", "rad/s"),
     (r"([mcdknuµμ]?)N[\s.·*-]?([mc]?m)((?:[\s.·*]s)?/[A-Za-z°]+)?", r"\1N*\2\3"),
     (r"(?i:sec)", "s"),
+    (r"(?i:pro ?mille|per ?mille)", "‰"),
     (r"mils?", "thou"),
 )
-_ALPHABET = re.compile(r"[A-Za-z0-9_°ºµμΩ%℃℉\s.·*/^()⁻¹²³-]{0,60}")
+_ALPHABET = re.compile(r"[A-Za-z0-9_°ºµμΩ%‰℃℉\s.·*/^()⁻¹²³-]{0,60}")
 #: Characters of a unit at the most: the patterns below take longer than linear.
 LONGEST_UNIT = 100
 #: A number as text.
 NUMBER = r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?"
 #: Dots of other keyboards and scripts that stand for a product.
 _DOTS = str.maketrans(dict.fromkeys("\u2022\u2219\u22c5\u30fb\uff65", "\u00b7"))
-_FACTORED = re.compile(rf"\s*({NUMBER})?\s*\*?\s*([A-Za-z°ºµμ%℃℉/(1].*?)\s*(?:/\s*({NUMBER}))?\s*")
+_FACTORED = re.compile(rf"\s*({NUMBER})?\s*\*?\s*([A-Za-z°ºµμ%‰℃℉/(1].*?)\s*(?:/\s*({NUMBER}))?\s*")
 #: A factor of which a reader cannot tell whether it multiplies the unit or has multiplied the numbers.
 _COUNT = rf"10\^[-+]?[0-9]{{1,2}}|{NUMBER}"
 _TIMES = re.compile(rf"[x\u00d7]\s*({_COUNT})\s*([A-Za-z°%].*)|([A-Za-z°%].*?)\s*[x\u00d7]\s*({_COUNT})")

@@ -12,7 +12,7 @@ from hersey.arrays import FloatArray
 from hersey.cache.kept import kept
 from hersey.damping.candidates.lack_of_fit import LackOfFit
 from hersey.damping.candidates.observations import Observations
-from hersey.damping.driving_torque import DrivingTorque, driving_torque
+from hersey.damping.driving_torque import DrivingTorque, driving_torque, load_at_one_speed
 from hersey.damping.dwells import SteadyPoints, distinct_speeds, groups_of_temperature
 from hersey.damping.dwells.reduced import require_points
 from hersey.damping.estimate import Estimate, estimate, rounded
@@ -133,7 +133,7 @@ def regime(
     hypotheses = judged(surface.c, table=table)
     by = explained(points, surface, hypotheses, law)
     trend = trend_of(Observations.of(points))
-    driving = _driving(points) if surface.domain.is_torque else None
+    driving = _driving(points, surface) if surface.domain.is_torque else None
     if driving is not None:
         return _of_no_friction(driving, points, surface, hypotheses, by)
     if surface.domain.is_torque:
@@ -154,10 +154,13 @@ def regime(
     )
 
 
-def _driving(points: SteadyPoints) -> DrivingTorque | None:
-    """Whether torque in the dwells is that of a motor or a brake."""
+def _driving(points: SteadyPoints, surface: DampingSurface) -> DrivingTorque | None:
+    """Whether torque in the dwells is that of a motor or a brake, or set by a load that is not known."""
     speed, torque = (np.abs(points.column(name)) for name in ("speed", "torque"))
-    return driving_torque(speed, torque, points.column("torque_error"))
+    found = driving_torque(speed, torque, points.column("torque_error"))
+    if found is not None or points.varying_load:
+        return found
+    return load_at_one_speed(speed, torque, surface.statistics.scatter)
 
 
 def _of_no_friction(
@@ -174,7 +177,7 @@ def _of_no_friction(
         hypotheses,
         (),
         None,
-        "the torque is that of a motor or a brake",
+        "the torque is that of a motor or a brake" if driving.ratio is None else "a load sets the torque",
         by.lack_of_fit,
         " ".join(filter(None, (verdict, points.dropped()))),
         by.tried,

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from hersey.errors import UnreadableLogError, printable
+from hersey.log.words import NAMES
 
 #: Columns of a table, and characters of a name at the most: no log has as many.
 MOST_COLUMNS = 5000
@@ -38,14 +39,22 @@ _ENDINGS = {
     "degF": "degF",
     "C": "degC",
     "K": "K",
+    "A": "A",
+    "mA": "mA",
+    "mm": "mm",
+    "um": "um",
+    "deg": "deg",
+    "rad": "rad",
 }
 _LONGEST_FIRST = sorted(_ENDINGS, key=len, reverse=True)
-_CLOCK = re.compile(r"t|.*time.*|.*zeit.*|.*(elapsed|clock|stamp).*", re.IGNORECASE)
-#: Names beside which a short ending is a unit: a phase C, a type K, a static or sliding quantity is none.
+_CLOCK = re.compile(rf"t|.*time.*|.*zeit.*|.*(elapsed|clock|stamp).*|{NAMES['time']}", re.IGNORECASE)
+#: Names beside which a short ending is a unit: a phase A, a type K, a static or sliding quantity is none.
 _MEANT = {
     **dict.fromkeys(("s", "ms", "us"), _CLOCK),
-    **dict.fromkeys(("C", "K"), re.compile(r"T|.*temp.*", re.IGNORECASE)),
+    **dict.fromkeys(("C", "K"), re.compile(rf"T|.*temp.*|{NAMES['temperature']}", re.IGNORECASE)),
     "N": re.compile(r".{2,}"),
+    "A": re.compile(r"i_?[qd](_.*)?|i_?rms|.*motor_?(current|strom)", re.IGNORECASE),
+    "deg": re.compile(r"(?!.*temp).*", re.IGNORECASE),
 }
 
 

@@ -54,6 +54,7 @@ from hersey.log.text.stamps import refuse_whole_minutes
 from hersey.log.text.units_in_cells import numbers_only
 from hersey.log.torque_log import NO_CLOCK, Channel, LogFile, Run
 from hersey.log.wanted import Wanted
+from hersey.log.wrapped import COUNTED, with_signs
 from hersey.schema.warning import Warning
 from hersey.units import Conversion
 
@@ -98,6 +99,7 @@ def read_delimited(path: Path, wanted: Wanted, progress: Progress | None = None)
         (
             *layout.warnings,
             *table.reader.warnings(),
+            *table.warnings,
             *clocks_passed_over(layout.named, stated),
             *computed(channels, stated),
             *replaced_units(table.channels),
@@ -267,6 +269,7 @@ class _Table:
         self.parts: dict[str, Filling] = {}
         self.digest = hashlib.sha256()
         self.left_out = LeftOut()
+        self.warnings: list[Warning] = []
         self.rows = 0  # so far, those that were left out among them
         self._kept_last = 0
         self._disbelieved = np.empty(0, dtype=np.intp)  # rows that were kept and are not believed
@@ -302,6 +305,11 @@ class _Table:
         """What the rows hold, by role, as a log has it, and readings that cannot be right, left out."""
         arrays = {role: part.whole() for role, part in self.parts.items()}
         self.parts.clear()
+        for role in COUNTED:
+            if role in arrays:
+                column, si = self.channels[role]
+                arrays[role], read = with_signs(arrays[role], si.scale, column.name)
+                self.warnings += read
         readings = [
             Reading(role, *self.channels[role], values)
             for role, values in arrays.items()

@@ -17,6 +17,7 @@ from hersey.errors import Setting
 from hersey.log.channels import CLOCK_PASSED_OVER
 from hersey.log.doubtful import doubtful_units
 from hersey.log.replaced import UNIT_REPLACED, replaced_in
+from hersey.log.wrapped import READ_AS_NEGATIVE
 from hersey.posterior.result import SAFE
 from hersey.schema.noun import BELT, puller_of
 from hersey.schema.warning import Warning
@@ -324,6 +325,9 @@ def _replaced(points: SteadyPoints, comparison: LogComparison | None) -> Iterato
     ]
     for each in clocks[:1]:
         yield each.titled("The clock is not used", section="data")
+    for each in points.log.files[0].warnings:
+        if each.kind == READ_AS_NEGATIVE:
+            yield each.titled("Counts lacked their sign", section="data")
 
 
 def _of_log(points: SteadyPoints, surface: DampingSurface, *, asked: bool) -> Iterator[Warning]:
