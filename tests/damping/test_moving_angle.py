@@ -56,6 +56,19 @@ def test_a_fast_position_biases_nothing(hertz: float) -> None:
     assert fit["T_C"].value == pytest.approx(COULOMB, rel=0.02)
 
 
+def test_friction_that_builds_up_near_standstill_is_left_out() -> None:
+    """T_C tanh(w/w_0) + k_v w, as joints with soft gears have it: sliding begins at some w_0."""
+    _, speed, rate = swing(0.4, 0.8)
+    builds_up = 0.3
+    torque = torque_of(speed, rate) + COULOMB * (np.tanh(speed / builds_up) - np.sign(speed))
+    fit = read(speed, torque).moving()
+    assert fit.law == "Coulomb and viscous friction"
+    assert builds_up < fit.least_speed < 5.0 * builds_up
+    assert fit["T_C"].value == pytest.approx(COULOMB, rel=0.02)
+    holds(fit, k_v=VISCOUS, J=INERTIA, offset=OFFSET)
+    assert fit.misfit is None
+
+
 def test_a_position_that_counts_too_coarsely_is_refused() -> None:
     angle, speed, rate = swing(0.4, 0.05)
     with pytest.raises(InsufficientDataError) as error:

@@ -57,6 +57,10 @@ _WARMER = 3.0
 #: Times what noise took from the inertia by which gravity must explain more, as both go with the angle where
 #: the drive swings; least share of the torque (standard deviations) that gravity must be.
 _REMAINS, _LEAST_GRAVITY = 4.0, 0.005
+#: Friction that builds up from less than this share near standstill is that of sliding from so many of its
+#: speed scales on; they are at most that share of the greatest speed, for a curve that bends all along is no
+#: such thing.
+_FROM_LESS, _BUILT_UP, _NEAR_REST = 0.5, 2.5, 0.5
 #: Rounds in which the noise is judged by what a law leaves.
 _ROUNDS = 3
 #: Share of the variance of the noise of the first round, which is not known yet.
@@ -114,6 +118,11 @@ def fit_moving(log: TorqueLog, *, inertia: Any = None) -> MovingFit:
         raise too_few(name, equations, least)
     known = Estimate(0.0, 0.0, 0.0, 0.0) if subtracted else known
     fitting, fits = _fitted(log, equations, noise, low_pass, known)
+    if sliding := _sliding_from(fits, equations):
+        equations, least = _equations(stretches, noise, low_pass, sliding)
+        if len(equations) < LEAST_EQUATIONS:
+            raise too_few(name, equations, least)
+        fitting, fits = _fitted(log, equations, noise, low_pass, known)
     chosen = _chosen(fits, equations)
     result = _result(log, _Made(fitting, equations, least, low_pass, noise), chosen, fits)
     refuse_no_friction(name, result, equations)
@@ -133,12 +142,14 @@ class _Made:
     noise: SpeedNoise
 
 
-def _equations(stretches: Sequence[Stretch], noise: SpeedNoise, low_pass: LowPass) -> tuple[Equations, float]:
-    """Equations clear of standstill, and the least speed of them."""
+def _equations(
+    stretches: Sequence[Stretch], noise: SpeedNoise, low_pass: LowPass, sliding: float = 0.0
+) -> tuple[Equations, float]:
+    """Equations clear of standstill, and the least speed of them; none is slower than ``sliding``."""
     filtered = tuple(each for s in stretches if (each := Filtered.of(s, low_pass)) is not None)
     fastest = max(float(np.max(np.abs(each.speed))) for each in filtered)
     unsure = _CLEAR * float(np.sqrt(noise.behind(low_pass.smoother)))
-    least = max(unsure, _SLOW * fastest, noise.least_counted(low_pass))
+    least = max(unsure, _SLOW * fastest, noise.least_counted(low_pass), sliding)
     return Equations(filtered, tuple(each.turning(least) for each in filtered)), least
 
 
@@ -182,6 +193,20 @@ def _fitted(
                 for warm in references
             ]
     return fitting, sorted(fits, key=lambda each: each.values.size)
+
+
+def _sliding_from(fits: Sequence[MovingLawFit], equations: Equations) -> float:
+    """Speed from which friction is that of sliding, if it builds up from less near standstill; else 0."""
+    both = [each for each in fits if not each.law.friction.apart]
+    bent, plain = (
+        min((e for e in both if e.law.friction.stribeck is stribeck), key=MovingLawFit.criterion)
+        for stribeck in (True, False)
+    )
+    speed = _BUILT_UP * bent.value(STRIBECK_SPEED)
+    builds_up = bent.value(STATIC) < _FROM_LESS * bent.value(COULOMB)
+    is_sure = bent.criterion() < plain.criterion() - MOVING_EVIDENCE
+    is_near = speed <= _NEAR_REST * float(np.max(np.abs(equations.speed)))
+    return speed if builds_up and is_sure and is_near else 0.0
 
 
 def _gravity_shows(fitted: MovingLawFit, without: MovingLawFit, equations: Equations) -> bool:
