@@ -10,7 +10,7 @@ import pytest
 
 import hersey
 from hersey import testbench
-from hersey.log.constant_temperature import CONSTANT_TEMPERATURE
+from hersey.log.constant_temperature import CONSTANT_TEMPERATURE, POOLED
 from hersey.machine import read_machine
 from hersey.study.findings import Findings
 from hersey.study.first_screen.flags import flags
@@ -39,6 +39,22 @@ def test_a_constant_temperature_that_is_excluded_is_a_warning(tmp_path: Path, en
     for other in (None, pl.lit("25 °C"), pl.lit(None, pl.Float64)):
         log = hersey.read(written(tmp_path, ending, other), isothermal=True)
         assert CONSTANT_TEMPERATURE not in [each.kind for each in log.files[0].warnings]
+
+
+@pytest.mark.parametrize("beside", ["", ",Edge temperature [degC]"])
+def test_a_temperature_that_varies_and_is_excluded_is_a_warning(tmp_path: Path, beside: str) -> None:
+    """40 to 60 degC but for a tenth at each end: viscosity halves. 19 K are no matter."""
+    path = tmp_path / "log.csv"
+    for span, told in ((25.0, True), (20.0, False)):
+        rows = [f"{t},1,{1 + t // 20},{40 + span * t / 100}{',20' * bool(beside)}" for t in range(101)]
+        path.write_text(
+            f"time [s],torque [N*m],speed [rpm],Oil temperature [degC]{beside}\n" + "\n".join(rows)
+        )
+        found = [w for w in hersey.read(path, isothermal=True).files[0].warnings if w.kind == POOLED]
+        assert [str(each) for each in found] == told * [
+            "temperature 'Oil temperature' is excluded, but ranges from 42.5 degC to 62.5 degC: friction "
+            "at all of them is taken as that at one"
+        ]
 
 
 def test_only_points_at_another_temperature_are_warned_of(tmp_path: Path) -> None:

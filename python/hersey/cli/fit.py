@@ -118,7 +118,8 @@ def _fit_one(
         of = "of the windows of speed " if moving is not None else ""
         said = moving is not None or friction is not None
         printing.text(*["", f"Damping {of}as one power law:"] * said, seen.verdict)
-        printing.text("", *_law(surface, curves, "dwells" if moving is None else "windows"))
+        if seen.driving is None:
+            printing.text("", *_law(surface, curves, "dwells" if moving is None else "windows"))
     printing.warnings(*warnings_of(points, surface, friction))
 
 
