@@ -323,6 +323,7 @@ def test_an_inertia_is_read_with_its_error(given: object, half: float) -> None:
         ("-0.012 kg*m^2", "greater than 0"),
         ("0.012 kg*m^2 ± 2", "the error has no unit. Write e.g. '0.012 kg"),
         ("0.012 kg*m^2 ± 200 %", "smaller than the value"),
+        ("0.012 kg*m^2 ± -2 %", "smaller than the value"),
         ("0.012 N*m", "N"),
     ],
 )

@@ -20,7 +20,7 @@ def test_a_map_of_a_motor_names_no_regime(tmp_path: Path) -> None:
     done = command.run("fit", "map.csv", "--means", "--isothermal", cwd=tmp_path)
     assert done.returncode == 0
     said = " ".join(done.stdout.split())
-    assert "at one speed: something other than speed and temperature sets it, such as a load" in said
+    assert "at one speed: something other than speed sets it, such as temperature or a load, so no" in said
     assert "To see friction, record the drive without it." in said
     assert "falling branch" not in said
 
@@ -35,3 +35,9 @@ def test_friction_that_scatters_or_differs_at_one_speed_alone_may_be_friction() 
     once = np.where(SPEED == 1000.0, LOADS, friction)
     assert load_at_one_speed(SPEED, once, 0.7) is None
     assert load_at_one_speed(np.arange(1.0, 31.0), LOADS, 0.7) is None  # each speed once
+
+
+def test_temperature_is_blamed_only_where_it_is_not_known() -> None:
+    said = {warm: str(load_at_one_speed(SPEED, LOADS, 0.7, warm=warm)) for warm in (True, False)}
+    assert said[True].endswith("something other than speed and temperature sets it, such as a load")
+    assert said[False].endswith("something other than speed sets it, such as temperature or a load")

@@ -108,6 +108,13 @@ def test_what_no_column_is_left_for_is_asked_for_elsewhere(tmp_path: Path) -> No
         speak("python")
 
 
+def test_a_log_without_any_column_for_a_torque_is_refused_in_words(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    path.write_text("t [s],w [rpm]\n" + "\n".join(f"{0.1 * i:.1f},{20 + i % 3}" for i in range(400)))
+    with pytest.raises(ChannelError, match="no torque column found"):
+        hersey.read(path, channels={"speed": "w"}, isothermal=True)
+
+
 def test_columns_without_names_are_asked_for_with_their_units(tmp_path: Path) -> None:
     path = written(tmp_path / "log.csv", "0.0,1.0,10.0,0.4", ",")
     speak("terminal")

@@ -71,6 +71,7 @@ OTHERS = [
     ("time", "temps", ("time", "torque", "speed")),
     ("speed", "加速度", ("時間", "トルク", "速度")),
     ("speed", "速度指令 [rpm]", ("時間 [s]", "トルク [Nm]", "速度 [rpm]")),
+    ("speed", "Vitesse cible [tr/min]", ("Temps [s]", "Couple [Nm]", "Vitesse [tr/min]")),
     ("speed", "goal_speed [rpm]", ("time [s]", "torque [Nm]", "speed [rpm]")),
     ("torque", "Thermocouple", ("time", "torque", "speed")),
     ("torque", "par", ("time", "torque", "speed")),
@@ -83,6 +84,11 @@ def test_what_stands_beside_is_no_question(role: str, other: str, header: Sequen
     index = ("time", "torque", "speed").index(role)
     assert roles(other, *header)[role] == split_unit(header[index])[0]
     assert roles(*header, other)[role] == split_unit(header[index])[0]
+
+
+@pytest.mark.parametrize("other", ["Elapsed revs", "Laufzeit [h]"])
+def test_an_elapsed_time_is_one_by_its_unit(other: str) -> None:
+    assert roles("Time [s]", other, "Torque [Nm]", "Speed [rpm]")["time"] == "?"
 
 
 def test_a_stamp_beside_a_time_stays_a_question() -> None:

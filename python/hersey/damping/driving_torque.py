@@ -36,14 +36,17 @@ class DrivingTorque(Record):
     zero_speed: Annotated[float | None, Means("at which it would be zero", "rad/s")] = None
     power: Annotated[float | None, Means("the same at all speeds", "W")] = None
     ratio: Annotated[float | None, Means("typical ratio of greatest to least torque at one speed")] = None
+    warm: Annotated[bool, Means("whether temperature is known, and cannot be what sets the torque")] = True
 
     def __str__(self) -> str:
         """Return it in words."""
         if self.ratio is not None:
-            return (
-                f"Torque differs {self.ratio:.2g}-fold at one speed: something other than speed and "
-                "temperature sets it, such as a load"
+            other = (
+                "speed and temperature sets it, such as"
+                if self.warm
+                else "speed sets it, such as temperature or"
             )
+            return f"Torque differs {self.ratio:.2g}-fold at one speed: something other than {other} a load"
         if self.power is not None:
             return (
                 f"Torque falls as 1/speed: the power is {self.power:.4g} W at all speeds. That "
@@ -57,10 +60,12 @@ class DrivingTorque(Record):
         )
 
 
-def load_at_one_speed(speed: FloatArray, torque: FloatArray, scatter: float) -> DrivingTorque | None:
+def load_at_one_speed(
+    speed: FloatArray, torque: FloatArray, scatter: float, *, warm: bool = True
+) -> DrivingTorque | None:
     """Return what shows that a load sets the torque: at most speeds it differs widely; None if it does not.
 
-    ``scatter`` is that about a law of speed and temperature, as a share of torque.
+    ``scatter`` is that about a law of speed and, if ``warm``, of temperature, as a share of torque.
     """
     if scatter < _SCATTERS:
         return None
@@ -68,7 +73,7 @@ def load_at_one_speed(speed: FloatArray, torque: FloatArray, scatter: float) -> 
     ratios = np.array([torque[group].max() / max(torque[group].min(), 1e-300) for group in groups])
     if ratios.size < _SPEEDS or np.mean(ratios > _APART) < _MOST:
         return None
-    return DrivingTorque(ratio=float(np.median(ratios)))
+    return DrivingTorque(ratio=float(np.median(ratios)), warm=warm)
 
 
 def _groups(speed: FloatArray) -> list[IntArray]:

@@ -47,7 +47,7 @@ def inertia_of(given: Any, name: str = "inertia", *, may_be_none: bool = False) 
         raise ParameterError(f"the moment of inertia is {value:g} kg m^2: it must not be negative")
     if not ((value > 0 or may_be_none) and math.isfinite(value)):
         raise ParameterError(f"{name} is {given}: it must be greater than 0")
-    if not 0 <= half < value and half > 0:
+    if half < 0 or (half > 0 and not half < value):
         raise ParameterError(f"{name} is {given}: its error must be smaller than the value")
     return stated_inertia(value, half)
 

@@ -13,6 +13,8 @@ from hersey.log.words import MOVED
 
 #: Names of a position along a line, in a unit of length.
 _MOVED = rf".*(stroke|displacement|travel|hub|weg|{MOVED})"
+#: A turn over the counts of an encoder, as an example of the unit of a position.
+_COUNTS = "rev/4096"
 
 
 def stated_in_names(file: str, names: Sequence[str], role: str) -> list[tuple[Setting, str]]:
@@ -62,7 +64,7 @@ def _of_position(column: Column) -> list[tuple[Setting, str]]:
     if _unit_of_position(column):
         return stated
     counts = column.unit or re.search(r"enc|count|tick|inkr|pos", column.name, re.IGNORECASE)
-    return [*stated, (Setting("position", "unit"), "rev/4096" if counts else "deg")]
+    return [*stated, (Setting("position", "unit"), _COUNTS if counts else "deg")]
 
 
 def speed_elsewhere(columns: tuple[Column, ...], file: str, names: Sequence[str]) -> str:
@@ -72,6 +74,7 @@ def speed_elsewhere(columns: tuple[Column, ...], file: str, names: Sequence[str]
         return f", or give set points by time with {Setting('schedule').to('schedule.csv')}"
     use = typed(found)
     if found[0][0].kind == "channel":
-        counts = ", with the counts of one turn of your encoder" if "rev/" in use else ""
+        is_of_counts = any(of.kind == "unit" and value == _COUNTS for of, value in found)
+        counts = ", with the counts of one turn of your encoder" if is_of_counts else ""
         return f". If '{found[0][1]}' is the position, use {use}{counts}"
     return f". If the name of the file states it, use {use}"

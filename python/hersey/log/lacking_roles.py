@@ -155,9 +155,10 @@ def _of_absent(
     current = next((c for c in columns if role == "torque" and may_be_current(c.name, c.unit)), None)
     if current is not None:
         return [(channel, current.path), (Setting(role, "unit"), CURRENT_EXAMPLE)]
-    needs_unit = not unit and not all(c.unit for c in columns)
     named = (only_left(columns) if role == "torque" else "") or _COLUMN
-    return [(channel, named)] + [(Setting(role, "unit"), example_unit(role, columns[0]))] * needs_unit
+    if unit or all(c.unit for c in columns):
+        return [(channel, named)]
+    return [(channel, named), (Setting(role, "unit"), example_unit(role, columns[0]))]
 
 
 def _own(examples: Sequence[Example]) -> str:

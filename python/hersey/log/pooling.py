@@ -84,7 +84,7 @@ def _in_contact(run: Run, log: LogFile, of: Domain) -> tuple[Run, LogFile]:
             f"{log.name}: the normal load is not greater than zero in {lost} of {pressed.size} rows",
             remedy=f"if it has the wrong sign, use {Setting('load', 'unit').to('-1 N')}",
         )
-    channels = ("time", "torque", "speed", "temperature", "load")
+    channels = ("time", "torque", "speed", "temperature", "load", "position")
     kept = {name: values[pressed] for name in channels if (values := getattr(run, name)) is not None}
     lifted = Warning(
         "rows without contact",

@@ -42,7 +42,7 @@ _NAMES = {
     "speed": r".*speed.*|.*velocity.*|.*velo|.*rpm.*|.*omega.*|.*drehzahl.*|n|w|ω",
     "temperature": r"(?!tempo([^a-z]|$)).*temp.*|.*thermistor.*|.*heater.*|.*thermocouple.*|.*film t.*",
     "load": r".*\bload(?! ?cell).*|.*normal ?(force|kraft).*|.*normalkraft.*|f_?[nz]|.*axial ?force",
-    "radius": r".*radius.*|.*\btrack",
+    "radius": r".*radius.*|(?!.*wear).*\btrack",
     "position": (
         r".*(angle|position|encoder|winkel|lage).*|phi|theta|pos"
         "|(.*[^a-z])?(enc|pulses?|impulse?)([^a-z].*)?"
@@ -61,6 +61,8 @@ _FREQUENCY = re.compile(r"fr[eé]q", re.IGNORECASE)
 _NUMBER = re.compile(r"section|run|point|nr\.?|no\.?|index|step|#", re.IGNORECASE)
 #: A torque or a speed in French.
 _FRENCH = r"(.*[^a-z])?(couple|vitesse|r[eé]gime|frottement)([^a-z].*)?"
+#: What may have elapsed beside a time.
+_NO_TIME = r".*(rev|turn|cycle|dist|lap(?!s)).*"
 #: Characters of a name at the most.
 _LONGEST_NAME = 200
 
@@ -92,7 +94,13 @@ def called_so(role: str, columns: Sequence[Column]) -> list[Column]:
 
 def without_clock_of_day(candidates: list[Column]) -> list[Column]:
     """Return times without a clock of the day that stands beside the time since the start."""
-    elapsed = [c for c in candidates if re.search(ELAPSED, c.name, re.IGNORECASE)]
+    elapsed = [
+        c
+        for c in candidates
+        if re.search(ELAPSED, c.name, re.IGNORECASE)
+        and is_of_kind("time", c.unit or "s")
+        and (c.unit or not is_named(_NO_TIME, c))
+    ]
     clocks = OF_THE_DAY if not elapsed else f"{OF_THE_DAY}|{STAMPED}"
     elapsed = elapsed or [c for c in candidates if is_named(TIME_ALONE, c)]
     return [c for c in candidates if c in elapsed or not is_named(clocks, c)] if elapsed else candidates

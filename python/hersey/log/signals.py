@@ -36,7 +36,9 @@ _PER_MILLE = re.compile(r"torque[ _]actual[ _]value|(0x)?6077h?([^0-9].*)?", re.
 
 #: Names of a current of a motor, and what one ampere of it may stand for.
 _CURRENT = re.compile(
-    rf"(.*[^a-z])?(current|amps?|strom|i_?q|{CURRENT})([^a-z].*)?|.*({CURRENT_WITHIN}).*", re.IGNORECASE
+    rf"(?!.*current[ _](step|cycle|time|segment|run|speed|position|state|mode))"
+    rf"((.*[^a-z])?(current|amps?|strom|i_?q|{CURRENT})([^a-z].*)?|.*({CURRENT_WITHIN}).*)",
+    re.IGNORECASE,
 )
 CURRENT_EXAMPLE = _EXAMPLES["torque"]["A"]
 

@@ -43,14 +43,16 @@ NAMES = {
 #: Names of a position along a line, in a unit of length.
 MOVED = "course|d[eé]placement|recorrido|desplazamiento|corsa|spostamento|変位|ストローク|移動量|位移|行程"
 #: What was asked for, not measured.
-SET_POINT = "consigne|consigna|vorgabe|指令|設定|设定|目標|目标|给定"
+SET_POINT = (
+    "consigne|consigna|cible|objetivo|obiettivo|impost[oa]|richiest[oa]|vorgabe|指令|設定|设定|目標|目标|给定"
+)
 #: The lubricant, beside whose temperature that of a heater or a room is another.
 LUBRICANT = "huile|aceite|olio|油|グリース|潤滑|润滑"
 #: A current of a motor, as words alone and within others.
 CURRENT = "courant|corriente|corrente"
 CURRENT_WITHIN = "(motor|anker)strom|電流|电流"
 #: The time since the start, with which a clock of the day needs no question.
-ELAPSED = "elapsed|time since|vergangen|laufzeit|[eé]coul[eé]|transcurrido|trascorso|経過|经过|经過|経过"
+ELAPSED = "elapsed|time since|vergangen|[eé]coul[eé]|transcurrido|trascorso|経過|经过|经過|経过"
 #: A clock of the day: what it is surely called, and by what words it may be called beside an elapsed time.
 OF_THE_DAY = r"uhrzeit|datum.*|date.*|clock.*|.*time of day|heure|hora|ora|horodatage|時刻|时刻|日時|日期.*"
 STAMPED = "time ?stamp|zeitstempel|time|zeit|日時|時間|时间"

@@ -160,7 +160,7 @@ def _driving(points: SteadyPoints, surface: DampingSurface) -> DrivingTorque | N
     found = driving_torque(speed, torque, points.column("torque_error"))
     if found is not None or points.varying_load:
         return found
-    return load_at_one_speed(speed, torque, surface.statistics.scatter)
+    return load_at_one_speed(speed, torque, surface.statistics.scatter, warm=surface.b is not None)
 
 
 def _of_no_friction(

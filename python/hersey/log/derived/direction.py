@@ -48,7 +48,9 @@ REVERSE = (
 )
 _REVERSE_OR_NONE = ("0", "false", "off")
 #: Names of a column of the direction.
-_CALLED = re.compile(r"dir|(rot|turn)[ _]?dir|.*(direction|richtung|drehsinn)", re.IGNORECASE)
+_CALLED = re.compile(
+    r"dir|(rot|turn)[ _]?dir|(?!.*(flow|load|wind)).*(direction|richtung|drehsinn)", re.IGNORECASE
+)
 _LONGEST_NAME = 200
 
 

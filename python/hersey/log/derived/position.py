@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from hersey.arrays import FloatArray
+from hersey.log.white_noise import MEDIAN_MAGNITUDE
 
 #: Longest time over which the slope is taken, s, unless another is asked for: noise is faster.
 WINDOW = 0.2
@@ -17,8 +18,8 @@ _TURN = 2.0 * np.pi
 #: Fewest changes that show a step, how near to a multiple of it they are, as many of them as that, and steps
 #: in a change at the most: any number is near a multiple of a small one.
 _FEWEST, _NEAR, _SHARE, _MOST_STEPS = 10, 0.05, 0.98, 1e4
-#: Median of the size of normal noise, in standard deviations; most rows that a window is chosen by.
-_OF_NORMAL, _MOST_ROWS = 0.6745, 100_000
+#: Most rows that a window is chosen by.
+_MOST_ROWS = 100_000
 #: Changes of fewer than so many steps are looked at first: in larger ones roundings add up.
 _SMALL = 5.5
 #: An angle restarts at every turn if it spans no more than one, within this share, and jumps back by
@@ -70,14 +71,14 @@ def window_for(time: FloatArray, position: FloatArray) -> float:
     if time.size < _LEAST:
         return WINDOW
     third = np.diff(position, 3)
-    rough = float(np.nanmedian(np.abs(third))) / (_OF_NORMAL * np.sqrt(20.0)) if third.size else 0.0
+    rough = float(np.nanmedian(np.abs(third))) / (MEDIAN_MAGNITUDE * np.sqrt(20.0)) if third.size else 0.0
     noise = max(rough, smallest_step(position) / np.sqrt(12.0))
     window, least = WINDOW, _LEAST * float(np.median(np.diff(time)))
     speed = slope(time, position, window)[0]
     while 0.5 * window >= least:
         nearer = slope(time, position, 0.5 * window)[0]
         allowed = _SMOOTHED * float(np.nanmedian(np.abs(nearer)))
-        allowed += _NOISE * _OF_NORMAL * noise * np.sqrt(10.0) / window
+        allowed += _NOISE * MEDIAN_MAGNITUDE * noise * np.sqrt(10.0) / window
         if not float(np.nanmedian(np.abs(nearer - speed))) > allowed:
             break
         window, speed = 0.5 * window, nearer

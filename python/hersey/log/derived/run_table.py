@@ -58,7 +58,8 @@ def read_run_table(path: str | Path) -> RunTable:
     path = Path(path)
     cells = _cells(path)
     listed = ", ".join(f"'{column}'" for column in cells.columns)
-    files = next((c for c in cells.columns if _FILE.fullmatch(c.name.strip())), None)
+    called = [c for c in cells.columns if _FILE.fullmatch(c.name.strip())]
+    files = next((c for c in called if c.name.strip().lower() != "name"), next(iter(called), None))
     columns = {role: _column(cells, role) for role in ROLES}
     known = {role: column for role, column in columns.items() if column is not None}
     if files is None or not known:

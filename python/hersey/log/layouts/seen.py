@@ -34,8 +34,10 @@ _CALLED = re.compile(rf"(?i)(?<![\w/])(rpm|1/min|U/min|rad/s)\s?[:=]\s?({_NUMBER
 #: Roles that a line above a table may state; force and length are no load and no radius but by their word.
 _STATED = ("speed", "temperature", "load", "radius")
 _WORDS = {
-    "load": re.compile(r"(?i)\b(load|last|normal ?force|normalkraft|axial ?force|weight)\b[^0-9]{0,20}$"),
-    "radius": re.compile(r"(?i)\b(radius|track)\b[^0-9]{0,20}$"),
+    "load": re.compile(
+        r"(?i)\b(load|last|normal ?force|normalkraft|axial ?force|weight)\b(?! ?cell)[^0-9]{0,20}$"
+    ),
+    "radius": re.compile(r"(?i)\b(radius|track)\b[^0-9A-Za-z]{0,20}$"),
 }
 
 
