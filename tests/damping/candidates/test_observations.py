@@ -51,6 +51,7 @@ def points(
         temperature_rates=np.empty(0),
         rejected=(),
         of_every_sample=False,
+        varying_load=None,
         column=lambda name: table[name].to_numpy(),
     )
 
