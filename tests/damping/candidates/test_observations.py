@@ -46,7 +46,11 @@ def points(
         domain=Domain(),
         zero_errors=0.002 * np.column_stack([np.ones(9), np.linspace(-1.0, 1.0, 9)]),
         log=SimpleNamespace(
-            has_temperature=temperature, sensors=Sensors(film_heating=heating), corrections=(), runs=(), files=()
+            has_temperature=temperature,
+            sensors=Sensors(film_heating=heating),
+            corrections=(),
+            runs=(),
+            files=(),
         ),
         temperature_rates=np.empty(0),
         rejected=(),
