@@ -61,6 +61,8 @@ REFUSED = """
 None of these files is a log of torque at three speeds or more. If a message proposes options, they are
 followed, with its example values (25 mm, 35 mN m): this tests the advice, not the measurement.
 """
+#: Heading of the part of the page that another benchmark measures.
+_OTHERS = "## Tribometers with known laws"
 #: Claims that need a transition in the log.
 _TRANSITION = r"rises as the drive slows|can stick and slip"
 _SCREW = ("--torque-unit", "-9.84 mN*m / 100", "--speed-unit", "-1 rpm", "--isothermal")
@@ -171,7 +173,8 @@ def main() -> int:
             rows.append(row_of(line, files))
             print(*(f"{k}: {v}" for k, v in vars(rows[-1]).items()), "", sep="\n", flush=True)
     if given.only == "*":
-        PAGE.write_text(page(rows))
+        before = PAGE.read_text()
+        PAGE.write_text(page(rows).rstrip("\n") + "\n\n" + before[before.index(_OTHERS) :])
     for row in rows:
         if row.wrong:
             print(f"{row.name}: {row.wrong}", file=sys.stderr)
