@@ -45,13 +45,13 @@ def test_a_constant_temperature_that_is_excluded_is_a_warning(tmp_path: Path, en
 def test_a_temperature_that_varies_and_is_excluded_is_a_warning(tmp_path: Path, beside: str) -> None:
     """40 to 60 degC but for a tenth at each end: viscosity halves. 19 K are no matter."""
     path = tmp_path / "log.csv"
-    for span, told in ((25.0, True), (20.0, False)):
+    for span, is_said in ((25.0, True), (20.0, False)):
         rows = [f"{t},1,{1 + t // 20},{40 + span * t / 100}{',20' * bool(beside)}" for t in range(101)]
         path.write_text(
             f"time [s],torque [N*m],speed [rpm],Oil temperature [degC]{beside}\n" + "\n".join(rows)
         )
         found = [w for w in hersey.read(path, isothermal=True).files[0].warnings if w.kind == POOLED]
-        assert [str(each) for each in found] == told * [
+        assert [str(each) for each in found] == is_said * [
             "temperature 'Oil temperature' is excluded, but ranges from 42.5 degC to 62.5 degC: friction "
             "at all of them is taken as that at one"
         ]

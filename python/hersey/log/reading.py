@@ -143,9 +143,9 @@ def read(
             raise ParameterError(f"{name} has the same content as an earlier file. Give each file once")
         done += read_here
     done = of_each_run(done, stated)
-    if told := sources.unused(names, choices, stated):
+    if unused := sources.unused(names, choices, stated):
         run, first = done[0]
-        done[0] = run, replace(first, warnings=(*first.warnings, *told))
+        done[0] = run, replace(first, warnings=(*first.warnings, *unused))
     log = TorqueLog(tuple(run for run, _ in done), tuple(log for _, log in done))
     refuse_given_twice(log.runs)
     refuse_rows_shared(log.runs)

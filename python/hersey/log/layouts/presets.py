@@ -7,6 +7,9 @@ from dataclasses import dataclass, fields, replace
 from hersey.errors import ParameterError, meant
 from hersey.log.layouts.table import LogLayout
 
+#: Lines of a file among which the words of a preset are looked for.
+BEGINNING = 60
+
 
 @dataclass(frozen=True)
 class Preset:
@@ -77,6 +80,11 @@ PRESETS: dict[str, Preset] = {
         ("VarName", "TimeString", "VarValue"),
     ),
 }
+
+
+def presets_in(top: str) -> list[str]:
+    """Return the names of the presets all of whose words stand in the first `BEGINNING` lines of a file."""
+    return [name for name, of in PRESETS.items() if all(word in top for word in of.words)]
 
 
 def with_preset(layout: LogLayout) -> LogLayout:

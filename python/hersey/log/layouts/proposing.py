@@ -15,7 +15,7 @@ from hersey.log.layouts.grids import VALUE
 from hersey.log.layouts.laid_out import recording_of
 from hersey.log.layouts.pages import Page, Pages, pages_of
 from hersey.log.layouts.pattern import pattern
-from hersey.log.layouts.presets import PRESETS, with_preset
+from hersey.log.layouts.presets import BEGINNING, presets_in, with_preset
 from hersey.log.layouts.seen import LOOKED_AT, Seen, stated_by_all, stated_in
 from hersey.log.layouts.stacking import SECTION
 from hersey.log.layouts.table import LogLayout
@@ -28,8 +28,7 @@ from hersey.log.text.split_seconds import is_milliseconds
 from hersey.log.torque_log import LogFile, Run
 from hersey.log.wanted import Wanted
 
-#: Lines of a file among which the words of a preset are looked for; names of channels with a number behind.
-_FIRST = 60
+#: Names of channels with a number behind.
 _NUMBERED = re.compile(r"(.*?[A-Za-z°\u0370-\u9fff])([ _.:#-]{0,3})([0-9]{1,4})")
 _TITLED = re.compile(r"([^0-9{}*]{0,40}?)([0-9]{1,6}(?:[.,][0-9]{1,3})?)([^0-9{}*]{0,20})")
 #: Layouts that are tried at the most.
@@ -172,10 +171,8 @@ def _varies(runs: list[tuple[Run, LogFile]]) -> bool:
 def _candidates(pages: Pages) -> Iterator[LogLayout]:
     """Layouts of which the file shows a sign, the simplest first."""
     seen = [Seen(page.lines, pages.is_workbook) for page in pages.pages]
-    top = "\n".join(line for each in seen for line in each.lines[:_FIRST])
-    for name, preset in PRESETS.items():
-        if all(word in top for word in preset.words):
-            yield LogLayout(preset=name)
+    top = "\n".join(line for each in seen for line in each.lines[:BEGINNING])
+    yield from (LogLayout(preset=name) for name in presets_in(top))
     one = next((each for each in seen if each.blocks), None)
     if one is None or _is_transposed(one):
         yield LogLayout(transposed=True)
@@ -326,7 +323,7 @@ def _of_rows(seen: Seen) -> Iterator[LogLayout]:
     for at in reversed(list(seen.words_above())):
         cells = seen.cells(at)
         yield from (LogLayout(milliseconds=c) for c in cells if is_milliseconds(c))
-    header = next((i for i, line in enumerate(seen.lines[:_FIRST]) if len(seen.cells(i)) > 2), None)
+    header = next((i for i, line in enumerate(seen.lines[:BEGINNING]) if len(seen.cells(i)) > 2), None)
     if header is None:
         return
     names, below = (

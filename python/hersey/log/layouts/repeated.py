@@ -8,14 +8,11 @@ from pathlib import Path
 from hersey.errors import HerseyError
 from hersey.log.layouts.pages import Page, pages_of
 from hersey.log.layouts.pattern import pattern
-from hersey.log.layouts.presets import PRESETS
+from hersey.log.layouts.presets import BEGINNING, PRESETS, presets_in
 from hersey.log.layouts.proposing import beginning, same_beginning
 from hersey.log.layouts.sections import is_row
 from hersey.log.layouts.seen import LOOKED_AT, Seen, stated_by_all
 from hersey.log.layouts.table import LogLayout
-
-#: Lines of a file among which the words of a preset are looked for.
-_FIRST = 60
 
 
 def layout_of_blocks(path: Path) -> LogLayout | None:
@@ -52,10 +49,8 @@ def _repeats_a_header(lines: tuple[str, ...]) -> bool:
 
 def _preset(lines: tuple[str, ...]) -> str:
     """The known instrument whose export has sections and begins so."""
-    top = "\n".join(lines[:_FIRST])
-    return next(
-        (name for name, of in PRESETS.items() if of.layout.section and all(w in top for w in of.words)), ""
-    )
+    known = presets_in("\n".join(lines[:BEGINNING]))
+    return next((name for name in known if PRESETS[name].layout.section), "")
 
 
 def titles_of(path: Path, layout: LogLayout) -> tuple[tuple[str, ...], bool]:
