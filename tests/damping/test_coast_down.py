@@ -16,6 +16,7 @@ from hersey.arrays import FloatArray
 from hersey.damping.coast_down import CoastDown
 from hersey.damping.coast_down.closed_form import speeds
 from hersey.damping.coast_down.coasts import noise_of_rows
+from hersey.damping.coast_down.steps import steps_in
 from hersey.damping.inertia import inertia_of
 from hersey.damping.recipe import Recipe
 from hersey.errors import ChannelError, InsufficientDataError, ParameterError, UnitError
@@ -385,3 +386,14 @@ def test_a_missing_inertia_is_asked_for(tmp_path: Path) -> None:
     assert "add --inertia '0.012 kg*m^2 ± 2 %'" in done.stderr
     again = run("coastdown", str(LOG), "--inertia", "0.012 kg*m^2 ± 2 %", "--json", cwd=tmp_path)
     assert again.returncode == 0
+
+
+@pytest.mark.parametrize("sag", [0.0, 0.05])
+def test_a_hold_that_sags_by_a_twentieth_of_the_fall_before_it_is_held(sag: float) -> None:
+    time = np.arange(0.0, 40.0, 0.1)
+    speed = np.where(
+        time < 10.0, 100.0 - 5.0 * time, 50.0 - sag * 50.0 * np.minimum(time - 10.0, 20.0) / 20.0
+    )
+    (step,) = steps_in(time, speed, 0, time.size, 0.01)
+    assert (step.top, step.end) == (0, 400)
+    assert 9.5 < time[step.start] < 12.5

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -17,10 +18,6 @@ from hersey.lubrication.lubricant import Lubricant
 from hersey.schema.domain import Domain
 from tests.cli.command import run
 
-#: An oil by Arrhenius' law, written down here: eta = 0.05 Pa s at 40 degC, 40 kJ/mol.
-OIL = Lubricant(
-    "arrhenius", ((313.15, 0.05), (373.15, 0.05 * np.exp(40e3 / 8.314462618 * (1 / 373.15 - 1 / 313.15))))
-)
 SPEEDS = np.geomspace(0.005, 1.0, 12)
 CELSIUS, LOADS = (30.0, 60.0, 90.0), (10.0, 30.0)
 
@@ -52,6 +49,17 @@ def table(law: Callable[..., np.ndarray]) -> pl.DataFrame:
             columns = {"v [m/s]": SPEEDS, "COF": friction, "Oil temp [degC]": celsius, "Fn [N]": load}
             parts.append(pl.DataFrame(columns))
     return pl.concat(parts)
+
+
+def test_an_error_of_temperature_is_one_of_the_hersey_number() -> None:
+    """D ln eta = -E/(R T^2) dT by Arrhenius' law: 0.5 K at 60 degC are 2.17 %."""
+    points = SteadyPoints.from_table(table(of_hersey), channels={"load": "Fn"})
+    errors = {"speed_error": 0.03 * points.column("speed"), "temperature_error": 0.5 * np.ones(len(points))}
+    known = replace(points, table=points.table.with_columns(**{k: pl.Series(v) for k, v in errors.items()}))
+    found = known.against_hersey_number(OIL)
+    kelvin = points.column("temperature")
+    share = np.hypot(0.03, 40e3 / 8.314462618 / kelvin**2 * 0.5)
+    np.testing.assert_allclose(found.column("speed_error") / found.column("speed"), share, rtol=1e-6)
 
 
 def test_runs_at_three_temperatures_and_two_loads_fall_on_one_curve() -> None:

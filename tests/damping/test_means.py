@@ -241,3 +241,16 @@ def test_only_the_columns_that_are_used_must_have_one_length(tmp_path: Path) -> 
         UnreadableLogError, match=r"'other_speed' \(speed\) has 7 rows, but .* \(torque\) has 3"
     ):
         hersey.SteadyPoints.from_table(tmp_path / "a.mat", channels=named | {"speed": "other_speed"})
+
+
+def test_three_runs_that_show_no_scatter_are_known_as_three_runs() -> None:
+    """42 dwells of three runs alike: the level has not the 40 degrees of freedom of the dwells."""
+    rng, speeds, parts = np.random.default_rng(12), np.geomspace(0.01, 1.0, 7), []
+    for number in range(3):
+        noise = rng.normal(0.0, 0.01, 14)
+        friction = 0.12 * (1.0 + noise - noise.mean())
+        there = np.concatenate([speeds, speeds[::-1]])
+        parts.append(pl.DataFrame({"run": number, "speed [m/s]": there, "COF": friction}))
+    level = hersey.fit(hersey.SteadyPoints.from_table(pl.concat(parts))).a
+    assert level.freedom < 20.0
+    assert level.low < 0.12 < level.high

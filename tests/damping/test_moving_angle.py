@@ -11,6 +11,7 @@ import pytest
 import hersey
 import hersey.verdict.warnings
 from hersey.damping.driving_torque import driving_torque
+from hersey.damping.moving.gravity import gravity_of
 from hersey.damping.moving.result import MovingFit
 from hersey.errors import InsufficientDataError
 from tests.damping.moving_logs import COULOMB, INERTIA, OFFSET, RATE, VISCOUS, read, times, waves
@@ -169,3 +170,22 @@ def test_a_hoist_is_sent_to_a_fit_of_every_sample() -> None:
     fit = log.moving()
     assert fit["offset"].value == pytest.approx(5.0, abs=0.05)
     assert fit["T_C"].value == pytest.approx(1.2, abs=0.05)
+
+
+def test_errors_of_gravity_by_hand() -> None:
+    """At a_cos = 0, a_sin = 2: G is 2 with the error of a_sin, q_0 is 0 with half of that of a_cos."""
+    values, covariance = gravity_of(np.array([0.0, 2.0]), np.diag([0.09, 0.04]))
+    np.testing.assert_allclose(values, [2.0, 0.0], atol=1e-15)
+    np.testing.assert_allclose(covariance, np.diag([0.04, 0.0225]), atol=1e-15)
+
+
+def test_a_departure_is_stated_as_a_share_of_the_friction_there() -> None:
+    time = times()
+    speed, rate = waves(time)
+    friction = 0.3 * np.sign(speed) * np.abs(speed) ** 0.4
+    noise = np.random.default_rng(5).normal(0.0, 0.002, speed.size)
+    fit = read(speed, INERTIA * rate + friction + noise).moving()
+    assert fit.misfit is not None
+    at = abs(fit.misfit.speed)  # the mean about a knot, over which the departure is averaged
+    law = float(fit.friction(np.array([at]))[0])
+    assert fit.misfit.share == pytest.approx((0.3 * at**0.4 - law) / law, rel=0.35)
