@@ -37,6 +37,8 @@ class Stand:
     gain: float
     #: Scatter of the gain from run to run, as a specimen is mounted.
     mounting: float
+    #: Scatter of viscosity from run to run, as temperature is set and oil is spread.
+    spreading: float
 
 
 @dataclass(frozen=True)
@@ -95,6 +97,7 @@ def _tried(seed: int, mechanism: Mechanism, rng: Generator) -> Campaign | None:
     drive = draw_drive(rng, film=str(rng.choice(mechanism.films)), rolling=mechanism.rolling)
     wide = rng.uniform(0.8, 1.6)
     medians = {name: (middle, spread * wide) for name, (middle, spread) in mechanism.medians(rng).items()}
+    medians |= ways.differences(rng)
     chosen = _use(mechanism, medians, drive, rng)
     if chosen is None:
         return None
@@ -153,6 +156,7 @@ def _stand(rng: Generator) -> Stand:
         stated_gain=stated,
         gain=float(rng.normal(0, stated / 2)),
         mounting=float(rng.uniform(0.002, 0.008)),
+        spreading=float(rng.uniform(0.005, 0.025)),
     )
 
 

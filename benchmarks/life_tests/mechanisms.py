@@ -7,7 +7,7 @@ its own, lognormal about them. None is a law of one line: two or three causes wo
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.random import Generator
@@ -22,7 +22,7 @@ Parameters = dict[str, Array]
 
 #: Most shocks that a specimen gets.
 SHOCKS = 40
-#: What differs among specimens that do not age.
+#: What differs among new specimens.
 DIFFERING = ("roughness", "friction", "viscosity", "width", "layer")
 
 
@@ -32,7 +32,7 @@ class Mechanism:
 
     name: str
     medians: Callable[[Generator], Medians]
-    state: Callable[[Parameters, Array], State]
+    law: Callable[[Parameters, Array], State]
     #: Limits that the middle specimen may reach first.
     leads: tuple[str, ...]
     films: tuple[str, ...] = ("flooded", "tanh", "reynolds")
@@ -47,6 +47,11 @@ class Mechanism:
             drawn["sizes"] = drawn["shock"] * rng.gamma(0.7, 1 / 0.7, size=(count, SHOCKS))
         return drawn
 
+    def state(self, parameters: Parameters, s: Array) -> State:
+        """Return the state of specimens at relative ages: what has aged, times what each was when new."""
+        aged = self.law(parameters, s)
+        return replace(aged, **{name: getattr(aged, name) * parameters[f"own {name}"] for name in DIFFERING})
+
     def middle(self, medians: Medians) -> Parameters:
         """Return the parameters of the middle specimen."""
         values = {name: np.full((1, 1), m) for name, (m, _) in medians.items()}
@@ -54,6 +59,11 @@ class Mechanism:
             values["times"] = (np.arange(SHOCKS)[None] + 0.5) / medians["rate"][0]
             values["sizes"] = np.full((1, SHOCKS), medians["shock"][0])
         return values
+
+
+def differences(rng: Generator) -> Medians:
+    """Return how new specimens differ."""
+    return {f"own {name}": (1.0, rng.uniform(0.01, 0.04)) for name in DIFFERING}
 
 
 def _new(s: Array, rows: Array, **changed: Array) -> State:
@@ -229,11 +239,7 @@ def _regreased(p: Parameters, s: Array) -> State:
 
 def _nothing(p: Parameters, s: Array) -> State:
     """Nothing ages: specimens only differ."""
-    return _new(s, p["roughness"], **{name: p[name] for name in DIFFERING})
-
-
-def _nothing_medians(rng: Generator) -> Medians:
-    return {name: (1.0, rng.uniform(0.01, 0.04)) for name in DIFFERING}
+    return _new(s, p["own width"])
 
 
 TORQUE, ENERGY, CONTINUOUS, STICK, STARVATION = "torque", "energy", "continuous", "stick-slip", "starvation"
@@ -285,5 +291,5 @@ MECHANISMS = (
         STARVED,
         LITTLE,
     ),
-    Mechanism("nothing ages", _nothing_medians, _nothing, (), ("flooded", *STARVED)),
+    Mechanism("nothing ages", lambda _rng: {}, _nothing, (), ("flooded", *STARVED)),
 )

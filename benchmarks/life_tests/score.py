@@ -1,8 +1,8 @@
 """Counts of a .jsonl of answers against the targets: intervals, B10 and B50, first failure modes.
 
 An interval holds the truth if it encloses it. Never, as the truth, is held if the interval has no upper end,
-if it ends beyond the ages that were looked at, or if 5 % of the draws or more never reach the limit. Ages that
-have passed, that never come, and that are more than three times the last run are counted apart.
+if it ends beyond the ages that were looked at, or if 5 % of the draws or more never reach the limit.
+Ages that have passed, never come or are more than three times the last run are counted apart.
 """
 
 from __future__ import annotations

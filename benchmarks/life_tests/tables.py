@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +13,6 @@ from benchmarks.life_tests import modes
 from benchmarks.life_tests.campaign import HORIZON, Campaign, first_failure
 from benchmarks.life_tests.drive import (
     FAST,
-    HOT,
     LENGTH,
     LOAD,
     MODULUS,
@@ -51,6 +51,7 @@ def tables(campaign: Campaign) -> dict[tuple[str, int], str]:
         state = campaign.state(number)
         for column, age in enumerate(campaign.ages[number]):
             one = state.at(slice(None), [column])
+            one = replace(one, viscosity=one.viscosity * np.exp(rng.normal(0, campaign.stand.spreading)))
             made[unit, int(age)] = table(campaign, campaign.drive, one, rng)
     return made
 
@@ -170,6 +171,3 @@ def write_runs(runs: dict[tuple[str, int], str], folder: Path, *, word: str = "p
         (folder / name).write_text(text)
         listed.append(f"{name},{unit},{age} {word}")
     (folder / "runs.csv").write_text("\n".join(listed) + "\n")
-
-
-__all__ = ["HOT", "machine_file", "table", "tables", "truth", "write", "write_runs"]
