@@ -11,8 +11,8 @@ Array = NDArray[np.float64]
 
 #: Layer over flooded film at which the table of a starved Reynolds inlet is kept.
 RATIOS = np.logspace(-2, 2, 161)
-#: Gap at the meniscus over the layer: both faces are wetted, and the flow is reversed in front of it.
-MENISCUS = 2.0
+#: Flow to the sides over that through the nip, per length of the bank of oil in units of the inlet.
+LEAK = 0.03
 
 
 def tanh(ratio: Array) -> Array:
@@ -25,14 +25,14 @@ def _starved_inlet() -> Array:
 
     The gap before a soft nip is h (1 + z^1.5). The pressure at the edge of the nip is the same for each film,
     and it varies as the integral of (gap - h) / gap^3, so that f^(-4/3) I(m) = I(infinity) for a film f with
-    its meniscus at m.
+    its meniscus at m. The layer feeds the nip, and the sides of the bank of oil between meniscus and nip.
     """
-    z = np.logspace(-4, 4, 4001)
+    z = np.logspace(-5, 5, 6001)
     gap = 1 + z**1.5
     rate = (gap - 1) / gap**3
     integral = np.concatenate([[0.0], np.cumsum((rate[1:] + rate[:-1]) / 2 * np.diff(z))])
     film = (integral / integral[-1]) ** 0.75
-    layer = film * gap / MENISCUS
+    layer = film + LEAK * film ** (2 / 3) * z
     return np.interp(np.log(RATIOS), np.log(layer[1:]), film[1:])
 
 

@@ -20,6 +20,8 @@ STICK_SLOW = "stick-slip, thick paper"
 CONTINUOUS = "continuous torque"
 ENERGY = "energy per page"
 STARVATION = "starvation, full speed"
+#: Film over flooded film below which hersey calls a film starved, whatever the law.
+STARVED = 0.5 ** (1 / 3)
 #: Travel of the belt in one page, m.
 TRAVEL = 0.3
 
@@ -81,5 +83,6 @@ def first_crossing(ages: Array, values: Array, limit: float) -> Array:
 def failure_ages(drive: Drive, use: Use, state: State, ages: Array) -> dict[str, Array]:
     """Return the age at which each mode happens to each specimen."""
     values = indicators(drive, use, state)
+    values[STARVATION] = STARVED / film_ratio(drive, state)
     limits = use.limits(drive.film != "flooded")
     return {name: first_crossing(ages, values[name], limit) for name, limit in limits.items()}

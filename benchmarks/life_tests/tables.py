@@ -141,6 +141,7 @@ def _unit(campaign: Campaign, number: int, first: float) -> dict[str, object]:
         "first": order[0][1] if order else None,
         "age": _age(first),
         "next mode is later by": order[1][0] / order[0][0] if len(order) > 1 and order[0][0] else None,
+        "film over flooded film": modes.film_ratio(campaign.drive, campaign.state(number))[0].tolist(),
         "runs": {name: values[name][0].tolist() for name in campaign.use.limits(True)},
     }
 
