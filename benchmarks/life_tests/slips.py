@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -21,8 +22,21 @@ from benchmarks.life_tests.drive import draw_drive
 
 Runs = dict[tuple[str, int], str]
 
+#: Kinds of warnings that name each mistake.
+KINDS: dict[str, tuple[str, ...]] = {
+    "swapped logs": ("logs exchanged",),
+    "ages of a specimen too small": ("ages scaled",),
+    "age of a run too small": ("age scaled", "ages scaled"),
+    "another machine": ("run unlike the others",),
+    "another lubricant": ("run unlike the others",),
+    "torque unit": ("torque scaled",),
+}
+#: Kinds of warnings that suspect a run of a mistake.
+SUSPECTS = {kind for kinds in KINDS.values() for kind in kinds}
 #: Least difference of two specimens, relative, by which an exchange of their logs can be seen.
 VISIBLE = 0.06
+#: Difference of two ages over the last one at which logs get exchanged: they are of one day at the stand.
+SAME_AGE = 0.15
 #: Torques that are taken for N m: by how much a number is too large.
 TORQUE_UNITS = {"lbf*in": 8.851, "kgf*cm": 10.197, "N*cm": 100.0, "ozf*in": 141.61, "mN*m": 1000.0}
 
@@ -55,6 +69,7 @@ def swapped(one: Campaign, runs: Runs, rng: Generator) -> tuple[Runs, Slip]:
         for a in units
         for b in units[a + 1 :]
         for column in range(2, min(len(one.ages[a]), len(one.ages[b])))
+        if abs(one.ages[a][column] - one.ages[b][column]) < SAME_AGE * one.ages[a][-1]
     ]
     likely = [pair for pair in sorted(pairs)[-max(3, len(pairs) // 5) :] if pair[0] > VISIBLE]
     if not likely:
@@ -170,3 +185,34 @@ def row(folder: Path) -> dict[str, Any]:
     except hersey.HerseyError as error:  # a mistake may be refused as the runs are added
         warnings = {"refused": str(error)}
     return {**told, "said": warnings}
+
+
+def warnings(found: dict[str, Any]) -> list[dict[str, Any]]:
+    """Return the warnings of a row that say that a run may be mistaken."""
+    every = [each for value in found["said"].values() if isinstance(value, list) for each in value]
+    return [each for each in every if isinstance(each, dict) and each.get("kind") in SUSPECTS]
+
+
+def named(found: dict[str, Any]) -> bool:
+    """Return whether a warning has the kind of the mistake, its specimens and, of single runs, their ages."""
+    slip = found["slip"]
+    wanted = [*slip["units"], *(f"{age}" for age in slip["ages"])]
+    for each in warnings(found):
+        text = re.sub(r"(?<=\d),(?=\d{3})", "", json.dumps(each["values"]))
+        words = set(re.findall(r"[\w.]+", text))
+        words |= {word.removesuffix(".0") for word in words}
+        if each["kind"] in KINDS[slip["kind"]] and words.issuperset(wanted):
+            return True
+    return False
+
+
+def report(rows: list[dict[str, Any]]) -> str:
+    """Return how many mistakes are named, by kind, and how many clean campaigns are suspected."""
+    wrong, clean = [row for row in rows if row["slip"]], [row for row in rows if not row["slip"]]
+    lines = ["| mistake | campaigns | named rightly | some warning |", "|---|---|---|---|"]
+    groups = {kind: [row for row in wrong if row["slip"]["kind"] == kind] for kind in KINDS} | {"all": wrong}
+    for name, those in groups.items():
+        right, some = sum(map(named, those)), sum(bool(warnings(row)) for row in those)
+        lines.append(f"| {name} | {len(those)} | {right} | {some} |")
+    suspected = sum(bool(warnings(row)) for row in clean)
+    return "\n".join([*lines, "", f"Without a mistake: {len(clean)} campaigns, {suspected} suspected."])
