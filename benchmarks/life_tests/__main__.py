@@ -5,6 +5,7 @@ Usage:
     python -m benchmarks.life_tests run NAME FIRST LAST        ask; rows go to build/life_tests/NAME.jsonl,
                                                                and a run that was stopped goes on
     python -m benchmarks.life_tests count NAME                 the tables of rows
+    python -m benchmarks.life_tests page NAME [SLIPS]          write them to benchmarks/LIFE_TESTS.md
     python -m benchmarks.life_tests slips NAME FIRST COUNT     with one mistake each, and as many without
 
 Seeds 0 to 19 are for developing, 1000 to 1199 for the count, from 2000 on for mistakes. Nobody looks at a
@@ -18,7 +19,9 @@ import sys
 from pathlib import Path
 
 from benchmarks.life_tests import campaign, product, score, slips, tables
+from benchmarks.life_tests.page import page
 
+PAGE = Path("benchmarks/LIFE_TESTS.md")
 BUILD = Path("build/life_tests")
 
 
@@ -62,8 +65,8 @@ def run_slips(name: str, first: int, count: int) -> None:
 
 def main(arguments: list[str]) -> None:
     """Do what is asked."""
-    what, name, *ends = arguments
-    numbers = [int(end) for end in ends]
+    what, name, *others = arguments
+    numbers = [int(each) for each in others if each.isdigit()]
     if what == "write":
         write(Path(name), range(numbers[0], numbers[1] + 1))
     elif what == "run":
@@ -73,6 +76,9 @@ def main(arguments: list[str]) -> None:
     elif what == "count":
         rows = score.read(BUILD / f"{name}.jsonl")
         print(slips.report(rows) if "slip" in rows[0] else score.report(rows))
+    elif what == "page":
+        mistakes = score.read(BUILD / f"{others[0]}.jsonl") if others else []
+        PAGE.write_text(page(score.read(BUILD / f"{name}.jsonl"), mistakes))
     else:
         sys.exit(__doc__)
 

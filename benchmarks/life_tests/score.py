@@ -1,8 +1,9 @@
 """Counts of a .jsonl of answers against the targets: intervals, B10 and B50, first failure modes.
 
 An interval holds the truth if it encloses it. Never, as the truth, is held if the interval has no upper end,
-if it ends beyond the ages that were looked at, or if 5 % of the draws or more never reach the limit.
-Ages that have passed, never come or are more than three times the last run are counted apart.
+if it ends beyond the ages that were looked at, or if 5 % of the draws or more never reach the limit. Ages that
+have passed or never come are counted apart, and those of which truth and estimate are beyond three times the
+last run.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from benchmarks.life_tests.modes import STARVATION, STICK_FULL, STICK_SLOW
 CLEAR, NEAR = 1.25, 1.1
 #: Share of draws from which hersey says never.
 SAID_NEVER = 0.05
-#: Ages beyond this many times the last run are far: hersey itself says that only the law speaks there.
+#: Beyond this many times the last run an age is far: hersey itself says that only the law speaks there.
 FAR = 3.0
 PLACES = ("held", "below", "above")
 MODES = {STICK_SLOW: "stick-slip", STICK_FULL: "stick-slip", STARVATION: "starvation"}
@@ -47,11 +48,13 @@ def place(asked: dict[str, Any], truth: float | None, horizon: float) -> str:
     return "held" if open_end or truth <= high else "above"
 
 
-def _when(real: float | None, last: float) -> str:
+def _when(asked: dict[str, Any], real: float | None, last: float) -> str:
     """Return what sets an age apart from those ahead, as a word."""
     if real is None:
         return " (never)"
-    return " (passed)" if real <= last else " (far)" if real > FAR * last else ""
+    said = asked["age"]["value"]
+    far = real > FAR * last and (said is None or said > FAR * last)
+    return " (passed)" if real <= last else " (far)" if far else ""
 
 
 def cases(row: dict[str, Any]) -> Iterator[Case]:
@@ -62,7 +65,7 @@ def cases(row: dict[str, Any]) -> Iterator[Case]:
     latest = max(unit["ages"][-1] for unit in truth["units"])
 
     def case(group: str, asked: dict[str, Any], real: float | None, last: float) -> Case:
-        apart = _when(real, last)
+        apart = _when(asked, real, last)
         if group[0] == "B" and apart == " (passed)":
             apart = ""
         return Case(group + apart, truth["mechanism"], place(asked, real, horizon))
