@@ -31,9 +31,9 @@ mounting, by temperature and by 0.4 to 1.5 % per dwell.
 
 A truth is the age at which the noiseless law of a specimen first meets the limit of the machine
 file; starvation is a film below 0.79 of the flooded one, whatever its law. B10 and B50 are those of
-1500 new specimens. *Held* is a 90 % interval that encloses the truth; *far* are truth and estimate beyond
-three times the last run, *passed* is a truth before it. A truth of never is held if the interval has no upper end or
-5 % of the draws never reach the limit.
+1500 new specimens. *Held* is a 90 % interval that encloses the truth; *far* are truth and estimate
+beyond three times the last run, *passed* is a truth before it. A truth of never is held if the
+interval has no upper end or 5 % of the draws never reach the limit.
 """
 
 

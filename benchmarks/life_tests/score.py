@@ -1,9 +1,9 @@
 """Counts of a .jsonl of answers against the targets: intervals, B10 and B50, first failure modes.
 
 An interval holds the truth if it encloses it. Never, as the truth, is held if the interval has no upper end,
-if it ends beyond the ages that were looked at, or if 5 % of the draws or more never reach the limit. Ages that
-have passed or never come are counted apart, and those of which truth and estimate are beyond three times the
-last run.
+if it ends beyond the ages that were looked at, or if 5 % of the draws or more never reach the limit. Ages
+that have passed or never come are counted apart, and those of which truth and estimate are beyond three
+times the last run.
 """
 
 from __future__ import annotations
