@@ -150,6 +150,8 @@ def report(rows: list[dict[str, Any]]) -> str:
     good = [row for row in rows if "answer" in row]
     lines = [f"{len(rows)} campaigns, {len(rows) - len(good)} without an answer.", ""]
     lines += [f"- {row['seed']}: {row['error']}" for row in rows if "answer" not in row]
+    logs = sum(len(row.get("refused", {})) for row in good)
+    lines += [f"{logs} logs refused.", ""]
     renewed = [row for row in good if row["truth"]["re-greased at"]]
     others = [row for row in good if row not in renewed]
     lines += _apart([case for row in others for case in cases(row)]) + _firsts(others)

@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 import re
 from dataclasses import asdict, dataclass, replace
@@ -22,17 +23,19 @@ from benchmarks.life_tests.drive import draw_drive
 
 Runs = dict[tuple[str, int], str]
 
-#: Kinds of warnings that name each mistake.
-KINDS: dict[str, tuple[str, ...]] = {
-    "swapped logs": ("logs exchanged",),
-    "ages of a specimen too small": ("ages scaled",),
-    "age of a run too small": ("age scaled", "ages scaled"),
-    "another machine": ("run unlike the others",),
-    "another lubricant": ("run unlike the others",),
-    "torque unit": ("torque scaled",),
+#: Kind of the warning that names each mistake.
+KINDS = {
+    "swapped logs": "logs exchanged",
+    "ages of a specimen too small": "ages scaled",
+    "age of a run too small": "age scaled",
+    "another machine": "another machine",
+    "another lubricant": "another lubricant",
+    "torque unit": "torque scaled",
 }
 #: Kinds of warnings that suspect a run of a mistake.
-SUSPECTS = {kind for kinds in KINDS.values() for kind in kinds}
+SUSPECTS = {*KINDS.values(), "ages exchanged", "torques scaled", "same log"}
+#: Factor within which a factor is named.
+CLOSE = 2.0
 #: Least difference of two specimens, relative, by which an exchange of their logs can be seen.
 VISIBLE = 0.06
 #: Difference of two ages over the last one at which logs get exchanged: they are of one day at the stand.
@@ -179,12 +182,9 @@ def row(folder: Path) -> dict[str, Any]:
     import hersey
 
     told = json.loads((folder / "slip.json").read_text())
-    try:
-        with hersey.Campaign.open(product.campaign_file(folder), write=False) as campaign:
-            warnings = campaign.check().to_dict()
-    except hersey.HerseyError as error:  # a mistake may be refused as the runs are added
-        warnings = {"refused": str(error)}
-    return {**told, "said": warnings}
+    with hersey.Campaign.open(product.campaign_file(folder), write=False) as campaign:
+        said = campaign.check().to_dict()
+    return {**told, "said": said, "refused": product.refused(folder)}
 
 
 def warnings(found: dict[str, Any]) -> list[dict[str, Any]]:
@@ -193,26 +193,44 @@ def warnings(found: dict[str, Any]) -> list[dict[str, Any]]:
     return [each for each in every if isinstance(each, dict) and each.get("kind") in SUSPECTS]
 
 
-def named(found: dict[str, Any]) -> bool:
-    """Return whether a warning has the kind of the mistake, its specimens and, of single runs, their ages."""
+def found_run(found: dict[str, Any]) -> bool:
+    """Return whether a warning has the specimens of the mistake and, of single runs, their ages."""
     slip = found["slip"]
     wanted = [*slip["units"], *(f"{age}" for age in slip["ages"])]
-    for each in warnings(found):
-        text = re.sub(r"(?<=\d),(?=\d{3})", "", json.dumps(each["values"]))
-        words = set(re.findall(r"[\w.]+", text))
-        words |= {word.removesuffix(".0") for word in words}
-        if each["kind"] in KINDS[slip["kind"]] and words.issuperset(wanted):
-            return True
-    return False
+    return any(_words(each).issuperset(wanted) for each in warnings(found))
+
+
+def named(found: dict[str, Any]) -> bool:
+    """Return whether a warning has, beside the runs of the mistake, its kind and about its factor."""
+    slip = found["slip"]
+    factor = 1 / slip["factor"] if slip["kind"].startswith("age") else slip["factor"]
+    right = [
+        each
+        for each in warnings(found)
+        if each["kind"] == KINDS[slip["kind"]]
+        and (factor == 1 or abs(math.log(each["values"].get("factor", 1.0) / factor)) < math.log(CLOSE))
+    ]
+    return found_run({**found, "said": {"warnings": right}})
+
+
+def _words(warning: dict[str, Any]) -> set[str]:
+    """Return the words and numbers of the facts of a warning."""
+    text = re.sub(r"(?<=\d),(?=\d{3})", "", json.dumps(warning["values"]))
+    words = set(re.findall(r"[\w.]+", text))
+    return words | {word.removesuffix(".0") for word in words}
 
 
 def report(rows: list[dict[str, Any]]) -> str:
     """Return how many mistakes are named, by kind, and how many clean campaigns are suspected."""
     wrong, clean = [row for row in rows if row["slip"]], [row for row in rows if not row["slip"]]
-    lines = ["| mistake | campaigns | named rightly | some warning |", "|---|---|---|---|"]
+    lines = ["| mistake | campaigns | named rightly | run named | some warning |", "|---|---|---|---|---|"]
     groups = {kind: [row for row in wrong if row["slip"]["kind"] == kind] for kind in KINDS} | {"all": wrong}
     for name, those in groups.items():
-        right, some = sum(map(named, those)), sum(bool(warnings(row)) for row in those)
-        lines.append(f"| {name} | {len(those)} | {right} | {some} |")
+        counts = (
+            sum(map(named, those)),
+            sum(map(found_run, those)),
+            sum(bool(warnings(row)) for row in those),
+        )
+        lines.append(f"| {name} | {len(those)} | {' | '.join(map(str, counts))} |")
     suspected = sum(bool(warnings(row)) for row in clean)
     return "\n".join([*lines, "", f"Without a mistake: {len(clean)} campaigns, {suspected} suspected."])

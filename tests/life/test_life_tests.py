@@ -67,8 +67,8 @@ def test_where_the_truth_is(low: float, high: float, never: float, truth: float,
 
 
 def test_a_mistake_is_named_by_kind_specimen_and_age() -> None:
-    slip = {"kind": "swapped logs", "units": ["U1", "U2"], "ages": [5000, 5200]}
-    kind = slips.KINDS["swapped logs"][0]
+    slip = {"kind": "swapped logs", "units": ["U1", "U2"], "ages": [5000, 5200], "factor": 1.0}
+    kind = slips.KINDS["swapped logs"]
 
     def said(**values: object) -> bool:
         return slips.named({"slip": slip, "said": {"warnings": [{"kind": kind, "values": values}]}})
@@ -77,3 +77,15 @@ def test_a_mistake_is_named_by_kind_specimen_and_age() -> None:
     assert said(first="U1", second="U2", ages=[5000.0, 5200.0])
     assert not said(specimens="U1, U3", ages="5000, 5200")
     assert not said(specimens="U1, U2", ages="5000, 5300")
+
+
+def test_a_factor_is_named_if_it_is_about_right() -> None:
+    slip = {"kind": "ages of a specimen too small", "units": ["U1"], "ages": [], "factor": 1000.0}
+
+    def said(factor: float) -> bool:
+        warning = {"kind": "ages scaled", "values": {"unit": "U1", "factor": factor}}
+        return slips.named({"slip": slip, "said": {"warnings": [warning]}})
+
+    assert said(0.0012)
+    assert not said(0.0001)
+    assert not said(1000.0)
