@@ -34,9 +34,18 @@ def campaign_file(folder: Path) -> Path:
                 campaign.add(points, log=run.log, unit=run.unit, age=run.age, fit=fit)
             except hersey.HerseyError as error:
                 refused[run.log.name] = str(error)
+        for unit, age in _maintenance(folder):
+            campaign.add_event(unit, age, "re-greased")
     (folder / "refused.json").write_text(json.dumps(refused, indent=1) + "\n")
     half.rename(file)
     return file
+
+
+def _maintenance(folder: Path) -> list[tuple[str, str]]:
+    """Return specimens and ages at which grease was renewed."""
+    file = folder / "maintenance.csv"
+    rows = file.read_text().splitlines()[1:] if file.exists() else []
+    return [(unit, age) for unit, age in (row.split(",") for row in rows)]
 
 
 def refused(folder: Path) -> dict[str, str]:
