@@ -107,13 +107,18 @@ class AgeingMaps(Result):
 
     def summary(self) -> str:
         """Return the state of the belt at each operating point and age as text."""
-        lines = [self.headline()]
+        states = (f"  {each}" for each in self.states())
+        return "\n".join([self.headline(), *states, *(f"- {each}" for each in self.warnings)])
+
+    def states(self) -> list[str]:
+        """Return the state of the belt at each operating point and age, a line for each point."""
+        lines = []
         for point in self.points:
             if self.temperature[0] <= point.temperature <= self.temperature[-1]:
                 states = (f"{when} {self.state(i, point)}" for i, when in enumerate(self.when))
                 at = f"{1e3 * point.speed:.3g} mm/s at {celsius(point.temperature):.3g} degC"
-                lines.append(f"  {point.name}, {at}: {', '.join(states)}")
-        return "\n".join([*lines, *(f"- {each}" for each in self.warnings)])
+                lines.append(f"{point.name}, {at}: {', '.join(states)}")
+        return lines
 
     def to_frame(self) -> pl.DataFrame:
         """Return one row per age and temperature."""

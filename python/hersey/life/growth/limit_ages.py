@@ -29,6 +29,10 @@ DEVIATIONS = 1.645
 BEYOND, BEYOND_SUM, _OWN = 0.10, 0.15, 0.3
 #: Share of draws from which "never" is worth a word.
 _SAID = 0.05
+#: Probability of having failed from which a specimen has failed, and up to which it is still running.
+FAILED, RUNNING = 0.95, 0.05
+#: Fewest specimens that show how specimens differ: fewer make no population.
+POPULATION = 4
 #: Integrals over age: places and weights, turns of the search and where it ends, the greatest logarithm.
 _NODES, _HEIGHTS = np.polynomial.legendre.leggauss(8)
 _PLACES, _PARTS = 0.5 * (1.0 + _NODES), 0.5 * _HEIGHTS
@@ -47,7 +51,7 @@ class Interval(Record):
 
     def __str__(self) -> str:
         """Return value and limits with sensible digits."""
-        value, low, high = (_number(v) for v in (self.value, self.low, self.high))
+        value, low, high = (rounded(v) for v in (self.value, self.low, self.high))
         return f"{value} [{low}, {high}]"
 
 
@@ -72,9 +76,20 @@ class AgeAtLimit(Record):
         return f"{self.unit}: {self.age}{self.outcome}"
 
     @property
+    def state(self) -> str:
+        """Whether the specimen has ``failed``, is ``running`` or ``unclear``, when last seen."""
+        if self.passed >= FAILED:
+            return "failed"
+        return "unclear" if self.passed > RUNNING else "running"
+
+    @property
     def outcome(self) -> str:
         """Whether it has passed already, or may never come, in words that follow the age."""
-        words = f", already passed (last seen at {self.last:.10g})" if self.passed > 0.5 else ""
+        words, seen = "", f" (last seen at {self.last:.10g})"
+        if self.state == "failed":
+            words = f", already passed{seen}"
+        elif self.state == "unclear":
+            words = f", passed with a probability of {percent(self.passed)}{seen}"
         return words + (f", never in {self.never:.0%} of draws" if self.never > _SAID else "")
 
 
@@ -86,8 +101,11 @@ class AgesAtLimit(Result):
     age_unit: str
     limit: float
     units: tuple[AgeAtLimit, ...]
-    b10: AgeAtLimit  #: a tenth of new specimens has reached it
-    b50: AgeAtLimit
+    b10: Annotated[
+        AgeAtLimit | None,
+        Means("a tenth of new specimens has reached it; null for fewer than four"),
+    ]
+    b50: AgeAtLimit | None
     warnings: tuple[Warning, ...]
     accumulates: Annotated[bool, Means("whether the limit applies to the integral over age")] = (
         False  #: the limit is that of the integral over age
@@ -97,19 +115,27 @@ class AgesAtLimit(Result):
         """Return the ages as text."""
         unit = f" ({self.age_unit})" if self.age_unit else ""
         lines = [f"age{unit} at which {self.quantity} reaches {self.limit:.4g}, with 90 % intervals"]
-        lines += [f"  {each}" for each in (*self.units, self.b10, self.b50)]
+        lines += [f"  {each}" for each in self.rows]
         return "\n".join([*lines, *(f"- {each}" for each in self.warnings)])
 
     def headline(self) -> str:
-        """Return the age at which half of the population reaches the limit."""
-        age = f"{self.b50.age} {self.age_unit}"
-        return f"half of new specimens reach {self.quantity} = {self.limit:.4g} at {age}"
+        """Return the age at which half of the population reaches the limit, or the first specimen."""
+        limit = f"{self.quantity} = {self.limit:.4g}"
+        if self.b50 is not None:
+            return f"half of new specimens reach {limit} at {self.b50.age} {self.age_unit}"
+        first = min(self.units, key=lambda each: each.age.value)
+        return f"{first.unit} reaches {limit} at {first.age} {self.age_unit}"
+
+    @property
+    def rows(self) -> tuple[AgeAtLimit, ...]:
+        """The specimens, then the population where there is one."""
+        return (*self.units, *(each for each in (self.b10, self.b50) if each is not None))
 
     def to_frame(self) -> pl.DataFrame:
         """Return one row per specimen, then the population; infinite if never reached."""
         import polars as pl
 
-        rows = [*self.units, self.b10, self.b50]
+        rows = self.rows
         unit = self.age_unit or "1"
         return pl.DataFrame(
             {
@@ -134,6 +160,13 @@ def share_of_specimens(ages: FloatArray, share: float) -> AgeAtLimit:
     return age_at_limit(f"B{share * 100:.0f}", ages[:, math.ceil(share * ages.shape[1]) - 1])
 
 
+def of_population(ages: FloatArray, specimens: int) -> tuple[AgeAtLimit, AgeAtLimit] | tuple[None, None]:
+    """B10 and B50 as `share_of_specimens`, of a population that so many specimens show; None for too few."""
+    if specimens < POPULATION:
+        return None, None
+    return share_of_specimens(ages, 0.1), share_of_specimens(ages, 0.5)
+
+
 def ages_at_limit(
     quantity: str,
     age_unit: str,
@@ -151,8 +184,7 @@ def ages_at_limit(
     """
     quantity = f"the sum of {quantity} over age" if accumulates else quantity
     known = [age_at_limit(name, own.known[:, i], float(last[i])) for i, name in enumerate(names)]
-    new = np.sort(own.new, axis=1)
-    b10, b50 = (share_of_specimens(new, share) for share in (0.1, 0.5))
+    b10, b50 = of_population(np.sort(own.new, axis=1), len(known))
     return AgesAtLimit(quantity, age_unit, limit, tuple(known), b10, b50, warnings, accumulates)
 
 
@@ -229,6 +261,13 @@ def interval(values: FloatArray) -> Interval:
     return Interval(median, low, high)
 
 
-def _number(value: float) -> str:
-    """Three digits, those of pages without a power of ten."""
-    return "never" if math.isinf(value) else f"{float(f'{value:.3g}'):.10g}"
+def rounded(age: float, digits: int = 3) -> str:
+    """Return an age with so many digits, those of pages without a power of ten; "never" if infinite."""
+    return "never" if math.isinf(age) else f"{float(f'{age:.{digits}g}'):.10g}"
+
+
+def percent(share: float) -> str:
+    """Return a probability in per cent that is neither certain nor impossible, as ``97 %``."""
+    if share > 0.99:
+        return "over 99 %"
+    return "below 1 %" if share < 0.01 else f"{100.0 * share:.0f} %"
