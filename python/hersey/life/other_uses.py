@@ -13,7 +13,7 @@ import numpy as np
 
 from hersey.arrays import one_thread
 from hersey.errors import HerseyError, ParameterError
-from hersey.life.growth.limit_ages import Interval, share_of_specimens
+from hersey.life.growth.limit_ages import Earliest, Interval, share_of_specimens
 from hersey.life.indicators.load_cases import load_cases
 from hersey.life.indicators.of_campaign import indicators_of
 from hersey.life.indicators.run_dwells import read_runs_of
@@ -201,7 +201,8 @@ class _Ways:
         of_runs = correlations([way.residuals for way in ways])
         units, _ = ends_of_specimens(ways, of_runs, indicators.runs.units, last_ages(indicators), random)
         first = np.sort(reduce(np.minimum, ages_of_new(ways, of_runs, random)), axis=1)
-        shares = [share_of_specimens(first, share) for share in (0.1, 0.5)]
+        least = Earliest.of_first([way.earliest for way in ways])
+        shares = [share_of_specimens(first, 0.1, least.b10), share_of_specimens(first, 0.5, least.b50)]
         return (
             *(UseEnd(each.unit, each.age.age, each.ways) for each in units),
             *(UseEnd(each.unit, each.age, "") for each in shares),

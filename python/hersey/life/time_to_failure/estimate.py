@@ -15,12 +15,14 @@ from hersey.errors import HerseyError, InsufficientDataError, capital, sentence
 from hersey.life.growth.limit_ages import (
     CONFIDENCE,
     AgeAtLimit,
+    Earliest,
     Interval,
     quantiles,
     share_of_specimens,
 )
 from hersey.life.indicator import NOT_JUDGED, Indicators
 from hersey.life.population import Population, weibull
+from hersey.life.time_to_failure.ageing import Ageing, ageing_of, before
 from hersey.life.time_to_failure.first import SpecimenEnd, ages_of_new, ends_of_specimens
 from hersey.life.time_to_failure.joined import correlations
 from hersey.life.time_to_failure.next_run import (
@@ -44,6 +46,8 @@ if TYPE_CHECKING:
 _PLACES = 121
 #: Specimens, of the widest intervals, for which a further run is weighed; advice that the summary gives.
 _WEIGHED, _ADVISED = 24, 3
+#: Share of an interval that a run must be expected to narrow to be named.
+_NARROWS = 0.01
 #: Rows that a summary shows.
 _SHOWN = 24
 #: Failure modes of one reason that an error names.
@@ -70,6 +74,9 @@ class TimeToFailure(Result):
     age_unit: str
     modes: tuple[Mode, ...]
     units: tuple[SpecimenEnd, ...]
+    ageing: Annotated[
+        Ageing, Means("whether anything ages, and the earliest age at which a specimen can fail")
+    ]
     b10: Annotated[
         AgeAtLimit, Means("age by which a tenth of new specimens has failed, by any mode")
     ]  #: a tenth of new specimens has ended, by whichever way
@@ -114,16 +121,19 @@ class TimeToFailure(Result):
         lines += [f"  {self.b10}", f"  {self.b50}"]
         ordered = sorted(self.shares.items(), key=lambda item: -item[1].value)
         shares = ", ".join(f"{name} {each.value:.0%}" for name, each in ordered if each.value >= 0.005)
+        if shares:
+            lines.append(f"share of new specimens that fail by each mode: {shares}")
         lines += [
-            f"share of new specimens that fail by each mode: {shares}",
             f"age{of_unit} at which half of new specimens reach each limit, if it were the only one",
         ]
         soon = FAR * max(each.age.last for each in self.units)
-        far = [mode.name for mode in self.modes if mode.ages.b50.age.low > soon]
+        far = [mode.name for mode in self.modes if mode.grows and mode.ages.b50.age.low > soon]
         for mode in self.modes:
             sign = " (a precursor, not a failure)" if mode.sign else ""
             if mode.name not in far:
-                lines.append(f"  {mode.name}{sign}: {mode.ages.b50}")
+                lines.append(
+                    f"  {mode.name}{sign}: {mode.ages.b50}{'' if mode.grows else ', no growth shown'}"
+                )
         if far:
             lines.append(
                 f"  half of new specimens reach these later than {FAR:g} times the age followed: "
@@ -138,17 +148,25 @@ class TimeToFailure(Result):
     def headline(self) -> str:
         """Return the age by which half of new specimens fail, and the main failure mode."""
         unit = f" {self.age_unit}" if self.age_unit else ""
+        if self.ageing.shown == "none":
+            return self.ageing.headline(self.age_unit)
         if len(self.units) < FEW:
             first = min(self.units, key=lambda each: each.age.age.value)
             by = " or ".join(first.named) or "no known failure mode"
-            return f"{first.unit} fails at {first.age.age}{unit} by {by}"
+            at = f"at {first.age.age}" if math.isfinite(first.age.age.value) else str(first.age.age)
+            return f"{first.unit} fails {at}{unit} by {by}"
+        if math.isinf(self.b50.age.value):
+            least = before(self.b50.age.low, self.age_unit) if math.isfinite(self.b50.age.low) else "any age"
+            return f"fewer than half of new specimens fail before {least}"
         likely = max(self.shares, key=lambda name: self.shares[name].value)
         return f"half of new specimens fail by {self.b50.age}{unit}, mostly by {likely}"
 
     @property
     def advice(self) -> tuple[str, ...]:
         """What to measure next, in words."""
-        return tuple(each.words(self.age_unit) for each in self.next_runs[:_ADVISED])
+        go_on = self.ageing.advice(self.age_unit)
+        runs = [each.words(self.age_unit) for each in self.next_runs[:_ADVISED]]
+        return (go_on, *runs) if go_on else tuple(runs)
 
     def to_frame(self) -> pl.DataFrame:
         """Return one row per specimen and failure mode, and the first of all; infinite if never reached."""
@@ -180,7 +198,11 @@ class TimeToFailure(Result):
 @one_thread()
 @takes_si()
 def time_to_failure(
-    indicators: Indicators, *, seed: int = 0, progress: Callable[[int, int], None] | None = None
+    indicators: Indicators,
+    *,
+    goal: float | None = None,
+    seed: int = 0,
+    progress: Callable[[int, int], None] | None = None,
 ) -> TimeToFailure:
     """Return how and when each specimen fails, from the indicators of the runs.
 
@@ -193,6 +215,8 @@ def time_to_failure(
     ----------
     indicators
         Indicators of the runs; those that cannot be fitted appear in the warnings with the reason.
+    goal
+        Age that specimens should reach, in the unit of the ages.
     seed
         Of the draws: the same data and seed give the same result.
     progress
@@ -224,18 +248,22 @@ def time_to_failure(
     new = np.stack(list(ages_of_new(ending, of_runs, random)))
     greatest = float(indicators.runs.age.max())
     first = np.sort(new.min(axis=0), axis=1)
-    b10, b50 = (share_of_specimens(first, share) for share in (0.1, 0.5))
+    least = Earliest.of_first([each.earliest for each in ending])
+    b10, b50 = share_of_specimens(first, 0.1, least.b10), share_of_specimens(first, 0.5, least.b50)
     runs = [*_again(ending, units, picks, of_runs, greatest, random), *_one_more(first, greatest, random)]
     modes = tuple(each.mode for each in fitted)
     return TimeToFailure(
         age_unit=indicators.runs.age_unit,
         modes=modes,
         units=units,
+        ageing=ageing_of(ending, greatest, goal),
         b10=b10,
         b50=b50,
         shares=_shares(ending, new),
         curve=_curve(first, greatest),
-        next_runs=tuple(sorted(runs, key=lambda each: -each.narrowing)),
+        next_runs=tuple(
+            sorted((run for run in runs if run.narrowing > _NARROWS), key=lambda each: -each.narrowing)
+        ),
         together=_together(ending, of_runs),
         warnings=(*warnings, *unsure(ending, units, _together(ending, of_runs)), *_of_modes(ending, units)),
         seed=seed,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Annotated
@@ -18,6 +19,8 @@ from hersey.result import Means, Record
 NAMED = 0.9
 #: A way is named from this probability on, and where its age is so little later than the first.
 MENTIONED, NEAR = 0.05, 1.25
+#: Stands for the failure mode of a specimen that no mode can be expected to end.
+_NONE = "none shows growth"
 
 
 @dataclass(frozen=True)
@@ -54,13 +57,15 @@ class SpecimenEnd(Record):
     def ways(self) -> str:
         """The ways in words."""
         likely = [name for name in self.named if self.first[name] >= MENTIONED]
+        if not likely and math.isinf(self.age.age.value):
+            return _NONE
         text = " or ".join(f"{name} ({self.first[name]:.0%})" for name in likely) or "no known failure mode"
         behind = [name for name in self.named if name not in likely]
         return text + (f", close behind {' and '.join(behind)}" if behind else "")
 
     def __str__(self) -> str:
         """Return it in words."""
-        return f"{self.age} by {self.ways}"
+        return str(self.age) if self.ways == _NONE else f"{self.age} by {self.ways}"
 
 
 def ends_of_specimens(
@@ -78,7 +83,8 @@ def ends_of_specimens(
         joint = np.take_along_axis(keys, order, axis=0)
         first = joint.min(axis=1)
         shares = {e.mode.name: float(s) for e, s in zip(ending, _firsts(joint.T), strict=True)}
-        end = age_at_limit(name, first, last[name])
+        least = min(float(each.earliest.units[i]) for each in ending)
+        end = age_at_limit(name, first, last[name], least)
         middle = {e.mode.name: float(np.median(e.ages[:, i])) for e in ending}
         near = tuple(way for way, age in middle.items() if age <= NEAR * end.age.value < np.inf)
         found.append(SpecimenEnd(name, end, shares, near))

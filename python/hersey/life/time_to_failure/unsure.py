@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 
 from hersey.life.time_to_failure.first import SpecimenEnd
@@ -20,7 +21,7 @@ def unsure(
     ending: Sequence[FittedWay], units: Sequence[SpecimenEnd], together: Sequence[str]
 ) -> Iterator[Warning]:
     """Yield what is not known of all ends; ``together`` are failure modes whose runs scatter together."""
-    named = {name for each in units for name in each.named}
+    named = {name for each in units if math.isfinite(each.age.age.value) for name in each.named}
     unnamed = [e.mode.name for e in ending if e.mode.growth.law is None and e.mode.name in named]
     if unnamed:
         yield Warning(
@@ -64,7 +65,8 @@ def _of_specimens(units: Sequence[SpecimenEnd]) -> Iterator[Warning]:
             severity="act",
             specimens=listed(passed),
         )
-    near = [each.unit for each in units if len(each.named) > 1]
+    ends = [each for each in units if math.isfinite(each.age.age.value)]
+    near = [each.unit for each in ends if len(each.named) > 1]
     if near:
         yield Warning(
             "first mode unknown",
@@ -72,7 +74,7 @@ def _of_specimens(units: Sequence[SpecimenEnd]) -> Iterator[Warning]:
             severity="watch",
             specimens=listed(near),
         )
-    wide = [each.unit for each in units if each.age.age.high > _WIDE * max(each.age.age.low, 1e-300)]
+    wide = [each.unit for each in ends if each.age.age.high > _WIDE * max(each.age.age.low, 1e-300)]
     if wide:
         yield Warning(
             "age uncertain",
@@ -81,7 +83,7 @@ def _of_specimens(units: Sequence[SpecimenEnd]) -> Iterator[Warning]:
             specimens=listed(wide),
             factor=_WIDE,
         )
-    far = [each.unit for each in units if each.age.age.value > FAR * each.age.last]
+    far = [each.unit for each in ends if each.age.age.value > FAR * each.age.last]
     if far:
         yield Warning(
             "end far off",
