@@ -12,7 +12,7 @@ import pytest
 
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.life.growth import fit as growth_module
-from hersey.life.growth import marginal
+from hersey.life.growth import limit_ages, marginal
 from hersey.life.growth.fit import fit_growth
 from hersey.life.indicator import NOT_JUDGED, Indicator, Indicators, OwnAges, Runs
 from hersey.life.time_to_failure import joined, next_run
@@ -171,8 +171,8 @@ def test_far_and_wide_ends_are_said() -> None:
 @pytest.fixture
 def laws_hold_on(monkeypatch: pytest.MonkeyPatch) -> None:
     """As if a law held beyond the last run as it did up to there."""
-    monkeypatch.setattr(growth_module, "BEYOND", 0.0)
-    monkeypatch.setattr(growth_module, "BEYOND_SUM", 0.0)
+    monkeypatch.setattr(limit_ages, "BEYOND", 0.0)
+    monkeypatch.setattr(limit_ages, "OWN_BEYOND", 0.0)
 
 
 def test_beyond_the_last_run_a_law_is_less_sure() -> None:
@@ -208,7 +208,7 @@ def test_the_integral_of_each_law_is_that_of_its_curve(law: str) -> None:
     units = marginal.Specimens(
         found_law, np.zeros((4, 3)), np.array([[-2.0, 0.0, 1.0]] * 4), shapes, np.ones((4, 1))
     )
-    found = growth_module.ages_of_sum(units, np.full((4, 1), math.log(1.7)))
+    found = limit_ages.ages_of_sum(units, np.full((4, 1), math.log(1.7)))
     for i, j in np.ndindex(found.shape):
         t = np.linspace(0.0, found[i, j], 20_001)
         x, a = units.size[i, j], units.shape[:, i]

@@ -13,7 +13,7 @@ import numpy as np
 
 from hersey.arrays import one_thread
 from hersey.errors import HerseyError, ParameterError
-from hersey.life.growth.limit_ages import Interval, of_population
+from hersey.life.growth.limit_ages import Earliest, Interval, of_population
 from hersey.life.indicators.load_cases import load_cases
 from hersey.life.indicators.of_campaign import indicators_of
 from hersey.life.indicators.run_dwells import read_runs_of
@@ -216,7 +216,8 @@ class _Ways:
         of_runs = correlations([way.residuals for way in ways])
         units, _ = ends_of_specimens(ways, of_runs, indicators.runs.units, last_ages(indicators), random)
         first = np.sort(reduce(np.minimum, ages_of_new(ways, of_runs, random)), axis=1)
-        b10, b50 = of_population(first, len(units))
+        least = Earliest.of_first([way.earliest for way in ways])
+        b10, b50 = of_population(first, len(units), least)
         ends = tuple(UseEnd(each.unit, each.age.age, each.ways) for each in units)
         if b10 is None or b50 is None:
             return ends, None, None

@@ -31,7 +31,7 @@ def decision(found: TimeToFailure) -> dict[str, Any]:
     last = max(each.age.last for each in found.units)
     return {
         "signal": SIGNALS[worst],
-        "lead": attention.words(found.age_unit),
+        "lead": found.lead(),
         "more": [found.of_new()] if found.of_new() else [],
         "next": [sentence(each) for each in found.advice],
         "heads": ["Specimen", "State", "Failure mode", f"Expected{of_unit}", f"90 % interval{of_unit}"],
@@ -50,7 +50,7 @@ def _row(each: SpecimenEnd) -> dict[str, Any]:
         "state": each.state.capitalize()
         + ("" if each.state == "running" else f", {percent(each.age.passed)}"),
         "specimen": each.unit,
-        "modes": " or ".join(each.likely) or "no known failure mode",
+        "modes": " or ".join(each.likely) or "none shows growth",
         "expected": _expected(each),
         "age": each.age.age.to_dict(),
         "last": each.age.last,
@@ -63,9 +63,11 @@ def _expected(each: SpecimenEnd) -> str:
     if each.state == "unclear":
         return f"before {rounded(age.high)}" if math.isfinite(age.high) else "unknown"
     far = FAR * each.age.last if each.age.last > 0.0 else math.inf
-    if age.value > far or math.isinf(age.value):
-        return f"after {rounded(min(age.low, far))}" if math.isfinite(min(age.low, far)) else "unknown"
-    return rounded(age.value)
+    if math.isinf(age.value) and math.isfinite(age.low):
+        return f"after {rounded(age.low)}"
+    if age.value > far:
+        return f"after {rounded(min(age.low, far))}"
+    return rounded(age.value) if math.isfinite(age.value) else "unknown"
 
 
 def _end(specimens: list[SpecimenEnd], last: float) -> float:

@@ -45,7 +45,7 @@ class Attention(Record):
         need = "specimen needs" if count == 1 else "specimens need"
         lines = [f"{_number(count)} {need} attention" + ": " * bool(count) + ", ".join(filter(None, said))]
         if self.look_again is not None:
-            age = f"{rounded(self.look_again, 3)} {age_unit}".strip()
+            age = f"{rounded(self.look_again)} {age_unit}".strip()
             lines.append(f"{self._others} should reach at least {age}")
         return [sentence(each) for each in lines]
 
@@ -74,13 +74,13 @@ def half_failed(b50: Interval, shares: dict[str, Interval], age_unit: str) -> st
     """Return the age by which half of new specimens fail, and the main failure mode, as a sentence."""
     unit = f" {age_unit}" if age_unit else ""
     if math.isinf(b50.value):
-        return "Less than half of new specimens are expected to fail."
-    ends = f"{rounded(b50.low, 3)} to {rounded(b50.high, 3)}"
-    if math.isinf(b50.high):
-        ends = f"later than {rounded(b50.low, 3)}"
+        least = f"{rounded(b50.low)}{unit}" if math.isfinite(b50.low) else "any age"
+        return f"Fewer than half of new specimens fail before {least}."
+    high = "no upper limit" if math.isinf(b50.high) else rounded(b50.high)
+    ends = f"{rounded(b50.low)} to {high}"
     likely = max(shares, key=lambda name: shares[name].value)
     by = "mostly" if shares[likely].value > 0.5 else "most often"
-    return f"Half of new specimens fail by {rounded(b50.value, 3)}{unit} (90 %: {ends}), {by} by {likely}."
+    return f"Half of new specimens fail by {rounded(b50.value)}{unit} (90 %: {ends}), {by} by {likely}."
 
 
 def _number(count: int) -> str:

@@ -24,12 +24,14 @@ from hersey.life.age import Age
 from hersey.life.growth.limit_ages import (
     POPULATION,
     AgeAtLimit,
+    Earliest,
     Interval,
     of_population,
     quantiles,
     rounded,
 )
 from hersey.life.indicator import NOT_JUDGED, Indicators
+from hersey.life.time_to_failure.ageing import Ageing, ageing_of
 from hersey.life.time_to_failure.attention import Attention, attention_of, half_failed
 from hersey.life.time_to_failure.first import SpecimenEnd, ages_of_new, ends_of_specimens
 from hersey.life.time_to_failure.joined import correlations
@@ -73,6 +75,9 @@ class TimeToFailure(Result):
     age_unit: str
     modes: tuple[Mode, ...]
     units: tuple[SpecimenEnd, ...]
+    ageing: Annotated[
+        Ageing, Means("whether anything ages, and the earliest age at which a specimen can fail")
+    ]
     b10: Annotated[
         AgeAtLimit | None,
         Means(
@@ -135,19 +140,19 @@ class TimeToFailure(Result):
             return []
         ordered = sorted(self.shares.items(), key=lambda item: -item[1].value)
         shares = ", ".join(f"{name} {each.value:.0%}" for name, each in ordered if each.value >= 0.005)
-        lines = [
-            f"  {self.b10}",
-            f"  {self.b50}",
-            f"share of new specimens that fail by each mode: {shares}",
+        lines = [f"  {self.b10}", f"  {self.b50}"]
+        if shares:
+            lines.append(f"share of new specimens that fail by each mode: {shares}")
+        lines += [
             f"age{of_unit} at which half of new specimens reach each limit, if it were the only one",
         ]
         half = [(mode, mode.ages.b50) for mode in self.modes if mode.ages.b50 is not None]
         soon = FAR * max(each.age.last for each in self.units)
-        far = [mode.name for mode, b50 in half if b50.age.low > soon]
+        far = [mode.name for mode, b50 in half if mode.grows and b50.age.low > soon]
         for mode, b50 in half:
             sign = " (a precursor, not a failure)" if mode.sign else ""
             if mode.name not in far:
-                lines.append(f"  {mode.name}{sign}: {b50}")
+                lines.append(f"  {mode.name}{sign}: {b50}{'' if mode.grows else ', no growth shown'}")
         if far:
             lines.append(
                 f"  half of new specimens reach these later than {FAR:g} times the age followed: "
@@ -157,24 +162,31 @@ class TimeToFailure(Result):
 
     def headline(self) -> str:
         """Return which specimens need attention, and what age the others should reach."""
-        return " ".join(self.attention.words(self.age_unit))
+        return " ".join(self.lead())
+
+    def lead(self) -> list[str]:
+        """Return which specimens need attention, or that nothing grows, as sentences."""
+        if self.ageing.shown == "none" and not (self.attention.failed or self.attention.unclear):
+            return [sentence(self.ageing.headline(self.age_unit))]
+        return self.attention.words(self.age_unit)
 
     def of_new(self) -> str:
-        """Return when half of new specimens fail, and by which mode; empty for fewer than four specimens."""
-        if self.b50 is None or self.shares is None:
+        """Return when half of new specimens fail, and how; empty without a population or growth."""
+        if self.b50 is None or self.shares is None or self.ageing.shown == "none":
             return ""
         return half_failed(self.b50.age, self.shares, self.age_unit)
 
     @property
     def advice(self) -> tuple[str, ...]:
-        """What to do next, in words: failed specimens to inspect, then runs."""
+        """What to do next, in words: specimens to inspect, how long to go on without growth, runs."""
         failed = [
             f"inspect {each.unit} for {' or '.join(each.likely)}"
             for each in self.units
             if each.state == "failed"
         ]
+        go_on = [self.ageing.advice(self.age_unit)]
         runs = [each.words(self.age_unit) for each in self.next_runs]
-        return (*failed[:_ADVISED], *runs[:_ADVISED])
+        return (*failed[:_ADVISED], *filter(None, go_on), *runs[:_ADVISED])
 
     def planning(self) -> str:
         """Return how to state the age that specimens should reach; empty if it was stated."""
@@ -232,8 +244,8 @@ def time_to_failure(
     indicators
         Indicators of the runs; those that cannot be fitted appear in the warnings with the reason.
     until
-        Age that specimens should reach, e.g. "250000 pages": `next_runs` are those that show best which do.
-        Without it they show which specimens have failed.
+        Age that specimens should reach, e.g. "250000 pages". `next_runs` are those that show best which do;
+        without it, which have failed. Where nothing grows `ageing` says how long to go on.
     seed
         Of the draws: the same data and seed give the same result.
     progress
@@ -268,7 +280,8 @@ def time_to_failure(
     new = np.stack(list(ages_of_new(ending, of_runs, random)))
     greatest = float(indicators.runs.age.max())
     first = np.sort(new.min(axis=0), axis=1)
-    b10, b50 = of_population(first, len(units))
+    least = Earliest.of_first([each.earliest for each in ending])
+    b10, b50 = of_population(first, len(units), least)
     known = len(units) >= POPULATION
     runs = next_runs(ending, units, picks, of_runs, asked, random)
     modes = tuple(each.mode for each in fitted)
@@ -276,6 +289,7 @@ def time_to_failure(
         age_unit=indicators.runs.age_unit,
         modes=modes,
         units=units,
+        ageing=ageing_of(ending, greatest, asked),
         b10=b10,
         b50=b50,
         shares=_shares(ending, new) if known else None,

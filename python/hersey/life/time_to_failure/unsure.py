@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 
 from hersey.life.growth.limit_ages import POPULATION
@@ -17,7 +18,7 @@ _WIDE = 2.0
 
 def unsure(ending: Sequence[FittedWay], units: Sequence[SpecimenEnd]) -> Iterator[Warning]:
     """Yield what is not known of all ends."""
-    named = {name for each in units for name in each.named}
+    named = {name for each in units if math.isfinite(each.age.age.value) for name in each.named}
     unnamed = [e.mode.name for e in ending if e.mode.growth.law is None and e.mode.name in named]
     if unnamed:
         yield Warning(
@@ -45,7 +46,7 @@ def _few_specimens(count: int) -> Warning:
 
 def _of_specimens(units: Sequence[SpecimenEnd]) -> Iterator[Warning]:
     """What holds of the ends of some specimens, which each warning names."""
-    running = [each for each in units if each.state == "running"]
+    running = [each for each in units if each.state == "running" and math.isfinite(each.age.age.value)]
     wide = [each.unit for each in running if each.age.age.high > _WIDE * max(each.age.age.low, 1e-300)]
     if wide:
         yield Warning(
@@ -55,7 +56,7 @@ def _of_specimens(units: Sequence[SpecimenEnd]) -> Iterator[Warning]:
             specimens=listed(wide),
             factor=_WIDE,
         )
-    far = [each.unit for each in units if each.age.age.value > FAR * each.age.last]
+    far = [each.unit for each in running if each.age.age.value > FAR * each.age.last]
     if far:
         yield Warning(
             "end far off",

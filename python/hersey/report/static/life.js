@@ -1,9 +1,13 @@
 // The page of a life test: which specimens need attention and what to do, beside it the ages with other limits, then
 // the evidence section by section.
 
-// An age with so many digits, without a power of ten.
+// An age with so many digits, without a power of ten; and one with its interval, whose ends may not be known.
 function aged(age, count = 3) {
-  return age === null ? "never" : String(Number(age.toPrecision(count)));
+  return String(Number(age.toPrecision(count)));
+}
+function interval({ low, high }) {
+  if (low === null) return "not reached";
+  return high === null ? `from ${aged(low)}, no upper limit` : `${aged(low)} to ${aged(high)}`;
 }
 
 function list(parent, lines, className = "") {
@@ -42,9 +46,8 @@ function decided({ signal: kind, lead, more, next }) {
 function bar({ signal: kind, specimen, age, last }, end) {
   const WIDTH = 300, HEIGHT = 16, x = (at) => Math.min(at / end, 1) * WIDTH;
   const drawing = svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "img", class: `bar ${kind}` });
-  const ends = [age.low, age.high].map((at) => aged(at));
-  drawing.dataset.text = `[${ends.join(", ")}]`;
-  drawing.setAttribute("aria-label", `${specimen}: ${ends[0]} to ${ends[1]}`);
+  drawing.dataset.text = interval(age);
+  drawing.setAttribute("aria-label", `${specimen}: ${interval(age)}`);
   svg("line", { x1: x(last), x2: x(last), y1: 0, y2: HEIGHT, stroke: "var(--edge)" }, drawing);
   if (age.low === null) return drawing;
   const line = svg("line", { x1: x(age.low), x2: age.high === null ? WIDTH : x(age.high), y1: 8, y2: 8, stroke: "currentColor", "stroke-width": 3 }, drawing);
@@ -63,12 +66,12 @@ function specimens(parent, { heads, rows, first, end, age_unit: unit }) {
   link(note, "All failure modes of each specimen", "ends");
   if (cells.length > first) table(fold(element, `${cells.length - first} more`), heads, cells.slice(first), [3], { name: "ages-more", label: "More specimens" });
 }
-function population(parent, { value, low, high }, unit) {
+function population(parent, tenth, unit) {
   add(parent, "h2", "Population");
   const rows = add(parent, "dl", "", "population");
   add(rows, "dt", `10 % have failed by (B10), ${unit}`);
-  const cell = add(rows, "dd", aged(value));
-  add(cell, "span", ` [${aged(low)}, ${aged(high)}]`, "u");
+  const cell = add(rows, "dd", tenth.value === null ? "" : `${aged(tenth.value)} `);
+  add(cell, "span", tenth.value === null && tenth.low !== null ? `later than ${aged(tenth.low)}` : `(${interval(tenth)})`, "u");
 }
 async function main() {
   document.title = `hersey: ${data.title}`;

@@ -4,8 +4,10 @@
 const otherUses = (() => {
   const LEFT = 66, RIGHT = 14, TOP = 20, ROW = 22;
   const celsius = (kelvin) => `${digits(kelvin - 273.15)} °C`;
-  const scaled = (value, scale) => aged(value === null ? null : value * scale);
-  const span = (age, scale = 1) => `${scaled(age.value, scale)} [${scaled(age.low, scale)}, ${scaled(age.high, scale)}]`;
+  function span({ value, low, high }, scale = 1) {
+    if (value === null) return low === null ? "not reached" : `later than ${aged(low * scale)}`;
+    return `${aged(value * scale)} [${aged(low * scale)}, ${high === null ? "no upper limit" : aged(high * scale)}]`;
+  }
 
   // The chosen use, from the address and back into it.
   function read(uses, start) {
@@ -143,7 +145,8 @@ const otherUses = (() => {
       const first = (each) => each.b50 ?? each.ends.map(({ age }) => age).sort((a, b) => (a.value ?? Infinity) - (b.value ?? Infinity))[0];
       const days = day > 0 ? `${span(first(use), 1 / day)} days at ${aged(day)} ${unit} a day` : "";
       const ages = use === own ? "" : `${span(first(use))} ${unit}`;
-      return `${use.b50 ? "Half of new specimens fail" : "The first specimen fails"} ${use === own ? "after" : "by"} ${[ages, days].filter(Boolean).join(", ")}.`;
+      const at = first(use).value === null ? "" : use === own ? "after " : "by ";
+      return `${use.b50 ? "Half of new specimens fail" : "The first specimen fails"} ${at}${[ages, days].filter(Boolean).join(", ")}.`;
     }
 
     function draw() {
