@@ -284,7 +284,7 @@ def _chosen(found: TimeToFailure, unit: str) -> SpecimenEnd:
         near = meant(unit, known)
         way = f"did you mean '{near}'?" if near else f"its specimens are {', '.join(known)}"
         raise ParameterError(f"the campaign has no specimen '{unit}'", remedy=way)
-    coming = [each for each in found.units if each.state == "running"]
+    coming = [each for each in found.units if each.age.state == "running"]
     return min(coming or found.units, key=lambda each: each.age.age.value)
 
 

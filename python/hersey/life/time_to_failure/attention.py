@@ -42,7 +42,7 @@ class Attention(Record):
             f"{_named(self.unclear)} may have" + ("" if self.failed else " failed") if self.unclear else "",
         ]
         count = len(self.failed) + len(self.unclear)
-        need = "specimen needs" if count == 1 else "specimens need"
+        need = "specimen needs" if count <= 1 else "specimens need"
         lines = [f"{_number(count)} {need} attention" + ": " * bool(count) + ", ".join(filter(None, said))]
         if self.look_again is not None:
             age = f"{rounded(self.look_again)} {age_unit}".strip()
