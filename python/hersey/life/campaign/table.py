@@ -4,18 +4,17 @@ from __future__ import annotations
 
 import csv
 import os
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from hersey.errors import ChannelError, HerseyError, ParameterError, UnreadableLogError
+from hersey.files.headings import headings_of, separator_of
 from hersey.files.reading import open_file
 from hersey.files.tables import text_of
 from hersey.files.text import encoding_of, read_table_text
 from hersey.life.age import Age
 
-_HEADING = re.compile(r"\s*(.*?)\s*(?:[\[(]\s*(.*?)\s*[\])])?\s*")
 _NEEDED = ("log", "unit", "age")
 #: Bytes that hold the first line.
 _START = 4096
@@ -43,12 +42,13 @@ def read_runs(path: str | Path) -> list[RunToAdd]:
     """
     path = Path(path)
     lines = read_table_text(path).split("\n")
-    separator = _separator(lines[0])
+    separator = separator_of(lines[0])
     try:
         rows = list(csv.reader(lines, delimiter=separator))
     except csv.Error as error:
         raise UnreadableLogError(f"{path.name} is not a table: {error}") from None
-    headings, names = _named(rows[0])
+    headings = headings_of(rows[0])
+    names = [name for name, _ in headings]
     for name in _NEEDED:
         if names.count(name) != 1:
             what = "there is no column" if name not in names else "there is more than one column"
@@ -59,8 +59,7 @@ def read_runs(path: str | Path) -> list[RunToAdd]:
                 remedy=f"line 1 must name log, unit (the specimen) and age, e.g. '{example}'",
             )
     at = {name: names.index(name) for name in _NEEDED}
-    heading = headings[at["age"]]
-    in_head = (heading and heading[2]) or ""
+    in_head = headings[at["age"]][1]
     found = []
     for number, row in enumerate(rows[1:], 2):
         if not any(cell.strip() for cell in row):
@@ -91,20 +90,10 @@ def lists_runs(path: str | Path) -> bool:
         return False
     head = start.decode(encoding, errors="replace").splitlines()[:1]
     try:
-        rows = list(csv.reader(head, delimiter=_separator(head[0]))) if head else []
+        rows = list(csv.reader(head, delimiter=separator_of(head[0]))) if head else []
     except csv.Error:
         return False
-    return bool(rows) and set(_NEEDED) <= set(_named(rows[0])[1])
-
-
-def _separator(line: str) -> str:
-    return max(",;\t", key=line.count)
-
-
-def _named(cells: Sequence[str]) -> tuple[list[re.Match[str] | None], list[str]]:
-    """The cells of line 1, each with its unit, and the names of the columns."""
-    headings = [_HEADING.fullmatch(cell) for cell in cells]
-    return headings, [match[1].casefold() if match else "" for match in headings]
+    return bool(rows) and set(_NEEDED) <= {name for name, _ in headings_of(rows[0])}
 
 
 def rows_of(logs: Sequence[Path], rows: Sequence[RunToAdd], table: str) -> list[RunToAdd | ParameterError]:
