@@ -86,16 +86,10 @@ def _domain(law: FailureLaw, ticks: list[float]) -> list[float]:
 
 
 def _heading(law: FailureLaw) -> list[str]:
-    bounds = f"; line and {100 * law.level:g} % band: {_named(law)} law" if law.is_known else ""
+    bounds = f"; line and {100 * law.level:g} % band: {law.named} law" if law.is_known else ""
     modes = "; dashed: failure modes" if law.modes else ""
     words = f"points: failures{bounds}{modes}; ticks: specimens that have not failed"
     return [law.headline(), words, *(each.sentence for each in law.warnings)]
-
-
-def _named(law: FailureLaw) -> str:
-    from hersey.life.failures.words import NAMES
-
-    return NAMES[law.law]
 
 
 def _band(law: FailureLaw, x: alt.X, y: alt.Y, ticks: list[float], domain: list[float]) -> list[alt.Chart]:

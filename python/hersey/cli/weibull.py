@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated
 
 from hersey.cli.groups import argument, grouped, option
 from hersey.cli.options import Force, drawn
@@ -18,7 +18,6 @@ from hersey.errors import HerseyError, ParameterError, sentence
 if TYPE_CHECKING:
     from hersey.life.failures.forecast import FleetForecast, RemainingLife
     from hersey.life.failures.law import FailureLaw
-    from hersey.life.failures.sample import Failures
     from hersey.life.failures.test_plan import LifeTestPlan
 
 _FAILURES = "Table of specimens: age and status (failed or running), or low and high."
@@ -43,33 +42,10 @@ class _Stress:
     power: Annotated[str, option(_POWER, metavar="COLUMN")] = ""
     use: Annotated[str, option(_USE)] = ""
 
-    def prepare(self) -> None:
-        """Refuse both relations, or one without the stress of use."""
-        if self.arrhenius and self.power:
-            raise ParameterError("--arrhenius and --power exclude each other: give one of them")
-        if bool(self.column) != bool(self.use):
-            flag = "--arrhenius" if self.arrhenius else "--power"
-            raise ParameterError(
-                f"{flag} needs the stress of use: add e.g. --use '40 degC'"
-                if self.column
-                else "--use needs the column of the stress: add --arrhenius COLUMN or --power COLUMN"
-            )
-
     @property
-    def column(self) -> str:
-        """The column of temperature or load."""
-        return self.arrhenius or self.power
-
-    @property
-    def relation(self) -> Literal["arrhenius", "power"] | None:
-        """How life depends on stress."""
-        return "arrhenius" if self.arrhenius else "power" if self.power else None
-
-    def of_use(self, sample: Failures) -> float | None:
-        """Return the stress of use: K, or in the unit of the column."""
-        from hersey.life.failures.table import stress_in
-
-        return stress_in(self.use, sample.stress_unit, "--use") if self.use else None
+    def given(self) -> dict[str, str]:
+        """What was typed, for reading the table."""
+        return {"arrhenius": self.arrhenius, "power": self.power, "use": self.use}
 
 
 @dataclass(frozen=True)
@@ -151,7 +127,7 @@ def weibull(
     table, drawing = may_write_table_and_figure(out, figure, force, inputs)
     if file is None and not (asked.demonstrate and shape is not None):
         raise ParameterError("name a table of FAILURES, or plan a test with --demonstrate AGE --shape SHAPE")
-    if file is None and (asked.age or asked.fleet or stress.column or out):
+    if file is None and (asked.age or asked.fleet or any(stress.given.values()) or out):
         raise ParameterError("without a table of FAILURES only --demonstrate and --shape can be given")
 
     from hersey.life.failures.answers import FailureAnswers
@@ -187,22 +163,18 @@ def _fitted(
     from hersey.life.failures.estimate import weibull as law_of
     from hersey.life.failures.table import read_failures
 
-    sample = read_failures(file, stress.column)
+    sample = read_failures(file, **stress.given)
     return law_of(
         sample,
         law=law,
         shape=shape,
-        relation=stress.relation,
-        use=stress.of_use(sample),
         level=level,
         seed=seed,
     )
 
 
 def _lines(found: FailureLaw) -> list[str]:
-    from hersey.life.failures.words import lines_of
-
-    first, *others = lines_of(found)
+    first, *others = found.lines()
     return [sentence(first), *others]
 
 

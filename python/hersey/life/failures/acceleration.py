@@ -40,9 +40,12 @@ class Acceleration(Record):
     def words(self) -> str:
         """The relation as a line of the summary."""
         span = f"[{self.low:.3g}, {self.high:.3g}]"
+        text = f"Life varies as load^-n, n = {self.effect:.3g} {span}"
         if self.relation == "arrhenius":
-            return f"Activation energy {self.effect:.3g} {span} eV"
-        return f"Life varies as load^-n, n = {self.effect:.3g} {span}"
+            text = f"Activation energy {self.effect:.3g} {span} eV"
+        if self.same_shape is None:
+            return text
+        return f"{text}; one shape and this relation at every stress: p = {self.same_shape:.2g}"
 
 
 def covariate_of(relation: Relation, stress: FloatArray | float) -> FloatArray:

@@ -28,11 +28,12 @@ _Function = Callable[[FloatArray, FloatArray], FloatArray]
 class Distribution:
     """A law of ages: logarithms of density (of ln age), of survival and of the share failed; and quantiles.
 
-    ``quantile`` takes shares and k and returns x. ``parameters`` names the shape and the scale as they are
-    shown; ``is_pivotal``: m and 1/k are location and scale of ln age.
+    ``quantile`` takes shares and k and returns x. ``title`` is the name in sentences; ``parameters`` names
+    shape and scale as they are shown. ``is_pivotal``: m and 1/k are location and scale of ln age.
     """
 
     name: LawName
+    title: str
     parameters: tuple[str, str]
     log_density: _Function
     log_survival: _Function
@@ -79,6 +80,7 @@ def _gamma_failed(x: FloatArray, k: FloatArray) -> FloatArray:
 
 WEIBULL = Distribution(
     "weibull",
+    "Weibull",
     ("shape", "scale"),
     _weibull_density,
     lambda x, k: -_power(x, k),
@@ -88,6 +90,7 @@ WEIBULL = Distribution(
 )
 LOGNORMAL = Distribution(
     "lognormal",
+    "lognormal",
     ("sigma", "median"),
     _normal_density,
     lambda x, k: np.asarray(log_ndtr(-k * x)),
@@ -96,6 +99,7 @@ LOGNORMAL = Distribution(
     is_pivotal=True,
 )
 GAMMA = Distribution(
+    "gamma",
     "gamma",
     ("shape", "scale"),
     _gamma_density,

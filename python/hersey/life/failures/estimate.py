@@ -12,15 +12,16 @@ from scipy.stats import chi2
 
 from hersey.arrays import FloatArray, numbers_of, one_thread
 from hersey.errors import ParameterError
-from hersey.life.failures.acceleration import Acceleration, Relation, covariate_of
+from hersey.life.failures.acceleration import Acceleration, covariate_of
 from hersey.life.failures.distributions import DISTRIBUTIONS, Distribution, distribution_named
 from hersey.life.failures.draws import draws_of
 from hersey.life.failures.fit import Fit, age_held, effect_held, fitted, shape_held
 from hersey.life.failures.goodness import goodness_of_fit
-from hersey.life.failures.law import SHOWN, FailureLaw, LawComparison, LawParameter, ModeLaw
+from hersey.life.failures.law import SHOWN, FailureLaw
+from hersey.life.failures.records import LawComparison, LawParameter, ModeLaw
 from hersey.life.failures.sample import Failures
 from hersey.life.failures.table import read_failures
-from hersey.life.failures.warnings import few_failures, law_warnings, no_law, unknown_modes
+from hersey.life.failures.warnings import few_failures, law_warnings, no_law, stress_warnings, unknown_modes
 from hersey.life.population import BLife
 from hersey.schema.warning import Warning
 from hersey.units import takes_si
@@ -40,8 +41,6 @@ def weibull(
     unit: str = "",
     law: str = "weibull",
     shape: float | None = None,
-    relation: Relation | None = None,
-    use: float | None = None,
     level: float = 0.90,
     calibrate: bool = True,
     seed: int = 0,
@@ -61,10 +60,6 @@ def weibull(
         "weibull", "lognormal" or "gamma".
     shape
         Shape of the law, if it is known; only the scale is then estimated.
-    relation
-        How stress acts: "arrhenius" (a temperature) or "power" (a load); of a table with a column of it.
-    use
-        Stress for which ages are wanted: K, or in the unit of the load.
     level
         Level of the two-sided bounds, e.g. 0.9.
     calibrate
@@ -81,7 +76,7 @@ def weibull(
     --------
     >>> law = weibull([54, 187, 216, 240, 244, 335, 361, 373, 375, 386, 500], [True] * 10 + [False])
     >>> [(each.name, round(each.value, 3)) for each in law.parameters]
-    [('shape', 2.457), ('scale', 340.527)]
+    [('shape', 2.457), ('scale', 340.455)]
     """
     if not 0 < level < 1:
         raise ParameterError(f"level is {level}: it must be between 0 and 1", quantity="level")
@@ -89,11 +84,12 @@ def weibull(
         raise ParameterError(f"shape is {shape}: it must be greater than 0", quantity="shape")
     sample = _sample(failures, failed, unit)
     chosen = distribution_named(law)
-    covariate, stress = _stress(sample, relation, use)
+    covariate, stress = _stress(sample)
     fits, warnings = _fits(chosen, sample, covariate, shape, seed, calibrate)
     single = fits[0] if len(fits) == 1 else None
     others = () if single is None or shape is not None else _others(single)
     compared = _compared(single, others)
+    acceleration = None if single is None else _acceleration(single, sample, level)
     found = FailureLaw(
         law=law,
         unit=sample.unit,
@@ -107,8 +103,8 @@ def weibull(
         comparison=compared,
         goodness=None if single is None else goodness_of_fit(single),
         modes=_modes(fits, sample, level, stress) if len(fits) > 1 else (),
-        acceleration=None if single is None else _acceleration(single, sample, relation, use, level),
-        warnings=(*warnings, *law_warnings(compared, law)) if fits else warnings,
+        acceleration=acceleration,
+        warnings=(*warnings, *law_warnings(compared, law), *stress_warnings(acceleration)),
         sample=sample,
         fits=fits,
         stress=stress,
@@ -151,17 +147,11 @@ def _sample(failures: Failures | str | Path | ArrayLike, failed: ArrayLike | Non
     return Failures(values, np.where(ends, values, np.inf), np.ones(values.size, dtype=int), unit)
 
 
-def _stress(
-    sample: Failures, relation: Relation | None, use: float | None
-) -> tuple[FloatArray | None, float]:
+def _stress(sample: Failures) -> tuple[FloatArray | None, float]:
     """What acts on ln age of each row, about its mean, and the same of the stress of use."""
-    if relation is None:
-        if use is not None:
-            raise ParameterError("use needs relation: how stress acts on life", quantity="use")
+    relation = sample.relation
+    if relation is None or sample.stress is None or sample.use is None:
         return None, 0.0
-    if sample.stress is None or use is None:
-        missing = "stress of each specimen" if sample.stress is None else "stress of use"
-        raise ParameterError(f"relation '{relation}' needs the {missing}", quantity="relation")
     acts = covariate_of(relation, sample.stress)
     if np.unique(acts[sample.failed]).size < _LEAST:
         raise ParameterError(
@@ -170,7 +160,7 @@ def _stress(
             quantity="stress",
         )
     middle = float(np.average(acts, weights=sample.count))
-    return acts - middle, float(covariate_of(relation, use)) - middle
+    return acts - middle, float(covariate_of(relation, sample.use)) - middle
 
 
 def _fits(
@@ -257,22 +247,20 @@ def _modes(fits: tuple[Fit, ...], sample: Failures, level: float, stress: float)
     return tuple(found)
 
 
-def _acceleration(
-    fit: Fit, sample: Failures, relation: Relation | None, use: float | None, level: float
-) -> Acceleration | None:
-    if relation is None or use is None or sample.stress is None:
+def _acceleration(fit: Fit, sample: Failures, level: float) -> Acceleration | None:
+    if sample.relation is None or sample.use is None or sample.stress is None:
         return None
     low, high = (float(each[0]) for each in fit.bounds(_HALF, level, effect_held))
     tested = sample.stress
     return Acceleration(
-        relation=relation,
+        relation=sample.relation,
         effect=fit.c,
         low=low,
         high=high,
-        use=use,
+        use=sample.use,
         lowest=float(tested.min()),
         highest=float(tested.max()),
-        unit="K" if relation == "arrhenius" else sample.stress_unit,
+        unit="K" if sample.relation == "arrhenius" else sample.stress_unit,
         same_shape=_same_shape(fit, sample),
     )
 

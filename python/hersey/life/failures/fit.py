@@ -16,6 +16,7 @@ import numpy as np
 from scipy.special import ndtri
 
 from hersey.arrays import BoolArray, FloatArray
+from hersey.life.failures.crossing import crossing
 from hersey.life.failures.distributions import Distribution
 from hersey.life.failures.likelihood import Observed, Problem
 from hersey.life.failures.maximum import curvature_at, maximum
@@ -28,8 +29,8 @@ _FEW, _DRAWS = 40, 2000
 _NODES = 5
 #: Logarithm of a shape that counts as none: all failures at one age.
 _STEEPEST = 8.0
-#: Bisections of a bound, and how far from the estimate it is sought, in ln age or ln shape.
-_BISECTIONS, _FARTHEST = 48, 40.0
+#: How far from the estimate a bound is sought first and at the most, in ln age or ln shape.
+_FIRST, _FARTHEST = 0.1, 40.0
 #: Logit of a share beyond which no bound is sought.
 _EXTREME = 16.0
 #: Logarithm of age or of shape held, or the effect of a stress held; given its value, the problem.
@@ -140,16 +141,15 @@ class Fit:
         """Return the bounds of the share that has failed by an age."""
         estimate = float(np.clip(self.share(age, stress), 1e-9, 1 - 1e-9))
         roots = np.concatenate(self._roots(np.array([estimate]), level, age_held, stress))
-        near, far = np.full(2, -_EXTREME), np.full(2, _EXTREME)
         place = np.full(2, np.log(age))
-        started: FloatArray | None = None
-        for _ in range(_BISECTIONS):
-            between = 0.5 * (near + far)
-            share = 1.0 / (1.0 + np.exp(-between))
-            at_most = np.log(self.age(share, stress))
-            found, started = self._root(self.problem(share, stress), at_most, place, age_held, started)
-            near, far = np.where(found < roots, between, near), np.where(found < roots, far, between)
-        low, high = 1.0 / (1.0 + np.exp(-0.5 * (near + far)))
+        started: list[FloatArray] = []
+
+        def short(logit: FloatArray) -> FloatArray:
+            share = 1.0 / (1.0 + np.exp(-logit))
+            best = np.log(self.age(share, stress))
+            return roots - self._root(self.problem(share, stress), best, place, age_held, started)
+
+        low, high = 1.0 / (1.0 + np.exp(-crossing(short, np.full(2, -_EXTREME), np.full(2, _EXTREME))))
         return float(low), float(high)
 
     def estimate(self, held: Held, share: FloatArray, stress: float = 0.0) -> FloatArray:
@@ -161,24 +161,20 @@ class Fit:
     def _bound(self, problem: Problem, middle: FloatArray, held: Held, root: FloatArray) -> FloatArray:
         """Where the signed root has a value; infinite where it never has."""
         side = np.where(root > 0, -1.0, 1.0)
-        inside, outside = middle.copy(), middle + side * 0.1
-        started: FloatArray | None = None
-        settled = np.zeros(middle.size, dtype=bool)
-        for _ in range(12):
-            found, started = self._root(problem, middle, outside, held, started)
-            settled |= side * (root - found) >= 0
-            if settled.all() or (np.abs(outside - middle) > _FARTHEST).all():
-                break
-            inside = np.where(settled, inside, outside)
-            outside = np.where(settled, outside, middle + 2.0 * (outside - middle))
-        for _ in range(_BISECTIONS):
-            between = 0.5 * (inside + outside)
-            found, started = self._root(problem, middle, between, held, started)
-            beyond = side * (root - found) >= 0
-            inside, outside = np.where(beyond, inside, between), np.where(beyond, between, outside)
-            if np.abs(outside - inside).max() < 1e-10:
-                break
-        return np.where(settled, 0.5 * (inside + outside), side * np.inf)
+        started: list[FloatArray] = []
+
+        def short(value: FloatArray) -> FloatArray:
+            """How far the root still is from its value; negative beyond the bound."""
+            return side * (self._root(problem, middle, value, held, started) - root)
+
+        inside, outside = middle.copy(), middle + side * _FIRST
+        reached = short(outside) <= 0
+        while not reached.all() and (np.abs(outside - middle) < _FARTHEST).any():
+            inside = np.where(reached, inside, outside)
+            outside = np.where(reached, outside, middle + 2.0 * (outside - middle))
+            reached = short(outside) <= 0
+        found = crossing(short, np.where(reached, inside, middle), np.where(reached, outside, middle))
+        return np.where(reached, found, side * np.inf)
 
     def _root(
         self,
@@ -186,14 +182,15 @@ class Fit:
         middle: FloatArray,
         value: FloatArray,
         held: Held,
-        started: FloatArray | None,
-    ) -> tuple[FloatArray, FloatArray]:
-        """The signed root of the likelihood ratio, positive below the estimate, and the parameters found."""
+        started: list[FloatArray],
+    ) -> FloatArray:
+        """The signed root of the likelihood ratio, positive below the estimate; starts where it last ended."""
         fixed = held(problem, value)
-        start = np.tile(self.start(fixed), (value.size, 1)) if started is None else started
+        start = started.pop() if started else np.tile(self.start(fixed), (value.size, 1))
         at, best = maximum(fixed.function(), start)
+        started.append(at)
         ratio = np.maximum(2.0 * (self.log_likelihood - best), 0.0)
-        return np.sign(middle - value) * np.sqrt(ratio), at
+        return np.asarray(np.sign(middle - value) * np.sqrt(ratio))
 
     def _roots(
         self, share: FloatArray, level: float, held: Held, stress: float

@@ -12,7 +12,8 @@ from numpy.typing import ArrayLike
 from hersey.arrays import FloatArray, IntArray, numbers_of, one_thread
 from hersey.errors import ParameterError, capital
 from hersey.life.failures.draws import Draws, sum_survival, survival_at
-from hersey.life.failures.law import FailureLaw, span, written
+from hersey.life.failures.law import FailureLaw
+from hersey.life.failures.records import span, written
 from hersey.result import OPEN, Means, Result
 from hersey.units import takes_si
 

@@ -10,63 +10,26 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from hersey.arrays import FloatArray
-from hersey.errors import InsufficientDataError, ParameterError
+from hersey.errors import InsufficientDataError, ParameterError, capital
 from hersey.life.failures.acceleration import Acceleration
+from hersey.life.failures.distributions import DISTRIBUTIONS
 from hersey.life.failures.draws import Draws, draws_of, sum_survival, survival_at
 from hersey.life.failures.fit import Fit, age_held
 from hersey.life.failures.goodness import GoodnessOfFit
 from hersey.life.failures.positions import positions
+from hersey.life.failures.records import LawComparison, LawParameter, ModeLaw, Reliability, span, written
 from hersey.life.failures.sample import Failures
 from hersey.life.population import BLife
-from hersey.result import OPEN, Means, Record, Result, table_of
+from hersey.result import Means, Result, table_of
 from hersey.schema.warning import Warning
 
 if TYPE_CHECKING:
     import polars as pl
 
+#: p-value of the goodness of fit below which a law is doubted.
+_DOUBTED = 0.05
 #: Shares whose ages are shown.
 SHOWN = (0.10, 0.50)
-
-
-@dataclass(frozen=True)
-class LawParameter(Record):
-    """A parameter of a law with its bounds."""
-
-    name: str
-    value: float
-    low: Annotated[float, OPEN]
-    high: Annotated[float, OPEN]
-    unit: Annotated[str, Means("unit of the ages, or empty for a pure number")]
-
-
-@dataclass(frozen=True)
-class LawComparison(Record):
-    """A law that was tried, and how well it fits beside the others."""
-
-    law: str
-    log_likelihood: float
-    aic: Annotated[float, Means("Akaike's criterion; the law with the least fits best")]
-
-
-@dataclass(frozen=True)
-class ModeLaw(Record):
-    """The law of one failure mode, to which specimens that failed otherwise are suspensions."""
-
-    mode: str
-    failures: int
-    parameters: tuple[LawParameter, ...]
-    b10: BLife | None
-
-
-@dataclass(frozen=True)
-class Reliability(Record):
-    """The share that outlives an age, with its bounds at a level."""
-
-    age: float
-    share: float
-    low: float
-    high: float
-    level: float
 
 
 @dataclass(frozen=True, repr=False)
@@ -232,15 +195,37 @@ class FailureLaw(Result):
         return head + "".join(f", {each.name} {written(each.age, 3)}{self.behind}" for each in self.b_lives)
 
     @property
+    def named(self) -> str:
+        """The law as sentences call it."""
+        return DISTRIBUTIONS[self.law].title
+
+    @property
     def behind(self) -> str:
         """The unit with a space before it."""
         return f" {self.unit}" if self.unit else ""
 
     def summary(self) -> str:
         """Return the law, B-lives and parameters with their bounds as text."""
-        from hersey.life.failures.words import lines_of
+        return "\n".join([*self.lines(), *(each.sentence for each in self.warnings)])
 
-        return "\n".join([*lines_of(self), *(each.sentence for each in self.warnings)])
+    def lines(self) -> list[str]:
+        """Return headline, B-lives, parameters, failure modes and how well the law fits, without warnings."""
+        lines = [self.headline()]
+        if not self.is_known:
+            return lines
+        rows = [
+            (each.name, f"{written(each.age)} {span(each.low, each.high)}{self.behind}")
+            for each in self.b_lives
+        ]
+        rows += [(each.name, _shown(each)) for each in self.parameters]
+        for mode in self.modes:
+            law = ", ".join(f"{each.name} {_shown(each)}" for each in mode.parameters)
+            rows.append((mode.mode, f"{mode.failures} failed, {law}"))
+        widest = max(len(name) for name, _ in rows)
+        lines += [f"  {name:{widest}s}  {text}" for name, text in rows]
+        if self.acceleration is not None:
+            lines.append(f"{self.acceleration.words}.")
+        return [*lines, _bounds(self), *_verdict(self), *_fit(self)]
 
     def to_frame(self) -> pl.DataFrame:
         """Return B-lives and parameters with their bounds, and the number of specimens."""
@@ -257,11 +242,43 @@ class FailureLaw(Result):
         return table_of(rows)
 
 
-def written(value: float, digits: int = 4) -> str:
-    """Return a number with so many digits, those up to ten millions without a power of ten."""
-    return f"{float(f'{value:.{digits}g}'):.8g}" if np.isfinite(value) else "unknown"
+def _shown(parameter: LawParameter) -> str:
+    unit = f" {parameter.unit}" if parameter.unit else ""
+    if parameter.low == parameter.high:
+        return f"{written(parameter.value)}{unit} (given)"
+    return f"{written(parameter.value)} {span(parameter.low, parameter.high)}{unit}"
 
 
-def span(low: float, high: float) -> str:
-    """Return bounds in brackets."""
-    return f"[{written(low)}, {written(high)}]"
+def _bounds(found: FailureLaw) -> str:
+    levels = f"{100 * found.level:.4g} % two-sided, {100 * found.one_sided:.4g} % each alone"
+    if len(found.fits) > 1:
+        return f"{capital(found.named)} law of each failure mode; bounds by simulation, {levels}."
+    how = "likelihood-ratio bounds, calibrated" if found.calibrated else "likelihood-ratio bounds"
+    return f"{capital(found.named)} law by maximum likelihood; {how}, {levels}."
+
+
+def _verdict(found: FailureLaw) -> list[str]:
+    """What the shape of a Weibull law means."""
+    if found.law != "weibull" or len(found.fits) > 1:
+        return []
+    shape = found.parameters[0]
+    if shape.low == shape.high:
+        return []
+    if shape.low > 1:
+        return ["The failure rate grows with age: specimens wear out."]
+    if shape.high < 1:
+        return ["The failure rate falls with age: weak specimens fail early."]
+    return ["Whether the failure rate grows or falls with age is unknown."]
+
+
+def _fit(found: FailureLaw) -> list[str]:
+    lines = []
+    if found.goodness is not None:
+        p = found.goodness.p_value
+        judged = "does not fit" if p < _DOUBTED else "fits"
+        named = f"Anderson-Darling {found.goodness.statistic:.2f}, p = {p:.2g}"
+        lines.append(f"The {found.named} law {judged} ({named}).")
+    if len(found.comparison) > 1:
+        rows = ", ".join(f"{DISTRIBUTIONS[each.law].title} {each.aic:.2f}" for each in found.comparison)
+        lines.append(f"AIC (least is best): {rows}.")
+    return lines

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hersey.arrays import BoolArray, FloatArray, IntArray
+from hersey.life.failures.acceleration import Relation
 from hersey.life.failures.likelihood import Observed
 
 
@@ -16,7 +17,8 @@ class Failures:
 
     Equal ends are an exact age; ``high`` is infinite for specimens that have not failed, ``low`` is 0 where
     only the latest age is known. ``count`` is the number of specimens of a row, ``mode`` their failure mode
-    (empty where there is none), ``stress`` the temperature (K) or load of a row, or None.
+    (empty where there is none), ``stress`` the temperature (K) or load of a row, which
+    acts on life by the ``relation``; ages are wanted for the stress ``use``. All are None where it does not.
     """
 
     low: FloatArray
@@ -26,6 +28,8 @@ class Failures:
     mode: tuple[str, ...] = ()
     stress: FloatArray | None = None
     stress_unit: str = ""
+    relation: Relation | None = None
+    use: float | None = None
 
     @property
     def failed(self) -> BoolArray:

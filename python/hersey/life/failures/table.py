@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from hersey.arrays import FloatArray, IntArray
-from hersey.errors import ChannelError, HerseyError, ParameterError, UnreadableLogError
+from hersey.errors import ChannelError, HerseyError, ParameterError, Setting, UnreadableLogError
 from hersey.files.tables import text_of
 from hersey.life.failures.cells import Table, above_zero, age_of, count_of, read_cells
 from hersey.life.failures.sample import Failures
@@ -22,11 +22,13 @@ _RUNNING = frozenset(
 _LEFT = frozenset(["left", "before", "found failed"])
 _YES, _NO = frozenset(["1", "yes", "true", "y"]), frozenset(["0", "no", "false", "n"])
 _AMOUNT = re.compile(r"\s*([-+]?[0-9.]+(?:[eE][-+]?[0-9]+)?)\s*(\S.*?)\s*")
+#: The stress of use.
+_USE = Setting("use")
 _EXAMPLE = "age [pages],status"
 _ROWS = "write failed or running in each row"
 
 
-def read_failures(path: str | Path, stress: str = "") -> Failures:
+def read_failures(path: str | Path, *, arrhenius: str = "", power: str = "", use: str = "") -> Failures:
     """Read a table of failures and suspensions, separated by commas, semicolons or tabs.
 
     Either ``age`` with ``status`` (failed, running, or left for one found failed at that age), or ``low``
@@ -39,14 +41,20 @@ def read_failures(path: str | Path, stress: str = "") -> Failures:
     ----------
     path
         The table.
-    stress
-        Name of a column of temperature or load, with its unit in the heading.
+    arrhenius
+        Column of temperature with its unit in the heading; life depends on it by Arrhenius.
+    power
+        Column of a load with its unit in the heading; life depends on it by an inverse power.
+    use
+        Temperature or load for which ages are wanted, e.g. "40 degC".
 
     Raises
     ------
     HerseyError
         If a column or a cell is missing or unclear, naming file, line and column.
     """
+    stress = arrhenius or power
+    _refuse_half(arrhenius, power, use)
     table = read_cells(Path(path))
     _refuse_unclear(table, stress)
     reader = _between if "low" in table.at else _at_ages
@@ -60,6 +68,7 @@ def read_failures(path: str | Path, stress: str = "") -> Failures:
         modes.append(_mode(table, line, row, failed=math.isfinite(high)))
         if stress:
             stresses.append(_stress(table, line, row, stress))
+    stress_unit = table.others[stress.casefold()][1] if stress else ""
     return Failures(
         np.array(lows),
         np.array(highs),
@@ -67,7 +76,9 @@ def read_failures(path: str | Path, stress: str = "") -> Failures:
         unit,
         tuple(modes) if any(modes) else (),
         np.array(stresses) if stress else None,
-        table.others[stress.casefold()][1] if stress else "",
+        stress_unit,
+        "arrhenius" if arrhenius else "power" if power else None,
+        _of_use(use, stress_unit) if stress else None,
     )
 
 
@@ -189,17 +200,11 @@ def _stress(table: Table, line: int, row: Sequence[str], stress: str) -> float:
     """Temperature in K, or a load in the unit of its heading."""
     place, unit = table.others[stress.casefold()]
     cell = text_of(row[place].strip()) if place < len(row) else ""
-    return stress_of(cell, unit, table.place(line, "", stress))
+    return _number(cell, unit, table.place(line, "", stress))
 
 
-def stress_of(text: str, unit: str, where: str) -> float:
-    """Return a temperature in K, or any other stress in its own unit.
-
-    Raises
-    ------
-    ParameterError
-        If it is no number, naming ``where``.
-    """
+def _number(text: str, unit: str, where: str) -> float:
+    """A temperature in K, or any other stress in its own unit."""
     try:
         value = float(text)
     except ValueError:
@@ -213,18 +218,30 @@ def stress_of(text: str, unit: str, where: str) -> float:
     return value
 
 
-def stress_in(text: str, unit: str, where: str) -> float:
-    """Return a stress with its own unit, e.g. '40 degC': a temperature in K, or a load in ``unit``.
-
-    Raises
-    ------
-    ParameterError
-        If it is no number with that unit, naming ``where``.
-    """
+def _of_use(text: str, unit: str) -> float:
+    """The stress of use, which states its unit: a temperature in K, or a load in the unit of the column."""
+    where = _USE.to()
     match = _AMOUNT.fullmatch(text)
     if match is None or not (match[2] == unit or (_kelvin(unit) and _kelvin(match[2]))):
-        raise ParameterError(f"{where} is '{text[:40]}': write a number in {unit}, e.g. {where} '40 {unit}'")
-    return stress_of(match[1], match[2], where)
+        raise ParameterError(
+            f"{where} is '{text[:40]}': write a number in {unit}, e.g. {_USE.to(f'40 {unit}')}"
+        )
+    return _number(match[1], match[2], where)
+
+
+def _refuse_half(arrhenius: str, power: str, use: str) -> None:
+    """Refuse both relations, and a relation without the stress of use."""
+    both = Setting("arrhenius"), Setting("power")
+    column = both[0] if arrhenius else both[1]
+    if arrhenius and power:
+        named = " and ".join(each.to() for each in both)
+        raise ParameterError(f"{named} exclude each other: give one of them")
+    if (arrhenius or power) and not use:
+        example = "40 degC" if arrhenius else "40 N"
+        raise ParameterError(f"{column.to()} needs the stress of use: add e.g. {_USE.to(example)}")
+    if use and not (arrhenius or power):
+        named = " or ".join(each.to("COLUMN") for each in both)
+        raise ParameterError(f"{_USE.to()} needs the column of the stress: add {named}")
 
 
 def _kelvin(unit: str) -> Callable[[float], float] | None:

@@ -13,7 +13,7 @@ from hersey.arrays import one_thread
 from hersey.errors import ParameterError
 from hersey.life.failures.distributions import WEIBULL
 from hersey.life.failures.fit import age_held, fitted
-from hersey.life.failures.law import written
+from hersey.life.failures.records import written
 from hersey.life.failures.sample import Failures
 from hersey.result import Means, Record, Result
 from hersey.units import takes_si

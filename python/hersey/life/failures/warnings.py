@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from hersey.life.failures.acceleration import Acceleration
+from hersey.life.failures.distributions import DISTRIBUTIONS
+from hersey.life.failures.records import LawComparison
 from hersey.life.failures.sample import Failures
 from hersey.schema.warning import Warning
 
-if TYPE_CHECKING:
-    from hersey.life.failures.law import LawComparison
-
-_NAMES = {"weibull": "Weibull", "lognormal": "lognormal", "gamma": "gamma"}
 #: Failures below which a law is given with a warning, and difference of AIC that names another law.
 _FEW, _BETTER = 4, 4.0
+#: p-value below which one shape and one relation for all stresses are doubted.
+_DOUBTED = 0.05
 
 
 def no_law(sample: Failures) -> Warning:
@@ -74,8 +74,35 @@ def law_warnings(compared: Sequence[LawComparison], law: str) -> tuple[Warning, 
             "another law fits better",
             "the {best} law fits better than the {law} law (AIC lower by {difference:.1f})",
             severity="watch",
-            best=_NAMES[best.law],
-            law=_NAMES[law],
+            best=DISTRIBUTIONS[best.law].title,
+            law=DISTRIBUTIONS[law].title,
             difference=own.aic - best.aic,
         ),
     )
+
+
+def stress_warnings(found: Acceleration | None) -> tuple[Warning, ...]:
+    """Return that the stress of use was not tested, and that the stresses do not share shape and relation."""
+    warnings = []
+    if found is not None and not found.lowest <= found.use <= found.highest:
+        warnings.append(
+            Warning(
+                "stress of use not tested",
+                "the stress of use lies outside those tested, so the ages assume the same relation there",
+                severity="watch",
+                use=found.use,
+                lowest=found.lowest,
+                highest=found.highest,
+            )
+        )
+    if found is not None and found.same_shape is not None and found.same_shape < _DOUBTED:
+        warnings.append(
+            Warning(
+                "stresses differ",
+                "the stresses do not share one shape and this relation ({p:p}), so the bounds are too narrow",
+                remedy="fit the stresses near that of use alone",
+                severity="act",
+                p=found.same_shape,
+            )
+        )
+    return tuple(warnings)
