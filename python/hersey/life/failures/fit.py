@@ -184,7 +184,7 @@ class Fit:
         held: Held,
         started: list[FloatArray],
     ) -> FloatArray:
-        """The signed root of the likelihood ratio, positive below the estimate; starts where it last ended."""
+        """The signed root of the likelihood ratio, positive below the estimate."""
         fixed = held(problem, value)
         start = started.pop() if started else np.tile(self.start(fixed), (value.size, 1))
         at, best = maximum(fixed.function(), start)

@@ -295,7 +295,7 @@ def _again(
         values, errors = [], []
         for m in observed:
             each = ending[m]
-            value, scatter = each.mode.growth.drawn_values(each.row[units[i].unit], ages)
+            value, scatter = each.drawn_values(units[i].unit, ages)
             values.append(value[order[:, m]])
             errors.append(np.hypot(scatter, each.error)[order[:, m]])
         among = of_runs[np.ix_(observed, observed)]
