@@ -8,7 +8,6 @@ from __future__ import annotations
 import math
 from argparse import ArgumentParser, Namespace
 from collections.abc import Callable
-from functools import partial
 
 import numpy as np
 
@@ -33,7 +32,7 @@ def life(share: float, shape: float) -> float:
 
 
 def stopped(kind: str, random: np.random.Generator, shape: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return ages and whether they are failures, of a test that ends at the sixth failure, at an age, or anyhow."""
+    """Return ages, and whether they are failures, of a test that ends by a rule."""
     true = ages(random, shape, SPECIMENS)
     if kind == "complete":
         return true, np.ones(SPECIMENS, dtype=bool)
@@ -135,41 +134,43 @@ def of_stress(case: tuple[float, bool, int]) -> Row:
     return _missed(law, life(0.1, shape))
 
 
-def line(name: str, task: Callable[..., Row], case: tuple[object, ...], count: int, given: Namespace) -> str:
-    """Return a row of the table: how often both bounds hold, and each of them."""
-    cases = [(*case, 100_000 * given.seed + number) for number in range(count)]
+def line(name: str, task: Callable[..., Row], cases: list[tuple[object, ...]], given: Namespace) -> None:
+    """Print a row of the table: how often both bounds hold, and each of them."""
     rows = [row for row in worked(task, cases, given) if row is not None]
     low, high = 100 * np.mean(rows, axis=0)
-    return (
-        f"| {name} | {len(rows)} of {count} | {100 - low - high:.1f} | {100 - low:.1f} | {100 - high:.1f} |"
-    )
+    kept = f"{len(rows)} of {len(cases)}"
+    print(f"| {name} | {kept} | {100 - low - high:.1f} | {100 - low:.1f} | {100 - high:.1f} |", flush=True)
 
 
 def main() -> None:
-    """Print the tables."""
+    """Print the table."""
     parser = ArgumentParser(description=__doc__)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--count", type=int, default=1000, help="samples of each row on B10")
     takes_workers(parser)
     given = parser.parse_args()
-    print(
-        "| what, law | samples with a law | both bounds | lower alone | upper alone |\n|---|---|---|---|---|"
-    )
-    row = partial(line, given=given)
-    for kind in ("type II", "type I"):
-        for shape in (1.0, 2.0, 4.0):
-            print(row(f"B10, {kind}, shape {shape:g}", of_b10, (kind, shape, True), given.count), flush=True)
-    some = given.count // 4
-    for kind in ("complete", "random"):
-        print(row(f"B10, {kind}, shape 2", of_b10, (kind, 2.0, True), some), flush=True)
-    print(
-        row("B10, type II, shape 2, not calibrated", of_b10, ("type II", 2.0, False), given.count), flush=True
-    )
-    print(row("B10, 20 inspected, shape 2", of_inspections, (2.0, True), some), flush=True)
-    print(row("B10, two modes, shapes 1 and 3", of_modes, (1.0, 3.0), some), flush=True)
-    print(row("B10 at half of the least load, shape 2", of_stress, (2.0, True), some), flush=True)
-    print(row("failures of a fleet of 400", of_fleet, (2.0,), some), flush=True)
-    print(row("failure of a specimen", of_life, (2.0,), some), flush=True)
+    first = 100_000 * given.seed
+
+    def cases(begin: int, count: int, *case: object) -> list[tuple[object, ...]]:
+        return [(*case, first + begin + number) for number in range(count)]
+
+    def censored(kind: str, begin: int, calibrate: bool = True) -> list[tuple[object, ...]]:
+        shapes = [1.0, 2.0, 3.0, 4.0]
+        return [(kind, shapes[n % 4], calibrate, first + begin + n) for n in range(given.count)]
+
+    print("| what | samples with a law | both bounds | lower alone | upper alone |\n|---|---|---|---|---|")
+    line("B10, type II", of_b10, censored("type II", 0), given)
+    line("B10, type I", of_b10, censored("type I", 2000), given)
+    line("B10, type II, not calibrated", of_b10, censored("type II", 0, calibrate=False), given)
+    line("B10, type I, not calibrated", of_b10, censored("type I", 2000, calibrate=False), given)
+    some = given.count // 5
+    line("B10, complete", of_b10, cases(4000, some, "complete", 2.0, True), given)
+    line("B10, random", of_b10, cases(5000, some, "random", 2.0, True), given)
+    line("B10, 20 looked at five times", of_inspections, cases(6000, some, 2.0, True), given)
+    line("B10, two failure modes", of_modes, cases(7000, some, 1.0, 3.0), given)
+    line("B10 at half of the least load tested", of_stress, cases(8000, some, 2.0, True), given)
+    line("failures of a fleet of 400", of_fleet, cases(9000, some, 2.0), given)
+    line("failure of one specimen", of_life, cases(10_000, some, 2.0), given)
 
 
 if __name__ == "__main__":
