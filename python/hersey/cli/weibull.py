@@ -118,7 +118,7 @@ def weibull(
 ) -> None:
     """Fit the law of ages at failure: B-lives with bounds, remaining life, fleet, next test.
 
-    Example: [bold]hersey weibull failures.csv --age '120000 pages'[/bold]
+    Example: [bold]hersey weibull examples/failures.csv --age '200 h'[/bold]
 
     Ages are exact, at least (running), at most or between two inspections. Several failure modes are fitted
     separately. Without a table, --demonstrate with --shape plans a test.
