@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from hersey.charts import chart_of
 from hersey.charts.render import write_pictures
-from hersey.charts.specimen_failures import failures_chart
+from hersey.charts.life_failures import failures_chart
 from hersey.charts.style import Chart, unchecked
 
 if TYPE_CHECKING:
