@@ -164,8 +164,10 @@ def test_few_units_are_wide_and_say_so(count: int) -> None:
     few = fit_growth(unit, age, value, 0.002)
     assert (few.warnings[0].kind, few.warnings[0].values) == ("few specimens", {"specimens": count})
     assert str(few.warnings[0]).startswith("one specimen does" if count == 1 else "2 specimens show little")
-    b10 = few.reaches(2.0).b10.age
-    assert b10.high > 2.0 * b10.low
+    reached = few.reaches(2.0)
+    assert (reached.b10, reached.b50) == (None, None)
+    assert reached.headline().startswith(f"{reached.units[0].unit} reaches " if count == 1 else "")
+    assert len(reached.to_frame()) == count
     assert few.law is None
     assert "several growth laws fit" in few.headline()
 

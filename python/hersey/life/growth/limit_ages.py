@@ -28,6 +28,10 @@ DEVIATIONS = 1.645
 BEYOND, OWN_BEYOND = 0.10, 0.10
 #: Share of draws from which it is worth a word that they do not reach a limit.
 _SAID = 0.05
+#: Probability of having failed from which a specimen has failed, and up to which it is still running.
+FAILED, RUNNING = 0.95, 0.05
+#: Fewest specimens that show how specimens differ: fewer make no population.
+POPULATION = 4
 #: Integrals over age: places and weights, turns of the search and where it ends, the greatest logarithm.
 _NODES, _HEIGHTS = np.polynomial.legendre.leggauss(8)
 _PLACES, _PARTS = 0.5 * (1.0 + _NODES), 0.5 * _HEIGHTS
@@ -48,9 +52,9 @@ class Interval(Record):
     def __str__(self) -> str:
         """Return value and limits with sensible digits."""
         if math.isinf(self.value):
-            return "not reached" if math.isinf(self.low) else f"later than {_number(self.low)}"
-        high = "no upper limit" if math.isinf(self.high) else _number(self.high)
-        return f"{_number(self.value)} [{_number(self.low)}, {high}]"
+            return "not reached" if math.isinf(self.low) else f"later than {rounded(self.low)}"
+        high = "no upper limit" if math.isinf(self.high) else rounded(self.high)
+        return f"{rounded(self.value)} [{rounded(self.low)}, {high}]"
 
 
 @dataclass(frozen=True)
@@ -74,9 +78,20 @@ class AgeAtLimit(Record):
         return f"{self.unit}: {self.age}{self.outcome}"
 
     @property
+    def state(self) -> str:
+        """Whether the specimen has ``failed``, is ``running`` or ``unclear``, when last seen."""
+        if self.passed >= FAILED:
+            return "failed"
+        return "unclear" if self.passed > RUNNING else "running"
+
+    @property
     def outcome(self) -> str:
         """Whether it has passed already, or may not come, in words that follow the age."""
-        words = f", already passed (last seen at {self.last:.10g})" if self.passed > 0.5 else ""
+        words, seen = "", f" (last seen at {self.last:.10g})"
+        if self.state == "failed":
+            words = f", already passed{seen}"
+        elif self.state == "unclear":
+            words = f", passed with a probability of {percent(self.passed)}{seen}"
         open_ = math.isfinite(self.age.value) and self.never > _SAID
         return words + (f", not reached in {self.never:.0%} of draws" if open_ else "")
 
@@ -89,8 +104,11 @@ class AgesAtLimit(Result):
     age_unit: str
     limit: float
     units: tuple[AgeAtLimit, ...]
-    b10: AgeAtLimit  #: a tenth of new specimens has reached it
-    b50: AgeAtLimit
+    b10: Annotated[
+        AgeAtLimit | None,
+        Means("a tenth of new specimens has reached it; null for fewer than four"),
+    ]
+    b50: AgeAtLimit | None
     warnings: tuple[Warning, ...]
     accumulates: Annotated[bool, Means("whether the limit applies to the integral over age")] = (
         False  #: the limit is that of the integral over age
@@ -100,19 +118,27 @@ class AgesAtLimit(Result):
         """Return the ages as text."""
         unit = f" ({self.age_unit})" if self.age_unit else ""
         lines = [f"age{unit} at which {self.quantity} reaches {self.limit:.4g}, with 90 % intervals"]
-        lines += [f"  {each}" for each in (*self.units, self.b10, self.b50)]
+        lines += [f"  {each}" for each in self.rows]
         return "\n".join([*lines, *(f"- {each}" for each in self.warnings)])
 
     def headline(self) -> str:
-        """Return the age at which half of the population reaches the limit."""
-        age = f"{self.b50.age} {self.age_unit}"
-        return f"half of new specimens reach {self.quantity} = {self.limit:.4g} at {age}"
+        """Return the age at which half of the population reaches the limit, or the first specimen."""
+        limit = f"{self.quantity} = {self.limit:.4g}"
+        if self.b50 is not None:
+            return f"half of new specimens reach {limit} at {self.b50.age} {self.age_unit}"
+        first = min(self.units, key=lambda each: each.age.value)
+        return f"{first.unit} reaches {limit} at {first.age} {self.age_unit}"
+
+    @property
+    def rows(self) -> tuple[AgeAtLimit, ...]:
+        """The specimens, then the population where there is one."""
+        return (*self.units, *(each for each in (self.b10, self.b50) if each is not None))
 
     def to_frame(self) -> pl.DataFrame:
         """Return one row per specimen, then the population; infinite if never reached."""
         import polars as pl
 
-        rows = [*self.units, self.b10, self.b50]
+        rows = self.rows
         unit = self.age_unit or "1"
         return pl.DataFrame(
             {
@@ -183,6 +209,15 @@ def _least(ages: FloatArray) -> FloatArray:
     return np.asarray(np.quantile(ages, 1.0 - CONFIDENCE, axis=0, method="inverted_cdf"))
 
 
+def of_population(
+    ages: FloatArray, specimens: int, least: Earliest
+) -> tuple[AgeAtLimit, AgeAtLimit] | tuple[None, None]:
+    """B10 and B50 as `share_of_specimens`, of a population that so many specimens show; None for too few."""
+    if specimens < POPULATION:
+        return None, None
+    return share_of_specimens(ages, 0.1, least.b10), share_of_specimens(ages, 0.5, least.b50)
+
+
 def ages_at_limit(
     quantity: str,
     age_unit: str,
@@ -206,8 +241,7 @@ def ages_at_limit(
         age_at_limit(name, own.known[:, i], float(last[i]), float(least.units[i]))
         for i, name in enumerate(names)
     ]
-    new = np.sort(own.new, axis=1)
-    b10, b50 = share_of_specimens(new, 0.1, least.b10), share_of_specimens(new, 0.5, least.b50)
+    b10, b50 = of_population(np.sort(own.new, axis=1), len(known), least)
     return AgesAtLimit(quantity, age_unit, limit, tuple(known), b10, b50, warnings, accumulates)
 
 
@@ -300,6 +334,13 @@ def interval(values: FloatArray) -> Interval:
     return Interval(median, low, high)
 
 
-def _number(value: float) -> str:
-    """Three digits, those of pages without a power of ten."""
-    return f"{float(f'{value:.3g}'):.10g}"
+def rounded(age: float, digits: int = 3) -> str:
+    """Return a finite age with so many digits, those of pages without a power of ten."""
+    return f"{float(f'{age:.{digits}g}'):.10g}"
+
+
+def percent(share: float) -> str:
+    """Return a probability in per cent that is neither certain nor impossible, as ``97 %``."""
+    if share > 0.99:
+        return "over 99 %"
+    return "below 1 %" if share < 0.01 else f"{100.0 * share:.0f} %"
