@@ -22,7 +22,7 @@ from hersey.life.growth.fit import Growth, fit_growth
 from hersey.life.growth.laws import LAWS
 from hersey.life.growth.limit_ages import ages_of_sum, heavy_tailed, quantiles
 from hersey.life.growth.marginal import Specimens, likelihood
-from hersey.life.growth.points import Points
+from hersey.life.growth.points import Points, falls
 
 LAW = {law.name: law for law in LAWS}
 ZERO = np.zeros(1)
@@ -175,6 +175,39 @@ def test_few_units_are_wide_and_say_so(count: int) -> None:
 def test_values_that_fall_are_warned_of() -> None:
     unit, age, value, _ = logs("linear", reach=1.0)
     assert "values fall" in [each.kind for each in growth_of(unit, age, 1.0 / value).warnings]
+
+
+def test_what_falls_at_first_and_then_grows_is_followed() -> None:
+    """Run-in by 20 % with a time constant of 60, then growth: the limit lies above the fallen values."""
+    unit, age, _, _ = logs("linear", units=4, ages=10)
+    rate = np.repeat([0.0010, 0.0012, 0.0014, 0.0016], 10)
+    noise = np.random.default_rng(5).normal(0.0, 0.01, age.size)
+    value = (1.0 - 0.2 * (1.0 - np.exp(-age / 60.0)) + rate * age) * np.exp(noise)
+    growth = fit_growth(unit, age, value, 0.002, laws=["linear", "exponential", "power", "run-in"])
+    assert growth.law == "run-in"
+    assert growth.parameters["run-in"]["d"].low < 0.2 < growth.parameters["run-in"]["d"].high
+    assert "values fall" not in [each.kind for each in growth.warnings]
+    for each, r in zip(growth.reaches(2.0).units, rate[::10], strict=True):
+        assert each.age.low < 1.2 / r < each.age.high
+        assert each.age.value == pytest.approx(1.2 / r, rel=0.15)
+
+
+def test_what_still_runs_in_falls_but_what_has_run_in_does_not() -> None:
+    age = np.tile(np.linspace(0.0, 1.0, 9), (3, 1))
+    fallen = np.log(1.0 - 0.3 * (1.0 - np.exp(-age / 0.1)))
+    rest = np.full(age.shape, 1e-4), np.ones(age.shape, dtype=bool)
+    assert falls(Points(age, fallen, *rest))
+    assert not falls(Points(age, fallen + 0.1 * age, *rest))
+
+
+def test_evidence_counts_by_its_root_among_laws_that_grow() -> None:
+    def of(law: str, evidence: float) -> growth_posterior.Posterior:
+        return growth_posterior.Posterior(LAW[law], np.zeros((1, 5)), np.ones(1), evidence, ZERO)
+
+    found = [of("constant", 1.0), of("linear", 4.0), of("power", 0.0)]
+    constant, linear, power = growth_module._weights(found, np.zeros(3))
+    assert linear / power == pytest.approx(math.exp(2.0))
+    assert constant / (linear + power) == pytest.approx(math.exp(1.0) / (math.exp(4.0) + 1.0))
 
 
 @pytest.mark.parametrize("law", LAWS, ids=[law.name for law in LAWS])

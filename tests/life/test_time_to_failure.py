@@ -17,7 +17,7 @@ from hersey.life.growth import limit_ages, marginal
 from hersey.life.growth.fit import fit_growth
 from hersey.life.growth.limit_ages import age_at_limit, percent, rounded
 from hersey.life.indicator import NOT_JUDGED, Indicator, Indicators, OwnAges, Runs
-from hersey.life.time_to_failure import joined, next_run
+from hersey.life.time_to_failure import ageing, joined, next_run
 from hersey.life.time_to_failure.estimate import TimeToFailure, time_to_failure
 from hersey.schema.warning import Warning
 from tests.life.shipped import fewer
@@ -185,6 +185,55 @@ def test_the_same_data_and_seed_give_the_same_ends() -> None:
     assert calls == [(1, 1)]
     assert warned(once)["few specimens"].values == {"specimens": 2}
     assert "2 specimens show too little of how specimens differ" in once.summary()
+
+
+@cache
+def flat(by: float = 1.0) -> TimeToFailure:
+    """Two modes of which none grows, followed to 600 pages, times a factor."""
+    steady = np.ones(AGE.size)
+    return time_to_failure(
+        of(indicator("torque", steady, 1.5), indicator("grip", steady, 2.0, seed=2), age=by * AGE), until=1e4
+    )
+
+
+def test_where_nothing_grows_it_is_said_and_before_which_age_none_fails() -> None:
+    found = flat().ageing
+    assert (found.shown, found.unchanged, found.followed) == ("none", ("torque", "grip"), 600.0)
+    assert found.none_before is not None
+    assert 1200.0 < found.none_before < 12_000.0
+    assert not flat().modes[0].grows
+    assert flat().modes[0].none_before >= found.none_before
+    assert all(math.isinf(each.age.age.value) and each.age.age.low > 600.0 for each in flat().units)
+    assert flat().headline().startswith("No specimen shows growth. At 90 % confidence none fails before ")
+    text = flat().summary()
+    assert "never" not in text
+    assert "F1: later than" in text
+    assert "next: follow the specimens to" in text
+
+
+def test_the_test_goes_on_as_far_as_it_is_told_to() -> None:
+    """As many runs up to the age that the advice states, again without growth, show the goal."""
+    found = flat().ageing
+    assert found.goal == 1e4
+    assert found.enough is False
+    assert found.until is not None
+    assert flat().advice == (
+        f"follow the specimens to {ageing.after(found.until, 'pages')}. If nothing grows by then, none "
+        "fails before 10,000 pages",
+    )
+    longer = flat(1.0001 * found.until / 600.0)
+    assert longer.ageing.enough
+    assert longer.advice == ("stop the test: none fails before 10,000 pages",)
+
+
+def test_a_mode_that_does_not_grow_says_so_beside_one_that_does() -> None:
+    steady = indicator("grip", np.ones(AGE.size), 2.0, seed=2)
+    found = time_to_failure(of(indicator("torque", linear(RATE), 2.0), steady))
+    assert (found.ageing.shown, found.ageing.unchanged) == ("some", ("grip",))
+    assert found.ageing.doubled is None
+    row = next(line for line in found.summary().split("\n") if line.startswith("  grip"))
+    assert row.startswith("  grip: B50: later than ")
+    assert row.endswith(", no growth shown")
 
 
 def test_a_unit_that_tells_nothing_is_one_of_the_others() -> None:

@@ -351,8 +351,8 @@ def fit_growth(
 def _weights(found: list[Posterior], before: FloatArray) -> FloatArray:
     """Weights of laws by their evidence; among those that grow, none of which is quite true, by its power.
 
-    Evidence of a law that is not true is too sure of itself (coarsened posterior; Miller, Dunson, J. Am. Stat.
-    Assoc. 114 (2019) 1113).
+    Evidence of a law that is not true is too sure of itself (coarsened posterior; Miller, Dunson, J. Am.
+    Stat. Assoc. 114 (2019) 1113).
     """
     evidence = before + np.array([each.log_evidence for each in found])
     grows = np.array([each.law.grows for each in found])
