@@ -30,6 +30,7 @@ operating_map    the operating map
 plan             a drive profile and the motion
 warm_up          speed, drag and temperatures of a warm-up
 weibull          share failed against age
+failures         specimens of a life test as intervals, on the axes of a Weibull plot
 ageing_maps      the operating map of a unit when new, now and at its end
 life             the charts of a life test, in the order of its page
 trend            friction against age at one speed
