@@ -1,7 +1,7 @@
 """Whether the age at which a film starves is held where film, starvation and drag follow other laws.
 
-The specimens are those of `benchmarks.starved_films`, a generator that shares no code with hersey. hersey sees
-tables of means of eight specimens, followed to 50 to 110 % of the median age, and the file of the machine.
+The specimens are those of `benchmarks.starved_films`, a generator that shares no code with hersey. hersey
+sees tables of means of eight specimens, followed to 50 to 110 % of the median age, and the machine file.
 
 Usage: python -m benchmarks.starvation [--campaigns 80] [--seed 1] [--workers 2] [--scheduler ADDRESS]
 """
@@ -68,7 +68,7 @@ def logs_of(world: World, random: np.random.Generator) -> list[Log]:
 
 
 def machine_file(drive: Drive, random: np.random.Generator) -> str:
-    """Return what the engineer states: the oil within 10 %, the nip, and asperities of half of the machines."""
+    """Return what the engineer states: the oil within 10 %, the nip, and asperities of half of the drives."""
     factor = float(np.exp(random.normal(0.0, 0.06)))
     faces = f"""
 [asperities]
@@ -79,6 +79,7 @@ sigma_over_beta = 0.001
 [boundary]
 friction = {drive.friction * random.uniform(0.8, 1.2):.4g}
 """
+    thick, thin = factor * drive.thick, factor * drive.thin
     stated = drive.law == "mixed" and random.uniform() < 0.5
     return f"""
 [drivetrain]
@@ -103,7 +104,7 @@ roughness = "{drive.roughness * random.uniform(0.8, 1.25):.9g} m"
 [lubricant]
 name = "oil"
 model = "walther"
-viscosities = [["40 degC", "{factor * drive.thick:.9g} mm^2/s"], ["200 degC", "{factor * drive.thin:.9g} mm^2/s"]]
+viscosities = [["40 degC", "{thick:.9g} mm^2/s"], ["200 degC", "{thin:.9g} mm^2/s"]]
 density = "{drive.density:.9g} kg/m^3"
 uncertainty = "15 %"
 {faces if stated else ""}

@@ -1,6 +1,6 @@
-"""Specimens whose film starves, by laws that the product does not have: the generator of `benchmarks.starvation`.
+"""Specimens whose film starves by laws that the product does not have, for `benchmarks.starvation`.
 
-It shares no code with hersey. The share of the flooded film that a layer of oil leaves is one of
+The generator shares no code with hersey. The share of the flooded film that a layer of oil leaves is one of
 
 ==========  =========================================================================================
 tanh        tanh of layer over flooded film

@@ -31,7 +31,7 @@ _LEAST_LOST = 1e-300
 _THINNEST = -60.0
 #: Greatest r^k, as a logarithm: its exponential is nothing.
 _THICKEST = 6.0
-#: Power of the law that fades over the sharpness of the other, so that both agree where the layer is the film.
+#: Power of the law that fades over the sharpness of the other: both agree where the layer is the film.
 _FADES = float(np.log1p(-np.exp(-1.0)) / -np.log(2.0))
 
 

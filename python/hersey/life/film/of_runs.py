@@ -211,8 +211,8 @@ def _refuse_touching(fit: LayerFit, point: FilmPoint) -> None:
     over = float(np.exp(cubic(fit.other.film, np.zeros(()))[0].item())) / fit.roughness
     if over < LEAST_LAMBDA:
         raise InsufficientDataError(
-            f"the flooded film at {point.name} is {over:.2g} times the roughness. Below {LEAST_LAMBDA:g} times, "
-            "faces that touch raise the torque as a film does that starves. Add [asperities] "
+            f"the flooded film at {point.name} is {over:.2g} times the roughness. Below {LEAST_LAMBDA:g} "
+            "times, faces that touch raise the torque as a film does that starves. Add [asperities] "
             f"{NEEDED['asperities']} and [boundary] {NEEDED['boundary']} to the machine file"
         )
 

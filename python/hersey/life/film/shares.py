@@ -35,6 +35,11 @@ class StarvesAt(Record):
     first: Annotated[float, Means("age of the specimen that starves first", open=True)]
     b50: Annotated[float, Means("age at which half of new specimens starve", open=True)]
 
+    @property
+    def shown(self) -> str:
+        """The age of half of new specimens in words."""
+        return f"{float(f'{self.b50:.3g}'):.10g}" if np.isfinite(self.b50) else "never"
+
 
 @dataclass(frozen=True)
 class OtherDrag(Record):
@@ -52,7 +57,7 @@ class OtherDrag(Record):
 
     def lines(self, unit: str, point: str) -> list[str]:
         """Return the share and what the ages would be at others, as lines of text."""
-        ages = ", ".join(f"{each.b50:.3g} at {each.share:.0%}" for each in self.starves)
+        ages = ", ".join(f"{each.shown} at {each.share:.0%}" for each in self.starves)
         return [
             f"share of the drag at {point} that does not follow the film (rolling, seals, gears), flooded: "
             f"{self.share:.0%} [{self.low:.0%}, {self.high:.0%}]; rolling as computed {self.computed:.0%}",
@@ -91,7 +96,7 @@ class ByShare:
 
 
 def by_share(fit: LayerFit, units: list[str]) -> ByShare:
-    """Return the layers of runs at shares of other drag from 0 to 40 %; ``units`` are the specimens of runs."""
+    """Return the layers of runs at shares of other drag from 0 to 40 %; ``units`` are their specimens."""
     found = [fit.together(share) for share in SHARES.tolist()]
     unlikely = np.array([each.unlikely for each in found])
     weight = np.diff(_ENDS) * np.exp(-0.5 * _COUNT_AS * (unlikely - unlikely.min()))

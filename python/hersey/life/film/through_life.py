@@ -325,18 +325,18 @@ def _of_other_drag(other: OtherDrag, read: FilmOfRuns) -> Warning:
     return Warning(
         "other drag",
         "{low:.0f %} to {high:.0f %} of the drag at {point} may not follow the film (rolling, seals, gears). "
-        "Half of new specimens starve by {few:.3g} {age_unit} if {least:.0f %} of it does not, by {many:.3g} if "
-        "{most:.0f %} does not: with more such drag they starve {direction}. To determine it, log one specimen "
-        "flooded with fresh lubricant, the drive without the nip, or a lubricant of another viscosity",
+        "With more such drag specimens starve {direction}: half of new ones at {few} {age_unit} if it is "
+        "{least:.0f %}, at {many} if it is {most:.0f %}. To determine it, log one specimen flooded with "
+        "fresh lubricant, the drive without the nip, or a lubricant of another viscosity",
         severity="note" if other.determined else "watch",
         low=other.low,
         high=other.high,
         point=read.points[0].name,
         age_unit=read.runs.age_unit,
         least=few.share,
-        few=few.b50,
+        few=few.shown,
         most=many.share,
-        many=many.b50,
+        many=many.shown,
         direction="sooner" if other.sooner else "later",
     )
 
