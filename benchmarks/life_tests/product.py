@@ -27,7 +27,7 @@ def campaign_file(folder: Path) -> Path:
     half.unlink(missing_ok=True)
     fit = None  # ages do not depend on it, and most of the time would go into it
     with hersey.Campaign.create(half) as campaign:
-        for run in read_runs(folder / "runs.csv"):
+        for run in read_runs(folder / "runs.csv").runs:
             try:
                 points = hersey.SteadyPoints.from_table(run.log).without(machine.rest)
                 fit = fit or hersey.fit(points)
