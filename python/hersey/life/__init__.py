@@ -17,6 +17,7 @@ film             the film through life, the oil that is left, and when it starve
 time_to_failure  what ends each specimen, and when
 other_uses       the same where limit, coldest start or duty is another one
 ageing_maps      the operating map of a specimen when new, now and at its end
+map_edges        transition and V* of these maps, and where they are measured
 trend            friction against age in one log at one speed
 following        a life test followed, in one answer
 ===============  ==================================================================
