@@ -140,7 +140,7 @@ def next_runs(
         values, errors = [], []
         for m in observed:
             order, each = picks[i][0][:, m], ending[m]
-            value, scatter = each.mode.growth.drawn_values(each.row[name], ages)
+            value, scatter = each.drawn_values(name, ages)
             values.append(value[order])
             errors.append(np.hypot(scatter, each.error)[order])
         among = of_runs[np.ix_(observed, observed)]
