@@ -7,10 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hersey.arrays import FloatArray
+from hersey.arrays import BoolArray, FloatArray
 from hersey.life.film.depletion_law import Depletion
 from hersey.life.film.of_runs import Estimates, FilmPoint
-from hersey.life.film.starved_drag import Flooded
+from hersey.life.film.shares import StarvesAt
+from hersey.life.film.starved_drag import Flooded, cubic
 from hersey.life.growth.limit_ages import AgesAtLimit, Interval, ages_at_limit, interval, quantiles
 from hersey.life.indicator import OwnAges
 from hersey.life.oil_layer import USUAL_SHARPNESS, log_film_share
@@ -19,11 +20,14 @@ from hersey.schema.warning import Warning
 
 #: Ages looked at, over the greatest of the data; past the last it counts as never.
 _AGES = np.concatenate([[0.0], np.geomspace(3e-3, 10.0, 110)])
-#: How far the law of film and starvation may be off, ln of layer over film, in common to all specimens: what
-#: films by other laws showed (`benchmarks/life.py`).
-_LAW = 0.06
-#: New specimens drawn for B10 and B50, of each draw of what specimens share.
-_NEW = 40
+#: How far the law of film and starvation may be off, ln of layer over film, in common to all specimens, as
+#: films by other laws showed (`benchmarks/starvation.py`); film over roughness below which faces that touch
+#: make it more; and the power by which they do.
+_LAW, _THICK, _TOUCHING = 0.06, 8.0, 1.5
+#: Share of the draws that stay finite where nothing bounds the layer from above.
+_OPEN = 0.9
+#: New specimens drawn for B10 and B50, and at each share of other drag, of each draw of what specimens share.
+_NEW, _NEW_AT_SHARE = 40, 4
 #: Draws of what specimens share from which new ones are drawn.
 _NEW_OF = 400
 
@@ -45,6 +49,9 @@ class LayersOfSpecimens:
     drawn: Depletion
     names: list[str]
     last: FloatArray
+    roughness: float | None = None  #: m
+    slower: FloatArray | None = None  #: factors on the ages of draws, by the share of other drag
+    seen: BoolArray | None = None  #: which specimens show starvation in any run; None: all
 
     def spread(self, of: Callable[[FloatArray], FloatArray]) -> Estimates:
         """Return median and 90 % ends of exp of a function of what a specimen has, (specimens, ages)."""
@@ -84,16 +91,33 @@ class LayersOfSpecimens:
         drawn = self.drawn.rate(self.drawn.mean)
         return {name: interval(each) for name, each in zip("Keg", drawn, strict=True)}
 
-    def starving(self, point: Flooded) -> OwnAges:
+    def starving(self, point: Flooded, new_ones: int = _NEW) -> OwnAges:
         """Return draws of the ages at which these specimens and new ones starve at a point."""
         drawn, many = self.drawn, len(self.drawn.mean)
         some = np.linspace(0, many - 1, min(many, _NEW_OF)).astype(np.intp)
         random = np.random.default_rng(0)
-        normals = random.standard_normal((some.size, _NEW, drawn.mean.shape[1]))
-        off = _LAW * random.standard_normal(many)
+        normals = random.standard_normal((some.size, new_ones, drawn.mean.shape[1]))
+        off = self._law(point) * random.standard_normal(many)
         new = drawn.mean[some, None] + drawn.spread[some, None] * normals
         known = _ages_below(drawn, drawn.specimens, point, off[:, None])
-        return OwnAges(known, _ages_below(drawn, new, point, off[some, None]))
+        later = _ages_below(drawn, new, point, off[some, None])
+        if self.slower is not None:
+            known, later = known * self.slower[:, None], later * self.slower[some, None]
+        return OwnAges(self._open(known), later)
+
+    def _open(self, ages: FloatArray) -> FloatArray:
+        """Ages of draws, without an upper end where a specimen shows no more than a lower bound."""
+        if self.seen is None or self.seen.all():
+            return ages
+        latest = ages >= np.quantile(ages, _OPEN, axis=0, method="lower")
+        return np.where(latest & ~self.seen, np.inf, ages)
+
+    def _law(self, point: Flooded) -> float:
+        """How far the law may be off at a point, ln of layer over film."""
+        if self.roughness is None:
+            return _LAW
+        over = float(np.exp(cubic(point.film, np.zeros(()))[0].item())) / self.roughness
+        return float(_LAW * max(_THICK / over, 1.0) ** _TOUCHING)
 
     def starves(
         self, own: OwnAges, state: FilmPoint, age_unit: str, warnings: tuple[Warning, ...]
@@ -109,8 +133,14 @@ class LayersOfSpecimens:
         return OwnAges(np.stack(columns, axis=1), own.new)
 
 
+def starves_at(layers: LayersOfSpecimens, point: Flooded, share: float) -> StarvesAt:
+    """Return when specimens starve at a point, fitted for a share of other drag."""
+    own = layers.starving(point, _NEW_AT_SHARE)
+    return StarvesAt(share, float(np.median(own.known, axis=0).min()), float(np.median(own.new)))
+
+
 def _ages_below(drawn: Depletion, own: FloatArray, point: Flooded, off: FloatArray) -> FloatArray:
-    """Ages at which layers of draws (..., 5) are first as thin as the flooded film; infinite where never.
+    """Ages at which layers of draws (..., 6) are first as thin as the flooded film; infinite where never.
 
     ``off`` is the error of ln of layer over film that all specimens have in common, of each draw.
     """

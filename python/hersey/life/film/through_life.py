@@ -6,17 +6,20 @@ both in `starving`.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Annotated, Any
+from functools import partial
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import numpy as np
 
 from hersey.arrays import BoolArray, FloatArray, IntArray, one_thread
 from hersey.errors import InsufficientDataError, ParameterError
-from hersey.life.film.depletion_law import fit_depletion
+from hersey.life.film.depletion_law import Depletion, fit_depletion, pooled
 from hersey.life.film.of_runs import Estimates, FilmOfRuns, FilmPoint, film_of_runs, systematic_factor
+from hersey.life.film.shares import SHARES, OtherDrag, other_drag, slower_by_share
 from hersey.life.film.starved_drag import film_of
-from hersey.life.film.starving import LayersOfSpecimens, OilLeft
+from hersey.life.film.starving import LayersOfSpecimens, OilLeft, starves_at
 from hersey.life.growth.limit_ages import AgesAtLimit, Interval
 from hersey.life.indicator import Indicator, Indicators, Runs, most_ages
 from hersey.life.oil_layer import USUAL_SHARPNESS
@@ -78,6 +81,7 @@ class FilmLife(Result):
     ]  #: of the median specimen: K (1/(m^2 age)), e and g (1/age)
     oil: Annotated[tuple[OilLeft, ...], Means("in the layer of each specimen, at the first point")]
     track: float
+    other_drag: Annotated[OtherDrag, Means("what does not follow the film")]
     warnings: tuple[Warning, ...]
     _starvation: Indicator = field(repr=False)
 
@@ -122,6 +126,7 @@ class FilmLife(Result):
                 lines.append("  all specimens: starved from new")
             else:
                 lines += [f"  {each}" for each in ages.units]
+        lines += self.other_drag.lines(unit, self.points[0].name)
         lines.append(
             f"oil in the layer, mm^3, on a track of {1e3 * self.track:.4g} mm: when new, when last "
             f"seen, and needed for a flooded film at {self.points[0].name}"
@@ -225,10 +230,53 @@ def film_life(
             "no specimen was measured at two ages, so how its oil layer thins is unknown. Add runs at "
             "another age"
         )
-    drawn = fit_depletion(read.layers, place, age, side_flow=side_flow, evaporation=evaporation, seed=seed)
+    drawing = partial(fit_depletion, side_flow=side_flow, evaporation=evaporation, seed=seed)
     last = np.array([age[place == k].max() for k in range(len(names))])
-    warnings = (*read.warnings, *_of_the_law(age, place, machine))
-    return _film_life(read, LayersOfSpecimens(drawn, names, last), machine, track, warnings)
+    layers, other = _followed(read, SpecimensOfRuns(names, place, age, last), machine, drawing, seed)
+    warnings = (*read.warnings, *_of_the_law(age, place, machine), _of_other_drag(other, read))
+    return _film_life(read, layers, machine, track, other, warnings)
+
+
+class SpecimensOfRuns(NamedTuple):
+    """Specimens of runs: names, number and age of each run, and age when last seen."""
+
+    names: list[str]
+    place: IntArray
+    age: FloatArray
+    last: FloatArray
+
+    def some(self, runs: IntArray) -> SpecimensOfRuns:
+        """Return those of some runs."""
+        numbers, place = np.unique(self.place[runs], return_inverse=True)
+        names = [self.names[k] for k in numbers]
+        return SpecimensOfRuns(names, place, self.age[runs], self.last[numbers])
+
+
+def _followed(
+    read: FilmOfRuns,
+    runs: SpecimensOfRuns,
+    machine: Machine,
+    drawing: Callable[..., Depletion],
+    seed: int,
+) -> tuple[LayersOfSpecimens, OtherDrag]:
+    """The layers of all specimens whatever the share of other drag, and ages at each share."""
+    by, point = read.by_share, read.flooded[0]
+    some = runs.some(by.some)
+    each = [drawing(layers, some.place, some.age) for layers in by.layers]
+    starves = [
+        starves_at(LayersOfSpecimens(drawn, some.names, some.last), point, share)
+        for drawn, share in zip(each, SHARES.tolist(), strict=True)
+    ]
+    bounded = np.isfinite(read.layers.interval()[2])
+    seen = np.bincount(runs.place, bounded, len(runs.names)) > 0.0
+    roughness, slower = film_of(machine)[0].roughness, None
+    if by.is_of_all:
+        drawn = pooled(each, by.weight, seed)
+    else:
+        drawn = drawing(by.likeliest, runs.place, runs.age)
+        slower = slower_by_share(starves, by.weight, len(drawn.mean), seed)
+    layers = LayersOfSpecimens(drawn, runs.names, runs.last, roughness, slower, seen)
+    return layers, other_drag(by, starves)
 
 
 def _refuse_impossible(side_flow: float | None, evaporation: float | None, track: float | None) -> None:
@@ -244,6 +292,7 @@ def _film_life(
     layers: LayersOfSpecimens,
     machine: Machine,
     track: float | None,
+    other_drag: OtherDrag,
     warnings: tuple[Warning, ...],
 ) -> FilmLife:
     ages = _CURVES * layers.drawn.greatest_age
@@ -267,8 +316,33 @@ def _film_life(
         law=layers.rates(),
         oil=layers.oil(read.flooded[0], length * film_of(machine)[0].length),
         track=length,
+        other_drag=other_drag,
         warnings=warnings,
-        _starvation=replace(read.indicator(), own_ages=layers.with_all(starving[0], read.runs.units)),
+        _starvation=replace(
+            read.indicator((warnings[-1],)), own_ages=layers.with_all(starving[0], read.runs.units)
+        ),
+    )
+
+
+def _of_other_drag(other: OtherDrag, read: FilmOfRuns) -> Warning:
+    """How the ages depend on the drag that does not follow the film."""
+    few, many = other.starves[0], other.starves[-1]
+    return Warning(
+        "other drag",
+        "{low:.0f %} to {high:.0f %} of the drag at {point} may not follow the film (rolling, seals, gears). "
+        "With more such drag specimens starve {direction}: half of new ones at {few} {age_unit} if it is "
+        "{least:.0f %}, at {many} if it is {most:.0f %}. To determine it, log one specimen flooded with "
+        "fresh lubricant, the drive without the nip, or a lubricant of another viscosity",
+        severity="note" if other.determined else "watch",
+        low=other.low,
+        high=other.high,
+        point=read.points[0].name,
+        age_unit=read.runs.age_unit,
+        least=few.share,
+        few=few.shown,
+        most=many.share,
+        many=many.shown,
+        direction="sooner" if other.sooner else "later",
     )
 
 
