@@ -22,6 +22,7 @@ from hersey.charts import CHARTS, chart_of
 from hersey.charts.render import picture
 from hersey.damping.candidates.observations import Observations
 from hersey.errors import ParameterError
+from hersey.life.population import weibull as population
 from hersey.machine.machine import read_machine
 from hersey.motion.drag import Drag as AnyDrag
 from tests import test_results
@@ -166,7 +167,7 @@ MADE: dict[str, Callable[[], Any]] = {
     "OperatingMap": belt_map,
     "Plan": plan,
     "WarmUp": warm_up,
-    "Population": lambda: hersey.weibull([4.0, 6.0, 7.0, 9.0], [True, True, False, True], unit="h"),
+    "Population": lambda: population([4.0, 6.0, 7.0, 9.0], [True, True, False, True], unit="h"),
     "Drift": lambda: hersey.fit_drift(table(other("lubricant", 1, units=2, logs=3))),
     "FilmLife": lambda: shipped.film(1),
     "Growth": lambda: test_results.growth(),
@@ -462,7 +463,7 @@ def test_failures_stand_at_their_ranks_and_other_units_on_the_axis() -> None:
 
 def test_a_population_without_a_law_still_shows_its_units() -> None:
     for failed in ([False, False], [True, False], [True, True]):
-        law = hersey.weibull([10.0, 10.0], failed)
+        law = population([10.0, 10.0], failed)
         shown = chart_of(law).to_dict(validate=False)
         alt.Chart.from_dict(valid(shown), validate=True)
         assert law.warnings[0].sentence in shown["title"]["subtitle"]

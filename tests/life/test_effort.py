@@ -45,7 +45,7 @@ def test_no_growth_is_fitted_twice(monkeypatch: pytest.MonkeyPatch) -> None:
     assert fits.total() - once == 1  # the motor torque of the colder start
     assert torque_surface._kernel_of.cache_info().misses == 1  # of the colder start too
     (stated,) = (use for use in uses.uses if use.stated)
-    assert stated.ends[-1].age == found.b50.age
+    assert [each.age for each in stated.ends] == [each.age.age for each in found.units]
 
 
 def test_a_place_is_weighed_once_by_each_round(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -99,7 +99,7 @@ def test_ages_of_few_draws_are_held_at_a_time(monkeypatch: pytest.MonkeyPatch) -
         return fitted(logs, *more)
 
     monkeypatch.setattr(population, "_fitted", counted)
-    hersey.weibull(np.random.default_rng(5).weibull(2.0, 2000), [True] * 2000)
+    population.weibull(np.random.default_rng(5).weibull(2.0, 2000), [True] * 2000)
     own, *drawn = held
     assert own == (1, 2000)
     assert sum(rows for rows, _ in drawn) == population._DRAWS

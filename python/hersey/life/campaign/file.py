@@ -15,8 +15,10 @@ from hersey.life.campaign.adding import Added, add_entry, age_unit, is_there, li
 from hersey.life.campaign.checks import CampaignCheck, check
 from hersey.life.campaign.content import damaged, refuse_unsound_dwells, refuse_unsound_runs
 from hersey.life.campaign.entry import COLUMNS, Entry
+from hersey.life.campaign.events import add_event, events_of, remove_event
 from hersey.life.campaign.guarded import GuardedConnection
 from hersey.life.campaign.store import PATIENCE, open_store, refuse_no_place, sqlite_errors, transaction
+from hersey.life.maintenance import Event, kind_of
 from hersey.units import takes_si
 
 if TYPE_CHECKING:
@@ -28,8 +30,6 @@ if TYPE_CHECKING:
     from hersey.damping.surface import DampingSurface
     from hersey.log.sensors import Sensors
 
-#: Dwells that are read at once.
-_AT_ONCE = 100_000
 #: Columns of the list of runs.
 _LISTED = "id, unit, age, path, sha256, dwells, exponent, transition_speed, no_fit, version, added"
 #: Specimens that a message lists.
@@ -167,6 +167,44 @@ class Campaign:
                 refuse_unsound_dwells(self._database, self.path, each.run)
             return added
 
+    def add_event(self, unit: str, age: str | Age, event: str, *, run: int | None = None) -> Event:
+        """Record maintenance of a specimen, from which on its friction grows anew.
+
+        Parameters
+        ----------
+        unit
+            The specimen's name.
+        age
+            Its age then, e.g. ``"80000 pages"``. Runs of that age were measured before it, but for ``run``.
+        event
+            ``re-greased``, ``cleaned`` or ``replaced`` (its parts, so that damage starts from nothing too).
+        run
+            Number of the run of that age that was measured after it, if there is one.
+
+        Raises
+        ------
+        ParameterError
+            If there is no such specimen or run, or no such event.
+        UnitError
+            If the age has no unit, or a unit other than that of the campaign.
+        """
+        parsed, kind = Age.parse(age) if isinstance(age, str) else age, kind_of(event)
+        with transaction(self._database, self.path):
+            added = add_event(self._database, unit, parsed, kind, run)
+            refuse_unsound_runs(self._database, self.path)
+            return added
+
+    def remove_event(self, unit: str, age: str | Age, event: str) -> None:
+        """Remove an event; `ParameterError` if there is none."""
+        parsed = Age.parse(age) if isinstance(age, str) else age
+        with transaction(self._database, self.path):
+            remove_event(self._database, unit, parsed, kind_of(event))
+
+    def events(self) -> list[Event]:
+        """Return all maintenance, by specimen and age."""
+        with sqlite_errors(self.path):
+            return events_of(self._database)
+
     def there(self, sha256: str, unit: str, age: Age, settings: str) -> Added | None:
         """Return the existing run of a log with this hash if adding it would change nothing, else None."""
         with sqlite_errors(self.path):
@@ -300,29 +338,16 @@ class Campaign:
         import polars as pl
 
         from hersey.life.campaign.conversion import rests_of
+        from hersey.life.campaign.dwells import dwells_of, with_units
 
-        kinds = {"INTEGER": pl.Int64, "REAL": pl.Float64, "TEXT": pl.String}
-        columns = ", ".join(f'd."{name}"' for name in COLUMNS)
         with sqlite_errors(self.path):
             refuse_unsound_dwells(self._database, self.path)
-            rows = self._database.execute(
-                f"SELECT r.id, {columns} FROM runs r JOIN dwells d ON d.run_id = r.id "
-                "ORDER BY r.unit, r.age, r.id, d.number"
-            )
-            schema = {"run_id": pl.Int64()} | {name: kinds[kind]() for name, kind in COLUMNS.items()}
-            parts = [pl.DataFrame(schema=schema)]
-            while some := rows.fetchmany(_AT_ONCE):
-                parts.append(pl.DataFrame(some, schema=schema, orient="row"))
-        dwells = pl.concat(parts)
+            dwells = dwells_of(self._database)
         rests = {run: rest for run, (rest, _) in self.drives().items()}
         dwells = dwells.with_columns(pl.Series("rest", rests_of(dwells, rests)))
         of = self.runs().select(pl.col("run").alias("run_id"), "unit", "age", "log")
         joined = of.join(dwells, on="run_id", how="inner", maintain_order="left_right")
-        units = {"start": "s", "end": "s", "load": "N", "tare": "N m", "rest": "N m"}
-        for name, si in (("speed", "rad/s"), ("torque", "N m"), ("temperature", "K")):
-            units |= {name: si, f"{name}_error": si}
-        new = {name: f"{name.replace('_', ' ')} ({si})" for name, si in units.items()}
-        return joined.rename({**new, "age": f"age ({self.age_unit or 'unit'})"})
+        return with_units(joined, self.age_unit)
 
     def measured(self) -> tuple[IntArray, FloatArray]:
         """Return the numbers of every dwell for computations on torque.
@@ -330,18 +355,11 @@ class Campaign:
         Number of the run, shape (dwells,), those of one run one after the other; speed (rad/s), temperature
         (K), torque and its error (N m), shape (dwells, 4), NaN where nothing was recorded.
         """
-        import numpy as np
+        from hersey.life.campaign.dwells import measured_of
 
         with sqlite_errors(self.path):
             refuse_unsound_dwells(self._database, self.path)
-            rows = self._database.execute(
-                "SELECT run_id, speed, temperature, torque, torque_error FROM dwells ORDER BY run_id, number"
-            )
-            parts = [np.empty((0, 5))]
-            while some := rows.fetchmany(_AT_ONCE):
-                parts.append(np.array(some, dtype=float))
-        numbers = np.concatenate(parts)
-        return numbers[:, 0].astype(np.intp), numbers[:, 1:]
+            return measured_of(self._database)
 
     def export(self, suffix: str) -> bytes:
         """Return `dwells` as the bytes of a ``.parquet`` or ``.csv`` file.
@@ -365,7 +383,7 @@ class Campaign:
 
     def summary(self) -> str:
         """Return an overview and one line per specimen."""
-        runs = self.runs()
+        runs, events = self.runs(), self.events()
         units = runs["unit"].n_unique()
         lines = [f"{self.path.name}: {runs.height} runs of {units} specimen{'s' * (units != 1)}"]
         for (unit,), of in runs.group_by("unit", maintain_order=True):
@@ -374,11 +392,18 @@ class Campaign:
             ages = f"at {first}" if first == last else f"{first.value:.10g} to {last}"
             text = f"{unit}: {of.height} run{'s' * (of.height > 1)}, {ages}, {of['dwells'].sum()} dwells"
             lines.append(text + (f", {failed} without a fit" if failed else ""))
+            lines += [f"  {each.kind} at {each.age}" for each in events if each.unit == unit]
         return "\n".join(lines)
 
     def to_dict(self, unit: str = "") -> dict[str, Any]:
         """Return file, unit of the ages, and the runs of one specimen or all as JSON."""
-        return {"file": str(self.path), "age_unit": self.age_unit, "runs": self.runs(unit).to_dicts()}
+        events = [
+            {"unit": each.unit, "age": each.age.value, "kind": each.kind, "run": each.run}
+            for each in self.events()
+            if unit in ("", each.unit)
+        ]
+        runs = self.runs(unit).to_dicts()
+        return {"file": str(self.path), "age_unit": self.age_unit, "runs": runs, "events": events}
 
     def to_frame(self) -> pl.DataFrame:
         """Return `runs`."""

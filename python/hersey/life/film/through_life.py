@@ -94,14 +94,19 @@ class FilmLife(Result):
         last = _last_runs(self.runs)
         starved = [self.runs.unit[i] for i in last if self.starved()[i]]
         text = f"{len(starved)} of {len(last)} specimens starve of oil at {self.points[0].name}"
-        b50 = self.starves[0].b50.age
-        return f"{text}; half of new specimens starve by {b50} {self.runs.age_unit}"
+        b50 = self.starves[0].b50
+        if b50 is None:
+            return text
+        return f"{text}; half of new specimens starve by {b50.age} {self.runs.age_unit}"
 
     def summary(self) -> str:
         """Return film, layer and ages of each specimen as text."""
+        return "\n".join([self.headline(), *self.findings(), *(f"- {each}" for each in self.warnings)])
+
+    def findings(self) -> list[str]:
+        """Return film, layer and ages of each specimen; an indented line goes with that before."""
         unit = self.runs.age_unit
-        lines = [self.headline()]
-        lines += [
+        lines = [
             "ratio of film to that of a flooded inlet at the same viscosity and speed, when last seen "
             f"(starved below {STARVED:.2f})"
         ]
@@ -120,7 +125,7 @@ class FilmLife(Result):
             if all(each.age.value == 0.0 for each in ages.units):
                 lines.append("  all specimens: starved from new")
             else:
-                lines += [f"  {each}" for each in (*ages.units, ages.b10, ages.b50)]
+                lines += [f"  {each}" for each in ages.units]
         lines += self.other_drag.lines(unit, self.points[0].name)
         lines.append(
             f"oil in the layer, mm^3, on a track of {1e3 * self.track:.4g} mm: when new, when last "
@@ -132,7 +137,7 @@ class FilmLife(Result):
             f"1/(m^2 {unit}), e and g in 1/{unit}: "
             + ", ".join(f"{name} {each}" for name, each in self.law.items())
         )
-        return "\n".join([*lines, *(f"- {each}" for each in self.warnings)])
+        return lines
 
     def with_starvation(self, indicators: Indicators) -> Indicators:
         """Return indicators of the same runs with starvation among them.
@@ -325,7 +330,7 @@ def _of_other_drag(other: OtherDrag, read: FilmOfRuns) -> Warning:
     return Warning(
         "other drag",
         "{low:.0f %} to {high:.0f %} of the drag at {point} may not follow the film (rolling, seals, gears). "
-        "With more such drag specimens starve {direction}: half of new ones at {few} {age_unit} if it is "
+        "With more such drag specimens starve {direction}: the median one at {few} {age_unit} if it is "
         "{least:.0f %}, at {many} if it is {most:.0f %}. To determine it, log one specimen flooded with "
         "fresh lubricant, the drive without the nip, or a lubricant of another viscosity",
         severity="note" if other.determined else "watch",
