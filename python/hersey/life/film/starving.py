@@ -23,11 +23,11 @@ _AGES = np.concatenate([[0.0], np.geomspace(3e-3, 10.0, 110)])
 #: How far the law of film and starvation may be off, ln of layer over film, in common to all specimens, as
 #: films by other laws showed (`benchmarks/starvation.py`); film over roughness below which faces that touch
 #: make it more; and the power by which they do.
-_LAW, _THICK, _TOUCHING = 0.06, 8.0, 1.5
+_LAW, _THICK, _TOUCHING = 0.09, 8.0, 1.5
 #: Share of the draws that stay finite where nothing bounds the layer from above.
 _OPEN = 0.9
-#: New specimens drawn for B10 and B50, and at each share of other drag, of each draw of what specimens share.
-_NEW, _NEW_AT_SHARE = 40, 4
+#: New specimens drawn for B10 and B50, of each draw of what specimens share.
+_NEW = 40
 #: Draws of what specimens share from which new ones are drawn.
 _NEW_OF = 400
 
@@ -91,12 +91,12 @@ class LayersOfSpecimens:
         drawn = self.drawn.rate(self.drawn.mean)
         return {name: interval(each) for name, each in zip("Keg", drawn, strict=True)}
 
-    def starving(self, point: Flooded, new_ones: int = _NEW) -> OwnAges:
+    def starving(self, point: Flooded) -> OwnAges:
         """Return draws of the ages at which these specimens and new ones starve at a point."""
         drawn, many = self.drawn, len(self.drawn.mean)
         some = np.linspace(0, many - 1, min(many, _NEW_OF)).astype(np.intp)
         random = np.random.default_rng(0)
-        normals = random.standard_normal((some.size, new_ones, drawn.mean.shape[1]))
+        normals = random.standard_normal((some.size, _NEW, drawn.mean.shape[1]))
         off = self._law(point) * random.standard_normal(many)
         new = drawn.mean[some, None] + drawn.spread[some, None] * normals
         known = _ages_below(drawn, drawn.specimens, point, off[:, None])
@@ -135,8 +135,9 @@ class LayersOfSpecimens:
 
 def starves_at(layers: LayersOfSpecimens, point: Flooded, share: float) -> StarvesAt:
     """Return when specimens starve at a point, fitted for a share of other drag."""
-    own = layers.starving(point, _NEW_AT_SHARE)
-    return StarvesAt(share, float(np.median(own.known, axis=0).min()), float(np.median(own.new)))
+    drawn = layers.drawn
+    ages = np.median(_ages_below(drawn, drawn.specimens, point, np.zeros((len(drawn.mean), 1))), axis=0)
+    return StarvesAt(share, float(ages.min()), float(np.median(ages)))
 
 
 def _ages_below(drawn: Depletion, own: FloatArray, point: Flooded, off: FloatArray) -> FloatArray:
