@@ -154,7 +154,8 @@ class LayersOfSpecimens:
     ) -> AgesAtLimit:
         """Return the ages at which the specimens starve at a point, of their draws."""
         quantity = f"ratio of flooded film to oil layer at {state.name}"
-        return ages_at_limit(quantity, age_unit, 1.0, self.names, own, self.last, warnings)
+        last = dict(zip(self.names, self.last.tolist(), strict=True))
+        return ages_at_limit(quantity, age_unit, 1.0, last, own, warnings)
 
     def with_all(self, own: OwnAges, begun: dict[str, float]) -> OwnAges:
         """Return the draws of all specimens: one that no run shows is new at the age ``begun``."""
