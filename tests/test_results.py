@@ -32,7 +32,6 @@ from hersey.document.parts.motion import StickSlipPart
 from hersey.document.parts.posterior import PosteriorPart
 from hersey.document.parts.stability import BandPart
 from hersey.document.parts.study import StudyPart
-from hersey.document.parts.time_to_failure import TimeToFailurePart
 from hersey.errors import MissingFileError
 from hersey.identification.identified_drive import IdentifiedDrive
 from hersey.inspection.inspecting import Inspection
@@ -211,7 +210,7 @@ RESULTS: dict[str, tuple[Callable[[], Any], type]] = {
     "Growth": (growth, hersey.Growth),
     "FrictionTrend": (lambda: hersey.trend(log(), at="60 rpm"), hersey.FrictionTrend),
     "AgesAtLimit": (lambda: growth().reaches(2.0), hersey.AgesAtLimit),
-    "TimeToFailure": (ends, TimeToFailurePart),
+    "TimeToFailure": (ends, hersey.TimeToFailure),
     "ModelComparison": (models, ModelsPart),
     "FrictionCurve": (lambda: hersey.fit_friction(points()), FrictionCurve),
     "LogComparison": (lambda: hersey.compare(points(), points()), LogComparison),

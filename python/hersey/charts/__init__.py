@@ -29,8 +29,8 @@ hysteresis       what the belt does at which drive speed
 operating_map    the operating map
 plan             a drive profile and the motion
 warm_up          speed, drag and temperatures of a warm-up
-weibull          share failed against age, of the specimens of a life test
-life_failures    specimens of a life test on the axes of a Weibull plot
+weibull          share failed against age
+life_failures    specimens of a life test as intervals, on the axes of a Weibull plot
 failures         share failed against age, of failures typed in; remaining life, fleet, test plan
 ageing_maps      the operating map of a unit when new, now and at its end
 life             the charts of a life test, in the order of its page

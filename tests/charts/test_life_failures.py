@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from hersey.charts.failures import failures_chart
+from hersey.charts.life_failures import failures_chart
 from hersey.life.growth.limit_ages import AgeAtLimit, Interval
 from hersey.life.time_to_failure.estimate import ShareEnded
 from hersey.life.time_to_failure.first import SpecimenEnd
