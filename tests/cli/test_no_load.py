@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hersey import NoLoadTorque, TorqueLog
+from hersey import NoLoadTorque, SteadyPoints, TorqueLog
 from hersey.errors import InsufficientDataError
 from hersey.log.torque_log import LogFile, Run
 from hersey.machine import read_machine
@@ -173,3 +173,28 @@ def test_a_dwell_without_a_film_is_named_by_its_own_log() -> None:
     rest = NoLoadTorque.stated(constant=0.05, per_speed=0.001, uncertainty=0.01)
     with pytest.raises(InsufficientDataError, match=r"^free\.csv: at .* leaves nothing for the film"):
         log.steady().without(rest)
+
+
+@pytest.mark.usefixtures("roughly")
+def test_a_dwell_that_the_no_load_error_hides_is_excluded_and_the_log_is_used(folder: Path) -> None:
+    lines = (folder / "log.csv").read_text().splitlines()
+    # At 8 rpm the no-load torque is 20.8 mN m with an error of 2.08.
+    lines[1] = lines[1].split(",")[0] + ",24.0," + lines[1].split(",")[2]
+    (folder / "weak.csv").write_text("\n".join(lines) + "\n")
+    mentions = '\n[rest]\ntorque = "20 mN*m"\ndamping = "1 mN*m*s/rad"\nuncertainty = "20 %"\n'
+    (folder / "unsure.toml").write_text(MACHINE + mentions)
+    done = run("fit", "weak.csv", "--machine", "unsure.toml", "--json", cwd=folder)
+    assert done.returncode == 0, done.stderr
+    assert len(json.loads(done.stdout)["points"]) == 23
+    assert exponent(done.stdout) == pytest.approx(-0.6, abs=1e-6)
+    said = "1 of 24 dwells (at 8 rpm) was excluded: torque is not above the no-load torque by more than twice"
+    printed = run("fit", "weak.csv", "--machine", "unsure.toml", cwd=folder).stdout
+    assert said in " ".join(printed.split())
+    report = run("report", "weak.csv", "--machine", "unsure.toml", "--out", "weak.html", cwd=folder)
+    assert report.returncode == 0, report.stderr
+    added = ("campaign", "add", "life.hersey", "weak.csv", "--unit", "U1", "--age", "0 pages")
+    life = run(*added, "--machine", "unsure.toml", cwd=folder)
+    assert life.returncode == 0, life.stderr
+    rest = NoLoadTorque.stated(constant=0.02, per_speed=0.001, uncertainty=0.2)
+    points = SteadyPoints.from_table(folder / "weak.csv").without(rest)
+    assert [(each.why.kind, each.rows) for each in points.rejected] == [("no film", 1)]

@@ -85,7 +85,7 @@ def test_names_of_a_campaign_come_back(tmp_path: Path) -> None:
         rows = list(csv.DictReader(file))
     assert {row["unit"] for row in rows} == {f"'{unit}"}
     assert all(float(row["torque (N m)"]) > 0 for row in rows)
-    assert {(run.unit, run.age.value) for run in read_runs(tmp_path / "d.csv")} == {(unit, 1000.0)}
+    assert {(run.unit, run.age.value) for run in read_runs(tmp_path / "d.csv").runs} == {(unit, 1000.0)}
     assert run("fit", log, "--each", "f.csv", cwd=tmp_path).returncode == 0
     assert pl.read_csv(tmp_path / "f.csv")["log"].to_list() == [f"'{log}"]
 

@@ -26,6 +26,7 @@ from hersey.life.growth import marginal
 from hersey.life.growth import posterior as growth_posterior
 from hersey.life.growth.laws import LAWS, Law
 from hersey.life.indicators import sticking
+from hersey.life.maintenance import Event
 from hersey.machine.machine import Machine, read_machine
 from hersey.testbench.stand import RPM
 from hersey.units import ZERO_CELSIUS
@@ -48,7 +49,10 @@ def truth() -> list[dict[str, Any]]:
 
 
 class Campaign(SimpleNamespace):
-    """What answers as a campaign does; functions know it by its name."""
+    """What answers as a campaign without maintenance does; functions know it by its name."""
+
+    def events(self) -> list[Event]:
+        return []
 
 
 @cache

@@ -45,7 +45,7 @@ def test_no_growth_is_fitted_twice(monkeypatch: pytest.MonkeyPatch) -> None:
     assert fits.total() - once == 1  # the motor torque of the colder start
     assert torque_surface._kernel_of.cache_info().misses == 1  # of the colder start too
     (stated,) = (use for use in uses.uses if use.stated)
-    assert stated.ends[-1].age == found.b50.age
+    assert [each.age for each in stated.ends] == [each.age.age for each in found.units]
 
 
 def test_a_place_is_weighed_once_by_each_round(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -14,8 +14,9 @@ from hypothesis import strategies as st
 from scipy import integrate, stats
 
 from hersey.errors import InsufficientDataError, ParameterError
+from hersey.life.growth import draws as growth_draws
 from hersey.life.growth import fit as growth_module
-from hersey.life.growth import peaks
+from hersey.life.growth import limit_ages, peaks
 from hersey.life.growth import posterior as growth_posterior
 from hersey.life.growth.fit import Growth, fit_growth
 from hersey.life.growth.laws import LAWS
@@ -79,7 +80,7 @@ def test_what_saturates_is_called_saturating_and_may_never_reach() -> None:
     assert growth.parameters["saturating"]["tau"].value == pytest.approx(150.0, rel=0.15)
     far = growth.reaches(4.0)
     assert all(each.never > 0.9 and math.isinf(each.age.value) for each in far.units)
-    assert "never" in str(far.units[0])
+    assert str(far.units[0]) == "F1: not reached"
     assert growth.reaches(4.0).to_dict()["units"][0]["age"]["high"] is None
 
 
@@ -87,13 +88,20 @@ def test_what_does_not_grow_is_told_not_to() -> None:
     unit, age, value, _ = logs("constant", noise=0.02)
     growth = fit_growth(unit, age, value, 0.002, quantity="torque")
     assert growth.law == "constant"
-    assert growth.headline() == "torque does not grow"
-    assert all(each.never > 0.9 for each in growth.reaches(2.0).units)
+    assert growth.headline() == "torque shows no growth"
+    assert not growth.shown
+    assert 0.0 < growth.rate_high < 0.1 / 600.0
+    reached = growth.reaches(2.0)
+    assert all(each.never > 0.9 for each in reached.units)
+    # Yet it may grow unseen: the earliest ages are finite, beyond the last run, and stated.
+    assert all(600.0 < each.age.low < math.inf for each in (*reached.units, reached.b10, reached.b50))
+    assert str(reached.units[0]).startswith("F1: later than ")
 
 
 def test_exact_lines_through_few_points_are_followed(monkeypatch: pytest.MonkeyPatch) -> None:
     """Without scatter the age is that of the formula, whatever the priors."""
-    monkeypatch.setattr(growth_module, "BEYOND", 0.0)
+    monkeypatch.setattr(limit_ages, "BEYOND", 0.0)
+    monkeypatch.setattr(limit_ages, "OWN_BEYOND", 0.0)
     unit = [name for name in "ABCDEF" for _ in range(4)]
     age = np.tile([0.0, 10.0, 20.0, 30.0], 6)
     rate = np.repeat([0.02, 0.025, 0.03, 0.02, 0.028, 0.022], 4)
@@ -155,8 +163,10 @@ def test_few_units_are_wide_and_say_so(count: int) -> None:
     few = fit_growth(unit, age, value, 0.002)
     assert (few.warnings[0].kind, few.warnings[0].values) == ("few specimens", {"specimens": count})
     assert str(few.warnings[0]).startswith("one specimen does" if count == 1 else "2 specimens show little")
-    b10 = few.reaches(2.0).b10.age
-    assert b10.high > 2.0 * b10.low
+    reached = few.reaches(2.0)
+    assert (reached.b10, reached.b50) == (None, None)
+    assert reached.headline().startswith(f"{reached.units[0].unit} reaches " if count == 1 else "")
+    assert len(reached.to_frame()) == count
     assert few.law is None
     assert "several growth laws fit" in few.headline()
 
@@ -278,22 +288,23 @@ def test_the_ends_of_an_age_hold_nine_draws_in_ten() -> None:
 def test_growth_of_new_units_is_doubted_beyond_the_greatest_last_age(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Units followed to 8 and to 40: twice the time, for new ones beyond 40, for each beyond its own."""
+    """Units followed to 8 and to 40: by a power, for new ones beyond 40, for each beyond its own."""
     age = np.concatenate([np.linspace(0.0, 8.0, 9), np.linspace(0.0, 40.0, 9)])
     value = (1.0 + 0.02 * age) * np.exp(0.01 * np.random.default_rng(2).standard_normal(18))
     growth = fit_growth(["F1"] * 9 + ["F2"] * 9, age, value, 0.01)
     last, found = np.array([8.0, 40.0]), []
-    for factor in (1.0, 2.0):
+    for power in (1.0, 1.5):
 
-        def beyond(_random: object, _share: float, draws: int, *widths: int, by: float = factor) -> Any:
+        def beyond(_random: object, draws: int, *widths: int, by: float = power) -> Any:
             return tuple(np.full((draws, width), by) for width in widths)
 
-        monkeypatch.setattr(growth_module, "beyond", beyond)
+        monkeypatch.setattr(growth_draws, "beyond", beyond)
         found.append(growth.drawn_ages(1.6))
     (units, new), (later_units, later_new) = found
     assert 0.1 < np.mean(new < 40.0) < 0.9
-    np.testing.assert_allclose(later_new, np.where(new > 40.0, 2.0 * new - 40.0, new), rtol=1e-12)
-    np.testing.assert_allclose(later_units, np.where(units > last, 2.0 * units - last, units), rtol=1e-12)
+    np.testing.assert_allclose(later_new, np.where(new > 40.0, 40.0 * (new / 40.0) ** 1.5, new), rtol=1e-12)
+    by_power = np.where(units > last, last * (units / last) ** 1.5, units)
+    np.testing.assert_allclose(later_units, by_power, rtol=1e-12)
 
 
 def test_sums_are_found_where_growth_is_steep() -> None:

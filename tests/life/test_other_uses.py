@@ -41,16 +41,16 @@ def by_hand() -> OtherUses:
     for start in (323.15, 333.15):
         for limit in (1.0, 1.25):
             age = 1e5 * limit * (start - 273.15) / 60.0
-            ends = [
-                UseEnd(name, Interval(age, 0.8 * age, 1.3 * age), "motor torque")
-                for name in ("U1", "B10", "B50")
-            ]
-            uses.append(Use(limit, start, AS_STATED, limit == 1.0 and start == 333.15, tuple(ends)))
+            span = Interval(age, 0.8 * age, 1.3 * age)
+            stated = limit == 1.0 and start == 333.15
+            end = UseEnd("U1", span, "motor torque")
+            uses.append(Use(limit, start, AS_STATED, stated, (end,), span, span))
     return OtherUses("pages", (1.0, 1.25), (323.15, 333.15), (AS_STATED,), tuple(uses))
 
 
 def half(use: Use) -> float:
-    return use.ends[-1].age.value
+    assert use.half is not None
+    return use.half.value
 
 
 def test_the_stated_use_is_told_with_the_numbers_of_the_report(
@@ -60,9 +60,9 @@ def test_the_stated_use_is_told_with_the_numbers_of_the_report(
     (stated,) = [use for use in uses.uses if use.stated]
     assert stated.torque_limit == 1.0
     assert stated.duty == AS_STATED
-    assert [end.age for end in stated.ends] == [
-        each.age.age if hasattr(each, "first") else each.age for each in (*found.units, found.b10, found.b50)
-    ]
+    assert [end.age for end in stated.ends] == [each.age.age for each in found.units]
+    assert (stated.b10, stated.b50) == (None, None)  # two specimens are no population
+    assert stated.half == min((each.age.age for each in found.units), key=lambda age: age.value)
     assert [end.ways for end in stated.ends[:2]] == [each.ways for each in found.units]
 
 
@@ -109,6 +109,8 @@ def test_each_limit_of_the_torque_has_an_age_of_its_own(monkeypatch: pytest.Monk
     motor = Indicator("motor torque, cold", "motor torque", "N m", 1.0, torque, np.full(36, 0.003))
     ways = module._Ways({motor.name: 0}, 0)
     for limit, age in ((1.3, 300.0), (1.6, 600.0), (1.3, 300.0)):
-        ends = ways.ends(hersey.Indicators(runs, (motor,)), limit)
-        assert [end.age.value for end in ends[:4]] == pytest.approx([age] * 4, rel=0.03)
-        assert ends[-1].age.value == pytest.approx(age, rel=0.05)
+        ends, b10, b50 = ways.ends(hersey.Indicators(runs, (motor,)), limit)
+        assert [end.age.value for end in ends] == pytest.approx([age] * 4, rel=0.03)
+        assert b10 is not None
+        assert b50 is not None
+        assert b10.value <= b50.value == pytest.approx(age, rel=0.05)

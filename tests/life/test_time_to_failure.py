@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import replace
 from functools import cache
 from typing import Any
 
 import numpy as np
 import pytest
 
-from hersey.errors import InsufficientDataError, ParameterError
+from hersey.errors import InsufficientDataError, ParameterError, UnitError
 from hersey.life.growth import fit as growth_module
-from hersey.life.growth import marginal
+from hersey.life.growth import limit_ages, marginal
 from hersey.life.growth.fit import fit_growth
+from hersey.life.growth.limit_ages import age_at_limit, percent, rounded
 from hersey.life.indicator import NOT_JUDGED, Indicator, Indicators, OwnAges, Runs
 from hersey.life.time_to_failure import joined, next_run
 from hersey.life.time_to_failure.estimate import TimeToFailure, time_to_failure
@@ -78,9 +80,8 @@ def test_where_two_ways_are_near_both_are_named() -> None:
     first = told().units[0]
     assert set(first.named) == {"torque", "film"}
     assert sum(first.first.values()) == pytest.approx(1.0)
-    unknown = warned(told())["first mode unknown"]
-    assert unknown.values == {"specimens": "F1"}
-    assert str(unknown) == "the first failure mode is uncertain for F1; all possible ones are named"
+    assert set(first.likely) == {"torque", "film"}
+    assert [each.likely for each in told().units[1:]] == [("torque",)] * 5
 
 
 def test_an_early_sign_ends_no_unit() -> None:
@@ -90,15 +91,55 @@ def test_an_early_sign_ends_no_unit() -> None:
     assert "noise (a precursor, not a failure)" in told().summary()
 
 
-def test_what_has_passed_is_said_and_fails_in_the_weibull_plot() -> None:
-    assert told().units[5].age.passed > 0.9
-    assert warned(told())["limit reached"].values == {"specimens": "F6"}
-    assert warned(told())["limit reached"].severity == "act"
-    assert "already passed" in str(told().units[5])
-    population = told().population
-    assert population.failed.tolist() == [True, False, False, False, False, False]
-    assert population.ages[0] == pytest.approx(1.0 / RATE[5], rel=0.05)
-    assert population.ages[1:] == pytest.approx(600.0)
+def test_a_specimen_has_failed_only_if_that_is_nearly_certain() -> None:
+    assert told().units[5].age.passed > 0.99
+    assert [each.state for each in told().units] == ["running"] * 5 + ["failed"]
+    assert "already passed (last seen at 600)" in str(told().units[5])
+    ages = np.where(np.arange(100) < 83, 500.0, 700.0)
+    doubtful = age_at_limit("F7", ages, 600.0)
+    assert (doubtful.state, doubtful.passed) == ("unclear", 0.83)
+    assert "passed with a probability of 83 % (last seen at 600)" in str(doubtful)
+    states = [age_at_limit("", np.arange(100.0), last).state for last in (4.0, 5.0, 93.0, 94.0)]
+    assert states == ["running", "unclear", "unclear", "failed"]
+
+
+def test_the_headline_says_who_needs_attention_and_what_the_others_reach() -> None:
+    attention = told().attention
+    assert (attention.failed, attention.unclear) == (("F6",), ())
+    assert attention.running == ("F5", "F4", "F3", "F2", "F1") or attention.running[-1] == "F2"
+    least = min(each.age.age.low for each in told().units[:5])
+    assert attention.look_again == least
+    assert told().headline() == (
+        "One specimen needs attention: F6 has probably failed. "
+        f"The other five should reach at least {rounded(least)} pages."
+    )
+    assert told().of_new() == (
+        f"Half of new specimens fail by {rounded(told().b50.age.value)} pages (90 %: "
+        f"{rounded(told().b50.age.low)} to {rounded(told().b50.age.high)}), mostly by torque."
+    )
+    doubtful = replace(attention, failed=(), unclear=("F6", "F2"), running=("F1",))
+    assert doubtful.words("pages")[0] == "Two specimens need attention: F6 and F2 may have failed."
+    fine = replace(attention, failed=(), running=("F1", "F2"))
+    assert fine.words("")[0] == "No specimen needs attention."
+    assert fine.words("")[1].startswith("All two should reach at least ")
+
+
+@cache
+def few() -> TimeToFailure:
+    """Three specimens of those above."""
+    return time_to_failure(of(indicator("torque", linear(RATE[:3]), 2.0), names=NAMES[:21], age=AGE[:21]))
+
+
+def test_fewer_than_four_specimens_are_no_population() -> None:
+    found = few()
+    assert (found.b10, found.b50, found.shares, found.curve, found.of_new()) == (None,) * 4 + ("",)
+    plain = found.to_dict()
+    assert [plain[name] for name in ("b10", "b50", "shares", "curve")] == [None] * 4
+    assert [plain["modes"][0]["ages"][name] for name in ("b10", "b50")] == [None] * 2
+    assert warned(found)["few specimens"].values == {"specimens": 3}
+    assert "B10 and B50 are not given. Follow four specimens or more" in found.summary()
+    assert "B50" not in found.summary().replace("B10 and B50 are not given", "")
+    assert found.to_frame().height == 3 * 2
 
 
 def test_what_cannot_be_judged_keeps_its_reason() -> None:
@@ -143,7 +184,7 @@ def test_the_same_data_and_seed_give_the_same_ends() -> None:
     assert once.to_dict() == time_to_failure(few, seed=4).to_dict()
     assert calls == [(1, 1)]
     assert warned(once)["few specimens"].values == {"specimens": 2}
-    assert "2 specimens show little of how specimens differ" in once.summary()
+    assert "2 specimens show too little of how specimens differ" in once.summary()
 
 
 def test_a_unit_that_tells_nothing_is_one_of_the_others() -> None:
@@ -171,8 +212,8 @@ def test_far_and_wide_ends_are_said() -> None:
 @pytest.fixture
 def laws_hold_on(monkeypatch: pytest.MonkeyPatch) -> None:
     """As if a law held beyond the last run as it did up to there."""
-    monkeypatch.setattr(growth_module, "BEYOND", 0.0)
-    monkeypatch.setattr(growth_module, "BEYOND_SUM", 0.0)
+    monkeypatch.setattr(limit_ages, "BEYOND", 0.0)
+    monkeypatch.setattr(limit_ages, "OWN_BEYOND", 0.0)
 
 
 def test_beyond_the_last_run_a_law_is_less_sure() -> None:
@@ -208,7 +249,7 @@ def test_the_integral_of_each_law_is_that_of_its_curve(law: str) -> None:
     units = marginal.Specimens(
         found_law, np.zeros((4, 3)), np.array([[-2.0, 0.0, 1.0]] * 4), shapes, np.ones((4, 1))
     )
-    found = growth_module.ages_of_sum(units, np.full((4, 1), math.log(1.7)))
+    found = limit_ages.ages_of_sum(units, np.full((4, 1), math.log(1.7)))
     for i, j in np.ndindex(found.shape):
         t = np.linspace(0.0, found[i, j], 20_001)
         x, a = units.size[i, j], units.shape[:, i]
@@ -242,34 +283,67 @@ def test_runs_that_scatter_together_move_together() -> None:
     assert np.sort(joint, axis=0) == pytest.approx(np.sort(keys, axis=0))
 
 
-def test_a_run_narrows_as_the_normal_law_says() -> None:
-    """An age known to 100, read with an error of 100: sqrt(1/2) of the interval is left, twice sqrt(1/3)."""
+def test_a_run_lowers_the_risk_of_a_wrong_answer_as_the_normal_law_says() -> None:
+    """Of an age known to 100, read with an error of 100: arctan(sd after / sd of the mean) / pi is left."""
     random = np.random.default_rng(0)
-    age = 1000.0 + 100.0 * random.standard_normal(20_000)
-    value = np.stack([age, 0.0 * age], axis=1)
-    error = np.full((age.size, 1), 100.0)
-    before = next_run.width(age)
-    assert before == pytest.approx(329.0, rel=0.03)
-    once = next_run.widths_after(age, [value], [error], np.eye(1), random)
-    assert once == pytest.approx([before * math.sqrt(0.5), before], rel=0.05)
-    twice = next_run.widths_after(age, [value, value], [error, error], np.eye(2), random)
-    assert twice[0] == pytest.approx(before * math.sqrt(1.0 / 3.0), rel=0.05)
-    together = np.array([[1.0, 0.9999], [0.9999, 1.0]])
-    same = next_run.widths_after(age, [value, value], [error, error], together, random)
-    assert same[0] == pytest.approx(before * math.sqrt(0.5), rel=0.06)
+    age = 1000.0 + 100.0 * random.standard_normal(2000)
+    value, error = np.stack([age, 0.0 * age], axis=1), np.full((age.size, 1), 100.0)
+    event = age <= 1000.0
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(next_run, "_RUNS", 500)
+        once = next_run.wrong_after(event, [value], [error], np.eye(1), random)
+        assert once == pytest.approx([0.25, 0.5], abs=0.03)
+        twice = next_run.wrong_after(event, [value, value], [error, error], np.eye(2), random)
+        assert twice[0] == pytest.approx(math.atan(math.sqrt(0.5)) / math.pi, abs=0.03)
+        together = np.array([[1.0, 0.9999], [0.9999, 1.0]])
+        same = next_run.wrong_after(event, [value, value], [error, error], together, random)
+        assert same[0] == pytest.approx(0.25, abs=0.03)
 
 
-def test_what_to_measure_next_is_said() -> None:
-    runs = told().next_runs
-    assert all(runs[i].narrowing >= runs[i + 1].narrowing for i in range(len(runs) - 1))
-    assert all(0.0 < run.after < 1.1 * run.before for run in runs)
-    assert not [run for run in runs if run.unit == "F6"]
-    of_f1 = sorted((run for run in runs if run.unit == "F1"), key=lambda run: run.age)
-    assert len(of_f1) == 3
-    assert of_f1[-1].after < of_f1[0].after
-    assert "again at" in told().advice[0]
-    assert "this narrows the interval of its end, in width, from" in told().advice[0]
-    assert any(run.unit is None for run in runs)
+def test_what_to_measure_next_serves_what_was_asked() -> None:
+    """F1 to F5 reach the limit at 1250 to 830: whether they last until 1000 is in doubt, for F6 it is not."""
+    torque = indicator("torque", linear(RATE), 2.0)
+    found = time_to_failure(of(torque), until="1000 pages")
+    assert found.until == 1000.0
+    assert {run.unit for run in found.next_runs} <= {"F1", "F2", "F3", "F4", "F5"}
+    assert "F3" in {run.unit for run in found.next_runs}
+    gains = [run.before - run.after for run in found.next_runs]
+    assert gains == sorted(gains, reverse=True)
+    assert all(600.0 <= run.age <= 1000.0 and run.after < 0.85 * run.before for run in found.next_runs)
+    (of_f3,) = (run for run in found.next_runs if run.unit == "F3")
+    assert of_f3.words("pages") == (
+        f"measure F3 again at {of_f3.age:g} pages to find out whether it lasts until 1000 pages; "
+        f"the risk of a wrong answer falls from {percent(of_f3.before)} to about {percent(of_f3.after)}"
+    )
+    assert found.advice[0] == "inspect F6 for torque"
+    assert found.planning() == ""
+    assert time_to_failure(of(torque), until=1000).next_runs == found.next_runs
+
+
+def test_without_a_date_runs_settle_what_is_unclear() -> None:
+    """At 1010 pages U3 may have reached the limit, the others have or have not."""
+    rate = np.array([0.0006, 0.0007, 0.00100, 0.0018])
+    ages = np.linspace(0.0, 1010.0, 7)
+    values = indicator("torque", linear(rate, ages), 2.0)
+    names = tuple(f"U{i + 1}" for i in range(4) for _ in ages)
+    found = time_to_failure(of(values, names=names, age=np.tile(ages, 4)))
+    assert [each.state for each in found.units] == ["running", "running", "unclear", "failed"]
+    (run,) = found.next_runs
+    assert (run.unit, run.present, run.until, run.mode) == ("U3", True, 1010.0, "torque")
+    assert run.after < run.before
+    assert found.advice[0] == "inspect U4 for torque"
+    assert "to find out whether it has failed (torque)" in found.advice[1]
+    assert found.planning().endswith("last until an age, add until='1500 pages'.")
+    assert time_to_failure(of(values, names=names, age=np.tile(ages, 4)), until="1500 pages").until == 1500.0
+
+
+@pytest.mark.parametrize(
+    ("until", "said"),
+    [("300 h", "until: an age is in h"), ("soon", "until: age 'soon'"), (0, "must be greater than 0")],
+)
+def test_an_age_that_cannot_be_asked_for_is_refused(until: Any, said: str) -> None:
+    with pytest.raises((ParameterError, UnitError), match=said):
+        time_to_failure(of(indicator("torque", linear(RATE), 2.0)), until=until)
 
 
 def test_ages_by_a_law_of_its_own_stand_in_the_place_of_growth() -> None:

@@ -161,8 +161,8 @@ def _heading(growth: Growth, ages: AgesAtLimit | None) -> list[str]:
 
 
 def ages_chart(ages: AgesAtLimit) -> Chart:
-    """Return the age of each specimen at a limit, B10 and B50, with 90 % intervals."""
-    shown = [*ages.units[: 2 * _SHOWN], ages.b10, ages.b50]
+    """Return the age of each specimen at a limit, B10 and B50 if known, with 90 % intervals."""
+    shown = [*ages.units[: 2 * _SHOWN], *ages.rows[len(ages.units) :]]
     last = max(each.last for each in ages.units)
     end = axis_end(last, [each.age.value for each in shown])
     scale = alt.Scale(domain=[0.0, end], nice=False)

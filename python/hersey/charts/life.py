@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from hersey.charts import chart_of
+from hersey.charts.failures import failures_chart
 from hersey.charts.render import write_pictures
 from hersey.charts.style import Chart, unchecked
 
@@ -20,7 +21,7 @@ def life_charts(answer: LifeTest) -> dict[str, Chart]:
     """Return the charts of a life test."""
     found = answer.time_to_failure
     likely = sorted(
-        found.modes, key=lambda mode: -found.shares[mode.name].value if mode.name in found.shares else 1.0
+        found.modes, key=lambda mode: -sum(each.first.get(mode.name, 0.0) for each in found.units)
     )
     with unchecked():
         made = {"ends": chart_of(found)}
@@ -29,7 +30,8 @@ def life_charts(answer: LifeTest) -> dict[str, Chart]:
         for name in ("drift", "film", "maps"):
             if (part := getattr(answer, name)) is not None:
                 made[name] = chart_of(part)
-        made["population"] = chart_of(found.population)
+        if found.curve is not None:
+            made["population"] = failures_chart(found.units, found.curve, found.age_unit)
     return made
 
 

@@ -12,8 +12,9 @@ from hersey.units import celsius
 
 
 def other_uses_chart(uses: OtherUses) -> Chart:
-    """Return the age of half of new units with its 90 % interval against the limit of the torque.
+    """Return the age at which half of new specimens have failed against the limit of the torque.
 
+    Of fewer than four specimens it is that of the first to fail; with its 90 % interval.
     A line for each coldest start, of the duty that the machine file states; without a limit of the torque
     the duties stand side by side.
     """
@@ -38,7 +39,7 @@ def other_uses_chart(uses: OtherUses) -> Chart:
     ]
     if limits:
         layers.insert(0, base.mark_line(strokeWidth=1.4).encode(y=age, **look))
-    subtitle = f"{uses.headline()}; marks: median for new specimens, 90 % intervals"
+    subtitle = f"{uses.headline()}; marks: medians with 90 % intervals"
     title = alt.Title("Time to failure at other operating conditions", subtitle=subtitle)
     return alt.layer(*layers, title=title, width=WIDTH, height=HEIGHT)
 
@@ -62,7 +63,7 @@ def _rows(uses: OtherUses) -> list[Row]:
             "start": "" if use.coldest is None else f"{celsius(use.coldest):.0f}",
         }
         for use in uses.uses
-        if use.ends and not (limits and use.duty != AS_STATED)
-        for half in [use.ends[-1].age]
-        if math.isfinite(half.value)
+        if not (limits and use.duty != AS_STATED)
+        for half in [use.half]
+        if half is not None and math.isfinite(half.value)
     ]

@@ -21,15 +21,14 @@ from hersey.charts.style import (
     rows_of,
     tip,
 )
-from hersey.charts.weibull import not_failed
-from hersey.life.time_to_failure.estimate import TimeToFailure
+from hersey.life.time_to_failure.estimate import ShareEnded, TimeToFailure
 
 #: Units shown; pixels of each way in the row of a unit, and of the share ended.
 _SHOWN, _STEP, _GAP, _SHARES = 24, 9, 14, 200
 
 
 def time_to_failure_chart(found: TimeToFailure) -> Chart:
-    """Return the failure modes of each specimen, a row each, above the share of new ones that has failed.
+    """Return the failure modes of each specimen, above the share of new ones that has failed, if known.
 
     A mark with its 90 % interval for each way, that which is most probably first filled; of many units those
     that end first are shown.
@@ -39,19 +38,18 @@ def time_to_failure_chart(found: TimeToFailure) -> Chart:
     names = {each.unit for each in shown}
     order = [each.unit for each in found.units if each.unit in names]
     medians = [each.age.age.value for each in shown]
-    end = axis_end(greatest, [*medians, found.b50.age.value])
+    end = axis_end(greatest, medians if found.b50 is None else [*medians, found.b50.age.value])
     scale = alt.Scale(domain=[0.0, end], nice=False)
-    return alt.vconcat(
-        _units(found, order, end, scale),
-        _share(found, scale),
-        title=alt.Title("Failure modes against age", subtitle=_heading(found, end)),
-        spacing=16,
-    )
+    parts = [_units(found, order, end, scale)]
+    if found.curve is not None:
+        parts.append(_share(found.curve, found.age_unit, scale))
+    title = alt.Title("Failure modes against age", subtitle=_heading(found, end))
+    chart: Chart = alt.vconcat(*parts, title=title, spacing=16)
+    return chart
 
 
 def _heading(found: TimeToFailure, end: float) -> list[str]:
     words = [
-        found.headline(),
         "marks: medians with 90 % intervals; filled: probably first; vertical ticks: last observation",
     ]
     far = [mode.name for mode in found.modes if all(each.age.low >= end for each in mode.ages.units)]
@@ -115,32 +113,18 @@ def _row(ways: int) -> int:
     return _STEP * ways + _GAP
 
 
-def _share(found: TimeToFailure, scale: alt.Scale) -> Chart:
-    """Predicted share failed of new specimens, and the failures at their median ranks."""
-    curve, unit = found.curve, found.age_unit
+def _share(curve: ShareEnded, unit: str, scale: alt.Scale) -> Chart:
+    """Predicted share failed of new specimens."""
     rows = rows_of(age=curve.age, median=100 * curve.median, low=100 * curve.low, high=100 * curve.high)
     shares = alt.Scale(domain=[0, 100])
     y = alt.Y("median:Q", title="Share failed (%)", scale=shares)
     x = age_axis("age", unit, scale)
     tips = [age_tip(unit), tip("median", "share failed (%)"), tip("low", "from"), tip("high", "to")]
     band = plot(rows).mark_area(color=BLUE, opacity=0.18, clip=True)
-    layers: list[alt.Chart] = [
+    layers = [
         band.encode(x=x, y=alt.Y("low:Q", title="Share failed (%)", scale=shares), y2="high:Q"),
         plot(rows).mark_line(color=BLUE, strokeWidth=2, clip=True).encode(x=x, y=y, tooltip=tips),
     ]
-    population = found.population
-    ages, ranks = population.median_ranks
-    if len(ages):
-        points = plot(rows_of(age=ages, share=100 * ranks))
-        dots = points.mark_point(color=INK, filled=True, opacity=1, size=50)
-        at = alt.Y("share:Q", title="Share failed (%)", scale=shares)
-        layers.append(dots.encode(x=x, y=at, tooltip=[age_tip(unit), tip("share", "median rank (%)")]))
-    others = population.ages[~population.failed]
-    if others.size:
-        layers.append(not_failed(others, unit, x, _SHARES))
-    words = (
-        "line and band: prediction for new specimens, 90 %; points: failures at median ranks; "
-        "ticks: still running"
-    )
+    words = "line and band: prediction for new specimens, 90 %"
     title = alt.Title("New specimens", subtitle=words, fontSize=13)
     return alt.layer(*layers, width=WIDTH, height=_SHARES, title=title)

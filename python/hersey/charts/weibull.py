@@ -11,7 +11,7 @@ from hersey.charts.style import BLUE, HEIGHT, INK, WIDTH, Chart, age_tip, plot, 
 from hersey.life.population import Population
 
 #: Shares named on the axis; the first and the last end it.
-_SHARES = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 0.632, 0.9, 0.99)
+SHARES = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 0.632, 0.9, 0.99)
 #: Points of the line, and the factor by which the axis of ages goes beyond units and line.
 _POINTS, _BEYOND = 81, 1.25
 
@@ -22,14 +22,7 @@ def weibull_chart(population: Population) -> Chart:
     A unit that has not failed is a tick on the axis of ages.
     """
     x = _ages_axis(population, "age:Q")
-    ends = _place([_SHARES[0], _SHARES[-1]]).tolist()
-    share = "1 - exp(-exp(datum.value))"
-    y = alt.Y(
-        "place:Q",
-        title="Share failed (%)",
-        scale=alt.Scale(domain=ends, nice=False),
-        axis=alt.Axis(values=_place(_SHARES).tolist(), labelExpr=f"format(100 * ({share}), '.3~g')"),
-    )
+    y = share_axis("place:Q")
     layers = [*_law(population, x, y), _failures(population, x, y)]
     others = population.ages[~population.failed]
     if others.size:
@@ -47,10 +40,20 @@ def _ages_axis(population: Population, field: str) -> alt.X:
     )
 
 
-def _place(shares: ArrayLike) -> FloatArray:
-    """Where shares stand on the axis: a Weibull law is a straight line there."""
-    place: FloatArray = np.log(-np.log1p(-np.asarray(shares, dtype=float)))
-    return place
+def share_axis(field: str) -> alt.Y:
+    """Return the axis on which a Weibull law is a straight line, for a field of `place`."""
+    share = "1 - exp(-exp(datum.value))"
+    return alt.Y(
+        field,
+        title="Share failed (%)",
+        scale=alt.Scale(domain=place([SHARES[0], SHARES[-1]]).tolist(), nice=False),
+        axis=alt.Axis(values=place(SHARES).tolist(), labelExpr=f"format(100 * ({share}), '.3~g')"),
+    )
+
+
+def place(shares: ArrayLike) -> FloatArray:
+    """Return where shares stand on the axis: a Weibull law is a straight line there."""
+    return np.asarray(np.log(-np.log1p(-np.asarray(shares, dtype=float))))
 
 
 def _heading(population: Population) -> list[str]:
@@ -63,7 +66,7 @@ def _domain(population: Population) -> list[float]:
     """All specimens, and the law from 1 % to 99 % within a hundredfold of them."""
     low, high = float(population.ages.min()), float(population.ages.max())
     if population.shape is not None:
-        first, last = (float(each) for each in population.lives([_SHARES[0], _SHARES[-1]])[0])
+        first, last = (float(each) for each in population.lives([SHARES[0], SHARES[-1]])[0])
         low, high = max(min(low, first), low / 100), min(max(high, last), high * 100)
     return [low / _BEYOND, high * _BEYOND]
 
@@ -71,7 +74,7 @@ def _domain(population: Population) -> list[float]:
 def _law(population: Population, x: alt.X, y: alt.Y) -> list[alt.Chart]:
     if population.shape is None:
         return []
-    places = np.linspace(float(_place(_SHARES[0])), float(_place(_SHARES[-1])), _POINTS)
+    places = np.linspace(float(place(SHARES[0])), float(place(SHARES[-1])), _POINTS)
     shares = -np.expm1(-np.exp(places))
     ages, low, high = population.lives(shares)
     # Ends far outside would overflow the axis: they are drawn where it has long ended.
@@ -90,7 +93,7 @@ def _law(population: Population, x: alt.X, y: alt.Y) -> list[alt.Chart]:
 
 def _failures(population: Population, x: alt.X, y: alt.Y) -> alt.Chart:
     ages, shares = population.median_ranks
-    points = plot(rows_of(age=ages, place=_place(shares), share=100 * shares))
+    points = plot(rows_of(age=ages, place=place(shares), share=100 * shares))
     mark = points.mark_point(color=INK, filled=True, opacity=1, size=60, clip=True)
     chart: alt.Chart = mark.encode(
         x=x, y=y, tooltip=[age_tip(population.unit), tip("share", "median rank (%)")]

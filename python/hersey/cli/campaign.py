@@ -27,6 +27,7 @@ from hersey.files.tables import TABLES
 
 if TYPE_CHECKING:
     from hersey.cli.workers import AtWork
+    from hersey.life.age import Age
     from hersey.life.campaign import Added, Campaign, Entry, RunToAdd
     from hersey.processes.child import Child
 
@@ -47,7 +48,10 @@ _File = Annotated[Path, argument("CAMPAIGN", "Campaign file, e.g. life.hersey.")
 _RUNS = "Log of one run, or logs of one specimen at one age, or a pattern, e.g. 'logs/*.csv'."
 _UNIT = "Name of the specimen, e.g. F12."
 _AGE = "Age of the specimen, e.g. '120000 pages', '310 h' or '2e6 cycles'."
-_TABLE = "Table of runs with columns log, unit and age, instead of --unit and --age."
+_TABLE = "Table of runs with columns log, unit, age and perhaps event, instead of --unit and --age."
+_EVENT = "What was done: re-greased, cleaned or replaced."
+_AFTER = "Number of the run of this age that was measured after it; see 'hersey campaign show'."
+_REMOVE = "Remove the event instead."
 #: What to do with logs of several specimens or ages.
 _LIST_THEM = "list log, unit and age of each in a table and give it with --table runs.csv"
 _OUT = "Table to write, .parquet or .csv, one row per dwell."
@@ -103,9 +107,10 @@ def add(
     from hersey.life.campaign import Campaign, RunToAdd
 
     failed: list[str] = []
+    events: Sequence[tuple[str, Age, str]] = ()
     alike = ""
     if table is not None:
-        wanted = _of_table(table, runs, failed)
+        wanted, events = _of_table(table, runs, failed)
     else:
         parsed = Age.parse(age)
         wanted = [RunToAdd(path, unit, parsed) for path in runs]
@@ -121,7 +126,7 @@ def add(
             adding.all(file, wanted)
             return
         with Campaign.create(file) as opened:
-            adding.each(opened, wanted, failed)
+            adding.each(opened, wanted, events, failed)
 
 
 def _without_tables(file: Path, logs: list[Path], table: Path | None) -> list[Path]:
@@ -147,19 +152,23 @@ def _without_tables(file: Path, logs: list[Path], table: Path | None) -> list[Pa
     )
 
 
-def _of_table(table: Path, logs: list[Path], failed: list[str]) -> list[RunToAdd]:
-    """The runs of a table, or those of the given logs that it lists; the other logs join the ``failed``."""
+def _of_table(
+    table: Path, logs: list[Path], failed: list[str]
+) -> tuple[list[RunToAdd], list[tuple[str, Age, str]]]:
+    """The runs and events of a table, or the runs of given logs that it lists; others join the ``failed``."""
     from hersey.life.campaign import RunToAdd, read_runs, rows_of
 
-    rows = read_runs(table)
+    read = read_runs(table)
+    rows = read.runs
     if not logs:
-        return rows
+        return rows, read.events
     found = rows_of(logs, rows, table.name)
     failed += [f"{log}: {each}" for log, each in zip(logs, found, strict=True) if isinstance(each, Exception)]
     named = [each for each in found if isinstance(each, RunToAdd)]
     if len(named) < len(rows):
         note(f"{len(named)} of the {len(rows)} runs in {table.name} are among the given logs.")
-    return named
+    given = {run.unit for run in named}
+    return named, [event for event in read.events if event[0] in given]
 
 
 @dataclass(frozen=True)
@@ -192,18 +201,40 @@ class _Adding:
                 self.printing.text(added.summary())
         note(*filter(None, [self.alike]))
 
-    def each(self, opened: Campaign, wanted: list[RunToAdd], failed: list[str]) -> None:
-        """Add the runs that can be added; the others join the ``failed``, and the exit code is 1."""
+    def each(
+        self,
+        opened: Campaign,
+        wanted: list[RunToAdd],
+        events: Sequence[tuple[str, Age, str]],
+        failed: list[str],
+    ) -> None:
+        """Add the runs and events that can be added; others join the ``failed``, and the exit code is 1."""
         from hersey.cli.campaign_reading import FEW, readers
 
         # of a campaign without runs all will be read: what reads them loads while settings are found here
         many = self.client is None and len(wanted) >= FEW and not len(opened)
         with readers(self.machine) if many else nullcontext(()) as children:
-            self._each(opened, wanted, failed, children)
+            counts = self._runs(opened, wanted, failed, children)
+        for unit, age, kind in events:
+            try:
+                opened.add_event(unit, age, kind)
+            except OutputError:
+                raise
+            except HerseyError as error:
+                failed.append(f"{kind} at {age}: {error}")
+        said = [f"{counts[outcome]} {outcome}" for outcome in sorted(counts)]
+        counted = [*said, *([f"{len(failed)} failed"] if failed else [])]
+        self.printing.text(f"{opened.path.name}: {', '.join(counted)}")
+        if failed:
+            say(*(f"- {each}" for each in failed), file=sys.stderr)
+        note(*filter(None, [self.alike]))
+        if failed:
+            raise typer.Exit(NOT_FOUND)
 
-    def _each(
+    def _runs(
         self, opened: Campaign, wanted: list[RunToAdd], failed: list[str], children: Sequence[Child]
-    ) -> None:
+    ) -> Counter[str]:
+        """Add runs, and what was done before each; how many had each outcome."""
         from hersey.log.many import failure_line
 
         counts: Counter[str] = Counter()
@@ -218,26 +249,22 @@ class _Adding:
                 new.append((run, settled))
             else:
                 counts[_noted(settled)] += 1
+                _with_event(opened, run, settled)
         with bar("adding", unit="runs") as progress:
             for number, (run, result) in enumerate(self._read(new, children), 1):
                 try:
                     if isinstance(result, HerseyError):
                         raise result
                     entry = (result, run.unit, run.age)
-                    counts[_noted(opened.add_entries([entry], force=self.force)[0])] += 1
+                    added = opened.add_entries([entry], force=self.force)[0]
+                    counts[_noted(added)] += 1
+                    _with_event(opened, run, added)
                 except OutputError:  # what the next run would meet too
                     raise
                 except HerseyError as error:
                     failed.append(failure_line(run.log, error))
                 progress(number, len(new))
-        said = [f"{counts[outcome]} {outcome}" for outcome in sorted(counts)]
-        counted = [*said, *([f"{len(failed)} failed"] if failed else [])]
-        self.printing.text(f"{opened.path.name}: {', '.join(counted)}")
-        if failed:
-            say(*(f"- {each}" for each in failed), file=sys.stderr)
-        note(*filter(None, [self.alike]))
-        if failed:
-            raise typer.Exit(NOT_FOUND)
+        return counts
 
     def _read(
         self, runs: list[tuple[RunToAdd, str]], children: Sequence[Child] = ()
@@ -262,11 +289,43 @@ class _Adding:
         return (None if self.force else opened.there(sha256, run.unit, run.age, settings)) or settings
 
 
+def _with_event(opened: Campaign, run: RunToAdd, added: Added) -> None:
+    """Record what was done before a run that was added."""
+    if run.event:
+        opened.add_event(added.unit, added.age, run.event, run=added.run)
+
+
 def _noted(added: Added) -> str:
     """Print the warnings of a run that was added, and return its outcome."""
     for warning in added.warnings:
         note(f"{added.path}: {warning}")
     return added.outcome
+
+
+@campaign.command("event")
+@grouped
+def event(
+    file: _File,
+    kind: Annotated[str, argument("EVENT", _EVENT)],
+    *,
+    unit: Annotated[str, option(_UNIT)],
+    age: Annotated[str, option(_AGE)],
+    run: Annotated[int | None, option(_AFTER)] = None,
+    remove: Annotated[bool, option(_REMOVE)] = False,
+    printing: Quiet,
+) -> None:
+    """Record maintenance of a specimen, from which on its friction grows anew.
+
+    Example: [bold]hersey campaign event life.hersey re-greased --unit F12 --age '80000 pages'[/bold]
+    """
+    from hersey.life.campaign import Campaign
+
+    with Campaign.open(file) as opened:
+        if remove:
+            opened.remove_event(unit, age, kind)
+            printing.text(f"{unit}: removed {kind} at {age}")
+        else:
+            printing.text(opened.add_event(unit, age, kind, run=run).summary())
 
 
 @campaign.command("list")

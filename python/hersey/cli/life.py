@@ -10,7 +10,6 @@ from hersey.cli.options import Figures, Force
 from hersey.cli.outputs import PAGES, command, may_write, may_write_folder
 from hersey.cli.printing import Printing
 from hersey.cli.progress import steps, working
-from hersey.errors import sentence
 
 if TYPE_CHECKING:
     from hersey.life.time_to_failure.estimate import TimeToFailure
@@ -18,8 +17,9 @@ if TYPE_CHECKING:
 _CAMPAIGN = "Campaign file, made by 'hersey campaign add'."
 _MACHINE = "Machine file with limits, operating points, contact and lubricant."
 _UNIT = "Specimen whose maps are drawn.  [default: the next to fail]"
+_UNTIL = "Find the run that best shows which specimens last until this age, e.g. '250000 pages'."
 #: Specimens in the table, and pieces of advice.
-_SHOWN, _ADVISED = 10, 1
+_SHOWN, _ADVISED = 10, 2
 
 
 @grouped
@@ -30,6 +30,7 @@ def life(
     out: Annotated[Path | None, option("Write the page here, .html.  [default: life.html]")] = None,
     figures: Figures = None,
     unit: Annotated[str, option(_UNIT)] = "",
+    until: Annotated[str, option(_UNTIL)] = "",
     seed: Annotated[int, option("Random seed.", min=0)] = 0,
     printing: Printing,
     force: Force = False,
@@ -52,7 +53,9 @@ def life(
     machine = read_machine(machine_file)
     with Campaign.open(file, write=False) as campaign:
         with steps() as step:
-            answer = follow(campaign, machine, seed=seed, unit=unit, uses=page is not None, step=step)
+            answer = follow(
+                campaign, machine, seed=seed, unit=unit, until=until or None, uses=page is not None, step=step
+            )
         runs = campaign.runs()
     if page is not None:
         from hersey.report.life_page import render_life
@@ -74,7 +77,9 @@ def life(
         warnings = (*found.warnings, *answer.warnings)
         printing.warnings(*(each for each in warnings if each.kind != NOT_JUDGED))
         printing.text(*(f"- Not judged: {each.sentence}" for each in warnings if each.kind == NOT_JUDGED))
-        printing.text(*(f"Next: {each}." for each in found.advice[:_ADVISED]))
+        printing.text(
+            *(f"Next: {each}." for each in found.advice[:_ADVISED]), *filter(None, [found.planning()])
+        )
     printing.files(page, figures)
 
 
@@ -82,7 +87,7 @@ def _lines(found: TimeToFailure) -> list[str]:
     """When specimens fail and by what, then each specimen."""
     from hersey.cli.figures import labelled
 
-    lines = [sentence(found.headline())]
+    lines = list(filter(None, [found.headline(), found.of_new()]))
     lines.append(f"Age at failure ({found.age_unit or 'age'}), 90 % interval:")
     ends = [(each.unit, str(each).removeprefix(f"{each.unit}: ")) for each in found.units[:_SHOWN]]
     lines += labelled(ends)

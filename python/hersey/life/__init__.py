@@ -9,12 +9,14 @@ fatigue          cycles of torque counted, and the damage that they do to a part
 population       ages at failure over many specimens: Weibull law, B10 and B50
 growth           how indicators grow, and the ages at their limits
 drift            what moved with age, and what it points to
+maintenance      what was done to a specimen, and the stretches of its life between
 padded_rows      lists of runs or dwells as rows of equal length
 oil_layer        the layer of oil: how it thins, and how far it starves the film
 film             the film through life, the oil that is left, and when it starves
 time_to_failure  what ends each specimen, and when
 other_uses       the same where limit, coldest start or duty is another one
 ageing_maps      the operating map of a specimen when new, now and at its end
+map_edges        transition and V* of these maps, and where they are measured
 trend            friction against age in one log at one speed
 following        a life test followed, in one answer
 ===============  ==================================================================

@@ -2,22 +2,26 @@
 
 Torque between the dwells of a run is that of its `TorqueSurface`, without a law. To the end it is carried on
 by a clock, the growth of the torque by its own growth law: at each speed and temperature ln torque
-went with ln of the clock over the ages seen, and goes on so.
+went with ln of the clock over the ages seen, and goes on so. That shows where the motor stops, not where
+torque is least: the transition moves by a factor, the same at all temperatures, as it did over the ages seen.
+It rises with temperature, as viscosity falls.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import numpy as np
 
-from hersey.arrays import FloatArray, one_thread
+from hersey.arrays import BoolArray, FloatArray, one_thread
 from hersey.errors import InsufficientDataError, ParameterError, meant
 from hersey.life.age import Age
+from hersey.life.growth.limit_ages import rounded
 from hersey.life.indicators.run_dwells import read_runs_of
-from hersey.life.indicators.sticking import belt_drag, edges
 from hersey.life.indicators.torque_surface import RunDwells, TorqueSurface, shared_kernel
+from hersey.life.map_edges import edges_of, measured_at, moved_edges
 from hersey.machine.limits import OperatingPoint
 from hersey.result import Means, Result
 from hersey.schema.warning import Warning
@@ -26,6 +30,7 @@ from hersey.units import celsius
 if TYPE_CHECKING:
     import polars as pl
 
+    from hersey.damping.no_load_torque import NoLoadTorque
     from hersey.life.campaign import Campaign
     from hersey.life.time_to_failure.estimate import TimeToFailure
     from hersey.life.time_to_failure.first import SpecimenEnd
@@ -37,15 +42,22 @@ TEMPERATURES, SPEEDS = 21, 61
 CLOCK = "motor torque"
 #: Temperatures (K) that are one, and how far beyond the dwells an operating point is drawn.
 _APART, _BESIDE = 5.0, 10.0
+#: Up to so many times the age last seen there is a map at the end.
+_FARTHEST = 1.5
 #: What is to be known of all maps, and of that at the end.
 _WITHOUT_LAW = Warning(
     "torque without a law", "torque between the dwells is interpolated without a fitted law"
 )
 _EXTRAPOLATED = Warning(
     "torque extrapolated",
-    "torque is extrapolated along its growth, to the middle of the interval of that age",
+    "torque and transition are extrapolated along their growth, to the middle of the interval of that age",
     severity="watch",
     where="end",
+)
+_FALLING = Warning(
+    "transition falls",
+    "the dwells show a transition that falls with temperature, which no oil explains; it is drawn level",
+    severity="watch",
 )
 
 
@@ -78,6 +90,10 @@ class AgeingMaps(Result):
             open=True,
         ),
     ]
+    measured: Annotated[
+        BoolArray,
+        Means("false where extrapolated: beyond the dwells of the run, or after it", shape="(ages, n, m)"),
+    ]
     torque_limit: float | None
     points: tuple[OperatingPoint, ...]
     roll_radius: Annotated[float, Means(unit="m")]
@@ -86,7 +102,7 @@ class AgeingMaps(Result):
     @property
     def names(self) -> list[str]:
         """Return the name of each map, e.g. "now, 170000 pages"."""
-        ages = (str(Age(float(f"{age:.3g}"), self.age_unit)) for age in self.ages.tolist())
+        ages = (str(Age(float(rounded(age)), self.age_unit)) for age in self.ages.tolist())
         return [f"{word}, {age}" for word, age in zip(self.when, ages, strict=True)]
 
     def state(self, index: int, point: OperatingPoint) -> str:
@@ -101,19 +117,30 @@ class AgeingMaps(Result):
             return "stick-slip"
         return "depends on start" if point.speed < self.upper[index, column] else "smooth"
 
+    def _stated(self, index: int, point: OperatingPoint) -> str:
+        column = int(np.argmin(np.abs(self.temperature - point.temperature)))
+        row = int(np.argmin(np.abs(np.log(self.speed / point.speed))))
+        known = self.measured[index, column, row]
+        return self.state(index, point) + ("" if known else " (extrapolated)")
+
     def headline(self) -> str:
         """Return the specimen and its ages."""
         return f"maps of {self.unit} at {'; '.join(self.names)}"
 
     def summary(self) -> str:
         """Return the state of the belt at each operating point and age as text."""
-        lines = [self.headline()]
+        states = (f"  {each}" for each in self.states())
+        return "\n".join([self.headline(), *states, *(f"- {each}" for each in self.warnings)])
+
+    def states(self) -> list[str]:
+        """Return the state of the belt at each operating point and age, a line for each point."""
+        lines = []
         for point in self.points:
             if self.temperature[0] <= point.temperature <= self.temperature[-1]:
-                states = (f"{when} {self.state(i, point)}" for i, when in enumerate(self.when))
+                states = (f"{when} {self._stated(i, point)}" for i, when in enumerate(self.when))
                 at = f"{1e3 * point.speed:.3g} mm/s at {celsius(point.temperature):.3g} degC"
-                lines.append(f"  {point.name}, {at}: {', '.join(states)}")
-        return "\n".join([*lines, *(f"- {each}" for each in self.warnings)])
+                lines.append(f"{point.name}, {at}: {', '.join(states)}")
+        return lines
 
     def to_frame(self) -> pl.DataFrame:
         """Return one row per age and temperature."""
@@ -168,51 +195,82 @@ def ageing_maps(campaign: Campaign, machine: Machine, found: TimeToFailure, *, u
     end = _chosen(found, unit)
     runs = read_runs_of(campaign, machine.rest)
     own = [
-        (age, dwells, rest)
-        for (i, dwells, rest), age in ((each, runs.runs.age[each[0]]) for each in runs.usable())
-        if runs.runs.unit[i] == end.unit
+        (runs.runs.age[i], dwells, rest) for i, dwells, rest in runs.usable() if runs.runs.unit[i] == end.unit
     ]
     if not own or any(not np.ptp(dwells.temperature) > _APART for _, dwells, _ in own):
         raise InsufficientDataError(f"the runs of {end.unit} do not show how torque depends on temperature")
     kernel = shared_kernel([dwells for _, dwells, _ in runs.usable()])
     hot, speed = _grid(own[0][1], machine)
     rolls = speed / machine.roll_radius
-    belts = np.log([_torques(TorqueSurface(dwells, kernel), hot, rolls) for _, dwells, _ in own])
-    ages = np.array([age for age, _, _ in own])
-    shown = [(ages[0], "new" if ages[0] == 0.0 else "first", belts[0], own[0][2])]
-    if ages[-1] > ages[0]:
-        shown.append((ages[-1], "now", belts[-1], own[-1][2]))
-    warnings = [_WITHOUT_LAW]
-    last = end.age.age.value
-    if ages[0] < ages[-1] < last < np.inf:
-        clock = _clock(found, end.unit, np.append(ages, last))
-        shown.append((last, "end", carried_on(belts, clock[:-1], float(clock[-1])), own[-1][2]))
-        warnings.append(_EXTRAPOLATED)
-    drive_torques, found_edges = [], []
-    for _, _, belt, rest in shown:
-        no_load = (
-            np.zeros_like(belt)
-            if rest is None
-            else np.array([rest.torque(rolls, temperature=t) for t in hot.tolist()])
-        )
-        drive_torques.append(np.exp(belt) + no_load)
-        rows = zip(np.exp(belt), hot.tolist(), strict=True)
-        found_edges.append([edges(machine.train, belt_drag(machine, rest, speed, row, t)) for row, t in rows])
-    transition, upper = np.moveaxis(np.nan_to_num(np.array(found_edges)), -1, 0)
+    every = [
+        _Shown(float(age), "", np.log(_torques(TorqueSurface(dwells, kernel), hot, rolls)), rest, dwells)
+        for age, dwells, rest in own
+    ]
+    shown = _measured_maps(every)
+    edges = [edges_of(machine, each.belt, each.rest, hot, speed) for each in shown]
+    warnings = [_WITHOUT_LAW, *([_FALLING] if any(each.falls for each in edges) else [])]
+    ending, last = end.age.age.value, every[-1]
+    if every[0].age < last.age < ending < np.inf:
+        if ending > _FARTHEST * last.age:
+            warnings.append(_too_far(ending, found.age_unit))
+        else:
+            ages = np.array([each.age for each in every])
+            clock = _clock(found, end.unit, np.append(ages, ending))
+            to_end = carried_on(np.array([each.belt for each in every]), clock[:-1], float(clock[-1]))
+            shown.append(_Shown(ending, "end", to_end, last.rest, None))
+            over_life = [edges_of(machine, each.belt, each.rest, hot, speed) for each in every]
+            edges.append(moved_edges(over_life, ages, ending, speed))
+            warnings.append(_EXTRAPOLATED)
     return AgeingMaps(
         unit=end.unit,
         age_unit=found.age_unit,
-        ages=np.array([age for age, _, _, _ in shown]),
-        when=tuple(word for _, word, _, _ in shown),
+        ages=np.array([each.age for each in shown]),
+        when=tuple(each.when for each in shown),
         temperature=hot,
         speed=speed,
-        torque=np.array(drive_torques),
-        transition=transition,
-        upper=np.maximum(upper, transition),
+        torque=np.array([_drive_torque(each, hot, rolls) for each in shown]),
+        transition=np.array([each.transition for each in edges]),
+        upper=np.array([each.upper for each in edges]),
+        measured=np.array([measured_at(each.dwells, hot, rolls) for each in shown]),
         torque_limit=machine.limits.motor_torque,
         points=machine.points,
         roll_radius=machine.roll_radius,
         warnings=tuple(warnings),
+    )
+
+
+class _Shown(NamedTuple):
+    """A map to be drawn: ln torque of the belt, and the dwells behind it; None if it is extrapolated."""
+
+    age: float
+    when: str
+    belt: FloatArray
+    rest: NoLoadTorque | None
+    dwells: RunDwells | None
+
+
+def _drive_torque(shown: _Shown, hot: FloatArray, rolls: FloatArray) -> FloatArray:
+    """Torque of the whole drive at temperatures and speeds (rad/s), N m."""
+    if shown.rest is None:
+        return np.exp(shown.belt)
+    no_load = np.array([shown.rest.torque(rolls, temperature=kelvin) for kelvin in hot.tolist()])
+    return np.asarray(np.exp(shown.belt) + no_load)
+
+
+def _measured_maps(own: Sequence[_Shown]) -> list[_Shown]:
+    """The first and the last of the runs, with a word for each."""
+    first, last = own[0], own[-1]
+    shown = [first._replace(when="new" if first.age == 0.0 else "first")]
+    return shown if last.age == first.age else [*shown, last._replace(when="now")]
+
+
+def _too_far(age: float, unit: str) -> Warning:
+    return Warning(
+        "end beyond the map",
+        "there is no map at the end, {shown}: that is more than {factor:g} times the age followed",
+        remedy="measure again later",
+        shown=str(Age(float(rounded(age)), unit)),
+        factor=_FARTHEST,
     )
 
 
@@ -226,7 +284,7 @@ def _chosen(found: TimeToFailure, unit: str) -> SpecimenEnd:
         near = meant(unit, known)
         way = f"did you mean '{near}'?" if near else f"its specimens are {', '.join(known)}"
         raise ParameterError(f"the campaign has no specimen '{unit}'", remedy=way)
-    coming = [each for each in found.units if each.age.passed <= 0.5]
+    coming = [each for each in found.units if each.age.state == "running"]
     return min(coming or found.units, key=lambda each: each.age.age.value)
 
 

@@ -14,7 +14,7 @@ from hersey.life.film.through_life import FilmLife, film_life
 from hersey.life.indicator import Indicators
 from hersey.life.indicators.of_campaign import indicators_of
 from hersey.life.other_uses import OtherUses, uses_beside
-from hersey.life.time_to_failure.estimate import TimeToFailure, time_to_failure
+from hersey.life.time_to_failure.estimate import TimeToFailure, age_asked, time_to_failure
 from hersey.result import Result
 from hersey.schema.warning import Warning
 from hersey.units import takes_si
@@ -75,6 +75,7 @@ def follow(
     *,
     seed: int = 0,
     unit: str = "",
+    until: str | float | None = None,
     uses: bool = False,
     step: Step | None = None,
 ) -> LifeTest:
@@ -90,6 +91,8 @@ def follow(
         Random seed.
     unit
         Specimen whose maps are drawn. Default: the one that fails next.
+    until
+        Age that specimens should reach, e.g. "250000 pages": the next runs are those that show best which do.
     uses
         Whether to compute the ages also for other limits, coldest starts and duties.
     step
@@ -99,14 +102,15 @@ def follow(
     ------
     InsufficientDataError
         If no run shows any indicator.
-    ParameterError
-        If the campaign has no such specimen.
+    ParameterError, UnitError
+        If the campaign has no such specimen, or ``until`` is no age in the unit of its runs.
     """
     if unit:
         try:
             campaign.runs(unit)
         except ParameterError as error:
             raise error.within(Setting("unit").to()) from None
+    age_asked(until, campaign.age_unit)
     said = step or (lambda _text: None)
     warnings: list[Warning] = []
 
@@ -126,7 +130,7 @@ def follow(
     if film is not None:
         indicators = film.with_starvation(indicators)
     said("growth and time to failure")
-    found = time_to_failure(indicators, seed=seed)
+    found = time_to_failure(indicators, until=until, seed=seed)
     drift = tried("drift", lambda: fit_drift(campaign.dwells()))
     maps = tried(
         "maps when new, now and at the end",

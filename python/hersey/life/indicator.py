@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
 from hersey.arguments.frozen import explained
 from hersey.arrays import FloatArray, IntArray
 from hersey.errors import ParameterError
-from hersey.result import Record
+from hersey.life.maintenance import Event, Segments, segments
+from hersey.result import Means, Record
 from hersey.schema.warning import Warning
 
 if TYPE_CHECKING:
@@ -22,19 +24,28 @@ NOT_JUDGED = "mode not judged"
 
 @dataclass(frozen=True, repr=False)
 class Runs(Record):
-    """Runs of a campaign by specimen and age: run numbers, names, and ages in ``age_unit``."""
+    """Runs of a campaign by specimen and age: run numbers, names, and ages in ``age_unit``.
+
+    ``events`` is the maintenance of the specimens.
+    """
 
     run: tuple[int, ...]
     unit: tuple[str, ...]
     age: FloatArray
     age_unit: str
+    events: Annotated[tuple[Event, ...], Means("maintenance of the specimens")] = ()
 
     @classmethod
     def of(cls, campaign: Campaign) -> Runs:
         """Return the runs of a campaign."""
         table = campaign.runs()
         age = table["age"].to_numpy().astype(float)
-        return cls(tuple(table["run"].to_list()), tuple(table["unit"].to_list()), age, campaign.age_unit)
+        run, unit = (tuple(table[name].to_list()) for name in ("run", "unit"))
+        return cls(run, unit, age, campaign.age_unit, tuple(campaign.events()))
+
+    def segments(self, kinds: Collection[str]) -> Segments:
+        """Return the segments of the runs, which begin with each event of some kinds."""
+        return segments(self.run, self.unit, self.age, self.events, kinds)
 
     @property
     def units(self) -> tuple[str, ...]:

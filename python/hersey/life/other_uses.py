@@ -13,7 +13,7 @@ import numpy as np
 
 from hersey.arrays import one_thread
 from hersey.errors import HerseyError, ParameterError
-from hersey.life.growth.limit_ages import Interval, share_of_specimens
+from hersey.life.growth.limit_ages import Earliest, Interval, of_population
 from hersey.life.indicators.load_cases import load_cases
 from hersey.life.indicators.of_campaign import indicators_of
 from hersey.life.indicators.run_dwells import read_runs_of
@@ -43,11 +43,11 @@ _MOTOR = "motor torque"
 
 @dataclass(frozen=True)
 class UseEnd(Record):
-    """The first end in another use: of a specimen with the ways in words, or of a share of new specimens."""
+    """The first end of a specimen in another use, with the ways in words."""
 
     name: str
     age: Interval
-    ways: Annotated[str, Means("failure mode that comes first, in words; empty for a share of new specimens")]
+    ways: Annotated[str, Means("failure mode that comes first, in words")]
 
 
 @dataclass(frozen=True)
@@ -60,9 +60,19 @@ class Use(Record):
     stated: Annotated[
         bool, Means("whether this is the operating condition of the machine file")
     ]  #: the use that the machine file states
-    ends: Annotated[
-        tuple[UseEnd, ...], Means("specimens, then a tenth and half of new specimens; empty if unknown")
-    ]  #: specimens, a tenth and half of new specimens; none where nothing can be followed
+    ends: Annotated[tuple[UseEnd, ...], Means("of the specimens; empty if nothing can be followed")]
+    b10: Annotated[
+        Interval | None,
+        Means("age by which a tenth of new specimens has failed; null for fewer than four specimens"),
+    ]
+    b50: Annotated[Interval | None, Means("the same of half of new specimens")]
+
+    @property
+    def half(self) -> Interval | None:
+        """Age by which half of new specimens fail; of the first specimen where there is no population."""
+        if self.b50 is not None:
+            return self.b50
+        return min((each.age for each in self.ends), key=lambda age: age.value, default=None)
 
 
 @dataclass(frozen=True, repr=False)
@@ -76,14 +86,17 @@ class OtherUses(Result):
     uses: tuple[Use, ...]
 
     def headline(self) -> str:
-        """Return the range of ages by which half of new specimens fail."""
-        followed = [use for use in self.uses if use.ends]
-        ages = [use.ends[-1].age.value for use in followed]
+        """Return the range of ages by which half of new specimens fail, or the first specimen of a few."""
+        halves = [use.half for use in self.uses]
+        ages = [age.value for age in halves if age is not None]
+        what = (
+            "half of new specimens fail" if any(use.b50 for use in self.uses) else "the first specimen fails"
+        )
         unit = f" {self.age_unit}" if self.age_unit else ""
         low, high = (f"{float(f'{age:.3g}'):.10g}" for age in (min(ages), max(ages)))
         return (
-            f"half of new specimens fail between {low} and {high}{unit}, depending on the operating "
-            f"conditions ({len(followed)} compared)"
+            f"{what} between {low} and {high}{unit}, depending on the operating "
+            f"conditions ({len(ages)} compared)"
         )
 
     def summary(self) -> str:
@@ -94,7 +107,7 @@ class OtherUses(Result):
         """Return one row per condition and specimen, the population last; infinite if never reached."""
         import polars as pl
 
-        rows = [(use, end) for use in self.uses for end in use.ends]
+        rows = [(use, end) for use in self.uses for end in (*use.ends, *_shares(use))]
         unit = self.age_unit or "1"
         return pl.DataFrame(
             {
@@ -172,7 +185,7 @@ def uses_beside(
         here = indicators if stated else _in_use(campaign, machine, indicators, coldest, duty)
         for torque in limits or (None,):
             ends = ways.ends(here, torque)
-            uses.append(Use(torque, coldest, duty, stated and torque == limit, ends))
+            uses.append(Use(torque, coldest, duty, stated and torque == limit, *ends))
             if progress:
                 progress(len(uses), total)
     return OtherUses(indicators.runs.age_unit, limits, starts, duties, tuple(uses))
@@ -191,21 +204,24 @@ class _Ways:
         growth = {mode.name: mode.growth for mode in found.modes}
         self._growth |= {_key(each): growth[each.name] for each in indicators.each if each.name in growth}
 
-    def ends(self, indicators: Indicators, torque: float | None) -> tuple[UseEnd, ...]:
-        """The first ends, drawn as `time_to_failure` does; none where no way can be followed."""
+    def ends(
+        self, indicators: Indicators, torque: float | None
+    ) -> tuple[tuple[UseEnd, ...], Interval | None, Interval | None]:
+        """The first ends, B10 and B50, drawn as `time_to_failure` does; none where no way can be followed."""
         chosen = sorted(_limited(indicators, torque), key=lambda each: self._place(each.name))
         ways = [way for each in chosen if (way := self._followed(indicators, each)) is not None]
         if not ways:
-            return ()
+            return (), None, None
         random = np.random.default_rng([self._seed, 2])
         of_runs = correlations([way.residuals for way in ways])
         units, _ = ends_of_specimens(ways, of_runs, indicators.runs.units, last_ages(indicators), random)
         first = np.sort(reduce(np.minimum, ages_of_new(ways, of_runs, random)), axis=1)
-        shares = [share_of_specimens(first, share) for share in (0.1, 0.5)]
-        return (
-            *(UseEnd(each.unit, each.age.age, each.ways) for each in units),
-            *(UseEnd(each.unit, each.age, "") for each in shares),
-        )
+        least = Earliest.of_first([way.earliest for way in ways])
+        b10, b50 = of_population(first, len(units), least)
+        ends = tuple(UseEnd(each.unit, each.age.age, each.ways) for each in units)
+        if b10 is None or b50 is None:
+            return ends, None, None
+        return ends, b10.age, b50.age
 
     def _place(self, name: str) -> int:
         return self._places.get(name, len(self._places))
@@ -233,13 +249,19 @@ def _coldest(campaign: Campaign, machine: Machine) -> float | None:
     return None if ends is None else ends[0].temperature
 
 
+def _shares(use: Use) -> list[UseEnd]:
+    """B10 and B50 as rows of a table, where there is a population."""
+    named = (("B10", use.b10), ("B50", use.b50))
+    return [UseEnd(name, age, "") for name, age in named if age is not None]
+
+
 def _words(use: Use) -> str:
     """One use, and when half of new specimens have ended in it."""
     parts = [] if use.torque_limit is None else [f"{use.torque_limit:.3g} N m"]
     parts += [] if use.coldest is None else [f"from {celsius(use.coldest):.3g} degC"]
     parts += [] if use.duty == AS_STATED else [f"only {use.duty}"]
     words = ", ".join([*parts, *(["as stated"] if use.stated else [])])
-    return f"{words}: {use.ends[-1].age if use.ends else 'nothing can be followed'}"
+    return f"{words}: {use.half if use.ends else 'nothing can be followed'}"
 
 
 def _depends_on_duty(machine: Machine) -> bool:

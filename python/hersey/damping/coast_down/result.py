@@ -13,8 +13,9 @@ from hersey.damping.coast_down.departures import deceleration
 from hersey.damping.coast_down.fitting import TERMS, CoastFit
 from hersey.damping.coast_down.windows import Window
 from hersey.damping.distributions import student_quantile
-from hersey.damping.dwells.points import Rejection, SteadyPoints
+from hersey.damping.dwells.points import SteadyPoints
 from hersey.damping.dwells.reasons import Reason
+from hersey.damping.dwells.rejection import Rejection
 from hersey.damping.estimate import CONFIDENCE, Estimate
 from hersey.damping.inertia import NORMAL
 from hersey.errors import InsufficientDataError

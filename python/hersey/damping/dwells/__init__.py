@@ -4,6 +4,8 @@
 groups          points that share a temperature or a speed
 columns         a column of the steady points by its name
 points          `SteadyPoints`: one row per dwell, and what is not used
+rejection       a stretch of a log that is not used, and why
+film_torque     the torque of the film alone: dwells less the no-load torque
 counted_speed   slow speeds of an encoder that reads 0 or one count
 segments        stretches of a run in which the speed holds
 ripple          dwells whose speed ripples with the shaft, put together again
@@ -37,8 +39,9 @@ The settling at the start of a dwell is cut by the marginal standard error rule 
 from hersey.damping.dwells.few_rows import held_for_few_rows, rows_of_means
 from hersey.damping.dwells.groups import SAME_SPEED, distinct_speeds, groups_of_temperature
 from hersey.damping.dwells.noise import mean_and_error
-from hersey.damping.dwells.points import Rejection, SteadyPoints
+from hersey.damping.dwells.points import SteadyPoints
 from hersey.damping.dwells.reduction import steady_points
+from hersey.damping.dwells.rejection import Rejection
 
 __all__ = [
     "SAME_SPEED",

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hersey.damping.dwells.disturbances import without_spikes, without_wave
-from hersey.damping.dwells.points import Rejection
 from hersey.damping.dwells.reasons import Kind, Reason
+from hersey.damping.dwells.rejection import Rejection
 from hersey.damping.dwells.segments import Segment
 from hersey.damping.dwells.settling import settled
 from hersey.damping.dwells.shared_noise import SharedNoise

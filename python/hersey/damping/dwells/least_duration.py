@@ -8,7 +8,8 @@ import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.damping.dwells.groups import MIN_DWELL, MIN_SAMPLES, distinct_speeds, groups_of_temperature
-from hersey.damping.dwells.points import Rejection, SteadyPoints
+from hersey.damping.dwells.points import SteadyPoints
+from hersey.damping.dwells.rejection import Rejection
 from hersey.errors import Setting
 from hersey.log.torque_log import TorqueLog
 

@@ -17,8 +17,8 @@ from hersey.damping.dwells.few_rows import (
 from hersey.damping.dwells.groups import MIN_DWELL, MIN_SAMPLES, distinct_speeds
 from hersey.damping.dwells.judging import Asked
 from hersey.damping.dwells.one_speed import is_one_speed, of_one_speed
-from hersey.damping.dwells.points import Rejection
 from hersey.damping.dwells.reasons import CAUSES, Reason, opposite_signs, remedies, sizes
+from hersey.damping.dwells.rejection import Rejection
 from hersey.errors import MOVING, ROTATION, InsufficientDataError, Setting, followed_by, turned, way_in
 from hersey.log.roles import EVERY
 from hersey.log.torque_log import NO_CLOCK, Run, TorqueLog

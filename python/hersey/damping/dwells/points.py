@@ -10,10 +10,12 @@ from typing import Any, Protocol
 import numpy as np
 import polars as pl
 
-from hersey.arrays import FloatArray
+from hersey.arrays import BoolArray, FloatArray
 from hersey.damping.dwells.columns import column_of
+from hersey.damping.dwells.film_torque import film_torque
 from hersey.damping.dwells.hersey_number import Viscous, against_hersey_number
-from hersey.damping.dwells.reasons import NO_DWELL, Reason, joined, opposite_signs
+from hersey.damping.dwells.reasons import Reason, joined, opposite_signs
+from hersey.damping.dwells.rejection import Rejection, record_of, turned_rejection
 from hersey.damping.dwells.relaxation import Relaxation
 from hersey.damping.dwells.resolution import Resolution
 from hersey.damping.no_load_torque import NoLoadTorque
@@ -23,12 +25,10 @@ from hersey.log.means import MeanRow, MeansTable, read_means
 from hersey.log.pooling import SAME_LOAD
 from hersey.log.torque_log import TorqueLog
 from hersey.result import Result, json_record
-from hersey.schema.domain import TORQUE, Domain
+from hersey.schema.domain import Domain
 from hersey.schema.warning import Warning
-from hersey.units import argument, rpm, takes_si
+from hersey.units import argument, takes_si
 
-#: Standard errors by which a torque must exceed the no-load torque, so that a film is left.
-_BEYOND = 2.0
 #: What errors that points share do to each torque.
 _SHARED_ERRORS = ("tare_errors", "rest_errors", "relaxation_errors", "window_errors")
 
@@ -44,28 +44,6 @@ class HowRead(Protocol):
 
     def toml(self) -> str:
         """Return the text of its file."""
-
-
-@dataclass(frozen=True)
-class Rejection:
-    """A stretch of the log that is not used, and why; times in s, first row from 0 within the run."""
-
-    run: int
-    start: float
-    end: float
-    rows: int
-    why: Reason
-    speed: float = float("nan")  #: mean, rad/s
-
-    @property
-    def reason(self) -> str:
-        """Why, in words."""
-        return str(self.why)
-
-    @property
-    def is_dwell(self) -> bool:
-        """Whether a speed was held that is asked for: neither standing nor between two speeds."""
-        return bool(np.isfinite(self.speed)) and self.why.kind not in NO_DWELL
 
 
 @dataclass(frozen=True, repr=False)
@@ -219,7 +197,8 @@ class SteadyPoints(Result):
         Raises
         ------
         InsufficientDataError
-            If a no-load log does not cover the speeds, or nothing beyond the errors is left for the film.
+            If a no-load log does not cover the speeds, or leaves nothing for the film at one dwell, or
+            nothing beyond its errors at a quarter of them. Fewer such dwells are rejected.
         ParameterError
             If a no-load torque was already subtracted.
 
@@ -231,28 +210,39 @@ class SteadyPoints(Result):
         >>> SteadyPoints.from_table(table).without(rest).column("torque").round(4).tolist()
         [0.005, 0.0056, 0.0063]
         """
-        name = self.log.files[0].name
         self.domain.require_torque("subtracting a no-load torque")
         self.refuse_subtracted()
+        name = self.log.files[0].name
         speed, torque, error = (self.column(n) for n in ("speed", "torque", "torque_error"))
         kelvin = None
         if self.log.has_temperature and rest.reference_temperature is not None:
             kelvin = self.column("temperature")
         rest.refuse_beyond(speed, name)
-        taken, errors = rest.torque(speed, temperature=kelvin), rest.errors(speed, temperature=kelvin)
-        film = torque - taken
-        unsure = np.sqrt(error**2 + np.sum(self.tare_errors**2, axis=1) + np.sum(errors**2, axis=1))
-        worst = int(np.argmin(np.sign(speed) * film - _BEYOND * unsure))
-        if not np.sign(speed[worst]) * film[worst] > _BEYOND * unsure[worst]:
-            of = self.log.runs[int(self.column("run")[worst])].name if self.log.runs else name
-            raise InsufficientDataError(
-                f"{of}: at {rpm(abs(float(speed[worst]))):.3g} rpm torque is "
-                f"{1e3 * abs(float(torque[worst])):.3g} mN m and no-load torque "
-                f"{1e3 * abs(float(taken[worst])):.3g} mN m ({rest.source}), which leaves nothing for "
-                "the film. Check its unit, and that it was recorded without the film"
-            )
-        table = self.table.with_columns(torque=film)
-        return replace(self, table=table, rest=rest, rest_errors=errors)
+        variance = error**2 + np.sum(self.tare_errors**2, axis=1)
+        runs = self.log.runs
+        logs = [runs[run].name if runs else name for run in self.table["run"].to_list()]
+        film, errors, hidden = film_torque(speed, torque, variance, kelvin, rest, logs)
+        whole = replace(self, table=self.table.with_columns(torque=film), rest=rest, rest_errors=errors)
+        return whole.without_dwells(hidden, Reason("no film"))
+
+    def without_dwells(self, out: BoolArray, why: Reason) -> SteadyPoints:
+        """Return the points without some dwells, shape (points,); those are rejected for a reason."""
+        if not out.any():
+            return self
+        gone = self.table.filter(pl.Series(out)).to_dicts()
+        rejected = [
+            Rejection(row["run"], row["start"], row["end"], row["rows"], why, row["speed"]) for row in gone
+        ]
+        relaxation = self.relaxation
+        return replace(
+            self,
+            table=self.table.filter(pl.Series(~out)),
+            rejected=(*self.rejected, *rejected),
+            resolutions=tuple(replace(each, errors=each.errors[~out]) for each in self.resolutions),
+            relaxation=None if relaxation is None else replace(relaxation, left=relaxation.left[~out]),
+            temperature_rates=self.temperature_rates[~out] if self.temperature_rates.size else np.empty(0),
+            **{name: getattr(self, name)[~out] for name in _SHARED_ERRORS},
+        )
 
     def refuse_subtracted(self) -> None:
         """Raise `ParameterError` if a no-load torque was already subtracted, be it by the mapping."""
@@ -336,7 +326,7 @@ class SteadyPoints(Result):
             table=table,
             tare=by * self.tare,
             standing_torque=standing,
-            rejected=tuple(_turned(each, per) for each in self.rejected),
+            rejected=tuple(turned_rejection(each, per) for each in self.rejected),
             log=log_as_torque(self.log, radius=radius, load=load),
             resolutions=tuple(_scaled(each, scaled) for each in self.resolutions),
             **{name: by * getattr(self, name) for name in _SHARED_ERRORS},
@@ -408,7 +398,7 @@ class SteadyPoints(Result):
         """Return the dwells, what is excluded, and the tare, in SI."""
         plain = ("tare", "tare_error", "tare_errors", "warnings", "standing_torque", "rest", "rest_errors")
         return json_record(
-            {"points": self.table.to_dicts(), "rejected": [_record(r) for r in self.rejected]}
+            {"points": self.table.to_dicts(), "rejected": [record_of(r) for r in self.rejected]}
             | {name: getattr(self, name) for name in plain}
         )
 
@@ -433,19 +423,6 @@ def _scaled(resolution: Resolution, by: dict[str, float]) -> Resolution:
     """The step of a sensor in another unit."""
     factor = by.get(resolution.quantity, 1.0)
     return replace(resolution, step=factor * resolution.step, errors=factor * resolution.errors)
-
-
-def _turned(rejection: Rejection, per: float) -> Rejection:
-    """A rejection of sliding as one of a rotation, which has ``per`` times its speed."""
-    why = replace(rejection.why, slow=per * rejection.why.slow, fast=per * rejection.why.fast, domain=TORQUE)
-    return replace(rejection, speed=per * rejection.speed, why=why)
-
-
-def _record(rejection: Rejection) -> dict[str, Any]:
-    """A rejection with its kind, and its reason in words."""
-    plain = {name: value for name, value in vars(rejection).items() if name != "why"}
-    why = rejection.why
-    return {**plain, "kind": why.kind, "label": why.label, "reason": rejection.reason}
 
 
 def _stated(table: MeansTable, rotation: str) -> tuple[list[dict[str, object]], list[Rejection]]:

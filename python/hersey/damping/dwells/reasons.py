@@ -14,6 +14,7 @@ Kind = Literal[
     "changing", "standing", "too slow", "other rotation", "too short", "zero torque", "speed not held",
     "stick-slip", "swing", "speed drift", "temperature drift", "torque drift", "opposite signs", "spikes",
     "ripple", "rising", "held", "stepped", "braking", "driven", "reversed", "ends", "short", "no window",
+    "no film",
 ]  # fmt: skip
 #: Stretches that nobody meant as a dwell.
 NO_DWELL: tuple[Kind, ...] = ("changing", "standing", "too slow", "other rotation")
@@ -54,6 +55,7 @@ _LABELS: dict[Kind, str] = {
     "ends": "beginning or end of a fall of speed",
     "short": "fall of speed with too few rows",
     "no window": "in no window of speed",
+    "no film": "torque is not above the no-load torque by more than twice the error",
 }
 
 

@@ -17,7 +17,8 @@ from hersey.damping.dwells.groups import MIN_DWELL, MIN_SAMPLES
 from hersey.damping.dwells.judging import Asked, Dwell, Stretch, judged
 from hersey.damping.dwells.noise import mean_and_error
 from hersey.damping.dwells.nothing_steady import WORTH_IT, in_seconds, nothing_steady, too_brief
-from hersey.damping.dwells.points import Rejection, SteadyPoints
+from hersey.damping.dwells.points import SteadyPoints
+from hersey.damping.dwells.rejection import Rejection
 from hersey.damping.dwells.relaxation import Relaxation, Trend, relaxation
 from hersey.damping.dwells.resolution import Resolution, repeats, rounding_error, step_of
 from hersey.damping.dwells.ripple import joined_over_turns, turned, without_ripple

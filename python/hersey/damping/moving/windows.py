@@ -14,8 +14,8 @@ import numpy as np
 import polars as pl
 
 from hersey.arrays import FloatArray
-from hersey.damping.dwells.points import Rejection
 from hersey.damping.dwells.reasons import Reason
+from hersey.damping.dwells.rejection import Rejection
 from hersey.damping.moving.fitting import Fitting, MovingLawFit
 from hersey.damping.moving.friction import MovingFriction, MovingPoints
 from hersey.damping.moving.gravity import COSINE, SINE

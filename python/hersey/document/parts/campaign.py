@@ -24,10 +24,20 @@ class CampaignRun(Part):
     added: str = Field(description="UTC")
 
 
+class CampaignEvent(Part):
+    """Maintenance of a specimen at an age, in ``age_unit`` of the campaign."""
+
+    unit: str
+    age: float = Field(description="in the unit of all ages")
+    kind: str = Field(description="re-greased, cleaned or replaced")
+    run: int | None = Field(description="run of this age measured after it; null if none was")
+
+
 class CampaignPart(Part):
     """Runs of many units at many ages; null warnings where none were looked for."""
 
     file: str
     age_unit: str
     runs: list[CampaignRun]
+    events: list[CampaignEvent] = Field(description="maintenance, by specimen and age")
     warnings: list[Warning] | None = None

@@ -9,6 +9,7 @@ guarded        a connection to a file from anywhere: limits of length and work
 content        whether a file holds what this package writes
 store          the file: its schema and version, opening, transactions, errors
 adding         which runs are new, there already, changed or under another specimen
+events         maintenance of specimens, as the file keeps it
 table          a table of runs: log, specimen and age in each row
 checks         whether files, ages and fits are as they should be
 file           `Campaign`: add, list, read back, export
@@ -22,6 +23,16 @@ from hersey.life.campaign.adding import Added
 from hersey.life.campaign.checks import CampaignCheck
 from hersey.life.campaign.entry import Entry
 from hersey.life.campaign.file import Campaign
-from hersey.life.campaign.table import RunToAdd, lists_runs, read_runs, rows_of
+from hersey.life.campaign.table import RunsTable, RunToAdd, lists_runs, read_runs, rows_of
 
-__all__ = ["Added", "Campaign", "CampaignCheck", "Entry", "RunToAdd", "lists_runs", "read_runs", "rows_of"]
+__all__ = [
+    "Added",
+    "Campaign",
+    "CampaignCheck",
+    "Entry",
+    "RunToAdd",
+    "RunsTable",
+    "lists_runs",
+    "read_runs",
+    "rows_of",
+]

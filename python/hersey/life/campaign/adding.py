@@ -107,11 +107,25 @@ def add_entry(
             return Added(run, unit, age, entry.path, count, ALREADY)
         if place != [unit, age.value]:
             warnings.append(_moved(place[0], place[1], age.unit))
+    measured_after = _events_before(database, sha256=entry.sha256, path=path)
+    if there is not None:
         database.execute("DELETE FROM runs WHERE id = ?", (run,))
     replaced, overwritten = _same_path(database, path, entry, unit, age, force)
     outcome = ADDED if there is None and not replaced else REPLACED
     run = _inserted(database, path, entry, unit, age)
+    for kind in measured_after:
+        of_event = "WHERE (unit, age, kind) = (?, ?, ?) AND run_id IS NULL"
+        database.execute(f"UPDATE events SET run_id = ? {of_event}", (run, unit, age.value, kind))
     return Added(run, unit, age, entry.path, count, outcome, (*warnings, *overwritten))
+
+
+def _events_before(database: sqlite3.Connection, sha256: str, path: str | bytes) -> list[str]:
+    """The kinds of the events after which the runs were measured that this one may replace."""
+    rows = database.execute(
+        "SELECT DISTINCT kind FROM events WHERE run_id IN (SELECT id FROM runs WHERE sha256 = ? OR path = ?)",
+        (sha256, path),
+    )
+    return [row[0] for row in rows]
 
 
 def _there_otherwise(entry: Entry, run: int, place: list[Any], unit: str, age: Age) -> ParameterError:

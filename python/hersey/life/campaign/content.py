@@ -14,7 +14,9 @@ from pathlib import Path
 from hersey.errors import HerseyError, ParameterError, UnitError
 from hersey.life.age import refuse_no_unit
 from hersey.life.campaign.entry import COLUMNS
+from hersey.life.campaign.events import keeps_events
 from hersey.life.campaign.guarded import LONGEST
+from hersey.life.maintenance import KINDS
 
 #: The most that a campaign holds.
 MOST_RUNS, MOST_DWELLS = 50_000, 2_000_000
@@ -82,6 +84,13 @@ def _of_dwell(name: str, kind: str) -> tuple[str, str]:
     return rule if name in _KNOWN else _or_null(quoted, rule)
 
 
+#: The same of an event.
+_EVENTS = {
+    "unit": _RUNS["unit"],
+    "age": _RUNS["age"],
+    "kind": (f"kind IN {KINDS}", f"one of {', '.join(KINDS)}"),
+    "run_id": _or_null("run_id", _whole("run_id", 1)),
+}
 #: The same of a dwell.
 _DWELLS = {
     "run_id": _whole("run_id", 1),
@@ -170,6 +179,22 @@ def refuse_unsound_runs(database: sqlite3.Connection, path: Path) -> None:
         if name != "runs" or not isinstance(count, int) or not last <= count <= int(_LAST):
             raise damaged(path, "'sqlite_sequence' does not contain the number of the last run")
     _refuse_unknown_age_unit(database, path, runs)
+    if keeps_events(database):
+        _refuse_unsound_events(database, path)
+
+
+def _refuse_unsound_events(database: sqlite3.Connection, path: Path) -> None:
+    """Refuse events that are not as they are written, or that name a run of another specimen or age."""
+    for number, column, asked in _wrong(database, "events", "unit", _EVENTS, ""):
+        raise damaged(path, f"'{column}' of an event of {str(number)[:_SHOWN]} is not {asked}")
+    count = database.execute("SELECT count(*) FROM events").fetchone()[0]
+    if count > MOST_RUNS:
+        raise _too_many(path, count, "events", MOST_RUNS)
+    for run in database.execute(
+        "SELECT e.run_id FROM events e LEFT JOIN runs r ON r.id = e.run_id "
+        "WHERE e.run_id IS NOT NULL AND (r.id IS NULL OR (r.unit, r.age) != (e.unit, e.age)) LIMIT 1"
+    ):
+        raise damaged(path, f"an event names run {run[0]}, which is of another specimen or age")
 
 
 def _refuse_unknown_age_unit(database: sqlite3.Connection, path: Path, runs: int) -> None:

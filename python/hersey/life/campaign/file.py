@@ -15,8 +15,10 @@ from hersey.life.campaign.adding import Added, add_entry, age_unit, is_there, li
 from hersey.life.campaign.checks import CampaignCheck, check
 from hersey.life.campaign.content import damaged, refuse_unsound_dwells, refuse_unsound_runs
 from hersey.life.campaign.entry import COLUMNS, Entry
+from hersey.life.campaign.events import add_event, events_of, remove_event
 from hersey.life.campaign.guarded import GuardedConnection
 from hersey.life.campaign.store import PATIENCE, open_store, refuse_no_place, sqlite_errors, transaction
+from hersey.life.maintenance import Event, kind_of
 from hersey.units import takes_si
 
 if TYPE_CHECKING:
@@ -166,6 +168,44 @@ class Campaign:
             for each in added:
                 refuse_unsound_dwells(self._database, self.path, each.run)
             return added
+
+    def add_event(self, unit: str, age: str | Age, event: str, *, run: int | None = None) -> Event:
+        """Record maintenance of a specimen, from which on its friction grows anew.
+
+        Parameters
+        ----------
+        unit
+            The specimen's name.
+        age
+            Its age then, e.g. ``"80000 pages"``. Runs of that age were measured before it, but for ``run``.
+        event
+            ``re-greased``, ``cleaned`` or ``replaced`` (its parts, so that damage starts from nothing too).
+        run
+            Number of the run of that age that was measured after it, if there is one.
+
+        Raises
+        ------
+        ParameterError
+            If there is no such specimen or run, or no such event.
+        UnitError
+            If the age has no unit, or a unit other than that of the campaign.
+        """
+        parsed, kind = Age.parse(age) if isinstance(age, str) else age, kind_of(event)
+        with transaction(self._database, self.path):
+            added = add_event(self._database, unit, parsed, kind, run)
+            refuse_unsound_runs(self._database, self.path)
+            return added
+
+    def remove_event(self, unit: str, age: str | Age, event: str) -> None:
+        """Remove an event; `ParameterError` if there is none."""
+        parsed = Age.parse(age) if isinstance(age, str) else age
+        with transaction(self._database, self.path):
+            remove_event(self._database, unit, parsed, kind_of(event))
+
+    def events(self) -> list[Event]:
+        """Return all maintenance, by specimen and age."""
+        with sqlite_errors(self.path):
+            return events_of(self._database)
 
     def there(self, sha256: str, unit: str, age: Age, settings: str) -> Added | None:
         """Return the existing run of a log with this hash if adding it would change nothing, else None."""
@@ -365,7 +405,7 @@ class Campaign:
 
     def summary(self) -> str:
         """Return an overview and one line per specimen."""
-        runs = self.runs()
+        runs, events = self.runs(), self.events()
         units = runs["unit"].n_unique()
         lines = [f"{self.path.name}: {runs.height} runs of {units} specimen{'s' * (units != 1)}"]
         for (unit,), of in runs.group_by("unit", maintain_order=True):
@@ -374,11 +414,18 @@ class Campaign:
             ages = f"at {first}" if first == last else f"{first.value:.10g} to {last}"
             text = f"{unit}: {of.height} run{'s' * (of.height > 1)}, {ages}, {of['dwells'].sum()} dwells"
             lines.append(text + (f", {failed} without a fit" if failed else ""))
+            lines += [f"  {each.kind} at {each.age}" for each in events if each.unit == unit]
         return "\n".join(lines)
 
     def to_dict(self, unit: str = "") -> dict[str, Any]:
         """Return file, unit of the ages, and the runs of one specimen or all as JSON."""
-        return {"file": str(self.path), "age_unit": self.age_unit, "runs": self.runs(unit).to_dicts()}
+        events = [
+            {"unit": each.unit, "age": each.age.value, "kind": each.kind, "run": each.run}
+            for each in self.events()
+            if unit in ("", each.unit)
+        ]
+        runs = self.runs(unit).to_dicts()
+        return {"file": str(self.path), "age_unit": self.age_unit, "runs": runs, "events": events}
 
     def to_frame(self) -> pl.DataFrame:
         """Return `runs`."""

@@ -24,11 +24,11 @@ from hersey.life.campaign.guarded import LONGEST, GuardedConnection, connect
 SUFFIX = ".hersey"
 #: What stands in the header: "HrSy", and the version of the schema.
 APPLICATION = 0x48725379
-VERSION = 2
+VERSION = 3
 #: Time that a writer waits for another, s.
 PATIENCE = 30.0
 _AGAIN = 0.02
-_SCHEMA = f"""
+_BEFORE_EVENTS = f"""
 CREATE TABLE campaign (name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
 CREATE TABLE runs (
     id INTEGER PRIMARY KEY AUTOINCREMENT,
@@ -56,13 +56,26 @@ CREATE TABLE dwells (
     PRIMARY KEY (run_id, number)
 ) WITHOUT ROWID;
 """
+_EVENTS = """
+CREATE TABLE events (
+    unit TEXT NOT NULL,
+    age REAL NOT NULL CHECK (age >= 0),
+    kind TEXT NOT NULL,
+    run_id INTEGER REFERENCES runs (id) ON DELETE SET NULL,
+    PRIMARY KEY (unit, age, kind)
+) WITHOUT ROWID;
+"""
+_SCHEMA = _BEFORE_EVENTS + _EVENTS
 #: The schema of each version that may be read or brought up to date. Version 2 keeps warnings as data, in
-#: tables that are the same; what reads them also reads the sentences of version 1.
-SCHEMAS = {1: _SCHEMA, 2: _SCHEMA}
+#: tables that are the same; what reads them also reads the sentences of version 1. Version 3 keeps events.
+SCHEMAS = {1: _BEFORE_EVENTS, 2: _BEFORE_EVENTS, 3: _SCHEMA}
 #: Older versions that are read as they are.
-_READ_AS_THEY_ARE = {1}
+_READ_AS_THEY_ARE = {1, 2}
 #: What brings a file of each older version to the next, inside one transaction.
-MIGRATIONS: dict[int, Callable[[sqlite3.Connection], None]] = {1: lambda _database: None}
+MIGRATIONS: dict[int, Callable[[sqlite3.Connection], None]] = {
+    1: lambda _database: None,
+    2: lambda database: _add_tables(database, _EVENTS),
+}
 
 
 def open_store(
@@ -157,10 +170,14 @@ def _made(database: sqlite3.Connection, path: Path, wait: float) -> None:
     with transaction(database, path):
         if not _is_empty(database):
             return
-        for statement in _SCHEMA.split(";"):
-            database.execute(statement)
+        _add_tables(database, _SCHEMA)
         database.execute(f"PRAGMA application_id = {APPLICATION}")
         database.execute(f"PRAGMA user_version = {VERSION}")
+
+
+def _add_tables(database: sqlite3.Connection, schema: str) -> None:
+    for statement in schema.split(";"):
+        database.execute(statement)
 
 
 def _is_empty(database: sqlite3.Connection) -> bool:

@@ -6,7 +6,7 @@ import csv
 import os
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from hersey.errors import ChannelError, HerseyError, ParameterError, UnreadableLogError
@@ -14,27 +14,40 @@ from hersey.files.reading import open_file
 from hersey.files.tables import text_of
 from hersey.files.text import encoding_of, read_table_text
 from hersey.life.age import Age
+from hersey.life.maintenance import kind_of
 
 _HEADING = re.compile(r"\s*(.*?)\s*(?:[\[(]\s*(.*?)\s*[\])])?\s*")
 _NEEDED = ("log", "unit", "age")
+#: Column that may name what was done to the specimen before the run, or without a log at this age.
+_EVENT = "event"
 #: Bytes that hold the first line.
 _START = 4096
 
 
 @dataclass(frozen=True)
 class RunToAdd:
-    """A row of the table: the log's path (whole), its specimen and age."""
+    """A row of the table: the log's path (whole), its specimen and age, and what was done before it."""
 
     log: Path
     unit: str
     age: Age
+    event: str = ""  #: kind of the maintenance
 
 
-def read_runs(path: str | Path) -> list[RunToAdd]:
+@dataclass(frozen=True)
+class RunsTable:
+    """A table of runs, and of maintenance after which no run was measured at the same age."""
+
+    runs: list[RunToAdd]
+    events: list[tuple[str, Age, str]]  #: specimen, age and kind
+
+
+def read_runs(path: str | Path) -> RunsTable:
     """Read a table of runs: columns ``log``, ``unit`` and ``age``, separated by commas, semicolons or tabs.
 
     The unit of the age stands in each cell (``120000 pages``) or in the heading (``age [pages]``). Paths are
-    from the table's folder.
+    from the table's folder. A column ``event`` may name maintenance just before the run; a row with an event
+    may have no log.
 
     Raises
     ------
@@ -58,25 +71,40 @@ def read_runs(path: str | Path) -> list[RunToAdd]:
                 f"{path.name}: {what} '{name}'. {f'Columns: {listed}' if listed else 'Line 1 is empty'}",
                 remedy=f"line 1 must name log, unit (the specimen) and age, e.g. '{example}'",
             )
-    at = {name: names.index(name) for name in _NEEDED}
+    if names.count(_EVENT) > 1:
+        raise ChannelError(f"{path.name}: there is more than one column '{_EVENT}'")
+    at = {name: names.index(name) for name in (*_NEEDED, *([_EVENT] if _EVENT in names else []))}
     heading = headings[at["age"]]
     in_head = (heading and heading[2]) or ""
-    found = []
+    found, events = [], []
     for number, row in enumerate(rows[1:], 2):
         if not any(cell.strip() for cell in row):
             continue
         cells = {name: text_of(row[i].strip()) if i < len(row) else "" for name, i in at.items()}
-        for name, cell in cells.items():
-            if not cell:
-                raise UnreadableLogError(f"{path.name}, line {number}: column '{name}' is empty. Fill it in")
-        try:
-            age = Age.parse(cells["age"], in_head)
-        except HerseyError as error:
-            raise error.within(f"{path.name}, line {number}, column 'age'") from None
-        found.append(RunToAdd(path.absolute().parent / cells["log"], cells["unit"], age))
+        where = f"{path.name}, line {number}"
+        age, event = _age_and_event(cells, in_head, where)
+        if event and not cells["log"]:
+            events.append((cells["unit"], age, event))
+        else:
+            found.append(RunToAdd(path.absolute().parent / cells["log"], cells["unit"], age, event))
     if not found:
         raise UnreadableLogError(f"{path.name} lists no runs. Write one line per run below the header")
-    return found
+    return RunsTable(found, events)
+
+
+def _age_and_event(cells: dict[str, str], unit: str, where: str) -> tuple[Age, str]:
+    """The age and the event of a row, which must have what it needs; ``unit`` is that of bare numbers."""
+    event = cells.get(_EVENT, "")
+    for name in _NEEDED:
+        if not (cells[name] or (event and name == "log")):
+            raise UnreadableLogError(f"{where}: column '{name}' is empty. Fill it in")
+    column = "age"
+    try:
+        age = Age.parse(cells["age"], unit)
+        column = _EVENT
+        return age, kind_of(event) if event else ""
+    except HerseyError as error:
+        raise error.within(f"{where}, column '{column}'") from None
 
 
 def lists_runs(path: str | Path) -> bool:
@@ -124,7 +152,7 @@ def rows_of(logs: Sequence[Path], rows: Sequence[RunToAdd], table: str) -> list[
         if row is None and len(alike) == 1 and names.count(log.name) == 1:
             row = alike[0]
         if row is not None:
-            return RunToAdd(log, row.unit, row.age)
+            return replace(row, log=log)
         if not alike:
             return ParameterError(f"{table} has no row for it. Add one, or do not give this log")
         return ParameterError(

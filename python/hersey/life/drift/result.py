@@ -67,8 +67,13 @@ class Drift(Result):
 
     def summary(self) -> str:
         """Return what changed and the possible causes as text."""
+        return "\n".join(
+            [self.headline(), *self.findings(), *(f"- {each.sentence}" for each in self.warnings)]
+        )
+
+    def findings(self) -> list[str]:
+        """Return what changed and the possible causes; an indented line goes with that before."""
         lines = [
-            self.headline(),
             f"{self.runs} runs, {self.dwells} dwells. Changes up to that age, with 90 % intervals:",
             *(f"  {each}" for each in self.quantities),
             *(_evidence(each) for each in self.reading.sure),
@@ -79,7 +84,7 @@ class Drift(Result):
         lines += self._of_specimens()
         if any(self.reading.sets):
             lines.append("These are possible causes, not proof. Something else may have the same effect.")
-        return "\n".join([*lines, *(f"- {each.sentence}" for each in self.warnings)])
+        return lines
 
     def _of_specimens(self) -> list[str]:
         """A line for each thing that is said of specimens."""

@@ -90,14 +90,19 @@ class FilmLife(Result):
         last = _last_runs(self.runs)
         starved = [self.runs.unit[i] for i in last if self.starved()[i]]
         text = f"{len(starved)} of {len(last)} specimens starve of oil at {self.points[0].name}"
-        b50 = self.starves[0].b50.age
-        return f"{text}; half of new specimens starve by {b50} {self.runs.age_unit}"
+        b50 = self.starves[0].b50
+        if b50 is None:
+            return text
+        return f"{text}; half of new specimens starve by {b50.age} {self.runs.age_unit}"
 
     def summary(self) -> str:
         """Return film, layer and ages of each specimen as text."""
+        return "\n".join([self.headline(), *self.findings(), *(f"- {each}" for each in self.warnings)])
+
+    def findings(self) -> list[str]:
+        """Return film, layer and ages of each specimen; an indented line goes with that before."""
         unit = self.runs.age_unit
-        lines = [self.headline()]
-        lines += [
+        lines = [
             "ratio of film to that of a flooded inlet at the same viscosity and speed, when last seen "
             f"(starved below {STARVED:.2f})"
         ]
@@ -116,7 +121,7 @@ class FilmLife(Result):
             if all(each.age.value == 0.0 for each in ages.units):
                 lines.append("  all specimens: starved from new")
             else:
-                lines += [f"  {each}" for each in (*ages.units, ages.b10, ages.b50)]
+                lines += [f"  {each}" for each in ages.units]
         lines.append(
             f"oil in the layer, mm^3, on a track of {1e3 * self.track:.4g} mm: when new, when last "
             f"seen, and needed for a flooded film at {self.points[0].name}"
@@ -127,7 +132,7 @@ class FilmLife(Result):
             f"1/(m^2 {unit}), e and g in 1/{unit}: "
             + ", ".join(f"{name} {each}" for name, each in self.law.items())
         )
-        return "\n".join([*lines, *(f"- {each}" for each in self.warnings)])
+        return lines
 
     def with_starvation(self, indicators: Indicators) -> Indicators:
         """Return indicators of the same runs with starvation among them.

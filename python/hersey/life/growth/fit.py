@@ -17,23 +17,18 @@ from scipy import special
 
 from hersey.arrays import FloatArray, numbers_of, one_thread
 from hersey.errors import ParameterError
+from hersey.life.growth.draws import Draws, draws_of
 from hersey.life.growth.laws import LAWS, Law
 from hersey.life.growth.limit_ages import (
-    BEYOND,
-    BEYOND_SUM,
     AgesAtLimit,
+    Earliest,
     Interval,
     ages_at_limit,
-    ages_of,
-    ages_of_sum,
-    beyond,
-    later,
     quantiles,
 )
-from hersey.life.growth.marginal import Specimens, drawn_specimens, new_specimens
 from hersey.life.growth.peaks import peaks
 from hersey.life.growth.points import Points, checked_runs, points_of, warnings_of
-from hersey.life.growth.posterior import parameters_of, posterior, resampled
+from hersey.life.growth.posterior import Posterior, parameters_of, posterior, resampled
 from hersey.life.indicator import OwnAges
 from hersey.result import Means, Result
 from hersey.schema.warning import Warning
@@ -42,10 +37,12 @@ from hersey.units import takes_si
 if TYPE_CHECKING:
     import polars as pl
 
-#: Weight from which a law is named.
-NAMED = 0.9
+#: Weight from which a law is named, and that of no growth from which an indicator does not show any.
+NAMED, UNCHANGED = 0.9, 0.5
 #: Draws behind every interval; of more than so many specimens.
 _DRAWS, _OF_MANY, _MANY = 2000, 1000, 100
+#: Level of the upper bound of a rate.
+_AT_MOST = 0.95
 #: Draws, about, behind the middle of a curve.
 _OF_MIDDLE = 100
 
@@ -70,8 +67,8 @@ class Growth(Result):
     spreads between specimens and the scatter of runs (standard deviations of the logarithm), and the shape.
     """
 
-    also_stated = ("law",)
-    not_stated = ("_of_specimens", "_of_population", "_points", "_scale")
+    also_stated = ("law", "shown")
+    not_stated = ("_draws", "_if_growing", "_points", "_scale")
 
     quantity: str
     age_unit: str
@@ -85,9 +82,12 @@ class Growth(Result):
             float, Means("number of independent draws that the posterior is worth")
         ]  #: how many independent draws the posterior is worth, of the least sampled law that counts
     )
+    rate_high: Annotated[
+        float, Means("growth of the median new specimen per age at the most, relative (upper 95 % bound)")
+    ]
     warnings: tuple[Warning, ...]
-    _of_specimens: tuple[Specimens, ...] = field(repr=False)
-    _of_population: tuple[Specimens, ...] = field(repr=False)
+    _draws: Draws = field(repr=False)
+    _if_growing: Draws | None = field(repr=False)  #: as if it grew; None where growth shows
     _points: Points = field(repr=False)
     _scale: tuple[float, float] = field(repr=False)  #: greatest age; mean logarithm of the value
     seed: int = 0
@@ -97,6 +97,11 @@ class Growth(Result):
         """The growth law that the data select, or None if several fit."""
         name = max(self.weights, key=lambda each: self.weights[each])
         return name if self.weights[name] >= NAMED else None
+
+    @property
+    def shown(self) -> bool:
+        """Whether the runs show growth."""
+        return self.weights.get("constant", 0.0) < UNCHANGED
 
     def summary(self) -> str:
         """Return the growth as text."""
@@ -116,8 +121,8 @@ class Growth(Result):
 
     def headline(self) -> str:
         """Return the growth law that the data select."""
-        if self.law == "constant":
-            return f"{self.quantity} does not grow"
+        if not self.shown:
+            return f"{self.quantity} shows no growth"
         if self.law:
             formula = next(law.formula for law in LAWS if law.name == self.law)
             return f"growth of {self.quantity}: {self.law}, {formula}"
@@ -152,14 +157,8 @@ class Growth(Result):
         ages = np.atleast_1d(numbers_of("age", age)).ravel()
         if not (np.isfinite(ages) & (ages >= 0.0)).all():
             raise ParameterError("an age is negative or not a number. Ages count from new")
-        factors, last = self._beyond(BEYOND)[0], np.array(self.last_age)
-        begin, drawn = 0, []
-        for units in self._of_specimens:
-            factor = factors[begin : (begin := begin + len(units.scatter)), :, None]
-            scaled = later(ages, last[:, None], 1.0 / factor) / self._scale[0]
-            grown = units.law.log_growth(units.size[..., None], scaled, units.shape[..., None])
-            drawn.append(units.level[..., None] + grown)
-        low, median, high = np.exp(quantiles(np.concatenate(drawn)) + self._scale[1])
+        drawn = self._draws.curves(ages / self._scale[0])
+        low, median, high = np.exp(quantiles(drawn) + self._scale[1])
         return GrowthCurves(self.units, ages, median, low, high)
 
     def reaches(self, limit: float, *, limit_error: float = 0.0, accumulates: bool = False) -> AgesAtLimit:
@@ -184,6 +183,7 @@ class Growth(Result):
             If the limit is not positive, or its error negative.
         """
         own = OwnAges(*self.drawn_ages(limit, limit_error=limit_error, accumulates=accumulates))
+        earliest = self.earliest(limit, limit_error=limit_error, accumulates=accumulates)
         return ages_at_limit(
             self.quantity,
             self.age_unit,
@@ -193,54 +193,45 @@ class Growth(Result):
             self.last_age,
             self.warnings,
             accumulates=accumulates,
+            earliest=earliest,
         )
 
-    def drawn_ages(
+    def earliest(
         self, limit: float, *, limit_error: float = 0.0, accumulates: bool = False
+    ) -> Earliest | None:
+        """Return ages before which a limit is not reached even if the indicator grows; None where it does.
+
+        Arguments as for `reaches`.
+        """
+        if self.shown or self._if_growing is None:
+            return None
+        ages = self.drawn_ages(limit, limit_error=limit_error, accumulates=accumulates, if_growing=True)
+        return Earliest.of(OwnAges(ages[0], np.sort(ages[1], axis=1)))
+
+    def drawn_ages(
+        self, limit: float, *, limit_error: float = 0.0, accumulates: bool = False, if_growing: bool = False
     ) -> tuple[FloatArray, FloatArray]:
         """Return equally probable ages at a limit, of the specimens and of new ones: (draws, specimens) each.
 
-        Each row is one draw of the shared parameters and of the limit. Arguments as for `reaches`.
+        Each row is one draw of the shared parameters and of the limit. Arguments as for `reaches`;
+        ``if_growing``: as if the indicator grew, also where the runs do not show it.
         """
         if not (math.isfinite(limit) and limit > 0.0):
             raise ParameterError(f"a limit is {limit}: it must be greater than 0", value=limit)
         if not (math.isfinite(limit_error) and limit_error >= 0.0):
             raise ParameterError(f"the error of the limit is {limit_error}: it must not be negative")
         level = math.log(limit) - self._scale[1] - (math.log(self._scale[0]) if accumulates else 0.0)
-        count = sum(len(units.scatter) for units in self._of_specimens)
-        normals = np.random.default_rng([self.seed, 1]).standard_normal((count, 1))
-        levels = level + limit_error * normals
-        ages = ages_of_sum if accumulates else ages_of
-        found = []
-        for drawn in (self._of_specimens, self._of_population):
-            ends = np.cumsum([0, *(len(units.scatter) for units in drawn)])
-            parts = [ages(u, levels[a:b]) for u, a, b in zip(drawn, ends, ends[1:], strict=False)]
-            found.append(np.concatenate(parts) * self._scale[0])
-        last = np.array(self.last_age)
-        of_specimens, of_new = self._beyond(BEYOND_SUM if accumulates else BEYOND)
-        return later(found[0], last, of_specimens), later(found[1], last.max(), of_new)
-
-    def _beyond(self, share: float) -> tuple[FloatArray, FloatArray]:
-        """How much longer than by its law each specimen, and each new one, may take beyond the last run."""
-        draws = sum(len(units.scatter) for units in self._of_specimens)
-        widths = len(self.units), self._of_population[0].level.shape[1]
-        known, new = beyond(np.random.default_rng([self.seed, 4]), share, draws, *widths)
-        return known, new
+        draws = self._if_growing if if_growing and self._if_growing is not None else self._draws
+        known, new = draws.ages(level, limit_error, accumulates=accumulates)
+        return known * self._scale[0], new * self._scale[0]
 
     def drawn_values(self, unit: int, age: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return logarithms of the indicator of a specimen at ages, (draws, ages), and the scatter of runs.
 
         The draws are those of `drawn_ages`, in the same order; the scatter has the shape (draws, 1).
         """
-        factors = self._beyond(BEYOND)[0][:, unit, None]
-        begin, values = 0, []
-        for u in self._of_specimens:
-            factor = factors[begin : (begin := begin + len(u.scatter))]
-            scaled = later(age, np.array(self.last_age[unit]), 1.0 / factor) / self._scale[0]
-            values.append(u.level[:, unit, None] + u.law.log_growth(u.size[:, unit, None], scaled, u.shape))
-        return np.concatenate(values) + self._scale[1], np.concatenate(
-            [u.scatter for u in self._of_specimens]
-        )
+        values = self._draws.curve(unit, age / self._scale[0])
+        return values + self._scale[1], np.concatenate([u.scatter for u in self._draws.of_specimens])
 
     def runs_of_units(self) -> list[tuple[FloatArray, FloatArray]]:
         """Return ages and values of the runs of each specimen, ascending in age, in the units given."""
@@ -252,10 +243,9 @@ class Growth(Result):
 
     def residuals(self) -> FloatArray:
         """Return the residuals of the logarithms of the runs, in the order given."""
-        every = sum(len(units.scatter) for units in self._of_specimens)
-        step = max(1, every // _OF_MIDDLE)
+        step = max(1, self._draws.count // _OF_MIDDLE)
         total, number = np.zeros(self._points.value.shape), 0
-        for units in self._of_specimens:
+        for units in self._draws.of_specimens:
             for i in range(0, len(units.scatter), step):
                 shape = units.shape[:, i, :, None]
                 total += units.level[i][:, None] + units.law.log_growth(
@@ -330,7 +320,10 @@ def fit_growth(
         each.law.name: float(w) for each, w in zip(found, weights, strict=True)
     }
     count = _DRAWS if len(units) <= _MANY else min(_DRAWS, _OF_MANY)
-    draws = resampled(found, weights, count, random)
+    draws = draws_of(resampled(found, weights, count, random), points, seed, random)
+    growing = None
+    if by_law.get("constant", 0.0) >= UNCHANGED:
+        growing = _as_if_growing(found, weights, count, points, seed)
     last = tuple(float(row.max() * scale[0]) for row in points.age)
     runs = tuple(int(n) for n in points.given.sum(axis=1))
     return Growth(
@@ -342,15 +335,32 @@ def fit_growth(
         weights=by_law,
         parameters={each.law.name: parameters_of(each, scale) for each in found},
         effective=min(each.effective for each, w in zip(found, weights, strict=True) if w > 0.05),
+        rate_high=_rate_high(growing or draws) / scale[0],
         warnings=warnings_of(points),
-        _of_specimens=tuple(
-            drawn_specimens(each.law, points, shared, each.sizes, random) for each, shared in draws
-        ),
-        _of_population=tuple(new_specimens(each.law, shared) for each, shared in draws),
+        _draws=draws,
+        _if_growing=growing,
         _points=points,
         _scale=scale,
         seed=seed,
     )
+
+
+def _as_if_growing(
+    found: list[Posterior], weights: FloatArray, count: int, points: Points, seed: int
+) -> Draws | None:
+    """Draws under the laws that grow; None without such a law."""
+    grows = [each.law.grows for each in found]
+    kept = [each for each, its in zip(found, grows, strict=True) if its]
+    if not kept:
+        return None
+    shares = weights[grows] / weights[grows].sum()
+    random = np.random.default_rng([seed, 5])
+    return draws_of(resampled(kept, shares, count, random), points, seed, random)
+
+
+def _rate_high(draws: Draws) -> float:
+    """Relative growth up to the greatest age at the most."""
+    return float(np.quantile(draws.grown(), _AT_MOST, method="inverted_cdf"))
 
 
 def _chosen(laws: Sequence[str] | None) -> list[Law]:

@@ -21,6 +21,8 @@ from hersey.life.oil_layer import age_of_layer, log_layer
 _GREATEST = 30.0
 #: Least value under a logarithm: where a layer has dried out, the indicator is as good as infinite.
 _DRY = 1e-12
+#: Steps to an age at the most, and how near it, relative, they end.
+_TURNS, _NEAR = 30, 1e-9
 #: Curvature below which the curved law is taken as exponential.
 _STRAIGHT = 1e-5
 
@@ -38,6 +40,7 @@ class Law(NamedTuple):
     age: Form  #: age at which ln G is the second argument; infinite where it never is
     shapes: tuple[tuple[str, float, float], ...] = ()  #: name, mean and standard deviation of each prior
     grows: bool = True
+    falls_by: Callable[[FloatArray], FloatArray] | None = None  #: how far ln G may fall at first, of shapes
 
 
 def _rise(x: FloatArray, t: FloatArray) -> FloatArray:
@@ -121,6 +124,51 @@ def _rested(law: Law) -> Law:
     return Law(law.name, law.formula, log_growth, sloped, age, (*law.shapes, ("logit p", 1.0, 1.0)))
 
 
+def _power_of_age(x: FloatArray, t: FloatArray, m: FloatArray) -> FloatArray:
+    return np.asarray(np.exp(np.minimum(m * x, _GREATEST)) * t**m)
+
+
+def _power(x: FloatArray, t: FloatArray, a: FloatArray) -> FloatArray:
+    return np.log1p(_power_of_age(x, t, np.exp(a[0])))
+
+
+def _power_sloped(x: FloatArray, t: FloatArray, a: FloatArray) -> tuple[FloatArray, FloatArray]:
+    m = np.exp(a[0])
+    grown, slope = _linear(_power_of_age(x, t, m))
+    return grown, m * slope
+
+
+def _power_age(x: FloatArray, y: FloatArray, a: FloatArray) -> FloatArray:
+    return np.asarray(np.expm1(y) ** np.exp(-a[0]) * np.exp(-x))
+
+
+def _run_in(x: FloatArray, t: FloatArray, a: FloatArray) -> FloatArray:
+    return np.asarray(np.log1p(_power_of_age(x, t, np.exp(a[2])) - special.expit(a[1]) * _full(t, a)))
+
+
+def _run_in_sloped(x: FloatArray, t: FloatArray, a: FloatArray) -> tuple[FloatArray, FloatArray]:
+    m = np.exp(a[2])
+    grown = _power_of_age(x, t, m)
+    left = grown - special.expit(a[1]) * _full(t, a)
+    return np.log1p(left), m * grown / (1.0 + left)
+
+
+def _run_in_age(x: FloatArray, y: FloatArray, a: FloatArray) -> FloatArray:
+    """Newton's method from the age at which all of the run-in has come: growth is not yet there before."""
+    m, share, pace, need = np.exp(a[2]), special.expit(a[1]), np.exp(-a[0]), np.expm1(y)
+    with np.errstate(over="ignore", divide="ignore", invalid="ignore"):
+        early, late = need ** (1.0 / m) * np.exp(-x), (need + share) ** (1.0 / m) * np.exp(-x)
+        at = late + 0.0 * early
+        for _ in range(_TURNS):
+            grown, left = np.exp(np.minimum(m * x, _GREATEST)) * at**m, np.exp(-pace * at)
+            over = grown - share * (1.0 - left) - need
+            step = over / (m * grown / at - share * pace * left)
+            at = np.clip(np.where(np.isfinite(step), at - step, early), early, late)
+            if not (np.abs(step) > _NEAR * at).any():
+                break
+    return np.asarray(at)
+
+
 def _settled(x: FloatArray, t: FloatArray, a: FloatArray) -> FloatArray:
     part = -np.expm1(-np.exp(a[1]) * np.log1p(t * np.exp(-a[0])))
     return np.log1p(_rise(x, part))
@@ -186,11 +234,21 @@ LAWS = (
             (("logit q", -1.0, 1.5),),
         )
     ),
+    Law("power", "1 + (r t)^m", _power, _power_sloped, _power_age, (("ln m", 0.3, 0.4),)),
+    Law(
+        "run-in",
+        "1 - d (1 - exp(-t/tau)) + (r t)^m",
+        _run_in,
+        _run_in_sloped,
+        _run_in_age,
+        (("ln(tau/T)", -2.0, 1.0), ("logit d", -2.0, 1.0), ("ln m", 0.3, 0.4)),
+        falls_by=lambda a: -np.log(special.expit(-a[1])),
+    ),
 )
 
 #: A law that settles as slowly as a power of age: none of an indicator over specimens, but of one record.
 SETTLING = Law(
-    "power",
+    "slow",
     "1 + s (1 - (1 + t/tau)^-m)",
     _settled,
     _settled_sloped,

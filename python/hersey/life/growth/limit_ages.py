@@ -23,15 +23,19 @@ if TYPE_CHECKING:
 CONFIDENCE = 0.9
 #: Standard deviations of a normal distribution in half of such an interval.
 DEVIATIONS = 1.645
-#: A law is fitted up to the last run. Growth is a sum of processes, and the time from there to a limit was
-#: off by so much (logarithm) in campaigns of a generator of its own (`benchmarks/life.py`), most of it in
-#: common to the specimens; more for what accumulates, where a rate is a power of what grows.
-BEYOND, BEYOND_SUM, _OWN = 0.10, 0.15, 0.3
-#: Share of draws from which "never" is worth a word.
+#: A law is fitted up to the last run, and growth may depart from it later: what the law does at age t comes
+#: at last (t / last)^k. Standard deviations of ln k, in common to all specimens and of each alone.
+BEYOND, OWN_BEYOND = 0.10, 0.10
+#: Share of draws from which it is worth a word that they do not reach a limit.
 _SAID = 0.05
+#: Probability of having failed from which a specimen has failed, and up to which it is still running.
+FAILED, RUNNING = 0.95, 0.05
+#: Fewest specimens that show how specimens differ: fewer make no population.
+POPULATION = 4
 #: Integrals over age: places and weights, turns of the search and where it ends, the greatest logarithm.
 _NODES, _HEIGHTS = np.polynomial.legendre.leggauss(8)
 _PLACES, _PARTS = 0.5 * (1.0 + _NODES), 0.5 * _HEIGHTS
+_TO_END = np.append(_PLACES, 1.0)
 _TURNS, _SETTLED, _STEEPEST, _HUGE = 60, 3e-3, 3.0, 300.0
 #: Turns from which on the range is halved: where growth is steep, Newton's method may swing from end to end.
 _HALVING = 30
@@ -47,8 +51,10 @@ class Interval(Record):
 
     def __str__(self) -> str:
         """Return value and limits with sensible digits."""
-        value, low, high = (_number(v) for v in (self.value, self.low, self.high))
-        return f"{value} [{low}, {high}]"
+        if math.isinf(self.value):
+            return "not reached" if math.isinf(self.low) else f"later than {rounded(self.low)}"
+        high = "no upper limit" if math.isinf(self.high) else rounded(self.high)
+        return f"{rounded(self.value)} [{rounded(self.low)}, {high}]"
 
 
 @dataclass(frozen=True)
@@ -72,10 +78,22 @@ class AgeAtLimit(Record):
         return f"{self.unit}: {self.age}{self.outcome}"
 
     @property
+    def state(self) -> str:
+        """Whether the specimen has ``failed``, is ``running`` or ``unclear``, when last seen."""
+        if self.passed >= FAILED:
+            return "failed"
+        return "unclear" if self.passed > RUNNING else "running"
+
+    @property
     def outcome(self) -> str:
-        """Whether it has passed already, or may never come, in words that follow the age."""
-        words = f", already passed (last seen at {self.last:.10g})" if self.passed > 0.5 else ""
-        return words + (f", never in {self.never:.0%} of draws" if self.never > _SAID else "")
+        """Whether it has passed already, or may not come, in words that follow the age."""
+        words, seen = "", f" (last seen at {self.last:.10g})"
+        if self.state == "failed":
+            words = f", already passed{seen}"
+        elif self.state == "unclear":
+            words = f", passed with a probability of {percent(self.passed)}{seen}"
+        open_ = math.isfinite(self.age.value) and self.never > _SAID
+        return words + (f", not reached in {self.never:.0%} of draws" if open_ else "")
 
 
 @dataclass(frozen=True, repr=False)
@@ -86,8 +104,11 @@ class AgesAtLimit(Result):
     age_unit: str
     limit: float
     units: tuple[AgeAtLimit, ...]
-    b10: AgeAtLimit  #: a tenth of new specimens has reached it
-    b50: AgeAtLimit
+    b10: Annotated[
+        AgeAtLimit | None,
+        Means("a tenth of new specimens has reached it; null for fewer than four"),
+    ]
+    b50: AgeAtLimit | None
     warnings: tuple[Warning, ...]
     accumulates: Annotated[bool, Means("whether the limit applies to the integral over age")] = (
         False  #: the limit is that of the integral over age
@@ -97,19 +118,27 @@ class AgesAtLimit(Result):
         """Return the ages as text."""
         unit = f" ({self.age_unit})" if self.age_unit else ""
         lines = [f"age{unit} at which {self.quantity} reaches {self.limit:.4g}, with 90 % intervals"]
-        lines += [f"  {each}" for each in (*self.units, self.b10, self.b50)]
+        lines += [f"  {each}" for each in self.rows]
         return "\n".join([*lines, *(f"- {each}" for each in self.warnings)])
 
     def headline(self) -> str:
-        """Return the age at which half of the population reaches the limit."""
-        age = f"{self.b50.age} {self.age_unit}"
-        return f"half of new specimens reach {self.quantity} = {self.limit:.4g} at {age}"
+        """Return the age at which half of the population reaches the limit, or the first specimen."""
+        limit = f"{self.quantity} = {self.limit:.4g}"
+        if self.b50 is not None:
+            return f"half of new specimens reach {limit} at {self.b50.age} {self.age_unit}"
+        first = min(self.units, key=lambda each: each.age.value)
+        return f"{first.unit} reaches {limit} at {first.age} {self.age_unit}"
+
+    @property
+    def rows(self) -> tuple[AgeAtLimit, ...]:
+        """The specimens, then the population where there is one."""
+        return (*self.units, *(each for each in (self.b10, self.b50) if each is not None))
 
     def to_frame(self) -> pl.DataFrame:
         """Return one row per specimen, then the population; infinite if never reached."""
         import polars as pl
 
-        rows = [*self.units, self.b10, self.b50]
+        rows = self.rows
         unit = self.age_unit or "1"
         return pl.DataFrame(
             {
@@ -123,15 +152,70 @@ class AgesAtLimit(Result):
         )
 
 
-def age_at_limit(name: str, ages: FloatArray, last: float = math.nan) -> AgeAtLimit:
-    """Return the age at the limit of a specimen that was last seen at ``last``, of equally probable ages."""
+def age_at_limit(
+    name: str, ages: FloatArray, last: float = math.nan, earliest: float = math.inf
+) -> AgeAtLimit:
+    """Return the age at the limit of a specimen that was last seen at ``last``, of equally probable ages.
+
+    Where most draws do not reach it, the interval begins at ``earliest`` at the latest.
+    """
     never, passed = float(np.isinf(ages).mean()), float((ages <= last).mean())
-    return AgeAtLimit(name, interval(ages), never, last, passed)
+    age = interval(ages)
+    if math.isinf(age.value):
+        age = Interval(age.value, min(age.low, earliest), age.high)
+    return AgeAtLimit(name, age, never, last, passed)
 
 
-def share_of_specimens(ages: FloatArray, share: float) -> AgeAtLimit:
+def share_of_specimens(ages: FloatArray, share: float, earliest: float = math.inf) -> AgeAtLimit:
     """Age that a share of new specimens has reached, ``ages`` being sorted along the specimens."""
-    return age_at_limit(f"B{share * 100:.0f}", ages[:, math.ceil(share * ages.shape[1]) - 1])
+    return age_at_limit(f"B{share * 100:.0f}", reached_by(ages, share), earliest=earliest)
+
+
+def reached_by(ages: FloatArray, share: float) -> FloatArray:
+    """Return the age that a share of specimens has reached in each draw, ``ages`` being sorted along them."""
+    return np.asarray(ages[:, math.ceil(share * ages.shape[1]) - 1])
+
+
+@dataclass(frozen=True)
+class Earliest:
+    """Ages before which a limit is not reached even if an indicator without growth grows, at `CONFIDENCE`."""
+
+    units: FloatArray  #: of each specimen
+    first: float  #: of the first of them
+    b10: float
+    b50: float
+
+    @classmethod
+    def of(cls, own: OwnAges) -> Earliest:
+        """Return those of draws of an indicator that grows; the new ones sorted along the specimens."""
+        of_new = (reached_by(own.new, share) for share in (0.1, 0.5))
+        return cls(_least(own.known), *(float(_least(e)) for e in (own.known.min(axis=1), *of_new)))
+
+    @classmethod
+    def of_first(cls, each: Sequence[Earliest]) -> Earliest:
+        """Return those of the first of all modes; infinite without any."""
+        return cls(
+            np.min([e.units for e in each], axis=0),
+            *(min(ages) for ages in zip(*((e.first, e.b10, e.b50) for e in each), strict=True)),
+        )
+
+    @classmethod
+    def unknown(cls, units: int) -> Earliest:
+        """Return ages of which nothing is known but the draws."""
+        return cls(np.full(units, math.inf), math.inf, math.inf, math.inf)
+
+
+def _least(ages: FloatArray) -> FloatArray:
+    return np.asarray(np.quantile(ages, 1.0 - CONFIDENCE, axis=0, method="inverted_cdf"))
+
+
+def of_population(
+    ages: FloatArray, specimens: int, least: Earliest
+) -> tuple[AgeAtLimit, AgeAtLimit] | tuple[None, None]:
+    """B10 and B50 as `share_of_specimens`, of a population that so many specimens show; None for too few."""
+    if specimens < POPULATION:
+        return None, None
+    return share_of_specimens(ages, 0.1, least.b10), share_of_specimens(ages, 0.5, least.b50)
 
 
 def ages_at_limit(
@@ -144,15 +228,20 @@ def ages_at_limit(
     warnings: tuple[Warning, ...],
     *,
     accumulates: bool = False,
+    earliest: Earliest | None = None,
 ) -> AgesAtLimit:
     """Return what draws of the ages of specimens, last seen at ``last``, and of new ones show.
 
-    ``accumulates``: the limit is that of the integral of the quantity over age.
+    ``accumulates``: the limit is that of the integral of the quantity over age. ``earliest`` is stated of a
+    quantity that does not grow.
     """
+    least = earliest or Earliest.unknown(len(names))
     quantity = f"the sum of {quantity} over age" if accumulates else quantity
-    known = [age_at_limit(name, own.known[:, i], float(last[i])) for i, name in enumerate(names)]
-    new = np.sort(own.new, axis=1)
-    b10, b50 = (share_of_specimens(new, share) for share in (0.1, 0.5))
+    known = [
+        age_at_limit(name, own.known[:, i], float(last[i]), float(least.units[i]))
+        for i, name in enumerate(names)
+    ]
+    b10, b50 = of_population(np.sort(own.new, axis=1), len(known), least)
     return AgesAtLimit(quantity, age_unit, limit, tuple(known), b10, b50, warnings, accumulates)
 
 
@@ -163,27 +252,34 @@ def ages_of(drawn: Specimens, level: FloatArray) -> FloatArray:
         return np.where(above > 0.0, drawn.law.age(drawn.size, above, drawn.shape), 0.0)
 
 
-def ages_of_sum(drawn: Specimens, level: FloatArray) -> FloatArray:
+def ages_of_sum(
+    drawn: Specimens, level: FloatArray, last: FloatArray | None = None, power: FloatArray | None = None
+) -> FloatArray:
     """Ages at which the integral of the indicator from age 0 reaches a level (logarithm), as in `ages_of`.
 
+    Growth beyond the ages ``last`` departs from the law by ``power``, as in `later`; both as the level.
     Newton's method in the logarithms of integral and age, kept between ends by halving.
     """
     need = level - drawn.level
     size, goal = (np.broadcast_to(x, need.shape).ravel() for x in (drawn.size, need))
     shape = np.broadcast_to(drawn.shape, (len(drawn.shape), *need.shape)).reshape(len(drawn.shape), need.size)
-    # What grows has got there before a constant would; its integral is no steeper than the age itself.
+    # What grows has got there before a constant would, after a fall that is over.
     high, low = goal.copy(), np.full(goal.shape, -np.inf)
+    if drawn.law.falls_by is not None:
+        high += np.broadcast_to(drawn.law.falls_by(drawn.shape), need.shape).ravel()
     at, open_ = high.copy(), np.arange(goal.size)
+    slows = None if last is None or power is None else _flat(need.shape, np.log(last), 1.0 / power)
     for turn in range(_TURNS):
         x, a, t = size[open_], shape[:, open_], at[open_]
+        ages = np.exp(t)[:, None] * _TO_END if slows is None else _of_law(t, *(e[open_] for e in slows))
         with np.errstate(over="ignore"):
-            grown = drawn.law.log_growth(x[:, None], np.exp(t)[:, None] * _PLACES, a[:, :, None])
-            end = np.minimum(drawn.law.log_growth(x, np.exp(t), a), _HUGE)
-        sum_ = np.log(np.exp(np.minimum(grown, _HUGE)) @ _PARTS)
+            grown = np.minimum(drawn.law.log_growth(x[:, None], ages, a[:, :, None]), _HUGE)
+        end = grown[:, -1]
+        sum_ = np.log(np.exp(grown[:, :-1]) @ _PARTS)
         left = goal[open_] - t - sum_
         high[open_] = np.where(left < 0.0, t, high[open_])
         low[open_] = np.where(left < 0.0, low[open_], t)
-        step = t + left / np.exp(np.clip(end - sum_, 0.0, _STEEPEST))
+        step = t + left / np.exp(np.clip(end - sum_, -_STEEPEST, _STEEPEST))
         halved = np.where(np.isfinite(low[open_]), 0.5 * (low[open_] + high[open_]), high[open_] - 1.0)
         near = ~(np.abs(left) > _SETTLED)
         inside = (step > low[open_]) & (step < high[open_]) & (near | (turn < _HALVING))
@@ -194,27 +290,36 @@ def ages_of_sum(drawn: Specimens, level: FloatArray) -> FloatArray:
     return np.exp(at).reshape(need.shape)
 
 
+def _flat(shape: tuple[int, ...], *arrays: FloatArray) -> list[FloatArray]:
+    return [np.broadcast_to(each, shape).ravel() for each in arrays]
+
+
+def _of_law(log_age: FloatArray, log_last: FloatArray, slows: FloatArray) -> FloatArray:
+    """Ages of the law at the places of an integral up to ages, (ages, places)."""
+    after = log_age[:, None] + np.log(_TO_END) - log_last[:, None]
+    return np.asarray(np.exp(np.where(after > 0.0, after * slows[:, None], after) + log_last[:, None]))
+
+
 def heavy_tailed(random: np.random.Generator, shape: tuple[int, int]) -> FloatArray:
     """Draws of Student's t of four degrees of freedom, none beyond five, evenly spread in each column."""
     spread = np.clip(special.stdtrit(4.0, (np.arange(shape[0]) + 0.5) / shape[0]), -5.0, 5.0)
     return np.asarray(spread[random.permuted(np.tile(np.arange(shape[0])[:, None], (1, shape[1])), axis=0)])
 
 
-def beyond(random: np.random.Generator, share: float, *columns: int) -> tuple[FloatArray, ...]:
-    """Return how much longer than by its law growth may take beyond the last run: factors on that time.
+def beyond(random: np.random.Generator, draws: int, *widths: int) -> tuple[FloatArray, ...]:
+    """Return powers by which ages beyond the last run depart from those of a law, as `later` takes them.
 
-    One array of equally probable draws for each number of ``columns``; ``share`` is the standard deviation of
-    their logarithm, most of it in common to a row, over all arrays. ``columns`` begins with the draws.
+    One array of equally probable draws for each of ``widths``: numbers of specimens. Part of a row is in
+    common to it, over all arrays.
     """
-    draws, *widths = columns
-    common = heavy_tailed(random, (draws, 1))
-    return tuple(np.exp(share * (common + _OWN * heavy_tailed(random, (draws, each)))) for each in widths)
+    common = BEYOND * heavy_tailed(random, (draws, 1))
+    return tuple(np.exp(common + OWN_BEYOND * heavy_tailed(random, (draws, each))) for each in widths)
 
 
-def later(ages: FloatArray, last: FloatArray, factor: FloatArray) -> FloatArray:
-    """Return ages with the time from the last run on times a factor; infinite ones stay."""
-    with np.errstate(invalid="ignore"):
-        return np.asarray(np.where(ages > last, last + (ages - last) * factor, ages))
+def later(ages: FloatArray, last: FloatArray, power: FloatArray) -> FloatArray:
+    """Return ages of which the ratio to the last run, beyond that, is raised to a power."""
+    with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+        return np.asarray(np.where((ages > last) & (last > 0.0), last * (ages / last) ** power, ages))
 
 
 def quantiles(values: FloatArray) -> FloatArray:
@@ -229,6 +334,13 @@ def interval(values: FloatArray) -> Interval:
     return Interval(median, low, high)
 
 
-def _number(value: float) -> str:
-    """Three digits, those of pages without a power of ten."""
-    return "never" if math.isinf(value) else f"{float(f'{value:.3g}'):.10g}"
+def rounded(age: float, digits: int = 3) -> str:
+    """Return a finite age with so many digits, those of pages without a power of ten."""
+    return f"{float(f'{age:.{digits}g}'):.10g}"
+
+
+def percent(share: float) -> str:
+    """Return a probability in per cent that is neither certain nor impossible, as ``97 %``."""
+    if share > 0.99:
+        return "over 99 %"
+    return "below 1 %" if share < 0.01 else f"{100.0 * share:.0f} %"

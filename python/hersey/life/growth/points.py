@@ -133,11 +133,11 @@ def warnings_of(points: Points) -> tuple[Warning, ...]:
         warnings.append(
             Warning(
                 "few specimens",
-                "one specimen does not show how specimens differ, so B10 and B50 depend on the prior"
+                "one specimen does not show how specimens differ, so ages beyond its runs depend on the prior"
                 if specimens == 1
                 else (
-                    "{specimens} specimens show little of how specimens differ, so B10 and B50 depend "
-                    "partly on the prior"
+                    "{specimens} specimens show little of how specimens differ, so ages beyond their runs "
+                    "depend partly on the prior"
                 ),
                 severity="watch",
                 specimens=specimens,

@@ -64,6 +64,8 @@ def parameters_of(found: Posterior, scale: tuple[float, float]) -> dict[str, Int
             named[name.removeprefix("logit ")] = special.expit(own)
         elif name == "ln(tau/T)":
             named["tau"] = np.exp(own) * scale[0]
+        elif name.startswith("ln "):
+            named[name.removeprefix("ln ")] = np.exp(own)
         else:
             named[name] = own
     named["scatter of runs"] = np.exp(shared[:, 2])

@@ -4,7 +4,8 @@
 way       `Mode`: the growth of an indicator and the ages at its limit
 joined    draws of several failure modes side by side
 first     `SpecimenEnd`: which way comes first, and when
-next_run  what to measure next, and how far it would narrow an interval
+attention which specimens need attention, and when to look at the others
+next_run  what to measure next, and how far it would help to decide
 unsure    what is not known of the ends, and what depends on priors
 estimate  `time_to_failure`: the first end of each specimen, and of the population
 ========  ====================================================================

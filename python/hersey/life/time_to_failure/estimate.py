@@ -10,28 +10,33 @@ from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
-from hersey.arrays import FloatArray, IntArray, one_thread
-from hersey.errors import HerseyError, InsufficientDataError, capital, sentence
+from hersey.arrays import FloatArray, one_thread
+from hersey.errors import (
+    HerseyError,
+    InsufficientDataError,
+    ParameterError,
+    Setting,
+    UnitError,
+    capital,
+    sentence,
+)
+from hersey.life.age import Age
 from hersey.life.growth.limit_ages import (
-    CONFIDENCE,
+    POPULATION,
     AgeAtLimit,
+    Earliest,
     Interval,
+    of_population,
     quantiles,
-    share_of_specimens,
+    rounded,
 )
 from hersey.life.indicator import NOT_JUDGED, Indicators
-from hersey.life.population import Population, weibull
+from hersey.life.time_to_failure.ageing import Ageing, ageing_of
+from hersey.life.time_to_failure.attention import Attention, attention_of, half_failed
 from hersey.life.time_to_failure.first import SpecimenEnd, ages_of_new, ends_of_specimens
 from hersey.life.time_to_failure.joined import correlations
-from hersey.life.time_to_failure.next_run import (
-    HORIZON,
-    NextRun,
-    candidate_ages,
-    width,
-    width_after_specimen,
-    widths_after,
-)
-from hersey.life.time_to_failure.unsure import FAR, FEW, unsure
+from hersey.life.time_to_failure.next_run import NextRun, next_runs
+from hersey.life.time_to_failure.unsure import FAR, unsure
 from hersey.life.time_to_failure.way import FittedWay, Mode, fitted_way, last_ages
 from hersey.result import Means, Record, Result
 from hersey.schema.warning import Warning
@@ -42,8 +47,8 @@ if TYPE_CHECKING:
 
 #: Places of the curve of the population.
 _PLACES = 121
-#: Specimens, of the widest intervals, for which a further run is weighed; advice that the summary gives.
-_WEIGHED, _ADVISED = 24, 3
+#: Specimens to inspect, and runs, that the advice names.
+_ADVISED = 3
 #: Rows that a summary shows.
 _SHOWN = 24
 #: Failure modes of one reason that an error names.
@@ -65,23 +70,36 @@ class ShareEnded(Record):
 class TimeToFailure(Result):
     """Failure modes and times to failure of specimens and population; ages in ``age_unit``."""
 
-    also_stated = ("population", "advice")
+    also_stated = ("attention", "advice")
 
     age_unit: str
     modes: tuple[Mode, ...]
     units: tuple[SpecimenEnd, ...]
+    ageing: Annotated[
+        Ageing, Means("whether anything ages, and the earliest age at which a specimen can fail")
+    ]
     b10: Annotated[
-        AgeAtLimit, Means("age by which a tenth of new specimens has failed, by any mode")
-    ]  #: a tenth of new specimens has ended, by whichever way
-    b50: AgeAtLimit
+        AgeAtLimit | None,
+        Means(
+            "age by which a tenth of new specimens has failed by any mode; null for fewer than four specimens"
+        ),
+    ]
+    b50: Annotated[AgeAtLimit | None, Means("the same of half of new specimens")]
     shares: Annotated[
-        dict[str, Interval], Means("share of new specimens that fail by each mode")
-    ]  #: of new specimens that each way ends
-    curve: ShareEnded
-    next_runs: Annotated[tuple[NextRun, ...], Means("largest narrowing first")]  #: what narrows most first
-    together: Annotated[
-        tuple[str, ...], Means("failure modes whose runs scatter together")
-    ]  #: ways whose runs scatter together
+        dict[str, Interval] | None,
+        Means("share of new specimens that fail by each mode; null for fewer than four specimens"),
+    ]
+    curve: Annotated[ShareEnded | None, Means("null for fewer than four specimens")]
+    until: Annotated[
+        float | None, Means("age that specimens should reach, as asked; null if none was stated")
+    ]
+    next_runs: Annotated[
+        tuple[NextRun, ...],
+        Means(
+            "runs that help to decide whether specimens reach that age or, if none was stated, have failed; "
+            "the most helpful first"
+        ),
+    ]
     warnings: Annotated[
         tuple[Warning, ...],
         Means("failure modes not judged, what is unknown, then warnings of the modes that may come first"),
@@ -94,61 +112,89 @@ class TimeToFailure(Result):
         return tuple(mode for mode in self.modes if not mode.sign)
 
     @cached_property
-    def population(self) -> Population:
-        """Population with failed specimens at their estimated ages; the others have not failed."""
-        seen = [each for each in self.units if each.age.last > 0.0]
-        failed = np.array([each.age.passed > 0.5 for each in seen])
-        last = np.array([each.age.last for each in seen])
-        ages = np.where(failed, np.minimum([each.age.age.value for each in seen], last), last)
-        return weibull(
-            np.maximum(ages, 1e-6 * last.max()), failed, unit=self.age_unit, level=CONFIDENCE, seed=self.seed
-        )
+    def attention(self) -> Attention:
+        """Which specimens need attention, and what age the others should reach."""
+        return attention_of(self.units)
 
     def summary(self) -> str:
         """Return specimens, population, what is unknown and what to measure next as text."""
         of_unit = f" ({self.age_unit})" if self.age_unit else ""
-        lines = [self.headline(), f"age of first failure{of_unit}, with 90 % intervals"]
+        lines = [
+            self.headline(),
+            *filter(None, [self.of_new()]),
+            f"age of first failure{of_unit}, with 90 % intervals",
+        ]
         lines += [f"  {each}" for each in self.units[:_SHOWN]]
         if len(self.units) > _SHOWN:
             lines.append(f"  and {len(self.units) - _SHOWN} more specimens")
-        lines += [f"  {self.b10}", f"  {self.b50}"]
+        lines += self._of_population(of_unit)
+        lines += [
+            f"{each.where} is not judged. {each.text}" if each.kind == NOT_JUDGED else f"- {each}"
+            for each in self.warnings
+        ]
+        return "\n".join([*lines, *(f"next: {each}" for each in self.advice), self.planning()]).rstrip()
+
+    def _of_population(self, of_unit: str) -> list[str]:
+        """B10, B50 and shares as text, where there is a population."""
+        if self.shares is None:
+            return []
         ordered = sorted(self.shares.items(), key=lambda item: -item[1].value)
         shares = ", ".join(f"{name} {each.value:.0%}" for name, each in ordered if each.value >= 0.005)
+        lines = [f"  {self.b10}", f"  {self.b50}"]
+        if shares:
+            lines.append(f"share of new specimens that fail by each mode: {shares}")
         lines += [
-            f"share of new specimens that fail by each mode: {shares}",
             f"age{of_unit} at which half of new specimens reach each limit, if it were the only one",
         ]
+        half = [(mode, mode.ages.b50) for mode in self.modes if mode.ages.b50 is not None]
         soon = FAR * max(each.age.last for each in self.units)
-        far = [mode.name for mode in self.modes if mode.ages.b50.age.low > soon]
-        for mode in self.modes:
+        far = [mode.name for mode, b50 in half if mode.grows and b50.age.low > soon]
+        for mode, b50 in half:
             sign = " (a precursor, not a failure)" if mode.sign else ""
             if mode.name not in far:
-                lines.append(f"  {mode.name}{sign}: {mode.ages.b50}")
+                lines.append(f"  {mode.name}{sign}: {b50}{'' if mode.grows else ', no growth shown'}")
         if far:
             lines.append(
                 f"  half of new specimens reach these later than {FAR:g} times the age followed: "
                 f"{'; '.join(far)}"
             )
-        lines += [
-            f"{each.where} is not judged. {each.text}" if each.kind == NOT_JUDGED else f"- {each}"
-            for each in self.warnings
-        ]
-        return "\n".join([*lines, *(f"next: {each}" for each in self.advice)])
+        return lines
 
     def headline(self) -> str:
-        """Return the age by which half of new specimens fail, and the main failure mode."""
-        unit = f" {self.age_unit}" if self.age_unit else ""
-        if len(self.units) < FEW:
-            first = min(self.units, key=lambda each: each.age.age.value)
-            by = " or ".join(first.named) or "no known failure mode"
-            return f"{first.unit} fails at {first.age.age}{unit} by {by}"
-        likely = max(self.shares, key=lambda name: self.shares[name].value)
-        return f"half of new specimens fail by {self.b50.age}{unit}, mostly by {likely}"
+        """Return which specimens need attention, and what age the others should reach."""
+        return " ".join(self.lead())
+
+    def lead(self) -> list[str]:
+        """Return which specimens need attention, or that nothing grows, as sentences."""
+        if self.ageing.shown == "none" and not (self.attention.failed or self.attention.unclear):
+            return [sentence(self.ageing.headline(self.age_unit))]
+        return self.attention.words(self.age_unit)
+
+    def of_new(self) -> str:
+        """Return when half of new specimens fail, and how; empty without a population or growth."""
+        if self.b50 is None or self.shares is None or self.ageing.shown == "none":
+            return ""
+        return half_failed(self.b50.age, self.shares, self.age_unit)
 
     @property
     def advice(self) -> tuple[str, ...]:
-        """What to measure next, in words."""
-        return tuple(each.words(self.age_unit) for each in self.next_runs[:_ADVISED])
+        """What to do next, in words: specimens to inspect, how long to go on without growth, runs."""
+        failed = [
+            f"inspect {each.unit} for {' or '.join(each.likely)}"
+            for each in self.units
+            if each.state == "failed"
+        ]
+        go_on = [self.ageing.advice(self.age_unit)]
+        runs = [each.words(self.age_unit) for each in self.next_runs]
+        return (*failed[:_ADVISED], *filter(None, go_on), *runs[:_ADVISED])
+
+    def planning(self) -> str:
+        """Return how to state the age that specimens should reach; empty if it was stated."""
+        if self.until is not None:
+            return ""
+        far = 1.5 * max(each.age.last for each in self.units)
+        setting = Setting("until").to(f"{rounded(far, 2)} {self.age_unit}".strip())
+        return f"To find the run that best shows which specimens last until an age, add {setting}."
 
     def to_frame(self) -> pl.DataFrame:
         """Return one row per specimen and failure mode, and the first of all; infinite if never reached."""
@@ -160,7 +206,7 @@ class TimeToFailure(Result):
                 (mode.ages.units[i], mode.name, end.first.get(mode.name, math.nan)) for mode in self.modes
             ]
             rows.append((end.age, "first of all", math.nan))
-        rows += [(each, "first of all", math.nan) for each in (self.b10, self.b50)]
+        rows += [(each, "first of all", math.nan) for each in (self.b10, self.b50) if each is not None]
         unit = self.age_unit or "1"
         return pl.DataFrame(
             {
@@ -180,7 +226,11 @@ class TimeToFailure(Result):
 @one_thread()
 @takes_si()
 def time_to_failure(
-    indicators: Indicators, *, seed: int = 0, progress: Callable[[int, int], None] | None = None
+    indicators: Indicators,
+    *,
+    until: str | float | None = None,
+    seed: int = 0,
+    progress: Callable[[int, int], None] | None = None,
 ) -> TimeToFailure:
     """Return how and when each specimen fails, from the indicators of the runs.
 
@@ -193,6 +243,9 @@ def time_to_failure(
     ----------
     indicators
         Indicators of the runs; those that cannot be fitted appear in the warnings with the reason.
+    until
+        Age that specimens should reach, e.g. "250000 pages". `next_runs` are those that show best which do;
+        without it, which have failed. Where nothing grows `ageing` says how long to go on.
     seed
         Of the draws: the same data and seed give the same result.
     progress
@@ -200,9 +253,12 @@ def time_to_failure(
 
     Raises
     ------
+    ParameterError, UnitError
+        If ``until`` is no age in the unit of the runs.
     InsufficientDataError
         If no indicator that ends a specimen can be fitted; the message names the reasons.
     """
+    asked = age_asked(until, indicators.runs.age_unit)
     fitted, warnings = [], list(indicators.warnings)
     for i, each in enumerate(indicators.each):
         try:
@@ -224,22 +280,44 @@ def time_to_failure(
     new = np.stack(list(ages_of_new(ending, of_runs, random)))
     greatest = float(indicators.runs.age.max())
     first = np.sort(new.min(axis=0), axis=1)
-    b10, b50 = (share_of_specimens(first, share) for share in (0.1, 0.5))
-    runs = [*_again(ending, units, picks, of_runs, greatest, random), *_one_more(first, greatest, random)]
+    least = Earliest.of_first([each.earliest for each in ending])
+    b10, b50 = of_population(first, len(units), least)
+    known = len(units) >= POPULATION
+    runs = next_runs(ending, units, picks, of_runs, asked, random)
     modes = tuple(each.mode for each in fitted)
     return TimeToFailure(
         age_unit=indicators.runs.age_unit,
         modes=modes,
         units=units,
+        ageing=ageing_of(ending, greatest, asked),
         b10=b10,
         b50=b50,
-        shares=_shares(ending, new),
-        curve=_curve(first, greatest),
-        next_runs=tuple(sorted(runs, key=lambda each: -each.narrowing)),
-        together=_together(ending, of_runs),
-        warnings=(*warnings, *unsure(ending, units, _together(ending, of_runs)), *_of_modes(ending, units)),
+        shares=_shares(ending, new) if known else None,
+        curve=_curve(first, greatest) if known else None,
+        until=asked,
+        next_runs=tuple(runs),
+        warnings=(*warnings, *unsure(ending, units), *_of_modes(ending, units)),
         seed=seed,
     )
+
+
+def age_asked(until: str | float | None, unit: str) -> float | None:
+    """Return the age that specimens should reach, in the unit of the runs.
+
+    Raises
+    ------
+    ParameterError, UnitError
+        If it is no age greater than 0 in such a unit.
+    """
+    if until is None:
+        return None
+    try:
+        age = Age.parse(until, unit).as_unit(unit) if isinstance(until, str) else Age(float(until), unit)
+        if age.value == 0.0:
+            raise ParameterError("the age that specimens should reach must be greater than 0")
+    except (ParameterError, UnitError) as error:
+        raise error.within(Setting("until").to()) from None
+    return age.value
 
 
 def _by_reason(warnings: Sequence[Warning]) -> list[str]:
@@ -270,56 +348,6 @@ def _curve(first: FloatArray, greatest: float) -> ShareEnded:
     ages = np.linspace(0.0, FAR * greatest, _PLACES)
     low, median, high = quantiles(np.stack([(first <= age).mean(axis=1) for age in ages], axis=1))
     return ShareEnded(ages, median, low, high)
-
-
-def _again(
-    ending: Sequence[FittedWay],
-    units: Sequence[SpecimenEnd],
-    picks: Sequence[tuple[IntArray, FloatArray]],
-    of_runs: FloatArray,
-    greatest: float,
-    random: np.random.Generator,
-) -> list[NextRun]:
-    """How far one more run of each specimen would narrow the interval of its end."""
-    open_ = [i for i, each in enumerate(units) if each.age.passed <= 0.5]
-    spans = {i: width(np.minimum(picks[i][1], HORIZON * greatest)) for i in open_}
-    open_.sort(key=lambda i: -spans[i])
-    found = []
-    for i in sorted(open_[:_WEIGHED]):
-        order, first = picks[i]
-        capped = np.minimum(first, HORIZON * greatest)
-        ages = candidate_ages(units[i].age.last, float(np.median(capped)))
-        observed = [m for m, each in enumerate(ending) if units[i].unit in each.row]
-        if not (ages.size and observed):
-            continue
-        values, errors = [], []
-        for m in observed:
-            each = ending[m]
-            value, scatter = each.mode.growth.drawn_values(each.row[units[i].unit], ages)
-            values.append(value[order[:, m]])
-            errors.append(np.hypot(scatter, each.error)[order[:, m]])
-        among = of_runs[np.ix_(observed, observed)]
-        after = widths_after(capped, values, errors, among, random)
-        runs = zip(ages.tolist(), after.tolist(), strict=True)
-        found += [NextRun(units[i].unit, age, spans[i], each) for age, each in runs]
-    return found
-
-
-def _one_more(first: FloatArray, greatest: float, random: np.random.Generator) -> list[NextRun]:
-    """How far a new specimen, followed to its end, would narrow the interval of B10."""
-    capped = np.clip(first, 1e-6 * greatest, HORIZON * greatest)
-    b10 = capped[:, math.ceil(0.1 * first.shape[1]) - 1]
-    age = float(np.median(capped))
-    return [NextRun(None, age, width(b10), width_after_specimen(b10, capped, random))]
-
-
-def _together(ending: Sequence[FittedWay], of_runs: FloatArray) -> tuple[str, ...]:
-    return tuple(
-        f"{ending[j].mode.name} and {ending[i].mode.name} ({of_runs[i, j]:.2f})"
-        for i in range(len(ending))
-        for j in range(i)
-        if abs(of_runs[i, j]) > 0.5
-    )
 
 
 def _of_modes(ending: Sequence[FittedWay], units: Sequence[SpecimenEnd]) -> list[Warning]:

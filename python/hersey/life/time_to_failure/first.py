@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Annotated
@@ -18,13 +19,17 @@ from hersey.result import Means, Record
 NAMED = 0.9
 #: A way is named from this probability on, and where its age is so little later than the first.
 MENTIONED, NEAR = 0.05, 1.25
+#: Ways that a table names: the fewest that hold so much of that probability.
+LIKELY = 0.8
+#: Stands for the failure mode of a specimen that no mode can be expected to end.
+_NONE = "none shows growth"
 
 
 @dataclass(frozen=True)
 class SpecimenEnd(Record):
     """What ends a specimen, and when."""
 
-    also_stated = ("named",)
+    also_stated = ("named", "likely", "state")
 
     unit: str
     age: Annotated[AgeAtLimit, Means("age of the first failure by any mode")]  #: of the first of all ways
@@ -51,16 +56,35 @@ class SpecimenEnd(Record):
         return tuple(names)
 
     @property
+    def likely(self) -> tuple[str, ...]:
+        """The ways that a table names, the likeliest first: they hold 80 % of the probability of any."""
+        order = sorted(self.first, key=lambda name: -self.first[name])
+        total, found, names = sum(self.first.values()), 0.0, []
+        for name in order:
+            if found >= LIKELY * total or (math.isinf(self.age.age.value) and self.first[name] < MENTIONED):
+                break
+            names.append(name)
+            found += self.first[name]
+        return tuple(names)
+
+    @property
+    def state(self) -> str:
+        """Whether it has ``failed``, is ``running`` or ``unclear``, when last seen."""
+        return self.age.state
+
+    @property
     def ways(self) -> str:
         """The ways in words."""
         likely = [name for name in self.named if self.first[name] >= MENTIONED]
+        if not likely and math.isinf(self.age.age.value):
+            return _NONE
         text = " or ".join(f"{name} ({self.first[name]:.0%})" for name in likely) or "no known failure mode"
         behind = [name for name in self.named if name not in likely]
         return text + (f", close behind {' and '.join(behind)}" if behind else "")
 
     def __str__(self) -> str:
         """Return it in words."""
-        return f"{self.age} by {self.ways}"
+        return str(self.age) if self.ways == _NONE else f"{self.age} by {self.ways}"
 
 
 def ends_of_specimens(
@@ -78,7 +102,8 @@ def ends_of_specimens(
         joint = np.take_along_axis(keys, order, axis=0)
         first = joint.min(axis=1)
         shares = {e.mode.name: float(s) for e, s in zip(ending, _firsts(joint.T), strict=True)}
-        end = age_at_limit(name, first, last[name])
+        least = min(float(each.earliest.units[i]) for each in ending)
+        end = age_at_limit(name, first, last[name], least)
         middle = {e.mode.name: float(np.median(e.ages[:, i])) for e in ending}
         near = tuple(way for way, age in middle.items() if age <= NEAR * end.age.value < np.inf)
         found.append(SpecimenEnd(name, end, shares, near))

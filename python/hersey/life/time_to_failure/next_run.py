@@ -1,103 +1,96 @@
-"""What to measure next: how far new runs would narrow what is asked, expected before they are made.
+"""What to measure next: how far a run would help to decide whether a specimen lasts until an age.
 
-A new run is drawn from the posterior, all draws are weighed by how well they foretell it, and the interval is
-taken anew; the mean over such runs is what to expect (pre-posterior analysis; Raiffa, Schlaifer 1961).
+A new run is drawn from the posterior, all draws are weighed by how well they foretell it, and the question is
+answered anew; the mean over such runs is what to expect (pre-posterior analysis; Raiffa, Schlaifer 1961).
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated
 
 import numpy as np
 
-from hersey.arrays import FloatArray
-from hersey.life.growth.limit_ages import CONFIDENCE
+from hersey.arrays import BoolArray, FloatArray, IntArray
+from hersey.life.growth.limit_ages import percent, rounded
+from hersey.life.time_to_failure.first import SpecimenEnd
+from hersey.life.time_to_failure.way import FittedWay
 from hersey.result import Means, Record
 
 #: New runs drawn for each candidate.
-_RUNS = 64
-#: Candidates: shares of the way from the age last seen to the end, and how far at most, in that age.
-_WAY, _FARTHEST = (0.25, 0.5, 0.75), 2.0
-#: In an interval, "never" counts as so many times the greatest age.
-HORIZON = 10.0
+_RUNS = 128
+#: Candidates: shares of the way from the age last seen to that of the question; beyond the age last seen
+#: if the question is about the present.
+_WAY, _BEYOND = (0.25, 0.5, 0.75, 1.0), (0.05, 0.1, 0.2)
+#: A run is worth it if it lowers the risk of a wrong answer by this share; of those that come near the best
+#: one the earliest is chosen.
+_WORTH, _NEAR = 0.15, 0.8
+#: Specimens, of the most doubtful, for which a run is weighed, and risk up to which a question needs none.
+_WEIGHED, _SURE = 24, 0.05
 
 
 @dataclass(frozen=True)
 class NextRun(Record):
-    """What could be measured, and how far it is expected to narrow an interval (its widths, in age)."""
+    """A run that helps to decide whether a specimen lasts until an age."""
 
-    also_stated = ("narrowing",)
-
-    unit: Annotated[
-        str | None, Means("null: one more specimen, followed to its end")
-    ]  #: None: one more specimen, followed to its end
-    age: float  #: of the run; of a new specimen, about where it ends
-    before: Annotated[float, Means("width of the interval of this specimen's end, or of B10, in age")]
-    after: float
-
-    @property
-    def narrowing(self) -> float:
-        """Share of the interval that is expected to go."""
-        return 1.0 - self.after / self.before if self.before > 0.0 else 0.0
+    unit: str
+    age: Annotated[float, Means("of the run")]
+    until: Annotated[float, Means("age that the specimen may or may not reach")]
+    present: Annotated[bool, Means("whether that is the age at which it was last seen")]
+    mode: Annotated[str, Means("its most probable failure mode")]
+    before: Annotated[float, Means("probability of a wrong answer without the run")]
+    after: Annotated[float, Means("the same with the run, as expected")]
 
     def words(self, age_unit: str) -> str:
         """Return the advice as a sentence."""
-        what = (
-            (
-                f"measure {self.unit} again at {rounded(self.age)} {age_unit}; this narrows the interval of "
-                "its end, in width,"
-            )
-            if self.unit is not None
-            else (
-                f"follow one more specimen to its end (about {rounded(self.age)} {age_unit}); this narrows "
-                "the interval of B10, in width,"
-            )
+        unit = f" {age_unit}" if age_unit else ""
+        question = (
+            f"has failed ({self.mode})" if self.present else f"lasts until {rounded(self.until, 6)}{unit}"
         )
-        widths = f"{rounded(self.before)} to about {rounded(self.after)} {age_unit}"
-        return f"{what} from {widths}".replace(" ;", ";").strip()
+        return (
+            f"measure {self.unit} again at {rounded(self.age, 6)}{unit} to find out whether it {question}; "
+            f"the risk of a wrong answer falls from {percent(self.before)} to about {percent(self.after)}"
+        )
 
 
-def rounded(age: float, digits: int = 2) -> str:
-    """Return an age as one would plan it."""
-    return f"{float(f'{age:.{digits}g}'):.10g}"
-
-
-def candidate_ages(last: float, end: float) -> FloatArray:
+def candidate_ages(last: float, until: float) -> FloatArray:
     """Return the ages at which a specimen that was last seen at ``last`` could be measured again."""
-    latest = min(end, _FARTHEST * last if last > 0.0 else end)
-    if not (math.isfinite(latest) and latest > last):
-        return np.empty(0)
-    ages = {float(rounded(last + share * (latest - last))) for share in _WAY}
-    return np.array(sorted(age for age in ages if age > last))
+    way = (last * (1.0 + share) for share in _BEYOND)
+    if until > last:
+        way = (last + share * (until - last) for share in _WAY)
+    ages = {float(rounded(age, 2)) for age in way}
+    return np.array([last, *sorted(age for age in ages if age > last and (age <= until or until <= last))])
 
 
-def widths_after(
-    ages: FloatArray,
+def _wrong(event: BoolArray) -> float:
+    """The probability that the likelier answer to a question is wrong."""
+    share = float(event.mean())
+    return min(share, 1.0 - share)
+
+
+def wrong_after(
+    event: BoolArray,
     values: Sequence[FloatArray],
     errors: Sequence[FloatArray],
     correlation: FloatArray,
     random: np.random.Generator,
 ) -> FloatArray:
-    """Return the expected width of the interval of an age, after a run at each candidate.
+    """Return the expected probability of a wrong answer after a run at each candidate.
 
     Parameters
     ----------
-    ages
-        Joint draws of the age asked, finite, shape (draws,).
+    event
+        Whether the event holds in each joint draw, shape (draws,).
     values, errors
         For each indicator the logarithm of its value at the candidates, (draws, candidates), and the standard
         error of a run, (draws, 1), by the same draws.
     correlation
         Of the errors of the indicators in one run.
     """
-    order = np.argsort(ages)
-    ordered = ages[order]
-    stack = np.stack([each[order] for each in values])  # (indicators, draws, candidates)
-    error = np.stack([each[order, 0] for each in errors])
-    seen = random.integers(0, ages.size, _RUNS)
+    stack = np.stack(values)  # (indicators, draws, candidates)
+    error = np.stack([each[:, 0] for each in errors])
+    seen = random.integers(0, event.size, _RUNS)
     noise = random.standard_normal((_RUNS, len(values))) @ np.linalg.cholesky(correlation).T
     inverse = np.linalg.inv(correlation)
     constant = -np.log(error).sum(axis=0)
@@ -106,35 +99,54 @@ def widths_after(
         run = stack[:, seen, c] + error[:, seen] * noise.T
         away = (run[:, :, None] - stack[:, None, :, c]) / error[:, None, :]
         logs = constant - 0.5 * np.einsum("ird,ij,jrd->rd", away, inverse, away, optimize=True)
-        found[c] = _mean_width(ordered, np.exp(logs - logs.max(axis=1, keepdims=True)))
+        weights = np.exp(logs - logs.max(axis=1, keepdims=True))
+        share = weights @ event / weights.sum(axis=1)
+        found[c] = np.minimum(share, 1.0 - share).mean()
     return found
 
 
-def width_after_specimen(ages: FloatArray, new: FloatArray, random: np.random.Generator) -> float:
-    """Return the expected width of the interval of an age once the end of one more specimen is known.
+def _chosen(before: float, after: FloatArray) -> int | None:
+    """Which candidate is worth a run: the earliest that comes near the best; None if none is."""
+    gain = before - after
+    if gain.max() < _WORTH * before:
+        return None
+    return int(np.flatnonzero(gain >= _NEAR * gain.max())[0])
 
-    ``new`` are ends of new specimens under each draw of ``ages``, (draws, specimens), all finite and
-    positive: how probable an end is under a draw is taken from a lognormal law through them.
+
+def next_runs(
+    ending: Sequence[FittedWay],
+    units: Sequence[SpecimenEnd],
+    picks: Sequence[tuple[IntArray, FloatArray]],
+    of_runs: FloatArray,
+    asked: float | None,
+    random: np.random.Generator,
+) -> list[NextRun]:
+    """Return the run of each doubtful specimen that best shows whether it reaches an age, or has failed.
+
+    The one that helps most comes first. ``picks`` are as from `ends_of_specimens`; without an age ``asked``
+    the question is whether a specimen has failed.
     """
-    order = np.argsort(ages)
-    logs = np.log(new[order])
-    mean, spread = logs.mean(axis=1), np.maximum(logs.std(axis=1), 1e-6)
-    seen = random.integers(0, ages.size, _RUNS)
-    end = logs[seen, random.integers(0, logs.shape[1], _RUNS)]
-    density = -np.log(spread) - 0.5 * ((end[:, None] - mean) / spread) ** 2
-    return _mean_width(ages[order], np.exp(density - density.max(axis=1, keepdims=True)))
-
-
-def width(ages: FloatArray) -> float:
-    """Return the width of the interval of equally probable ages."""
-    return _mean_width(np.sort(ages), np.ones((1, ages.size)))
-
-
-def _mean_width(ordered: FloatArray, weights: FloatArray) -> float:
-    """Mean over rows of weights of the interval of ages in ascending order."""
-    steps = np.cumsum(weights, axis=1)
-    ends = [
-        ordered[np.minimum((steps < share * steps[:, -1:]).sum(axis=1), ordered.size - 1)]
-        for share in (0.5 - CONFIDENCE / 2, 0.5 + CONFIDENCE / 2)
-    ]
-    return float((ends[1] - ends[0]).mean())
+    goals = [each.age.last if asked is None else max(asked, each.age.last) for each in units]
+    events = [first <= goal for (_, first), goal in zip(picks, goals, strict=True)]
+    doubtful = [i for i, each in enumerate(units) if each.state != "failed" and _wrong(events[i]) > _SURE]
+    doubtful.sort(key=lambda i: -_wrong(events[i]))
+    found = []
+    for i in sorted(doubtful[:_WEIGHED]):
+        name, last = units[i].unit, units[i].age.last
+        ages = candidate_ages(last, goals[i])
+        observed = [m for m, each in enumerate(ending) if name in each.row]
+        if not observed or last <= 0.0:
+            continue
+        values, errors = [], []
+        for m in observed:
+            order, each = picks[i][0][:, m], ending[m]
+            value, scatter = each.drawn_values(name, ages)
+            values.append(value[order])
+            errors.append(np.hypot(scatter, each.error)[order])
+        among = of_runs[np.ix_(observed, observed)]
+        before, after = _wrong(events[i]), wrong_after(events[i], values, errors, among, random)
+        best = _chosen(before, after)
+        if best is not None:
+            age, risk = float(ages[best]), float(after[best])
+            found.append(NextRun(name, age, goals[i], goals[i] == last, units[i].likely[0], before, risk))
+    return sorted(found, key=lambda each: each.after - each.before)

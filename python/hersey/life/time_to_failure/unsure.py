@@ -2,25 +2,23 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 
+from hersey.life.growth.limit_ages import POPULATION
 from hersey.life.time_to_failure.first import SpecimenEnd
 from hersey.life.time_to_failure.way import FittedWay, listed
 from hersey.schema.warning import Warning
 
 #: Beyond so many times the age at which a specimen was last seen its end is "not soon", no more.
 FAR = 3.0
-#: Up to so many specimens show little of how specimens differ.
-FEW = 3
 #: An interval whose ends differ by this factor shows the order of an age, no more.
 _WIDE = 2.0
 
 
-def unsure(
-    ending: Sequence[FittedWay], units: Sequence[SpecimenEnd], together: Sequence[str]
-) -> Iterator[Warning]:
-    """Yield what is not known of all ends; ``together`` are failure modes whose runs scatter together."""
-    named = {name for each in units for name in each.named}
+def unsure(ending: Sequence[FittedWay], units: Sequence[SpecimenEnd]) -> Iterator[Warning]:
+    """Yield what is not known of all ends."""
+    named = {name for each in units if math.isfinite(each.age.age.value) for name in each.named}
     unnamed = [e.mode.name for e in ending if e.mode.growth.law is None and e.mode.name in named]
     if unnamed:
         yield Warning(
@@ -29,26 +27,18 @@ def unsure(
             severity="watch",
             modes=listed(unnamed),
         )
-    if len(units) <= FEW:
+    if len(units) < POPULATION:
         yield _few_specimens(len(units))
     yield from _of_specimens(units)
-    if together:
-        yield Warning(
-            "modes scatter together",
-            "runs of these modes scatter together and are treated as correlated: {modes}",
-            modes=", ".join(together),
-        )
 
 
 def _few_specimens(count: int) -> Warning:
     return Warning(
         "few specimens",
-        "one specimen does not show how specimens differ, so B10, B50 and the shares depend on the prior"
+        "one specimen does not show how specimens differ, so B10 and B50 are not given"
         if count == 1
-        else (
-            "{specimens} specimens show little of how specimens differ, so B10, B50 and the shares depend "
-            "partly on the prior"
-        ),
+        else "{specimens} specimens show too little of how specimens differ, so B10 and B50 are not given",
+        remedy="follow four specimens or more",
         severity="watch",
         specimens=count,
     )
@@ -56,23 +46,8 @@ def _few_specimens(count: int) -> Warning:
 
 def _of_specimens(units: Sequence[SpecimenEnd]) -> Iterator[Warning]:
     """What holds of the ends of some specimens, which each warning names."""
-    passed = [each.unit for each in units if each.age.passed > 0.5]
-    if passed:
-        yield Warning(
-            "limit reached",
-            "{specimens} reached a limit before the last run, at the age given",
-            severity="act",
-            specimens=listed(passed),
-        )
-    near = [each.unit for each in units if len(each.named) > 1]
-    if near:
-        yield Warning(
-            "first mode unknown",
-            "the first failure mode is uncertain for {specimens}; all possible ones are named",
-            severity="watch",
-            specimens=listed(near),
-        )
-    wide = [each.unit for each in units if each.age.age.high > _WIDE * max(each.age.age.low, 1e-300)]
+    running = [each for each in units if each.state == "running" and math.isfinite(each.age.age.value)]
+    wide = [each.unit for each in running if each.age.age.high > _WIDE * max(each.age.age.low, 1e-300)]
     if wide:
         yield Warning(
             "age uncertain",
@@ -81,7 +56,7 @@ def _of_specimens(units: Sequence[SpecimenEnd]) -> Iterator[Warning]:
             specimens=listed(wide),
             factor=_WIDE,
         )
-    far = [each.unit for each in units if each.age.age.value > FAR * each.age.last]
+    far = [each.unit for each in running if each.age.age.value > FAR * each.age.last]
     if far:
         yield Warning(
             "end far off",

@@ -11,10 +11,14 @@ import numpy as np
 from hersey.arrays import FloatArray
 from hersey.errors import InsufficientDataError
 from hersey.life.growth.fit import Growth, fit_growth
-from hersey.life.growth.limit_ages import AgesAtLimit, ages_at_limit
+from hersey.life.growth.limit_ages import AgesAtLimit, Earliest, ages_at_limit
 from hersey.life.indicator import Indicator, Indicators, OwnAges
+from hersey.life.maintenance import OF_DAMAGE, OF_FRICTION
 from hersey.result import Means, Record
 from hersey.schema.warning import Warning
+
+#: Share of draws of ages of its own that reach the limit, from which an indicator grows.
+_REACHED = 0.5
 
 
 @dataclass(frozen=True, repr=False)
@@ -28,6 +32,10 @@ class Mode(Record):
     sign: Annotated[
         bool, Means("whether it is a precursor, which does not end a specimen")
     ]  #: a precursor, which ends no specimen
+    grows: Annotated[bool, Means("whether its runs show growth")]
+    none_before: Annotated[
+        float, Means("age before which no specimen reaches the limit, at 90 % confidence", open=True)
+    ]  #: if it grows as fast as the runs allow
     growth: Growth
     ages: AgesAtLimit
     warnings: tuple[Warning, ...]
@@ -43,6 +51,12 @@ class FittedWay:
     residuals: FloatArray  #: per run of the campaign, NaN where it does not show it
     row: dict[str, int]  #: of each specimen that the growth knows
     error: float  #: of a run, typically
+    begun: dict[str, float]  #: age of each specimen from which it grows
+    earliest: Earliest  #: none where growth shows
+
+    def drawn_values(self, unit: str, age: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return draws of the indicator of a specimen at ages, as `Growth.drawn_values`."""
+        return self.mode.growth.drawn_values(self.row[unit], age - self.begun[unit])
 
     @property
     def middle(self) -> FloatArray:
@@ -71,9 +85,10 @@ def fitted_way(indicators: Indicators, each: Indicator, seed: int, known: Growth
     known_runs = np.flatnonzero(np.isfinite(each.value))
     if not known_runs.size:
         raise InsufficientDataError("no run shows it")
+    of_runs = runs.segments(OF_DAMAGE if each.accumulates else OF_FRICTION)
     growth = known or fit_growth(
-        [runs.unit[i] for i in known_runs],
-        runs.age[known_runs],
+        [of_runs.name[i] for i in known_runs],
+        of_runs.age[known_runs],
         each.value[known_runs],
         each.error[known_runs],
         quantity=each.name,
@@ -82,8 +97,14 @@ def fitted_way(indicators: Indicators, each: Indicator, seed: int, known: Growth
     )
     row = {name: i for i, name in enumerate(growth.units)}
     last = last_ages(indicators)
-    drawn = _drawn_ages(each, growth, row, list(last), seed)
+    drawn = _drawn_ages(each, growth, row, of_runs.begun, seed)
     own = OwnAges(drawn.known, np.sort(drawn.new, axis=1))
+    grows = growth.shown if each.own_ages is None else bool(np.isfinite(own.known).mean() >= _REACHED)
+    if_grown = own
+    if each.own_ages is None and not grows:
+        drawn = _drawn_ages(each, growth, row, of_runs.begun, seed, if_growing=True)
+        if_grown = OwnAges(drawn.known, np.sort(drawn.new, axis=1))
+    earliest = Earliest.of(if_grown)
     warnings = [*each.warnings, *growth.warnings]
     missing = [name for name in last if name not in row]
     if missing and each.own_ages is None:
@@ -97,11 +118,25 @@ def fitted_way(indicators: Indicators, each: Indicator, seed: int, known: Growth
         list(last.values()),
         tuple(warnings),
         accumulates=each.accumulates,
+        earliest=None if grows else earliest,
     )
     residuals = np.full(runs.age.size, np.nan)
     residuals[known_runs] = growth.residuals()
-    mode = Mode(each.name, each.kind, each.si, each.limit, each.sign, growth, at_limit, tuple(warnings))
-    return FittedWay(mode, own.known, own.new, residuals, row, float(np.median(each.error[known_runs])))
+    mode = Mode(
+        each.name,
+        each.kind,
+        each.si,
+        each.limit,
+        each.sign,
+        grows,
+        earliest.first,
+        growth,
+        at_limit,
+        tuple(warnings),
+    )
+    error = float(np.median(each.error[known_runs]))
+    least = Earliest.unknown(len(last)) if grows else earliest
+    return FittedWay(mode, own.known, own.new, residuals, row, error, of_runs.begun, least)
 
 
 def _without_a_value(specimens: Sequence[str]) -> Warning:
@@ -113,15 +148,25 @@ def _without_a_value(specimens: Sequence[str]) -> Warning:
     )
 
 
-def _drawn_ages(each: Indicator, growth: Growth, row: dict[str, int], names: list[str], seed: int) -> OwnAges:
-    """Draws of the ages at the limit, of all specimens and of new ones."""
-    known, new = growth.drawn_ages(each.limit, limit_error=each.limit_error, accumulates=each.accumulates)
+def _drawn_ages(
+    each: Indicator,
+    growth: Growth,
+    row: dict[str, int],
+    begun: dict[str, float],
+    seed: int,
+    *,
+    if_growing: bool = False,
+) -> OwnAges:
+    """Draws of the ages at the limit, of specimens, which grow from the age ``begun``, and of new ones."""
+    known, new = growth.drawn_ages(
+        each.limit, limit_error=each.limit_error, accumulates=each.accumulates, if_growing=if_growing
+    )
     # A specimen of which no run shows this is one more of the population.
     random = np.random.default_rng([seed, 3])
-    spare = iter(random.permutation(new.shape[1]).tolist() * len(names))
+    spare = iter(random.permutation(new.shape[1]).tolist() * len(begun))
     if each.own_ages is None:
-        ages = [known[:, row[name]] if name in row else new[:, next(spare)] for name in names]
-        return OwnAges(np.stack(ages, axis=1), new)
+        ages = [known[:, row[name]] if name in row else new[:, next(spare)] for name in begun]
+        return OwnAges(np.stack(ages, axis=1) + np.array(list(begun.values())), new)
     columns = random.integers(each.own_ages.new.shape[1], size=new.shape[1])
     known, new = (_as_many(own, len(known)) for own in (each.own_ages.known, each.own_ages.new))
     return OwnAges(known, new[:, columns])

@@ -1,13 +1,13 @@
 // Ages with another torque limit, coldest start or duty. All combinations were computed before; the page only chooses
-// one. Exposes `otherUses(parent, uses)`.
+// one. Exposes `otherUses(parent, uses)`; ages with the values of the machine file are beside it.
 
 const otherUses = (() => {
   const LEFT = 66, RIGHT = 14, TOP = 20, ROW = 22;
   const celsius = (kelvin) => `${digits(kelvin - 273.15)} °C`;
-  const plain = (value) => (value >= 1000 && value < 1e9 ? String(Math.round(value)) : digits(value));
-  const span = (age, scale = 1) => age.value === null
-    ? "never" : `${plain(rounded(age.value * scale))} [${age.low === null ? "never" : plain(rounded(age.low * scale))}, ${age.high === null ? "never" : plain(rounded(age.high * scale))}]`;
-  const rounded = (value) => Number(value.toPrecision(3));
+  function span({ value, low, high }, scale = 1) {
+    if (value === null) return low === null ? "not reached" : `later than ${aged(low * scale)}`;
+    return `${aged(value * scale)} [${aged(low * scale)}, ${high === null ? "no upper limit" : aged(high * scale)}]`;
+  }
 
   // The chosen use, from the address and back into it.
   function read(uses, start) {
@@ -91,15 +91,16 @@ const otherUses = (() => {
 
     const verdict = add(box, "p", "", "use-verdict");
     verdict.setAttribute("aria-live", "polite");
-    const figure = add(box, "div", "", "chart");
+    const changed = add(box, "div");
+    const figure = add(changed, "div", "", "chart");
     figure.id = "chart-uses";
-    const held = add(fold(box, "Data"), "div");
-    const toml = add(box, "pre", "", "mono");
+    const held = add(fold(changed, "Data"), "div");
+    const toml = add(changed, "pre", "", "mono");
     toml.id = "use-toml";
-    const foot = add(box, "div", "", "foot");
+    const foot = add(changed, "div", "", "foot");
     button(foot, "Link", (from) => copy(location.href.split("#")[0] + address(chosen, start), from));
     button(foot, "TOML", (from) => copy(toml.textContent, from));
-    const back = button(foot, "Reset", () => { Object.assign(chosen, start); draw(); });
+    button(foot, "Reset", () => { Object.assign(chosen, start); draw(); });
 
     function lines() {
       const out = [];
@@ -118,7 +119,7 @@ const otherUses = (() => {
       const drawing = svg("svg", { width, height, role: "img", "aria-label": `First failure of each specimen, ${unit}: ${words}` });
       for (const tick of ticks(0, end, 5)) {
         svg("line", { x1: x(tick), x2: x(tick), y1: TOP, y2: height - 30, stroke: "var(--rule)" }, drawing);
-        svg("text", { x: x(tick), y: height - 15, "text-anchor": "middle", class: "tl" }, drawing, plain(tick));
+        svg("text", { x: x(tick), y: height - 15, "text-anchor": "middle", class: "tl" }, drawing, aged(tick));
       }
       svg("text", { x: 0, y: 12 }, drawing, use === own ? `First failure (${unit})` : `First failure (${unit}); hollow: machine file`);
       use.ends.forEach(({ name, age }, i) => {
@@ -137,22 +138,30 @@ const otherUses = (() => {
       return drawing;
     }
 
+    // What other values or a number of pages a day change, in a sentence; nothing as the machine file states.
+    function said(use, day) {
+      if (!use.ends.length) return "No failure mode can be followed under these conditions.";
+      if (use === own && !(day > 0)) return "";
+      const first = (each) => each.b50 ?? each.ends.map(({ age }) => age).sort((a, b) => (a.value ?? Infinity) - (b.value ?? Infinity))[0];
+      const days = day > 0 ? `${span(first(use), 1 / day)} days at ${aged(day)} ${unit} a day` : "";
+      const ages = use === own ? "" : `${span(first(use))} ${unit}`;
+      const at = first(use).value === null ? "" : use === own ? "after " : "by ";
+      return `${use.b50 ? "Half of new specimens fail" : "The first specimen fails"} ${at}${[ages, days].filter(Boolean).join(", ")}.`;
+    }
+
     function draw() {
       const use = uses.uses[place(chosen)];
       refresh.forEach((each) => each());
-      const half = use.ends.at(-1);
       const day = perDay();
-      const days = day > 0 && half?.age.value ? `, ${plain(rounded(half.age.value / day))} days at ${plain(day)} a day` : "";
-      verdict.textContent = half
-        ? `Half of new specimens fail by ${span(half.age)} ${unit}${days}${use === own ? "." : `, instead of ${span(own.ends.at(-1).age)}.`}`
-        : "No failure mode can be followed under these conditions.";
+      verdict.textContent = said(use, day);
+      verdict.hidden = verdict.textContent === "";
+      changed.hidden = address(chosen, start) === "";
       figure.replaceChildren(picture(use, Math.max(figure.clientWidth, 300)));
       held.replaceChildren();
       const heads = ["Specimen", `First failure (${unit})`, ...(day > 0 ? ["Days"] : []), "Failure mode"];
       table(held, heads, use.ends.map(({ name, age, ways }) => [name, span(age), ...(day > 0 ? [span(age, 1 / day)] : []), ways]), day > 0 ? [1, 2] : [1], { name: "ages" });
       toml.textContent = lines();
       hint.textContent = address(chosen, start) === "" ? "as in the machine file" : "◆ differs from the machine file";
-      back.disabled = address(chosen, start) === "";
       history.replaceState(null, "", address(chosen, start) || location.pathname + location.search);
     }
     addEventListener("resize", draw);

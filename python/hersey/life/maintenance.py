@@ -1,0 +1,123 @@
+"""Maintenance of a specimen: what was done at which age, and the stretches of its life between."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated, NamedTuple
+
+import numpy as np
+
+from hersey.arrays import FloatArray
+from hersey.errors import ParameterError
+from hersey.life.age import Age
+from hersey.result import Means, Record
+
+if TYPE_CHECKING:
+    import polars as pl
+
+#: What may be done to a specimen. From each on friction grows anew; damage does so in new parts alone.
+RE_GREASED, CLEANED, REPLACED = "re-greased", "cleaned", "replaced"
+KINDS = (RE_GREASED, CLEANED, REPLACED)
+#: Other words for them, without hyphens and spaces.
+_OTHER_WORDS = {
+    "greased": RE_GREASED,
+    "lubricated": RE_GREASED,
+    "relubricated": RE_GREASED,
+    "oilchanged": RE_GREASED,
+    "greasechanged": RE_GREASED,
+    "partreplaced": REPLACED,
+    "partsreplaced": REPLACED,
+}
+
+
+@dataclass(frozen=True)
+class Event(Record):
+    """What was done to a specimen at an age: ``kind`` is ``re-greased``, ``cleaned`` or ``replaced``.
+
+    It lies after the runs of that age, except ``run``, which was measured after it; None if no run was.
+    """
+
+    unit: str
+    age: Age
+    kind: Annotated[str, Means("re-greased, cleaned or replaced")]
+    run: Annotated[int | None, Means("run of this age measured after it; null if none was")] = None
+
+    def summary(self) -> str:
+        """Return it in a line."""
+        return f"{self.unit}: {self.kind} at {self.age}"
+
+    def to_frame(self) -> pl.DataFrame:
+        """Return it as a table of one row."""
+        import polars as pl
+
+        age = {f"age ({self.age.unit})": self.age.value}
+        return pl.DataFrame({"unit": self.unit, **age, "event": self.kind, "run": self.run})
+
+
+def kind_of(text: str) -> str:
+    """Return the kind of an event that a text names.
+
+    Raises
+    ------
+    ParameterError
+        If it names none.
+    """
+    word = re.sub(r"[\W_]", "", text).casefold()
+    for kind in KINDS:
+        if word == kind.replace("-", ""):
+            return kind
+    if word in _OTHER_WORDS:
+        return _OTHER_WORDS[word]
+    raise ParameterError(f"event '{text[:40]}' is unknown. Write {', '.join(KINDS[:-1])} or {KINDS[-1]}")
+
+
+#: What begins friction anew, and what begins damage anew, which only new parts do.
+OF_FRICTION, OF_DAMAGE = KINDS, (REPLACED,)
+
+
+class Segments(NamedTuple):
+    """Runs by segment: a stretch of life between maintenance, in which a specimen ages from new.
+
+    The last segment of a specimen has its name.
+    """
+
+    name: tuple[str, ...]  #: of the segment of each run
+    age: FloatArray  #: of each run since its segment began
+    begun: dict[str, float]  #: age at which the last segment of each specimen began
+
+
+def segments(
+    run: Sequence[int],
+    unit: Sequence[str],
+    age: FloatArray,
+    events: Sequence[Event],
+    kinds: Collection[str],
+) -> Segments:
+    """Return the segments of runs, which begin with each event of some kinds.
+
+    Parameters
+    ----------
+    run, unit, age
+        Number, specimen and age of each run.
+    events
+        Maintenance, by specimen and age.
+    kinds
+        What begins a segment.
+    """
+    names, since = list(unit), np.zeros(age.size)
+    begun = dict.fromkeys(unit, 0.0)
+    of_unit: dict[str, list[Event]] = {}
+    for event in events:
+        if event.kind in kinds and event.unit in begun:
+            of_unit.setdefault(event.unit, []).append(event)
+            begun[event.unit] = max(begun[event.unit], event.age.value)
+    for i, (number, of, at) in enumerate(zip(run, unit, age.tolist(), strict=True)):
+        own = of_unit.get(of, [])
+        before = [each.age.value for each in own if at > each.age.value or each.run == number]
+        since[i] = max(before, default=0.0)
+        later = [each.age.value for each in own if each.age.value not in before]
+        if later:
+            names[i] = f"{of} before {min(later):.10g}"
+    return Segments(tuple(names), age - since, begun)

@@ -1,0 +1,185 @@
+"""Maintenance: kept in the campaign, read from the table of runs, and growth that begins anew."""
+
+from __future__ import annotations
+
+import json
+import sqlite3
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from hersey.errors import ChannelError, ParameterError, UnitError, UnreadableLogError
+from hersey.life.age import Age
+from hersey.life.campaign import Campaign, read_runs
+from hersey.life.campaign.store import SCHEMAS
+from hersey.life.indicator import Indicator, Indicators, Runs
+from hersey.life.maintenance import OF_DAMAGE, OF_FRICTION, Event
+from hersey.life.time_to_failure.estimate import time_to_failure
+from tests.cli.command import run
+from tests.life.shipped import fewer
+
+AGES = np.linspace(0.0, 600.0, 7)
+RATE = np.array([0.0008, 0.0009, 0.0010, 0.0011, 0.0012, 0.0013])
+NAMES = tuple(f"F{i + 1}" for i in range(6) for _ in AGES)
+NUMBERS = tuple(range(1, len(NAMES) + 1))
+#: F3 is re-greased at 300, just before its fourth run, which is run 18.
+GREASED = Event("F3", Age(300.0, "pages"), "re-greased", 18)
+
+
+def runs(*events: Event) -> Runs:
+    return Runs(NUMBERS, NAMES, np.tile(AGES, 6), "pages", events)
+
+
+def grown(since: float) -> np.ndarray:
+    """Torque 1 + rate times age; that of F3 begins anew at an age."""
+    age = np.tile(AGES, (6, 1))
+    age[2, since <= AGES] -= since
+    noise = np.random.default_rng(5).normal(0.0, 0.01, age.shape)
+    return np.asarray(((1.0 + RATE[:, None] * age) * np.exp(noise)).ravel())
+
+
+def torque(since: float) -> Indicator:
+    value = grown(since)
+    return Indicator("torque", "torque", "N m", 2.0, value, np.full(value.shape, 0.003))
+
+
+def test_a_segment_begins_with_each_event() -> None:
+    found = runs(GREASED).segments(OF_FRICTION)
+    assert found.begun == {"F1": 0.0, "F2": 0.0, "F3": 300.0, "F4": 0.0, "F5": 0.0, "F6": 0.0}
+    assert found.name[14:21] == ("F3 before 300",) * 3 + ("F3",) * 4
+    assert found.age[14:21].tolist() == [0.0, 100.0, 200.0, 0.0, 100.0, 200.0, 300.0]
+    assert runs(GREASED).segments(OF_DAMAGE).name == NAMES
+
+
+def test_a_run_of_the_age_of_an_event_was_measured_before_it_unless_it_is_said_otherwise() -> None:
+    found = runs(Event("F3", Age(300.0, "pages"), "cleaned")).segments(OF_FRICTION)
+    assert found.name[14:21] == ("F3 before 300",) * 4 + ("F3",) * 3
+    assert found.age[17:19].tolist() == [300.0, 100.0]
+
+
+def test_growth_begins_anew_from_a_re_greasing(monkeypatch: pytest.MonkeyPatch) -> None:
+    fewer(monkeypatch)
+    found = time_to_failure(Indicators(runs(GREASED), (torque(300.0),)))
+    ends = {each.unit: each.age for each in found.units}
+    assert list(ends) == [f"F{i}" for i in range(1, 7)]
+    assert ends["F3"].age.value == pytest.approx(300.0 + 1.0 / RATE[2], rel=0.1)
+    assert ends["F3"].age.low < 1300.0 < ends["F3"].age.high
+    assert ends["F3"].last == 600.0
+    assert ends["F4"].age.value == pytest.approx(1.0 / RATE[3], rel=0.06)
+    # without the event the same runs show a slower growth, and nothing of the truth
+    without = time_to_failure(Indicators(runs(), (torque(300.0),)))
+    assert {e.unit: e.age for e in without.units}["F3"].age.value > 1.2 * ends["F3"].age.value
+
+
+def test_damage_goes_back_with_new_parts_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    fewer(monkeypatch)
+    steady = Indicator("gear", "gear", "1", 1.0, np.full(42, 1e-3), np.full(42, 0.01), accumulates=True)
+    ages = {}
+    for kind in ("re-greased", "replaced"):
+        at = Event("F3", Age(300.0, "pages"), kind, 18)
+        found = time_to_failure(Indicators(runs(at), (steady,)))
+        ages[kind] = {each.unit: each.age.age.value for each in found.units}["F3"]
+    assert ages["re-greased"] == pytest.approx(1000.0, rel=0.02)
+    assert ages["replaced"] == pytest.approx(1300.0, rel=0.02)
+
+
+@pytest.fixture
+def campaign(tmp_path: Path, dwell_table: Callable[[float], str]) -> Path:
+    for i in range(3):
+        (tmp_path / f"U1-{i}.csv").write_text(dwell_table(1.0 + 0.1 * i))
+    (tmp_path / "runs.csv").write_text(
+        "log,unit,age [pages],event\n"
+        "U1-0.csv,U1,0,\nU1-1.csv,U1,1000,regreased\n,U1,1500,cleaned\nU1-2.csv,U1,2000,\n"
+    )
+    return tmp_path
+
+
+@pytest.fixture
+def dwell_table() -> Callable[[float], str]:
+    def table(scale: float) -> str:
+        rows = [
+            f"{n},{scale * 100 * n**0.4 * (t / 100) ** -0.9:.6g},{t}"
+            for t in (100, 150)
+            for n in (5, 10, 20, 40, 80)
+        ]
+        return "\n".join(["speed [rpm],torque [mN*m],temp [degC]", *rows]) + "\n"
+
+    return table
+
+
+def test_the_table_of_runs_names_events_and_the_campaign_keeps_them(campaign: Path) -> None:
+    for _ in range(2):  # adding them again changes nothing
+        done = run("campaign", "add", "life.hersey", "--table", "runs.csv", cwd=campaign)
+        assert done.returncode == 0, done.stderr
+        with Campaign.open(campaign / "life.hersey") as opened:
+            assert opened.events() == [
+                Event("U1", Age(1000.0, "pages"), "re-greased", 2),
+                Event("U1", Age(1500.0, "pages"), "cleaned", None),
+            ]
+    listed = run("campaign", "list", "life.hersey", cwd=campaign).stdout.splitlines()
+    assert listed[2:] == ["  re-greased at 1000 pages", "  cleaned at 1500 pages"]
+    printed = json.loads(run("campaign", "list", "life.hersey", "--json", cwd=campaign).stdout)
+    assert printed["events"][0] == {"unit": "U1", "age": 1000.0, "kind": "re-greased", "run": 2}
+
+
+def test_an_event_is_recorded_moved_with_its_run_and_removed(campaign: Path) -> None:
+    run("campaign", "add", "life.hersey", "--table", "runs.csv", cwd=campaign)
+    line = ("campaign", "event", "life.hersey", "replaced", "--unit", "U1", "--age", "1800 pages")
+    assert run(*line, cwd=campaign).stdout == "U1: replaced at 1800 pages\n"
+    (campaign / "U1-1.csv").write_text((campaign / "U1-1.csv").read_text().replace("\n5,", "\n5.1,"))
+    again = ("campaign", "add", "life.hersey", "U1-1.csv", "--unit", "U1", "--age", "1000 pages", "--force")
+    assert run(*again, cwd=campaign).returncode == 0
+    with Campaign.open(campaign / "life.hersey") as opened:
+        kinds = [(each.kind, each.run) for each in opened.events()]
+    assert kinds == [("re-greased", 4), ("cleaned", None), ("replaced", None)]
+    assert run(*line, "--remove", cwd=campaign).stdout == "U1: removed replaced at 1800 pages\n"
+    gone = run(*line, "--remove", cwd=campaign)
+    assert gone.returncode == 2
+    assert gone.stderr == "hersey: specimen 'U1' has no event 'replaced' at 1800 pages\n"
+
+
+@pytest.mark.parametrize(
+    ("rows", "error", "message"),
+    [
+        ("U1-0.csv,U1,0,painted", ParameterError, r"line 2, column 'event': event 'painted' is unknown"),
+        (",U1,0,", UnreadableLogError, "line 2: column 'log' is empty"),
+        ("U1-0.csv,U1,,cleaned", UnreadableLogError, "line 2: column 'age' is empty"),
+    ],
+)
+def test_a_bad_row_is_named(tmp_path: Path, rows: str, error: type[Exception], message: str) -> None:
+    (tmp_path / "runs.csv").write_text(f"log,unit,age [pages],event\n{rows}\n")
+    with pytest.raises(error, match=message):
+        read_runs(tmp_path / "runs.csv")
+
+
+def test_two_columns_of_events_are_refused(tmp_path: Path) -> None:
+    (tmp_path / "runs.csv").write_text("log,unit,age,event,Event\na.csv,U1,0 h,,\n")
+    with pytest.raises(ChannelError, match="more than one column 'event'"):
+        read_runs(tmp_path / "runs.csv")
+
+
+def test_an_event_of_nothing_is_refused(campaign: Path) -> None:
+    run("campaign", "add", "life.hersey", "--table", "runs.csv", cwd=campaign)
+    with Campaign.open(campaign / "life.hersey") as opened:
+        with pytest.raises(ParameterError, match="no run is of specimen 'U2'"):
+            opened.add_event("U2", "5 pages", "cleaned")
+        with pytest.raises(UnitError, match="in h, but the others are in pages"):
+            opened.add_event("U1", "5 h", "cleaned")
+        with pytest.raises(ParameterError, match="an event names run 1, which is of another specimen or age"):
+            opened.add_event("U1", "5 pages", "cleaned", run=1)
+        assert len(opened.events()) == 2
+
+
+def test_a_file_without_events_is_read_and_brought_up_to_date(campaign: Path) -> None:
+    run("campaign", "add", "life.hersey", "--table", "runs.csv", cwd=campaign)
+    with sqlite3.connect(campaign / "life.hersey") as database:
+        database.execute("DROP TABLE events")
+        database.execute("PRAGMA user_version = 2")
+    database.close()
+    assert "events" not in SCHEMAS[2]
+    with Campaign.open(campaign / "life.hersey", write=False) as opened:
+        assert opened.events() == []
+    with Campaign.open(campaign / "life.hersey") as opened:
+        assert opened.add_event("U1", "1000 pages", "cleaned", run=2).run == 2
