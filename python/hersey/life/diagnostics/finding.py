@@ -13,22 +13,30 @@ from hersey.life.diagnostics import slips
 from hersey.life.diagnostics.compared import Compared
 from hersey.life.diagnostics.fingerprint import Fingerprints, fingerprints
 from hersey.life.diagnostics.measured import MeasuredRuns
+from hersey.life.diagnostics.same_logs import same_logs
 from hersey.life.diagnostics.slips import Slip
 
 #: Gain in log probability from which a slip of each kind is named: the mean of that by the trend of all runs as they
 #: are and of that by the trend with the slip undone, as a slip hides in the first and shapes the second.
 LEAST = {
     slips.EXCHANGED: 7.5,
-    slips.REORDERED: 8.0,
+    slips.REORDERED: 9.0,
     slips.AGES: 8.0,
-    slips.AGE: 8.0,
+    slips.AGE: 9.0,
     slips.TORQUE: 9.0,
     slips.TORQUES: 5.0,
     slips.MACHINE: 7.0,
     slips.LUBRICANT: 5.5,
 }
-#: Gain by the first trend from which a slip is judged by the second; that of a shape, which has more to explain.
-_WORTH, _WORTH_OF_SHAPE = 2.0, -1.0
+#: Gain by the first trend from which a slip is judged by the second.
+_WORTH = 2.0
+#: Kinds of a run from elsewhere, and how many runs, the farthest off, may be such.
+_FOREIGN, _FAR = (slips.MACHINE, slips.LUBRICANT), 2
+#: How many times farther, squared, such a run lies than those of the other specimens, or than this in each number: by
+#: its own neighbours on both sides, and at the end of a record, where a film may begin to starve.
+_INSIDE, _AT_END, _USUAL = 6.0, 12.0, 3.0
+#: How many times farther, squared, than those of other specimens the others of its specimen may lie without it.
+_AGREE = 1.5
 #: Slips that are looked for, at most, and those that are judged for each.
 _MOST, _JUDGED = 10, 5
 #: Fewest runs of a life test and of a specimen that are compared.
@@ -122,8 +130,10 @@ def candidates(at: Compared) -> list[Slip]:
 def find_slips(runs: MeasuredRuns) -> list[Slip]:
     """Return the slips, the likeliest first."""
     prints = fingerprints(runs)
-    state = State(runs.specimen, runs.age, prints, prints.known.copy())
-    found: list[Slip] = []
+    state = State(runs.specimen, runs.since, prints, prints.known.copy())
+    found = same_logs(runs)[:_MOST]
+    for slip in found:
+        state = state.without(slip)
     while len(found) < _MOST and state.places.size:
         slip = _likeliest(state)
         if slip is None:
@@ -135,20 +145,50 @@ def find_slips(runs: MeasuredRuns) -> list[Slip]:
 
 def _likeliest(state: State) -> Slip | None:
     """The likeliest slip; None if there is none."""
-    every = sorted(candidates(state.compared()), key=lambda each: LEAST[each.kind] - each.gain)
-    worth = [each for each in every if each.gain > (_WORTH_OF_SHAPE if each.kind == slips.LUBRICANT else _WORTH)]
-    judged = [_judged(state, slip) for slip in worth[:_JUDGED]]
+    at = state.compared()
+    every = sorted(candidates(at), key=lambda each: LEAST[each.kind] - each.gain)
+    worth = [each for each in every if each.gain > _WORTH and each.kind not in _FOREIGN][:_JUDGED]
+    judged = [_judged(state, slip) for slip in worth]
+    for place in np.argsort(-at.squares, kind="stable")[:_FAR].tolist():
+        judged.append(_foreign(state, at, [each for each in every if each.runs == (place,)]))
     named = [each for each in judged if each.gain >= LEAST[each.kind]]
     return max(named, key=lambda each: each.gain - LEAST[each.kind], default=None)
 
 
 def _judged(state: State, slip: Slip) -> Slip:
-    """A slip with its runs as places of the whole life test, and its gain by the trend without it."""
-    there = tuple(int(state.places[i]) for i in slip.runs)
-    undone = state.without(replace(slip, runs=there))
+    """A slip with its runs as places of the whole life test, and its gain by the trend without it, too."""
+    there = replace(slip, runs=tuple(int(state.places[i]) for i in slip.runs))
+    undone = state.without(there)
     if not undone.places.size:
-        return replace(slip, runs=there, gain=-np.inf)
+        return replace(there, gain=-np.inf)
     at = state.by(undone, undone.compared())
     again = [each for each in _OF_KIND[slip.kind](at) if each.kind == slip.kind and each.runs == slip.runs]
     without = max((each.gain for each in again), default=-np.inf)
-    return replace(slip, runs=there, gain=0.5 * (slip.gain + without))
+    return replace(there, gain=0.5 * (slip.gain + without))
+
+
+def _foreign(state: State, before: Compared, of_run: list[Slip]) -> Slip:
+    """The likelier of another machine and another lubricant for a run, by the trend without it.
+
+    A run whose shape nothing explains is foreign all the same if it lies many times farther off, squared, than
+    every run of the other specimens; but the others of its own must agree without it: a step that stays is none.
+    """
+    first = {each.kind: each for each in of_run}
+    (place,) = of_run[0].runs
+    there = int(state.places[place])
+    undone = state.without(Slip(slips.LUBRICANT, (there,), 0.0))
+    if not undone.places.size:
+        return Slip(slips.LUBRICANT, (there,), -np.inf)
+    clean = undone.compared()
+    at = state.by(undone, clean)
+    again = {each.kind: each for each in slips.alone(at) if each.runs == (place,)}
+    best = max((again[kind] for kind in _FOREIGN), key=lambda each: each.gain)
+    others = at.squares[at.rows.row != at.rows.row[place]].max(initial=_USUAL * at.terms)
+    same = undone.specimen[undone.places] == state.specimen[there]
+    if same.any() and clean.squares[same].max() > _AGREE * others:
+        return Slip(slips.LUBRICANT, (there,), -np.inf)
+    row, column = before.rows.row[place], before.rows.column[place]
+    inside = 0 < column < np.count_nonzero(before.rows.given[row]) - 1
+    times = float(at.squares[place] / others) / (_INSIDE if inside else _AT_END)
+    gain = 0.5 * (best.gain + first[best.kind].gain)
+    return replace(best, runs=(there,), gain=max(gain, float(LEAST[best.kind] + 2.0 * np.log(times))))

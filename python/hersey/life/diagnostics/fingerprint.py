@@ -52,7 +52,11 @@ def fingerprints(runs: MeasuredRuns) -> Fingerprints:
     if not usable.any():
         return Fingerprints(np.zeros((count, 1)), np.ones((count, 1)), known, _LEAST_SCATTER)
     place, value = runs.of_run[usable], np.log(runs.torque[usable])
-    kelvin = np.where(np.isfinite(runs.kelvin[usable]), runs.kelvin[usable], np.nanmean(runs.kelvin[usable]) if np.isfinite(runs.kelvin[usable]).any() else 0.0)
+    kelvin = np.where(
+        np.isfinite(runs.kelvin[usable]),
+        runs.kelvin[usable],
+        np.nanmean(runs.kelvin[usable]) if np.isfinite(runs.kelvin[usable]).any() else 0.0,
+    )
     speed = np.log(runs.speed[usable])
     u, t = speed - speed.mean(), (kelvin - kelvin.mean()) / _KELVIN
     left = value - _shared(_terms(u, t, _SHARED), value, place, count)

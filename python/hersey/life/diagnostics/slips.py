@@ -28,7 +28,23 @@ SAME = "same log"
 #: Factors by which ages go wrong: orders of magnitude, and hours, minutes, seconds and days taken for each other.
 _AGES = (10.0, 100.0, 1000.0, 1e6, 24.0, 60.0, 1440.0, 3600.0, 86400.0)
 #: Factors by which torques go wrong: N m, N cm, N mm and uN m; ozf in, lbf in, lbf ft, kgf cm in each of them.
-_TORQUES = (10.0, 100.0, 1000.0, 1e6, 7.06155, 141.612, 8.85075, 11.2985, 112.985, 12.0, 16.0, 9.80665, 98.0665)
+_TORQUES = (
+    10.0,
+    100.0,
+    1000.0,
+    1e6,
+    7.06155,
+    141.612,
+    8.85075,
+    11.2985,
+    112.985,
+    12.0,
+    16.0,
+    9.80665,
+    98.0665,
+)
+#: Others, which are less usual: the gain that they lack.
+_FREE, _UNUSUAL = np.array([float(f"{each:.2g}") for each in np.geomspace(8.0, 2e5, 40)]), 2.0
 AGE_FACTORS = tuple(factor for each in _AGES for factor in (each, 1.0 / each))
 TORQUE_FACTORS = tuple(factor for each in _TORQUES for factor in (each, 1.0 / each))
 #: Deviations of level and of the other numbers, in ln torque, of a run of another machine or lubricant.
@@ -36,9 +52,10 @@ _LEVEL, _SHAPES = 0.5, (0.2, 0.2, 0.08, 0.08, 0.08)
 #: Runs, the farthest off, that are paired, and those whose own age is tried.
 _PAIRED, _TRIED = 300, 24
 #: Scatter of last ages of specimens, and of their levels at least, logarithms.
-_OF_LAST, _OF_LEVELS = 0.5, 0.15
-#: Gain of an age that is that of other specimens once it is corrected, and of all of a specimen at most.
-_COINCIDES, _MOST = 2.0, 6.0
+_OF_LAST, _OF_LEVELS = 0.4, 0.15
+#: Gain of an age that is that of other specimens once it is corrected, of all of a specimen at most, and how much more
+#: the range of ages says of a specimen that was seen several times.
+_COINCIDES, _MOST, _SEEN = 2.0, 6.0, 1.5
 
 
 @dataclass(frozen=True)
@@ -109,7 +126,10 @@ def exchanged(at: Compared, near: float) -> list[Slip]:
 
     gain = as_if(second, first) + as_if(first, second) - at.logs[first] - at.logs[second]
     gain -= np.where(apart <= 1e-9, 0.0, np.where(order[first] == order[second], 1.0, 3.0))
-    return [Slip(EXCHANGED, pair, g) for *pair, g in zip(first.tolist(), second.tolist(), gain.tolist(), strict=True)]
+    return [
+        Slip(EXCHANGED, pair, g)
+        for *pair, g in zip(first.tolist(), second.tolist(), gain.tolist(), strict=True)
+    ]
 
 
 def reordered(at: Compared) -> list[Slip]:
@@ -141,34 +161,47 @@ def ages_scaled(at: Compared) -> list[Slip]:
         return []
     last = np.where(rows.given, rows.age, 0.0).max(axis=1)
     now = _sequence(at, 1.0)
-    gains = np.stack([_sequence(at, 1.0 / k) - now + _schedule(at, last, k) for k in AGE_FACTORS], axis=1)
-    gains -= np.log(len(AGE_FACTORS))
+    factors = [*AGE_FACTORS, *_FREE.tolist(), *(1.0 / _FREE).tolist()]
+    of_runs = np.stack([_sequence(at, 1.0 / k) - now for k in factors], axis=2)
+    # One run, of another machine or lubricant, is no reason to doubt the ages of all.
+    gains = of_runs.sum(axis=1) - np.maximum(of_runs.max(axis=1), 0.0)
+    gains += np.stack([_schedule(at, last, k) for k in factors], axis=1)
+    gains -= np.log(len(AGE_FACTORS)) + np.where(np.arange(len(factors)) < len(AGE_FACTORS), 0.0, _UNUSUAL)
     gains[last <= 0.0] = -np.inf
     found = []
     for i, k in enumerate(gains.argmax(axis=1).tolist()):
         runs = tuple(np.flatnonzero(rows.row == i).tolist())
-        found.append(Slip(AGES, runs, float(gains[i, k]), AGE_FACTORS[k]))
+        found.append(Slip(AGES, runs, float(gains[i, k]), factors[k]))
     return found
 
 
 def _sequence(at: Compared, times: float) -> FloatArray:
-    """The log density of each specimen, run after run, at so many times its ages."""
+    """The log density of each run under those before it, at so many times its ages: (specimens, runs)."""
     rows = at.rows
     age = rows.age * times
     left = np.moveaxis(rows.value - at.mean.at(age), -1, -2)
     root = np.linalg.cholesky(at.spreads.covariance(age, rows.variance, rows.given))
     white = np.linalg.solve(root, left[..., None])[..., 0]
     logs = 2.0 * np.log(np.diagonal(root, axis1=-2, axis2=-1)).sum(axis=1)
-    return np.asarray((at.density((white**2).sum(axis=1), logs) * rows.given).sum(axis=1))
+    return np.asarray(at.density((white**2).sum(axis=1), logs) * rows.given)
 
 
 def _schedule(at: Compared, last: FloatArray, factor: float) -> FloatArray:
     """What the ages of the others say of a factor: the usual last age, and ages that are theirs."""
-    usual = np.array([np.median(np.delete(last, i)) for i in range(last.size)]) if last.size < 200 else np.median(last)
+    usual = (
+        np.array([np.median(np.delete(last, i)) for i in range(last.size)])
+        if last.size < 200
+        else np.median(last)
+    )
     off = np.log(np.maximum(last, 1e-12) / np.maximum(usual, 1e-12))
-    law = stats.t(3, scale=_OF_LAST)
+    law = stats.t(4, scale=_OF_LAST)
     gain = law.logpdf(off - np.log(factor)) - law.logpdf(off)
-    return np.asarray(gain + np.minimum(_COINCIDES * (_shared_ages(at, factor) - _shared_ages(at, 1.0)), _MOST))
+    # A specimen seen several times in a small part of the usual age is no new one.
+    seen = np.count_nonzero(at.rows.given & (at.rows.age > 0.0), axis=1)
+    gain = gain * np.clip(seen / 2.0, 1.0, _SEEN)
+    return np.asarray(
+        gain + np.minimum(_COINCIDES * (_shared_ages(at, factor) - _shared_ages(at, 1.0)), _MOST)
+    )
 
 
 def _shared_ages(at: Compared, factor: float) -> FloatArray:
@@ -222,11 +255,16 @@ def age_scaled(at: Compared) -> list[Slip]:
 
 def _within(age: FloatArray, others: FloatArray, rows: object, row: int) -> FloatArray:
     """What the schedule says of an age: whether others have it, and how it lies in the range of its specimen."""
-    everywhere = {float(f"{a:.6g}") for k in range(len(rows.age)) if k != row for a in rows.age[k][rows.given[k]].tolist()}
+    everywhere = {
+        float(f"{a:.6g}")
+        for k in range(len(rows.age))
+        if k != row
+        for a in rows.age[k][rows.given[k]].tolist()
+    }
     shared = np.array([float(f"{a:.6g}") in everywhere for a in age.tolist()])
     again = np.array([np.any(np.abs(others - a) < 1e-9) for a in age.tolist()])
     top = max(float(others.max(initial=0.0)), 1e-12)
-    law = stats.t(3, scale=_OF_LAST)
+    law = stats.t(4, scale=_OF_LAST)
     out = np.where(age > 1.5 * top, law.logpdf(np.log(np.maximum(age, 1e-12) / top)) - law.logpdf(0.0), 0.0)
     return _COINCIDES * shared - 3.0 * again + out
 
@@ -236,7 +274,9 @@ def torques_scaled(at: Compared) -> list[Slip]:
     rows = at.rows
     if len(rows.age) < 3:
         return []
-    raw = np.linalg.solve(at.whiten, np.moveaxis(at.left, -1, 0).reshape(at.terms, -1))[0].reshape(rows.given.shape)
+    raw = np.linalg.solve(at.whiten, np.moveaxis(at.left, -1, 0).reshape(at.terms, -1))[0].reshape(
+        rows.given.shape
+    )
     level = np.array([np.median(each[known]) for each, known in zip(raw, rows.given, strict=True)])
     steps = np.log(np.array(TORQUE_FACTORS))
     found = []

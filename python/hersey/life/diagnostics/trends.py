@@ -184,7 +184,8 @@ def log_density(square: FloatArray, logs: FloatArray, terms: int, freedom: float
 def freedom_of(square: FloatArray, terms: int) -> float:
     """Return the degrees of freedom under which squared distances are most probable, the usual one else."""
     gains = [
-        float(log_density(square, np.zeros(()), terms, each).sum()) - abs(np.log(each / FREEDOM)) for each in _FREEDOMS
+        float(log_density(square, np.zeros(()), terms, each).sum()) - abs(np.log(each / FREEDOM))
+        for each in _FREEDOMS
     ]
     return _FREEDOMS[int(np.argmax(gains))]
 
@@ -202,7 +203,12 @@ def spreads_of(rows: Rows, left: FloatArray) -> Spreads:
 
 def _spreads_of_term(rows: Rows, left: FloatArray, some: IntArray, term: int) -> FloatArray:
     part = Rows(
-        rows.age[some], rows.value[some][..., [term]], rows.variance[some][..., [term]], rows.given[some], rows.row, rows.column
+        rows.age[some],
+        rows.value[some][..., [term]],
+        rows.variance[some][..., [term]],
+        rows.given[some],
+        rows.row,
+        rows.column,
     )
     own, given = left[some][..., [term]], rows.given[some]
     levels = np.array([np.median(each[known]) for each, known in zip(own[..., 0], given, strict=True)])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated
 
@@ -134,8 +135,12 @@ class FilmOfRuns:
         )
 
 
-def film_of_runs(campaign: Campaign, machine: Machine, cold: float | None) -> FilmOfRuns:
+def film_of_runs(
+    campaign: Campaign, machine: Machine, cold: float | None, excluded: Sequence[int] = ()
+) -> FilmOfRuns:
     """Return what runs show of their film, at a cold corner of ``cold`` (K; None: what all recorded).
+
+    ``excluded`` are the places of runs that are not asked.
 
     Raises
     ------
@@ -146,6 +151,8 @@ def film_of_runs(campaign: Campaign, machine: Machine, cold: float | None) -> Fi
     if not runs.run:
         raise InsufficientDataError(f"{campaign.path.name} has no runs. Add logs first")
     dwells, places = filled_dwells(campaign, runs)
+    asked = ~np.isin(places, excluded)
+    dwells, places = dwells.rows(np.flatnonzero(asked)), places[asked]
     usable = _shows_film(dwells)
     if not usable.any():
         raise InsufficientDataError(

@@ -6,6 +6,7 @@ both in `starving`.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -181,6 +182,7 @@ def film_life(
     track: float | None = None,
     side_flow: float | None = None,
     evaporation: float | None = None,
+    excluded: Sequence[int] = (),
     seed: int = 0,
 ) -> FilmLife:
     """Return the film of the specimens of a campaign over their life.
@@ -204,6 +206,8 @@ def film_life(
         circumference of the roll.
     side_flow, evaporation
         K in 1/(m^2 age) and e in 1/age, in the campaign's unit of age. Default: fitted.
+    excluded
+        Places of runs that do not fit, which are left out.
     seed
         Random seed.
 
@@ -215,7 +219,7 @@ def film_life(
         If no dwell has a temperature.
     """
     _refuse_impossible(side_flow, evaporation, track)
-    read = film_of_runs(campaign, machine, machine.life.coldest if cold is None else cold)
+    read = film_of_runs(campaign, machine, machine.life.coldest if cold is None else cold, excluded)
     age = read.runs.age[read.places]
     of_run = [read.runs.unit[i] for i in read.places]
     names = list(dict.fromkeys(of_run))
