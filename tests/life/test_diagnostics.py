@@ -1,4 +1,4 @@
-"""Slips planted into the runs of the shipped life test: which are named, with which facts, and what they move."""
+"""Slips planted into the runs of the shipped life test: which are named, and what they move."""
 
 from __future__ import annotations
 

@@ -236,7 +236,7 @@ class _Adding:
     def _runs(
         self, opened: Campaign, wanted: list[RunToAdd], failed: list[str], children: Sequence[Child]
     ) -> tuple[Counter[str], set[int]]:
-        """Add runs, and what was done before each; how many had each outcome, and the numbers of the new ones."""
+        """Add runs, and what was done before each; how many had each outcome, and the new numbers."""
         from hersey.log.many import failure_line
 
         counts: Counter[str] = Counter()

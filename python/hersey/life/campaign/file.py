@@ -400,7 +400,7 @@ class Campaign:
         return table(self.dwells(), suffix)
 
     def check(self, progress: Callable[[int, int], None] | None = None) -> CampaignCheck:
-        """Check the file, that each log exists and is unchanged, the order of the ages, the fits, and each run."""
+        """Check the file, that each log exists and is unchanged, the ages, the fits, and each run."""
         with sqlite_errors(self.path):
             refuse_unsound_dwells(self._database, self.path)
             found = check(self._database, self._home, progress)

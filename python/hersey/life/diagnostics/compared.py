@@ -30,10 +30,7 @@ _LEAST = 2e-3
 
 @dataclass(frozen=True)
 class Compared:
-    """Runs with their trend: whitened numbers less the mean of all specimens, and what the others say of each.
-
-    ``level`` is what one unit of ln torque at all dwells adds to the whitened numbers.
-    """
+    """Runs with their trend: whitened numbers less the mean of all specimens, and what the others say."""
 
     rows: Rows
     whiten: FloatArray
@@ -60,7 +57,7 @@ class Compared:
         return replace(self, rows=rows)
 
     def density(self, square: FloatArray, logs: FloatArray, runs: int = 1) -> FloatArray:
-        """Return the log density of squared distances of so many runs together, with logarithms of variances."""
+        """Return the log density of squared distances of so many runs together; ``logs`` of variances."""
         return log_density(square, logs, runs * self.terms, self.freedom)
 
     @property

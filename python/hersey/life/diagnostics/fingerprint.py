@@ -1,6 +1,7 @@
 """Each run in a few numbers: how its torque differs from that of all runs, in level, speed and temperature.
 
-What all runs have in common, a cubic in ln speed and temperature, is taken away; the rest of ln torque of a run is
+What all runs have in common, a cubic in ln speed and temperature, is taken away; the rest of ln torque of a
+run is
 projected on level, slopes and curvatures that are orthogonal over all dwells.
 """
 
@@ -30,10 +31,10 @@ _FLAT = 1e-3
 
 @dataclass(frozen=True)
 class Fingerprints:
-    """Numbers of each run, shape (runs, terms), and their variances; the first term is the level of ln torque.
+    """Numbers of each run, shape (runs, terms), and their variances; the first is the level of ln torque.
 
-    ``known`` marks runs with dwells enough; the others are zero. ``basis`` is the mean of each term over the dwells
-    of a run, (runs, terms): what a change of level by one adds to its numbers is the first unit vector.
+    ``known`` marks runs with dwells enough; the others are zero. ``scatter`` is the usual
+    one of dwells about their run, relative.
     """
 
     value: FloatArray
@@ -70,7 +71,7 @@ def _terms(u: FloatArray, t: FloatArray, powers: tuple[tuple[int, int], ...]) ->
 
 
 def _orthogonal(terms: FloatArray) -> FloatArray:
-    """Terms made orthogonal one after the other, of mean square 1; those that depend on earlier ones are left out."""
+    """Terms made orthogonal, of mean square 1; those that depend on earlier ones are left out."""
     kept = np.empty((len(terms), 0))
     for term in terms.T:
         new = term.copy()

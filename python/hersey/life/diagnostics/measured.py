@@ -20,7 +20,8 @@ if TYPE_CHECKING:
 class MeasuredRuns:
     """Runs by specimen and age, and their dwells.
 
-    ``number``, ``unit`` and ``age`` (in ``age_unit``) are those of each run, ``events`` the maintenance of specimens.
+    ``number``, ``unit`` and ``age`` (in ``age_unit``) are those of each run, ``events`` the maintenance of
+    specimens.
     ``of_run`` is the place of the run of each dwell; ``speed`` in rad/s and ``kelvin`` (NaN where none was
     recorded) are its state, ``torque`` (N m) is that of the whole drive in the sense of rotation.
     """

@@ -63,7 +63,8 @@ def _reordered(values: dict[str, Any]) -> Warning:
 def _same(values: dict[str, Any]) -> Warning:
     return Warning(
         slips.SAME,
-        "logs of {unit} at {age:.10g} {age_unit} and {other_unit} at {other_age:.10g} {age_unit} hold the same torques",
+        "logs of {unit} at {age:.10g} {age_unit} and {other_unit} at {other_age:.10g} {age_unit} "
+        "hold the same torques",
         remedy="one is a copy: replace it by the right log, and add that with {how}",
         severity="act",
         **values,
@@ -97,9 +98,9 @@ def _age(values: dict[str, Any]) -> Warning:
 def _torque(values: dict[str, Any]) -> Warning:
     return Warning(
         slips.TORQUE,
-        "torque of {unit} at {age:.10g} {age_unit} looks {times:.4g} times too small, as if in another unit"
+        "torque of {unit} at {age:.10g} {age_unit} looks {times:.4g} times too small, as in other units"
         if values["factor"] < 1.0
-        else "torque of {unit} at {age:.10g} {age_unit} looks {times:.4g} times too large, as if in another unit",
+        else "torque of {unit} at {age:.10g} {age_unit} looks {times:.4g} times too large, as in other units",
         remedy="if it is, add the log again with the right unit and {how}",
         severity="act",
         **values,
@@ -109,9 +110,9 @@ def _torque(values: dict[str, Any]) -> Warning:
 def _torques(values: dict[str, Any]) -> Warning:
     return Warning(
         slips.TORQUES,
-        "torques of {unit} look {times:.4g} times smaller than those of the others, as if in another unit"
+        "torques of {unit} look {times:.4g} times smaller than those of the others, as in another unit"
         if values["factor"] < 1.0
-        else "torques of {unit} look {times:.4g} times larger than those of the others, as if in another unit",
+        else "torques of {unit} look {times:.4g} times larger than those of the others, as in another unit",
         remedy="if they are, add its logs again with the right unit and {how}",
         severity="act",
         **values,
@@ -121,8 +122,8 @@ def _torques(values: dict[str, Any]) -> Warning:
 def _machine(values: dict[str, Any]) -> Warning:
     return Warning(
         slips.MACHINE,
-        "torque of {unit} at {age:.10g} {age_unit} is {factor:.3g} times what its other runs show, at all speeds and "
-        "temperatures alike, as on another machine",
+        "torque of {unit} at {age:.10g} {age_unit} is {factor:.3g} times what its other runs show, "
+        "at all speeds and temperatures alike, as on another machine",
         remedy="check where the log is from; if it is wrong, add the right one with {how}",
         severity="act",
         **values,
@@ -132,8 +133,8 @@ def _machine(values: dict[str, Any]) -> Warning:
 def _lubricant(values: dict[str, Any]) -> Warning:
     return Warning(
         slips.LUBRICANT,
-        "torque of {unit} at {age:.10g} {age_unit} depends on speed and temperature otherwise than in its other "
-        "runs, as with another lubricant",
+        "torque of {unit} at {age:.10g} {age_unit} depends on speed and temperature otherwise than in its "
+        "other runs, as with another lubricant",
         remedy="check where the log is from; if it is wrong, add the right one with {how}",
         severity="act",
         **values,

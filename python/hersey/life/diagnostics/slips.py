@@ -1,6 +1,7 @@
 """How much better each slip explains the runs: the gain in log probability if it is undone.
 
-A slip of one run or of a pair is judged by what all other runs of its specimen say, a slip of a whole specimen by its
+A slip of one run or of a pair is judged by what all other runs of its specimen say, a slip of a whole
+specimen by its
 runs one after the other. A free factor or shape costs what its prior says (Laplace's approximation).
 """
 
@@ -25,9 +26,11 @@ TORQUES = "torques scaled"
 MACHINE = "another machine"
 LUBRICANT = "another lubricant"
 SAME = "same log"
-#: Factors by which ages go wrong: orders of magnitude, and hours, minutes, seconds and days taken for each other.
+#: Factors by which ages go wrong: orders of magnitude, and hours, minutes, seconds and days taken for each
+#: other.
 _AGES = (10.0, 100.0, 1000.0, 1e6, 24.0, 60.0, 1440.0, 3600.0, 86400.0)
-#: Factors by which torques go wrong: N m, N cm, N mm and uN m; ozf in, lbf in, lbf ft, kgf cm in each of them.
+#: Factors by which torques go wrong: N m, N cm, N mm and uN m; ozf in, lbf in, lbf ft, kgf cm in each of
+#: them.
 _TORQUES = (
     10.0,
     100.0,
@@ -53,14 +56,15 @@ _LEVEL, _SHAPES = 0.5, (0.2, 0.2, 0.08, 0.08, 0.08)
 _PAIRED, _TRIED = 300, 24
 #: Scatter of last ages of specimens, and of their levels at least, logarithms.
 _OF_LAST, _OF_LEVELS = 0.4, 0.15
-#: Gain of an age that is that of other specimens once it is corrected, of all of a specimen at most, and how much more
+#: Gain of an age that is that of other specimens once it is corrected, of all of a specimen at most, and how
+#: much more
 #: the range of ages says of a specimen that was seen several times.
 _COINCIDES, _MOST, _SEEN = 2.0, 6.0, 1.5
 
 
 @dataclass(frozen=True)
 class Slip:
-    """A slip: ``runs`` are the places of those concerned, ``factor`` is what multiplied their ages or torque."""
+    """A slip: ``runs`` are places, ``factor`` is what multiplied their ages or torque."""
 
     kind: str
     runs: tuple[int, ...]
@@ -69,12 +73,12 @@ class Slip:
 
 
 def alone(at: Compared) -> list[Slip]:
-    """Return for each run the slips that concern it alone: torque in another unit, another machine or lubricant."""
+    """Return for each run the slips of it alone: torque unit, another machine or lubricant."""
     logs = np.log(at.variance).sum(axis=1)
     inverse = 1.0 / at.variance
 
     def moved(directions: FloatArray, deviations: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Gains and likeliest amounts along directions (terms, directions) with deviations of their priors."""
+        """Gains and likeliest amounts along directions, (terms, directions), with deviations of priors."""
         pulled = directions.T * inverse[:, None, :]
         inner = pulled @ directions + np.diag(1.0 / deviations**2)
         amount = np.linalg.solve(inner, (pulled @ at.off[..., None]))[..., 0]
@@ -225,7 +229,7 @@ def _rounded(age: FloatArray) -> list[float]:
 
 
 def age_scaled(at: Compared) -> list[Slip]:
-    """Return for runs far off, in age or in their numbers, the likeliest factor by which their own age is wrong."""
+    """Return for runs far off the likeliest factor by which their own age is wrong."""
     rows, age = at.rows, at.rows.flat(at.rows.age)
     if len(rows.age) < 2:
         return []
@@ -254,7 +258,7 @@ def age_scaled(at: Compared) -> list[Slip]:
 
 
 def _within(age: FloatArray, others: FloatArray, rows: object, row: int) -> FloatArray:
-    """What the schedule says of an age: whether others have it, and how it lies in the range of its specimen."""
+    """What the schedule says of an age: whether others have it, and where it lies among its own."""
     everywhere = {
         float(f"{a:.6g}")
         for k in range(len(rows.age))

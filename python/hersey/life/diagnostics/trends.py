@@ -1,9 +1,13 @@
 """What a specimen's own runs, and the other specimens, let expect of each of its runs.
 
-A number of a run is the mean of all specimens at that age, plus the level of the specimen, its own slope, a random
-walk and the scatter of runs: a Gaussian process of each specimen (Rasmussen and Williams, Gaussian Processes, 2006,
-5.4.2 for what all runs but one say of that one). Numbers are made independent by the covariance with which runs
-differ from their neighbours. Every distance is judged by Student's law, so that one run more or less decides nothing.
+A number of a run is the mean of all specimens at that age, plus the level of the specimen, its own slope, a
+random
+walk and the scatter of runs: a Gaussian process of each specimen (Rasmussen and Williams, Gaussian Processes,
+2006,
+5.4.2 for what all runs but one say of that one). Numbers are made independent by the covariance with which
+runs
+differ from their neighbours. Every distance is judged by Student's law, so that one run more or less decides
+nothing.
 """
 
 from __future__ import annotations
@@ -33,7 +37,7 @@ _KNOWN = np.array([1.0, 1.5, 1.5, 0.7])
 
 @dataclass(frozen=True)
 class Rows:
-    """Runs as rows of specimens: ages over a usual last age, numbers (specimens, runs, terms), their variances."""
+    """Runs as rows of specimens: ages over a usual one, numbers (specimens, runs, terms), variances."""
 
     age: FloatArray
     value: FloatArray
@@ -126,7 +130,7 @@ def robust_mean(rows: Rows) -> Mean:
 
 
 def innovations(rows: Rows, left: FloatArray) -> FloatArray:
-    """Return by how much runs differ from the straight line through their neighbours, (differences, terms)."""
+    """Return how runs differ from the straight line through their neighbours, (differences, terms)."""
     age, given = rows.age, rows.given
     if age.shape[1] < 3:
         return np.empty((0, left.shape[-1]))
@@ -159,7 +163,7 @@ def whitening(differences: FloatArray, floor: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True)
 class LeftOut:
-    """What all other runs of a specimen say of each of its runs: off from it, and variance, (specimens, runs, terms)."""
+    """What its other runs say of each run: distance and variance, (specimens, runs, terms)."""
 
     off: FloatArray
     variance: FloatArray
