@@ -274,7 +274,7 @@ def test_beyond_the_last_run_a_law_is_less_sure() -> None:
     for each, r in zip(growth.reaches(2.0).units, RATE, strict=True):
         ahead = 1.0 / r / each.last
         if ahead > 1.0:
-            middle = math.exp(-0.1) * math.log(ahead)
+            middle = math.exp(-0.05) * math.log(ahead)
             assert math.log(each.age.value / each.last) == pytest.approx(middle, rel=0.03)
             assert math.log(each.age.high / each.last) == pytest.approx(factor * middle, rel=0.06)
             assert math.log(each.age.low / each.last) == pytest.approx(middle / factor, rel=0.06)
