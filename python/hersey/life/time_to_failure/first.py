@@ -84,7 +84,8 @@ class SpecimenEnd(Record):
         if not likely and math.isinf(self.age.age.value):
             return _NONE
         text = " or ".join(f"{name} ({self.first[name]:.0%})" for name in likely) or "no known failure mode"
-        behind = [name for name in self.named if name not in likely]
+        expected = math.isfinite(self.age.age.value)
+        behind = [name for name in self.named if name not in likely and expected]
         return text + (f", close behind {' and '.join(behind)}" if behind else "")
 
     def __str__(self) -> str:
