@@ -115,7 +115,7 @@ def test_the_headline_says_who_needs_attention_and_what_the_others_reach() -> No
     )
     assert told().of_new() == (
         f"Half of new specimens fail by {rounded(told().b50.age.value)} pages (90 %: "
-        f"{rounded(told().b50.age.low)} to {rounded(told().b50.age.high)}), mostly by torque."
+        f"{rounded(told().b50.age.low)} to {rounded(told().b50.age.high)} pages), mostly by torque."
     )
     doubtful = replace(attention, failed=(), unclear=("F6", "F2"), running=("F1",))
     assert doubtful.words("pages")[0] == "Two specimens need attention: F6 and F2 may have failed."
