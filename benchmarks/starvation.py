@@ -162,7 +162,7 @@ def line(name: str, told: list[Told]) -> str:
         f"{np.mean(true > high):.0%}",
         f"{width:.2f}",
         f"{off:+.0%}",
-        f"{np.mean([each.shares[0] <= each.share <= each.shares[2] for each in told]):.0%}",
+        f"{np.mean([each.shares[0] - 0.03 <= each.share <= each.shares[2] + 0.03 for each in told]):.0%}",
     )
     return "| " + " | ".join(map(str, cells)) + " |"
 

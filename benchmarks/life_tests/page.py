@@ -68,7 +68,11 @@ def targets(rows: list[dict[str, Any]]) -> list[str]:
 def page(rows: list[dict[str, Any]], mistakes: list[dict[str, Any]]) -> str:
     """Return the page."""
     seeds = [row["seed"] for row in rows]
-    parts = [HEAD, f"Seeds {min(seeds)} to {max(seeds)}, which nobody had seen, run once:", ""]
+    parts = [
+        HEAD,
+        f"{len(rows)} campaigns of seeds {min(seeds)} to {max(seeds)}, held out from all tuning:",
+        "",
+    ]
     parts += [*targets(rows), "", score.report(rows), ""]
     if mistakes:
         parts += ["## Mistakes", "", slips.report(mistakes), ""]

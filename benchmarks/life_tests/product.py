@@ -27,16 +27,25 @@ def campaign_file(folder: Path) -> Path:
     half.unlink(missing_ok=True)
     fit = None  # ages do not depend on it, and most of the time would go into it
     with hersey.Campaign.create(half) as campaign:
-        for run in read_runs(folder / "runs.csv"):
+        for run in read_runs(folder / "runs.csv").runs:
             try:
                 points = hersey.SteadyPoints.from_table(run.log).without(machine.rest)
                 fit = fit or hersey.fit(points)
                 campaign.add(points, log=run.log, unit=run.unit, age=run.age, fit=fit)
             except hersey.HerseyError as error:
                 refused[run.log.name] = str(error)
+        for unit, age in _maintenance(folder):
+            campaign.add_event(unit, age, "re-greased")
     (folder / "refused.json").write_text(json.dumps(refused, indent=1) + "\n")
     half.rename(file)
     return file
+
+
+def _maintenance(folder: Path) -> list[tuple[str, str]]:
+    """Return specimens and ages at which grease was renewed."""
+    file = folder / "maintenance.csv"
+    rows = file.read_text().splitlines()[1:] if file.exists() else []
+    return [(unit, age) for unit, age in (row.split(",") for row in rows)]
 
 
 def refused(folder: Path) -> dict[str, str]:

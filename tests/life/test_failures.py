@@ -147,6 +147,8 @@ def test_an_activation_energy_is_found_again() -> None:
     assert law.acceleration.effect == pytest.approx(0.7, abs=1e-8)
     assert law.acceleration.low < 0.7 < law.acceleration.high
     assert law.acceleration.same_shape == pytest.approx(1.0)
+    places, shares = law.positions  # carried over to 300 K
+    assert law.share_failed(places) == pytest.approx(shares, abs=0.05)
     ratio = math.exp(0.7 / 8.617333262e-5 * (1 / 300 - 1 / 350))
     at_350 = hersey.weibull(hersey.Failures(ages[12:24], ages[12:24], np.ones(12, dtype=int)))
     assert law.b_lives[1].age == pytest.approx(ratio * at_350.b_lives[1].age, rel=1e-7)

@@ -101,6 +101,7 @@ def test_what_does_not_grow_is_told_not_to() -> None:
 
 def test_exact_lines_through_few_points_are_followed(monkeypatch: pytest.MonkeyPatch) -> None:
     """Without scatter the age is that of the formula, whatever the priors."""
+    monkeypatch.setattr(limit_ages, "SOONER", 0.0)
     monkeypatch.setattr(limit_ages, "BEYOND", 0.0)
     monkeypatch.setattr(limit_ages, "OWN_BEYOND", 0.0)
     unit = [name for name in "ABCDEF" for _ in range(4)]

@@ -13,6 +13,7 @@ from scipy.special import ndtri
 from hersey.arrays import FloatArray
 from hersey.charts.style import BLUE, EDGE, HEIGHT, INK, ORANGE, WIDTH, Chart, age_tip, plot, rows_of, tip
 from hersey.charts.weibull import not_failed
+from hersey.errors import capital
 
 if TYPE_CHECKING:
     from hersey.life.failures.forecast import FleetForecast, RemainingLife
@@ -39,7 +40,7 @@ def law_chart(law: FailureLaw) -> Chart:
     points = plot(rows_of(age=ages, place=_place(law, shares), share=100 * shares))
     mark = points.mark_point(color=INK, filled=True, opacity=1, size=60, clip=True)
     layers.append(mark.encode(x=x, y=y, tooltip=[age_tip(law.unit), tip("share", "share failed (%)")]))
-    running = law.sample.low[~law.sample.failed]
+    running = law.at_use.low[~law.at_use.failed]
     if running.size:
         layers.append(not_failed(np.unique(running), law.unit, x, HEIGHT))
     title = alt.Title("Probability plot", subtitle=_heading(law))
@@ -76,7 +77,7 @@ def _ages(law: FailureLaw, field: str, domain: list[float]) -> alt.X:
 
 def _domain(law: FailureLaw, ticks: list[float]) -> list[float]:
     """All specimens, and the law within a tenfold of them."""
-    ends = np.concatenate([law.sample.low, law.sample.high])
+    ends = np.concatenate([law.at_use.low, law.at_use.high])
     ends = ends[np.isfinite(ends) & (ends > 0)]
     low, high = float(ends.min()), float(ends.max())
     if law.is_known:
@@ -88,6 +89,7 @@ def _domain(law: FailureLaw, ticks: list[float]) -> list[float]:
 def _heading(law: FailureLaw) -> list[str]:
     bounds = f"; line and {100 * law.level:g} % band: {law.named} law" if law.is_known else ""
     modes = "; dashed: failure modes" if law.modes else ""
+    modes += "; ages carried over to the stress of use" if law.acceleration is not None else ""
     words = f"points: failures{bounds}{modes}; ticks: specimens that have not failed"
     return [law.headline(), words, *(each.sentence for each in law.warnings)]
 
@@ -148,7 +150,10 @@ def remaining_chart(found: RemainingLife) -> Chart:
         high=100 * found.outlive_high,
     )
     return _curve(
-        rows, f"Further age ({found.unit or 'as given'})", "Share that still runs (%)", found.headline()
+        rows,
+        f"Further age ({found.unit or 'as given'})",
+        "Share that still runs (%)",
+        capital(found.headline()),
     )
 
 
@@ -156,7 +161,7 @@ def fleet_chart(found: FleetForecast) -> Chart:
     """Return the failures of a fleet against further age, with their prediction interval."""
     rows = rows_of(age=found.ahead, share=found.expected, low=found.low, high=found.high)
     title = f"Further age of each specimen ({found.unit or 'as given'})"
-    return _curve(rows, title, "Failures", found.headline())
+    return _curve(rows, title, "Failures", capital(found.headline()))
 
 
 def _curve(rows: list[dict[str, object]], x_title: str, y_title: str, heading: str) -> Chart:

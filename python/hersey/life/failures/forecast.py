@@ -69,7 +69,7 @@ class RemainingLife(Result):
         import polars as pl
 
         unit = self.unit or "1"
-        names = (f"ahead ({unit})", "outlive", "outlive low", "outlive high")
+        names = (f"ahead ({unit})", "outlive (1)", "outlive low (1)", "outlive high (1)")
         columns = (self.ahead, self.outlive, self.outlive_low, self.outlive_high)
         return pl.DataFrame(dict(zip(names, columns, strict=True)))
 
@@ -116,7 +116,7 @@ class FleetForecast(Result):
 
         unit = self.unit or "1"
         columns = (self.ahead, self.expected, self.low, self.high)
-        names = (f"ahead ({unit})", "expected failures", "low", "high")
+        names = (f"ahead ({unit})", "expected failures (1)", "low", "high")
         return pl.DataFrame(dict(zip(names, columns, strict=True)))
 
 

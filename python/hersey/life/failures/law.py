@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Annotated
 
@@ -184,8 +184,17 @@ class FailureLaw(Result):
 
     @cached_property
     def positions(self) -> tuple[FloatArray, FloatArray]:
-        """Ages at failure and the share failed at each, without any law."""
-        return positions(self.sample)
+        """Ages at failure, under the stress of use, and the share failed at each without any law."""
+        return positions(self.at_use)
+
+    @cached_property
+    def at_use(self) -> Failures:
+        """The sample as it would be under the stress of use, by the estimated effect of stress."""
+        if self.acceleration is None:
+            return self.sample
+        fit = self.fits[0]
+        factor = np.exp(fit.c * (self.stress - fit.covariate))
+        return replace(self.sample, low=self.sample.low * factor, high=self.sample.high * factor)
 
     def headline(self) -> str:
         """Return the number of failures, B10 and B50."""

@@ -95,7 +95,9 @@ def fitted_together(searches: list[Search], beforehand: Common) -> Together:
     freedom = np.concatenate([each.freedom for each in searches])
     unlikely = float(freedom @ np.log(np.concatenate(at.each) / freedom)) + beforehand.squares(at.mean)
     stretch = max(float(np.median(np.concatenate(at.each) / freedom)), 1.0)
-    return Together(Common(at.mean, stretch * np.linalg.inv(at.curvature())), unlikely / freedom.size)
+    return Together(
+        Common(at.mean, np.asarray(stretch * np.linalg.inv(at.curvature()))), unlikely / freedom.size
+    )
 
 
 def _settled(searches: list[Search], at: _Place, beforehand: Common) -> _Place:
@@ -137,7 +139,7 @@ class _Place:
         mean: FloatArray,
         beforehand: Common,
     ) -> _Place:
-        known = np.linalg.inv(beforehand.covariance)
+        known: FloatArray = np.asarray(np.linalg.inv(beforehand.covariance))
         found = [search.moved(each) for search, each in zip(searches, free, strict=True)]
         squares = sum(float(each[0].sum()) for each in found)
         return cls(

@@ -17,7 +17,8 @@ import numpy as np
 from scipy import special
 
 from hersey.arrays import FloatArray, IntArray
-from hersey.life.film.layer import DRY, FLOODED, Layers
+from hersey.life.film.layer import Layers
+from hersey.life.film.run_search import DRY, FLOODED
 from hersey.life.film.starved_drag import Flooded, cubic
 from hersey.life.oil_layer import log_layer
 
@@ -220,8 +221,8 @@ def fit_depletion(
     likelihoods = _likelihoods_of(layers, unit, age / greatest, temperature_sensitivity, rates)
     plan = _FEW_SPECIMENS if likelihoods.first.size < _MANY else _MANY_SPECIMENS
     own, mean, spread = _walked(layers, likelihoods, plan, np.random.default_rng(seed))
-    kept = [_with(each, temperature_sensitivity) for each in (own, mean)]
-    return Depletion(*kept, _with(spread, 0.0), greatest, layers.reference, rates)
+    own, mean = _with(own, temperature_sensitivity), _with(mean, temperature_sensitivity)
+    return Depletion(own, mean, _with(spread, 0.0), greatest, layers.reference, rates)
 
 
 def pooled(each: list[Depletion], weight: FloatArray, seed: int) -> Depletion:

@@ -1,7 +1,7 @@
 """The share of the drag that does not follow the film, and what each share makes of the runs.
 
 Rolling, seals and gears add to the torque and hide that the film thins. The more of such drag there is, the
-sooner a film starves that shows the same torque. Its share is assumed to be anything from 0 to 40 %; the
+sooner a film starves that shows the same torque. Its share is assumed to be anything from 0 to 45 %; the
 dwells narrow that where a share does not describe them.
 """
 
@@ -18,10 +18,10 @@ from hersey.result import Means, Record
 
 #: Shares that are tried, and the ends of what each stands for.
 SHARES = np.array([0.05, 0.2, 0.3, 0.4])
-_ENDS = np.array([0.0, 0.125, 0.25, 0.35, 0.4])
+_ENDS = np.array([0.0, 0.125, 0.25, 0.35, 0.45])
 #: All runs err together where the law does, so all of them count as so many.
 _COUNT_AS = 2.0
-#: Width of the interval of the share (of 40 %) from which the dwells say little.
+#: Width of the interval of the share (of 45 %) from which the dwells say little.
 _NARROW = 0.25
 #: Runs above which only some specimens are followed at each share.
 _RUNS = 240
@@ -33,12 +33,12 @@ class StarvesAt(Record):
 
     share: Annotated[float, Means("of the drag, flooded, that does not follow the film")]
     first: Annotated[float, Means("age of the specimen that starves first", open=True)]
-    b50: Annotated[float, Means("age at which half of new specimens starve", open=True)]
+    median: Annotated[float, Means("age of the median of the specimens", open=True)]
 
     @property
     def shown(self) -> str:
-        """The age of half of new specimens in words."""
-        return f"{float(f'{self.b50:.3g}'):.10g}" if np.isfinite(self.b50) else "never"
+        """The age of the median specimen in words."""
+        return f"{float(f'{self.median:.3g}'):.10g}" if np.isfinite(self.median) else "never"
 
 
 @dataclass(frozen=True)
@@ -61,13 +61,13 @@ class OtherDrag(Record):
         return [
             f"share of the drag at {point} that does not follow the film (rolling, seals, gears), flooded: "
             f"{self.share:.0%} [{self.low:.0%}, {self.high:.0%}]; rolling as computed {self.computed:.0%}",
-            f"age ({unit}) at which half of new specimens starve, by that share: {ages}",
+            f"age ({unit}) at which the median specimen starves, by that share: {ages}",
         ]
 
     @property
     def sooner(self) -> bool:
         """Whether specimens starve sooner the greater the share is."""
-        return self.starves[-1].b50 < self.starves[0].b50
+        return self.starves[-1].median < self.starves[0].median
 
     @property
     def determined(self) -> bool:
@@ -96,7 +96,7 @@ class ByShare:
 
 
 def by_share(fit: LayerFit, units: list[str]) -> ByShare:
-    """Return the layers of runs at shares of other drag from 0 to 40 %; ``units`` are their specimens."""
+    """Return the layers of runs at shares of other drag from 0 to 45 %; ``units`` are their specimens."""
     found = [fit.together(share) for share in SHARES.tolist()]
     unlikely = np.array([each.unlikely for each in found])
     weight = np.diff(_ENDS) * np.exp(-0.5 * _COUNT_AS * (unlikely - unlikely.min()))
@@ -127,7 +127,7 @@ def other_drag(by: ByShare, starves: list[StarvesAt]) -> OtherDrag:
 
 def slower_by_share(starves: list[StarvesAt], weight: FloatArray, draws: int, seed: int) -> FloatArray:
     """Return factors on ages of draws for shares other than the likeliest, as often as they are likely."""
-    ages = np.array([each.b50 for each in starves])
+    ages = np.array([each.median for each in starves])
     known = np.isfinite(ages) & (ages > 0.0)
     best = int(np.argmax(weight))
     factor = np.where(known & known[best], ages / ages[best] if known[best] else 1.0, 1.0)

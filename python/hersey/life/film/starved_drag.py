@@ -161,7 +161,7 @@ class StarvedDrag:
         film, _ = cubic(self.flooded.film, np.zeros(()))
         if self.shared is None or self.roughness is None:
             return np.zeros_like(film)
-        return self.shared.at(film - np.log(_ROUGHER * self.roughness))[0][0]
+        return np.asarray(self.shared.at(film - np.log(_ROUGHER * self.roughness))[0][0])
 
     def torque(self, free: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return torque (runs, dwells), N m, and its slopes (runs, free, dwells) at what is free (runs, 14).

@@ -22,6 +22,7 @@ from hersey.life.film.starved_drag import film_of
 from hersey.life.film.starving import LayersOfSpecimens, OilLeft, starves_at
 from hersey.life.growth.limit_ages import AgesAtLimit, Interval
 from hersey.life.indicator import Indicator, Indicators, Runs, most_ages
+from hersey.life.maintenance import OF_FRICTION
 from hersey.life.oil_layer import USUAL_SHARPNESS
 from hersey.result import Means, Result
 from hersey.schema.warning import Warning
@@ -49,8 +50,8 @@ class FilmLife(Result):
     that of a flooded inlet at the same viscosity and speed, and its ``thickness`` (m); and the ``layer`` of
     oil on the inlet side (m), and ``viscosity`` over that of the lubricant. Lengths are right but for
     ``systematic``, a factor common to all runs; NaN where a run has no dwells. Of each specimen at ``ages``:
-    ``curves`` of the film over flooded, ``layers``, and what a layer ``needs`` to be; ``starves`` at each
-    point.
+    ``curves`` of the film over flooded, ``layers``, and what a layer ``needs`` to be, NaN before a layer was
+    renewed; ``starves`` at each point.
     """
 
     also_stated = ("starved",)
@@ -74,7 +75,9 @@ class FilmLife(Result):
         tuple[Estimates, ...], Means("ratio of film to flooded film at each point, shape (units, ages)")
     ]
     layers: Annotated[Estimates, Means("shape (units, ages)", "m")]
-    needs: Annotated[tuple[FloatArray, ...], Means("flooded film at each point", "m", shape="(units, ages)")]
+    needs: Annotated[
+        tuple[FloatArray, ...], Means("flooded film at each point", "m", shape="(units, ages)", open=True)
+    ]
     starves: Annotated[tuple[AgesAtLimit, ...], Means("ages at which the film starves, at each point")]
     law: Annotated[
         dict[str, Interval], Means("K in 1/(m^2 age), e and g in 1/age")
@@ -221,8 +224,9 @@ def film_life(
     """
     _refuse_impossible(side_flow, evaporation, track)
     read = film_of_runs(campaign, machine, machine.life.coldest if cold is None else cold)
-    age = read.runs.age[read.places]
-    of_run = [read.runs.unit[i] for i in read.places]
+    segments = read.runs.segments(OF_FRICTION)
+    age = segments.age[read.places]
+    of_run = [segments.name[i] for i in read.places]
     names = list(dict.fromkeys(of_run))
     place = np.array([names.index(name) for name in of_run])
     if most_ages(place, age) < 2:
@@ -233,6 +237,8 @@ def film_life(
     drawing = partial(fit_depletion, side_flow=side_flow, evaporation=evaporation, seed=seed)
     last = np.array([age[place == k].max() for k in range(len(names))])
     layers, other = _followed(read, SpecimensOfRuns(names, place, age, last), machine, drawing, seed)
+    layers = layers.of(read.runs.units, segments.begun)
+    layers = replace(layers, last=np.array([_last_age(read.runs, name) for name in layers.names]))
     warnings = (*read.warnings, *_of_the_law(age, place, machine), _of_other_drag(other, read))
     return _film_life(read, layers, machine, track, other, warnings)
 
@@ -298,6 +304,7 @@ def _film_life(
     ages = _CURVES * layers.drawn.greatest_age
     length = machine.roll_radius * 2.0 * np.pi if track is None else track
     starving = [layers.starving(point) for point in read.flooded]
+    begun = read.runs.segments(OF_FRICTION).begun
     pairs = zip(starving, read.points, strict=True)
     return FilmLife(
         runs=read.runs,
@@ -318,9 +325,7 @@ def _film_life(
         track=length,
         other_drag=other_drag,
         warnings=warnings,
-        _starvation=replace(
-            read.indicator((warnings[-1],)), own_ages=layers.with_all(starving[0], read.runs.units)
-        ),
+        _starvation=replace(read.indicator((warnings[-1],)), own_ages=layers.with_all(starving[0], begun)),
     )
 
 
@@ -330,7 +335,7 @@ def _of_other_drag(other: OtherDrag, read: FilmOfRuns) -> Warning:
     return Warning(
         "other drag",
         "{low:.0f %} to {high:.0f %} of the drag at {point} may not follow the film (rolling, seals, gears). "
-        "With more such drag specimens starve {direction}: half of new ones at {few} {age_unit} if it is "
+        "With more such drag specimens starve {direction}: the median one at {few} {age_unit} if it is "
         "{least:.0f %}, at {many} if it is {most:.0f %}. To determine it, log one specimen flooded with "
         "fresh lubricant, the drive without the nip, or a lubricant of another viscosity",
         severity="note" if other.determined else "watch",
@@ -374,6 +379,10 @@ def _of_the_law(age: FloatArray, place: IntArray, machine: Machine) -> list[Warn
         )
     )
     return warnings
+
+
+def _last_age(runs: Runs, name: str) -> float:
+    return float(max(age for unit, age in zip(runs.unit, runs.age, strict=True) if unit == name))
 
 
 def _last_runs(runs: Runs) -> list[int]:

@@ -53,7 +53,6 @@ _ADVISED = 3
 _SHOWN = 24
 #: Failure modes of one reason that an error names.
 _NAMED = 2
-NEVER = "none"
 
 
 @dataclass(frozen=True)
