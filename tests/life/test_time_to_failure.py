@@ -368,7 +368,8 @@ def test_what_to_measure_next_serves_what_was_asked() -> None:
         f"measure F3 again at {of_f3.age:g} pages to find out whether it lasts until 1000 pages; "
         f"the risk of a wrong answer falls from {percent(of_f3.before)} to about {percent(of_f3.after)}"
     )
-    assert found.advice[0] == "inspect F6 for torque"
+    assert found.advice[0] == found.next_runs[0].words("pages")  # what was asked comes first
+    assert found.advice[-1] == "inspect F6 for torque"
     assert found.planning() == ""
     assert time_to_failure(of(torque), until=1000).next_runs == found.next_runs
 
