@@ -197,8 +197,9 @@ class _Adding:
                 read.append((result, run.unit, run.age))
                 progress(len(read), len(wanted))
         with Campaign.create(file) as opened:
-            for added in opened.add_entries(read, force=self.force):
-                self.printing.text(added.summary())
+            every = opened.add_entries(read, force=self.force)
+            self.printing.text(*(added.summary() for added in every))
+            _diagnosed(opened, {added.run for added in every})
         note(*filter(None, [self.alike]))
 
     def each(
@@ -214,7 +215,7 @@ class _Adding:
         # of a campaign without runs all will be read: what reads them loads while settings are found here
         many = self.client is None and len(wanted) >= FEW and not len(opened)
         with readers(self.machine) if many else nullcontext(()) as children:
-            counts = self._runs(opened, wanted, failed, children)
+            counts, runs = self._runs(opened, wanted, failed, children)
         for unit, age, kind in events:
             try:
                 opened.add_event(unit, age, kind)
@@ -228,16 +229,18 @@ class _Adding:
         if failed:
             say(*(f"- {each}" for each in failed), file=sys.stderr)
         note(*filter(None, [self.alike]))
+        _diagnosed(opened, runs)
         if failed:
             raise typer.Exit(NOT_FOUND)
 
     def _runs(
         self, opened: Campaign, wanted: list[RunToAdd], failed: list[str], children: Sequence[Child]
-    ) -> Counter[str]:
-        """Add runs, and what was done before each; how many had each outcome."""
+    ) -> tuple[Counter[str], set[int]]:
+        """Add runs, and what was done before each; how many had each outcome, and the new numbers."""
         from hersey.log.many import failure_line
 
         counts: Counter[str] = Counter()
+        numbers: set[int] = set()
         new: list[tuple[RunToAdd, str]] = []
         for run in wanted:
             try:
@@ -258,13 +261,14 @@ class _Adding:
                     entry = (result, run.unit, run.age)
                     added = opened.add_entries([entry], force=self.force)[0]
                     counts[_noted(added)] += 1
+                    numbers.add(added.run)
                     _with_event(opened, run, added)
                 except OutputError:  # what the next run would meet too
                     raise
                 except HerseyError as error:
                     failed.append(failure_line(run.log, error))
                 progress(number, len(new))
-        return counts
+        return counts, numbers
 
     def _read(
         self, runs: list[tuple[RunToAdd, str]], children: Sequence[Child] = ()
@@ -293,6 +297,12 @@ def _with_event(opened: Campaign, run: RunToAdd, added: Added) -> None:
     """Record what was done before a run that was added."""
     if run.event:
         opened.add_event(added.unit, added.age, run.event, run=added.run)
+
+
+def _diagnosed(opened: Campaign, new: set[int]) -> None:
+    """Print which of the new runs do not fit the others."""
+    if new:
+        note(*(str(warning) for warning in opened.diagnose().concerning(new)))
 
 
 def _noted(added: Added) -> str:

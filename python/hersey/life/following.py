@@ -124,11 +124,15 @@ def follow(
             )
             return None
 
+    said("runs that do not fit")
+    diagnosis = campaign.diagnose()
+    warnings += [*diagnosis.warnings, *diagnosis.warning_of_excluded()]
     said("torque at the limits")
     indicators = indicators_of(campaign, machine)
-    film = tried("film through life", lambda: film_life(campaign, machine))
+    film = tried("film through life", lambda: film_life(campaign, machine, excluded=diagnosis.excluded))
     if film is not None:
         indicators = film.with_starvation(indicators)
+    indicators = indicators.without_runs(diagnosis.excluded)
     said("growth and time to failure")
     found = time_to_failure(indicators, until=until, seed=seed)
     drift = tried("drift", lambda: fit_drift(campaign.dwells()))
@@ -139,7 +143,7 @@ def follow(
     others = (
         tried(
             "ages in other operating conditions",
-            lambda: uses_beside(found, campaign, machine, indicators, seed=seed),
+            lambda: uses_beside(found, campaign, machine, indicators, excluded=diagnosis.excluded, seed=seed),
         )
         if uses
         else None

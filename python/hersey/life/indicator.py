@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
-from dataclasses import dataclass
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
@@ -115,3 +115,20 @@ class Indicators:
     runs: Runs
     each: tuple[Indicator, ...]
     warnings: tuple[Warning, ...] = ()
+
+    def without_runs(self, places: Sequence[int]) -> Indicators:
+        """Return the same, unknown at some runs."""
+        if not places:
+            return self
+        known = ~np.isin(np.arange(self.runs.age.size), places)
+        return replace(
+            self,
+            each=tuple(
+                replace(
+                    each,
+                    value=np.where(known, each.value, np.nan),
+                    error=np.where(known, each.error, np.nan),
+                )
+                for each in self.each
+            ),
+        )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import reduce
 from itertools import product
@@ -161,10 +161,14 @@ def uses_beside(
     machine: Machine,
     indicators: Indicators,
     *,
+    excluded: Sequence[int] = (),
     seed: int = 0,
     progress: Callable[[int, int], None] | None = None,
 ) -> OtherUses:
-    """Return `other_uses` with the growths of a `time_to_failure` of these very indicators and this seed."""
+    """Return `other_uses` with the growths of a `time_to_failure` of these very indicators and this seed.
+
+    ``excluded`` are the places of runs at which the indicators are taken as unknown.
+    """
     limit = machine.limits.motor_torque
     cold = _coldest(campaign, machine)
     limits = () if limit is None else tuple(limit * factor for factor in _LIMITS)
@@ -182,7 +186,9 @@ def uses_beside(
     total = max(len(limits), 1) * max(len(starts), 1) * len(duties)
     for coldest, duty in product(starts or (None,), duties):
         stated = coldest in (cold, None) and duty == AS_STATED
-        here = indicators if stated else _in_use(campaign, machine, indicators, coldest, duty)
+        here = indicators
+        if not stated:
+            here = _in_use(campaign, machine, indicators, coldest, duty).without_runs(excluded)
         for torque in limits or (None,):
             ends = ways.ends(here, torque)
             uses.append(Use(torque, coldest, duty, stated and torque == limit, *ends))

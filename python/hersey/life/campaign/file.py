@@ -5,6 +5,7 @@ from __future__ import annotations
 import shlex
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     from hersey.damping.dwells import SteadyPoints
     from hersey.damping.no_load_torque import NoLoadTorque
     from hersey.damping.surface import DampingSurface
+    from hersey.life.diagnostics.diagnosis import Diagnosis
     from hersey.log.sensors import Sensors
 
 #: Columns of the list of runs.
@@ -376,10 +378,20 @@ class Campaign:
         return table(self.dwells(), suffix)
 
     def check(self, progress: Callable[[int, int], None] | None = None) -> CampaignCheck:
-        """Check the file, that each log exists and is unchanged, the order of the ages, and the fits."""
+        """Check the file, that each log exists and is unchanged, the ages, the fits, and each run."""
         with sqlite_errors(self.path):
             refuse_unsound_dwells(self._database, self.path)
-            return check(self._database, self._home, progress)
+            found = check(self._database, self._home, progress)
+        return replace(found, warnings=(*found.warnings, *self.diagnose().warnings))
+
+    def diagnose(self) -> Diagnosis:
+        """Return which runs do not fit those of their specimen and of the others, and the likeliest slips."""
+        from hersey.life.campaign.diagnosed import measured_runs
+        from hersey.life.diagnostics.diagnosis import diagnosed
+
+        rests = {number: rest for number, (rest, _) in self.drives().items()}
+        events = tuple(self.events())
+        return diagnosed(measured_runs(self.runs(), self.age_unit, *self.measured(), rests, events))
 
     def summary(self) -> str:
         """Return an overview and one line per specimen."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated
 
@@ -157,8 +157,12 @@ def _viscosity(found: Layers) -> Ends:
     return value, value - DEVIATIONS * error, value + DEVIATIONS * error
 
 
-def film_of_runs(campaign: Campaign, machine: Machine, cold: float | None) -> FilmOfRuns:
+def film_of_runs(
+    campaign: Campaign, machine: Machine, cold: float | None, excluded: Sequence[int] = ()
+) -> FilmOfRuns:
     """Return what runs show of their film, at a cold corner of ``cold`` (K; None: what all recorded).
+
+    ``excluded`` are the places of runs that are not asked.
 
     Raises
     ------
@@ -169,6 +173,8 @@ def film_of_runs(campaign: Campaign, machine: Machine, cold: float | None) -> Fi
     if not runs.run:
         raise InsufficientDataError(f"{campaign.path.name} has no runs. Add logs first")
     dwells, places = filled_dwells(campaign, runs)
+    asked = ~np.isin(places, excluded)
+    dwells, places = dwells.rows(np.flatnonzero(asked)), places[asked]
     usable = _shows_film(dwells)
     if not usable.any():
         raise InsufficientDataError(

@@ -6,7 +6,7 @@ both in `starving`.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
@@ -189,6 +189,7 @@ def film_life(
     track: float | None = None,
     side_flow: float | None = None,
     evaporation: float | None = None,
+    excluded: Sequence[int] = (),
     seed: int = 0,
 ) -> FilmLife:
     """Return the film of the specimens of a campaign over their life.
@@ -212,6 +213,8 @@ def film_life(
         circumference of the roll.
     side_flow, evaporation
         K in 1/(m^2 age) and e in 1/age, in the campaign's unit of age. Default: fitted.
+    excluded
+        Places of runs that do not fit, which are left out.
     seed
         Random seed.
 
@@ -223,7 +226,7 @@ def film_life(
         If no dwell has a temperature.
     """
     _refuse_impossible(side_flow, evaporation, track)
-    read = film_of_runs(campaign, machine, machine.life.coldest if cold is None else cold)
+    read = film_of_runs(campaign, machine, machine.life.coldest if cold is None else cold, excluded)
     segments = read.runs.segments(OF_FRICTION)
     age = segments.age[read.places]
     of_run = [segments.name[i] for i in read.places]

@@ -1,0 +1,200 @@
+"""The slips of a life test, the likeliest first: each is undone before the next is looked for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from hersey.arrays import BoolArray, FloatArray, IntArray, one_thread
+from hersey.life.diagnostics import slips
+from hersey.life.diagnostics.compared import Compared
+from hersey.life.diagnostics.fingerprint import Fingerprints, fingerprints
+from hersey.life.diagnostics.measured import MeasuredRuns
+from hersey.life.diagnostics.same_logs import same_logs
+from hersey.life.diagnostics.slips import Slip
+
+#: Gain in log probability from which a slip of each kind is named: the mean of that by the trend of all runs
+#: as they
+#: are and of that by the trend with the slip undone, as a slip hides in the first and shapes the second.
+LEAST = {
+    slips.EXCHANGED: 7.5,
+    slips.REORDERED: 9.0,
+    slips.AGES: 8.0,
+    slips.AGE: 9.0,
+    slips.TORQUE: 9.0,
+    slips.TORQUES: 5.0,
+    slips.MACHINE: 7.0,
+    slips.LUBRICANT: 5.5,
+}
+#: Gain by the first trend from which a slip is judged by the second.
+_WORTH = 2.0
+#: Kinds of a run from elsewhere, and how many runs, the farthest off, may be such.
+_FOREIGN, _FAR = (slips.MACHINE, slips.LUBRICANT), 2
+#: How many times farther, squared, such a run lies than those of the other specimens, or than this in each
+#: number: by
+#: its own neighbours on both sides, and at the end of a record, where a film may begin to starve.
+_INSIDE, _AT_END, _USUAL = 6.0, 12.0, 3.0
+#: How many times farther, squared, than those of other specimens the others of its specimen may lie without
+#: it.
+_AGREE = 1.5
+#: Slips that are looked for, at most, and those that are judged for each.
+_MOST, _JUDGED = 10, 5
+#: Fewest runs of a life test and of a specimen that are compared.
+_RUNS, _OF_SPECIMEN = 8, 3
+#: How far apart ages of exchanged logs may be, in the usual last age: half as much if not of one place in
+#: order.
+_NEAR = 0.12
+
+
+@dataclass(frozen=True)
+class State:
+    """Runs with the slips found so far undone; ``used`` marks those that are compared."""
+
+    specimen: IntArray
+    age: FloatArray
+    prints: Fingerprints
+    used: BoolArray
+
+    @cached_property
+    def places(self) -> IntArray:
+        """Return the places of the runs that are compared, by specimen and age; none if there are too few."""
+        count = np.bincount(self.specimen[self.used], minlength=int(self.specimen.max()) + 1)
+        enough = self.used & (count[self.specimen] >= _OF_SPECIMEN)
+        if np.count_nonzero(enough) < _RUNS:
+            return np.empty(0, dtype=np.intp)
+        places = np.flatnonzero(enough)
+        return places[np.lexsort((self.age[places], self.specimen[places]))]
+
+    @cached_property
+    def usual(self) -> float:
+        """Usual last age of the specimens."""
+        places, last = self.places, np.zeros(int(self.specimen.max()) + 1)
+        np.maximum.at(last, self.specimen[places], self.age[places])
+        return float(np.median(last[last > 0.0])) if (last > 0.0).any() else 1.0
+
+    def compared(self) -> Compared:
+        """Return the runs compared."""
+        return Compared.of(*self._runs(self.usual))
+
+    def by(self, other: State, trend: Compared) -> Compared:
+        """Return the runs by the trend of another state."""
+        return trend.with_runs(*self._runs(other.usual))
+
+    def _runs(self, usual: float) -> tuple[IntArray, FloatArray, Fingerprints]:
+        at = self.places
+        prints = replace(self.prints, value=self.prints.value[at], variance=self.prints.variance[at])
+        return self.specimen[at], self.age[at] / usual, prints
+
+    def without(self, slip: Slip) -> State:
+        """Return it with a slip undone."""
+        runs = list(slip.runs)
+        if slip.kind in (slips.EXCHANGED, slips.REORDERED):
+            value, variance = self.prints.value.copy(), self.prints.variance.copy()
+            value[runs], variance[runs] = value[runs[::-1]], variance[runs[::-1]]
+            return replace(self, prints=replace(self.prints, value=value, variance=variance))
+        if slip.kind in (slips.AGES, slips.AGE):
+            age = self.age.copy()
+            age[runs] /= slip.factor
+            return replace(self, age=age)
+        if slip.kind in (slips.TORQUE, slips.TORQUES):
+            value = self.prints.value.copy()
+            value[runs, 0] -= np.log(slip.factor)
+            return replace(self, prints=replace(self.prints, value=value))
+        used = self.used.copy()
+        used[runs] = False
+        return replace(self, used=used)
+
+
+def _exchanged(at: Compared) -> list[Slip]:
+    return slips.exchanged(at, _NEAR)
+
+
+#: What finds the slips of each kind.
+_OF_KIND: dict[str, Callable[[Compared], list[Slip]]] = {
+    slips.EXCHANGED: _exchanged,
+    slips.REORDERED: slips.reordered,
+    slips.AGES: slips.ages_scaled,
+    slips.AGE: slips.age_scaled,
+    slips.TORQUE: slips.alone,
+    slips.TORQUES: slips.torques_scaled,
+    slips.MACHINE: slips.alone,
+    slips.LUBRICANT: slips.alone,
+}
+
+
+def candidates(at: Compared) -> list[Slip]:
+    """Return every slip that is looked for, with its gain."""
+    return [slip for find in dict.fromkeys(_OF_KIND.values()) for slip in find(at)]
+
+
+@one_thread()
+def find_slips(runs: MeasuredRuns) -> list[Slip]:
+    """Return the slips, the likeliest first."""
+    prints = fingerprints(runs)
+    state = State(runs.specimen, runs.since, prints, prints.known.copy())
+    found = same_logs(runs)[:_MOST]
+    for slip in found:
+        state = state.without(slip)
+    while len(found) < _MOST and state.places.size:
+        slip = _likeliest(state)
+        if slip is None:
+            break
+        found.append(slip)
+        state = state.without(slip)
+    return found
+
+
+def _likeliest(state: State) -> Slip | None:
+    """The likeliest slip; None if there is none."""
+    at = state.compared()
+    every = sorted(candidates(at), key=lambda each: LEAST[each.kind] - each.gain)
+    worth = [each for each in every if each.gain > _WORTH and each.kind not in _FOREIGN][:_JUDGED]
+    judged = [_judged(state, slip) for slip in worth]
+    for place in np.argsort(-at.squares, kind="stable")[:_FAR].tolist():
+        judged.append(_foreign(state, at, [each for each in every if each.runs == (place,)]))
+    named = [each for each in judged if each.gain >= LEAST[each.kind]]
+    return max(named, key=lambda each: each.gain - LEAST[each.kind], default=None)
+
+
+def _judged(state: State, slip: Slip) -> Slip:
+    """A slip with its runs as places of the whole life test, and its gain by the trend without it, too."""
+    there = replace(slip, runs=tuple(int(state.places[i]) for i in slip.runs))
+    undone = state.without(there)
+    if not undone.places.size:
+        return replace(there, gain=-np.inf)
+    at = state.by(undone, undone.compared())
+    again = [each for each in _OF_KIND[slip.kind](at) if each.kind == slip.kind and each.runs == slip.runs]
+    without = max((each.gain for each in again), default=-np.inf)
+    return replace(there, gain=0.5 * (slip.gain + without))
+
+
+def _foreign(state: State, before: Compared, of_run: list[Slip]) -> Slip:
+    """The likelier of another machine and another lubricant for a run, by the trend without it.
+
+    A run whose shape nothing explains is foreign all the same if it lies many times farther off, squared,
+    than
+    every run of the other specimens; but the others of its own must agree without it: a step that stays is
+    none.
+    """
+    first = {each.kind: each for each in of_run}
+    (place,) = of_run[0].runs
+    there = int(state.places[place])
+    undone = state.without(Slip(slips.LUBRICANT, (there,), 0.0))
+    if not undone.places.size:
+        return Slip(slips.LUBRICANT, (there,), -np.inf)
+    clean = undone.compared()
+    at = state.by(undone, clean)
+    again = {each.kind: each for each in slips.alone(at) if each.runs == (place,)}
+    best = max((again[kind] for kind in _FOREIGN), key=lambda each: each.gain)
+    others = at.squares[at.rows.row != at.rows.row[place]].max(initial=_USUAL * at.terms)
+    same = undone.specimen[undone.places] == state.specimen[there]
+    if same.any() and clean.squares[same].max() > _AGREE * others:
+        return Slip(slips.LUBRICANT, (there,), -np.inf)
+    row, column = before.rows.row[place], before.rows.column[place]
+    inside = 0 < column < np.count_nonzero(before.rows.given[row]) - 1
+    times = float(at.squares[place] / others) / (_INSIDE if inside else _AT_END)
+    gain = 0.5 * (best.gain + first[best.kind].gain)
+    return replace(best, runs=(there,), gain=max(gain, float(LEAST[best.kind] + 2.0 * np.log(times))))

@@ -1,0 +1,259 @@
+"""Slips planted into the runs of the shipped life test: which are named, and what they move."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import polars as pl
+import pytest
+
+from hersey.life.age import Age
+from hersey.life.diagnostics.diagnosis import Diagnosis, diagnosed
+from hersey.life.diagnostics.measured import MeasuredRuns
+from hersey.life.growth.fit import fit_growth
+from hersey.life.indicator import Indicator, Indicators, Runs
+from hersey.life.maintenance import RE_GREASED, Event
+from hersey.testbench.stand import RPM
+from tests.cli.command import run as typed
+from tests.conftest import ROOT
+from tests.life.shipped import FOLDER
+
+
+@dataclass(frozen=True)
+class Run:
+    """A run that a slip may change."""
+
+    unit: str
+    age: float
+    speed: np.ndarray
+    kelvin: np.ndarray
+    torque: np.ndarray
+
+
+@cache
+def shipped() -> tuple[Run, ...]:
+    """The shipped runs, every second dwell."""
+    runs = []
+    for row in pl.read_csv(FOLDER / "runs.csv").iter_rows(named=True):
+        log = pl.read_csv(FOLDER / row["log"], comment_prefix="#")[::2]
+        speed = log["speed [rpm]"].cast(float).to_numpy() * RPM
+        kelvin = log["temperature [degC]"].cast(float).to_numpy() + 273.15
+        runs.append(
+            Run(row["unit"], float(row["age"].split()[0]), speed, kelvin, log["torque [N*m]"].to_numpy())
+        )
+    return tuple(runs)
+
+
+def measured(runs: list[Run], events: tuple[Event, ...] = ()) -> MeasuredRuns:
+    """Runs as a campaign hands them over, numbered by specimen and age."""
+    runs = sorted(runs, key=lambda each: (each.unit, each.age))
+    joined = [np.concatenate([getattr(run, name) for run in runs]) for name in ("speed", "kelvin", "torque")]
+    return MeasuredRuns(
+        tuple(range(1, len(runs) + 1)),
+        tuple(run.unit for run in runs),
+        np.array([run.age for run in runs]),
+        "pages",
+        np.repeat(np.arange(len(runs)), [run.speed.size for run in runs]),
+        *joined,
+        events,
+    )
+
+
+def changed(change: Callable[[Run], Run], runs: tuple[Run, ...] | None = None) -> list[Run]:
+    return [change(run) for run in runs or shipped()]
+
+
+def at(unit: str, age: float | None = None) -> Callable[[Run], bool]:
+    return lambda run: run.unit == unit and age in (None, run.age)
+
+
+def exchanged(one: Callable[[Run], bool], other: Callable[[Run], bool]) -> list[Run]:
+    """The runs with the logs of two exchanged."""
+    (first,), (second,) = ([run for run in shipped() if which(run)] for which in (one, other))
+    of = {
+        id(first): replace(second, unit=first.unit, age=first.age),
+        id(second): replace(first, unit=second.unit, age=second.age),
+    }
+    return changed(lambda run: of.get(id(run), run))
+
+
+def times(factor: float, which: Callable[[Run], bool]) -> list[Run]:
+    return changed(lambda run: replace(run, torque=factor * run.torque) if which(run) else run)
+
+
+def aged(factor: float, which: Callable[[Run], bool]) -> list[Run]:
+    return changed(lambda run: replace(run, age=factor * run.age) if which(run) else run)
+
+
+def other_oil(run: Run) -> Run:
+    """A run with an oil that is thicker hot than cold."""
+    return replace(run, torque=run.torque * np.exp(0.2 + 0.2 * (run.kelvin - 390.0) / 50.0))
+
+
+def facts(found: Diagnosis) -> list[dict[str, Any]]:
+    """Kind and numbers of each slip, without the words."""
+    return [
+        {"kind": each.kind, **{k: v for k, v in each.values.items() if k != "how"}} for each in found.warnings
+    ]
+
+
+def test_the_shipped_runs_are_as_they_should_be() -> None:
+    found = diagnosed(measured(list(shipped())))
+    assert found.warnings == ()
+    assert found.excluded == []
+
+
+def test_logs_of_two_specimens_exchanged() -> None:
+    found = diagnosed(measured(exchanged(at("U4", 140000.0), at("U8", 140000.0))))
+    assert facts(found) == [
+        {
+            "kind": "logs exchanged",
+            "unit": "U4",
+            "run": 23,
+            "age": 140000.0,
+            "age_unit": "pages",
+            "other_unit": "U8",
+            "other_run": 47,
+            "other_age": 140000.0,
+        }
+    ]
+    assert str(found.warnings[0]).startswith("logs of U4 and U8 at 140000 pages look exchanged. If they are")
+    assert found.excluded == [22, 46]
+    assert found.concerning({47}) == found.warnings
+    assert found.concerning({1, 2}) == ()
+
+
+@pytest.mark.nightly
+def test_logs_of_one_specimen_exchanged() -> None:
+    (slip,) = facts(diagnosed(measured(exchanged(at("U4", 35000.0), at("U4", 140000.0)))))
+    assert {**slip, "run": 0, "other_run": 0} == {
+        "kind": "ages exchanged",
+        "unit": "U4",
+        "run": 0,
+        "age": 35000.0,
+        "age_unit": "pages",
+        "other_unit": "U4",
+        "other_run": 0,
+        "other_age": 140000.0,
+    }
+
+
+@pytest.mark.parametrize(
+    ("unit", "factor"), [("U3", 1e-3), pytest.param("U7", 60.0, marks=pytest.mark.nightly)]
+)
+def test_ages_of_a_specimen_in_another_unit(unit: str, factor: float) -> None:
+    found = diagnosed(measured(aged(factor, at(unit))))
+    (slip,) = facts(found)
+    assert (slip["kind"], slip["unit"], slip["runs"]) == ("ages scaled", unit, 6)
+    assert slip["factor"] == pytest.approx(factor)
+    assert len(found.excluded) == 6
+    words = "1000 times smaller" if factor < 1 else "60 times larger"
+    assert str(found.warnings[0]).startswith(f"ages of {unit} look {words} than those of the others")
+
+
+@pytest.mark.nightly
+def test_an_age_that_was_typed_wrong() -> None:
+    (slip,) = facts(diagnosed(measured(aged(10.0, at("U2", 105000.0)))))
+    assert (slip["kind"], slip["unit"], slip["age"]) == ("age scaled", "U2", 1050000.0)
+    assert slip["factor"] == pytest.approx(10.0)
+
+
+@pytest.mark.parametrize("age", [70000.0, pytest.param(None, marks=pytest.mark.nightly)])
+def test_torque_in_another_unit(age: float | None) -> None:
+    (slip,) = facts(diagnosed(measured(times(141.612, at("U2", age)))))
+    assert (slip["kind"], slip["unit"]) == ("torques scaled" if age is None else "torque scaled", "U2")
+    assert slip["factor"] == pytest.approx(141.612)
+    assert slip.get("age") == age
+
+
+def test_a_run_of_another_machine() -> None:
+    found = diagnosed(measured(times(1.4, at("U5", 70000.0))))
+    (slip,) = facts(found)
+    assert (slip["kind"], slip["unit"], slip["run"], slip["age"]) == ("another machine", "U5", 27, 70000.0)
+    assert slip["factor"] == pytest.approx(1.4, rel=0.05)
+    assert found.excluded == [26]
+
+
+def test_a_run_with_another_lubricant() -> None:
+    runs = changed(lambda run: other_oil(run) if at("U5", 105000.0)(run) else run)
+    (slip,) = facts(diagnosed(measured(runs)))
+    assert (slip["kind"], slip["unit"], slip["run"]) == ("another lubricant", "U5", 28)
+
+
+def test_a_log_that_was_copied() -> None:
+    (copied,) = [run for run in shipped() if at("U1", 70000.0)(run)]
+    runs = changed(lambda run: replace(copied, age=run.age) if at("U1", 105000.0)(run) else run)
+    (slip,) = facts(diagnosed(measured(runs)))
+    assert (slip["kind"], slip["run"], slip["other_run"]) == ("same log", 3, 4)
+
+
+def test_a_few_runs_are_not_doubted() -> None:
+    for count, ages in ((1, 3), (2, 3), (3, 2)):
+        some = [
+            run for run in times(1.5, at("U2", 35000.0)) if run.unit in [f"U{k + 1}" for k in range(count)]
+        ]
+        some = [run for run in some if run.age < 35000.0 * ages]
+        assert diagnosed(measured(some)).warnings == ()
+    assert diagnosed(measured(list(shipped())[:1])).warnings == ()
+
+
+def test_torque_that_falls_at_maintenance_is_no_slip() -> None:
+    greased = tuple(Event(unit, Age(120000.0, "pages"), RE_GREASED, None) for unit in ("U4", "U8"))
+    runs = changed(
+        lambda run: (
+            replace(run, torque=0.7 * run.torque) if run.age > 120000.0 and run.unit in ("U4", "U8") else run
+        )
+    )
+    assert diagnosed(measured(runs, greased)).warnings == ()
+
+
+def medians(runs: list[Run], excluded: list[int]) -> dict[str, float]:
+    """Age at twice the torque when new of each specimen, by the mean torque of its runs."""
+    runs = sorted(runs, key=lambda each: (each.unit, each.age))
+    kept = [run for i, run in enumerate(runs) if i not in excluded]
+    value = [float(np.exp(np.log(run.torque[run.kelvin < 350.0]).mean())) for run in kept]
+    growth = fit_growth(
+        [run.unit for run in kept], [run.age for run in kept], value, 0.01, laws=["linear", "exponential"]
+    )
+    return {each.unit: each.age.value for each in growth.reaches(0.5).units}
+
+
+def test_slips_do_not_move_the_other_specimens() -> None:
+    right = medians(list(shipped()), [])
+    runs = aged(1e-3, at("U3"))
+    found = diagnosed(measured(runs))
+    moved = medians(runs, found.excluded)
+    others = [unit for unit in right if unit != "U3"]
+    assert max(abs(moved[unit] / right[unit] - 1.0) for unit in others) < 0.03
+
+
+def test_indicators_are_unknown_at_runs_that_do_not_fit() -> None:
+    runs = Runs((1, 2, 3), ("A", "A", "A"), np.array([0.0, 1.0, 2.0]), "h")
+    one = Indicator("torque", "torque", "N m", 2.0, np.array([1.0, 1.1, 1.2]), np.full(3, 0.01))
+    every = Indicators(runs, (one,))
+    assert every.without_runs([]) is every
+    assert np.isnan(every.without_runs([1]).each[0].value).tolist() == [False, True, False]
+
+
+@pytest.mark.nightly
+def test_the_terminal_names_exchanged_logs_when_they_are_added(tmp_path: Path) -> None:
+    table = (FOLDER / "runs.csv").read_text()
+    table = re.sub(
+        r"U([48])-140000\.csv,U\d", lambda match: f"U{match[1]}-140000.csv,U{12 - int(match[1])}", table
+    )
+    table = re.sub(r"^(U\d)", rf"{FOLDER}/\1", table, flags=re.MULTILINE)
+    (tmp_path / "runs.csv").write_text(table)
+    machine = ROOT / "examples" / "machine.toml"
+    added = typed(
+        "campaign", "add", "life.hersey", "--table", "runs.csv", "--means", "--machine", machine, cwd=tmp_path
+    )
+    assert "logs of U4 and U8 at 140000 pages look exchanged" in " ".join(added.stderr.split())
+    checked = typed("campaign", "check", "life.hersey", cwd=tmp_path)
+    assert checked.returncode == 1
+    assert "logs of U4 and U8 at 140000 pages look exchanged" in checked.words
