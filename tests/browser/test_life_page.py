@@ -110,7 +110,7 @@ def test_the_numbers_that_matter_appear_once_and_all_agree(browser: Browser, tmp
         assert len(re.findall(rf"\b{rounded(age)}\b", text)) == 1
     assert text.count("Half of new specimens") == 1
     assert "B50" not in text
-    assert f"(90 %: {rounded(half.age.low)} to {rounded(half.age.high)})" in text.replace("\u00a0", " ")
+    assert f"(90 %: {rounded(half.age.low)} to {rounded(half.age.high)} pages)" in text.replace("\u00a0", " ")
     cells = page.locator("#ages tbody tr").evaluate_all("rows => rows.map((row) => row.cells[3].innerText)")
     names = page.locator("#ages tbody tr").evaluate_all("rows => rows.map((row) => row.cells[0].innerText)")
     ends = {each.unit: each for each in found.units}

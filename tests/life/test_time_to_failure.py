@@ -115,7 +115,7 @@ def test_the_headline_says_who_needs_attention_and_what_the_others_reach() -> No
     )
     assert told().of_new() == (
         f"Half of new specimens fail by {rounded(told().b50.age.value)} pages (90 %: "
-        f"{rounded(told().b50.age.low)} to {rounded(told().b50.age.high)}), mostly by torque."
+        f"{rounded(told().b50.age.low)} to {rounded(told().b50.age.high)} pages), mostly by torque."
     )
     doubtful = replace(attention, failed=(), unclear=("F6", "F2"), running=("F1",))
     assert doubtful.words("pages")[0] == "Two specimens need attention: F6 and F2 may have failed."
@@ -368,7 +368,8 @@ def test_what_to_measure_next_serves_what_was_asked() -> None:
         f"measure F3 again at {of_f3.age:g} pages to find out whether it lasts until 1000 pages; "
         f"the risk of a wrong answer falls from {percent(of_f3.before)} to about {percent(of_f3.after)}"
     )
-    assert found.advice[0] == "inspect F6 for torque"
+    assert found.advice[0] == found.next_runs[0].words("pages")  # what was asked comes first
+    assert found.advice[-1] == "inspect F6 for torque"
     assert found.planning() == ""
     assert time_to_failure(of(torque), until=1000).next_runs == found.next_runs
 

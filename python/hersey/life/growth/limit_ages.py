@@ -109,7 +109,7 @@ class AgesAtLimit(Result):
         AgeAtLimit | None,
         Means("a tenth of new specimens has reached it; null for fewer than four"),
     ]
-    b50: AgeAtLimit | None
+    b50: Annotated[AgeAtLimit | None, Means("the same of half of new specimens")]
     warnings: tuple[Warning, ...]
     accumulates: Annotated[bool, Means("whether the limit applies to the integral over age")] = (
         False  #: the limit is that of the integral over age

@@ -24,7 +24,7 @@ class Ageing(Record):
 
     shown: Annotated[Literal["all", "some", "none"], Means("failure modes that show growth")]
     unchanged: Annotated[tuple[str, ...], Means("failure modes that show no growth")]
-    confidence: float
+    confidence: Annotated[float, Means("of `none_before`")]
     none_before: Annotated[
         float | None, Means("age before which no specimen fails, at this confidence; null if unknown")
     ]

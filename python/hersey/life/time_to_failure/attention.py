@@ -22,9 +22,9 @@ _NUMBERS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight"
 class Attention(Record):
     """Specimens by their state when last seen, and the age that the running ones should reach."""
 
-    failed: tuple[str, ...]
-    unclear: Annotated[tuple[str, ...], Means("that may have failed")]
-    running: tuple[str, ...]
+    failed: Annotated[tuple[str, ...], Means("specimens that have failed with 95 % probability or more")]
+    unclear: Annotated[tuple[str, ...], Means("specimens that may have failed")]
+    running: Annotated[tuple[str, ...], Means("specimens that have failed with 5 % probability at most")]
     look_again: Annotated[
         float | None,
         Means(
@@ -77,7 +77,7 @@ def half_failed(b50: Interval, shares: dict[str, Interval], age_unit: str) -> st
         least = f"{rounded(b50.low)}{unit}" if math.isfinite(b50.low) else "any age"
         return f"Fewer than half of new specimens fail before {least}."
     high = "no upper limit" if math.isinf(b50.high) else rounded(b50.high)
-    ends = f"{rounded(b50.low)} to {high}"
+    ends = f"{rounded(b50.low)} to {high}{unit}"
     likely = max(shares, key=lambda name: shares[name].value)
     by = "mostly" if shares[likely].value > 0.5 else "most often"
     return f"Half of new specimens fail by {rounded(b50.value)}{unit} (90 %: {ends}), {by} by {likely}."

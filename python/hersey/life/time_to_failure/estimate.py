@@ -177,12 +177,16 @@ class TimeToFailure(Result):
 
     @property
     def advice(self) -> tuple[str, ...]:
-        """What to do next, in words: specimens to inspect, how long to go on without growth, runs."""
+        """What to do next, in words: specimens to inspect, how long to go on without growth, runs.
+
+        The runs come first if they answer a stated question.
+        """
         likely = {each.unit: " or ".join(each.likely) for each in self.units}
         failed = [f"inspect {name} for {likely[name]}" for name in self.attention.failed]
         go_on = [self.ageing.advice(self.age_unit)]
         runs = [each.words(self.age_unit) for each in self.next_runs]
-        return (*failed[:_ADVISED], *filter(None, go_on), *runs[:_ADVISED])
+        asked, open_ = runs[:_ADVISED], (*failed[:_ADVISED], *filter(None, go_on))
+        return (*open_, *asked) if self.until is None else (*asked, *open_)
 
     def planning(self) -> str:
         """Return how to state the age that specimens should reach; empty if it was stated."""

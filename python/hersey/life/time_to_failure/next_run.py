@@ -34,7 +34,7 @@ _WEIGHED, _SURE = 24, 0.05
 class NextRun(Record):
     """A run that helps to decide whether a specimen lasts until an age."""
 
-    unit: str
+    unit: Annotated[str, Means("the specimen")]
     age: Annotated[float, Means("of the run")]
     until: Annotated[float, Means("age that the specimen may or may not reach")]
     present: Annotated[bool, Means("whether that is the age at which it was last seen")]
